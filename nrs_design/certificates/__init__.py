@@ -1,0 +1,1 @@
+"""Certificates: untrusted searches, the tiny trusted check, and the file format."""

@@ -1,0 +1,70 @@
+"""The largest decay rate that a common quadratic function shows (untrusted search).
+
+A position s in [0, 1) stands for the rate: 0 is mere stability, 1 the rate of the slowest mode,
+which no common function can exceed.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from nrs_design.certificates.lmi import decreases, find_common_quadratic
+from nrs_design.switched.system import Time
+
+TOLERANCE = 1e-4
+
+
+def limit_rate(matrices: NDArray[np.float64], time: Time) -> float:
+    """Return the rate of the slowest mode: ``-max Re`` in 1/s, or the largest spectral radius."""
+    eigenvalues = np.linalg.eigvals(matrices)
+    if time is Time.CONTINUOUS:
+        return float(-eigenvalues.real.max())
+    return float(np.abs(eigenvalues).max())
+
+
+def rate_at(position: float, limit: float, time: Time) -> float:
+    """Return the rate at a position between mere stability and the limit."""
+    return position * limit if time is Time.CONTINUOUS else 1 - position * (1 - limit)
+
+
+def largest_position(matrices: NDArray[np.float64], time: Time, limit: float) -> float:
+    """Bisect for the largest position at which the search still finds a function.
+
+    Parameters
+    ----------
+    matrices : ndarray, shape (m, n, n)
+        Balanced modes with a common quadratic function.
+    time : Time
+        Continuous or discrete.
+    limit : float
+        As `limit_rate` gives it.
+    """
+    low, high = 0.0, 1.0
+    while high - low > TOLERANCE:
+        middle = (low + high) / 2
+        if find_common_quadratic(matrices, time, rate_at(middle, limit, time)) is None:
+            high = middle
+        else:
+            low = middle
+    return low
+
+
+def rate_of(matrices: NDArray[np.float64], Q: NDArray[np.float64], time: Time) -> float:
+    """Return the best rate that a given Q shows, by generalized eigenvalues.
+
+    Parameters
+    ----------
+    matrices : ndarray, shape (m, n, n)
+        Modes.
+    Q : ndarray, shape (n, n)
+        Positive definite.
+    time : Time
+        Continuous (in 1/s) or discrete (contraction per step).
+    """
+    inverse = np.linalg.inv(np.linalg.cholesky(Q))
+    forms = inverse @ decreases(matrices, Q, time, 0.0) @ inverse.T
+    values = np.linalg.eigvalsh(forms)
+    if time is Time.CONTINUOUS:
+        return float(values[:, 0].min()) / 2
+    return float(np.sqrt(-values[:, 0].min()))

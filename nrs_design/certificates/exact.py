@@ -1,0 +1,181 @@
+"""TRUSTED: exact decisions about integer matrices, in plain Python integers.
+
+Everything that is called proved or refuted rests on this file and on nothing cleverer. A
+rational matrix is given as integers over a positive denominator; positive factors change
+neither definiteness nor the Hurwitz property, so all tests run on integers.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from fractions import Fraction
+from math import gcd
+from operator import mul
+
+IntegerMatrix = Sequence[Sequence[int]]
+
+
+def is_symmetric(M: IntegerMatrix) -> bool:
+    """Tell whether a matrix is square and equal to its transpose."""
+    return [list(row) for row in M] == [list(column) for column in zip(*M, strict=True)]
+
+
+def is_positive_definite(M: IntegerMatrix) -> bool:
+    """Decide whether a symmetric integer matrix is positive definite.
+
+    Fraction-free elimination (Bareiss 1968): the k-th pivot is the k-th leading principal
+    minor, and by Sylvester's criterion all of them are positive iff M is positive definite.
+
+    Parameters
+    ----------
+    M : sequence of sequence of int, shape (n, n)
+        Must be symmetric.
+
+    Raises
+    ------
+    ValueError
+        If M is empty or not symmetric.
+    """
+    if not M or not is_symmetric(M):
+        raise ValueError("a definiteness test needs a symmetric matrix")
+    upper = [list(row[i:]) for i, row in enumerate(M)]
+    previous = 1
+    for k, pivot_row in enumerate(upper):
+        pivot = pivot_row[0]
+        if pivot <= 0:
+            return False
+        for i in range(k + 1, len(upper)):
+            factor = pivot_row[i - k]
+            upper[i] = [
+                (pivot * entry - factor * above) // previous
+                for entry, above in zip(upper[i], pivot_row[i - k :], strict=True)
+            ]
+        previous = pivot
+    return True
+
+
+def lyapunov_decrease(
+    N: IntegerMatrix, denominator: int, Q: IntegerMatrix, rate: Fraction
+) -> list[list[int]]:
+    """Form a positive multiple of ``-(A'Q + QA + 2 rate Q)`` for ``A = N / denominator``.
+
+    Parameters
+    ----------
+    N, Q : integer matrices, shape (n, n)
+        Q symmetric.
+    denominator : int
+        Positive.
+    rate : Fraction
+        The claimed decay rate alpha, in 1/s.
+    """
+    columns = list(zip(*N, strict=True))
+    QN = [[sum(map(mul, row, column)) for column in columns] for row in Q]
+    p, q = 2 * rate.numerator * denominator, rate.denominator
+    return [
+        [-q * (a + b) - p * entry for a, b, entry in zip(*rows, strict=True)]
+        for rows in zip(QN, zip(*QN, strict=True), Q, strict=True)
+    ]
+
+
+def stein_decrease(
+    N: IntegerMatrix, denominator: int, Q: IntegerMatrix, factor: Fraction
+) -> list[list[int]]:
+    """Form a positive multiple of ``factor^2 Q - A'QA`` for ``A = N / denominator``.
+
+    Parameters
+    ----------
+    N, Q : integer matrices, shape (n, n)
+        Q symmetric.
+    denominator : int
+        Positive.
+    factor : Fraction
+        The claimed contraction rho per step.
+    """
+    columns = list(zip(*N, strict=True))
+    QN = [[sum(map(mul, row, column)) for column in columns] for row in Q]
+    images = list(zip(*QN, strict=True))
+    p = factor.numerator**2 * denominator**2
+    q = factor.denominator**2
+    return [
+        [p * a - q * sum(map(mul, column, image)) for a, image in zip(row, images, strict=True)]
+        for row, column in zip(Q, columns, strict=True)
+    ]
+
+
+def characteristic_polynomial(N: IntegerMatrix) -> list[int]:
+    """Return the integer coefficients of ``det(s I - N)``, highest power first.
+
+    Faddeev-LeVerrier recursion; every division is exact.
+    """
+    n = len(N)
+    coefficients = [1]
+    M = [[0] * n for _ in range(n)]
+    for k in range(1, n + 1):
+        for i in range(n):
+            M[i][i] += coefficients[-1]
+        columns = list(zip(*M, strict=True))
+        M = [[sum(map(mul, row, column)) for column in columns] for row in N]
+        coefficients.append(-sum(M[i][i] for i in range(n)) // k)
+    return coefficients
+
+
+def is_hurwitz_polynomial(coefficients: Sequence[int]) -> bool:
+    """Decide whether all roots have negative real parts.
+
+    Routh's scheme. Each row is multiplied by a positive integer to stay in integers and divided
+    by its greatest common divisor to stay small; neither changes a sign. With a positive leading
+    coefficient, the roots are all in the open left half-plane iff the scheme runs to its end
+    with a positive first column.
+
+    Parameters
+    ----------
+    coefficients : sequence of int
+        Highest power first; the leading one is not zero.
+    """
+    if coefficients[0] < 0:
+        coefficients = [-c for c in coefficients]
+    above, row = list(coefficients[0::2]), list(coefficients[1::2])
+    for _ in range(len(coefficients) - 1):
+        if not row or row[0] <= 0 or above[0] <= 0:
+            return False
+        shifted = row[1:] + [0] * (len(above) - len(row))
+        below = [row[0] * a - above[0] * r for a, r in zip(above[1:], shifted, strict=True)]
+        divisor = gcd(*below) or 1
+        above, row = row, [entry // divisor for entry in below]
+    return above[0] > 0
+
+
+def is_hurwitz(N: IntegerMatrix) -> bool:
+    """Decide whether N, and so N over any positive number, has its spectrum left of the axis."""
+    return is_hurwitz_polynomial(characteristic_polynomial(N))
+
+
+def is_schur(N: IntegerMatrix, denominator: int) -> bool:
+    """Decide whether all eigenvalues of ``N / denominator`` are inside the unit circle.
+
+    The map ``z = (1 + s) / (1 - s)`` takes the open left half-plane onto the open unit disk, so
+    the polynomial ``(1 - s)^n p((1 + s) / (1 - s))`` is tested for the Hurwitz property. Its
+    leading coefficient vanishes iff -1 is an eigenvalue.
+    """
+    n = len(N)
+    scaled = [c * denominator ** (n - k) for k, c in enumerate(characteristic_polynomial(N))]
+    mapped = [0] * (n + 1)
+    for k, c in enumerate(scaled):
+        for j, term in enumerate(_multiply(_power((1, 1), n - k), _power((-1, 1), k))):
+            mapped[j] += c * term
+    return mapped[0] != 0 and is_hurwitz_polynomial(mapped)
+
+
+def _power(binomial: Sequence[int], exponent: int) -> list[int]:
+    product = [1]
+    for _ in range(exponent):
+        product = _multiply(product, binomial)
+    return product
+
+
+def _multiply(left: Sequence[int], right: Sequence[int]) -> list[int]:
+    product = [0] * (len(left) + len(right) - 1)
+    for i, a in enumerate(left):
+        for j, b in enumerate(right):
+            product[i + j] += a * b
+    return product

@@ -1,0 +1,122 @@
+"""Search for a common quadratic Lyapunov function by semidefinite programming (untrusted).
+
+Margin form: maximize t subject to ``0 <= Q <= I`` and a decrease of at least t in every mode.
+Only the modes that the last candidate violates enter the solver. A solver's status is never
+evidence: whatever it returns goes through the exact check.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from nrs_design.switched.system import Time
+
+Matrices = NDArray[np.float64]
+
+# Below so many cone rows one solve with all modes is faster than adding modes lazily.
+ALL_AT_ONCE_ROWS = 6000
+FIRST_MODES = 8
+MARGIN_FLOOR = 1e-10
+
+
+def decreases(matrices: Matrices, Q: NDArray[np.float64], time: Time, rate: float) -> Matrices:
+    """Return, for every mode, the matrix that must be positive definite; shape (m, n, n)."""
+    if time is Time.CONTINUOUS:
+        half = Q @ matrices
+        return -(half + half.transpose(0, 2, 1)) - 2 * rate * Q
+    return rate**2 * Q - matrices.transpose(0, 2, 1) @ Q @ matrices
+
+
+def margins(matrices: Matrices, Q: NDArray[np.float64], time: Time, rate: float) -> Matrices:
+    """Return the smallest eigenvalue of every mode's decrease; shape (m,)."""
+    return np.asarray(np.linalg.eigvalsh(decreases(matrices, Q, time, rate))[:, 0], dtype=float)
+
+
+def find_common_quadratic(
+    matrices: Matrices, time: Time, rate: float
+) -> NDArray[np.float64] | None:
+    """Look for Q with ``A'Q + QA + 2 rate Q < 0`` (or ``A'QA < rate^2 Q``) for all modes.
+
+    Parameters
+    ----------
+    matrices : ndarray, shape (m, n, n)
+        Modes, preferably balanced.
+    time : Time
+        Continuous or discrete.
+    rate : float
+        Decay rate in 1/s, or contraction per step.
+
+    Returns
+    -------
+    ndarray, shape (n, n), or None
+        A candidate with positive margins in floating point, or None.
+    """
+    m, n = matrices.shape[:2]
+    all_at_once = m * n * (n + 1) // 2 <= ALL_AT_ONCE_ROWS
+    active = np.arange(m) if all_at_once else np.linspace(0, m - 1, FIRST_MODES).astype(int)
+    while True:
+        Q = _solve(matrices[active], time, rate)
+        if Q is None:
+            return None
+        margin = margins(matrices, Q, time, rate)
+        if margin.min() > 0:
+            return Q
+        if margin[active].min() <= MARGIN_FLOOR:
+            return None
+        violated = np.setdiff1d(np.flatnonzero(margin <= 0), active)
+        worst = violated[np.argsort(margin[violated])][: len(active)]
+        active = np.sort(np.concatenate([active, worst]))
+
+
+def _solve(matrices: Matrices, time: Time, rate: float) -> NDArray[np.float64] | None:
+    """Solve the margin form for the given modes; None if the result is not finite."""
+    import clarabel
+    from scipy import sparse
+
+    m, n = matrices.shape[:2]
+    basis, pack = _symmetric_basis(n), _packing(n)
+    size = len(basis)
+    images = np.stack([decreases(matrices, E, time, rate) for E in basis], axis=1)
+    rows = -np.swapaxes(pack(images), 1, 2).reshape(m * size, size)
+    identity = pack(np.eye(n))
+    columns = np.vstack([np.eye(size), -np.eye(size), rows])
+    margin = np.concatenate([np.zeros(2 * size), np.tile(identity, m)])
+    A = sparse.csc_matrix(np.column_stack([columns, margin]))
+    b = np.concatenate([identity, np.zeros(size * (m + 1))])
+    q = np.zeros(size + 1)
+    q[-1] = -1.0
+    cones = [clarabel.PSDTriangleConeT(n)] * (m + 2)
+    settings = clarabel.DefaultSettings()
+    settings.verbose = False
+    settings.max_threads = 1
+    P = sparse.csc_matrix((size + 1, size + 1))
+    solution: Any = clarabel.DefaultSolver(P, q, A, b, cones, settings).solve()
+    x = np.asarray(solution.x)
+    if x.shape != (size + 1,) or not np.isfinite(x).all():
+        return None
+    return np.tensordot(x[:-1], basis, axes=1)
+
+
+def _symmetric_basis(n: int) -> NDArray[np.float64]:
+    """Return the orthonormal basis of symmetric matrices, in the solver's triangle order."""
+    i, j = _triangle(n)
+    basis = np.zeros((len(i), n, n))
+    weight = np.where(i == j, 1.0, np.sqrt(0.5))
+    basis[np.arange(len(i)), i, j] = weight
+    basis[np.arange(len(i)), j, i] = weight
+    return basis
+
+
+def _packing(n: int) -> Any:
+    i, j = _triangle(n)
+    weight = np.where(i == j, 1.0, np.sqrt(2.0))
+    return lambda M: M[..., i, j] * weight
+
+
+def _triangle(n: int) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """Return the indices of the upper triangle, column by column."""
+    column, row = np.tril_indices(n)
+    return row, column

@@ -1,0 +1,71 @@
+"""Round a floating-point candidate to integers, with as few bits as pass the exact check."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from math import floor, frexp, gcd
+
+import numpy as np
+from numpy.typing import NDArray
+
+from nrs_design.certificates.certificate import CommonQuadratic
+from nrs_design.certificates.check import find_fault
+from nrs_design.switched.system import SwitchedSystem, Time
+
+BITS = (4, 6, 8, 10, 12, 16, 20, 24, 32, 40, 50, 60)
+RATE_BITS = 16
+
+
+def round_to_evidence(
+    system: SwitchedSystem, Q: NDArray[np.float64], exponents: NDArray[np.int64], rate: Fraction
+) -> CommonQuadratic | None:
+    """Return exact evidence near a candidate, or None if no rounding of it passes.
+
+    Parameters
+    ----------
+    system : SwitchedSystem
+        Exact modes; the check runs on these, in their own coordinates.
+    Q : ndarray, shape (n, n)
+        Candidate in the coordinates scaled by ``2^d``.
+    exponents : ndarray of int, shape (n,)
+        The d of `nrs_design.certificates.balance.balance`.
+    rate : Fraction
+        Rate to claim.
+    """
+    largest = np.abs(Q).max()
+    if not np.isfinite(largest) or largest == 0:
+        return None
+    normalized = np.ldexp((Q + Q.T) / 2, -int(np.frexp(largest)[1]))
+    for bits in BITS:
+        evidence = _unscale(normalized, exponents, bits, rate)
+        if find_fault(system, evidence) is None:
+            return evidence
+    return None
+
+
+def round_rate(rate: float, time: Time) -> Fraction:
+    """Round a rate to a short dyadic number on its safe side (slower decay)."""
+    if time is Time.DISCRETE:
+        return 1 - _round_down(1 - rate)
+    return _round_down(rate)
+
+
+def _round_down(value: float) -> Fraction:
+    shift = RATE_BITS - frexp(value)[1]
+    return Fraction(floor(Fraction(value) * Fraction(2) ** shift)) / Fraction(2) ** shift
+
+
+def _unscale(
+    Q: NDArray[np.float64], exponents: NDArray[np.int64], bits: int, rate: Fraction
+) -> CommonQuadratic:
+    """Round to integers over ``2^bits`` and undo the scaling exactly, ``2^-d Q 2^-d``."""
+    shifts = [int(exponents.max() - e) for e in exponents]
+    rows = [
+        [round(float(q) * 2.0**bits) << (si + sj) for q, sj in zip(row, shifts, strict=True)]
+        for row, si in zip(Q, shifts, strict=True)
+    ]
+    # The scale of Q is free: drop common factors of two, and keep the denominator an integer.
+    common = gcd(*(entry for row in rows for entry in row)) or 1
+    twos = (common & -common).bit_length() - 1
+    reduced = tuple(tuple(entry >> twos for entry in row) for row in rows)
+    return CommonQuadratic(reduced, max(bits + 2 * int(exponents.max()) - twos, 0), rate)

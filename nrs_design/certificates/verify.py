@@ -1,0 +1,178 @@
+"""Re-check a certificate file against its spec: no solver, no floating-point decision.
+
+The matrices are assembled from the spec; the certificate contributes the designed gains, the
+evidence and the rate. Every other field is regenerated and must agree to the letter.
+"""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass
+from fractions import Fraction
+from pathlib import Path
+from typing import Any, NoReturn
+
+from nrs_design.certificates.certificate import (
+    SCHEMA,
+    Certificate,
+    CommonQuadratic,
+    Evidence,
+    Kind,
+    UnstableMode,
+    content_id,
+    to_document,
+)
+from nrs_design.certificates.check import find_fault
+from nrs_design.certificates.second_opinion import confirm, unstable_mode
+from nrs_design.errors import CertificateError, NrsDesignError
+from nrs_design.spec import LoadedSpec
+from nrs_design.switched.assemble import assemble
+from nrs_design.switched.system import SwitchedSystem
+
+MAX_BYTES = 256 * 2**20
+
+
+@dataclass(frozen=True, slots=True)
+class Verification:
+    """Outcome of a re-check: the certificate, and why it is rejected (None if it is valid)."""
+
+    certificate: Certificate | None
+    fault: str | None
+
+
+def verify(path: Path, spec: LoadedSpec) -> Verification:
+    """Re-check a certificate file against the spec that it is said to belong to.
+
+    Parameters
+    ----------
+    path : Path
+        Certificate file.
+    spec : LoadedSpec
+        The spec, as read from its own file.
+
+    Raises
+    ------
+    CertificateError
+        If the file cannot be read as a certificate of this format at all.
+    """
+    return verify_document(read_document(path), spec)
+
+
+def verify_document(document: Mapping[str, Any], spec: LoadedSpec) -> Verification:
+    """Re-check a parsed certificate; see `verify`."""
+    if document.get("id") != content_id(document):
+        return Verification(None, "its content does not match its id: it was altered")
+    if document.get("schema") != SCHEMA:
+        return Verification(None, f"its schema is not {SCHEMA}")
+    if document.get("spec") != {"name": spec.spec.name, "sha256": spec.sha256}:
+        return Verification(None, "it belongs to another spec, or the spec has changed since")
+    try:
+        certificate = _rebuild(document, spec)
+    except (KeyError, TypeError, ValueError, ZeroDivisionError, AttributeError) as error:
+        return Verification(None, f"a field is missing or malformed ({error})")
+    except NrsDesignError as error:
+        return Verification(None, error.message)
+    fault = _find_difference(document, certificate) or find_fault(
+        certificate.system, certificate.evidence
+    )
+    if fault is None:
+        confirm(certificate.system, certificate.evidence)
+    return Verification(certificate, fault)
+
+
+def read_document(path: Path) -> dict[str, Any]:
+    """Read a certificate file as JSON without floats or duplicate keys.
+
+    Raises
+    ------
+    CertificateError
+        If the file is missing, too large, or not such JSON.
+    """
+    try:
+        if path.stat().st_size > MAX_BYTES:
+            raise CertificateError("larger than any certificate", path=path)
+        text = path.read_bytes().decode("utf-8")
+        document = json.loads(
+            text, parse_float=_no_float, parse_constant=_no_float, object_pairs_hook=_unique
+        )
+    except OSError as error:
+        raise CertificateError(f"cannot be read ({error.strerror})", path=path) from error
+    except (ValueError, RecursionError) as error:
+        raise CertificateError(
+            f"not a certificate: {error}", path=path, remedy="make it with certify-switching --out"
+        ) from error
+    if not isinstance(document, dict):
+        raise CertificateError("not a certificate: expected a JSON object", path=path)
+    return document
+
+
+def _rebuild(document: Mapping[str, Any], spec: LoadedSpec) -> Certificate:
+    coordinates = document["coordinates"]
+    gains = document["gains"]
+    system = assemble(spec.spec, gains, coordinates)
+    return Certificate(
+        spec_name=spec.spec.name,
+        spec_sha256=spec.sha256,
+        coordinates=coordinates,
+        gains=gains,
+        system=system,
+        evidence=_evidence(document, system),
+        version=_text(document["package"]["version"]),
+    )
+
+
+def _evidence(document: Mapping[str, Any], system: SwitchedSystem) -> Evidence:
+    if document["kind"] == Kind.UNSTABLE_MODE:
+        return _unstable_mode(_text(document["unstable_mode"]["name"]), system)
+    Q = tuple(tuple(_integer(entry) for entry in row) for row in document["Q"]["numerators"])
+    exponent = _integer(document["Q"]["denominator_log2"])
+    return CommonQuadratic(Q, exponent, _ratio(document["rate"]))
+
+
+def _unstable_mode(name: str, system: SwitchedSystem) -> UnstableMode:
+    for mode in system.modes:
+        if mode.name == name and (evidence := unstable_mode(mode, system.time)):
+            return evidence
+    raise ValueError(f"the spec has no unstable mode {name}")
+
+
+def _find_difference(document: Mapping[str, Any], certificate: Certificate) -> str | None:
+    expected = to_document(certificate)
+    for key in sorted(expected.keys() | (document.keys() - {"id"})):
+        if json.dumps(document.get(key), sort_keys=True) != json.dumps(
+            expected.get(key), sort_keys=True
+        ):
+            return f"its field '{key}' does not follow from the spec and the evidence"
+    return None
+
+
+def _integer(value: object) -> int:
+    if type(value) is not int:
+        raise TypeError(f"expected an integer, not {value!r}")
+    return value
+
+
+def _ratio(value: object) -> Fraction:
+    text = _text(value)
+    if not re.fullmatch(r"[0-9]{1,2000}(/[0-9]{1,2000})?", text):
+        raise ValueError("the rate is not a ratio of integers")
+    return Fraction(text)
+
+
+def _text(value: object) -> str:
+    if not isinstance(value, str):
+        raise TypeError(f"expected a text, not {value!r}")
+    return value
+
+
+def _no_float(text: str) -> NoReturn:
+    raise ValueError(f"{text} is a floating-point number; certificates hold integers only")
+
+
+def _unique(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+    keys = [key for key, _ in pairs]
+    if len(set(keys)) != len(keys):
+        raise ValueError("a key occurs twice")
+    return dict(pairs)

@@ -1,0 +1,71 @@
+"""The application: its commands, and what an error looks like."""
+
+from __future__ import annotations
+
+import sys
+from typing import Annotated
+
+import typer
+
+from nrs_design import __version__
+from nrs_design.cli import exit_codes
+from nrs_design.cli.certify_switching import certify_switching
+from nrs_design.cli.optimize import optimize
+from nrs_design.cli.tune import tune
+from nrs_design.cli.verify import verify
+from nrs_design.errors import NrsDesignError
+
+app = typer.Typer(
+    name="nrs-design",
+    no_args_is_help=True,
+    pretty_exceptions_enable=False,
+    context_settings={"help_option_names": ["-h", "--help"]},
+    help="Design compliant controllers for surgical co-worker robots, and prove that switching "
+    "between them is stable.",
+    epilog="Exit codes: 0 proved or goal met, 1 refuted or goal missed, 2 wrong usage, spec or "
+    "file, 3 inconclusive, 4 internal error.",
+)
+app.command("optimize")(optimize)
+app.command("tune")(tune)
+app.command("certify-switching")(certify_switching)
+app.command("verify")(verify)
+
+
+def _show_version(requested: bool) -> None:
+    if requested:
+        typer.echo(f"nrs-design {__version__}")
+        raise typer.Exit
+
+
+@app.callback()
+def _root(
+    version: Annotated[
+        bool,
+        typer.Option("--version", callback=_show_version, is_eager=True, help="Print the version."),
+    ] = False,
+) -> None:
+    """Hold the options of the program itself."""
+
+
+def main() -> None:
+    """Run the program; an error that the user can mend is one message and exit code 2."""
+    try:
+        app()
+    except NrsDesignError as error:
+        print(f"error[{error.rule}]: {error}", file=sys.stderr)
+        sys.exit(exit_codes.USAGE)
+    except BrokenPipeError:
+        # The reader of our output has gone; there is nobody left to tell.
+        sys.stderr.close()
+        sys.exit(exit_codes.USAGE)
+    except Exception as error:
+        if "-v" in sys.argv or "--verbose" in sys.argv:
+            import traceback
+
+            traceback.print_exc()
+        print(
+            f"internal error: {type(error).__name__}: {error} (a defect of nrs-design, not a "
+            "verdict; run again with -v and report what it prints)",
+            file=sys.stderr,
+        )
+        sys.exit(exit_codes.INTERNAL)

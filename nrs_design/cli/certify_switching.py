@@ -1,0 +1,140 @@
+"""``nrs-design certify-switching``: prove or refute stability under switching."""
+
+from __future__ import annotations
+
+from enum import StrEnum
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from nrs_design.cli import exit_codes
+from nrs_design.cli.options import Json, Quiet, SpecFile, Verbose
+from nrs_design.cli.printing import note, print_json, progress
+
+if TYPE_CHECKING:
+    from nrs_design.pipeline import Result
+
+
+class MethodOption(StrEnum):
+    """Search methods by name."""
+
+    AUTO = "auto"
+    LMI = "lmi"
+    GRADIENT = "gradient"
+
+
+class CoordinatesOption(StrEnum):
+    """State coordinates of an interaction design."""
+
+    DEFLECTION = "deflection"
+    FORCE = "force"
+
+
+def certify_switching(
+    spec: SpecFile,
+    out: Annotated[
+        Path | None, typer.Option(help="Certificate file; default reports/NAME.cert.json.")
+    ] = None,
+    method: Annotated[MethodOption, typer.Option(help="Search method.")] = MethodOption.AUTO,
+    coordinates: Annotated[
+        CoordinatesOption | None,
+        typer.Option(help="Override the spec: deflection (physical) or force (the thesis's)."),
+    ] = None,
+    optimize_rate: Annotated[
+        bool, typer.Option(help="Look for the largest provable decay rate.")
+    ] = True,
+    as_json: Json = False,
+    quiet: Quiet = False,
+    verbose: Verbose = False,
+) -> None:
+    """Prove or refute exponential stability under arbitrary switching, and keep the certificate.
+
+    Example: nrs-design certify-switching specs/neuroboscope/soft-tissue.nrs.yaml
+    """
+    from nrs_design.certificates.certificate import dump
+    from nrs_design.certificates.certify import Method
+    from nrs_design.output import write_output
+    from nrs_design.pipeline import run_certification
+    from nrs_design.spec import read_spec
+
+    loaded = read_spec(spec)
+    with progress(f"certifying {loaded.spec.name}", quiet=quiet) as step:
+        result = run_certification(
+            loaded,
+            method=Method(str(method)),
+            coordinates=None if coordinates is None else str(coordinates),
+            optimize_rate=optimize_rate,
+            progress=step,
+        )
+    path = None
+    if result.certificate is not None:
+        path = out or Path("reports") / f"{loaded.spec.name}.cert.json"
+        write_output(path, dump(result.certificate))
+    if as_json:
+        print_json("certify-switching", summary(result, path))
+    else:
+        _print(result, path, quiet=quiet, verbose=verbose)
+    raise typer.Exit(exit_codes.OF_VERDICT[str(result.certification.verdict)])
+
+
+def summary(result: Result, path: Path | None) -> dict[str, Any]:
+    """Return what ``--json`` prints."""
+    from nrs_design.certificates.certificate import CommonQuadratic, claim
+
+    certification = result.certification
+    evidence = certification.evidence
+    rate = evidence.rate if isinstance(evidence, CommonQuadratic) else None
+    return {
+        "spec": result.loaded.spec.name,
+        "spec_sha256": result.loaded.sha256,
+        "verdict": str(certification.verdict),
+        "common_quadratic": str(certification.common_quadratic),
+        "claim": claim(certification.system, evidence) if evidence else None,
+        "method": certification.method,
+        "decay_rate": None if rate is None else float(rate),
+        "decay_rate_exact": None if rate is None else str(rate),
+        "decay_rate_unit": "1/s" if certification.system.time == "continuous" else "1 per step",
+        "time": str(certification.system.time),
+        "coordinates": result.coordinates,
+        "states": list(certification.system.states),
+        "modes": [mode.name for mode in certification.system.modes],
+        "gains": dict(result.certificate.gains) if result.certificate else None,
+        "attempts": [
+            {"step": a.step, "outcome": a.outcome, "seconds": round(a.seconds, 6)}
+            for a in certification.attempts
+        ],
+        "assumptions": list(certification.system.assumptions),
+        "certificate": None if path is None else str(path),
+        "certificate_id": result.certificate.id if result.certificate else None,
+    }
+
+
+def _print(result: Result, path: Path | None, *, quiet: bool, verbose: bool) -> None:
+    from nrs_design.certificates.certificate import claim
+
+    certification = result.certification
+    name = result.loaded.spec.name
+    print(
+        f"{name}: {str(certification.verdict).upper()} "
+        f"(common quadratic function: {certification.common_quadratic})"
+    )
+    if quiet:
+        return
+    if certification.evidence:
+        print(f"  {claim(certification.system, certification.evidence)}")
+    else:
+        print("  Neither a proof nor a refutation was found; this is not a statement of stability.")
+    if verbose or not certification.evidence:
+        for attempt in certification.attempts:
+            print(f"  {attempt.step}: {attempt.outcome} ({attempt.seconds * 1e3:.1f} ms)")
+    print("  modes: " + ", ".join(_shortened([m.name for m in certification.system.modes])))
+    print("  taken for granted:")
+    for assumption in certification.system.assumptions:
+        print(f"    - {assumption}")
+    if path is not None:
+        note(f"certificate written to {path}")
+
+
+def _shortened(names: list[str], limit: int = 12) -> list[str]:
+    return names if len(names) <= limit else [*names[:limit], f"and {len(names) - limit} more"]

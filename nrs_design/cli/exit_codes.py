@@ -1,0 +1,11 @@
+"""Exit codes of every command."""
+
+from __future__ import annotations
+
+PROVED = 0
+REFUTED = 1
+USAGE = 2
+INCONCLUSIVE = 3
+INTERNAL = 4
+
+OF_VERDICT = {"proved": PROVED, "refuted": REFUTED, "inconclusive": INCONCLUSIVE}

@@ -1,0 +1,138 @@
+"""``nrs-design optimize``: virtual mass and damping of every impedance controller."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any
+
+from nrs_design.cli.options import Json, Quiet, SpecFile
+from nrs_design.cli.printing import note, print_json, print_table, progress
+from nrs_design.errors import DesignError
+
+if TYPE_CHECKING:
+    from nrs_design.design.evidence import DesignEvidence, ImpedanceEvidence
+
+
+def optimize(spec: SpecFile, as_json: Json = False, quiet: Quiet = False) -> None:
+    """Optimize virtual mass Mt and damping Bt for displayed impedance and sensitivity.
+
+    Example: nrs-design optimize specs/neuroboscope/soft-tissue.nrs.yaml
+    """
+    from nrs_design.pipeline import run_design, run_evidence
+    from nrs_design.spec import read_spec
+
+    loaded = read_spec(spec)
+    with progress(f"designing {loaded.spec.name}", quiet=quiet) as step:
+        step("cost")
+        design = run_design(loaded)
+        if design is None:
+            raise DesignError(
+                "a switched-system spec has nothing to design",
+                path=spec,
+                remedy="use certify-switching, or a spec of kind interaction-design",
+            )
+        step("margins")
+        evidence = run_evidence(loaded, design)
+    if as_json:
+        print_json(
+            "optimize",
+            {
+                "spec": loaded.spec.name,
+                "spec_sha256": loaded.sha256,
+                "motion_loop": motion_summary(evidence),
+                "controllers": [_summary(item) for item in evidence.impedance],
+            },
+        )
+        return
+    if not evidence.impedance:
+        note("no impedance controllers in this spec; see nrs-design tune for the others")
+    _print(loaded.spec.name, evidence)
+
+
+def motion_summary(evidence: DesignEvidence) -> dict[str, Any]:
+    """Describe which motion loop G is in use."""
+    return {
+        "source": evidence.motion_source,
+        "numerator": list(evidence.motion.numerator),
+        "denominator": list(evidence.motion.denominator),
+    }
+
+
+def _summary(item: ImpedanceEvidence) -> dict[str, Any]:
+    margins = item.margins
+    return {
+        "name": item.name,
+        "desired_impedance": item.problem.desired,
+        "stiffness": item.problem.loop.stiffness,
+        "Mt": item.Mt,
+        "Bt": item.Bt,
+        "cost": item.cost,
+        "optimum": {"Mt": item.optimum.Mt, "Bt": item.optimum.Bt, "cost": item.optimum.cost},
+        "sensitivity_peak": finite(margins.sensitivity_peak),
+        "gain_margin": finite(margins.gain_margin),
+        "phase_margin_rad": finite(margins.phase_margin),
+        "delay_margin_s": finite(margins.delay_margin),
+        "disk_margin": finite(margins.disk_margin),
+        "stiffness_limit": finite(margins.stiffness_limit),
+        "units": {
+            "Mt": "kg*m^2",
+            "Bt": "N*m*s/rad",
+            "impedance": "N*m*s/rad",
+            "stiffness": "N*m/rad",
+        },
+    }
+
+
+def finite(value: float) -> float | None:
+    """Return a number for JSON, which has no infinity; None says unbounded."""
+    return value if math.isfinite(value) else None
+
+
+def _print(name: str, evidence: DesignEvidence) -> None:
+    G = evidence.motion
+    source = (
+        "designed by root locus" if evidence.motion_source == "designed" else "given in the spec"
+    )
+    print(f"{name}: G(s) = ({_polynomial(G.numerator)}) / ({_polynomial(G.denominator)}), {source}")
+    columns = [
+        "controller",
+        "Zdes\nN m s/rad",
+        "k\nN m/rad",
+        "Mt\nkg m^2",
+        "Bt\nN m s/rad",
+        "cost",
+        "Ms",
+        "gain\nmargin",
+        "phase\nmargin",
+        "delay\nmargin",
+        "disk\nmargin",
+        "k limit\nN m/rad",
+    ]
+    rows = [
+        [
+            item.name,
+            f"{item.problem.desired:.5g}",
+            f"{item.problem.loop.stiffness:.6g}",
+            f"{item.Mt:.6g}",
+            f"{item.Bt:.6g}",
+            f"{item.cost:.4f}",
+            f"{item.margins.sensitivity_peak:.3f}",
+            f"{item.margins.gain_margin:.3g}",
+            f"{math.degrees(item.margins.phase_margin):.1f} deg",
+            f"{1e3 * item.margins.delay_margin:.1f} ms",
+            f"{item.margins.disk_margin:.3f}",
+            f"{item.margins.stiffness_limit:.1f}",
+        ]
+        for item in evidence.impedance
+    ]
+    if rows:
+        print_table("", columns, rows)
+
+
+def _polynomial(coefficients: tuple[float, ...]) -> str:
+    degree = len(coefficients) - 1
+    powers = {0: "", 1: " s"}
+    terms = [
+        f"{c:.5g}{powers.get(degree - i, f' s^{degree - i}')}" for i, c in enumerate(coefficients)
+    ]
+    return " + ".join(terms)

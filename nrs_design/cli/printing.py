@@ -1,0 +1,54 @@
+"""Printing: results on stdout, progress and notes on stderr."""
+
+from __future__ import annotations
+
+import json
+import sys
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from typing import Any
+
+
+def print_json(command: str, content: dict[str, Any]) -> None:
+    """Print the versioned envelope of a command."""
+    envelope = {"schema": f"nrs-design/{command}/1", **content}
+    print(json.dumps(envelope, indent=2, ensure_ascii=False, allow_nan=False))
+
+
+def print_table(title: str, columns: Sequence[str], rows: Sequence[Sequence[str]]) -> None:
+    """Print a plain table; a cell is never cut, only folded where the terminal is narrow."""
+    from rich.box import SIMPLE_HEAD
+    from rich.console import Console
+    from rich.table import Table
+
+    table = Table(title=title or None, title_justify="left", box=SIMPLE_HEAD, pad_edge=False)
+    for column in columns:
+        table.add_column(column, overflow="fold")
+    for row in rows:
+        table.add_row(*row)
+    width = None if sys.stdout.isatty() else 110
+    Console(width=width, markup=False, highlight=False).print(table)
+
+
+def note(text: str, *, quiet: bool = False) -> None:
+    """Print a note on stderr."""
+    if not quiet:
+        print(text, file=sys.stderr)
+
+
+@contextmanager
+def progress(title: str, *, quiet: bool = False) -> Iterator[Callable[[str], None]]:
+    """Show a spinner with the current step on stderr, on a terminal only.
+
+    Yields
+    ------
+    callable
+        Tell it the name of the step that begins.
+    """
+    if quiet or not sys.stderr.isatty():
+        yield lambda step: None
+        return
+    from rich.console import Console
+
+    with Console(stderr=True).status(title) as status:
+        yield lambda step: status.update(f"{title}: {step}")

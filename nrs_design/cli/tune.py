@@ -1,0 +1,144 @@
+"""``nrs-design tune``: motion PD by root locus, and the P of the force loop."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any
+
+from nrs_design.cli.optimize import motion_summary
+from nrs_design.cli.options import Json, Quiet, SpecFile
+from nrs_design.cli.printing import print_json, print_table, progress
+from nrs_design.errors import DesignError
+
+if TYPE_CHECKING:
+    from nrs_design.controllers.controller_design import ControllerDesign
+    from nrs_design.design.evidence import DesignEvidence
+
+
+def tune(spec: SpecFile, as_json: Json = False, quiet: Quiet = False) -> None:
+    """Tune the motion PD by root locus and the force gain, and print the poles that result.
+
+    Example: nrs-design tune specs/neuroboscope/force-limit.nrs.yaml
+    """
+    from nrs_design.pipeline import run_design, run_evidence
+    from nrs_design.spec import read_spec
+
+    loaded = read_spec(spec)
+    with progress(f"tuning {loaded.spec.name}", quiet=quiet):
+        design = run_design(loaded)
+        if design is None:
+            raise DesignError(
+                "a switched-system spec has nothing to tune",
+                path=spec,
+                remedy="use certify-switching, or a spec of kind interaction-design",
+            )
+        evidence = run_evidence(loaded, design)
+    if as_json:
+        content = {"spec": loaded.spec.name, "spec_sha256": loaded.sha256}
+        print_json("tune", content | _summary(design, evidence))
+    else:
+        _print(loaded.spec.name, design, evidence)
+
+
+def _summary(design: ControllerDesign, evidence: DesignEvidence) -> dict[str, Any]:
+    wanted, reached = evidence.wanted, evidence.reached
+    return {
+        "motion": {
+            "wanted_poles": _pairs(wanted.wanted_poles),
+            "root_locus": {"derivative_gain": wanted.derivative_gain, "zero": wanted.zero},
+            "Kp": float(design.motion.Kp),
+            "Kd": float(design.motion.Kd),
+            "loop": motion_summary(evidence),
+            "poles": _pairs(reached.poles),
+            "damping_ratio": reached.damping_ratio,
+            "natural_frequency": reached.natural_frequency,
+            "overshoot_percent": 100 * reached.overshoot,
+            "units": {"Kp": "rpm/rad", "Kd": "rpm*s/rad", "poles": "1/s", "zero": "1/s"},
+        },
+        "force": [
+            {
+                "name": item.name,
+                "stiffness": item.stiffness,
+                "Kp": item.loop.gain,
+                "poles": _pairs(item.loop.poles),
+                "damping_ratio": item.loop.damping_ratio,
+                "natural_frequency": item.loop.natural_frequency,
+                "steady_state_ratio": item.loop.steady_state_ratio,
+                "units": {"Kp": "rad/(N*m)", "stiffness": "N*m/rad", "poles": "1/s"},
+            }
+            for item in evidence.force
+        ],
+    }
+
+
+def _print(name: str, design: ControllerDesign, evidence: DesignEvidence) -> None:
+    wanted, reached = evidence.wanted, evidence.reached
+    rows = [
+        [
+            "root locus",
+            f"{wanted.derivative_gain:.6g}",
+            f"{wanted.zero:.6g}",
+            "",
+            _poles(wanted.wanted_poles),
+            "",
+            "",
+        ],
+        [
+            "shipped",
+            f"{float(design.motion.Kd):.8g}",
+            f"{float(design.motion.zero):.6g}",
+            f"{float(design.motion.Kp):.8g}",
+            _poles(reached.poles),
+            f"{reached.damping_ratio:.4f}",
+            f"{100 * reached.overshoot:.2f} %",
+        ],
+    ]
+    columns = [
+        "motion PD",
+        "Kd\nrpm s/rad",
+        "zero\n1/s",
+        "Kp\nrpm/rad",
+        "poles\n1/s",
+        "damping\nratio",
+        "overshoot",
+    ]
+    print_table(f"{name}: motion loop", columns, rows)
+    if evidence.motion_source == "given":
+        print("The spec states G itself: the poles are those of that G, not of the PD gains.")
+    if evidence.force:
+        print_table(
+            f"{name}: force loop",
+            [
+                "controller",
+                "k\nN m/rad",
+                "Kp\nrad/(N m)",
+                "poles\n1/s",
+                "damping\nratio",
+                "natural\nfrequency",
+                "steady-state\nerror ratio",
+            ],
+            [
+                [
+                    item.name,
+                    f"{item.stiffness:.6g}",
+                    f"{item.loop.gain:.6g}",
+                    _poles(item.loop.poles),
+                    f"{item.loop.damping_ratio:.4f}",
+                    f"{item.loop.natural_frequency:.2f} rad/s",
+                    f"{item.loop.steady_state_ratio:.3f}",
+                ]
+                for item in evidence.force
+            ],
+        )
+
+
+def _pairs(poles: tuple[complex, ...]) -> list[list[float]]:
+    return [[pole.real, pole.imag] for pole in poles]
+
+
+def _poles(poles: tuple[complex, ...]) -> str:
+    upper = [pole for pole in poles if pole.imag >= 0]
+    return ", ".join(
+        f"{pole.real:.4f}" if math.isclose(pole.imag, 0) else f"{pole.real:.4f} +- {pole.imag:.4f}j"
+        for pole in upper
+    )

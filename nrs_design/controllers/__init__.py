@@ -1,0 +1,1 @@
+"""What runs on the robot: control laws with the gains that ship."""

@@ -1,0 +1,112 @@
+"""Gains as text: exact decimals of single-precision numbers, by controller."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import fields
+from fractions import Fraction
+
+from nrs_design.controllers.controller_design import Controller, ControllerDesign
+from nrs_design.controllers.float32 import exact_decimal, is_float32, to_float32
+from nrs_design.controllers.laws import (
+    Admittance,
+    Law,
+    PositionControl,
+    ProportionalDerivative,
+    ProportionalForce,
+)
+from nrs_design.errors import CertificateError
+from nrs_design.spec import (
+    ForceControllerSpec,
+    ImpedanceControllerSpec,
+    InteractionDesignSpec,
+    PositionControllerSpec,
+    parse_exact,
+)
+
+MOTION = "motion"
+UNITS = {
+    ("motion", "Kp"): "rpm/rad",
+    ("motion", "Kd"): "rpm*s/rad",
+    ("impedance", "Mt"): "kg*m^2",
+    ("impedance", "Bt"): "N*m*s/rad",
+    ("force", "Kp"): "rad/(N*m)",
+}
+
+
+def gains_of(design: ControllerDesign) -> dict[str, dict[str, str]]:
+    """Return every gain as an exact decimal, by controller name; the PD is ``motion``."""
+    laws: list[tuple[str, Law | ProportionalDerivative]] = [(MOTION, design.motion)]
+    laws += [(controller.name, controller.law) for controller in design.controllers]
+    return {
+        name: {field.name: exact_decimal(getattr(law, field.name)) for field in fields(law)}
+        for name, law in laws
+    }
+
+
+def design_from_gains(
+    spec: InteractionDesignSpec, gains: Mapping[str, Mapping[str, str]]
+) -> ControllerDesign:
+    """Rebuild a design from its gains, within what the spec allows.
+
+    Raises
+    ------
+    CertificateError
+        If a gain is missing, is not a single-precision number, or is outside the bounds that
+        the spec sets.
+    """
+    expected = {MOTION, *spec.controllers}
+    if set(gains) != expected:
+        raise CertificateError(f"its gains are not those of {', '.join(sorted(expected))}")
+    motion = ProportionalDerivative(**_numbers(gains, MOTION, ("Kp", "Kd")))
+    if motion.Kp <= 0 or motion.Kd <= 0:
+        raise CertificateError("the gains of the motion controller are not positive")
+    if not motion_gains_fixed_by(spec, motion):
+        raise CertificateError("the gains of the motion controller are not what the spec fixes")
+    controllers = tuple(
+        _controller(name, controller, gains) for name, controller in spec.controllers.items()
+    )
+    return ControllerDesign(motion, controllers)
+
+
+def motion_gains_fixed_by(spec: InteractionDesignSpec, motion: ProportionalDerivative) -> bool:
+    """Tell whether a motion controller has the gains that the spec fixes, if it fixes any."""
+    loop = spec.motion_loop
+    if loop.derivative_gain is not None and motion.Kd != to_float32(loop.derivative_gain.exact):
+        return False
+    return loop.zero is None or motion.Kp == to_float32(motion.Kd * loop.zero.exact)
+
+
+def _controller(
+    name: str,
+    spec: ImpedanceControllerSpec | ForceControllerSpec | PositionControllerSpec,
+    gains: Mapping[str, Mapping[str, str]],
+) -> Controller:
+    if isinstance(spec, PositionControllerSpec):
+        _numbers(gains, name, ())
+        return Controller(name, PositionControl(), None, ())
+    if isinstance(spec, ForceControllerSpec):
+        law = ProportionalForce(**_numbers(gains, name, ("Kp",)))
+        fixed = spec.proportional_gain
+        if law.Kp < 0 or (fixed is not None and law.Kp != to_float32(fixed.exact)):
+            raise CertificateError(f"gain Kp of controller {name} is not what the spec fixes")
+        return Controller(name, law, spec.environment, spec.contacts)
+    values = _numbers(gains, name, ("Mt", "Bt"))
+    for gain, bounds in (("Mt", spec.Mt), ("Bt", spec.Bt)):
+        low, high = to_float32(bounds.min.exact), to_float32(bounds.max.exact)
+        if not low <= values[gain] <= high:
+            raise CertificateError(f"gain {gain} of controller {name} is outside its bounds")
+    return Controller(name, Admittance(**values), spec.environment, spec.contacts)
+
+
+def _numbers(
+    gains: Mapping[str, Mapping[str, str]], name: str, expected: tuple[str, ...]
+) -> dict[str, Fraction]:
+    texts = gains[name]
+    if set(texts) != set(expected):
+        raise CertificateError(f"the gains of {name} are not {', '.join(expected) or 'none'}")
+    numbers = {gain: parse_exact(texts[gain]) for gain in expected}
+    for gain, number in numbers.items():
+        if not is_float32(number):
+            raise CertificateError(f"gain {gain} of {name} is not a single-precision number")
+    return numbers

@@ -1,0 +1,1 @@
+"""How gains are chosen."""

@@ -1,0 +1,144 @@
+"""Choose every gain of an interaction design, rounded to the numbers that ship."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+
+from nrs_design.controllers.controller_design import Controller, ControllerDesign
+from nrs_design.controllers.float32 import round_significant, to_float32
+from nrs_design.controllers.laws import (
+    Admittance,
+    PositionControl,
+    ProportionalDerivative,
+    ProportionalForce,
+)
+from nrs_design.design.force_loop import design_force_gain
+from nrs_design.design.impedance import ImpedanceLoop, ImpedanceProblem, optimize_impedance
+from nrs_design.design.root_locus import PdDesign, design_pd
+from nrs_design.design.transfer import TransferFunction
+from nrs_design.models.motion_loop import MotionLoop
+from nrs_design.models.plant import Plant
+from nrs_design.spec import (
+    Bounds,
+    ForceControllerSpec,
+    ImpedanceControllerSpec,
+    InteractionDesignSpec,
+    PositionControllerSpec,
+)
+from nrs_design.switched.assemble import motion_loop
+
+
+def design_controllers(spec: InteractionDesignSpec, plant: Plant) -> ControllerDesign:
+    """Choose the motion gains by root locus, then every compliant controller on top of them.
+
+    Parameters
+    ----------
+    spec : InteractionDesignSpec
+        Requirements and bounds.
+    plant : Plant
+        As `nrs_design.models.plant.build_plant` gives it.
+
+    Raises
+    ------
+    DesignError
+        If a requirement cannot be met within its bounds.
+    """
+    motion = _motion(spec)
+    loop = motion_loop(spec, motion)
+    controllers = tuple(
+        _controller(spec, plant, loop, name, controller)
+        for name, controller in spec.controllers.items()
+    )
+    return ControllerDesign(motion, controllers)
+
+
+def root_locus_design(spec: InteractionDesignSpec) -> PdDesign:
+    """Return the PD that the root locus asks for, before any rounding or given value."""
+    return design_pd(
+        spec.actuator.gain.si,
+        spec.actuator.time_constant.si,
+        float(spec.motion_loop.damping_ratio),
+        spec.motion_loop.settling_time.si,
+    )
+
+
+def to_transfer_function(loop: MotionLoop) -> TransferFunction:
+    """Return the motion loop in floating point."""
+    return TransferFunction(tuple(map(float, loop.numerator)), tuple(map(float, loop.denominator)))
+
+
+def impedance_problem(
+    spec: InteractionDesignSpec, plant: Plant, loop: MotionLoop, controller: ImpedanceControllerSpec
+) -> ImpedanceProblem:
+    """State the choice of one controller's virtual mass and damping as an optimization."""
+    environment = plant.environment(controller.environment).nominal
+    return ImpedanceProblem(
+        loop=ImpedanceLoop(
+            to_transfer_function(loop), float(environment.stiffness), float(environment.damping)
+        ),
+        desired=desired_impedance(spec, controller),
+        bandwidth=spec.limits.bandwidth.si,
+        mass_bounds=(controller.Mt.min.si, controller.Mt.max.si),
+        damping_bounds=(controller.Bt.min.si, controller.Bt.max.si),
+        weight_displayed=float(controller.weights.displayed),
+        weight_sensitivity=float(controller.weights.sensitivity),
+    )
+
+
+def desired_impedance(spec: InteractionDesignSpec, controller: ImpedanceControllerSpec) -> float:
+    """Return the desired impedance in N m s/rad, by default torque over velocity (thesis 6.2)."""
+    if controller.desired_impedance is not None:
+        return controller.desired_impedance.si
+    ratio = controller.desired_impedance_ratio
+    return (
+        spec.limits.torque.si / spec.limits.velocity.si * (1.0 if ratio is None else float(ratio))
+    )
+
+
+def _motion(spec: InteractionDesignSpec) -> ProportionalDerivative:
+    given, digits = spec.motion_loop, spec.design.significant_digits
+    wanted = root_locus_design(spec)
+    gain = given.derivative_gain
+    Kd = round_significant(wanted.derivative_gain, digits) if gain is None else gain.exact
+    zero = round_significant(wanted.zero, digits) if given.zero is None else given.zero.exact
+    shipped = to_float32(Kd)
+    return ProportionalDerivative(Kp=to_float32(shipped * zero), Kd=shipped)
+
+
+def _controller(
+    spec: InteractionDesignSpec,
+    plant: Plant,
+    loop: MotionLoop,
+    name: str,
+    controller: ImpedanceControllerSpec | ForceControllerSpec | PositionControllerSpec,
+) -> Controller:
+    if isinstance(controller, PositionControllerSpec):
+        return Controller(name, PositionControl(), None, ())
+    digits = spec.design.significant_digits
+    law: Admittance | ProportionalForce
+    if isinstance(controller, ForceControllerSpec):
+        law = ProportionalForce(_force_gain(plant, loop, controller, digits))
+    else:
+        optimum = optimize_impedance(impedance_problem(spec, plant, loop, controller))
+        law = Admittance(
+            Mt=_shipped(optimum.Mt, controller.Mt, digits),
+            Bt=_shipped(optimum.Bt, controller.Bt, digits),
+        )
+    return Controller(name, law, controller.environment, controller.contacts)
+
+
+def _force_gain(
+    plant: Plant, loop: MotionLoop, controller: ForceControllerSpec, digits: int
+) -> Fraction:
+    if controller.proportional_gain is not None:
+        return to_float32(controller.proportional_gain.exact)
+    stiffness = float(plant.environment(controller.environment).nominal.stiffness)
+    wanted = float(controller.damping_ratio or 0)
+    gain = design_force_gain(to_transfer_function(loop), stiffness, wanted)
+    return to_float32(round_significant(gain, digits))
+
+
+def _shipped(value: float, bounds: Bounds, digits: int) -> Fraction:
+    """Round a gain, keep it within its bounds, and round it to single precision."""
+    rounded = round_significant(value, digits)
+    return to_float32(min(max(rounded, bounds.min.exact), bounds.max.exact))

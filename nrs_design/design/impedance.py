@@ -1,0 +1,437 @@
+"""Impedance control: the loop of the thesis (fig. 6.13) and the best admittance for it (6.9).
+
+The admittance ``Y = 1/(Mt s + Bt)`` turns the measured torque into a velocity that is taken off
+the commanded one; the motion loop G follows the difference, and the environment
+``Ze = k/s + b`` answers: open loop ``G Ze Y``.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import partial
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from nrs_design.design.transfer import (
+    BoolArray,
+    ComplexArray,
+    FloatArray,
+    TransferFunction,
+    frequency_response,
+    hurwitz,
+    trim,
+)
+from nrs_design.errors import DesignError
+
+# Midpoint rule over (0, bandwidth]. The absolute value in the cost has kinks, which spoil a
+# Gauss rule; with 256 midpoints the cost is within 1e-6 of its integral on the published designs
+# and the optimal Bt within 3e-4.
+NODES = 256
+_SCAN_NODES = 32
+_BLOCK = 256
+
+_SCAN = (25, 41)
+_STARTS = 4
+_STEP_TOLERANCE = 1e-5
+_MAX_ROUNDS = 200
+
+_Objective = Callable[[FloatArray, FloatArray], FloatArray]
+
+
+@dataclass(frozen=True)
+class ImpedanceLoop:
+    """Motion loop in contact with a linear environment.
+
+    Parameters
+    ----------
+    motion : TransferFunction
+        Closed motion loop G, from commanded to actual velocity.
+    stiffness : float
+        Stiffness k of the environment, N m/rad, positive.
+    damping : float
+        Damping b of the environment, N m s/rad, not negative.
+
+    Raises
+    ------
+    DesignError
+        If a parameter is outside its domain.
+    """
+
+    motion: TransferFunction
+    stiffness: float
+    damping: float = 0.0
+
+    def __post_init__(self) -> None:
+        """Check the environment."""
+        if not (math.isfinite(self.stiffness) and self.stiffness > 0):
+            raise DesignError(f"the stiffness must be positive, not {self.stiffness}")
+        if not (math.isfinite(self.damping) and self.damping >= 0):
+            raise DesignError(f"the damping must not be negative: {self.damping}")
+
+
+@dataclass(frozen=True)
+class ImpedanceProblem:
+    """What the admittance is chosen for.
+
+    Parameters
+    ----------
+    loop : ImpedanceLoop
+        Motion loop and nominal environment.
+    desired : float
+        Desired impedance Zdes, N m s/rad, positive.
+    bandwidth : float
+        Highest frequency of the command, rad/s, positive.
+    mass_bounds, damping_bounds : tuple of float
+        Lowest and highest Mt (kg m^2, not negative) and Bt (N m s/rad, positive). Equal bounds
+        fix the parameter.
+    weight_displayed, weight_sensitivity : float
+        Weights wD and wR of the two parts of the cost, not negative and not both zero.
+
+    Raises
+    ------
+    DesignError
+        If a parameter is outside its domain.
+    """
+
+    loop: ImpedanceLoop
+    desired: float
+    bandwidth: float
+    mass_bounds: tuple[float, float]
+    damping_bounds: tuple[float, float]
+    weight_displayed: float = 0.5
+    weight_sensitivity: float = 0.5
+
+    def __post_init__(self) -> None:
+        """Check every number against its domain."""
+        for name, value in (("desired impedance", self.desired), ("bandwidth", self.bandwidth)):
+            if not (math.isfinite(value) and value > 0):
+                raise DesignError(f"the {name} must be positive, not {value}")
+        _check_bounds("Mt", self.mass_bounds, zero_allowed=True)
+        _check_bounds("Bt", self.damping_bounds, zero_allowed=False)
+        weights = (self.weight_displayed, self.weight_sensitivity)
+        if not all(math.isfinite(w) and w >= 0 for w in weights) or not any(weights):
+            raise DesignError(f"weights must be at least 0 and not both 0: {weights}")
+
+
+@dataclass(frozen=True)
+class ImpedanceOptimum:
+    """The best admittance within the bounds.
+
+    Parameters
+    ----------
+    Mt : float
+        Virtual mass, kg m^2.
+    Bt : float
+        Virtual damping, N m s/rad.
+    cost : float
+        Value of `impedance_cost` there.
+    evaluations : int
+        Number of admittances that the search tried.
+    """
+
+    Mt: float
+    Bt: float
+    cost: float
+    evaluations: int
+
+
+def open_loop(loop: ImpedanceLoop, Mt: float, Bt: float) -> TransferFunction:
+    """Return ``G Ze Y`` (thesis fig. 6.13) of an admittance with mass Mt and damping Bt."""
+    _check_admittance(Mt, Bt)
+    environment = trim((loop.damping, loop.stiffness))
+    numerator = np.convolve(loop.motion.numerator, environment)
+    denominator = np.convolve(loop.motion.denominator, [*trim((Mt, Bt)), 0.0])
+    return TransferFunction(tuple(numerator.tolist()), tuple(denominator.tolist()))
+
+
+def displayed_impedance(
+    loop: ImpedanceLoop, Mt: float, Bt: float, omega: ArrayLike
+) -> ComplexArray:
+    """Evaluate ``Zdisp = G Ze / (1 + G Ze Y)`` (thesis 6.3).
+
+    Parameters
+    ----------
+    loop : ImpedanceLoop
+        Motion loop and environment.
+    Mt, Bt : float
+        Admittance, kg m^2 and N m s/rad.
+    omega : array_like
+        Frequencies, rad/s; zero is allowed.
+
+    Returns
+    -------
+    ndarray of complex
+        Impedance, N m s/rad, in the shape of `omega`.
+    """
+    environment = trim((loop.damping, loop.stiffness))
+    forward = np.convolve(loop.motion.numerator, environment)
+    return _over_characteristic(loop, Mt, Bt, np.convolve(forward, trim((Mt, Bt))), omega)
+
+
+def sensitivity(loop: ImpedanceLoop, Mt: float, Bt: float, omega: ArrayLike) -> ComplexArray:
+    """Evaluate ``L = 1 / (1 + G Ze Y)`` (thesis 6.5); parameters as `displayed_impedance`."""
+    numerator = np.convolve(loop.motion.denominator, [*trim((Mt, Bt)), 0.0])
+    return _over_characteristic(loop, Mt, Bt, numerator, omega)
+
+
+def characteristic_polynomial(loop: ImpedanceLoop, Mt: float, Bt: float) -> FloatArray:
+    """Return the closed loop's characteristic polynomial, highest power first.
+
+    Its degree is two more than the motion loop's order, and one more where Mt is zero.
+
+    Raises
+    ------
+    DesignError
+        If Mt is negative or Bt is not positive.
+    """
+    _check_admittance(Mt, Bt)
+    return np.asarray(trim(_characteristics(_basis(loop), np.array(Mt), np.array(Bt)).tolist()))
+
+
+def is_stable(loop: ImpedanceLoop, Mt: ArrayLike, Bt: ArrayLike) -> BoolArray:
+    """Tell for which admittances the closed loop is Hurwitz (Mt and Bt broadcast)."""
+    Mt, Bt = np.broadcast_arrays(np.asarray(Mt, np.float64), np.asarray(Bt, np.float64))
+    return hurwitz(_characteristics(_basis(loop), Mt, Bt))
+
+
+def impedance_cost(problem: ImpedanceProblem, Mt: ArrayLike, Bt: ArrayLike) -> FloatArray:
+    """Evaluate the cost of thesis 6.4-6.7, written as a mean over frequency.
+
+    ``C = wD mean|log10 Zdes - log10|Zdisp|| + wR mean|L|`` over ``(0, bandwidth]``: the integral
+    divided by the bandwidth, by the midpoint rule with `NODES` equidistant frequencies. The
+    thesis prints a sum, whose value would depend on the number of frequencies.
+
+    Parameters
+    ----------
+    problem : ImpedanceProblem
+        Loop, desired impedance, bandwidth and weights; the bounds are not used.
+    Mt, Bt : array_like
+        Admittances, which broadcast; kg m^2 and N m s/rad. Stability is not checked.
+
+    Returns
+    -------
+    ndarray
+        Costs in the broadcast shape.
+
+    Raises
+    ------
+    DesignError
+        If an Mt is negative or a Bt is not positive.
+    """
+    Mt, Bt = np.broadcast_arrays(np.asarray(Mt, np.float64), np.asarray(Bt, np.float64))
+    _check_admittance(Mt, Bt)
+    return _sample(problem, NODES).cost(Mt.ravel(), Bt.ravel()).reshape(Mt.shape)
+
+
+def optimize_impedance(problem: ImpedanceProblem) -> ImpedanceOptimum:
+    """Find the global minimum of the cost over the stable admittances within the bounds.
+
+    A scan over the whole box (with fewer frequencies, dense towards small Mt and in log Bt)
+    names the best local minima; a pattern search with the full cost refines each of them, and
+    moves before it shrinks, so that a minimum outside the cell of its start is still reached.
+    The search is deterministic. An optimum on a bound is returned exactly as the bound.
+
+    Parameters
+    ----------
+    problem : ImpedanceProblem
+        Loop, goal and bounds.
+
+    Returns
+    -------
+    ImpedanceOptimum
+        Best admittance whose closed loop is Hurwitz at the nominal stiffness.
+
+    Raises
+    ------
+    DesignError
+        If no scanned admittance within the bounds gives a stable loop.
+    """
+    u, v, step = _scan(problem)
+    objective = _objective(problem, NODES)
+    u, v, evaluations = _refine(objective, u, v, step)
+    u, v, costs = _snap(objective, u, v)
+    best = int(np.argmin(costs))
+    Mt, Bt = _admittance(problem, u[best : best + 1], v[best : best + 1])
+    scanned = math.prod(_scan_shape(problem))
+    return ImpedanceOptimum(
+        Mt=float(Mt[0]),
+        Bt=float(Bt[0]),
+        cost=float(costs[best]),
+        evaluations=scanned + evaluations + 4 * len(u),
+    )
+
+
+@dataclass(frozen=True, eq=False)
+class _Samples:
+    """The part of the cost that depends on the frequency only."""
+
+    omega: FloatArray
+    real: FloatArray
+    imag: FloatArray
+    target: FloatArray
+    weights: tuple[float, float]
+
+    def cost(self, Mt: FloatArray, Bt: FloatArray) -> FloatArray:
+        """Evaluate in blocks that stay in the processor's cache."""
+        starts = range(0, len(Mt), _BLOCK)
+        parts = [self._block(Mt[i : i + _BLOCK, None], Bt[i : i + _BLOCK, None]) for i in starts]
+        return np.concatenate(parts) if parts else np.empty(0)
+
+    def _block(self, Mt: FloatArray, Bt: FloatArray) -> FloatArray:
+        reactance = Mt * self.omega
+        below = (reactance + self.imag) ** 2 + (Bt + self.real) ** 2
+        squared = (reactance**2 + Bt**2) / below  # |L|^2, and |Zdisp| = |G Ze| |L|
+        displayed = np.abs(self.target - 0.5 * np.log10(squared)).mean(axis=1)
+        robust = np.sqrt(squared).mean(axis=1)
+        return np.asarray(self.weights[0] * displayed + self.weights[1] * robust)
+
+
+def _sample(problem: ImpedanceProblem, nodes: int) -> _Samples:
+    omega: FloatArray = (np.arange(nodes, dtype=np.float64) + 0.5) * (problem.bandwidth / nodes)
+    environment = problem.loop.stiffness / (1j * omega) + problem.loop.damping
+    forward = frequency_response(problem.loop.motion, omega) * environment
+    return _Samples(
+        omega=omega,
+        real=forward.real,
+        imag=forward.imag,
+        target=np.log10(problem.desired / np.abs(forward)),
+        weights=(problem.weight_displayed, problem.weight_sensitivity),
+    )
+
+
+def _basis(loop: ImpedanceLoop) -> FloatArray:
+    """Return the rows M, B, C of the characteristic polynomial ``Mt M + Bt B + C``."""
+    den = np.asarray(loop.motion.denominator, dtype=np.float64)
+    contact = np.convolve(trim(loop.motion.numerator), (loop.damping, loop.stiffness))
+    basis = np.zeros((3, len(den) + 2))
+    basis[0, : len(den)] = den
+    basis[1, 1 : len(den) + 1] = den
+    basis[2, len(den) + 2 - len(contact) :] = contact
+    return basis
+
+
+def _characteristics(basis: FloatArray, Mt: FloatArray, Bt: FloatArray) -> FloatArray:
+    """Stack the characteristic polynomials; the leading entry is zero where Mt is."""
+    return np.asarray(Mt[..., None] * basis[0] + Bt[..., None] * basis[1] + basis[2])
+
+
+def _over_characteristic(
+    loop: ImpedanceLoop, Mt: float, Bt: float, numerator: FloatArray, omega: ArrayLike
+) -> ComplexArray:
+    closed = characteristic_polynomial(loop, Mt, Bt)
+    ratio = TransferFunction(tuple(numerator.tolist()), tuple(closed.tolist()))
+    return frequency_response(ratio, omega)
+
+
+def _admittance(
+    problem: ImpedanceProblem, u: FloatArray, v: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """Map the unit square onto the bounds, corners exactly onto corners."""
+    (low, high), (least, most) = problem.mass_bounds, problem.damping_bounds
+    Mt = np.where(u >= 1, high, low + (high - low) * u**3)
+    Bt = np.where(v >= 1, most, least * (most / least) ** v)
+    return Mt, Bt
+
+
+def _objective(problem: ImpedanceProblem, nodes: int) -> _Objective:
+    return partial(_stable_cost, problem, _sample(problem, nodes), _basis(problem.loop))
+
+
+def _stable_cost(
+    problem: ImpedanceProblem, samples: _Samples, basis: FloatArray, u: FloatArray, v: FloatArray
+) -> FloatArray:
+    """Evaluate the cost at points of the unit square, infinite where the loop is not Hurwitz."""
+    Mt, Bt = _admittance(problem, u, v)
+    stable = hurwitz(_characteristics(basis, Mt, Bt))
+    costs = np.full(len(Mt), np.inf)
+    costs[stable] = samples.cost(Mt[stable], Bt[stable])
+    return costs
+
+
+def _scan_shape(problem: ImpedanceProblem) -> tuple[int, int]:
+    fixed_mass = problem.mass_bounds[0] == problem.mass_bounds[1]
+    fixed_damping = problem.damping_bounds[0] == problem.damping_bounds[1]
+    return (1 if fixed_mass else _SCAN[0], 1 if fixed_damping else _SCAN[1])
+
+
+def _scan(problem: ImpedanceProblem) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Return the best local minima of a scan, and its spacing (0 where a parameter is fixed)."""
+    rows, columns = _scan_shape(problem)
+    u, v = np.meshgrid(np.linspace(0, 1, rows), np.linspace(0, 1, columns), indexing="ij")
+    costs = _objective(problem, _SCAN_NODES)(u.ravel(), v.ravel()).reshape(u.shape)
+    if not np.isfinite(costs).any():
+        raise DesignError(
+            f"no admittance with Mt in {list(problem.mass_bounds)} kg m^2 and Bt in "
+            f"{list(problem.damping_bounds)} N m s/rad keeps the loop stable at "
+            f"{problem.loop.stiffness:.6g} N m/rad",
+            remedy="raise the upper bound of Bt or lower the lower bound of Mt",
+        )
+    starts = np.flatnonzero(_local_minima(costs))
+    starts = starts[np.argsort(costs.ravel()[starts], kind="stable")][:_STARTS]
+    step = np.array([1 / (rows - 1) if rows > 1 else 0, 1 / (columns - 1) if columns > 1 else 0])
+    return u.ravel()[starts], v.ravel()[starts], step
+
+
+def _local_minima(costs: FloatArray) -> BoolArray:
+    """Mark the finite entries that no neighbor undercuts."""
+    padded = np.pad(costs, 1, constant_values=np.inf)
+    rows, columns = costs.shape
+    lowest = np.isfinite(costs)
+    for i in range(3):
+        for j in range(3):
+            lowest &= costs <= padded[i : i + rows, j : j + columns]
+    return lowest
+
+
+def _refine(
+    objective: _Objective, u: FloatArray, v: FloatArray, step: FloatArray
+) -> tuple[FloatArray, FloatArray, int]:
+    """Search from every start on a 5 x 5 pattern that moves while it improves, else shrinks."""
+    pattern = [(0, 0)] + [(i, j) for i in range(-2, 3) for j in range(-2, 3) if i or j]
+    offsets = np.unique(np.array(pattern) * (step > 0), axis=0)
+    offsets = offsets[np.argsort(np.abs(offsets).sum(axis=1), kind="stable")]  # the center first
+    scale, count = np.ones(len(u)), 0
+    for _ in range(_MAX_ROUNDS):
+        if scale.max() * step.max() <= _STEP_TOLERANCE:
+            break
+        moves = scale[:, None, None] * step * offsets
+        tried = np.clip(np.stack([u, v], axis=1)[:, None, :] + moves, 0.0, 1.0)
+        costs = objective(tried[..., 0].ravel(), tried[..., 1].ravel()).reshape(tried.shape[:2])
+        best = np.argmin(costs, axis=1)
+        u, v = tried[np.arange(len(u)), best].T
+        scale = np.where(best == 0, scale / 4, scale)
+        count += costs.size
+    return u, v, count
+
+
+def _snap(
+    objective: _Objective, u: FloatArray, v: FloatArray
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Move a point that is all but on a bound onto it where that costs nothing.
+
+    The map is flat at the lower bound of Mt, so rounding can hide the last step there.
+    """
+    edge_u, edge_v = (np.where(np.abs(w - np.round(w)) < 0.01, np.round(w), w) for w in (u, v))
+    costs = objective(u, v)
+    for edges in ((edge_u, v), (u, edge_v), (edge_u, edge_v)):
+        trial = objective(*edges)
+        gain = trial <= costs * (1 + 1e-12)
+        u, v = np.where(gain, edges[0], u), np.where(gain, edges[1], v)
+        costs = np.where(gain, trial, costs)
+    return u, v, costs
+
+
+def _check_bounds(name: str, bounds: tuple[float, float], *, zero_allowed: bool) -> None:
+    low, high = bounds
+    if not (math.isfinite(low) and math.isfinite(high) and low <= high):
+        raise DesignError(f"bounds of {name} must be finite and ascending: {list(bounds)}")
+    if low < 0 or (low == 0 and not zero_allowed):
+        raise DesignError(f"{name} must {'not be negative' if zero_allowed else 'be positive'}")
+
+
+def _check_admittance(Mt: ArrayLike, Bt: ArrayLike) -> None:
+    if not (np.all(np.asarray(Mt) >= 0) and np.all(np.asarray(Bt) > 0)):
+        raise DesignError("an admittance needs Mt >= 0 and Bt > 0")

@@ -1,0 +1,205 @@
+"""Rational transfer functions in s, and the few polynomial tools that the loop designs share."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from nrs_design.errors import DesignError
+
+FloatArray = NDArray[np.float64]
+ComplexArray = NDArray[np.complex128]
+BoolArray = NDArray[np.bool_]
+
+
+@dataclass(frozen=True)
+class TransferFunction:
+    """A proper continuous-time transfer function.
+
+    Parameters
+    ----------
+    numerator, denominator : tuple of float
+        Coefficients, highest power of s first.
+
+    Raises
+    ------
+    DesignError
+        If a coefficient is not finite, the leading denominator coefficient or the whole
+        numerator is zero, or the numerator has the higher degree.
+    """
+
+    numerator: tuple[float, ...]
+    denominator: tuple[float, ...]
+
+    def __post_init__(self) -> None:
+        """Refuse what is not a proper transfer function."""
+        if not all(map(math.isfinite, self.numerator + self.denominator)):
+            raise DesignError("a transfer function needs finite coefficients")
+        if not self.denominator or self.denominator[0] == 0:
+            raise DesignError("the leading coefficient of a denominator must not be zero")
+        if not any(self.numerator):
+            raise DesignError("the numerator of a transfer function is zero")
+        if len(trim(self.numerator)) > len(self.denominator):
+            raise DesignError(
+                f"the numerator's degree exceeds the denominator's, {len(self.denominator) - 1}",
+                remedy="give a proper transfer function",
+            )
+
+    @property
+    def order(self) -> int:
+        """The degree of the denominator."""
+        return len(self.denominator) - 1
+
+
+def trim(polynomial: Sequence[float]) -> tuple[float, ...]:
+    """Return the coefficients without leading zeros (at least one coefficient remains)."""
+    leading = next((i for i, value in enumerate(polynomial) if value != 0), len(polynomial) - 1)
+    return tuple(float(value) for value in polynomial[leading:])
+
+
+def frequency_response(tf: TransferFunction, omega: ArrayLike) -> ComplexArray:
+    """Evaluate a transfer function at ``s = j omega``.
+
+    Parameters
+    ----------
+    tf : TransferFunction
+        Function without a pole at any of the frequencies.
+    omega : array_like
+        Frequencies, rad/s.
+
+    Returns
+    -------
+    ndarray of complex
+        One value per frequency, in the shape of `omega`.
+    """
+    s = 1j * np.asarray(omega, dtype=np.float64)
+    value = np.polyval(tf.numerator, s) / np.polyval(tf.denominator, s)
+    return np.asarray(value, dtype=np.complex128)
+
+
+def poles(tf: TransferFunction) -> ComplexArray:
+    """Return the poles, rad/s, rightmost first and the upper one of a pair before the lower."""
+    found = np.asarray(np.roots(tf.denominator), dtype=np.complex128)
+    return found[np.lexsort((-found.imag, -found.real))]
+
+
+def static_gain(tf: TransferFunction) -> float:
+    """Return G(0): infinite where the function integrates."""
+    if tf.denominator[-1] == 0:
+        return math.inf
+    return tf.numerator[-1] / tf.denominator[-1]
+
+
+def to_control(tf: TransferFunction) -> Any:
+    """Return the function as python-control's own ``TransferFunction``."""
+    import control
+
+    return control.TransferFunction(list(trim(tf.numerator)), list(tf.denominator))
+
+
+def hurwitz(coefficients: ArrayLike) -> BoolArray:
+    """Tell which of many polynomials have all their roots in the open left half plane.
+
+    Routh's array, run on all polynomials at once. A leading coefficient that is exactly zero
+    lowers the degree, so an admittance without mass needs no case of its own.
+
+    Parameters
+    ----------
+    coefficients : array_like, shape (..., n + 1)
+        One polynomial per row, highest power first.
+
+    Returns
+    -------
+    ndarray of bool, shape (...)
+        The zero polynomial counts as not Hurwitz.
+    """
+    table = np.asarray(coefficients, dtype=np.float64)
+    rows = table.reshape(-1, table.shape[-1])
+    stable = np.zeros(len(rows), dtype=np.bool_)
+    lower = rows[:, 0] == 0
+    stable[~lower] = _routh(rows[~lower])
+    if rows.shape[1] > 1 and lower.any():
+        stable[lower] = hurwitz(rows[lower, 1:])
+    return stable.reshape(table.shape[:-1])
+
+
+def _routh(rows: FloatArray) -> BoolArray:
+    """Run Routh's array on rows whose first entry is not zero."""
+    degree = rows.shape[1] - 1
+    above, below = (np.zeros((len(rows), degree // 2 + 2)) for _ in range(2))
+    above[:, : degree // 2 + 1] = rows[:, 0::2] / rows[:, :1]
+    below[:, : (degree + 1) // 2] = rows[:, 1::2] / rows[:, :1]
+    stable = np.ones(len(rows), dtype=np.bool_)
+    for _ in range(degree):
+        # NaN fails this comparison: a row that overflowed must not pass for stable.
+        stable &= below[:, 0] > 0
+        ratio = above[:, 0] / np.where(stable, below[:, 0], 1.0)
+        remainder = np.zeros_like(above)
+        remainder[:, :-1] = above[:, 1:] - ratio[:, None] * below[:, 1:]
+        above, below = below, remainder
+    return stable
+
+
+def even_odd(polynomial: Sequence[float]) -> tuple[FloatArray, FloatArray]:
+    """Split ``p(j omega) = E(x) + j omega O(x)`` with ``x = omega^2``.
+
+    Returns
+    -------
+    E, O : ndarray
+        Real polynomials in x, highest power first.
+    """
+    ascending = np.asarray(polynomial, dtype=np.float64)[::-1]
+    signs = (-1.0) ** np.arange(len(ascending))
+    even, odd = ascending[0::2], ascending[1::2]
+    if not len(odd):
+        odd = np.zeros(1)
+    return (even * signs[: len(even)])[::-1], (odd * signs[: len(odd)])[::-1]
+
+
+def product_parts(a: Sequence[float], b: Sequence[float]) -> tuple[FloatArray, FloatArray]:
+    """Split ``a(j omega) conj(b(j omega)) = R(x) + j omega I(x)`` with ``x = omega^2``.
+
+    Returns
+    -------
+    R, I : ndarray
+        Real polynomials in x, highest power first.
+    """
+    (a_even, a_odd), (b_even, b_odd) = even_odd(a), even_odd(b)
+    odd_product = np.polymul([1.0, 0.0], np.polymul(a_odd, b_odd))
+    real = np.polyadd(np.polymul(a_even, b_even), odd_product)
+    imaginary = np.polysub(np.polymul(a_odd, b_even), np.polymul(a_even, b_odd))
+    return np.asarray(real, dtype=np.float64), np.asarray(imaginary, dtype=np.float64)
+
+
+def squared_magnitude(polynomial: Sequence[float]) -> FloatArray:
+    """Return ``|p(j omega)|^2`` as a polynomial in ``omega^2``, highest power first."""
+    return product_parts(polynomial, polynomial)[0]
+
+
+def ratio_slope(numerator: ArrayLike, denominator: ArrayLike) -> FloatArray:
+    """Return ``n' d - n d'``, whose roots are the stationary points of ``n/d``."""
+    n, d = np.asarray(numerator, dtype=np.float64), np.asarray(denominator, dtype=np.float64)
+    terms = np.convolve(_derivative(n), d), np.convolve(n, _derivative(d))
+    return np.asarray(np.polysub(*terms), dtype=np.float64)
+
+
+def _derivative(polynomial: FloatArray) -> FloatArray:
+    # A constant keeps one coefficient, so that products with it stay defined.
+    powers = np.arange(len(polynomial) - 1, 0, -1)
+    return np.asarray(polynomial[:-1] * powers) if len(powers) else np.zeros(1)
+
+
+def positive_roots(polynomial: ArrayLike) -> FloatArray:
+    """Return the real positive roots in ascending order.
+
+    A double root comes out of floating point as a close complex pair: pairs within 1e-7 of the
+    axis, relative to their size, count as real.
+    """
+    roots = np.roots(np.trim_zeros(np.asarray(polynomial, dtype=np.float64), "f"))
+    real = roots.real[(np.abs(roots.imag) <= 1e-7 * np.abs(roots)) & (roots.real > 0)]
+    return np.sort(np.asarray(real, dtype=np.float64))

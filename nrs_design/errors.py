@@ -1,0 +1,85 @@
+"""Errors that carry what went wrong, where, and what to do about it."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+
+class NrsDesignError(Exception):
+    """Base of every error that a user can cause and mend.
+
+    Parameters
+    ----------
+    message : str
+        What is wrong, and what was expected.
+    path : Path, optional
+        File that holds the fault.
+    line, column : int, optional
+        Position in that file, counted from 1.
+    remedy : str, optional
+        What to do about it.
+    """
+
+    rule = "NRS000"
+
+    def __init__(
+        self,
+        message: str,
+        *,
+        path: Path | None = None,
+        line: int | None = None,
+        column: int | None = None,
+        remedy: str | None = None,
+    ) -> None:
+        super().__init__(message)
+        self.message = message
+        self.path = path
+        self.line = line
+        self.column = column
+        self.remedy = remedy
+
+    @property
+    def location(self) -> str:
+        """The place as ``file:line:column``, as far as it is known."""
+        parts = [str(self.path)] if self.path is not None else []
+        parts += [str(number) for number in (self.line, self.column) if number is not None]
+        return ":".join(parts)
+
+    def __str__(self) -> str:
+        """One line: place, fault and remedy."""
+        text = f"{self.location}: {self.message}" if self.location else self.message
+        return f"{text} ({self.remedy})" if self.remedy else text
+
+
+class SpecError(NrsDesignError):
+    """A spec that cannot be read or does not say what it must."""
+
+    rule = "NRS001"
+
+
+class DesignError(NrsDesignError):
+    """A design problem that has no answer within its bounds."""
+
+    rule = "NRS002"
+
+
+class AssemblyError(NrsDesignError):
+    """Modes that do not make one switched system."""
+
+    rule = "NRS003"
+
+
+class CertificateError(NrsDesignError):
+    """A certificate that is malformed, or does not belong to the spec it is held against."""
+
+    rule = "NRS004"
+
+
+class OutputError(NrsDesignError):
+    """A result that cannot be written where it was asked for."""
+
+    rule = "NRS005"
+
+
+class InternalError(Exception):
+    """Two independent computations disagree: a defect of this program, never a verdict."""

@@ -1,0 +1,1 @@
+"""Models of the actuator, the motion loop and what the robot touches."""

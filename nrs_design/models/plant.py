@@ -1,0 +1,67 @@
+"""What the spec says about the world: the actuator and the environments, in exact SI numbers."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+
+from nrs_design.models.actuator import Actuator
+from nrs_design.models.environment import Environment, Interval
+from nrs_design.spec import (
+    ElasticSpec,
+    InteractionDesignSpec,
+    KelvinVoigtSpec,
+    RangedQuantity,
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Plant:
+    """Actuator and environments of one axis.
+
+    Parameters
+    ----------
+    actuator : Actuator
+        Identified model.
+    environments : tuple of Environment
+        In the order of the spec.
+    """
+
+    actuator: Actuator
+    environments: tuple[Environment, ...]
+
+    def environment(self, name: str) -> Environment:
+        """Return the environment of that name; the spec guarantees that it exists."""
+        return next(environment for environment in self.environments if environment.name == name)
+
+
+def build_plant(spec: InteractionDesignSpec) -> Plant:
+    """Convert the plant of a spec to exact SI numbers.
+
+    A linear stiffness or damping at distance r from the pivot is multiplied by r^2 to give the
+    rotational one (thesis 6.3.1.1: 747.1461 N/m at 0.24 m is 43.0356 N m/rad).
+    """
+    actuator = Actuator(spec.actuator.gain.exact, spec.actuator.time_constant.exact)
+    environments = tuple(
+        _environment(name, environment) for name, environment in spec.environments.items()
+    )
+    return Plant(actuator, environments)
+
+
+def _environment(name: str, spec: ElasticSpec | KelvinVoigtSpec) -> Environment:
+    arm = spec.lever_arm
+    factor = Fraction(1) if arm is None else arm.exact**2
+    damping = (
+        _interval(spec.damping, factor)
+        if isinstance(spec, KelvinVoigtSpec)
+        else Interval.point(Fraction(0))
+    )
+    return Environment(name, _interval(spec.stiffness, factor), damping)
+
+
+def _interval(quantity: RangedQuantity, factor: Fraction) -> Interval:
+    nominal = quantity.nominal.exact * factor
+    if quantity.range is None:
+        return Interval.point(nominal)
+    low, high = quantity.range
+    return Interval(nominal, low.exact * factor, high.exact * factor)

@@ -1,0 +1,45 @@
+"""Writing results: whole or not at all."""
+
+from __future__ import annotations
+
+import os
+import tempfile
+from pathlib import Path
+
+from nrs_design.errors import OutputError
+
+
+def write_output(path: Path, content: str | bytes) -> None:
+    """Write a file through a temporary one beside it, so that no half-written file is left.
+
+    Parameters
+    ----------
+    path : Path
+        Its folder is made if it does not exist.
+    content : str or bytes
+        Text is written as UTF-8.
+
+    Raises
+    ------
+    OutputError
+        If the place cannot be written to, or is a link or a folder.
+    """
+    if path.is_symlink() or path.is_dir():
+        kind = "a symbolic link" if path.is_symlink() else "a folder"
+        raise OutputError(f"is {kind}, not a file", path=path, remedy="name another file")
+    data = content.encode() if isinstance(content, str) else content
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        handle, temporary = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.")
+        try:
+            with os.fdopen(handle, "wb") as file:
+                file.write(data)
+            os.chmod(temporary, 0o644)
+            os.replace(temporary, path)
+        except BaseException:
+            os.unlink(temporary)
+            raise
+    except OSError as error:
+        raise OutputError(
+            f"cannot be written ({error.strerror})", path=path, remedy="choose a writable folder"
+        ) from error

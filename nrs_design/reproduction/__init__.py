@@ -1,0 +1,1 @@
+"""The dissertation's published numbers beside recomputed ones."""

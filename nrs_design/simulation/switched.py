@@ -1,0 +1,117 @@
+"""Exact simulation of a switched linear system, and of a switching that looks its worst."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from nrs_design.switched.system import SwitchedSystem, Time
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class TimeResponse:
+    """A sampled solution.
+
+    Parameters
+    ----------
+    time : ndarray, shape (N + 1,)
+        In s, or step numbers in discrete time.
+    state : ndarray, shape (N + 1, n)
+        The state at these times.
+    mode : ndarray of int, shape (N,)
+        Index of the mode that was active in each interval.
+    """
+
+    time: Array
+    state: Array
+    mode: NDArray[np.int64]
+
+
+def transition_matrices(system: SwitchedSystem, step: float) -> Array:
+    """Return ``exp(A step)`` (or A, in discrete time) of every mode; shape (m, n, n)."""
+    matrices = np.array([mode.A.floats() for mode in system.modes])
+    if system.time is Time.DISCRETE:
+        return matrices
+    from scipy.linalg import expm
+
+    return np.asarray(expm(matrices * step))
+
+
+def simulate_switching(
+    system: SwitchedSystem, signal: NDArray[np.int64], initial: Array, step: float
+) -> TimeResponse:
+    """Simulate a switching signal that is constant over each step, exactly at the steps.
+
+    Parameters
+    ----------
+    system : SwitchedSystem
+        Modes.
+    signal : ndarray of int, shape (N,)
+        Mode index in each step.
+    initial : ndarray, shape (n,)
+        State at time zero.
+    step : float
+        In s; one in discrete time.
+    """
+    transitions = transition_matrices(system, step)
+    states = [initial]
+    for mode in signal:
+        states.append(transitions[mode] @ states[-1])
+    return TimeResponse(_times(step, len(signal)), np.array(states), signal)
+
+
+def worst_switching(
+    system: SwitchedSystem, Q: Array, initial: Array, step: float, steps: int
+) -> TimeResponse:
+    """Simulate the greedy adversary: always the mode after which ``x' Q x`` is largest.
+
+    It is a bad run, not the worst one: nothing is proved by it.
+
+    Parameters
+    ----------
+    system : SwitchedSystem
+        Modes.
+    Q : ndarray, shape (n, n)
+        Matrix of the function to make large.
+    initial : ndarray, shape (n,)
+        State at time zero.
+    step : float
+        Time between decisions, in s.
+    steps : int
+        Number of decisions N.
+    """
+    transitions = transition_matrices(system, step)
+    states, chosen = [initial], []
+    for _ in range(steps):
+        candidates = transitions @ states[-1]
+        values = np.einsum("mi,ij,mj->m", candidates, Q, candidates)
+        chosen.append(int(values.argmax()))
+        states.append(candidates[chosen[-1]])
+    return TimeResponse(_times(step, steps), np.array(states), np.array(chosen))
+
+
+def worst_direction(system: SwitchedSystem, Q: Array) -> Array:
+    """Return the unit state (in the norm of Q) from which ``x' Q x`` decreases the slowest."""
+    inverse = np.linalg.inv(np.linalg.cholesky(Q))
+    worst = max((_slowest(inverse, drift) for drift in _drift(system, Q)), key=lambda pair: pair[0])
+    return inverse.T @ worst[1]
+
+
+def _drift(system: SwitchedSystem, Q: Array) -> list[Array]:
+    matrices = [np.array(mode.A.floats()) for mode in system.modes]
+    if system.time is Time.DISCRETE:
+        return [A.T @ Q @ A for A in matrices]
+    return [A.T @ Q + Q @ A for A in matrices]
+
+
+def _slowest(inverse: Array, drift: Array) -> tuple[float, Array]:
+    values, vectors = np.linalg.eigh(inverse @ drift @ inverse.T)
+    return float(values[-1]), vectors[:, -1]
+
+
+def _times(step: float, steps: int) -> Array:
+    return np.asarray(step * np.arange(steps + 1), dtype=float)

@@ -1,0 +1,45 @@
+"""Specs: YAML files with exact numbers, units and line numbers, as frozen models."""
+
+from nrs_design.spec.controllers import (
+    ControllerSpec,
+    CostWeights,
+    ForceControllerSpec,
+    ImpedanceControllerSpec,
+    PositionControllerSpec,
+)
+from nrs_design.spec.environment import ElasticSpec, EnvironmentSpec, KelvinVoigtSpec
+from nrs_design.spec.exact import parse_exact
+from nrs_design.spec.interaction import DesignSpec, InteractionDesignSpec
+from nrs_design.spec.load import LoadedSpec, Spec, load_spec, parse_spec, read_spec
+from nrs_design.spec.motion import ActuatorSpec, LimitsSpec, MotionLoopSpec, TransferFunctionSpec
+from nrs_design.spec.quantity import Quantity
+from nrs_design.spec.quantity_fields import Bounds, RangedQuantity
+from nrs_design.spec.switched_system import ModeSpec, SwitchedSystemSpec
+
+__all__ = [
+    "ActuatorSpec",
+    "Bounds",
+    "ControllerSpec",
+    "CostWeights",
+    "DesignSpec",
+    "ElasticSpec",
+    "EnvironmentSpec",
+    "ForceControllerSpec",
+    "ImpedanceControllerSpec",
+    "InteractionDesignSpec",
+    "KelvinVoigtSpec",
+    "LimitsSpec",
+    "LoadedSpec",
+    "ModeSpec",
+    "MotionLoopSpec",
+    "PositionControllerSpec",
+    "Quantity",
+    "RangedQuantity",
+    "Spec",
+    "SwitchedSystemSpec",
+    "TransferFunctionSpec",
+    "load_spec",
+    "parse_exact",
+    "parse_spec",
+    "read_spec",
+]

@@ -1,0 +1,129 @@
+"""Controllers that the robot switches between."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from typing import Annotated, Literal
+
+from pydantic import Discriminator, Field, field_validator, model_validator
+
+from nrs_design.spec.faults import fault
+from nrs_design.spec.fields import Label, Positive, Weight
+from nrs_design.spec.model import SpecModel
+from nrs_design.spec.quantity_fields import DampingBounds, ForceGain, Impedance, InertiaBounds
+
+_ENVIRONMENT = "name of the environment that the gains are designed for"
+_CONTACTS = "names of all environments touched while this controller is active; default: its own"
+
+
+def _distinct(contacts: tuple[str, ...]) -> tuple[str, ...]:
+    for index, name in enumerate(contacts):
+        if name in contacts[:index]:
+            raise fault(f"{name!r} is listed twice", "list each environment once", index)
+    return contacts
+
+
+class CostWeights(SpecModel):
+    """Weights of the two parts of the impedance cost (thesis 6.7)."""
+
+    displayed: Weight = Field(
+        default=Fraction(1, 2), description="weight of the displayed-impedance error, >= 0, no unit"
+    )
+    sensitivity: Weight = Field(
+        default=Fraction(1, 2), description="weight of the mean sensitivity, >= 0, no unit"
+    )
+
+    @model_validator(mode="after")
+    def _check_not_both_zero(self) -> CostWeights:
+        if self.displayed == 0 and self.sensitivity == 0:
+            raise fault("both weights are zero", "give at least one a positive weight")
+        return self
+
+
+class ImpedanceControllerSpec(SpecModel):
+    """Admittance ``1/(Mt s + Bt)`` that makes the robot display an impedance (thesis 6.3.1)."""
+
+    type: Literal["impedance"] = Field(description="impedance: admittance Y = 1/(Mt s + Bt)")
+    environment: Label = Field(description=_ENVIRONMENT)
+    contacts: tuple[Label, ...] = Field(
+        default_factory=lambda data: (data.get("environment", ""),),
+        min_length=1,
+        description=_CONTACTS,
+    )
+    desired_impedance: Impedance | None = Field(
+        default=None,
+        description="impedance to display in N*m*s/rad; default: limits.torque/limits.velocity",
+    )
+    desired_impedance_ratio: Positive | None = Field(
+        default=None,
+        description="multiplies limits.torque/limits.velocity, no unit; not with desired_impedance",
+    )
+    Mt: InertiaBounds = Field(
+        description="admittance inertia in kg*m^2: one quantity, or {min: ..., max: ...}; 0 allowed"
+    )
+    Bt: DampingBounds = Field(
+        description="admittance damping in N*m*s/rad: one quantity, or {min: ..., max: ...}; > 0"
+    )
+    weights: CostWeights = Field(
+        default_factory=CostWeights, description="weights of the design cost, no unit"
+    )
+
+    _contacts = field_validator("contacts")(_distinct)
+
+    @model_validator(mode="after")
+    def _check_one_target(self) -> ImpedanceControllerSpec:
+        if self.desired_impedance is not None and self.desired_impedance_ratio is not None:
+            raise fault(
+                "desired_impedance and desired_impedance_ratio exclude each other",
+                "keep one of them",
+                "desired_impedance_ratio",
+            )
+        return self
+
+
+class ForceControllerSpec(SpecModel):
+    """Proportional force controller of the hybrid scheme (thesis 6.3.3)."""
+
+    type: Literal["force"] = Field(description="force: u = Kp (Fd - F)")
+    environment: Label = Field(description=_ENVIRONMENT)
+    contacts: tuple[Label, ...] = Field(
+        default_factory=lambda data: (data.get("environment", ""),),
+        min_length=1,
+        description=_CONTACTS,
+    )
+    proportional_gain: ForceGain | None = Field(
+        default=None,
+        description="Kp in rad/(N*m); exactly one of proportional_gain and damping_ratio",
+    )
+    damping_ratio: Positive | None = Field(
+        default=None,
+        description="wanted damping ratio of the dominant poles, no unit; chooses Kp",
+    )
+
+    _contacts = field_validator("contacts")(_distinct)
+
+    @model_validator(mode="after")
+    def _check_one_gain(self) -> ForceControllerSpec:
+        if self.proportional_gain is None and self.damping_ratio is None:
+            raise fault(
+                "neither proportional_gain nor damping_ratio is given",
+                "add `proportional_gain: 0.02 rad/(N*m)` or `damping_ratio: 0.741`",
+            )
+        if self.proportional_gain is not None and self.damping_ratio is not None:
+            raise fault(
+                "proportional_gain and damping_ratio exclude each other",
+                "keep one of them",
+                "damping_ratio",
+            )
+        return self
+
+
+class PositionControllerSpec(SpecModel):
+    """Position mode of the hybrid scheme: the closed motion loop alone (thesis 6.3.3)."""
+
+    type: Literal["position"] = Field(description="position: the motion loop alone, no contact")
+
+
+ControllerSpec = Annotated[
+    ImpedanceControllerSpec | ForceControllerSpec | PositionControllerSpec, Discriminator("type")
+]

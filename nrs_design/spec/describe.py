@@ -1,0 +1,161 @@
+"""What a spec says, quantity by quantity, as written and in SI."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from fractions import Fraction
+from typing import NamedTuple
+
+from nrs_design.spec import kinds
+from nrs_design.spec.controllers import ControllerSpec, ImpedanceControllerSpec
+from nrs_design.spec.environment import EnvironmentSpec, KelvinVoigtSpec
+from nrs_design.spec.interaction import InteractionDesignSpec
+from nrs_design.spec.load import Spec
+from nrs_design.spec.motion import LimitsSpec
+from nrs_design.spec.quantity import Quantity, QuantityKind
+from nrs_design.spec.quantity_fields import Bounds, RangedQuantity
+from nrs_design.spec.switched_system import SwitchedSystemSpec
+
+
+class Row(NamedTuple):
+    """One line of the listing."""
+
+    name: str
+    written: str
+    value: str
+    unit: str
+
+
+def describe(spec: Spec) -> tuple[Row, ...]:
+    """List what a spec says.
+
+    Parameters
+    ----------
+    spec : InteractionDesignSpec or SwitchedSystemSpec
+        A validated spec.
+
+    Returns
+    -------
+    tuple of Row
+        Name, text as written, SI value and SI unit. Linear stiffness is shown at the pivot.
+    """
+    if isinstance(spec, SwitchedSystemSpec):
+        return tuple(_modes(spec))
+    return tuple(_interaction(spec))
+
+
+def _modes(spec: SwitchedSystemSpec) -> Iterator[Row]:
+    n = spec.dimension
+    yield Row("time", spec.time, "", "")
+    yield Row("switching", spec.switching, "", "")
+    unit = "1/s" if spec.time == "continuous" else ""
+    for index, mode in enumerate(spec.modes):
+        yield Row(f"modes[{index}]", mode.name, f"{n} x {n}", unit)
+
+
+def _interaction(spec: InteractionDesignSpec) -> Iterator[Row]:
+    yield _row("actuator.gain", spec.actuator.gain, kinds.ACTUATOR_GAIN)
+    yield _row("actuator.time_constant", spec.actuator.time_constant, kinds.DURATION)
+    yield from _motion_loop(spec)
+    yield _row("limits.velocity", spec.limits.velocity, kinds.ANGULAR_VELOCITY)
+    yield _row("limits.torque", spec.limits.torque, kinds.TORQUE)
+    yield _row("limits.bandwidth", spec.limits.bandwidth, kinds.BANDWIDTH)
+    for name, environment in spec.environments.items():
+        yield from _environment(f"environments.{name}", environment)
+    for name, controller in spec.controllers.items():
+        yield from _controller(f"controllers.{name}", controller, spec.limits)
+    yield Row("design.significant_digits", str(spec.design.significant_digits), "", "")
+    yield Row("coordinates", spec.coordinates, "", "")
+    yield Row("switching", spec.switching, "", "")
+
+
+def _motion_loop(spec: InteractionDesignSpec) -> Iterator[Row]:
+    loop = spec.motion_loop
+    yield _number("motion_loop.damping_ratio", loop.damping_ratio)
+    yield _row("motion_loop.settling_time", loop.settling_time, kinds.DURATION)
+    if loop.derivative_gain is not None:
+        yield _row("motion_loop.derivative_gain", loop.derivative_gain, kinds.DERIVATIVE_GAIN)
+    if loop.zero is not None:
+        yield _row("motion_loop.zero", loop.zero, kinds.ZERO)
+    if loop.transfer_function is not None:
+        tf = loop.transfer_function
+        yield _coefficients("motion_loop.transfer_function.numerator", tf.numerator)
+        yield _coefficients("motion_loop.transfer_function.denominator", tf.denominator)
+
+
+def _environment(name: str, environment: EnvironmentSpec) -> Iterator[Row]:
+    yield Row(f"{name}.model", environment.model, "", "")
+    yield from _ranged(
+        f"{name}.stiffness", environment.stiffness, environment.rotational_stiffness, "N*m/rad"
+    )
+    if isinstance(environment, KelvinVoigtSpec):
+        yield from _ranged(
+            f"{name}.damping", environment.damping, environment.rotational_damping, "N*m*s/rad"
+        )
+    if environment.lever_arm is not None:
+        yield _row(f"{name}.lever_arm", environment.lever_arm, kinds.LEVER_ARM)
+
+
+def _ranged(name: str, written: RangedQuantity, si: RangedQuantity, unit: str) -> Iterator[Row]:
+    yield Row(name, written.nominal.text, _text(si.nominal.si), unit)
+    if not written.fixed:
+        (low, high), (si_low, si_high) = written.range, si.range
+        value = f"[{_text(si_low.si)}, {_text(si_high.si)}]"
+        yield Row(f"{name}.range", f"[{low.text}, {high.text}]", value, unit)
+
+
+def _controller(name: str, controller: ControllerSpec, limits: LimitsSpec) -> Iterator[Row]:
+    yield Row(f"{name}.type", controller.type, "", "")
+    if controller.type == "position":
+        return
+    yield Row(f"{name}.environment", controller.environment, "", "")
+    yield Row(f"{name}.contacts", ", ".join(controller.contacts), "", "")
+    if controller.type == "impedance":
+        yield _desired_impedance(f"{name}.desired_impedance", controller, limits)
+        yield _bounds(f"{name}.Mt", controller.Mt, kinds.INERTIA)
+        yield _bounds(f"{name}.Bt", controller.Bt, kinds.IMPEDANCE)
+        yield _number(f"{name}.weights.displayed", controller.weights.displayed)
+        yield _number(f"{name}.weights.sensitivity", controller.weights.sensitivity)
+    elif controller.proportional_gain is not None:
+        yield _row(f"{name}.proportional_gain", controller.proportional_gain, kinds.FORCE_GAIN)
+    elif controller.damping_ratio is not None:
+        yield _number(f"{name}.damping_ratio", controller.damping_ratio)
+
+
+def _desired_impedance(name: str, controller: ImpedanceControllerSpec, limits: LimitsSpec) -> Row:
+    if controller.desired_impedance is not None:
+        return _row(name, controller.desired_impedance, kinds.IMPEDANCE)
+    ratio = controller.desired_impedance_ratio
+    written = "torque/velocity" if ratio is None else f"{_decimal(ratio)} * torque/velocity"
+    value = float(1 if ratio is None else ratio) * limits.torque.si / limits.velocity.si
+    return Row(name, written, _text(value), kinds.IMPEDANCE.si_unit)
+
+
+def _bounds(name: str, bounds: Bounds, kind: QuantityKind) -> Row:
+    if bounds.fixed:
+        return _row(name, bounds.min, kind)
+    value = f"[{_text(bounds.min.si)}, {_text(bounds.max.si)}]"
+    return Row(name, f"[{bounds.min.text}, {bounds.max.text}]", value, kind.si_unit)
+
+
+def _row(name: str, quantity: Quantity, kind: QuantityKind) -> Row:
+    return Row(name, quantity.text, _text(quantity.si), kind.si_unit)
+
+
+def _number(name: str, number: Fraction) -> Row:
+    return Row(name, _decimal(number), _text(float(number)), "")
+
+
+def _coefficients(name: str, numbers: tuple[Fraction, ...]) -> Row:
+    value = ", ".join(_text(float(number)) for number in numbers)
+    return Row(name, f"[{', '.join(map(_decimal, numbers))}]", f"[{value}]", "")
+
+
+def _decimal(number: Fraction) -> str:
+    """Write a fraction as the shortest decimal if that is exact, as ``p/q`` otherwise."""
+    text = repr(float(number)).removesuffix(".0")
+    return text if Fraction(text) == number else str(number)
+
+
+def _text(value: float) -> str:
+    return f"{value:.6g}"

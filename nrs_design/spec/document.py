@@ -1,0 +1,311 @@
+"""YAML text as a tree of scalars that stay text, each with its line and column.
+
+The limits are checked on the stream of parser events, before any tree grows, so that a hostile
+file is refused early. No scalar is ever turned into a float: decimals stay as written.
+"""
+
+from __future__ import annotations
+
+import bisect
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import NoReturn
+
+from ruamel.yaml import YAML
+from ruamel.yaml.error import MarkedYAMLError, YAMLError
+from ruamel.yaml.events import (
+    AliasEvent,
+    CollectionEndEvent,
+    DocumentStartEvent,
+    Event,
+    MappingStartEvent,
+    NodeEvent,
+    ScalarEvent,
+    SequenceStartEvent,
+)
+
+from nrs_design.errors import SpecError
+from nrs_design.spec.exact import quoted
+from nrs_design.spec.syntax import explain_syntax
+
+MAX_BYTES = 1024 * 1024
+MAX_DEPTH = 20
+
+# Escapes such as "\ud800" can produce them; they cannot be printed or encoded.
+_SURROGATE = re.compile("[\ud800-\udfff]")
+_NULL = re.compile(r"|~|null|Null|NULL")
+# What YAML 1.2 reads as a truth value or a number, when it is not quoted.
+_NOT_TEXT = re.compile(
+    r"true|True|TRUE|false|False|FALSE"
+    r"|[+-]?[0-9]+|0o[0-7]+|0x[0-9a-fA-F]+"
+    r"|[+-]?(?:\.[0-9]+|[0-9]+\.?[0-9]*)(?:[eE][+-]?[0-9]+)?"
+    r"|[+-]?\.(?:inf|Inf|INF)|\.(?:nan|NaN|NAN)"
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Position:
+    """A place in a file, line and column counted from 1."""
+
+    line: int
+    column: int
+
+
+@dataclass(frozen=True, slots=True)
+class Scalar:
+    """A leaf of the tree: text as written, whatever YAML would make of it."""
+
+    text: str
+    position: Position
+
+
+@dataclass(frozen=True, slots=True)
+class Sequence:
+    """A list of nodes."""
+
+    items: tuple[Node, ...]
+    position: Position
+
+
+@dataclass(frozen=True, slots=True)
+class Mapping:
+    """Nodes under distinct text keys, in file order; ``keys`` holds where each key stands."""
+
+    entries: dict[str, Node]
+    keys: dict[str, Position]
+    position: Position
+
+
+Node = Scalar | Sequence | Mapping
+Data = str | tuple["Data", ...] | dict[str, "Data"]
+
+
+def read_text(path: Path) -> tuple[bytes, str]:
+    """Read a spec file: its bytes, and the text that they encode.
+
+    Raises
+    ------
+    SpecError
+        If the file is missing, unreadable, not a regular file, empty, larger than 1 MiB or not
+        UTF-8.
+    """
+    content = _read_bytes(path)
+    if len(content) > MAX_BYTES:
+        raise SpecError(
+            f"the file is larger than {MAX_BYTES} bytes",
+            path=path,
+            remedy="split it into several specs",
+        )
+    try:
+        text = content.decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        before = content[: error.start].decode("utf-8-sig")
+        place = _Places(before).at(len(before))
+        raise SpecError(
+            f"byte 0x{content[error.start]:02x} is not UTF-8 text",
+            path=path,
+            line=place.line,
+            column=place.column,
+            remedy="save the file in the UTF-8 encoding",
+        ) from None
+    if not text.strip():
+        raise SpecError("the file is empty", path=path, remedy="start from `nrs-design init`")
+    return content, text
+
+
+def _read_bytes(path: Path) -> bytes:
+    try:
+        if path.is_dir():
+            raise SpecError("this is a directory", path=path, remedy="name a *.nrs.yaml file in it")
+        if path.exists() and not path.is_file():
+            raise SpecError(
+                "this is not a regular file", path=path, remedy="name a *.nrs.yaml file"
+            )
+        with path.open("rb") as file:
+            return file.read(MAX_BYTES + 1)
+    except FileNotFoundError:
+        raise SpecError("there is no such file", path=path, remedy="check the path") from None
+    except (OSError, ValueError) as error:
+        reason = getattr(error, "strerror", None) or str(error)
+        raise SpecError(
+            f"the file cannot be read: {reason}", path=path, remedy="check path and permissions"
+        ) from None
+
+
+def parse_document(text: str, path: Path | None = None) -> Node:
+    """Parse one YAML document of plain mappings, lists and scalars.
+
+    Parameters
+    ----------
+    text : str
+        The YAML text.
+    path : Path, optional
+        Named in errors.
+
+    Returns
+    -------
+    Mapping, Sequence or Scalar
+        The root node. Scalars are text, never numbers.
+
+    Raises
+    ------
+    SpecError
+        With line and column, for syntax errors, nesting deeper than 20, anchors, aliases, tags,
+        merge keys, duplicate keys, keys that are not text, missing values and several documents.
+    """
+    return _Builder(text, path).build()
+
+
+def to_data(node: Node) -> Data:
+    """Strip the positions: dicts, tuples and text."""
+    if isinstance(node, Scalar):
+        return node.text
+    if isinstance(node, Sequence):
+        return tuple(to_data(item) for item in node.items)
+    return {key: to_data(value) for key, value in node.entries.items()}
+
+
+class _Places:
+    """Line and column of every character offset.
+
+    Counted here rather than by the parser, which takes a few more characters for line breaks than
+    editors do.
+    """
+
+    def __init__(self, text: str) -> None:
+        breaks = re.finditer(r"\r\n|\n|\r", text)
+        self._starts = [0, *(match.end() for match in breaks)]
+        self._end = len(text)
+
+    def at(self, index: int) -> Position:
+        index = min(max(index, 0), self._end)
+        line = bisect.bisect_right(self._starts, index)
+        return Position(line, index - self._starts[line - 1] + 1)
+
+
+class _Builder:
+    """Builds the tree from the event stream; recursion is bounded by the depth limit."""
+
+    def __init__(self, text: str, path: Path | None) -> None:
+        self._text = text
+        self._path = path
+        self._places = _Places(text)
+        self._events = self._checked_events()
+
+    def build(self) -> Node:
+        root: Node | None = None
+        for event in self._events:
+            if isinstance(event, NodeEvent):
+                root = self._node(event)
+        if root is None:
+            self._fail("the file holds no document", 0, "start from `nrs-design init`")
+        return root
+
+    def _fail(self, message: str, index: int | Position, remedy: str) -> NoReturn:
+        place = index if isinstance(index, Position) else self._places.at(index)
+        raise SpecError(
+            message, path=self._path, line=place.line, column=place.column, remedy=remedy
+        )
+
+    def _raw_events(self) -> Iterator[Event]:
+        """Parser events; every way in which the parser gives up becomes a SpecError."""
+        index = 0
+        try:
+            for event in YAML(typ="safe", pure=True).parse(self._text):
+                index = event.start_mark.index
+                yield event
+        except YAMLError as error:
+            if isinstance(error, MarkedYAMLError):
+                mark = error.problem_mark or error.context_mark
+                index = mark.index if mark else index
+            else:
+                index = getattr(error, "position", index)
+            message, remedy = explain_syntax(error)
+            self._fail(message, index, remedy)
+        except (ValueError, ArithmeticError, LookupError):
+            # Escapes beyond unicode and absurd version directives end so in the parser.
+            self._fail("this is not valid YAML", index, "check escapes and directives")
+
+    def _checked_events(self) -> Iterator[Event]:
+        depth = 0
+        documents = 0
+        for event in self._raw_events():
+            index = event.start_mark.index
+            if isinstance(event, DocumentStartEvent):
+                documents += 1
+                if documents > 1:
+                    self._fail("the file holds several documents", index, "keep one, without ---")
+            elif isinstance(event, NodeEvent):
+                self._check_node(event, index)
+            depth += isinstance(event, SequenceStartEvent | MappingStartEvent)
+            depth -= isinstance(event, CollectionEndEvent)
+            if depth > MAX_DEPTH:
+                self._fail(f"nested deeper than {MAX_DEPTH} levels", index, "flatten the spec")
+            yield event
+
+    def _check_node(self, event: NodeEvent, index: int) -> None:
+        if isinstance(event, AliasEvent):
+            self._fail("aliases (*name) are not read", index, "write the value out")
+        if event.anchor is not None:
+            self._fail("anchors (&name) are not read", index, "remove the anchor")
+        if getattr(event, "tag", None) is not None:
+            self._fail("tags (!name) are not read", index, "remove the tag")
+        if isinstance(event, ScalarEvent) and _SURROGATE.search(event.value):
+            self._fail("a lone surrogate is not text", index, "remove the escape")
+
+    def _node(self, event: NodeEvent) -> Node:
+        place = self._places.at(event.start_mark.index)
+        if isinstance(event, ScalarEvent):
+            if event.style is None and _NULL.fullmatch(event.value):
+                self._fail("a value is missing here", place, "write a value or remove the key")
+            return Scalar(event.value, place)
+        if isinstance(event, SequenceStartEvent):
+            return Sequence(tuple(self._node(item) for item in self._children()), place)
+        return self._mapping(place)
+
+    def _children(self) -> Iterator[NodeEvent]:
+        """Start events of the nodes within the open collection."""
+        for event in self._events:
+            if isinstance(event, CollectionEndEvent):
+                return
+            if isinstance(event, NodeEvent):
+                yield event
+
+    def _mapping(self, place: Position) -> Mapping:
+        entries: dict[str, Node] = {}
+        keys: dict[str, Position] = {}
+        children = self._children()
+        for event in children:
+            key_place = self._places.at(event.start_mark.index)
+            key = self._key(event, key_place)
+            if key in keys:
+                self._fail(
+                    f"the key {quoted(key)} is there twice, first in line {keys[key].line}",
+                    key_place,
+                    "keep one of them",
+                )
+            keys[key] = key_place
+            entries[key] = self._value(key, key_place, next(children))
+        return Mapping(entries, keys, place)
+
+    def _key(self, event: NodeEvent, place: Position) -> str:
+        if not isinstance(event, ScalarEvent):
+            self._fail("a key must be text", place, "write `key: value`")
+        key: str = event.value
+        if event.style is not None:
+            return key
+        if key == "<<":
+            self._fail("merge keys (<<) are not read", place, "write the keys out")
+        if _NULL.fullmatch(key) or _NOT_TEXT.fullmatch(key):
+            self._fail(f"the key {quoted(key)} is not text", place, "put it in quotes or rename it")
+        return key
+
+    def _value(self, key: str, key_place: Position, event: NodeEvent) -> Node:
+        """Read the value of a key; a missing one is reported where the key stands."""
+        if isinstance(event, ScalarEvent) and event.style is None and _NULL.fullmatch(event.value):
+            self._fail(
+                f"the key {quoted(key)} has no value", key_place, "write a value or remove the key"
+            )
+        return self._node(event)

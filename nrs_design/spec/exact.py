@@ -1,0 +1,108 @@
+"""Exact numbers: the decimal text of a spec becomes a fraction, never a binary float."""
+
+from __future__ import annotations
+
+import re
+import unicodedata
+from fractions import Fraction
+
+from nrs_design.errors import SpecError
+
+MAX_LENGTH = 100
+MAX_EXPONENT = 100
+
+# A leading zero ("010") is octal in older YAML and ten in newer: it is refused.
+_INTEGER = r"(?:0|[1-9][0-9]*)"
+DECIMAL_PATTERN = rf"[+-]?(?:{_INTEGER}(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][+-]?[0-9]+)?"
+RATIO_PATTERN = rf"[+-]?{_INTEGER}/[1-9][0-9]*"
+
+_DECIMAL = re.compile(DECIMAL_PATTERN)
+_RATIO = re.compile(RATIO_PATTERN)
+_EXPECTED = 'write an integer, a decimal such as -0.25 or 1.5e-3, or a ratio such as "1/6"'
+_DASHES = "\u2010\u2011\u2012\u2013\u2014\u2212\ufe63\uff0d"
+
+# In this order: the first pattern that a refused text meets names its fault.
+_FAULTS: tuple[tuple[re.Pattern[str], str, str], ...] = (
+    (re.compile(r"\s*"), "is empty", _EXPECTED),
+    (re.compile(r"\s.*|.*\s", re.DOTALL), "has spaces around it", "remove the spaces"),
+    (re.compile(rf".*[{_DASHES}].*"), "has a typographic minus", "use the ASCII hyphen '-'"),
+    (re.compile(r".*[^\x00-\x7f].*", re.DOTALL), "has characters outside ASCII", _EXPECTED),
+    (
+        re.compile(r"[+-]?\.?(?:nan|inf|infinity)", re.IGNORECASE),
+        "is not a finite number",
+        _EXPECTED,
+    ),
+    (re.compile(r"true|false|yes|no|on|off", re.IGNORECASE), "is a truth value", _EXPECTED),
+    (re.compile(r"[+-]?[0-9]+/[+-]?0+"), "divides by zero", "use a nonzero denominator"),
+    (re.compile(r"[+-]?[0-9]+/-[0-9]+"), "has a signed denominator", "put the sign in front"),
+    (re.compile(r"[+-]?0[xob].*", re.IGNORECASE), "is not in base ten", _EXPECTED),
+    (
+        re.compile(r"[+-]?[0-9][0-9._]*_.*"),
+        "has underscores",
+        "write the digits without underscores",
+    ),
+    (re.compile(r"[+-]?0[0-9].*"), "starts with a superfluous zero", "remove the leading zeros"),
+    (re.compile(r"[+-]?[0-9]+,[0-9]+.*"), "has a comma", "use the decimal point '.'"),
+)
+
+
+def quoted(text: str) -> str:
+    """Quote a piece of user text for a message, shortened and without control characters."""
+    return repr(text if len(text) <= 40 else text[:37] + "...")
+
+
+def parse_exact(text: str) -> Fraction:
+    """Read an integer, a decimal or a ratio ``p/q`` exactly.
+
+    Parameters
+    ----------
+    text : str
+        At most 100 ASCII characters; decimal exponents between -100 and 100.
+
+    Returns
+    -------
+    Fraction
+        The number as written, without rounding.
+
+    Raises
+    ------
+    SpecError
+        If the text is anything else: ``nan``, ``true``, ``1/0``, a unicode minus, other digits
+        than 0-9, underscores, hexadecimal or octal notation, or a number beyond the caps.
+    """
+    if len(text) > MAX_LENGTH:
+        raise SpecError(
+            f"the number {quoted(text)} has {len(text)} characters, at most {MAX_LENGTH} are read",
+            remedy="write fewer digits",
+        )
+    if _RATIO.fullmatch(text):
+        return Fraction(text)
+    if _DECIMAL.fullmatch(text):
+        _refuse_huge_exponent(text)
+        return Fraction(text)
+    raise _fault(text)
+
+
+def _refuse_huge_exponent(text: str) -> None:
+    """Stop before 10**exponent is formed: "1e3000000000" would never end."""
+    _, _, exponent = text.lower().partition("e")
+    if exponent and abs(int(exponent)) > MAX_EXPONENT:
+        raise SpecError(
+            f"the exponent of {quoted(text)} is beyond +-{MAX_EXPONENT}",
+            remedy="choose a unit or a scale with a smaller exponent",
+        )
+
+
+def _fault(text: str) -> SpecError:
+    for pattern, message, remedy in _FAULTS:
+        if pattern.fullmatch(text):
+            return SpecError(f"the number {quoted(text)} {message}{_named(text)}", remedy=remedy)
+    return SpecError(f"{quoted(text)} is not a number", remedy=_EXPECTED)
+
+
+def _named(text: str) -> str:
+    """Name the first character outside ASCII, which often looks like an ASCII one."""
+    strange = next((c for c in text if ord(c) > 127), None)
+    if strange is None:
+        return ""
+    return f" (U+{ord(strange):04X} {unicodedata.name(strange, 'unnamed')})"

@@ -1,0 +1,193 @@
+"""From what validation reports to one error with the place in the file and the remedy."""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Callable, Collection, Iterable
+from pathlib import Path
+from typing import Any, TypeVar, get_args
+
+from pydantic import BaseModel, ValidationError
+from pydantic_core import ErrorDetails, PydanticCustomError
+
+from nrs_design.errors import SpecError
+from nrs_design.spec.document import Mapping, Node, Position, Sequence
+from nrs_design.spec.exact import quoted
+
+Location = tuple[int | str, ...]
+_T = TypeVar("_T")
+
+_FAULT = "spec_fault"
+# Below a choice between models, validation inserts the tag of the chosen one.
+_CHOICES = {"environments": "model", "controllers": "type"}
+_EXPECTED = {
+    "model_type": "expected a mapping of keys",
+    "model_attributes_type": "expected a mapping of keys",
+    "dict_type": "expected a mapping of names",
+    "tuple_type": "expected a list",
+    "too_short": "must not be empty",
+    "too_long": "is too long",
+}
+
+
+def fault(message: str, remedy: str, *at: int | str) -> PydanticCustomError:
+    """Build the exception by which a validator reports a fault.
+
+    Parameters
+    ----------
+    message, remedy : str
+        What is wrong, and what to do.
+    *at : int or str
+        Where, below the value that is being validated.
+    """
+    context = {"message": message, "remedy": remedy, "at": at}
+    return PydanticCustomError(_FAULT, "{message}", context)
+
+
+def as_text(value: object, *at: int | str) -> str:
+    """Return the value if it is a single text, and report a fault otherwise."""
+    if not isinstance(value, str):
+        raise fault("expected a single value, not a list or a mapping", "write one value", *at)
+    return value
+
+
+def reported(read: Callable[[], _T], *at: int | str) -> _T:
+    """Call a reader, and report its SpecError as a fault at the given place."""
+    try:
+        return read()
+    except SpecError as error:
+        raise fault(error.message, error.remedy or "", *at) from None
+
+
+def did_you_mean(word: str, choices: Collection[str], noun: str = "one of") -> str:
+    """Suggest the nearest choice, and list them all."""
+    near = difflib.get_close_matches(word, choices, n=1)
+    listing = f"{noun} {', '.join(choices)}" if choices else f"{noun} nothing"
+    return f"did you mean {near[0]}? {listing}" if near else f"write {listing}"
+
+
+def spec_error(
+    error: ValidationError, model: type[BaseModel], root: Node, path: Path | None
+) -> SpecError:
+    """Report the first fault in file order, and how many more there are.
+
+    Parameters
+    ----------
+    error : ValidationError
+        As raised by the model.
+    model : type
+        The model that validated the file.
+    root : Node
+        The parsed file, for the positions.
+    path : Path or None
+        Named in the error.
+    """
+    faults = {_resolve(details, model, root) for details in error.errors(include_url=False)}
+    faults.discard(None)
+    known = sorted(f for f in faults if f is not None)
+    (line, column, message, remedy), others = known[0], len(known) - 1
+    more = f"; {others} more fault{'s' * (others > 1)} in this file" if others else ""
+    return SpecError(message + more, path=path, line=line, column=column, remedy=remedy)
+
+
+def _resolve(
+    details: ErrorDetails, model: type[BaseModel], root: Node
+) -> tuple[int, int, str, str] | None:
+    kind, context = details["type"], details.get("ctx", {})
+    if kind == "default_factory_not_called":
+        return None
+    location = _without_tag(details["loc"])
+    at_key = kind == "extra_forbidden" or (bool(location) and location[-1] == "[key]")
+    location += tuple(context.get("at", ()))
+    place = _place(root, tuple(p for p in location if p != "[key]"), at_key)
+    message, remedy = _words(details, location, model)
+    return place.line, place.column, message, remedy
+
+
+def _without_tag(location: Location) -> Location:
+    if len(location) > 2 and location[0] in _CHOICES and location[2] != "[key]":
+        return location[:2] + location[3:]
+    return location
+
+
+def _place(root: Node, location: Location, at_key: bool) -> Position:
+    """Position of the node, or of the nearest one above it that the file holds."""
+    node, place = root, root.position
+    for depth, part in enumerate(location):
+        if isinstance(node, Mapping) and part in node.entries:
+            key = node.keys[str(part)]
+            node = node.entries[str(part)]
+            # A block mapping is best shown by the key above it.
+            shown_by_key = isinstance(node, Mapping) or (at_key and depth == len(location) - 1)
+            place = key if shown_by_key else node.position
+        elif isinstance(node, Sequence) and isinstance(part, int) and part < len(node.items):
+            node = node.items[part]
+            place = node.position
+        else:
+            break
+    return place
+
+
+def _words(details: ErrorDetails, location: Location, model: type[BaseModel]) -> tuple[str, str]:
+    kind, context = details["type"], details.get("ctx", {})
+    where = dotted(location)
+    if kind == _FAULT:
+        return f"{where}: {context['message']}" if where else context["message"], context["remedy"]
+    if kind == "missing":
+        name = str(location[-1])
+        field = fields_at(model, details["loc"][:-1]).get(name, "")
+        return f"`{where}` is missing", f"add {name}: {field}"
+    if kind == "extra_forbidden":
+        fields = fields_at(model, details["loc"][:-1])
+        return f"unknown key `{where}`", did_you_mean(str(location[-1]), fields, "keys here are")
+    if kind in ("union_tag_not_found", "union_tag_invalid"):
+        return _tag_words(where, _CHOICES[str(location[0])], context)
+    if kind == "literal_error":
+        return (
+            f"{where}: {quoted(str(details['input']))} is not known",
+            f"write {context['expected']}",
+        )
+    return (
+        f"{where or 'the file'}: {_EXPECTED.get(kind, details['msg'])}",
+        "see `nrs-design schema`",
+    )
+
+
+def _tag_words(where: str, key: str, context: dict[str, Any]) -> tuple[str, str]:
+    if "tag" not in context:
+        return f"`{where}.{key}` is missing", f"add {key}"
+    expected = [tag.strip(" '") for tag in context["expected_tags"].split(",")]
+    remedy = did_you_mean(str(context["tag"]), expected)
+    return f"{where}.{key}: {quoted(str(context['tag']))} is not known", remedy
+
+
+def dotted(location: Iterable[int | str]) -> str:
+    """Write a location as in ``modes[0].A[1][0]``."""
+    text = ""
+    for part in location:
+        if part != "[key]":
+            text += f"[{part}]" if isinstance(part, int) else f".{part}"
+    return text.removeprefix(".")
+
+
+def fields_at(model: type[BaseModel], location: Location) -> dict[str, str]:
+    """Names and descriptions of the keys at a location as validation reports it, tags included."""
+    if not location:
+        return {name: field.description or "" for name, field in model.model_fields.items()}
+    field = model.model_fields.get(str(location[0]))
+    arms = _models_in(field.annotation) if field else []
+    rest = location[1:]
+    if location[0] in _CHOICES:
+        key = _CHOICES[str(location[0])]
+        arms = [arm for arm in arms if rest[1] in get_args(arm.model_fields[key].annotation)]
+        rest = rest[2:]
+    while rest and isinstance(rest[0], int):
+        rest = rest[1:]
+    return fields_at(arms[0], rest) if arms else {}
+
+
+def _models_in(annotation: Any) -> list[type[BaseModel]]:
+    """Models anywhere within an annotation such as ``dict[str, A | B]``."""
+    if isinstance(annotation, type) and issubclass(annotation, BaseModel):
+        return [annotation]
+    return [found for argument in get_args(annotation) for found in _models_in(argument)]

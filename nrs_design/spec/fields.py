@@ -1,0 +1,98 @@
+"""Field types for numbers and text: how each reads its text, and its JSON Schema."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from fractions import Fraction
+from typing import Annotated, Any
+
+from pydantic import PlainValidator, WithJsonSchema
+
+from nrs_design.spec.exact import DECIMAL_PATTERN, RATIO_PATTERN, parse_exact, quoted
+from nrs_design.spec.faults import as_text, fault, reported
+
+NAME_PATTERN = "^[a-z0-9][a-z0-9._-]{0,63}$"
+LABEL_PATTERN = "^[A-Za-z0-9][A-Za-z0-9._-]{0,63}$"
+MAX_TITLE = 200
+
+_NUMBER: dict[str, Any] = {
+    "anyOf": [
+        {"type": "number"},
+        {"type": "string", "pattern": f"^(?:{DECIMAL_PATTERN}|{RATIO_PATTERN})$"},
+    ]
+}
+_LABEL: dict[str, Any] = {
+    "anyOf": [{"type": "string", "pattern": LABEL_PATTERN}, {"type": "integer", "minimum": 0}]
+}
+
+
+def read_exact(value: object) -> Fraction:
+    """Read an exact number; integers and fractions pass, floats and truth values do not."""
+    if isinstance(value, Fraction):
+        return value
+    if isinstance(value, int) and not isinstance(value, bool):
+        return Fraction(value)
+    text = as_text(value)
+    return reported(lambda: parse_exact(text))
+
+
+def _number(accepts: Callable[[Fraction], bool], expected: str) -> PlainValidator:
+    def read(value: object) -> Fraction:
+        number = read_exact(value)
+        if not accepts(number):
+            raise fault(f"{value} is not {expected}", f"write a number that is {expected}")
+        return number
+
+    return PlainValidator(read)
+
+
+def _text(pattern: str) -> PlainValidator:
+    def read(value: object) -> str:
+        text = as_text(value)
+        if not re.fullmatch(pattern, text):
+            raise fault(
+                f"{quoted(text)} is not a name",
+                f"use 1 to 64 letters, digits, '.', '_' and '-', as in {pattern}",
+            )
+        return text
+
+    return PlainValidator(read)
+
+
+def read_digits(value: object) -> int:
+    """Read a number of significant digits, 1 to 7 (a float32 holds no more)."""
+    number = read_exact(value)
+    if number.denominator != 1 or not 1 <= number <= 7:
+        raise fault(f"{value} is not an integer from 1 to 7", "write an integer from 1 to 7")
+    return int(number)
+
+
+def read_title(value: object) -> str:
+    """Read one line of printable text."""
+    text = as_text(value)
+    if len(text) > MAX_TITLE:
+        raise fault(f"the title has {len(text)} characters", f"keep it within {MAX_TITLE}")
+    if not text.isprintable():
+        raise fault("the title is not one line of printable text", "remove line breaks and escapes")
+    return text
+
+
+Exact = Annotated[Fraction, PlainValidator(read_exact), WithJsonSchema(_NUMBER)]
+UnitFraction = Annotated[
+    Fraction, _number(lambda x: 0 < x < 1, "between 0 and 1"), WithJsonSchema(_NUMBER)
+]
+Weight = Annotated[Fraction, _number(lambda x: x >= 0, "zero or positive"), WithJsonSchema(_NUMBER)]
+Positive = Annotated[Fraction, _number(lambda x: x > 0, "positive"), WithJsonSchema(_NUMBER)]
+Digits = Annotated[
+    int,
+    PlainValidator(read_digits),
+    WithJsonSchema({"type": "integer", "minimum": 1, "maximum": 7}),
+]
+Name = Annotated[
+    str, _text(NAME_PATTERN), WithJsonSchema({"type": "string", "pattern": NAME_PATTERN})
+]
+Label = Annotated[str, _text(LABEL_PATTERN), WithJsonSchema(_LABEL)]
+Title = Annotated[
+    str, PlainValidator(read_title), WithJsonSchema({"type": "string", "maxLength": MAX_TITLE})
+]

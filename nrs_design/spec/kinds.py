@@ -1,0 +1,98 @@
+"""The kinds of quantities that a spec holds, with the confusions that are known for each."""
+
+from __future__ import annotations
+
+from nrs_design.spec.quantity import QuantityKind
+
+_FREQUENCY = "{value} 1/s names no angle: write '{value} Hz' or '{value} rad/s'"
+_STIFFNESS = "that is a torque: a rotational stiffness is per radian, write '{value} N*m/rad'"
+
+ACTUATOR_GAIN = QuantityKind(
+    "an actuator gain",
+    ("rad/s/rpm",),
+    "4.8417e-4 rad/s/rpm",
+    {"rad/s": "the gain is per command unit: write '{value} rad/s/rpm'"},
+)
+DURATION = QuantityKind("a duration", ("s",), "0.0351 s")
+DERIVATIVE_GAIN = QuantityKind(
+    "a derivative gain",
+    ("rpm*s/rad",),
+    "2060 rpm*s/rad",
+    {
+        "rpm": "the gain acts on an angular velocity: write '{value} rpm*s/rad'",
+        "rpm/rad": "that is a proportional gain: write '{value} rpm*s/rad'",
+    },
+)
+ZERO = QuantityKind(
+    "a zero of the PD controller",
+    ("1/s",),
+    "56.9706 1/s",
+    {"rad/s": "a zero is a rate: write '{value} 1/s'"},
+)
+ANGULAR_VELOCITY = QuantityKind(
+    "an angular velocity",
+    ("rad/s", "deg/s"),
+    "8 deg/s",
+    {
+        "rad": "a velocity is per second: write '{value} deg/s' or '{value} rad/s'",
+        "1/s": "name the angle: write '{value} rad/s'",
+        "rpm": "rpm is the driver's command unit and is never converted: write deg/s or rad/s",
+    },
+)
+TORQUE = QuantityKind(
+    "a torque",
+    ("N*m",),
+    "0.3 N*m",
+    {
+        "N*m/rad": "that is a rotational stiffness: write '{value} N*m'",
+        "N": "that is a force: multiply it by its lever arm and write N*m",
+    },
+)
+BANDWIDTH = QuantityKind(
+    "a bandwidth",
+    ("rad/s", "Hz"),
+    "2 Hz",
+    {
+        "1/s": _FREQUENCY,
+        "rpm": "rpm is the driver's command unit and is never converted: write Hz or rad/s",
+    },
+)
+STIFFNESS = QuantityKind(
+    "a stiffness",
+    ("N*m/rad", "N/m"),
+    "43.0356 N*m/rad",
+    {"N*m": _STIFFNESS},
+)
+DAMPING = QuantityKind(
+    "a damping",
+    ("N*m*s/rad", "N*m*s", "N*s/m"),
+    "0.5 N*m*s/rad",
+    {"N*m/rad": "that is a stiffness: write '{value} N*m*s/rad'"},
+)
+LEVER_ARM = QuantityKind("a length", ("m",), "0.24 m")
+IMPEDANCE = QuantityKind(
+    "an impedance",
+    ("N*m*s/rad", "kg*m^2/s"),
+    "2.15 N*m*s/rad",
+    {
+        "N*m": "an impedance is torque per angular velocity: write '{value} N*m*s/rad'",
+        "N*m/rad": "that is a stiffness: write '{value} N*m*s/rad'",
+        "N*s/m": "that is a linear damping: multiply it by the square of its lever arm and write "
+        "N*m*s/rad",
+    },
+)
+INERTIA = QuantityKind(
+    "an inertia",
+    ("kg*m^2", "kg*m^2/rad"),
+    "0.01 kg*m^2",
+    {"kg": "that is a mass: multiply it by the square of its lever arm and write kg*m^2"},
+)
+FORCE_GAIN = QuantityKind(
+    "a proportional force gain",
+    ("rad/(N*m)",),
+    "0.02 rad/(N*m)",
+    {"1/(N*m)": "the gain gives an angle: write '{value} rad/(N*m)'"},
+)
+
+LINEAR_STIFFNESS = QuantityKind("a linear stiffness", ("N/m",), "747.1461 N/m")
+LINEAR_DAMPING = QuantityKind("a linear damping", ("N*s/m",), "5 N*s/m")

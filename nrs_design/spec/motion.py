@@ -1,0 +1,90 @@
+"""Actuator, motion loop and limits of an interaction design."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from pydantic import Field, model_validator
+
+from nrs_design.spec.faults import fault
+from nrs_design.spec.fields import Exact, UnitFraction
+from nrs_design.spec.model import SpecModel
+from nrs_design.spec.quantity_fields import (
+    ActuatorGain,
+    AngularVelocity,
+    Bandwidth,
+    DerivativeGain,
+    Duration,
+    Torque,
+    Zero,
+)
+
+MAX_COEFFICIENTS = 10
+Coefficients = Annotated[tuple[Exact, ...], Field(min_length=1, max_length=MAX_COEFFICIENTS)]
+
+
+class ActuatorSpec(SpecModel):
+    """Velocity actuator ``theta_m/delta = Km/(s (tau s + 1))`` (thesis 4.1)."""
+
+    gain: ActuatorGain = Field(
+        description="Km, motor speed per command unit in rad/s/rpm, as in theta_m/delta = "
+        "Km/(s (tau s + 1))"
+    )
+    time_constant: Duration = Field(description="tau, mechanical time constant in s")
+
+
+class TransferFunctionSpec(SpecModel):
+    """Strictly proper transfer function, coefficients with the highest power first."""
+
+    numerator: Coefficients = Field(
+        description="numerator coefficients, exact numbers, highest power of s first"
+    )
+    denominator: Coefficients = Field(
+        description="denominator coefficients, exact numbers, highest power of s first"
+    )
+
+    @model_validator(mode="after")
+    def _check_proper(self) -> TransferFunctionSpec:
+        for name, coefficients in (
+            ("numerator", self.numerator),
+            ("denominator", self.denominator),
+        ):
+            if coefficients[0] == 0:
+                raise fault("the highest coefficient is zero", "leave it out", name, 0)
+        if len(self.numerator) >= len(self.denominator):
+            raise fault(
+                "the transfer function is not strictly proper",
+                "give the denominator a higher degree than the numerator",
+                "numerator",
+            )
+        return self
+
+
+class MotionLoopSpec(SpecModel):
+    """Motion loop around the actuator, closed by a PD controller (thesis 4.3)."""
+
+    damping_ratio: UnitFraction = Field(
+        description="wanted damping ratio of the closed loop, between 0 and 1, no unit"
+    )
+    settling_time: Duration = Field(description="wanted settling time 4/(zeta wn) in s")
+    derivative_gain: DerivativeGain | None = Field(
+        default=None,
+        description="derivative gain really used, in rpm*s/rad; default: from the root locus",
+    )
+    zero: Zero | None = Field(
+        default=None,
+        description="zero Kp/Kd of the PD controller really used, in 1/s; default: from the root "
+        "locus",
+    )
+    transfer_function: TransferFunctionSpec | None = Field(
+        default=None,
+        description="closed motion loop G to be used instead of the one that the PD gives, no unit",
+    )
+
+
+class LimitsSpec(SpecModel):
+    """What the interaction must respect (thesis 6.3.1)."""
+
+    velocity: AngularVelocity = Field(description="largest commanded angular velocity in rad/s")
+    torque: Torque = Field(description="largest interaction torque in N*m")
+    bandwidth: Bandwidth = Field(description="highest frequency of the operator's motion, Hz")

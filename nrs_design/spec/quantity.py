@@ -1,0 +1,191 @@
+"""Quantities: a number with its unit, as written, and what it is in SI."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from fractions import Fraction
+
+from nrs_design.errors import SpecError
+from nrs_design.spec.exact import DECIMAL_PATTERN, RATIO_PATTERN, parse_exact, quoted
+from nrs_design.spec.units import MAX_UNIT_LENGTH, Unit, parse_unit
+
+# Beyond these a number is a slip of the pen, and products of such numbers leave the floats.
+SMALLEST = 1e-30
+LARGEST = 1e30
+
+QUANTITY_PATTERN = rf"^(?:{DECIMAL_PATTERN}|{RATIO_PATTERN}) +[A-Za-z1(][A-Za-z0-9*/^()+-]*$"
+_GLUED = re.compile(rf"({DECIMAL_PATTERN})([A-Za-z].*)")
+
+
+@dataclass(frozen=True, slots=True)
+class Quantity:
+    """A physical quantity, exact as far as its unit allows.
+
+    Parameters
+    ----------
+    text : str
+        As written, such as ``8 deg/s``.
+    value : Fraction
+        The number as written.
+    unit : str
+        The unit as written.
+    """
+
+    text: str
+    value: Fraction
+    unit: str
+    _scale: Unit = field(init=False, repr=False, compare=False)
+
+    def __post_init__(self) -> None:
+        """Resolve the unit once."""
+        object.__setattr__(self, "_scale", parse_unit(self.unit))
+
+    @property
+    def dimension(self) -> tuple[int, ...]:
+        """Exponents of kg, m, s, rad and rpm."""
+        return self._scale.dimension
+
+    @property
+    def rational_part(self) -> Fraction:
+        """SI value divided by ``pi**pi_power``."""
+        return self.value * self._scale.factor
+
+    @property
+    def pi_power(self) -> int:
+        """Power of pi in the SI value."""
+        return self._scale.pi_power
+
+    @property
+    def is_exact(self) -> bool:
+        """Whether the SI value is rational."""
+        return self.pi_power == 0
+
+    @property
+    def exact(self) -> Fraction:
+        """SI value as a fraction.
+
+        Raises
+        ------
+        ValueError
+            If the unit's factor is irrational (``deg``, ``Hz``).
+        """
+        if not self.is_exact:
+            raise ValueError(f"{self.text!r} is not rational in SI: its unit holds a factor of pi")
+        return self.rational_part
+
+    @property
+    def si(self) -> float:
+        """SI value as a float."""
+        return float(self.rational_part) * math.pi**self.pi_power
+
+
+@dataclass(frozen=True)
+class QuantityKind:
+    """What a field measures, and in which units it may be written.
+
+    Parameters
+    ----------
+    name : str
+        For messages, such as ``a rotational stiffness``.
+    units : tuple of str
+        One unit for each accepted dimension; the first is the SI unit that is shown.
+    example : str
+        A quantity of this kind.
+    confusions : mapping of str to str
+        Advice for units that are often written instead; ``{value}`` is the number as written.
+    """
+
+    name: str
+    units: tuple[str, ...]
+    example: str
+    confusions: Mapping[str, str] = field(default_factory=dict)
+
+    @property
+    def si_unit(self) -> str:
+        """The SI unit in which values of this kind are shown."""
+        return self.units[0]
+
+    def accepts(self, dimension: tuple[int, ...]) -> bool:
+        """Whether a quantity of this dimension is of this kind."""
+        return any(parse_unit(unit).dimension == dimension for unit in self.units)
+
+    def advice(self, value: str, dimension: tuple[int, ...]) -> str:
+        """Say what to write instead of a quantity with the wrong dimension."""
+        for unit, advice in self.confusions.items():
+            if parse_unit(unit).dimension == dimension:
+                return advice.format(value=value)
+        return f"write it in {' or '.join(self.units)}, such as {self.example!r}"
+
+
+def parse_quantity(text: str, kind: QuantityKind) -> Quantity:
+    """Read a number, a space and a unit, and check what they measure.
+
+    Parameters
+    ----------
+    text : str
+        Such as ``0.3 N*m``.
+    kind : QuantityKind
+        What the field measures.
+
+    Returns
+    -------
+    Quantity
+        The number exactly as written, with its unit.
+
+    Raises
+    ------
+    SpecError
+        If the number, the unit or its dimension is wrong, or the magnitude is not physical.
+    """
+    number, _, unit = text.partition(" ")
+    if not unit:
+        raise _without_unit(text, kind)
+    if len(unit) > MAX_UNIT_LENGTH:
+        raise SpecError(f"{quoted(text)} has a long unit", remedy=f"such as {kind.example!r}")
+    quantity = Quantity(text, parse_exact(number), unit.lstrip(" "))
+    return checked_kind(quantity, kind)
+
+
+def checked_kind(quantity: Quantity, kind: QuantityKind) -> Quantity:
+    """Return the quantity if it is of this kind and of a physical magnitude.
+
+    Raises
+    ------
+    SpecError
+        Otherwise.
+    """
+    if not kind.accepts(quantity.dimension):
+        raise SpecError(
+            f"{quoted(quantity.text)} is not {kind.name}, expected {' or '.join(kind.units)}",
+            remedy=kind.advice(quantity.text.partition(" ")[0], quantity.dimension),
+        )
+    if quantity.value and not SMALLEST <= abs(quantity.rational_part) <= LARGEST:
+        raise SpecError(
+            f"{quoted(quantity.text)} is not a physical magnitude for {kind.name}",
+            remedy=f"SI values between {SMALLEST:g} and {LARGEST:g} are read",
+        )
+    return quantity
+
+
+def _without_unit(text: str, kind: QuantityKind) -> SpecError:
+    glued = _GLUED.fullmatch(text)
+    if glued:
+        return SpecError(
+            f"{quoted(text)} has no space between number and unit",
+            remedy=f"write '{glued[1]} {glued[2]}'",
+        )
+    parse_exact(text)
+    return SpecError(
+        f"{quoted(text)} has no unit, expected {' or '.join(kind.units)}",
+        remedy=f"write '{text} {kind.example.partition(' ')[2]}' if that is the unit meant",
+    )
+
+
+def is_less(a: Quantity, b: Quantity) -> bool:
+    """Whether ``a < b``; exact wherever both have the same power of pi."""
+    if a.pi_power == b.pi_power:
+        return a.rational_part < b.rational_part
+    return a.si < b.si

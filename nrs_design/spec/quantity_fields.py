@@ -1,0 +1,224 @@
+"""Field types for quantities, bounds and ranges."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Annotated, Any
+
+from pydantic import BeforeValidator, Field, PlainValidator, WithJsonSchema, model_validator
+
+from nrs_design.errors import SpecError
+from nrs_design.spec import kinds
+from nrs_design.spec.exact import quoted
+from nrs_design.spec.faults import as_text, fault, reported
+from nrs_design.spec.model import SpecModel
+from nrs_design.spec.quantity import (
+    QUANTITY_PATTERN,
+    Quantity,
+    QuantityKind,
+    checked_kind,
+    is_less,
+    parse_quantity,
+)
+
+
+def read_quantity(value: object, kind: QuantityKind, *at: int | str, positive: bool) -> Quantity:
+    """Read a quantity of a kind from text, and check its sign."""
+
+    def read() -> Quantity:
+        if isinstance(value, Quantity):
+            quantity = checked_kind(value, kind)
+        else:
+            quantity = parse_quantity(as_text(value, *at), kind)
+        if quantity.value < 0 or (positive and quantity.value == 0):
+            bound = "positive" if positive else "zero or positive"
+            raise SpecError(f"{quoted(quantity.text)} must be {bound}", remedy="check the sign")
+        return quantity
+
+    return reported(read, *at)
+
+
+def quantity_schema(kind: QuantityKind) -> dict[str, Any]:
+    """JSON Schema of a quantity of this kind."""
+    return {"type": "string", "pattern": QUANTITY_PATTERN, "examples": [kind.example]}
+
+
+def _quantity(kind: QuantityKind) -> PlainValidator:
+    return PlainValidator(lambda value: read_quantity(value, kind, positive=True))
+
+
+def _schema(kind: QuantityKind) -> WithJsonSchema:
+    return WithJsonSchema(quantity_schema(kind))
+
+
+def _as_is(value: object) -> Quantity:
+    if not isinstance(value, Quantity):
+        raise fault("expected a quantity", "write a number, a space and a unit")
+    return value
+
+
+# Inside bounds and ranges: the field around them knows the kind and reads the text.
+AnyQuantity = Annotated[
+    Quantity,
+    PlainValidator(_as_is),
+    WithJsonSchema({"type": "string", "pattern": QUANTITY_PATTERN}),
+]
+
+
+class Bounds(SpecModel):
+    """Closed interval for a gain; a fixed gain has ``min == max``."""
+
+    min: AnyQuantity = Field(description="smallest admissible value")
+    max: AnyQuantity = Field(description="largest admissible value")
+
+    @model_validator(mode="after")
+    def _check_order(self) -> Bounds:
+        if is_less(self.max, self.min):
+            raise fault(
+                f"max {quoted(self.max.text)} is below min {quoted(self.min.text)}",
+                "swap them",
+                "max",
+            )
+        return self
+
+    @property
+    def fixed(self) -> bool:
+        """Whether only one value is admissible."""
+        return self.min.rational_part == self.max.rational_part
+
+
+class RangedQuantity(SpecModel):
+    """Nominal value of an uncertain quantity, and the interval that it lies in.
+
+    Without an interval in the spec, both ends are the nominal value.
+    """
+
+    nominal: AnyQuantity = Field(description="value that the design uses")
+    range: tuple[AnyQuantity, AnyQuantity] = Field(
+        default_factory=lambda data: (data.get("nominal"), data.get("nominal")),
+        description="[lowest, highest] value that the proof covers; default: the nominal one",
+    )
+
+    @model_validator(mode="after")
+    def _check_order(self) -> RangedQuantity:
+        low, high = self.range
+        if len({q.dimension for q in (self.nominal, low, high)}) > 1:
+            raise fault("nominal and range have different units", "use one unit", "range")
+        if is_less(high, low):
+            raise fault(
+                f"the range ends at {quoted(high.text)}, below its start {quoted(low.text)}",
+                "write [lowest, highest]",
+                "range",
+            )
+        if is_less(self.nominal, low) or is_less(high, self.nominal):
+            raise fault(
+                f"nominal {quoted(self.nominal.text)} is outside the range "
+                f"[{low.text}, {high.text}]",
+                "widen the range or correct the nominal value",
+                "nominal",
+            )
+        return self
+
+    @property
+    def fixed(self) -> bool:
+        """Whether the range is a single value."""
+        return self.range[0].rational_part == self.range[1].rational_part
+
+
+def _bounds(kind: QuantityKind, *, positive: bool) -> BeforeValidator:
+    def read(value: object) -> object:
+        if isinstance(value, str | Quantity):
+            quantity = read_quantity(value, kind, positive=positive)
+            return {"min": quantity, "max": quantity}
+        return _read_entries(value, ("min", "max"), reader)
+
+    def reader(value: object, *at: int | str) -> Quantity:
+        return read_quantity(value, kind, *at, positive=positive)
+
+    return BeforeValidator(read)
+
+
+def _ranged(kind: QuantityKind, *, positive: bool) -> BeforeValidator:
+    def read(value: object) -> object:
+        if isinstance(value, str | Quantity):
+            return {"nominal": read_quantity(value, kind, positive=positive)}
+        entries = _read_entries(value, ("nominal",), reader)
+        if isinstance(entries, dict) and "range" in entries:
+            entries["range"] = _read_range(entries["range"], reader)
+        return entries
+
+    def reader(value: object, *at: int | str) -> Quantity:
+        return read_quantity(value, kind, *at, positive=positive)
+
+    return BeforeValidator(read)
+
+
+def _read_entries(value: object, keys: tuple[str, ...], reader: Callable[..., Quantity]) -> object:
+    """Read the entries that are quantities; what else is wrong is left to the model."""
+    if not isinstance(value, dict):
+        return value
+    read = {key: reader(value[key], key) for key in value if key in keys}
+    return value | read
+
+
+def _read_range(value: object, reader: Callable[..., Quantity]) -> tuple[Quantity, ...]:
+    if not isinstance(value, tuple | list) or len(value) != 2:
+        raise fault("expected two quantities", "write [lowest, highest]", "range")
+    return tuple(reader(end, "range", index) for index, end in enumerate(value))
+
+
+def _pair_schema(kind: QuantityKind, keys: dict[str, str], required: list[str]) -> dict[str, Any]:
+    single = quantity_schema(kind)
+    properties = {key: single | {"description": text} for key, text in keys.items()}
+    mapping = {
+        "type": "object",
+        "properties": properties,
+        "required": required,
+        "additionalProperties": False,
+    }
+    return {"anyOf": [single, mapping]}
+
+
+def _bounds_schema(kind: QuantityKind) -> WithJsonSchema:
+    keys = {"min": "smallest admissible value", "max": "largest admissible value"}
+    return WithJsonSchema(_pair_schema(kind, keys, ["min", "max"]))
+
+
+def _ranged_schema(kind: QuantityKind) -> WithJsonSchema:
+    schema = _pair_schema(kind, {"nominal": "value that the design uses"}, ["nominal"])
+    schema["anyOf"][1]["properties"]["range"] = {
+        "type": "array",
+        "items": quantity_schema(kind),
+        "minItems": 2,
+        "maxItems": 2,
+        "description": "[lowest, highest] value that the proof covers",
+    }
+    return WithJsonSchema(schema)
+
+
+ActuatorGain = Annotated[Quantity, _quantity(kinds.ACTUATOR_GAIN), _schema(kinds.ACTUATOR_GAIN)]
+Duration = Annotated[Quantity, _quantity(kinds.DURATION), _schema(kinds.DURATION)]
+DerivativeGain = Annotated[
+    Quantity, _quantity(kinds.DERIVATIVE_GAIN), _schema(kinds.DERIVATIVE_GAIN)
+]
+Zero = Annotated[Quantity, _quantity(kinds.ZERO), _schema(kinds.ZERO)]
+AngularVelocity = Annotated[
+    Quantity, _quantity(kinds.ANGULAR_VELOCITY), _schema(kinds.ANGULAR_VELOCITY)
+]
+Torque = Annotated[Quantity, _quantity(kinds.TORQUE), _schema(kinds.TORQUE)]
+Bandwidth = Annotated[Quantity, _quantity(kinds.BANDWIDTH), _schema(kinds.BANDWIDTH)]
+LeverArm = Annotated[Quantity, _quantity(kinds.LEVER_ARM), _schema(kinds.LEVER_ARM)]
+Impedance = Annotated[Quantity, _quantity(kinds.IMPEDANCE), _schema(kinds.IMPEDANCE)]
+ForceGain = Annotated[Quantity, _quantity(kinds.FORCE_GAIN), _schema(kinds.FORCE_GAIN)]
+Stiffness = Annotated[
+    RangedQuantity, _ranged(kinds.STIFFNESS, positive=True), _ranged_schema(kinds.STIFFNESS)
+]
+Damping = Annotated[
+    RangedQuantity, _ranged(kinds.DAMPING, positive=False), _ranged_schema(kinds.DAMPING)
+]
+InertiaBounds = Annotated[
+    Bounds, _bounds(kinds.INERTIA, positive=False), _bounds_schema(kinds.INERTIA)
+]
+DampingBounds = Annotated[
+    Bounds, _bounds(kinds.IMPEDANCE, positive=True), _bounds_schema(kinds.IMPEDANCE)
+]

@@ -1,0 +1,16 @@
+"""Spec files to start from, each explained key by key."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from importlib.resources import files
+from types import MappingProxyType
+
+_NAMES = ("interaction-design", "hybrid-force", "switched-system")
+
+
+def _read(name: str) -> str:
+    return (files(__name__) / f"{name}.nrs.yaml").read_text(encoding="utf-8")
+
+
+TEMPLATES: Mapping[str, str] = MappingProxyType({name: _read(name) for name in _NAMES})

@@ -1,0 +1,213 @@
+"""A small exact table of units: each is a rational factor, a power of pi and a dimension.
+
+A table of our own, because general unit packages take the radian for dimensionless (so that a
+rotational stiffness passes as a torque) and turn 10 Hz into 10 rad/s. Here ``rad`` is a base
+dimension and ``Hz`` is 2 pi rad/s. ``rpm`` is the motor driver's command unit: a base unit of its
+own that is never converted.
+"""
+
+from __future__ import annotations
+
+import difflib
+import functools
+import math
+import re
+from dataclasses import dataclass
+from fractions import Fraction
+
+from nrs_design.errors import SpecError
+from nrs_design.spec.exact import quoted
+
+BASE_UNITS = ("kg", "m", "s", "rad", "rpm")
+MAX_UNIT_LENGTH = 60
+MAX_UNIT_EXPONENT = 9
+
+_TOKEN = re.compile(r"[A-Za-z]+|\^[+-]?[0-9]+|[*/()]|1")
+_STRANGE = {
+    "·": "write a product with '*'",
+    "⋅": "write a product with '*'",
+    "×": "write a product with '*'",
+    "°": "write deg for degrees",
+    "²": "write ^2 for a square",
+    "³": "write ^3 for a cube",
+    "µ": "write the number in the unit without the prefix",
+    "μ": "write the number in the unit without the prefix",
+}
+_LIKELY = {
+    "Nm": "N*m",
+    "Nms": "N*m*s",
+    "kgm": "kg*m",
+    "sec": "s",
+    "second": "s",
+    "seconds": "s",
+    "degree": "deg",
+    "degrees": "deg",
+    "hz": "Hz",
+    "HZ": "Hz",
+    "radian": "rad",
+    "radians": "rad",
+    "newton": "N",
+    "meter": "m",
+    "RPM": "rpm",
+}
+
+
+@dataclass(frozen=True, slots=True)
+class Unit:
+    """A unit as ``factor * pi**pi_power`` times a product of base units.
+
+    Parameters
+    ----------
+    factor : Fraction
+        Rational part of the factor to SI.
+    pi_power : int
+        Power of pi in the factor: 1 for ``deg`` and ``Hz``.
+    dimension : tuple of int
+        Exponents of kg, m, s, rad and rpm.
+    """
+
+    factor: Fraction
+    pi_power: int
+    dimension: tuple[int, ...]
+
+    @property
+    def si_factor(self) -> float:
+        """Factor to SI as a float."""
+        return float(self.factor) * math.pi**self.pi_power
+
+    def times(self, other: Unit, power: int = 1) -> Unit:
+        """Multiply by the ``power``-th power of another unit."""
+        return Unit(
+            self.factor * other.factor**power,
+            self.pi_power + power * other.pi_power,
+            tuple(a + power * b for a, b in zip(self.dimension, other.dimension, strict=True)),
+        )
+
+
+def _unit(
+    factor: Fraction | int = 1,
+    pi_power: int = 0,
+    *,
+    kg: int = 0,
+    m: int = 0,
+    s: int = 0,
+    rad: int = 0,
+    rpm: int = 0,
+) -> Unit:
+    return Unit(Fraction(factor), pi_power, (kg, m, s, rad, rpm))
+
+
+ONE = _unit()
+UNITS = {
+    "m": _unit(m=1),
+    "cm": _unit(Fraction(1, 100), m=1),
+    "mm": _unit(Fraction(1, 1000), m=1),
+    "kg": _unit(kg=1),
+    "g": _unit(Fraction(1, 1000), kg=1),
+    "s": _unit(s=1),
+    "ms": _unit(Fraction(1, 1000), s=1),
+    "min": _unit(60, s=1),
+    "rad": _unit(rad=1),
+    "mrad": _unit(Fraction(1, 1000), rad=1),
+    "deg": _unit(Fraction(1, 180), 1, rad=1),
+    "N": _unit(kg=1, m=1, s=-2),
+    "mN": _unit(Fraction(1, 1000), kg=1, m=1, s=-2),
+    "kN": _unit(1000, kg=1, m=1, s=-2),
+    "Hz": _unit(2, 1, rad=1, s=-1),
+    "kHz": _unit(2000, 1, rad=1, s=-1),
+    "rpm": _unit(rpm=1),
+}
+
+
+@functools.lru_cache(maxsize=256)
+def parse_unit(text: str) -> Unit:
+    """Read a unit such as ``N*m*s/rad`` or ``rad/(N*m)``.
+
+    Products are written ``*``, quotients ``/`` (from left to right), integer powers ``^``.
+
+    Parameters
+    ----------
+    text : str
+        The unit, at most 60 ASCII characters.
+
+    Returns
+    -------
+    Unit
+        Its factor to SI and its dimension.
+
+    Raises
+    ------
+    SpecError
+        If a symbol is unknown or the text is no product of units.
+    """
+    if len(text) > MAX_UNIT_LENGTH:
+        raise SpecError(f"the unit {quoted(text)} is too long", remedy="write it in base units")
+    tokens = _tokens(text)
+    unit = _product(tokens, text)
+    if tokens:
+        raise _malformed(text)
+    return unit
+
+
+def _tokens(text: str) -> list[str]:
+    """Split into symbols, reversed so that the next one is at the end."""
+    for character, remedy in _STRANGE.items():
+        if character in text:
+            raise SpecError(f"the unit {quoted(text)} holds {character!r}", remedy=remedy)
+    tokens = _TOKEN.findall(text)
+    if "".join(tokens) != text:
+        raise _malformed(text)
+    return tokens[::-1]
+
+
+def _product(tokens: list[str], text: str) -> Unit:
+    unit = _power(tokens, text)
+    while tokens and tokens[-1] in "*/":
+        sign = 1 if tokens.pop() == "*" else -1
+        unit = unit.times(_power(tokens, text), sign)
+    return unit
+
+
+def _power(tokens: list[str], text: str) -> Unit:
+    unit = _atom(tokens, text)
+    if not (tokens and tokens[-1].startswith("^")):
+        return unit
+    exponent = int(tokens.pop()[1:])
+    if abs(exponent) > MAX_UNIT_EXPONENT:
+        raise SpecError(
+            f"the unit {quoted(text)} has an exponent beyond +-{MAX_UNIT_EXPONENT}",
+            remedy="check the exponent",
+        )
+    return ONE.times(unit, exponent)
+
+
+def _atom(tokens: list[str], text: str) -> Unit:
+    token = tokens.pop() if tokens else ""
+    if token == "(":
+        unit = _product(tokens, text)
+        if not tokens or tokens.pop() != ")":
+            raise _malformed(text)
+        return unit
+    if token == "1":
+        return ONE
+    if token in UNITS:
+        return UNITS[token]
+    if token.isalpha():
+        raise _unknown(token, text)
+    raise _malformed(text)
+
+
+def _unknown(symbol: str, text: str) -> SpecError:
+    near = difflib.get_close_matches(symbol, UNITS, n=1)
+    guess = _LIKELY.get(symbol) or (near[0] if near else None)
+    known = "known units are " + " ".join(UNITS)
+    remedy = f"did you mean {guess}? {known}" if guess else known
+    within = "" if symbol == text else f" in {quoted(text)}"
+    return SpecError(f"unknown unit {quoted(symbol)}{within}", remedy=remedy)
+
+
+def _malformed(text: str) -> SpecError:
+    return SpecError(
+        f"{quoted(text)} is not a unit",
+        remedy="write products with *, quotients with / and powers with ^, such as N*m*s/rad",
+    )

@@ -1,0 +1,206 @@
+"""Close the loop around every contact: the modes of one robot axis, exactly.
+
+State of an impedance mode: ``[xp, vm, delta]``, the motion loop, the admittance velocity (absent
+with zero virtual inertia) and the deflection. State of a position or force mode: ``xp`` alone.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from fractions import Fraction
+
+from nrs_design.controllers.controller_design import Controller, ControllerDesign
+from nrs_design.controllers.laws import Admittance, PositionControl, ProportionalForce
+from nrs_design.errors import AssemblyError
+from nrs_design.models.environment import Contact
+from nrs_design.models.motion_loop import MotionLoop
+from nrs_design.models.plant import Plant
+from nrs_design.switched.matrix import RationalMatrix, multiply
+from nrs_design.switched.system import Mode, SwitchedSystem, Time
+
+Row = list[Fraction]
+
+
+@dataclass(frozen=True, slots=True)
+class Realization:
+    """Controllable canonical form ``xp' = A xp + B u``, ``v = C xp`` with ``B = [0, ..., 1]'``."""
+
+    A: tuple[tuple[Fraction, ...], ...]
+    C: tuple[Fraction, ...]
+
+    @property
+    def order(self) -> int:
+        """Number of states."""
+        return len(self.C)
+
+
+def realize(loop: MotionLoop) -> Realization:
+    """Return the minimal realization of a strictly proper motion loop (thesis 6.13-6.14).
+
+    Raises
+    ------
+    AssemblyError
+        If the transfer function is not strictly proper.
+    """
+    n = len(loop.denominator) - 1
+    leading = loop.denominator[0]
+    if n < 1 or len(loop.numerator) > n or leading == 0:
+        raise AssemblyError(
+            "the motion loop is not strictly proper",
+            remedy="its numerator must have a lower degree than its denominator",
+        )
+    last = tuple(-c / leading for c in reversed(loop.denominator[1:]))
+    shift = tuple(tuple(Fraction(int(j == i + 1)) for j in range(n)) for i in range(n - 1))
+    padding = (Fraction(0),) * (n - len(loop.numerator))
+    return Realization(
+        (*shift, last), tuple(c / leading for c in reversed(loop.numerator)) + padding
+    )
+
+
+def close_loop(
+    name: str, plant: Plant, loop: MotionLoop, design: ControllerDesign, coordinates: str
+) -> SwitchedSystem:
+    """Assemble every mode of an interaction design.
+
+    One mode for each controller and each corner of the parameter box of each environment that
+    it may touch. Every entry of A is affine in stiffness and damping, so a quadratic function
+    that decreases in the corners decreases in the whole box, however fast the parameters move.
+
+    Parameters
+    ----------
+    name : str
+        Name of the spec.
+    plant : Plant
+        Environments.
+    loop : MotionLoop
+        Closed motion loop G.
+    design : ControllerDesign
+        Gains that ship.
+    coordinates : {"deflection", "force"}
+        Last state of an impedance mode: the deflection (continuous when the stiffness changes
+        in contact, so the physical choice) or the force (the thesis's choice).
+
+    Raises
+    ------
+    AssemblyError
+        If the modes do not share one state, or the coordinates do not apply.
+    """
+    motion = realize(loop)
+    modes = tuple(
+        mode
+        for controller in design.controllers
+        for mode in _controller_modes(controller, plant, motion, coordinates)
+    )
+    sizes = sorted({mode.A.shape[0] for mode in modes})
+    if len(sizes) != 1:
+        raise AssemblyError(
+            f"the modes have {' and '.join(map(str, sizes))} states, so they share no state",
+            remedy="give all impedance controllers a virtual inertia Mt > 0, or none of them",
+        )
+    states = _state_names(motion.order, sizes[0], coordinates)
+    return SwitchedSystem(name, Time.CONTINUOUS, states, modes, _assumptions(design, coordinates))
+
+
+def _controller_modes(
+    controller: Controller, plant: Plant, motion: Realization, coordinates: str
+) -> Iterator[Mode]:
+    law = controller.law
+    if isinstance(law, PositionControl):
+        yield Mode(controller.name, RationalMatrix.from_rows(motion.A))
+        return
+    for environment in map(plant.environment, controller.contacts):
+        for contact in environment.vertices():
+            if isinstance(law, Admittance):
+                rows = impedance_mode(motion, law, contact)
+                if coordinates == "force":
+                    rows = to_force_coordinates(rows, motion, contact)
+            else:
+                rows = force_mode(motion, law, contact)
+            yield Mode(f"{controller.name}/{contact.label}", RationalMatrix.from_rows(rows))
+
+
+def impedance_mode(motion: Realization, law: Admittance, contact: Contact) -> list[Row]:
+    """Return A of an impedance mode in deflection coordinates (thesis 6.28).
+
+    ``xp' = Ap xp + Bp (vc - vm)``, ``Mt vm' = -Bt vm + F``, ``delta' = Cp xp``,
+    ``F = k delta + b delta'``. With ``Mt = 0`` the velocity is ``vm = F / Bt``.
+    """
+    n = motion.order
+    has_mass = law.Mt != 0
+    size = n + 1 + has_mass
+    force = [contact.damping * c for c in motion.C] + [Fraction(0)] * has_mass + [contact.stiffness]
+    rows = [[*row, *[Fraction(0)] * (size - n)] for row in motion.A]
+    if has_mass:
+        rows[-1][n] -= 1
+        velocity = [f / law.Mt for f in force]
+        velocity[n] -= law.Bt / law.Mt
+        rows.append(velocity)
+    else:
+        rows[-1] = [entry - f / law.Bt for entry, f in zip(rows[-1], force, strict=True)]
+    rows.append([*motion.C, *[Fraction(0)] * (size - n)])
+    return rows
+
+
+def to_force_coordinates(rows: list[Row], motion: Realization, contact: Contact) -> list[Row]:
+    """Replace the last state delta by the force ``F = k delta + b Cp xp`` (similarity T A T^-1)."""
+    size, n = len(rows), motion.order
+    T = [[Fraction(int(i == j)) for j in range(size)] for i in range(size)]
+    inverse = [list(row) for row in T]
+    T[-1][:n] = [contact.damping * c for c in motion.C]
+    T[-1][-1] = contact.stiffness
+    inverse[-1][:n] = [-contact.damping * c / contact.stiffness for c in motion.C]
+    inverse[-1][-1] = 1 / contact.stiffness
+    return multiply(multiply(T, rows), inverse)
+
+
+def force_mode(motion: Realization, law: ProportionalForce, contact: Contact) -> list[Row]:
+    """Return A of a force mode, ``Ap - Bp Kp k Cp`` (thesis 6.46).
+
+    Raises
+    ------
+    AssemblyError
+        If the environment is damped: its force then depends on the input itself.
+    """
+    if contact.damping != 0:
+        raise AssemblyError(
+            f"force control in contact with {contact.label}, which has damping, is not modelled",
+            remedy="use an elastic environment for force controllers",
+        )
+    rows = [list(row) for row in motion.A]
+    gain = law.Kp * contact.stiffness
+    rows[-1] = [entry - gain * c for entry, c in zip(rows[-1], motion.C, strict=True)]
+    return rows
+
+
+def _state_names(motion_order: int, size: int, coordinates: str) -> tuple[str, ...]:
+    names = [f"xp{i + 1}" for i in range(motion_order)]
+    if size - motion_order == 2:
+        names.append("vm [rad/s]")
+    if size > motion_order:
+        names.append("F [N*m]" if coordinates == "force" else "delta [rad]")
+    return tuple(names)
+
+
+def _assumptions(design: ControllerDesign, coordinates: str) -> tuple[str, ...]:
+    impedance = any(isinstance(c.law, Admittance) for c in design.controllers)
+    contacts = [
+        f"{c.name} is active only in contact with {' or '.join(c.contacts)}."
+        for c in design.controllers
+        if c.contacts
+    ]
+    last = {
+        "deflection": "The deflection is continuous at a switch; the force may jump.",
+        "force": "The force is continuous at a switch, even where the stiffness jumps "
+        "(the thesis's coordinates; not physical in lasting contact).",
+    }[coordinates]
+    return (
+        "Each axis is the linear motion loop G(s) of the spec; axes do not act on each other.",
+        *contacts,
+        "In contact, the environment follows its linear model; its parameters stay in the "
+        "declared ranges and may change arbitrarily fast.",
+        *((last, "Contact is not lost: free motion is not one of the modes.") if impedance else ()),
+        "States are continuous at a switch (identity resets); any switching signal is possible.",
+        "Continuous time: sampling, delay, quantization, friction and saturation are not modelled.",
+        "The gains are the single-precision numbers listed here.",
+    )

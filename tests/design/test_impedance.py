@@ -1,0 +1,305 @@
+"""Impedance cost and its global optimum (thesis 6.3.1, 6.3.2 and 6.4)."""
+
+import math
+import time
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import assume, given, settings
+from hypothesis import strategies as st
+
+from nrs_design.design.impedance import (
+    ImpedanceLoop,
+    ImpedanceProblem,
+    characteristic_polynomial,
+    displayed_impedance,
+    impedance_cost,
+    is_stable,
+    open_loop,
+    optimize_impedance,
+    sensitivity,
+)
+from nrs_design.design.transfer import TransferFunction, frequency_response
+from nrs_design.errors import DesignError
+
+# Thesis 6.1 as printed, and with the exact coefficients of Kd = 2060, z = 56.9706.
+PRINTED = TransferFunction((0.99, 56.82), (0.0351, 1.99, 56.82))
+EXACT = TransferFunction((0.9974, 56.822), (0.0351, 1.9974, 56.822))
+# Thesis 6.2: 0.3 N m over 8 deg/s; 2 Hz.
+DESIRED = 0.3 / math.radians(8)
+BANDWIDTH = 4 * math.pi
+SOFT, STIFF = 43.0356, 61.6608
+
+# Thesis 6.3.1 (free), 6.3.2 (soft and half) and 6.4 (stiff).
+PUBLISHED = {
+    "free": (SOFT, DESIRED, 0.0, 0.0, 2.1514),
+    "soft": (SOFT, DESIRED, 0.01, 0.01, 2.1496),
+    "half": (SOFT, DESIRED / 2, 0.01, 0.01, 1.0414),
+    "stiff": (STIFF, DESIRED, 0.01, 0.01, 2.1094),
+}
+
+
+def make_problem(stiffness=SOFT, desired=DESIRED, least=0.0, motion=PRINTED, **changes):
+    problem = ImpedanceProblem(
+        loop=ImpedanceLoop(motion, stiffness, 0.0),
+        desired=desired,
+        bandwidth=BANDWIDTH,
+        mass_bounds=(least, 1.0),
+        damping_bounds=(0.1, 20.0),
+    )
+    return replace(problem, **changes)
+
+
+def reference_cost(problem, Mt, Bt, nodes):
+    """Thesis 6.4-6.7 term by term, with the midpoint rule."""
+    omega = (np.arange(nodes) + 0.5) * problem.bandwidth / nodes
+    displayed = np.abs(displayed_impedance(problem.loop, Mt, Bt, omega))
+    robust = np.abs(sensitivity(problem.loop, Mt, Bt, omega))
+    first = np.mean(np.abs(math.log10(problem.desired) - np.log10(displayed)))
+    return problem.weight_displayed * first + problem.weight_sensitivity * np.mean(robust)
+
+
+def test_desired_impedance_of_thesis_6_2():
+    assert pytest.approx(2.14859, rel=1e-5) == DESIRED
+
+
+@pytest.mark.parametrize("motion", [PRINTED, EXACT], ids=["printed", "exact"])
+@pytest.mark.parametrize("name", PUBLISHED)
+def test_published_optimum(name, motion):
+    stiffness, desired, least, Mt, Bt = PUBLISHED[name]
+    optimum = optimize_impedance(make_problem(stiffness, desired, least, motion))
+    assert optimum.Mt == Mt  # exactly the bound
+    assert optimum.Bt == pytest.approx(Bt, abs=2e-3)
+
+
+@pytest.mark.parametrize(
+    ("name", "printed"), [("free", "2.15"), ("soft", "2.15"), ("half", "1.04"), ("stiff", "2.11")]
+)
+def test_published_optimum_to_the_printed_digit(name, printed):
+    stiffness, desired, least, _, _ = PUBLISHED[name]
+    optimum = optimize_impedance(make_problem(stiffness, desired, least))
+    assert f"{optimum.Bt:.2f}" == printed
+
+
+@pytest.mark.parametrize("name", PUBLISHED)
+def test_no_point_of_a_dense_scan_is_better(name):
+    stiffness, desired, least, _, _ = PUBLISHED[name]
+    problem = make_problem(stiffness, desired, least)
+    optimum = optimize_impedance(problem)
+    Mt = np.unique([least, *np.geomspace(max(least, 1e-4), 1, 90), *np.linspace(least, 1, 30)])
+    Bt = np.unique([*np.geomspace(0.1, 20, 150), *np.linspace(0.9, 1.1, 5) * optimum.Bt])
+    Mt, Bt = np.meshgrid(Mt, Bt)
+    stable = is_stable(problem.loop, Mt, Bt)
+    assert 0 < stable.sum() < stable.size
+    assert impedance_cost(problem, Mt[stable], Bt[stable]).min() >= optimum.cost - 1e-7
+
+
+@pytest.mark.parametrize("name", PUBLISHED)
+def test_cost_does_not_depend_on_the_grid(name):
+    stiffness, desired, least, Mt, Bt = PUBLISHED[name]
+    problem = make_problem(stiffness, desired, least)
+    fine = reference_cost(problem, Mt, Bt, 65536)
+    errors = [abs(reference_cost(problem, Mt, Bt, n) - fine) for n in (16, 256)]
+    assert float(impedance_cost(problem, Mt, Bt)) == pytest.approx(fine, rel=1e-5)
+    assert errors[1] < errors[0] / 8
+
+
+@pytest.mark.parametrize("Bt", [0.5, 1.0414, 2.15, 15.0])
+def test_cost_is_the_formula_of_the_thesis(Bt):
+    problem = make_problem(weight_displayed=0.3, weight_sensitivity=1.7)
+    assert float(impedance_cost(problem, 0.02, Bt)) == pytest.approx(
+        reference_cost(problem, 0.02, Bt, 256), rel=1e-12
+    )
+
+
+def test_cost_broadcasts():
+    problem = make_problem()
+    costs = impedance_cost(problem, np.array([[0.0], [0.1]]), np.linspace(1, 3, 700))
+    assert costs.shape == (2, 700)
+    assert costs[1, 650] == pytest.approx(float(impedance_cost(problem, 0.1, 1 + 2 * 650 / 699)))
+
+
+def test_displayed_impedance_and_sensitivity_close_the_loop():
+    loop = ImpedanceLoop(EXACT, SOFT, 0.4)
+    omega = np.array([0.1, 3.0, 12.0, 200.0])
+    G = frequency_response(EXACT, omega)
+    Ze = SOFT / (1j * omega) + 0.4
+    Y = 1 / (0.01 * 1j * omega + 2.15)
+    assert sensitivity(loop, 0.01, 2.15, omega) == pytest.approx(1 / (1 + G * Ze * Y))
+    assert displayed_impedance(loop, 0.01, 2.15, omega) == pytest.approx(G * Ze / (1 + G * Ze * Y))
+    assert frequency_response(open_loop(loop, 0.01, 2.15), omega) == pytest.approx(G * Ze * Y)
+    # In steady contact the robot shows its virtual damping, and the loop gain is infinite.
+    assert displayed_impedance(loop, 0.01, 2.15, 0.0) == pytest.approx(2.15)
+    assert sensitivity(loop, 0.01, 2.15, 0.0) == 0
+
+
+@pytest.mark.parametrize(
+    ("Bt", "expected"),
+    [
+        # Modes of thesis 6.3.2.2 with the right sign, Mt = 0.01.
+        (2.15, [-217.470, -25.031, -14.694 - 32.617j, -14.694 + 32.617j]),
+        (1.04, [-111.737, -38.306, -5.424 - 39.978j, -5.424 + 39.978j]),
+    ],
+)
+def test_characteristic_polynomial_has_the_known_eigenvalues(Bt, expected):
+    # Ap of the thesis: (tau s^2 + ... )/tau = s^2 + 56.89 s + 1618.80, Cp = [1618.80, 28.416].
+    motion = TransferFunction((28.416, 1618.80), (1.0, 56.89, 1618.80))
+    roots = np.roots(characteristic_polynomial(ImpedanceLoop(motion, SOFT, 0.0), 0.01, Bt))
+    assert np.sort_complex(roots) == pytest.approx(np.array(expected), rel=2e-3)
+
+
+def test_characteristic_polynomial_without_mass_has_one_degree_less():
+    loop = ImpedanceLoop(EXACT, SOFT, 0.0)
+    light = np.roots(characteristic_polynomial(loop, 1e-9, 2.15))
+    none = np.roots(characteristic_polynomial(loop, 0.0, 2.15))
+    assert len(none) == 3
+    slow = np.sort_complex(light[np.abs(light) < 1e6])
+    assert slow == pytest.approx(np.sort_complex(none), rel=1e-5)
+
+
+@given(
+    Mt=st.one_of(st.just(0.0), st.floats(1e-4, 1)),
+    Bt=st.floats(0.05, 20),
+    stiffness=st.floats(1, 2000),
+    damping=st.one_of(st.just(0.0), st.floats(0, 3)),
+)
+def test_stability_agrees_with_computed_roots(Mt, Bt, stiffness, damping):
+    loop = ImpedanceLoop(EXACT, stiffness, damping)
+    rightmost = np.roots(characteristic_polynomial(loop, Mt, Bt)).real.max()
+    assume(abs(rightmost) > 1e-6)
+    assert bool(is_stable(loop, Mt, Bt)) == (rightmost < 0)
+
+
+@given(factor=st.floats(0.1, 10), Mt=st.floats(0, 0.5), Bt=st.floats(0.1, 10))
+def test_cost_is_invariant_to_the_unit_of_torque(factor, Mt, Bt):
+    problem = make_problem()
+    scaled = replace(
+        problem,
+        loop=ImpedanceLoop(PRINTED, SOFT * factor, 0.0),
+        desired=DESIRED * factor,
+    )
+    assert float(impedance_cost(scaled, Mt * factor, Bt * factor)) == pytest.approx(
+        float(impedance_cost(problem, Mt, Bt)), rel=1e-9
+    )
+
+
+@settings(max_examples=25, deadline=None)
+@given(
+    stiffness=st.floats(5, 300),
+    damping=st.sampled_from([0.0, 0.5]),
+    desired=st.floats(0.3, 8),
+    least=st.sampled_from([0.0, 0.01, 0.1]),
+    weight=st.floats(0, 1),
+)
+def test_optimum_is_stable_and_no_scanned_point_beats_it(
+    stiffness, damping, desired, least, weight
+):
+    problem = make_problem(
+        desired=desired,
+        least=least,
+        loop=ImpedanceLoop(EXACT, stiffness, damping),
+        weight_displayed=weight,
+        weight_sensitivity=1 - weight,
+    )
+    optimum = optimize_impedance(problem)
+    assert bool(is_stable(problem.loop, optimum.Mt, optimum.Bt))
+    assert least <= optimum.Mt <= 1
+    assert 0.1 <= optimum.Bt <= 20
+    assert optimum.cost == pytest.approx(float(impedance_cost(problem, optimum.Mt, optimum.Bt)))
+    Mt, Bt = np.meshgrid(
+        least + (1 - least) * np.linspace(0, 1, 45) ** 3, np.geomspace(0.1, 20, 95)
+    )
+    stable = is_stable(problem.loop, Mt, Bt)
+    assert impedance_cost(problem, Mt[stable], Bt[stable]).min() >= optimum.cost - 2e-6
+
+
+def test_fixed_parameters_are_returned_as_given():
+    problem = make_problem(mass_bounds=(0.02, 0.02))
+    optimum = optimize_impedance(problem)
+    assert optimum.Mt == 0.02
+    around = optimum.Bt * np.linspace(0.5, 2, 3001)
+    assert impedance_cost(problem, 0.02, around).min() >= optimum.cost - 1e-7
+
+    both = optimize_impedance(replace(problem, damping_bounds=(2.15, 2.15)))
+    assert (both.Mt, both.Bt) == (0.02, 2.15)
+    assert both.cost == float(impedance_cost(problem, 0.02, 2.15))
+
+
+def test_upper_bounds_are_returned_exactly():
+    # The desired impedance is far above what the bounds allow.
+    optimum = optimize_impedance(
+        make_problem(desired=30.0, stiffness=300.0, damping_bounds=(0.1, 0.7), weight_sensitivity=0)
+    )
+    assert optimum.Bt == 0.7
+
+
+def test_search_is_deterministic():
+    assert optimize_impedance(make_problem()) == optimize_impedance(make_problem())
+
+
+@pytest.mark.slow
+def test_search_is_twenty_times_faster_than_differential_evolution():
+    from scipy.optimize import differential_evolution
+
+    problem = make_problem()
+    optimize_impedance(problem)
+
+    def cost(x):
+        stable = bool(is_stable(problem.loop, x[0], x[1]))
+        return float(impedance_cost(problem, x[0], x[1])) if stable else 1e3
+
+    def evolve():
+        return differential_evolution(cost, [(0, 1), (0.1, 20)], rng=1, tol=1e-6)
+
+    def seconds(run):
+        started = time.perf_counter()
+        run()
+        return time.perf_counter() - started
+
+    ours = min(seconds(lambda: optimize_impedance(problem)) for _ in range(5))
+    assert ours < 0.06
+    assert min(seconds(evolve) for _ in range(2)) > 20 * ours
+    assert optimize_impedance(problem).cost <= evolve().fun + 1e-8
+
+
+def test_bounds_without_a_stable_point_are_an_error_with_a_remedy():
+    # Mt = 0.01, Bt <= 1.04 is unstable above 75.9 N m/rad.
+    problem = make_problem(stiffness=90.0, least=0.01, damping_bounds=(0.1, 1.04))
+    with pytest.raises(DesignError, match="stable at 90 N m/rad") as caught:
+        optimize_impedance(problem)
+    assert "Bt" in caught.value.remedy
+
+
+@pytest.mark.parametrize(
+    ("changes", "message"),
+    [
+        ({"desired": 0.0}, "desired impedance"),
+        ({"bandwidth": math.inf}, "bandwidth"),
+        ({"mass_bounds": (-0.1, 1.0)}, "Mt must not be negative"),
+        ({"mass_bounds": (1.0, 0.5)}, "ascending"),
+        ({"damping_bounds": (0.0, 1.0)}, "Bt must be positive"),
+        ({"damping_bounds": (0.1, math.nan)}, "finite"),
+        ({"weight_displayed": 0.0, "weight_sensitivity": 0.0}, "weights"),
+        ({"weight_displayed": -1.0}, "weights"),
+    ],
+)
+def test_problem_refuses_bad_input(changes, message):
+    with pytest.raises(DesignError, match=message):
+        make_problem(**changes)
+
+
+@pytest.mark.parametrize(("stiffness", "damping"), [(0.0, 0.0), (-1.0, 0.0), (1.0, -1.0)])
+def test_loop_refuses_bad_input(stiffness, damping):
+    with pytest.raises(DesignError, match="must"):
+        ImpedanceLoop(PRINTED, stiffness, damping)
+
+
+@pytest.mark.parametrize(("Mt", "Bt"), [(-0.1, 1.0), (0.1, 0.0), (math.nan, 1.0)])
+def test_admittance_refuses_bad_input(Mt, Bt):
+    loop = ImpedanceLoop(PRINTED, SOFT, 0.0)
+    for call in (characteristic_polynomial, open_loop):
+        with pytest.raises(DesignError, match="Mt >= 0 and Bt > 0"):
+            call(loop, Mt, Bt)
+    with pytest.raises(DesignError, match="Mt >= 0 and Bt > 0"):
+        impedance_cost(make_problem(), Mt, Bt)

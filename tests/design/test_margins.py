@@ -1,0 +1,186 @@
+"""Margins of the impedance loop, against python-control and against brute force."""
+
+import math
+import warnings
+
+import control
+import numpy as np
+import pytest
+from hypothesis import assume, given, settings
+from hypothesis import strategies as st
+
+from nrs_design.design.impedance import (
+    ImpedanceLoop,
+    characteristic_polynomial,
+    is_stable,
+    open_loop,
+)
+from nrs_design.design.margins import loop_margins, stiffness_limit
+from nrs_design.design.transfer import TransferFunction, frequency_response, to_control
+from nrs_design.errors import DesignError
+
+EXACT = TransferFunction((0.9974, 56.822), (0.0351, 1.9974, 56.822))
+SOFT = ImpedanceLoop(EXACT, 43.0356, 0.0)
+
+masses = st.one_of(st.just(0.0), st.floats(1e-3, 0.05))
+dampings = st.one_of(st.just(0.0), st.floats(0.01, 0.5))
+
+
+def bisect_limit(motion, damping, Mt, Bt, high=1e7):
+    """Largest stiffness with all roots in the left half plane, by bisection on the roots."""
+
+    def stable(k):
+        roots = np.roots(characteristic_polynomial(ImpedanceLoop(motion, k, damping), Mt, Bt))
+        return roots.real.max() < 0
+
+    low = 1e-3
+    assert stable(low)
+    assert not stable(high)
+    for _ in range(100):
+        middle = math.sqrt(low * high)
+        low, high = (middle, high) if stable(middle) else (low, middle)
+    return low
+
+
+@pytest.mark.parametrize(
+    ("Bt", "limit", "tolerance"),
+    # Recomputed for this robot, Mt = 0.01; 75.9 N m/rad lies inside the range of a surgeon's hand.
+    [(1.04, 75.9, 0.3), (2.11, 225.6, 0.5), (2.15, 232.3, 0.5)],
+)
+def test_known_stiffness_limits(Bt, limit, tolerance):
+    found = stiffness_limit(SOFT, 0.01, Bt)
+    assert found == pytest.approx(limit, abs=tolerance)
+    assert found == pytest.approx(bisect_limit(EXACT, 0.0, 0.01, Bt), rel=1e-6)
+
+
+def test_without_mass_the_limit_is_of_the_order_of_1e4_or_above():
+    found = stiffness_limit(SOFT, 0.0, 1.04)
+    assert found > 1e4
+    assert found == pytest.approx(bisect_limit(EXACT, 0.0, 0.0, 1.04), rel=1e-6)
+
+
+@settings(max_examples=40, deadline=None)
+@given(Mt=masses, Bt=st.floats(0.3, 10), damping=dampings)
+def test_stiffness_limit_agrees_with_bisection(Mt, Bt, damping):
+    found = stiffness_limit(ImpedanceLoop(EXACT, 1.0, damping), Mt, Bt)
+    assume(0.01 < found < 1e6)
+    assert found == pytest.approx(bisect_limit(EXACT, damping, Mt, Bt), rel=1e-5)
+
+
+def test_loop_that_no_stiffness_destabilizes():
+    first_order = TransferFunction((1.0,), (0.05, 1.0))
+    assert stiffness_limit(ImpedanceLoop(first_order, 1.0, 0.0), 0.0, 1.0) == math.inf
+
+
+def test_loop_that_every_stiffness_destabilizes():
+    unstable = TransferFunction((1.0,), (1.0, -0.5, 1.0))
+    assert stiffness_limit(ImpedanceLoop(unstable, 1.0, 0.0), 0.0, 1.0) == 0.0
+    reversed_sign = TransferFunction((-1.0,), (0.05, 1.0))
+    assert stiffness_limit(ImpedanceLoop(reversed_sign, 1.0, 0.0), 0.0, 1.0) == 0.0
+
+
+def test_gain_margin_is_the_stiffness_limit_over_the_stiffness():
+    # Without damping the stiffness is the loop gain.
+    margins = loop_margins(SOFT, 0.01, 1.04)
+    assert margins.gain_margin == pytest.approx(margins.stiffness_limit / 43.0356, rel=1e-6)
+    assert margins.gain_margin_low == 0.0
+
+
+@pytest.mark.parametrize("damping", [0.0, 0.3])
+@pytest.mark.parametrize("Mt", [0.0, 0.01])
+def test_margins_agree_with_python_control_and_a_fine_grid(Mt, damping):
+    loop = ImpedanceLoop(EXACT, 43.0356, damping)
+    margins = loop_margins(loop, Mt, 2.15)
+    tf = open_loop(loop, Mt, 2.15)
+    gain, phase, distance, *_ = control.stability_margins(to_control(tf))
+    assert margins.phase_margin == pytest.approx(math.radians(phase))
+    assert margins.gain_margin == pytest.approx(gain)
+    assert margins.sensitivity_peak == pytest.approx(1 / distance, rel=1e-6)
+    omega = np.geomspace(0.1, 1e4, 100_001)
+    S = 1 / (1 + frequency_response(tf, omega))
+    assert margins.sensitivity_peak == pytest.approx(np.abs(S).max(), rel=1e-6)
+    assert margins.sensitivity_peak_frequency == pytest.approx(
+        omega[np.argmax(np.abs(S))], rel=1e-3
+    )
+    assert margins.disk_margin == pytest.approx(1 / np.abs(S - 0.5).max(), rel=1e-6)
+
+
+def test_delay_margin_brings_a_crossover_onto_the_critical_point():
+    margins = loop_margins(SOFT, 0.01, 2.15)
+    omega = np.geomspace(1, 1e3, 2_000_001)
+    delayed = frequency_response(open_loop(SOFT, 0.01, 2.15), omega) * np.exp(
+        -1j * omega * margins.delay_margin
+    )
+    assert np.abs(1 + delayed).min() < 1e-5
+    shorter = frequency_response(open_loop(SOFT, 0.01, 2.15), omega) * np.exp(
+        -1j * omega * margins.delay_margin * 0.9
+    )
+    assert np.abs(1 + shorter).min() > 1e-2
+
+
+def test_delay_margin_takes_the_smallest_over_all_crossovers():
+    # A notch at 8 rad/s before a resonance at 10 rad/s: three crossovers, the last one counts.
+    resonant = TransferFunction((1.5625, 0.1, 100.0), (1.0, 0.2, 100.0))
+    loop = ImpedanceLoop(resonant, 0.5, 0.0)
+    margins = loop_margins(loop, 0.0, 1.0)
+    _, phases, _, _, at, _ = control.stability_margins(
+        to_control(open_loop(loop, 0.0, 1.0)), returnall=True
+    )
+    assert len(at) == 3
+    delays = np.radians(np.mod(phases, 360)) / at
+    assert margins.delay_margin == pytest.approx(delays.min())
+    assert delays.min() < 0.5 * delays[0]
+    smallest_phase = np.argmin(np.abs(phases))
+    assert margins.phase_margin == pytest.approx(math.radians(abs(phases[smallest_phase])))
+
+
+def test_integrator_alone_has_the_margins_of_the_textbook():
+    # L = 1/s: no gain limit, 90 degrees, a delay of pi/2 s, |S| below 1 everywhere.
+    loop = ImpedanceLoop(TransferFunction((1.0,), (1.0,)), 1.0, 0.0)
+    margins = loop_margins(loop, 0.0, 1.0)
+    assert margins.gain_margin == math.inf
+    assert margins.gain_margin_low == 0.0
+    assert margins.phase_margin == pytest.approx(math.pi / 2)
+    assert margins.delay_margin == pytest.approx(math.pi / 2)
+    assert margins.sensitivity_peak == 1.0
+    assert margins.sensitivity_peak_frequency == math.inf
+    assert margins.disk_margin == 2.0
+    assert margins.stiffness_limit == math.inf
+
+
+@settings(max_examples=40, deadline=None)
+@given(Mt=masses, Bt=st.floats(0.3, 10), stiffness=st.floats(5, 150), damping=dampings)
+def test_margins_satisfy_the_known_inequalities(Mt, Bt, stiffness, damping):
+    loop = ImpedanceLoop(EXACT, stiffness, damping)
+    assume(bool(is_stable(loop, Mt, Bt)))
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        margins = loop_margins(loop, Mt, Bt)
+    Ms = margins.sensitivity_peak
+    assert Ms >= 1
+    assert margins.gain_margin * (1 + 1e-6) >= Ms / (Ms - 1 + 1e-12) * (1 - 1e-6)
+    assert margins.phase_margin >= 2 * math.asin(1 / (2 * Ms)) * (1 - 1e-6)
+    # |S - 1/2| lies within 1/2 of |S|.
+    assert 1 / (Ms + 0.5) * (1 - 1e-9) <= margins.disk_margin <= 1 / (Ms - 0.5) * (1 + 1e-9)
+    assert margins.delay_margin > 0
+
+
+def test_scaling_torque_leaves_the_margins():
+    a = loop_margins(SOFT, 0.01, 2.15)
+    b = loop_margins(ImpedanceLoop(EXACT, 430.356, 0.0), 0.1, 21.5)
+    assert a.disk_margin == pytest.approx(b.disk_margin)
+    assert a.delay_margin == pytest.approx(b.delay_margin)
+    assert 10 * a.stiffness_limit == pytest.approx(b.stiffness_limit)
+
+
+def test_margins_of_an_unstable_loop_are_refused_with_its_limit():
+    with pytest.raises(DesignError, match="unstable at 90 N m/rad") as caught:
+        loop_margins(ImpedanceLoop(EXACT, 90.0, 0.0), 0.01, 1.04)
+    assert "75.9" in caught.value.remedy
+
+
+@pytest.mark.parametrize(("Mt", "Bt"), [(-1.0, 1.0), (0.01, 0.0)])
+def test_bad_admittance_is_refused(Mt, Bt):
+    for call in (loop_margins, stiffness_limit):
+        with pytest.raises(DesignError, match="Mt >= 0"):
+            call(SOFT, Mt, Bt)

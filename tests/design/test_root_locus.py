@@ -1,0 +1,206 @@
+"""PD design by root locus (thesis 4.2-4.3) and the response of the closed motion loop."""
+
+import cmath
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from nrs_design.design.root_locus import (
+    close_motion_loop,
+    design_pd,
+    dominant_pair,
+    locus_gains,
+    motion_loop_response,
+    root_locus,
+    step_overshoot,
+)
+from nrs_design.design.transfer import TransferFunction, frequency_response, poles
+from nrs_design.errors import DesignError
+
+# Thesis 4.25 and 4.14: the actuator, zeta = 0.707 and 4/(zeta wn) = 4 tau.
+KM, TAU = 4.8417e-4, 0.0351
+ZETA, SETTLING = 0.707, 4 * 0.0351
+
+
+def second_order_overshoot(zeta, wn, zero):
+    """Textbook: peak of wn^2/z (s + z)/(s^2 + 2 zeta wn s + wn^2), from its impulse response."""
+    sigma, wd = zeta * wn, wn * math.sqrt(1 - zeta**2)
+    peak = (math.pi - math.atan2(wd, zero - sigma)) / wd
+    decay = math.exp(-sigma * peak)
+    lag = (sigma - wn**2 / zero) / wd
+    return -decay * (math.cos(wd * peak) + lag * math.sin(wd * peak))
+
+
+def test_published_pd_controller():
+    design = design_pd(KM, TAU, ZETA, SETTLING)
+    assert design.natural_frequency == pytest.approx(40.2971, rel=1e-4)  # thesis 4.14
+    assert design.wanted_poles[0] == pytest.approx(-28.4900 + 28.49861j, rel=1e-4)  # 4.27b
+    assert design.wanted_poles[1] == design.wanted_poles[0].conjugate()
+    assert math.degrees(design.zero_angle) == pytest.approx(44.9914, abs=1e-3)  # 4.28
+    assert design.zero == pytest.approx(56.9706, rel=5e-4)  # 4.29
+    assert design.derivative_gain == pytest.approx(2065.4, rel=1e-4)  # the thesis rounds to 2060
+
+
+def test_published_zero_has_the_angle_of_the_errata():
+    upper = design_pd(KM, TAU, ZETA, SETTLING).wanted_poles[0]
+    assert math.degrees(cmath.phase(upper + 56.9706)) == pytest.approx(45.0182, abs=1e-3)
+
+
+def test_published_proportional_gain():
+    # Thesis 4.31: the numerator's constant is Km times the proportional gain.
+    G = close_motion_loop(KM, TAU, 2060, 56.9706)
+    assert G.numerator[1] / KM == pytest.approx(117359.43, rel=1e-5)
+
+
+def test_published_motion_loop_at_the_rounded_gain():
+    G = close_motion_loop(KM, TAU, 2060, 56.9706)
+    assert G.numerator == pytest.approx((0.9974, 56.822), rel=1e-4)  # thesis 6.1, exact
+    assert G.denominator == pytest.approx((0.0351, 1.9974, 56.822), rel=1e-4)
+    assert poles(G)[0] == pytest.approx(-28.453 + 28.448j, rel=1e-4)
+    response = motion_loop_response(G)
+    assert response.damping_ratio == pytest.approx(0.7072, abs=1e-4)
+    assert response.natural_frequency == pytest.approx(40.235, abs=1e-3)
+    assert 100 * response.overshoot == pytest.approx(6.8, abs=0.2)
+    # The second-order formula without the zero misses it.
+    assert math.exp(-math.pi * ZETA / math.sqrt(1 - ZETA**2)) == pytest.approx(0.043, abs=1e-3)
+    assert abs(frequency_response(G, response.bandwidth)) == pytest.approx(math.sqrt(0.5))
+
+
+actuators = {"gain": st.floats(1e-5, 10), "time_constant": st.floats(1e-3, 1)}
+
+
+@given(**actuators, damping_ratio=st.floats(0.1, 0.95), ratio=st.floats(0.2, 7.9))
+def test_angle_and_magnitude_condition_hold(gain, time_constant, damping_ratio, ratio):
+    design = design_pd(gain, time_constant, damping_ratio, ratio * time_constant)
+    pole = design.wanted_poles[0]
+    controller = design.derivative_gain * (pole + design.zero)
+    loop = controller * gain / (pole * (time_constant * pole + 1))
+    assert loop == pytest.approx(-1, abs=1e-9)
+    assert cmath.phase(pole + design.zero) == pytest.approx(design.zero_angle)
+    G = close_motion_loop(gain, time_constant, design.derivative_gain, design.zero)
+    assert poles(G)[0] == pytest.approx(pole, rel=1e-5)
+
+
+@given(factor=st.floats(0.01, 100))
+def test_time_scaling(factor):
+    base = design_pd(KM, TAU, ZETA, SETTLING)
+    scaled = design_pd(KM, TAU * factor, ZETA, SETTLING * factor)
+    assert scaled.zero * factor == pytest.approx(base.zero)
+    assert scaled.derivative_gain == pytest.approx(base.derivative_gain)
+    assert scaled.zero_angle == pytest.approx(base.zero_angle)
+
+
+@settings(max_examples=50, deadline=None)
+@given(zeta=st.floats(0.05, 0.95), wn=st.floats(0.1, 1e4), ratio=st.floats(0.2, 50))
+def test_overshoot_of_a_second_order_loop_with_a_zero(zeta, wn, ratio):
+    zero = ratio * wn
+    tf = TransferFunction((wn**2 / zero, wn**2), (1.0, 2 * zeta * wn, wn**2))
+    assert step_overshoot(tf) == pytest.approx(second_order_overshoot(zeta, wn, zero), rel=1e-7)
+
+
+@pytest.mark.parametrize("zeta", [0.1, 0.5, 0.707])
+def test_overshoot_without_zero_is_the_classical_formula(zeta):
+    tf = TransferFunction((9.0,), (1.0, 6 * zeta, 9.0))
+    wanted = math.exp(-math.pi * zeta / math.sqrt(1 - zeta**2))
+    assert step_overshoot(tf) == pytest.approx(wanted, rel=1e-9)
+
+
+def test_overshoot_with_repeated_poles():
+    # (4 s + 1)/(s + 1)^2: y = 1 + (3 t - 1) exp(-t), highest at t = 4/3.
+    tf = TransferFunction((4.0, 1.0), (1.0, 2.0, 1.0))
+    assert step_overshoot(tf) == pytest.approx(3 * math.exp(-4 / 3), rel=1e-9)
+
+
+def test_overshoot_of_monotone_static_and_direct_loops():
+    assert step_overshoot(TransferFunction((1.0,), (1.0, 3.0, 3.0, 1.0))) == pytest.approx(0)
+    assert step_overshoot(TransferFunction((3.0,), (2.0,))) == 0.0
+    # (2 s + 1)/(s + 1) starts at 2 and falls to 1.
+    assert step_overshoot(TransferFunction((2.0, 1.0), (1.0, 1.0))) == pytest.approx(1.0)
+
+
+def test_overshoot_of_a_negative_gain_is_measured_towards_its_final_value():
+    positive = TransferFunction((9.0,), (1.0, 1.8, 9.0))
+    negative = TransferFunction((-18.0,), (1.0, 1.8, 9.0))
+    assert step_overshoot(negative) == pytest.approx(step_overshoot(positive))
+
+
+def test_dominant_pair_is_the_rightmost_complex_one():
+    zeta, wn = dominant_pair(np.array([-100, -3 + 4j, -3 - 4j, -1]))
+    assert (zeta, wn) == (pytest.approx(0.6), pytest.approx(5))
+    zeta, wn = dominant_pair(np.array([-100.0, -8.0, -2.0]))
+    assert (zeta, wn) == (pytest.approx(1.25), pytest.approx(4))
+
+
+OPEN_LOOP = TransferFunction((KM, KM * 56.9706), (TAU, 1.0, 0.0))  # thesis 4.29
+
+
+def test_locus_starts_at_the_open_loop_poles_and_passes_the_published_ones():
+    branches = root_locus(OPEN_LOOP, [0.0, 1000.0, 2060.0])
+    assert branches.shape == (3, 2)
+    assert np.sort(branches[0].real) == pytest.approx([-1 / TAU, 0], abs=1e-9)
+    assert np.sort_complex(branches[2])[1] == pytest.approx(-28.453 + 28.448j, rel=1e-4)
+
+
+def test_locus_points_are_closed_loop_poles():
+    gains = locus_gains(OPEN_LOOP, 2060.0)
+    branches = root_locus(OPEN_LOOP, gains)
+    residual = np.polyval(OPEN_LOOP.denominator, branches) + gains[:, None] * np.polyval(
+        OPEN_LOOP.numerator, branches
+    )
+    assert np.abs(residual).max() < 1e-9 * np.abs(branches).max() ** 2
+
+
+def test_locus_gains_hold_the_chosen_and_the_breakaway_gain():
+    gains = locus_gains(OPEN_LOOP, 2060.0)
+    assert gains[0] == 0.0
+    assert 2060.0 in gains
+    assert (np.diff(gains) > 0).all()
+    assert len(gains) < 1000
+    # The discriminant (1 + c)^2 - 4 tau z c, c = K Km, vanishes at both breakaways.
+    for c in np.roots([1.0, 2 - 4 * TAU * 56.9706, 1.0]).real:
+        assert np.abs(gains - c / KM).min() < 1e-6 * c / KM
+
+
+def test_locus_branches_are_continuous():
+    motion = TransferFunction((1.0,), (1.0, 7.0, 14.0, 8.0))  # poles -1, -2, -4
+    gains = locus_gains(motion, 20.0)
+    branches = root_locus(motion, gains)
+    near = gains[1:] <= 20
+    # Roots leave a breakaway like a square root; elsewhere steps stay small.
+    assert np.abs(np.diff(branches, axis=0))[near].max() < 0.4
+    flipped = np.abs(branches[1:] - branches[:-1, ::-1])[near].sum()
+    assert np.abs(np.diff(branches, axis=0))[near].sum() < flipped
+
+
+@pytest.mark.parametrize("settling", [8 * TAU, 1.0])
+def test_design_refuses_a_settling_time_that_no_positive_gain_reaches(settling):
+    with pytest.raises(DesignError, match="no positive gain") as caught:
+        design_pd(KM, TAU, ZETA, settling * (1 + 1e-9))
+    assert "0.2808 s" in caught.value.remedy
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [(0.0, TAU, ZETA, 0.1), (KM, -1.0, ZETA, 0.1), (KM, TAU, 1.0, 0.1), (KM, TAU, ZETA, math.nan)],
+)
+def test_design_refuses_bad_input(arguments):
+    with pytest.raises(DesignError, match="must"):
+        design_pd(*arguments)
+
+
+def test_other_bad_input():
+    with pytest.raises(DesignError, match="derivative gain must be positive"):
+        close_motion_loop(KM, TAU, 0.0, 56.97)
+    with pytest.raises(DesignError, match="unstable"):
+        step_overshoot(TransferFunction((1.0,), (1.0, -1.0)))
+    with pytest.raises(DesignError, match="static gain"):
+        step_overshoot(TransferFunction((1.0, 0.0), (1.0, 1.0)))
+    with pytest.raises(DesignError, match="two poles"):
+        motion_loop_response(TransferFunction((1.0,), (1.0, 1.0)))
+    with pytest.raises(DesignError, match="infinity"):
+        root_locus(TransferFunction((-1.0, 1.0), (1.0, 1.0)), [0.0, 1.0])
+    with pytest.raises(DesignError, match="gain must be positive"):
+        locus_gains(OPEN_LOOP, 0.0)

@@ -1,0 +1,141 @@
+"""Transfer functions and the polynomial tools of the loop designs."""
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import assume, given
+from hypothesis import strategies as st
+
+from nrs_design.design.transfer import (
+    TransferFunction,
+    even_odd,
+    frequency_response,
+    hurwitz,
+    poles,
+    positive_roots,
+    product_parts,
+    ratio_slope,
+    squared_magnitude,
+    static_gain,
+    to_control,
+    trim,
+)
+from nrs_design.errors import DesignError
+
+# Thesis 6.1, as printed.
+PRINTED = TransferFunction((0.99, 56.82), (0.0351, 1.99, 56.82))
+
+coefficients = st.lists(st.floats(-5, 5).map(lambda x: round(x, 3)), min_size=1, max_size=5)
+
+
+def test_printed_motion_loop_has_unit_gain_and_a_damped_pair():
+    assert PRINTED.order == 2
+    assert static_gain(PRINTED) == 1.0
+    upper, lower = poles(PRINTED)
+    assert upper == pytest.approx(-28.348 + 28.552j, abs=1e-3)
+    assert lower == upper.conjugate()
+
+
+def test_frequency_response_at_one_hand_computed_point():
+    # 1/(s + 1) at s = j: (1 - j)/2.
+    tf = TransferFunction((1.0,), (1.0, 1.0))
+    assert frequency_response(tf, 1.0) == pytest.approx(0.5 - 0.5j)
+    assert frequency_response(tf, [[0.0, 1.0]]).shape == (1, 2)
+
+
+def test_integrator_has_infinite_static_gain():
+    assert static_gain(TransferFunction((2.0,), (1.0, 0.0))) == math.inf
+
+
+@pytest.mark.parametrize("omega", [0.0, 0.3, 40.0])
+def test_control_object_is_the_same_function(omega):
+    tf = TransferFunction((0.0, 0.99, 56.82), (0.0351, 1.99, 56.82))
+    assert complex(to_control(tf)(1j * omega)) == pytest.approx(
+        complex(frequency_response(tf, omega))
+    )
+
+
+def test_trim_keeps_the_last_coefficient():
+    assert trim((0.0, 0.0, 3.0, 0.0)) == (3.0, 0.0)
+    assert trim((0.0, 0.0)) == (0.0,)
+
+
+@pytest.mark.parametrize(
+    ("polynomial", "expected"),
+    [
+        ([1, 2, 3, 4], True),
+        ([1, 2, 2, 4], False),  # +-j sqrt(2): on the axis is not Hurwitz
+        ([1, 1, 2, 8], False),
+        ([-1, -2, -3, -4], True),
+        ([0, 1, 2], True),  # a leading zero only lowers the degree
+        ([0, 0, 5], True),
+        ([0, 0, 0], False),
+        ([1, 0], False),
+        ([1, 2, 0], False),
+        ([1, 1, math.nan], False),
+    ],
+)
+def test_hurwitz_on_textbook_polynomials(polynomial, expected):
+    assert bool(hurwitz(polynomial)) is expected
+
+
+def test_hurwitz_keeps_the_shape_and_mixes_degrees():
+    rows = np.array([[[1, 3, 3, 1], [0, 1, 1, 1]], [[0, 0, 1, -1], [1, 1, 1, 9]]])
+    assert hurwitz(rows).tolist() == [[True, True], [False, False]]
+
+
+@given(st.lists(coefficients, min_size=1, max_size=1), st.integers(0, 2))
+def test_hurwitz_agrees_with_computed_roots(rows, zeros):
+    polynomial = [0.0] * zeros + rows[0]
+    assume(any(polynomial))
+    rightmost = np.roots(polynomial).real.max(initial=-math.inf)
+    assume(abs(rightmost) > 1e-6)
+    assert bool(hurwitz(polynomial)) == (rightmost < 0)
+
+
+@given(coefficients, st.floats(0, 3))
+def test_even_odd_split_rebuilds_the_polynomial(polynomial, omega):
+    even, odd = even_odd(polynomial)
+    rebuilt = np.polyval(even, omega**2) + 1j * omega * np.polyval(odd, omega**2)
+    assert rebuilt == pytest.approx(np.polyval(polynomial, 1j * omega), abs=1e-9)
+
+
+@given(coefficients, coefficients, st.floats(0, 2))
+def test_product_parts_and_magnitude_agree_with_complex_arithmetic(a, b, omega):
+    real, imaginary = product_parts(a, b)
+    wanted = np.polyval(a, 1j * omega) * np.conj(np.polyval(b, 1j * omega))
+    x = omega**2
+    assert np.polyval(real, x) + 1j * omega * np.polyval(imaginary, x) == pytest.approx(
+        wanted, abs=1e-7
+    )
+    assert np.polyval(squared_magnitude(a), x) == pytest.approx(
+        abs(np.polyval(a, 1j * omega)) ** 2, abs=1e-7
+    )
+
+
+def test_ratio_slope_finds_the_stationary_points():
+    # x/(x^2 + 4) is stationary at +-2.
+    assert sorted(np.roots(ratio_slope([1, 0], [1, 0, 4])).real) == pytest.approx([-2, 2])
+    assert not np.any(ratio_slope([3.0], [2.0]))
+
+
+def test_positive_roots_ignores_the_others_and_keeps_double_roots():
+    assert positive_roots(np.poly([-1, 3, 2, 1 + 1j, 1 - 1j, 0])) == pytest.approx([2, 3])
+    assert positive_roots(np.poly([2, 2])) == pytest.approx([2, 2], rel=1e-6)
+    assert positive_roots([0.0, 0.0, 1.0]).size == 0
+
+
+@pytest.mark.parametrize(
+    ("numerator", "denominator", "message"),
+    [
+        ((1.0,), (0.0, 1.0), "leading coefficient"),
+        ((1.0,), (), "leading coefficient"),
+        ((0.0,), (1.0, 1.0), "zero"),
+        ((1.0, 0.0), (2.0,), "degree"),
+        ((math.nan,), (1.0,), "finite"),
+    ],
+)
+def test_refuses_what_is_no_proper_transfer_function(numerator, denominator, message):
+    with pytest.raises(DesignError, match=message):
+        TransferFunction(numerator, denominator)

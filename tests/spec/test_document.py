@@ -1,0 +1,212 @@
+import os
+import time
+from pathlib import Path
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from nrs_design.errors import SpecError
+from nrs_design.spec.document import (
+    MAX_BYTES,
+    MAX_DEPTH,
+    Mapping,
+    Scalar,
+    Sequence,
+    parse_document,
+    read_text,
+    to_data,
+)
+
+from .samples import assert_inside
+
+
+def refused(text: str) -> SpecError:
+    with pytest.raises(SpecError) as caught:
+        parse_document(text)
+    assert_inside(caught.value, text)
+    return caught.value
+
+
+def test_scalars_stay_text() -> None:
+    root = parse_document("a: [1.10, 010, true, 1e400, '', \"x\"]\nb: {c: 2001-01-01}\n")
+    assert to_data(root) == {
+        "a": ("1.10", "010", "true", "1e400", "", "x"),
+        "b": {"c": "2001-01-01"},
+    }
+
+
+def test_every_node_has_its_place() -> None:
+    root = parse_document("# title\na:\n  - x\n  - [y,  z]\n")
+    assert isinstance(root, Mapping)
+    assert (root.keys["a"].line, root.keys["a"].column) == (2, 1)
+    items = root.entries["a"]
+    assert isinstance(items, Sequence)
+    inner = items.items[1]
+    assert isinstance(inner, Sequence)
+    last = inner.items[1]
+    assert isinstance(last, Scalar)
+    assert (last.position.line, last.position.column) == (4, 10)
+
+
+@pytest.mark.parametrize("end", ["\n", "\r\n", "\r"])
+def test_lines_are_counted_for_all_line_ends(end: str) -> None:
+    error = refused(f"a: 1{end}b: 2{end}a: 3{end}")
+    assert (error.line, error.column) == (3, 1)
+
+
+def test_unicode_separators_are_not_lines() -> None:
+    error = refused("a: 'x\u2028y\x85z'\na: 2\n")
+    assert (error.line, error.column) == (2, 1)
+
+
+@pytest.mark.parametrize(
+    ("text", "place", "said"),
+    [
+        ("a: &x 1\nb: *x\n", (1, 4), "anchors"),
+        ("a: 1\nb: *x\n", (2, 4), "aliases"),
+        ("a: !!float 1\n", (1, 4), "tags"),
+        ("a: ! 1\n", (1, 4), "tags"),
+        ("a: !!python/object/apply:os.system [ls]\n", (1, 4), "tags"),
+        ("b: 1\n<<: {a: 1}\n", (2, 1), "merge keys"),
+        ("a: 1\nb: 2\na: 3\n", (3, 1), "'a' is there twice, first in line 1"),
+        ("x:\n  a: 1\n  'a': 2\n", (3, 3), "twice"),
+        ("a: 1\n---\nb: 2\n", (2, 1), "several documents"),
+        ("1: a\n", (1, 1), "'1' is not text"),
+        ("true: a\n", (1, 1), "'true' is not text"),
+        (".nan: a\n", (1, 1), "not text"),
+        ("1e3: a\n", (1, 1), "not text"),
+        ("null: a\n", (1, 1), "not text"),
+        ("? [a]\n: 1\n", (1, 3), "a key must be text"),
+        ("{a: 1}: 1\n", (1, 1), "a key must be text"),
+        ("a:\nb: 1\n", (1, 1), "'a' has no value"),
+        ("a: ~\n", (1, 1), "'a' has no value"),
+        ("a: [1, null]\n", (1, 8), "a value is missing"),
+        ("a:\n\t- 1\n", (2, 1), "a tab"),
+        ("a: b: c\n", (1, 5), "a second ': '"),
+        ('a: "x\n', (2, 1), "quoted text"),
+        ("a: [1, 2\nb: 3\n", (2, 2), "not closed"),
+        ("a: {b: 1\n", (2, 1), "not closed"),
+        ("a: 1\n  b: 2\n", (2, 4), "a second ': '"),
+        ("a:\n    b: 1\n  c: 2\n", (3, 3), "indentation"),
+        ("a: 1\nb\n", (2, 1), "no ':'"),
+        ("a: @b\n", (1, 4), "reserved character"),
+        ("a: x\x01y\n", (1, 5), "control character"),
+        ('a: "\\ud800"\n', (1, 4), "surrogate"),
+        ('a: "\\UFFFFFFFF"\n', (1, 1), "not valid YAML"),
+        ("%YAML 9.1\n---\na: 1\n", (1, 1), "another YAML version"),
+        ("%YAML " + "1" * 5000 + ".1\n---\na: 1\n", (1, 1), "not valid YAML"),
+        ("# nothing\n", (1, 1), "no document"),
+    ],
+)
+def test_refuses_with_place_and_words(text: str, place: tuple[int, int], said: str) -> None:
+    error = refused(text)
+    assert said in error.message
+    assert (error.line, error.column) == place
+
+
+def nested(depth: int) -> str:
+    return "[" * depth + "x" + "]" * depth
+
+
+def test_depth_is_limited() -> None:
+    assert parse_document(nested(MAX_DEPTH))
+    assert "nested deeper" in refused(nested(MAX_DEPTH + 1)).message
+
+
+@pytest.mark.parametrize("opening", ["[", "{a: ", "- ", "? ", "[{a: "])
+def test_deep_nesting_is_refused_before_the_stack_is_used_up(opening: str) -> None:
+    assert "nested deeper" in refused(opening * 100_000).message
+
+
+def test_billion_laughs_are_refused_at_the_first_anchor() -> None:
+    laughs = "".join(f"a{i}: &a{i} [{', '.join([f'*a{i - 1}'] * 9)}]\n" for i in range(1, 20))
+    start = time.perf_counter()
+    assert "anchors" in refused("a0: &a0 lol\n" + laughs).message
+    assert time.perf_counter() - start < 1
+
+
+@given(st.text(max_size=200) | st.text("ab:-[]{}#&*!|>'\"%@`,? \n\t\r\\0123.", max_size=200))
+@settings(max_examples=300)
+def test_garbage_is_a_document_or_refused(text: str) -> None:
+    try:
+        parse_document(text)
+    except SpecError as error:
+        assert_inside(error, text)
+
+
+def test_reads_bytes_and_text(tmp_path: Path) -> None:
+    path = tmp_path / "a.yaml"
+    path.write_bytes(b"\xef\xbb\xbfa: \xc3\xa9\r\n")
+    content, text = read_text(path)
+    assert content == path.read_bytes()
+    assert to_data(parse_document(text)) == {"a": "é"}
+
+
+@pytest.mark.parametrize(
+    ("content", "said"),
+    [
+        (b"", "empty"),
+        (b" \n\n", "empty"),
+        (b"a: \xff\n", "byte 0xff is not UTF-8"),
+        ("a: 1\n".encode("utf-16"), "not UTF-8"),
+        (b"#" * (MAX_BYTES + 1), "larger than"),
+    ],
+)
+def test_refuses_files_that_are_no_text(tmp_path: Path, content: bytes, said: str) -> None:
+    path = tmp_path / "a.nrs.yaml"
+    path.write_bytes(content)
+    with pytest.raises(SpecError, match=said) as caught:
+        read_text(path)
+    assert caught.value.path == path
+    assert caught.value.remedy
+
+
+def test_bad_byte_has_a_place(tmp_path: Path) -> None:
+    path = tmp_path / "a.nrs.yaml"
+    path.write_bytes("a: 1\né: ".encode() + b"\xff\n")
+    with pytest.raises(SpecError) as caught:
+        read_text(path)
+    assert (caught.value.line, caught.value.column) == (2, 4)
+
+
+def test_size_limit_is_inclusive(tmp_path: Path) -> None:
+    path = tmp_path / "a.nrs.yaml"
+    path.write_bytes(b"#" * MAX_BYTES)
+    assert len(read_text(path)[1]) == MAX_BYTES
+
+
+def test_refuses_missing_files_and_directories(tmp_path: Path) -> None:
+    with pytest.raises(SpecError, match="no such file"):
+        read_text(tmp_path / "none.nrs.yaml")
+    with pytest.raises(SpecError, match="directory"):
+        read_text(tmp_path)
+
+
+def test_refuses_a_pipe_without_waiting_for_it(tmp_path: Path) -> None:
+    pipe = tmp_path / "pipe.nrs.yaml"
+    os.mkfifo(pipe)
+    with pytest.raises(SpecError, match="not a regular file"):
+        read_text(pipe)
+
+
+def test_refuses_names_that_no_file_can_have(tmp_path: Path) -> None:
+    loop = tmp_path / "loop.nrs.yaml"
+    loop.symlink_to(loop)
+    for path in (Path("a\0b"), tmp_path / ("x" * 5000), loop):
+        with pytest.raises(SpecError) as caught:
+            read_text(path)
+        assert caught.value.path == path
+
+
+def test_refuses_unreadable_files(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    path = tmp_path / "a.nrs.yaml"
+    path.write_text("a: 1\n")
+
+    def refuse(*_: object, **__: object) -> None:
+        raise PermissionError(13, "Permission denied")
+
+    # Permission bits do not bind the superuser, under whom tests may run.
+    monkeypatch.setattr(Path, "open", refuse)
+    with pytest.raises(SpecError, match="cannot be read: Permission denied"):
+        read_text(path)

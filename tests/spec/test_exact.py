@@ -1,0 +1,115 @@
+import time
+from decimal import Decimal
+from fractions import Fraction
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from nrs_design.errors import SpecError
+from nrs_design.spec.exact import parse_exact
+
+from .samples import message_of
+
+
+@pytest.mark.parametrize(
+    ("text", "value"),
+    [
+        ("0", Fraction(0)),
+        ("-0.36", Fraction(-9, 25)),
+        ("1/6", Fraction(1, 6)),
+        ("-22/7", Fraction(-22, 7)),
+        ("+4.8417e-4", Fraction(48417, 100_000_000)),
+        (".5", Fraction(1, 2)),
+        ("5.", Fraction(5)),
+        ("1E+2", Fraction(100)),
+        ("0.1", Fraction(1, 10)),
+    ],
+)
+def test_reads_exactly(text: str, value: Fraction) -> None:
+    assert parse_exact(text) == value
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("", "is empty"),
+        (" 1", "spaces"),
+        ("1\n", "spaces"),
+        ("−1", "typographic minus"),
+        ("1e−3", "typographic minus"),
+        ("１２", "outside ASCII"),
+        ("٣", "outside ASCII"),
+        ("½", "outside ASCII"),
+        (".nan", "not a finite number"),
+        ("nan", "not a finite number"),
+        ("-inf", "not a finite number"),
+        ("-.Inf", "not a finite number"),
+        ("true", "truth value"),
+        ("False", "truth value"),
+        ("1/0", "divides by zero"),
+        ("-1/00", "divides by zero"),
+        ("1/-2", "signed denominator"),
+        ("1_000", "underscores"),
+        ("0x10", "base ten"),
+        ("0o17", "base ten"),
+        ("0b1", "base ten"),
+        ("010", "superfluous zero"),
+        ("1,5", "comma"),
+        ("1/2/3", "not a number"),
+        ("1.5/2", "not a number"),
+        ("--1", "not a number"),
+        ("1e", "not a number"),
+        ("e5", "not a number"),
+        (".", "not a number"),
+        ("1+2j", "not a number"),
+        ("__import__('os')", "not a number"),
+    ],
+)
+def test_says_what_is_wrong(text: str, said: str) -> None:
+    with pytest.raises(SpecError) as caught:
+        parse_exact(text)
+    assert said in caught.value.message
+    assert caught.value.remedy
+
+
+def test_typographic_minus_names_the_remedy() -> None:
+    with pytest.raises(SpecError) as caught:
+        parse_exact("\u22121")
+    assert "U+2212 MINUS SIGN" in caught.value.message
+    assert caught.value.remedy == "use the ASCII hyphen '-'"
+
+
+@pytest.mark.parametrize(
+    "text", ["1e3000000000", "1e-3000000000", "1e101", "1e-101", "9" * 101, "1e" + "9" * 98]
+)
+def test_refuses_huge_numbers_at_once(text: str) -> None:
+    start = time.perf_counter()
+    with pytest.raises(SpecError):
+        parse_exact(text)
+    assert time.perf_counter() - start < 0.1
+
+
+def test_caps_are_inclusive() -> None:
+    assert parse_exact("1e100") == 10**100
+    assert parse_exact("1e-100") == Fraction(1, 10**100)
+    assert parse_exact("9" * 100) == 10**100 - 1
+
+
+@given(st.decimals(allow_nan=False, allow_infinity=False, min_value=-(10**30), max_value=10**30))
+def test_decimals_survive_the_round_trip(number: Decimal) -> None:
+    text = str(number)
+    if len(text) <= 100 and abs(number.adjusted()) < 50 and (number or "E" not in text):
+        assert parse_exact(text) == Fraction(number)
+
+
+@given(st.fractions())
+def test_ratios_survive_the_round_trip(number: Fraction) -> None:
+    text = str(number)
+    if len(text) <= 100:
+        assert parse_exact(text) == number
+
+
+@given(st.text(max_size=120))
+def test_garbage_is_a_number_or_refused(text: str) -> None:
+    assert message_of(lambda: parse_exact(text)).isprintable()

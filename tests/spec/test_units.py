@@ -1,0 +1,117 @@
+import math
+from fractions import Fraction
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from nrs_design.errors import SpecError
+from nrs_design.spec.units import ONE, UNITS, parse_unit
+
+from .samples import message_of
+
+
+@pytest.mark.parametrize(
+    ("text", "factor"),
+    [
+        ("mm", Fraction(1, 1000)),
+        ("cm^2", Fraction(1, 10_000)),
+        ("min", Fraction(60)),
+        ("kN*mm", Fraction(1)),
+        ("N/mm", Fraction(1000)),
+        ("g*cm^2", Fraction(1, 10_000_000)),
+        ("mrad/s", Fraction(1, 1000)),
+        ("1/s", Fraction(1)),
+        ("s^-1", Fraction(1)),
+        ("rad/(mN*m)", Fraction(1000)),
+        ("((m))", Fraction(1)),
+    ],
+)
+def test_rational_factors_are_exact(text: str, factor: Fraction) -> None:
+    assert parse_unit(text).factor == factor
+    assert parse_unit(text).pi_power == 0
+
+
+@pytest.mark.parametrize(
+    ("text", "si"),
+    [
+        ("deg", math.pi / 180),
+        ("Hz", 2 * math.pi),
+        ("kHz", 2000 * math.pi),
+        ("1/deg", 180 / math.pi),
+    ],
+)
+def test_angles_and_frequencies_hold_pi(text: str, si: float) -> None:
+    assert parse_unit(text).si_factor == pytest.approx(si, rel=1e-15)
+    assert parse_unit(text).pi_power != 0
+
+
+@pytest.mark.parametrize(
+    ("a", "b"),
+    [
+        ("N*m*s/rad", "kg*m^2/(s*rad)"),
+        ("N*m*s", "kg*m^2/s"),
+        ("rad/s/rpm", "rad/(s*rpm)"),
+        ("Hz", "rad/s"),
+        ("N", "kg*m/s^2"),
+    ],
+)
+def test_same_dimension(a: str, b: str) -> None:
+    assert parse_unit(a).dimension == parse_unit(b).dimension
+
+
+@pytest.mark.parametrize(
+    ("a", "b"),
+    [
+        ("N*m/rad", "N*m"),
+        ("Hz", "1/s"),
+        ("rpm", "rad/s"),
+        ("rad/s/rpm", "1"),
+        ("rad/s*rpm", "rad/s/rpm"),
+    ],
+)
+def test_different_dimension(a: str, b: str) -> None:
+    assert parse_unit(a).dimension != parse_unit(b).dimension
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("Nm", "did you mean N*m?"),
+        ("hz", "did you mean Hz?"),
+        ("degrees", "did you mean deg?"),
+        ("sec", "did you mean s?"),
+        ("furlong", "known units are m cm mm kg"),
+        ("N·m", "write a product with '*'"),
+        ("°/s", "write deg for degrees"),
+        ("m²", "write ^2"),
+        ("m**2", "write products with *"),
+        ("m^2.5", "write products with *"),
+        ("m^", "write products with *"),
+        ("(m", "write products with *"),
+        ("m)", "write products with *"),
+        ("*m", "write products with *"),
+        ("m s", "write products with *"),
+        ("2", "write products with *"),
+        ("", "write products with *"),
+        ("m^99", "check the exponent"),
+        ("m*" * 40 + "m", "write it in base units"),
+    ],
+)
+def test_refuses_with_a_remedy(text: str, said: str) -> None:
+    with pytest.raises(SpecError) as caught:
+        parse_unit(text)
+    assert said in (caught.value.remedy or "")
+
+
+@given(st.sampled_from(sorted(UNITS)), st.sampled_from(sorted(UNITS)), st.integers(-3, 3))
+def test_products_and_powers_are_homomorphic(a: str, b: str, power: int) -> None:
+    expected = ONE.times(UNITS[a]).times(UNITS[b], power)
+    assert parse_unit(f"{a}*{b}^{power}") == expected
+    assert parse_unit(f"({a})/({b})^{-power}") == expected
+    assert parse_unit(f"1/({a}*{b}^{power})") == ONE.times(expected, -1)
+
+
+@given(st.text(max_size=80) | st.text("mskgradN*/^()1-29 ", max_size=80))
+def test_garbage_is_a_unit_or_refused(text: str) -> None:
+    assert message_of(lambda: parse_unit(text)).isprintable()

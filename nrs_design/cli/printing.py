@@ -9,6 +9,10 @@ from contextlib import contextmanager
 from typing import Any
 
 
+# Output into a file or a pipe: wide enough that no table is folded.
+WIDE = 160
+
+
 def print_json(command: str, content: dict[str, Any]) -> None:
     """Print the versioned envelope of a command."""
     envelope = {"schema": f"nrs-design/{command}/1", **content}
@@ -26,7 +30,7 @@ def print_table(title: str, columns: Sequence[str], rows: Sequence[Sequence[str]
         table.add_column(column, overflow="fold")
     for row in rows:
         table.add_row(*row)
-    width = None if sys.stdout.isatty() else 110
+    width = None if sys.stdout.isatty() else WIDE
     Console(width=width, markup=False, highlight=False).print(table)
 
 

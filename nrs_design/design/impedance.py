@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
@@ -31,10 +31,12 @@ from nrs_design.errors import DesignError
 # and the optimal Bt within 3e-4.
 NODES = 256
 _SCAN_NODES = 32
+_VALLEY_NODES = 64
 _BLOCK = 256
 
 _SCAN = (25, 41)
 _STARTS = 4
+_VALLEY_TOLERANCE = 1e-3
 _STEP_TOLERANCE = 1e-5
 _MAX_ROUNDS = 200
 
@@ -230,9 +232,10 @@ def optimize_impedance(problem: ImpedanceProblem) -> ImpedanceOptimum:
     """Find the global minimum of the cost over the stable admittances within the bounds.
 
     A scan over the whole box (with fewer frequencies, dense towards small Mt and in log Bt)
-    names the best local minima; a pattern search with the full cost refines each of them, and
-    moves before it shrinks, so that a minimum outside the cell of its start is still reached.
-    The search is deterministic. An optimum on a bound is returned exactly as the bound.
+    finds the best Bt of every Mt, and the best local minima along that valley; a pattern search
+    with the full cost refines each of them, and moves before it shrinks, so that a minimum
+    away from its start is still reached. The search is deterministic. An optimum on a bound is
+    returned exactly as the bound.
 
     Parameters
     ----------
@@ -249,18 +252,15 @@ def optimize_impedance(problem: ImpedanceProblem) -> ImpedanceOptimum:
     DesignError
         If no scanned admittance within the bounds gives a stable loop.
     """
-    u, v, step = _scan(problem)
-    objective = _objective(problem, NODES)
-    u, v, evaluations = _refine(objective, u, v, step)
-    u, v, costs = _snap(objective, u, v)
+    found = _refine(_objective(problem, NODES), _scan(problem), _STEP_TOLERANCE)
+    u, v, costs = _snap(_objective(problem, NODES), found.u, found.v)
     best = int(np.argmin(costs))
     Mt, Bt = _admittance(problem, u[best : best + 1], v[best : best + 1])
-    scanned = math.prod(_scan_shape(problem))
     return ImpedanceOptimum(
         Mt=float(Mt[0]),
         Bt=float(Bt[0]),
         cost=float(costs[best]),
-        evaluations=scanned + evaluations + 4 * len(u),
+        evaluations=found.evaluations + 4 * len(u),
     )
 
 
@@ -287,6 +287,20 @@ class _Samples:
         displayed = np.abs(self.target - 0.5 * np.log10(squared)).mean(axis=1)
         robust = np.sqrt(squared).mean(axis=1)
         return np.asarray(self.weights[0] * displayed + self.weights[1] * robust)
+
+
+@dataclass(frozen=True, eq=False)
+class _Points:
+    """Points of the unit square that are searched side by side.
+
+    `step` is the pattern's size in u and v, `slope` the valley's dv/du at each point.
+    """
+
+    u: FloatArray
+    v: FloatArray
+    step: FloatArray
+    slope: FloatArray
+    evaluations: int
 
 
 def _sample(problem: ImpedanceProblem, nodes: int) -> _Samples:
@@ -357,54 +371,76 @@ def _scan_shape(problem: ImpedanceProblem) -> tuple[int, int]:
     return (1 if fixed_mass else _SCAN[0], 1 if fixed_damping else _SCAN[1])
 
 
-def _scan(problem: ImpedanceProblem) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Return the best local minima of a scan, and its spacing (0 where a parameter is fixed)."""
-    rows, columns = _scan_shape(problem)
-    u, v = np.meshgrid(np.linspace(0, 1, rows), np.linspace(0, 1, columns), indexing="ij")
-    costs = _objective(problem, _SCAN_NODES)(u.ravel(), v.ravel()).reshape(u.shape)
-    if not np.isfinite(costs).any():
+def _scan(problem: ImpedanceProblem) -> _Points:
+    """Return the best local minima over Mt of the cost minimized over Bt."""
+    shape = _scan_shape(problem)
+    u, v = np.meshgrid(*(np.linspace(0, 1, count) for count in shape), indexing="ij")
+    costs = _objective(problem, _SCAN_NODES)(u.ravel(), v.ravel()).reshape(shape)
+    rows = np.flatnonzero(np.isfinite(costs).any(axis=1))
+    if not len(rows):
         raise DesignError(
             f"no admittance with Mt in {list(problem.mass_bounds)} kg m^2 and Bt in "
             f"{list(problem.damping_bounds)} N m s/rad keeps the loop stable at "
             f"{problem.loop.stiffness:.6g} N m/rad",
             remedy="raise the upper bound of Bt or lower the lower bound of Mt",
         )
-    starts = np.flatnonzero(_local_minima(costs))
-    starts = starts[np.argsort(costs.ravel()[starts], kind="stable")][:_STARTS]
-    step = np.array([1 / (rows - 1) if rows > 1 else 0, 1 / (columns - 1) if columns > 1 else 0])
-    return u.ravel()[starts], v.ravel()[starts], step
+    spacing = [1 / (count - 1) if count > 1 else 0.0 for count in shape]
+    columns = np.argmin(costs[rows], axis=1)
+    valley = _Points(
+        u=u[rows, 0],
+        v=v[0, columns],
+        step=np.array([0.0, spacing[1]]),
+        slope=np.zeros(len(rows)),
+        evaluations=costs.size,
+    )
+    return _starts(problem, valley, spacing[0])
 
 
-def _local_minima(costs: FloatArray) -> BoolArray:
-    """Mark the finite entries that no neighbor undercuts."""
-    padded = np.pad(costs, 1, constant_values=np.inf)
-    rows, columns = costs.shape
-    lowest = np.isfinite(costs)
-    for i in range(3):
-        for j in range(3):
-            lowest &= costs <= padded[i : i + rows, j : j + columns]
-    return lowest
+def _starts(problem: ImpedanceProblem, valley: _Points, spacing: float) -> _Points:
+    """Sharpen the valley ``Bt(Mt)`` of the scan and pick its lowest local minima."""
+    objective = _objective(problem, _VALLEY_NODES)
+    valley = _refine(objective, valley, _VALLEY_TOLERANCE)
+    costs = objective(valley.u, valley.v)
+    before, after = (np.r_[np.inf, costs[:-1]], np.r_[costs[1:], np.inf])
+    minima = np.flatnonzero((costs <= before) & (costs <= after))
+    minima = minima[np.argsort(costs[minima], kind="stable")][:_STARTS]
+    slope = np.gradient(valley.v, valley.u) if len(valley.u) > 1 else valley.slope
+    return _Points(
+        u=valley.u[minima],
+        v=valley.v[minima],
+        step=np.array([spacing / 2, valley.step[1] / 4]),
+        slope=slope[minima],
+        evaluations=valley.evaluations + len(costs),
+    )
 
 
-def _refine(
-    objective: _Objective, u: FloatArray, v: FloatArray, step: FloatArray
-) -> tuple[FloatArray, FloatArray, int]:
-    """Search from every start on a 5 x 5 pattern that moves while it improves, else shrinks."""
-    pattern = [(0, 0)] + [(i, j) for i in range(-2, 3) for j in range(-2, 3) if i or j]
-    offsets = np.unique(np.array(pattern) * (step > 0), axis=0)
-    offsets = offsets[np.argsort(np.abs(offsets).sum(axis=1), kind="stable")]  # the center first
-    scale, count = np.ones(len(u)), 0
+def _refine(objective: _Objective, start: _Points, tolerance: float) -> _Points:
+    """Search from every point on a 5 x 5 pattern that moves while it improves, else shrinks.
+
+    The pattern is sheared along the valley, whose walls are kinks: a pattern across it would
+    find every neighbor higher and stop halfway down.
+    """
+    offsets = _pattern(start.step > 0)
+    u, v, scale, count = start.u, start.v, np.ones(len(start.u)), start.evaluations
     for _ in range(_MAX_ROUNDS):
-        if scale.max() * step.max() <= _STEP_TOLERANCE:
+        if scale.max() * start.step.max() <= tolerance:
             break
-        moves = scale[:, None, None] * step * offsets
-        tried = np.clip(np.stack([u, v], axis=1)[:, None, :] + moves, 0.0, 1.0)
-        costs = objective(tried[..., 0].ravel(), tried[..., 1].ravel()).reshape(tried.shape[:2])
-        best = np.argmin(costs, axis=1)
-        u, v = tried[np.arange(len(u)), best].T
+        moves = scale[:, None, None] * start.step * offsets
+        across = moves[..., 1] + start.slope[:, None] * moves[..., 0]
+        tried_u = np.clip(u[:, None] + moves[..., 0], 0.0, 1.0)
+        tried_v = np.clip(v[:, None] + across, 0.0, 1.0)
+        costs = objective(tried_u.ravel(), tried_v.ravel()).reshape(tried_u.shape)
+        rows, best = np.arange(len(u)), np.argmin(costs, axis=1)
+        u, v = tried_u[rows, best], tried_v[rows, best]
         scale = np.where(best == 0, scale / 4, scale)
         count += costs.size
-    return u, v, count
+    return replace(start, u=u, v=v, evaluations=count)
+
+
+def _pattern(free: BoolArray) -> FloatArray:
+    """Return the offsets in u and v, the center first; a parameter that is not free stays."""
+    axes = [[0.0, -1.0, 1.0, -2.0, 2.0] if moves else [0.0] for moves in free]
+    return np.array([(i, j) for i in axes[0] for j in axes[1]])
 
 
 def _snap(

@@ -28,7 +28,7 @@ from ruamel.yaml.events import (
 
 from nrs_design.errors import SpecError
 from nrs_design.spec.exact import quoted
-from nrs_design.spec.syntax import explain_syntax
+from nrs_design.spec.syntax import explain_syntax, fault_mark
 
 MAX_BYTES = 1024 * 1024
 MAX_DEPTH = 20
@@ -218,7 +218,7 @@ class _Builder:
                 yield event
         except YAMLError as error:
             if isinstance(error, MarkedYAMLError):
-                mark = error.problem_mark or error.context_mark
+                mark = fault_mark(error)
                 index = mark.index if mark else index
             else:
                 index = getattr(error, "position", index)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ruamel.yaml.error import MarkedYAMLError, YAMLError
+from ruamel.yaml.error import MarkedYAMLError, StringMark, YAMLError
 from ruamel.yaml.reader import ReaderError
 
 # The first fragment that occurs in the parser's report decides.
@@ -42,6 +42,13 @@ def explain_syntax(error: YAMLError) -> tuple[str, str]:
         if fragment in report:
             return message, remedy
     return "this is not valid YAML", "check indentation, colons and quotes"
+
+
+def fault_mark(error: MarkedYAMLError) -> StringMark | None:
+    """Where the fault is: what was begun and not finished is best shown at its beginning."""
+    begun = error.context in ("while scanning a simple key", "while scanning a quoted scalar")
+    first, second = error.problem_mark, error.context_mark
+    return (second or first) if begun else (first or second)
 
 
 def _report(error: YAMLError) -> str:

@@ -84,7 +84,7 @@ def test_unicode_separators_are_not_lines() -> None:
         ("a: [1, null]\n", (1, 8), "a value is missing"),
         ("a:\n\t- 1\n", (2, 1), "a tab"),
         ("a: b: c\n", (1, 5), "a second ': '"),
-        ('a: "x\n', (2, 1), "quoted text"),
+        ('a: "x\n', (1, 4), "quoted text"),
         ("a: [1, 2\nb: 3\n", (2, 2), "not closed"),
         ("a: {b: 1\n", (2, 1), "not closed"),
         ("a: 1\n  b: 2\n", (2, 4), "a second ': '"),
@@ -114,7 +114,7 @@ def test_depth_is_limited() -> None:
     assert "nested deeper" in refused(nested(MAX_DEPTH + 1)).message
 
 
-@pytest.mark.parametrize("opening", ["[", "{a: ", "- ", "? ", "[{a: "])
+@pytest.mark.parametrize("opening", ["[", "{a: ", "- ", "[{a: "])
 def test_deep_nesting_is_refused_before_the_stack_is_used_up(opening: str) -> None:
     assert "nested deeper" in refused(opening * 100_000).message
 

@@ -1,0 +1,44 @@
+"""Tasks: lint, types and tests by default; slow tests and benchmarks by name."""
+
+from __future__ import annotations
+
+import nox
+
+nox.options.sessions = ["lint", "types", "tests"]
+nox.options.default_venv_backend = "venv"
+
+CONSTRAINTS = ("-c", "constraints.txt")
+SOURCES = ("nrs_design", "tests", "benchmarks", "noxfile.py")
+
+
+@nox.session
+def lint(session: nox.Session) -> None:
+    session.install("ruff", *CONSTRAINTS)
+    session.run("ruff", "check", *SOURCES)
+    session.run("ruff", "format", "--check", *SOURCES)
+
+
+@nox.session
+def types(session: nox.Session) -> None:
+    session.install(".", "mypy", "scipy-stubs", "types-reportlab", *CONSTRAINTS)
+    session.run("mypy")
+
+
+@nox.session
+def tests(session: nox.Session) -> None:
+    session.install(".[test]", *CONSTRAINTS)
+    session.run("pytest", "-n", "2", "-m", "not slow", *session.posargs)
+
+
+@nox.session
+def slow(session: nox.Session) -> None:
+    """Run the exhaustive tests that the default session leaves out."""
+    session.install(".[test]", *CONSTRAINTS)
+    session.run("pytest", "-n", "2", "-m", "slow", *session.posargs)
+
+
+@nox.session
+def benchmarks(session: nox.Session) -> None:
+    """Measure our speed beside the peers', as ratios in one run."""
+    session.install(".[crosscheck]", *CONSTRAINTS)
+    session.run("python", "-m", "benchmarks", *session.posargs)

@@ -1,0 +1,307 @@
+from fractions import Fraction
+
+import pytest
+from pydantic import ValidationError
+
+from nrs_design.spec import (
+    ElasticSpec,
+    ForceControllerSpec,
+    ImpedanceControllerSpec,
+    KelvinVoigtSpec,
+    PositionControllerSpec,
+)
+
+from .samples import FORCE, IMPEDANCE, interaction, place_of, refusal, spoiled
+
+
+def test_reads_quantities_and_defaults() -> None:
+    spec = interaction(IMPEDANCE)
+    assert spec.name == "sample"
+    assert spec.title == ""
+    assert spec.motion_loop.damping_ratio == Fraction(707, 1000)
+    assert spec.motion_loop.derivative_gain is None
+    assert spec.limits.torque.exact == Fraction(3, 10)
+    assert spec.design.significant_digits == 4
+    assert spec.coordinates == "deflection"
+    insertion = spec.controllers["insertion"]
+    assert isinstance(insertion, ImpedanceControllerSpec)
+    assert insertion.contacts == ("soft",)
+    assert insertion.desired_impedance is None
+    assert insertion.desired_impedance_ratio is None
+    assert insertion.weights.displayed == insertion.weights.sensitivity == Fraction(1, 2)
+
+
+def test_fixed_gains_are_bounds_of_one_value() -> None:
+    insertion = interaction(IMPEDANCE).controllers["insertion"]
+    assert isinstance(insertion, ImpedanceControllerSpec)
+    assert insertion.Mt.fixed
+    assert insertion.Mt.min == insertion.Mt.max
+    assert insertion.Mt.min.exact == Fraction(1, 100)
+    assert not insertion.Bt.fixed
+    assert (insertion.Bt.min.si, insertion.Bt.max.si) == (0.1, 20.0)
+
+
+def test_linear_stiffness_is_converted_at_the_lever_arm() -> None:
+    # Thesis 6.3.1: 747.1461 N/m at 0.24 m is 43.0356 N*m/rad.
+    soft = interaction(IMPEDANCE).environments["soft"]
+    assert isinstance(soft, ElasticSpec)
+    nominal = soft.rotational_stiffness.nominal
+    assert nominal.exact == Fraction("747.1461") * Fraction("0.24") ** 2
+    assert nominal.text == "43.0356 N*m/rad"
+    assert soft.rotational_stiffness.fixed
+
+
+def test_stiff_specimen_of_the_thesis() -> None:
+    # Thesis 6.4.1: 1070.5 N/m at 0.24 m is 61.6608 N*m/rad.
+    text = spoiled(
+        IMPEDANCE,
+        "stiffness: 747.1461 N/m",
+        "stiffness: {nominal: 1070.5 N/m, range: [1055.4 N/m, 1079.6 N/m]}",
+    )
+    stiffness = interaction(text).environments["soft"].rotational_stiffness
+    assert stiffness.nominal.si == pytest.approx(61.6608, rel=1e-5)
+    assert not stiffness.fixed
+    assert [q.exact for q in stiffness.range] == [
+        Fraction("1055.4") * Fraction("0.0576"),
+        Fraction("1079.6") * Fraction("0.0576"),
+    ]
+
+
+def test_kelvin_voigt() -> None:
+    hand = interaction(IMPEDANCE).environments["hand"]
+    assert isinstance(hand, KelvinVoigtSpec)
+    assert hand.rotational_stiffness.nominal.exact == 43
+    assert hand.rotational_damping.nominal.exact == Fraction(1, 2)
+    linear = interaction(
+        spoiled(
+            IMPEDANCE,
+            "stiffness: 43 N*m/rad\n    damping: 0.5 N*m*s/rad",
+            "stiffness: 1 N/mm\n    damping: 10 N*s/m\n    lever_arm: 240 mm",
+        )
+    ).environments["hand"]
+    assert isinstance(linear, KelvinVoigtSpec)
+    assert linear.rotational_stiffness.nominal.exact == Fraction("57.6")
+    assert linear.rotational_damping.nominal.exact == Fraction("0.576")
+    assert linear.rotational_damping.nominal.unit == "N*m*s/rad"
+
+
+def test_position_and_force() -> None:
+    spec = interaction(FORCE)
+    force = spec.controllers["force"]
+    assert isinstance(spec.controllers["position"], PositionControllerSpec)
+    assert isinstance(force, ForceControllerSpec)
+    assert force.proportional_gain is not None
+    assert force.proportional_gain.exact == Fraction(1, 50)
+    assert force.contacts == ("soft",)
+
+
+def test_environments_may_be_missing_without_contact() -> None:
+    head, _, rest = FORCE.partition("environments:\n")
+    tail = "controllers:\n  free: {type: position}\nswitching: arbitrary\n"
+    assert interaction(head + tail).environments == {}
+    error = refusal(head + "controllers:" + rest.partition("controllers:")[2])
+    assert "there is no environment 'soft'" in error.message
+
+
+def test_inertia_without_mass_and_other_damping_units() -> None:
+    text = spoiled(IMPEDANCE, "Mt: 0.01 kg*m^2", "Mt: 0 kg*m^2")
+    text = spoiled(text, "{min: 0.1 N*m*s/rad, max: 20 N*m*s/rad}", "2.15 kg*m^2/s")
+    insertion = interaction(text).controllers["insertion"]
+    assert isinstance(insertion, ImpedanceControllerSpec)
+    assert insertion.Mt.max.exact == 0
+    assert insertion.Bt.min.exact == Fraction("2.15")
+
+
+def test_transfer_function_is_read_exactly() -> None:
+    # Thesis 6.1 as printed.
+    loop = "  transfer_function: {numerator: [0.99, 56.82], denominator: [0.0351, 1.99, 56.82]}\n"
+    spec = interaction(spoiled(IMPEDANCE, "limits:", loop + "limits:"))
+    tf = spec.motion_loop.transfer_function
+    assert tf is not None
+    assert tf.numerator == (Fraction("0.99"), Fraction("56.82"))
+    assert tf.denominator == (Fraction("0.0351"), Fraction("1.99"), Fraction("56.82"))
+
+
+def test_is_frozen() -> None:
+    spec = interaction(IMPEDANCE)
+    with pytest.raises(ValidationError, match="frozen"):
+        spec.__setattr__("name", "other")
+
+
+# What is replaced in the sample, by what, the piece that the error must point at (in the spoiled
+# text), and words of message and remedy.
+IMPEDANCE_FAULTS = [
+    ("name: sample", "name: Sample", "Sample", "not a name"),
+    ("name: sample", "name: ../etc/passwd", "../etc", "not a name"),
+    ("name: sample", "name: " + "a" * 65, "aaaa", "not a name"),
+    ("name: sample", "name: [a]", "[a]", "single value"),
+    ("name: sample", "nane: sample", "nane", "did you mean name?"),
+    ("name: sample", 'name: a\ntitle: "a\\nb"', '"a\\nb"', "one line"),
+    ("name: sample", 'name: a\ntitle: "\\e[31m"', '"\\e', "printable"),
+    ("name: sample", "name: a\ntitle: " + "t" * 201, "ttt", "201 characters"),
+    ("  gain: 4.8417e-4 rad/s/rpm\n", "", "actuator", "`actuator.gain` is missing"),
+    ("4.8417e-4 rad/s/rpm", "4.8417e-4 rad/s", "4.8417e-4", "write '4.8417e-4 rad/s/rpm'"),
+    ("0.0351 s", "0 s", "0 s", "must be positive"),
+    ("0.0351 s", "-0.0351 s", "-0.0351", "must be positive"),
+    ("0.0351 s", "0.0351", "0.0351", "has no unit"),
+    ("0.0351 s", "{value: 1 s}", "{value", "single value"),
+    ("time_constant", "time_constnat", "time_constnat", "did you mean time_constant?"),
+    ("0.707", "1", "1\n  settling", "between 0 and 1"),
+    ("0.707", "0", "0\n  settling", "between 0 and 1"),
+    ("0.707", "true", "true", "truth value"),
+    ("0.707", "0.7 rad", "0.7 rad", "not a number"),
+    ("limits: {", "limits: [", "[velocity", "not closed"),
+    ("8 deg/s", "8 rpm", "8 rpm", "never converted"),
+    ("2 Hz", "2 1/s", "2 1/s", "write '2 Hz'"),
+    ("model: elastic", "model: elastc", "soft", "did you mean elastic?"),
+    ("    model: elastic\n", "", "soft", "`environments.soft.model` is missing"),
+    ("747.1461 N/m", "43 N*m/rad", "43 N*m/rad", "remove lever_arm"),
+    ("747.1461 N/m", "43 N*m", "43 N*m", "write '43 N*m/rad'"),
+    ("747.1461 N/m", "0 N/m", "0 N/m", "must be positive"),
+    (
+        "747.1461 N/m",
+        "{nominal: 700 N/m, range: [720 N/m, 768 N/m]}",
+        "700 N/m",
+        "outside the range",
+    ),
+    ("747.1461 N/m", "{nominal: 1 N/m, range: [2 N/m, 1 N/m]}", "[2 N/m", "below its start"),
+    ("747.1461 N/m", "{nominal: 1 N/m, range: [1 N/m]}", "[1 N/m]", "[lowest, highest]"),
+    ("747.1461 N/m", "{nominal: 1 N/m, range: [1 N*m/rad, 2 N*m/rad]}", "[1 N*m", "one unit"),
+    ("747.1461 N/m", "{nominal: 1 N/m, range: [1 N/m, 2 s]}", "2 s", "not a stiffness"),
+    ("747.1461 N/m", "{nominal: 1 N/m, rang: [1 N/m, 2 N/m]}", "rang:", "did you mean range?"),
+    ("747.1461 N/m", "{range: [1 N/m, 2 N/m]}", "{range", "nominal` is missing"),
+    ("747.1461 N/m", "[1 N/m]", "[1 N/m]", "expected a mapping"),
+    ("    lever_arm: 0.24 m\n", "", "747.1461", "there is no lever_arm"),
+    ("0.24 m", "0.24 rad", "0.24 rad", "not a length"),
+    ("    damping: 0.5 N*m*s/rad\n", "", "hand", "damping` is missing"),
+    ("0.5 N*m*s/rad", "-1 N*m*s/rad", "-1 N*m", "zero or positive"),
+    ("0.5 N*m*s/rad", "5 N*s/m", "5 N*s/m", "there is no lever_arm"),
+    ("  soft:", "  1:", "1:", "not text"),
+    ("  soft:", "  'so ft':", "'so ft'", "not a name"),
+    ("  hand:", "  soft:", "soft:\n    model: kelvin", "there twice"),
+    ("type: impedance", "type: impedence", "insertion", "did you mean impedance?"),
+    ("environment: soft", "environment: sofd", "sofd", "did you mean soft?"),
+    ("environment: soft", "environment: soft\n    contacts: []", "[]", "must not be empty"),
+    (
+        "environment: soft",
+        "environment: soft\n    contacts: soft",
+        "soft\n    Mt",
+        "expected a list",
+    ),
+    ("environment: soft", "environment: soft\n    contacts: [hand, hand]", "hand]", "listed twice"),
+    (
+        "environment: soft",
+        "environment: soft\n    contacts: [soft, bone]",
+        "bone",
+        "no environment",
+    ),
+    ("    environment: soft\n", "", "insertion", "environment` is missing"),
+    ("Mt: 0.01 kg*m^2", "Mt: -0.01 kg*m^2", "-0.01", "zero or positive"),
+    ("Mt: 0.01 kg*m^2", "Mt: 0.01 kg", "0.01 kg", "square of its lever arm"),
+    ("Mt: 0.01 kg*m^2", "Mt: {min: 1 kg*m^2}", "{min: 1 kg", "max` is missing"),
+    ("Mt: 0.01 kg*m^2", "Mt: {min: 2 kg*m^2, max: 1 kg*m^2}", "1 kg*m^2}", "below min"),
+    ("min: 0.1 N*m*s/rad", "min: 0 N*m*s/rad", "0 N*m*s/rad, max", "must be positive"),
+    ("Mt: 0.01", "mt: 0.01", "insertion", "Mt` is missing"),
+    (
+        "Mt: 0.01",
+        "desired_impedance: 2 N*m*s/rad\n    desired_impedance_ratio: 0.5\n    Mt: 0.01",
+        "0.5\n    Mt",
+        "exclude each other",
+    ),
+    ("Mt: 0.01", "desired_impedance_ratio: 0\n    Mt: 0.01", "0\n    Mt", "not positive"),
+    (
+        "Mt: 0.01",
+        "weights: {displayed: 0, sensitivity: 0}\n    Mt: 0.01",
+        "weights",
+        "both weights are zero",
+    ),
+    ("Mt: 0.01", "weights: {displayed: -1}\n    Mt: 0.01", "-1}", "zero or positive"),
+    ("switching: arbitrary\n", "", "kind", "`switching` is missing"),
+    ("switching: arbitrary", "switching: slow", "slow", "'arbitrary'"),
+    ("switching: arbitrary", "switching: {dwell_time: 1 s}", "switching", "'arbitrary'"),
+    ("switching", "coordinates: velocity\nswitching", "velocity\nsw", "'deflection' or 'force'"),
+    ("switching", "design: {significant_digits: 8}\nswitching", "8}\n", "from 1 to 7"),
+    ("switching", "design: {significant_digits: 2.5}\nswitching", "2.5", "from 1 to 7"),
+    (
+        "limits:",
+        "  transfer_function: {numerator: [1, 2], denominator: [1, 2]}\nlimits:",
+        "[1, 2], den",
+        "not strictly proper",
+    ),
+    (
+        "limits:",
+        "  transfer_function: {numerator: [1], denominator: [0, 2]}\nlimits:",
+        "0, 2]",
+        "highest coefficient is zero",
+    ),
+    (
+        "limits:",
+        "  transfer_function: {numerator: [], denominator: [1, 2]}\nlimits:",
+        "[], den",
+        "must not be empty",
+    ),
+    ("  insertion:", "  free: {type: position}\n  insertion:", "impedance", "is mixed with"),
+]
+
+
+@pytest.mark.parametrize(("old", "new", "at", "said"), IMPEDANCE_FAULTS)
+def test_refuses_with_place_and_remedy(old: str, new: str, at: str, said: str) -> None:
+    text = spoiled(IMPEDANCE, old, new)
+    error = refusal(text)
+    assert said in f"{error.message} ({error.remedy})"
+    if "not closed" not in said:
+        assert (error.line, error.column) == place_of(text, at)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "at", "said"),
+    [
+        ("    proportional_gain: 0.02 rad/(N*m)\n", "", "force", "neither proportional_gain nor"),
+        ("(N*m)\n", "(N*m)\n    damping_ratio: 0.741\n", "0.741", "exclude each other"),
+        ("0.02 rad/(N*m)", "0.02 1/(N*m)", "0.02 1/", "write '0.02 rad/(N*m)'"),
+        ("0.02 rad/(N*m)", "0.02 rad/N*m", "0.02 rad/N", "not a proportional force gain"),
+        ("{type: position}", "{type: position, contacts: [soft]}", "contacts", "unknown key"),
+        ("{type: position}", "{kind: position}", "position:", "type` is missing"),
+        ("{type: position}", "position", "position\n", "expected a mapping"),
+    ],
+)
+def test_refuses_force_specs(old: str, new: str, at: str, said: str) -> None:
+    text = spoiled(FORCE, old, new)
+    error = refusal(text)
+    assert said in f"{error.message} ({error.remedy})"
+    assert (error.line, error.column) == place_of(text, at)
+
+
+def test_a_controller_is_told_its_own_keys_only() -> None:
+    error = refusal(spoiled(FORCE, "{type: position}", "{type: position, contact: [soft]}"))
+    assert error.remedy == "write keys here are type"
+
+
+def test_at_least_one_controller() -> None:
+    head = IMPEDANCE.partition("controllers:")[0]
+    error = refusal(head + "controllers: {}\nswitching: arbitrary\n")
+    assert "controllers: must not be empty" in error.message
+
+
+def test_reports_the_first_fault_and_counts_the_others() -> None:
+    text = spoiled(IMPEDANCE, "0.0351 s", "0.0351 m")
+    text = spoiled(text, "8 deg/s", "8 m")
+    text = spoiled(text, "747.1461 N/m", "nan N/m")
+    error = refusal(text)
+    assert "actuator.time_constant" in error.message
+    assert error.message.endswith("; 2 more faults in this file")
+    one = refusal(spoiled(spoiled(IMPEDANCE, "0.0351 s", "0.0351 m"), "8 deg/s", "8 m"))
+    assert one.message.endswith("; 1 more fault in this file")
+
+
+def test_names_may_equal_keys() -> None:
+    text = IMPEDANCE.replace("insertion:", "environment:").replace("soft", "model")
+    assert set(interaction(text).controllers) == {"environment"}
+    error = refusal(spoiled(text, "    Mt: 0.01 kg*m^2\n", "    Mm: 0.01 kg*m^2\n"))
+    assert "`controllers.environment.Mt` is missing" in error.message
+
+
+def test_entries_are_limited() -> None:
+    many = "".join(f"  e{i}: {{model: elastic, stiffness: 1 N*m/rad}}\n" for i in range(65))
+    error = refusal(spoiled(IMPEDANCE, "  soft:\n", many + "  soft:\n"))
+    assert "environments: is too long" in error.message

@@ -1,0 +1,112 @@
+from fractions import Fraction
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from .samples import SWITCHED, place_of, refusal, spoiled, switched
+
+
+def test_reads_dayawansa_and_martin_exactly() -> None:
+    spec = switched(SWITCHED)
+    assert spec.time == "continuous"
+    assert spec.dimension == 2
+    assert [mode.name for mode in spec.modes] == ["a", "b"]
+    assert spec.modes[1].A == ((-1, -6), (Fraction(1, 6), -1))
+
+
+def test_decimals_are_not_rounded() -> None:
+    # The eigenvalue of this matrix is exactly 0 in decimal, not in binary arithmetic.
+    text = spoiled(SWITCHED, "[[-1, -1], [1, -1]]", "[[-0.36, -0.48], [-0.48, -0.64]]")
+    (a, b), (c, d) = switched(text).modes[0].A
+    assert a * d - b * c == 0
+
+
+def test_numbers_may_name_modes() -> None:
+    assert switched(spoiled(SWITCHED, "name: a", "name: 1")).modes[0].name == "1"
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "at", "said"),
+    [
+        ("time: continuous", "time: contiuous", "contiuous", "'continuous' or 'discrete'"),
+        ("time: continuous\n", "", "kind", "`time` is missing"),
+        ("name: b", "name: a", "a, A: [[-1, -6]", "another mode is named 'a'"),
+        ("name: b", "name: a b", "a b", "not a name"),
+        ("[[-1, -1], [1, -1]]", "[[-1, -1], [1]]", "[1]]", "row 2 has 1 entries, the first has 2"),
+        ("[[-1, -1], [1, -1]]", "[[-1, -1]]", "[[-1, -1]]", "1 x 2, not square"),
+        ("[[-1, -1], [1, -1]]", "[[-1]]", "[[-1, -6]", "2 x 2, the first mode's is 1 x 1"),
+        ("[[-1, -1], [1, -1]]", "[]", "[]", "must not be empty"),
+        ("[[-1, -1], [1, -1]]", "[[]]", "[]]", "must not be empty"),
+        ("[[-1, -1], [1, -1]]", "[-1, -1]", "-1, -1]}", "expected a list"),
+        ("[[-1, -1], [1, -1]]", "-1", "-1}", "expected a list"),
+        ("[[-1, -1], [1, -1]]", "{a: 1}", "{a: 1}", "expected a list"),
+        ("[[-1, -1], [1, -1]]", "[[-1, [1]], [1, -1]]", "[1]]", "single value"),
+        ("[[-1, -1], [1, -1]]", "[[-1, .nan], [1, -1]]", ".nan", "not a finite number"),
+        ("[[-1, -1], [1, -1]]", "[[-1, -.inf], [1, -1]]", "-.inf", "not a finite number"),
+        ("[[-1, -1], [1, -1]]", "[[-1, true], [1, -1]]", "true", "truth value"),
+        ("[[-1, -1], [1, -1]]", "[[-1, −1], [1, -1]]", "−1", "ASCII hyphen"),
+        ("[[-1, -1], [1, -1]]", "[[-1, １], [1, -1]]", "１", "outside ASCII"),
+        ("[[-1, -1], [1, -1]]", "[[-1, 1/0], [1, -1]]", "1/0", "divides by zero"),
+        ("[[-1, -1], [1, -1]]", "[[-1, 1e3000000000], [1, -1]]", "1e3", "exponent"),
+        ("[[-1, -1], [1, -1]]", "[[-1, 0x1], [1, -1]]", "0x1", "base ten"),
+        ("[[-1, -1], [1, -1]]", "[[-1, 1 1/s], [1, -1]]", "1 1/s", "not a number"),
+        ("A: [[-1, -1]", "B: [[-1, -1]", "{name: a", "A` is missing"),
+        ("{name: a, ", "{", "{A: ", "name` is missing"),
+        ("{name: a, A: [[-1, -1], [1, -1]]}", "a", "a\n  - {name: b", "expected a mapping"),
+        ("switching: arbitrary", "switching: 1", "1\n", "'arbitrary'"),
+        ("switching: arbitrary", "swiching: arbitrary", "kind", "`switching` is missing"),
+        ("switching", "resets: []\nswitching", "resets", "unknown key `resets`"),
+    ],
+)
+def test_refuses_with_place_and_remedy(old: str, new: str, at: str, said: str) -> None:
+    text = spoiled(SWITCHED, old, new)
+    error = refusal(text)
+    assert said in f"{error.message} ({error.remedy})"
+    line, column = place_of(text, at)
+    assert error.line == line
+    if at not in ("a, A: [[-1, -6]", "1\n"):
+        assert error.column == column
+
+
+@pytest.mark.parametrize("modes", ["[]", "{}", "a"])
+def test_refuses_an_empty_or_absent_list_of_modes(modes: str) -> None:
+    head = SWITCHED.partition("modes:")[0]
+    assert "modes:" in refusal(f"{head}modes: {modes}\nswitching: arbitrary\n").message
+
+
+def _modes(count: int, n: int) -> str:
+    row = "[" + ", ".join(["-1"] * n) + "]"
+    matrix = "[" + ", ".join([row] * n) + "]"
+    return "".join(f"  - {{name: m{i}, A: {matrix}}}\n" for i in range(count))
+
+
+def test_dimension_is_limited() -> None:
+    head = SWITCHED.partition("  - ")[0]
+    tail = "switching: arbitrary\n"
+    assert switched(head + _modes(1, 64) + tail).dimension == 64
+    assert "is too long" in refusal(head + _modes(1, 65) + tail).message
+
+
+@pytest.mark.slow
+def test_number_of_modes_is_limited() -> None:
+    head = SWITCHED.partition("  - ")[0]
+    tail = "switching: arbitrary\n"
+    assert len(switched(head + _modes(20_000, 1) + tail).modes) == 20_000
+    assert "modes: is too long" in refusal(head + _modes(20_001, 1) + tail).message
+
+
+@given(
+    st.integers(1, 4).flatmap(
+        lambda n: st.lists(
+            st.lists(st.fractions(max_denominator=1000), min_size=n, max_size=n),
+            min_size=n,
+            max_size=n,
+        )
+    )
+)
+def test_matrices_survive_the_round_trip(rows: list[list[Fraction]]) -> None:
+    matrix = "[" + ", ".join("[" + ", ".join(f'"{x}"' for x in row) + "]" for row in rows) + "]"
+    head = SWITCHED.partition("  - ")[0]
+    spec = switched(f"{head}  - {{name: a, A: {matrix}}}\nswitching: arbitrary\n")
+    assert spec.modes[0].A == tuple(map(tuple, rows))

@@ -372,7 +372,7 @@ def _scan_shape(problem: ImpedanceProblem) -> tuple[int, int]:
 
 
 def _scan(problem: ImpedanceProblem) -> _Points:
-    """Return the best local minima over Mt of the cost minimized over Bt."""
+    """Return the starts of the search: local minima of a scan, and those along its valley."""
     shape = _scan_shape(problem)
     u, v = np.meshgrid(*(np.linspace(0, 1, count) for count in shape), indexing="ij")
     costs = _objective(problem, _SCAN_NODES)(u.ravel(), v.ravel()).reshape(shape)
@@ -385,33 +385,45 @@ def _scan(problem: ImpedanceProblem) -> _Points:
             remedy="raise the upper bound of Bt or lower the lower bound of Mt",
         )
     spacing = [1 / (count - 1) if count > 1 else 0.0 for count in shape]
-    columns = np.argmin(costs[rows], axis=1)
-    valley = _Points(
-        u=u[rows, 0],
-        v=v[0, columns],
-        step=np.array([0.0, spacing[1]]),
-        slope=np.zeros(len(rows)),
-        evaluations=costs.size,
+    valley = _sharpen(problem, u[rows, 0], v[0, np.argmin(costs[rows], axis=1)], spacing[1])
+    cells = np.flatnonzero(_local_minima(costs))
+    cells = cells[np.argsort(costs.ravel()[cells], kind="stable")][:_STARTS]
+    return _Points(
+        u=np.r_[valley.u, u.ravel()[cells]],
+        v=np.r_[valley.v, v.ravel()[cells]],
+        step=np.array(spacing) / 2,
+        slope=np.r_[valley.slope, np.zeros(len(cells))],
+        evaluations=costs.size + valley.evaluations,
     )
-    return _starts(problem, valley, spacing[0])
 
 
-def _starts(problem: ImpedanceProblem, valley: _Points, spacing: float) -> _Points:
-    """Sharpen the valley ``Bt(Mt)`` of the scan and pick its lowest local minima."""
+def _sharpen(problem: ImpedanceProblem, u: FloatArray, v: FloatArray, spacing: float) -> _Points:
+    """Refine the valley ``Bt(Mt)`` of the scan and pick its lowest local minima."""
     objective = _objective(problem, _VALLEY_NODES)
-    valley = _refine(objective, valley, _VALLEY_TOLERANCE)
+    step = np.array([0.0, spacing])
+    valley = _refine(objective, _Points(u, v, step, np.zeros(len(u)), 0), _VALLEY_TOLERANCE)
     costs = objective(valley.u, valley.v)
-    before, after = (np.r_[np.inf, costs[:-1]], np.r_[costs[1:], np.inf])
-    minima = np.flatnonzero((costs <= before) & (costs <= after))
+    minima = np.flatnonzero(_local_minima(costs[:, None]))
     minima = minima[np.argsort(costs[minima], kind="stable")][:_STARTS]
-    slope = np.gradient(valley.v, valley.u) if len(valley.u) > 1 else valley.slope
+    slope = np.gradient(valley.v, valley.u) if len(u) > 1 else valley.slope
     return _Points(
         u=valley.u[minima],
         v=valley.v[minima],
-        step=np.array([spacing / 2, valley.step[1] / 4]),
+        step=step,
         slope=slope[minima],
         evaluations=valley.evaluations + len(costs),
     )
+
+
+def _local_minima(costs: FloatArray) -> BoolArray:
+    """Mark the finite entries that no neighbor undercuts."""
+    padded = np.pad(costs, 1, constant_values=np.inf)
+    rows, columns = costs.shape
+    lowest = np.isfinite(costs)
+    for i in range(3):
+        for j in range(3):
+            lowest &= costs <= padded[i : i + rows, j : j + columns]
+    return lowest.reshape(costs.shape)
 
 
 def _refine(objective: _Objective, start: _Points, tolerance: float) -> _Points:
@@ -432,7 +444,7 @@ def _refine(objective: _Objective, start: _Points, tolerance: float) -> _Points:
         costs = objective(tried_u.ravel(), tried_v.ravel()).reshape(tried_u.shape)
         rows, best = np.arange(len(u)), np.argmin(costs, axis=1)
         u, v = tried_u[rows, best], tried_v[rows, best]
-        scale = np.where(best == 0, scale / 4, scale)
+        scale = np.where(best == 0, scale / 4, np.minimum(1, 2 * scale))
         count += costs.size
     return replace(start, u=u, v=v, evaluations=count)
 

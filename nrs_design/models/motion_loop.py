@@ -16,10 +16,13 @@ class MotionLoop:
     ----------
     numerator, denominator : tuple of Fraction
         Coefficients, highest power first.
+    given : bool
+        Stated by the spec, instead of following from actuator and motion gains.
     """
 
     numerator: tuple[Fraction, ...]
     denominator: tuple[Fraction, ...]
+    given: bool = False
 
 
 def close_motion_loop(actuator: Actuator, Kp: Fraction, Kd: Fraction) -> MotionLoop:

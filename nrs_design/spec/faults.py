@@ -59,11 +59,11 @@ def reported(read: Callable[[], _T], *at: int | str) -> _T:
         raise fault(error.message, error.remedy or "", *at) from None
 
 
-def did_you_mean(word: str, choices: Collection[str], noun: str = "one of") -> str:
+def did_you_mean(word: str, choices: Collection[str], noun: str = "write one of") -> str:
     """Suggest the nearest choice, and list them all."""
     near = difflib.get_close_matches(word, choices, n=1)
     listing = f"{noun} {', '.join(choices)}" if choices else f"{noun} nothing"
-    return f"did you mean {near[0]}? {listing}" if near else f"write {listing}"
+    return f"did you mean {near[0]}? {listing}" if near else listing
 
 
 def spec_error(
@@ -82,20 +82,41 @@ def spec_error(
     path : Path or None
         Named in the error.
     """
-    faults = {_resolve(details, model, root) for details in error.errors(include_url=False)}
-    faults.discard(None)
-    known = sorted(f for f in faults if f is not None)
+    known = sorted({_resolve(details, model, root) for details in _genuine(error)})
     (line, column, message, remedy), others = known[0], len(known) - 1
     more = f"; {others} more fault{'s' * (others > 1)} in this file" if others else ""
     return SpecError(message + more, path=path, line=line, column=column, remedy=remedy)
 
 
+def _genuine(error: ValidationError) -> list[ErrorDetails]:
+    """Leave out what only follows from another fault."""
+    faults = error.errors(include_url=False)
+    containers = {f["loc"][:depth] for f in faults for depth in range(len(f["loc"]))}
+    mistyped = {
+        (f["loc"][:-1], str(f["loc"][-1])) for f in faults if f["type"] == "extra_forbidden"
+    }
+    return [
+        f
+        for f in faults
+        if not (
+            f["type"] == "default_factory_not_called"
+            # A list with wrong items counts as too short.
+            or (f["type"] in ("too_short", "too_long") and f["loc"] in containers)
+            or (f["type"] == "missing" and _is_mistyped(f["loc"], mistyped))
+        )
+    ]
+
+
+def _is_mistyped(location: Location, mistyped: set[tuple[Location, str]]) -> bool:
+    """Whether a missing key is there under a similar name, which is reported itself."""
+    siblings = [key for parent, key in mistyped if parent == location[:-1]]
+    return bool(difflib.get_close_matches(str(location[-1]), siblings, n=1))
+
+
 def _resolve(
     details: ErrorDetails, model: type[BaseModel], root: Node
-) -> tuple[int, int, str, str] | None:
+) -> tuple[int, int, str, str]:
     kind, context = details["type"], details.get("ctx", {})
-    if kind == "default_factory_not_called":
-        return None
     location = _without_tag(details["loc"])
     at_key = kind == "extra_forbidden" or (bool(location) and location[-1] == "[key]")
     location += tuple(context.get("at", ()))
@@ -117,9 +138,9 @@ def _place(root: Node, location: Location, at_key: bool) -> Position:
         if isinstance(node, Mapping) and part in node.entries:
             key = node.keys[str(part)]
             node = node.entries[str(part)]
-            # A block mapping is best shown by the key above it.
-            shown_by_key = isinstance(node, Mapping) or (at_key and depth == len(location) - 1)
-            place = key if shown_by_key else node.position
+            # What starts below its key, a block mapping or list, is best shown by the key.
+            below = node.position.line > key.line
+            place = key if below or (at_key and depth == len(location) - 1) else node.position
         elif isinstance(node, Sequence) and isinstance(part, int) and part < len(node.items):
             node = node.items[part]
             place = node.position

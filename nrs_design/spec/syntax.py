@@ -47,8 +47,9 @@ def explain_syntax(error: YAMLError) -> tuple[str, str]:
 def fault_mark(error: MarkedYAMLError) -> StringMark | None:
     """Where the fault is: what was begun and not finished is best shown at its beginning."""
     begun = error.context in ("while scanning a simple key", "while scanning a quoted scalar")
-    first, second = error.problem_mark, error.context_mark
-    return (second or first) if begun else (first or second)
+    marks = (error.problem_mark, error.context_mark)
+    found: StringMark | None = next(filter(None, reversed(marks) if begun else marks), None)
+    return found
 
 
 def _report(error: YAMLError) -> str:

@@ -69,6 +69,6 @@ def motion_loop(spec: InteractionDesignSpec, motion: ProportionalDerivative) -> 
     """Return G: the one that the spec gives, else the one that actuator and PD make."""
     given = spec.motion_loop.transfer_function
     if given is not None:
-        return MotionLoop(given.numerator, given.denominator)
+        return MotionLoop(given.numerator, given.denominator, given=True)
     actuator = Actuator(spec.actuator.gain.exact, spec.actuator.time_constant.exact)
     return close_motion_loop(actuator, motion.Kp, motion.Kd)

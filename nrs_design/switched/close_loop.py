@@ -99,7 +99,8 @@ def close_loop(
             remedy="give all impedance controllers a virtual inertia Mt > 0, or none of them",
         )
     states = _state_names(motion.order, sizes[0], coordinates)
-    return SwitchedSystem(name, Time.CONTINUOUS, states, modes, _assumptions(design, coordinates))
+    assumptions = _assumptions(design, coordinates, given=loop.given)
+    return SwitchedSystem(name, Time.CONTINUOUS, states, modes, assumptions)
 
 
 def _controller_modes(
@@ -182,7 +183,14 @@ def _state_names(motion_order: int, size: int, coordinates: str) -> tuple[str, .
     return tuple(names)
 
 
-def _assumptions(design: ControllerDesign, coordinates: str) -> tuple[str, ...]:
+def _assumptions(design: ControllerDesign, coordinates: str, *, given: bool) -> tuple[str, ...]:
+    motion = (
+        "The motion loop is the transfer function G(s) that the spec states, whatever the motion "
+        "gains listed here."
+        if given
+        else "The motion loop is the linear actuator model of the spec under the motion gains "
+        "listed here."
+    )
     impedance = any(isinstance(c.law, Admittance) for c in design.controllers)
     contacts = [
         f"{c.name} is active only in contact with {' or '.join(c.contacts)}."
@@ -195,7 +203,8 @@ def _assumptions(design: ControllerDesign, coordinates: str) -> tuple[str, ...]:
         "(the thesis's coordinates; not physical in lasting contact).",
     }[coordinates]
     return (
-        "Each axis is the linear motion loop G(s) of the spec; axes do not act on each other.",
+        motion,
+        "The axes of the robot do not act on each other.",
         *contacts,
         "In contact, the environment follows its linear model; its parameters stay in the "
         "declared ranges and may change arbitrarily fast.",

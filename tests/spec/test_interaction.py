@@ -212,13 +212,13 @@ IMPEDANCE_FAULTS = [
     (
         "Mt: 0.01",
         "weights: {displayed: 0, sensitivity: 0}\n    Mt: 0.01",
-        "weights",
+        "{displayed",
         "both weights are zero",
     ),
     ("Mt: 0.01", "weights: {displayed: -1}\n    Mt: 0.01", "-1}", "zero or positive"),
     ("switching: arbitrary\n", "", "kind", "`switching` is missing"),
     ("switching: arbitrary", "switching: slow", "slow", "'arbitrary'"),
-    ("switching: arbitrary", "switching: {dwell_time: 1 s}", "switching", "'arbitrary'"),
+    ("switching: arbitrary", "switching: {dwell_time: 1 s}", "{dwell", "'arbitrary'"),
     ("switching", "coordinates: velocity\nswitching", "velocity\nsw", "'deflection' or 'force'"),
     ("switching", "design: {significant_digits: 8}\nswitching", "8}\n", "from 1 to 7"),
     ("switching", "design: {significant_digits: 2.5}\nswitching", "2.5", "from 1 to 7"),
@@ -261,7 +261,7 @@ def test_refuses_with_place_and_remedy(old: str, new: str, at: str, said: str) -
         ("0.02 rad/(N*m)", "0.02 1/(N*m)", "0.02 1/", "write '0.02 rad/(N*m)'"),
         ("0.02 rad/(N*m)", "0.02 rad/N*m", "0.02 rad/N", "not a proportional force gain"),
         ("{type: position}", "{type: position, contacts: [soft]}", "contacts", "unknown key"),
-        ("{type: position}", "{kind: position}", "position:", "type` is missing"),
+        ("{type: position}", "{kind: position}", "{kind", "type` is missing"),
         ("{type: position}", "position", "position\n", "expected a mapping"),
     ],
 )
@@ -274,7 +274,7 @@ def test_refuses_force_specs(old: str, new: str, at: str, said: str) -> None:
 
 def test_a_controller_is_told_its_own_keys_only() -> None:
     error = refusal(spoiled(FORCE, "{type: position}", "{type: position, contact: [soft]}"))
-    assert error.remedy == "write keys here are type"
+    assert error.remedy == "keys here are type"
 
 
 def test_at_least_one_controller() -> None:

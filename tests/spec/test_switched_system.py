@@ -12,7 +12,7 @@ def test_reads_dayawansa_and_martin_exactly() -> None:
     assert spec.time == "continuous"
     assert spec.dimension == 2
     assert [mode.name for mode in spec.modes] == ["a", "b"]
-    assert spec.modes[1].A == ((-1, -6), (Fraction(1, 6), -1))
+    assert list(spec.modes[1].A) == [(-1, -6), (Fraction(1, 6), -1)]
 
 
 def test_decimals_are_not_rounded() -> None:
@@ -37,7 +37,7 @@ def test_numbers_may_name_modes() -> None:
         ("[[-1, -1], [1, -1]]", "[[-1, -1]]", "[[-1, -1]]", "1 x 2, not square"),
         ("[[-1, -1], [1, -1]]", "[[-1]]", "[[-1, -6]", "2 x 2, the first mode's is 1 x 1"),
         ("[[-1, -1], [1, -1]]", "[]", "[]", "must not be empty"),
-        ("[[-1, -1], [1, -1]]", "[[]]", "[]]", "must not be empty"),
+        ("[[-1, -1], [1, -1]]", "[[]]", "[]]}", "must not be empty"),
         ("[[-1, -1], [1, -1]]", "[-1, -1]", "-1, -1]}", "expected a list"),
         ("[[-1, -1], [1, -1]]", "-1", "-1}", "expected a list"),
         ("[[-1, -1], [1, -1]]", "{a: 1}", "{a: 1}", "expected a list"),
@@ -54,8 +54,8 @@ def test_numbers_may_name_modes() -> None:
         ("A: [[-1, -1]", "B: [[-1, -1]", "{name: a", "A` is missing"),
         ("{name: a, ", "{", "{A: ", "name` is missing"),
         ("{name: a, A: [[-1, -1], [1, -1]]}", "a", "a\n  - {name: b", "expected a mapping"),
-        ("switching: arbitrary", "switching: 1", "1\n", "'arbitrary'"),
-        ("switching: arbitrary", "swiching: arbitrary", "kind", "`switching` is missing"),
+        ("switching: arbitrary", "switching: never", "never", "'arbitrary'"),
+        ("switching: arbitrary", "swiching: arbitrary", "swiching", "did you mean switching?"),
         ("switching", "resets: []\nswitching", "resets", "unknown key `resets`"),
     ],
 )
@@ -63,10 +63,7 @@ def test_refuses_with_place_and_remedy(old: str, new: str, at: str, said: str) -
     text = spoiled(SWITCHED, old, new)
     error = refusal(text)
     assert said in f"{error.message} ({error.remedy})"
-    line, column = place_of(text, at)
-    assert error.line == line
-    if at not in ("a, A: [[-1, -6]", "1\n"):
-        assert error.column == column
+    assert (error.line, error.column) == place_of(text, at)
 
 
 @pytest.mark.parametrize("modes", ["[]", "{}", "a"])
@@ -109,4 +106,4 @@ def test_matrices_survive_the_round_trip(rows: list[list[Fraction]]) -> None:
     matrix = "[" + ", ".join("[" + ", ".join(f'"{x}"' for x in row) + "]" for row in rows) + "]"
     head = SWITCHED.partition("  - ")[0]
     spec = switched(f"{head}  - {{name: a, A: {matrix}}}\nswitching: arbitrary\n")
-    assert spec.modes[0].A == tuple(map(tuple, rows))
+    assert list(spec.modes[0].A) == [tuple(row) for row in rows]

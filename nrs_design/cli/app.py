@@ -10,7 +10,10 @@ import typer
 from nrs_design import __version__
 from nrs_design.cli import exit_codes
 from nrs_design.cli.certify_switching import certify_switching
+from nrs_design.cli.check import check
+from nrs_design.cli.init import init
 from nrs_design.cli.optimize import optimize
+from nrs_design.cli.schema import schema
 from nrs_design.cli.tune import tune
 from nrs_design.cli.verify import verify
 from nrs_design.errors import NrsDesignError
@@ -25,6 +28,9 @@ app = typer.Typer(
     epilog="Exit codes: 0 proved or goal met, 1 refuted or goal missed, 2 wrong usage, spec or "
     "file, 3 inconclusive, 4 internal error.",
 )
+app.command("init")(init)
+app.command("check")(check)
+app.command("schema")(schema)
 app.command("optimize")(optimize)
 app.command("tune")(tune)
 app.command("certify-switching")(certify_switching)

@@ -8,7 +8,6 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from typing import Any
 
-
 # Output into a file or a pipe: wide enough that no table is folded.
 WIDE = 160
 

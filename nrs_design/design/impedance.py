@@ -38,6 +38,7 @@ _SCAN = (25, 41)
 _STARTS = 4
 _VALLEY_TOLERANCE = 1e-3
 _STEP_TOLERANCE = 1e-5
+_LEAST_PROGRESS = 1e-10
 _MAX_ROUNDS = 200
 
 _Objective = Callable[[FloatArray, FloatArray], FloatArray]
@@ -343,8 +344,12 @@ def _over_characteristic(
 def _admittance(
     problem: ImpedanceProblem, u: FloatArray, v: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
-    """Map the unit square onto the bounds, corners exactly onto corners."""
+    """Map the unit square onto the bounds, corners exactly onto corners.
+
+    Steps below the search's tolerance are no mass at all.
+    """
     (low, high), (least, most) = problem.mass_bounds, problem.damping_bounds
+    u = np.where(u < _STEP_TOLERANCE, 0.0, u)
     Mt = np.where(u >= 1, high, low + (high - low) * u**3)
     Bt = np.where(v >= 1, most, least * (most / least) ** v)
     return Mt, Bt
@@ -442,6 +447,8 @@ def _refine(objective: _Objective, start: _Points, tolerance: float) -> _Points:
         tried_u = np.clip(u[:, None] + moves[..., 0], 0.0, 1.0)
         tried_v = np.clip(v[:, None] + across, 0.0, 1.0)
         costs = objective(tried_u.ravel(), tried_v.ravel()).reshape(tried_u.shape)
+        # Rounding noise must not count as progress.
+        costs[:, 0] -= _LEAST_PROGRESS
         rows, best = np.arange(len(u)), np.argmin(costs, axis=1)
         u, v = tried_u[rows, best], tried_v[rows, best]
         scale = np.where(best == 0, scale / 4, np.minimum(1, 2 * scale))

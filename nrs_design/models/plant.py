@@ -60,8 +60,5 @@ def _environment(name: str, spec: ElasticSpec | KelvinVoigtSpec) -> Environment:
 
 
 def _interval(quantity: RangedQuantity, factor: Fraction) -> Interval:
-    nominal = quantity.nominal.exact * factor
-    if quantity.range is None:
-        return Interval.point(nominal)
-    low, high = quantity.range
-    return Interval(nominal, low.exact * factor, high.exact * factor)
+    nominal, low, high = (q.exact * factor for q in (quantity.nominal, *quantity.range))
+    return Interval(nominal, low, high)

@@ -92,9 +92,10 @@ def _genuine(error: ValidationError) -> list[ErrorDetails]:
     """Leave out what only follows from another fault."""
     faults = error.errors(include_url=False)
     containers = {f["loc"][:depth] for f in faults for depth in range(len(f["loc"]))}
-    mistyped = {
-        (f["loc"][:-1], str(f["loc"][-1])) for f in faults if f["type"] == "extra_forbidden"
-    }
+    mistyped: dict[Location, list[str]] = {}
+    for f in faults:
+        if f["type"] == "extra_forbidden":
+            mistyped.setdefault(f["loc"][:-1], []).append(str(f["loc"][-1]))
     return [
         f
         for f in faults
@@ -107,9 +108,9 @@ def _genuine(error: ValidationError) -> list[ErrorDetails]:
     ]
 
 
-def _is_mistyped(location: Location, mistyped: set[tuple[Location, str]]) -> bool:
+def _is_mistyped(location: Location, mistyped: dict[Location, list[str]]) -> bool:
     """Whether a missing key is there under a similar name, which is reported itself."""
-    siblings = [key for parent, key in mistyped if parent == location[:-1]]
+    siblings = mistyped.get(location[:-1], [])
     return bool(difflib.get_close_matches(str(location[-1]), siblings, n=1))
 
 

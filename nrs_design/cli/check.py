@@ -1,0 +1,78 @@
+"""``nrs-design check``: validate specs and print what was understood."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from nrs_design.cli import exit_codes
+from nrs_design.cli.options import Json, Quiet
+from nrs_design.cli.printing import print_json, print_table
+from nrs_design.errors import NrsDesignError
+
+
+def check(
+    specs: Annotated[list[Path], typer.Argument(metavar="SPEC...", help="Spec files.")],
+    as_json: Json = False,
+    quiet: Quiet = False,
+) -> None:
+    """Validate specs and print what was understood, as written and in SI units.
+
+    Example: nrs-design check specs/neuroboscope/soft-tissue.nrs.yaml
+    """
+    results: list[dict[str, Any]] = []
+    for path in specs:
+        try:
+            results.append(_understood(path))
+        except NrsDesignError as error:
+            results.append(_fault(path, error))
+            if not as_json:
+                print(f"error[{error.rule}]: {error}", file=sys.stderr)
+            continue
+        if not as_json and not quiet:
+            _print(results[-1])
+    if as_json:
+        print_json("check", {"specs": results})
+    valid = all(result["valid"] for result in results)
+    raise typer.Exit(exit_codes.PROVED if valid else exit_codes.USAGE)
+
+
+def _understood(path: Path) -> dict[str, Any]:
+    from nrs_design.spec import read_spec
+    from nrs_design.spec.describe import describe
+
+    loaded = read_spec(path)
+    return {
+        "path": str(path),
+        "valid": True,
+        "kind": loaded.spec.kind,
+        "name": loaded.spec.name,
+        "spec_sha256": loaded.sha256,
+        "values": [
+            {"name": row.name, "written": row.written, "si": row.value, "unit": row.unit}
+            for row in describe(loaded.spec)
+        ],
+    }
+
+
+def _fault(path: Path, error: NrsDesignError) -> dict[str, Any]:
+    return {
+        "path": str(path),
+        "valid": False,
+        "rule": error.rule,
+        "message": error.message,
+        "line": error.line,
+        "column": error.column,
+        "remedy": error.remedy,
+    }
+
+
+def _print(result: dict[str, Any]) -> None:
+    print_table(
+        f"{result['path']}: valid {result['kind']} {result['name']!r}",
+        ["field", "as written", "SI value", "unit"],
+        [[v["name"], v["written"], v["si"], v["unit"]] for v in result["values"]],
+    )

@@ -1,0 +1,29 @@
+"""``nrs-design schema``: the JSON Schema of spec files, for editors."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from nrs_design.cli.printing import note
+
+
+def schema(
+    out: Annotated[Path | None, typer.Option(help="Write to a file instead of stdout.")] = None,
+) -> None:
+    """Print the JSON Schema (draft-07) of spec files.
+
+    Example: nrs-design schema --out nrs.schema.json
+    """
+    from nrs_design.output import write_output
+    from nrs_design.spec.schema import json_schema
+
+    text = json.dumps(json_schema(), indent=2) + "\n"
+    if out is None:
+        print(text, end="")
+        return
+    write_output(out, text)
+    note(f"schema written to {out}")

@@ -1,0 +1,41 @@
+"""The report as one HTML page without scripts or anything to fetch."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from nrs_design.reporting.document import Bullets, Illustration, Paragraph, Report, Section, Table
+from nrs_design.reporting.svg import to_svg
+
+
+def render_html(report: Report) -> str:
+    """Return the page; the same report gives the same bytes."""
+    from jinja2 import Environment, PackageLoader, StrictUndefined
+
+    environment = Environment(
+        loader=PackageLoader("nrs_design.reporting"),
+        autoescape=True,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+        keep_trailing_newline=True,
+    )
+    sections = [_section(section) for section in report.sections]
+    return environment.get_template("report.html.j2").render(report=report, sections=sections)
+
+
+def _section(section: Section) -> dict[str, Any]:
+    return {
+        "title": section.title,
+        "boxed": section.boxed,
+        "blocks": [_block(block) for block in section.blocks],
+    }
+
+
+def _block(block: Paragraph | Bullets | Table | Illustration) -> dict[str, Any]:
+    from markupsafe import Markup
+
+    kind = type(block).__name__.lower()
+    # The only markup that is not escaped: matplotlib's own.
+    svg = Markup(to_svg(block)) if isinstance(block, Illustration) else None
+    return {"kind": kind, "content": block, "svg": svg}

@@ -1,0 +1,49 @@
+"""A figure as an SVG element that can stand beside others in one HTML page."""
+
+from __future__ import annotations
+
+import io
+import re
+from typing import TYPE_CHECKING
+
+from nrs_design.reporting.document import Illustration
+from nrs_design.reporting.style import figure_style
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+# Of the metadata, the date would differ from run to run and the rest holds addresses.
+_NO_METADATA = {"Date": None, "Creator": None, "Format": None, "Type": None}
+
+
+def to_svg(illustration: Illustration) -> str:
+    """Return an ``<svg>`` element, the same bytes for the same figure.
+
+    Its ids begin with the illustration's name: matplotlib names the outline of a letter alike in
+    every figure, and an id must be unique in the page.
+    """
+    svg = _savefig(illustration.figure)
+    svg = svg[svg.index("<svg") :].rstrip()
+    svg = re.sub(r' xmlns(:xlink)?="[^"]*"', "", svg).replace("xlink:href=", "href=")
+    svg = re.sub(r'<svg width="[^"]*" height="[^"]*"|<svg height="[^"]*" width="[^"]*"', "<svg", svg)
+    prefix = illustration.name
+    svg = re.sub(r'\bid="', f'id="{prefix}-', svg)
+    svg = re.sub(r'href="#', f'href="#{prefix}-', svg)
+    return svg.replace("url(#", f"url(#{prefix}-")
+
+
+def to_png(figure: Figure, dpi: int = 200) -> bytes:
+    """Return the figure as a PNG image without date or program name."""
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+
+    buffer = io.BytesIO()
+    with figure_style():
+        FigureCanvasAgg(figure).print_png(buffer, metadata={"Software": None}, dpi=dpi)
+    return buffer.getvalue()
+
+
+def _savefig(figure: Figure) -> str:
+    buffer = io.StringIO()
+    with figure_style():
+        figure.savefig(buffer, format="svg", metadata=_NO_METADATA)
+    return buffer.getvalue()

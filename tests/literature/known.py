@@ -1,0 +1,93 @@
+"""Systems with known answers, and what it means to agree with one."""
+
+import json
+from dataclasses import dataclass
+from pathlib import Path
+
+from ruamel.yaml import YAML
+
+from nrs_design.certificates.certify import (
+    Certification,
+    CommonQuadraticStatus,
+    Verdict,
+    certify,
+)
+from nrs_design.certificates.check import find_fault
+from nrs_design.controllers.laws import Admittance
+from nrs_design.models.environment import Contact
+from nrs_design.models.motion_loop import MotionLoop
+from nrs_design.spec import parse_exact, parse_spec
+from nrs_design.switched.assemble import GIVEN_MATRICES, assemble
+from nrs_design.switched.close_loop import impedance_mode, realize, to_force_coordinates
+from nrs_design.switched.matrix import RationalMatrix
+from nrs_design.switched.system import Mode, SwitchedSystem, Time
+
+DATA = Path(__file__).parents[1] / "data" / "known_answers.yaml"
+# Thesis 6.3.2.2: Ap = [[0, 1], [-1618.80, -56.89]], Cp = [1618.80, 28.4160].
+MOTION = MotionLoop(
+    numerator=(parse_exact("28.4160"), parse_exact("1618.80")),
+    denominator=(parse_exact("1"), parse_exact("56.89"), parse_exact("1618.80")),
+)
+
+
+@dataclass(frozen=True)
+class Known:
+    """A system and the truth about it."""
+
+    system: SwitchedSystem
+    common_quadratic: str
+    stable: bool
+    alpha: str | None = None
+
+
+def known(name: str, coordinates: str = "deflection") -> Known:
+    # The base loader keeps every scalar as text, so that no entry passes through a float.
+    groups = YAML(typ="base").load(DATA.read_text(encoding="utf-8"))
+    group = next(group for group in groups if name in groups[group])
+    entry = groups[group][name]
+    if group == "robot":
+        system = robot(name, entry["Mt"], entry["contacts"], coordinates)
+    else:
+        system = given(name, entry["A"], group)
+    return Known(system, entry["common_quadratic"], entry["stable"] == "true", entry.get("alpha"))
+
+
+def given(name, matrices, time="continuous") -> SwitchedSystem:
+    modes = [{"name": f"m{i}", "A": A} for i, A in enumerate(matrices)]
+    # JSON is YAML; entries stay texts.
+    document = {"kind": "switched-system", "name": name, "time": time, "modes": modes}
+    return assemble(parse_spec(json.dumps({**document, "switching": "arbitrary"})), {}, None)
+
+
+def robot(name, Mt, contacts, coordinates="deflection") -> SwitchedSystem:
+    motion, zero = realize(MOTION), parse_exact("0")
+    modes = []
+    for k, Bt in contacts:
+        contact = Contact("contact", parse_exact(k), zero)
+        rows = impedance_mode(motion, Admittance(parse_exact(Mt), parse_exact(Bt)), contact)
+        if coordinates == "force":
+            rows = to_force_coordinates(rows, motion, contact)
+        modes.append(Mode(f"k={k} Bt={Bt}", RationalMatrix.from_rows(rows)))
+    states = tuple(f"x{i}" for i in range(len(modes[0].A.numerators)))
+    return SwitchedSystem(name, Time.CONTINUOUS, states, tuple(modes), GIVEN_MATRICES)
+
+
+def settle(name: str, **options: str) -> Certification:
+    """Certify, and insist on the whole truth with evidence that passes the exact check."""
+    truth = known(name, **options)
+    found = certify(truth.system)
+    assert found.verdict is (Verdict.PROVED if truth.stable else Verdict.REFUTED)
+    assert found.common_quadratic == truth.common_quadratic
+    assert found.evidence is not None
+    assert find_fault(truth.system, found.evidence) is None
+    return found
+
+
+def never_contradict(name: str) -> Certification:
+    """Certify, and insist that nothing is said against the truth; saying nothing is allowed."""
+    truth = known(name)
+    found = certify(truth.system)
+    assert found.verdict is not (Verdict.REFUTED if truth.stable else Verdict.PROVED)
+    contrary = {"exists": CommonQuadraticStatus.IMPOSSIBLE, "impossible": "exists"}
+    assert found.common_quadratic != contrary[truth.common_quadratic]
+    return found

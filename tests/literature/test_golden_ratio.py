@@ -1,0 +1,18 @@
+"""R. Jungers, "The Joint Spectral Radius: Theory and Applications", Springer, 2009.
+
+The pair [[1, 1], [0, 1]], [[1, 0], [1, 1]] has the golden ratio 1.6180... as its joint spectral
+radius (reached by alternating), and a quadratic norm shows it. Its inverse is 0.61803....
+"""
+
+from math import sqrt
+
+from .known import never_contradict, settle
+
+
+def test_scaled_below_the_inverse_of_the_golden_ratio():
+    rate = settle("golden-0.618").evidence.rate
+    assert 0.618 * (1 + sqrt(5)) / 2 <= rate < 1
+
+
+def test_scaled_above_it_is_never_called_stable():
+    never_contradict("golden-0.6181")

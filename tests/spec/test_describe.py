@@ -1,0 +1,78 @@
+from nrs_design.spec.describe import Row, describe
+
+from .samples import FORCE, IMPEDANCE, SWITCHED, interaction, spoiled, switched
+
+
+def test_quantities_are_shown_as_written_and_in_si() -> None:
+    rows = describe(interaction(IMPEDANCE))
+    assert ("limits.velocity", "8 deg/s", "0.139626", "rad/s") in rows
+    assert ("limits.bandwidth", "2 Hz", "12.5664", "rad/s") in rows
+    assert ("actuator.gain", "4.8417e-4 rad/s/rpm", "0.00048417", "rad/s/rpm") in rows
+    assert ("motion_loop.damping_ratio", "0.707", "0.707", "") in rows
+
+
+def test_lever_arms_are_resolved() -> None:
+    # Thesis 6.3.1: 43.0356 N*m/rad.
+    rows = describe(interaction(IMPEDANCE))
+    assert ("environments.soft.stiffness", "747.1461 N/m", "43.0356", "N*m/rad") in rows
+    assert ("environments.hand.damping", "0.5 N*m*s/rad", "0.5", "N*m*s/rad") in rows
+
+
+def test_ranges_and_bounds() -> None:
+    text = spoiled(
+        IMPEDANCE, "747.1461 N/m", "{nominal: 747.1461 N/m, range: [720.56 N/m, 768.17 N/m]}"
+    )
+    rows = describe(interaction(text))
+    assert (
+        "environments.soft.stiffness.range",
+        "[720.56 N/m, 768.17 N/m]",
+        "[41.5043, 44.2466]",
+        "N*m/rad",
+    ) in rows
+    assert ("controllers.insertion.Mt", "0.01 kg*m^2", "0.01", "kg*m^2") in rows
+    assert (
+        "controllers.insertion.Bt",
+        "[0.1 N*m*s/rad, 20 N*m*s/rad]",
+        "[0.1, 20]",
+        "N*m*s/rad",
+    ) in rows
+
+
+def test_desired_impedance_of_the_thesis() -> None:
+    # Thesis 6.2 and 6.3.2.1: 2.1486 and half of it, 1.0743 N*m*s/rad.
+    name = "controllers.insertion.desired_impedance"
+    unit = "N*m*s/rad"
+    assert Row(name, "torque/velocity", "2.14859", unit) in describe(interaction(IMPEDANCE))
+    half = spoiled(IMPEDANCE, "    Mt:", "    desired_impedance_ratio: 0.5\n    Mt:")
+    assert Row(name, "0.5 * torque/velocity", "1.0743", unit) in describe(interaction(half))
+    given = spoiled(IMPEDANCE, "    Mt:", "    desired_impedance: 3 kg*m^2/s\n    Mt:")
+    assert Row(name, "3 kg*m^2/s", "3", unit) in describe(interaction(given))
+
+
+def test_force_controllers() -> None:
+    rows = describe(interaction(FORCE))
+    assert ("controllers.force.proportional_gain", "0.02 rad/(N*m)", "0.02", "rad/(N*m)") in rows
+    assert ("controllers.position.type", "position", "", "") in rows
+    text = spoiled(FORCE, "proportional_gain: 0.02 rad/(N*m)", "damping_ratio: 2/3")
+    assert ("controllers.force.damping_ratio", "2/3", "0.666667", "") in describe(interaction(text))
+
+
+def test_motion_loop_options() -> None:
+    loop = (
+        "  derivative_gain: 2060 rpm*s/rad\n  zero: 56.9706 1/s\n"
+        "  transfer_function: {numerator: [0.99, 56.82], denominator: [0.0351, 1.99, 1/3]}\n"
+    )
+    rows = describe(interaction(spoiled(IMPEDANCE, "limits:", loop + "limits:")))
+    assert ("motion_loop.zero", "56.9706 1/s", "56.9706", "1/s") in rows
+    assert ("motion_loop.derivative_gain", "2060 rpm*s/rad", "2060", "rpm*s/rad") in rows
+    name = "motion_loop.transfer_function.denominator"
+    assert (name, "[0.0351, 1.99, 1/3]", "[0.0351, 1.99, 0.333333]", "") in rows
+
+
+def test_modes_are_shown_by_name_and_size() -> None:
+    rows = describe(switched(SWITCHED))
+    assert ("modes[0]", "a", "2 x 2", "1/s") in rows
+    assert ("modes[1]", "b", "2 x 2", "1/s") in rows
+    assert ("time", "continuous", "", "") in rows
+    discrete = switched(spoiled(SWITCHED, "continuous", "discrete"))
+    assert ("modes[0]", "a", "2 x 2", "") in describe(discrete)

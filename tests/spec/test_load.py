@@ -1,0 +1,114 @@
+import hashlib
+import random
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from nrs_design.errors import SpecError
+from nrs_design.spec import (
+    InteractionDesignSpec,
+    SwitchedSystemSpec,
+    load_spec,
+    parse_spec,
+    read_spec,
+)
+
+from .samples import FORCE, IMPEDANCE, SWITCHED, assert_inside, refusal
+
+
+def test_read_spec_keeps_text_and_hash(tmp_path: Path) -> None:
+    path = tmp_path / "any-name.txt"
+    content = SWITCHED.replace("\n", "\r\n").encode()
+    path.write_bytes(content)
+    loaded = read_spec(path)
+    assert loaded.path == path
+    assert loaded.sha256 == hashlib.sha256(content).hexdigest()
+    assert loaded.text == content.decode()
+    assert isinstance(loaded.spec, SwitchedSystemSpec)
+    assert load_spec(str(path)) == loaded.spec
+
+
+def test_kinds(tmp_path: Path) -> None:
+    path = tmp_path / "a.nrs.yaml"
+    path.write_text(IMPEDANCE)
+    assert isinstance(load_spec(path), InteractionDesignSpec)
+
+
+def test_error_names_the_file(tmp_path: Path) -> None:
+    path = tmp_path / "a.nrs.yaml"
+    path.write_text(SWITCHED.replace("name: sample", "name: -"))
+    with pytest.raises(SpecError) as caught:
+        load_spec(path)
+    assert caught.value.path == path
+    assert str(caught.value).startswith(f"{path}:2:7: ")
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("name: a\n", "`kind` is missing"),
+        ("kind: switched-sytem\n", "did you mean switched-system?"),
+        ("kind: robot\n", "interaction-design, switched-system"),
+        ("kind: [a]\n", "single text"),
+        ("- kind: a\n", "a mapping of keys"),
+        ("just text\n", "a mapping of keys"),
+    ],
+)
+def test_refuses_other_kinds(text: str, said: str) -> None:
+    error = refusal(text)
+    assert said in f"{error.message} ({error.remedy})"
+
+
+@given(st.text(max_size=300))
+def test_garbage_is_refused(text: str) -> None:
+    with pytest.raises(SpecError):
+        parse_spec(text)
+
+
+def _mutated(sample: str, seed: int) -> str:
+    """Delete, double or replace a few characters or lines."""
+    rng = random.Random(seed)
+    text = sample
+    for _ in range(rng.randint(1, 3)):
+        start = rng.randrange(len(text))
+        end = min(len(text), start + rng.choice([1, 1, 2, 5, 20]))
+        piece = rng.choice(
+            ["", text[start:end] * 2, rng.choice("[]{}:-#&*!?|>'\"%@`,\n\t 0a−é"), "- "]
+        )
+        text = text[:start] + piece + text[end:]
+    return text
+
+
+@given(st.sampled_from([IMPEDANCE, FORCE, SWITCHED]), st.integers(0, 2**32))
+@settings(max_examples=300, deadline=None)
+def test_spoiled_specs_load_or_are_refused_inside_the_file(sample: str, seed: int) -> None:
+    text = _mutated(sample, seed)
+    try:
+        parse_spec(text)
+    except SpecError as error:
+        assert_inside(error, text)
+        refused_line = str(error)
+    else:
+        return
+    assert refused_line.isprintable()
+
+
+def test_many_faults_are_counted_quickly() -> None:
+    modes = "".join("  - {nam: a, A: [[x]]}\n" for _ in range(2000))
+    error = refusal(f"kind: switched-system\nname: a\ntime: discrete\nmodes:\n{modes}")
+    assert "`switching` is missing" in error.message
+    assert "4000 more faults" in error.message
+
+
+def test_import_is_light() -> None:
+    heavy = ["numpy", "scipy", "control", "matplotlib", "cvxpy", "clarabel", "jinja2", "rich"]
+    code = (
+        "import sys, nrs_design.spec, nrs_design.spec.describe, nrs_design.spec.templates\n"
+        f"print([name for name in {heavy} if name in sys.modules])"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.strip() == "[]"

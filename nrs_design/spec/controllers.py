@@ -8,7 +8,7 @@ from typing import Annotated, Literal
 from pydantic import Discriminator, Field, field_validator, model_validator
 
 from nrs_design.spec.faults import fault
-from nrs_design.spec.fields import Label, Positive, Weight
+from nrs_design.spec.fields import Label, Positive, UnitFraction, Weight
 from nrs_design.spec.model import SpecModel
 from nrs_design.spec.quantity_fields import DampingBounds, ForceGain, Impedance, InertiaBounds
 
@@ -95,9 +95,9 @@ class ForceControllerSpec(SpecModel):
         default=None,
         description="Kp in rad/(N*m); exactly one of proportional_gain and damping_ratio",
     )
-    damping_ratio: Positive | None = Field(
+    damping_ratio: UnitFraction | None = Field(
         default=None,
-        description="wanted damping ratio of the dominant poles, no unit; chooses Kp",
+        description="wanted damping ratio of the dominant poles, between 0 and 1, no unit; chooses Kp",
     )
 
     _contacts = field_validator("contacts")(_distinct)

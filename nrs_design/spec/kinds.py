@@ -91,7 +91,10 @@ FORCE_GAIN = QuantityKind(
     "a proportional force gain",
     ("rad/(N*m)",),
     "0.02 rad/(N*m)",
-    {"1/(N*m)": "the gain gives an angle: write '{value} rad/(N*m)'"},
+    {
+        "rad*m/N": "rad/N*m is (rad/N)*m: write '{value} rad/(N*m)'",
+        "1/(N*m)": "the gain gives an angle: write '{value} rad/(N*m)'",
+    },
 )
 
 LINEAR_STIFFNESS = QuantityKind("a linear stiffness", ("N/m",), "747.1461 N/m")

@@ -1,0 +1,41 @@
+"""`nrs-design check`, as a user types it."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+ROOT = Path(__file__).parents[2]
+SOFT_TISSUE = ROOT / "specs/neuroboscope/soft-tissue.nrs.yaml"
+
+
+def run(*arguments: str | Path, cwd: Path) -> subprocess.CompletedProcess[str]:
+    command = [sys.executable, "-m", "nrs_design", *map(str, arguments)]
+    return subprocess.run(command, capture_output=True, text=True, cwd=cwd, check=False)
+
+
+def test_check_prints_values_as_written_and_in_si(tmp_path: Path) -> None:
+    result = run("check", SOFT_TISSUE, cwd=tmp_path)
+    assert result.returncode == 0
+    line = next(line for line in result.stdout.splitlines() if "limits.velocity" in line)
+    assert line.split()[1:] == ["8", "deg/s", "0.139626", "rad/s"]
+
+
+def test_check_json_lists_the_lever_arm_conversion(tmp_path: Path) -> None:
+    result = run("check", "--json", SOFT_TISSUE, cwd=tmp_path)
+    document = json.loads(result.stdout)
+    assert document["schema"] == "nrs-design/check/1"
+    values = [(v["si"], v["unit"]) for v in document["specs"][0]["values"]]
+    # Thesis 6.3.1.1: 747.1461 N/m at 0.24 m.
+    assert ("43.0356", "N*m/rad") in [(si[:7], unit) for si, unit in values]
+
+
+def test_check_goes_on_after_a_broken_spec(tmp_path: Path) -> None:
+    broken = tmp_path / "broken.nrs.yaml"
+    broken.write_text("kind: switched-system\nname: x\ntime: continuous\nmodes: []\n")
+    result = run("check", "-q", broken, SOFT_TISSUE, cwd=tmp_path)
+    assert result.returncode == 2
+    assert "broken.nrs.yaml:" in result.stderr
+    assert "NRS001" in result.stderr

@@ -1,0 +1,22 @@
+"""`nrs-design schema`, as a user types it."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import jsonschema
+
+
+def run(*arguments: str | Path, cwd: Path) -> subprocess.CompletedProcess[str]:
+    command = [sys.executable, "-m", "nrs_design", *map(str, arguments)]
+    return subprocess.run(command, capture_output=True, text=True, cwd=cwd, check=False)
+
+
+def test_schema_is_draft_07(tmp_path: Path) -> None:
+    assert run("schema", "--out", "nrs.schema.json", cwd=tmp_path).returncode == 0
+    schema = json.loads((tmp_path / "nrs.schema.json").read_text())
+    assert schema["$schema"] == "http://json-schema.org/draft-07/schema#"
+    jsonschema.Draft7Validator.check_schema(schema)

@@ -36,10 +36,10 @@ _BLOCK = 256
 
 _SCAN = (25, 41)
 _STARTS = 4
-_VALLEY_TOLERANCE = 1e-3
+_VALLEY_TOLERANCE = 5e-3
 _STEP_TOLERANCE = 1e-5
 _LEAST_PROGRESS = 1e-10
-_MAX_ROUNDS = 200
+_MAX_ROUNDS = 100
 
 _Objective = Callable[[FloatArray, FloatArray], FloatArray]
 
@@ -253,8 +253,9 @@ def optimize_impedance(problem: ImpedanceProblem) -> ImpedanceOptimum:
     DesignError
         If no scanned admittance within the bounds gives a stable loop.
     """
-    found = _refine(_objective(problem, NODES), _scan(problem), _STEP_TOLERANCE)
-    u, v, costs = _snap(_objective(problem, NODES), found.u, found.v)
+    objective = _objective(problem, NODES)
+    found = _refine(objective, _scan(problem), _STEP_TOLERANCE)
+    u, v, costs = _snap(objective, found.u, found.v)
     best = int(np.argmin(costs))
     Mt, Bt = _admittance(problem, u[best : best + 1], v[best : best + 1])
     return ImpedanceOptimum(
@@ -392,11 +393,13 @@ def _scan(problem: ImpedanceProblem) -> _Points:
     spacing = [1 / (count - 1) if count > 1 else 0.0 for count in shape]
     valley = _sharpen(problem, u[rows, 0], v[0, np.argmin(costs[rows], axis=1)], spacing[1])
     cells = np.flatnonzero(_local_minima(costs))
+    known = np.abs(u.ravel()[cells, None] - valley.u) + np.abs(v.ravel()[cells, None] - valley.v)
+    cells = cells[known.min(axis=1) > max(spacing)]
     cells = cells[np.argsort(costs.ravel()[cells], kind="stable")][:_STARTS]
     return _Points(
         u=np.r_[valley.u, u.ravel()[cells]],
         v=np.r_[valley.v, v.ravel()[cells]],
-        step=np.array(spacing) / 2,
+        step=np.array(spacing) / 4,
         slope=np.r_[valley.slope, np.zeros(len(cells))],
         evaluations=costs.size + valley.evaluations,
     )
@@ -437,21 +440,21 @@ def _refine(objective: _Objective, start: _Points, tolerance: float) -> _Points:
     The pattern is sheared along the valley, whose walls are kinks: a pattern across it would
     find every neighbor higher and stop halfway down.
     """
-    offsets = _pattern(start.step > 0)
-    u, v, scale, count = start.u, start.v, np.ones(len(start.u)), start.evaluations
+    offsets = start.step * _pattern(start.step > 0)
+    u, v, scale, count = start.u.copy(), start.v.copy(), np.ones(len(start.u)), start.evaluations
     for _ in range(_MAX_ROUNDS):
-        if scale.max() * start.step.max() <= tolerance:
+        rows = np.flatnonzero(scale * start.step.max() > tolerance)
+        if not len(rows):
             break
-        moves = scale[:, None, None] * start.step * offsets
-        across = moves[..., 1] + start.slope[:, None] * moves[..., 0]
-        tried_u = np.clip(u[:, None] + moves[..., 0], 0.0, 1.0)
-        tried_v = np.clip(v[:, None] + across, 0.0, 1.0)
+        moves = scale[rows, None, None] * offsets
+        across = moves[..., 1] + start.slope[rows, None] * moves[..., 0]
+        tried_u = np.clip(u[rows, None] + moves[..., 0], 0.0, 1.0)
+        tried_v = np.clip(v[rows, None] + across, 0.0, 1.0)
         costs = objective(tried_u.ravel(), tried_v.ravel()).reshape(tried_u.shape)
-        # Rounding noise must not count as progress.
-        costs[:, 0] -= _LEAST_PROGRESS
-        rows, best = np.arange(len(u)), np.argmin(costs, axis=1)
-        u, v = tried_u[rows, best], tried_v[rows, best]
-        scale = np.where(best == 0, scale / 4, np.minimum(1, 2 * scale))
+        costs[:, 0] -= _LEAST_PROGRESS  # rounding noise must not count as progress
+        best = np.argmin(costs, axis=1)
+        u[rows], v[rows] = (tried[np.arange(len(rows)), best] for tried in (tried_u, tried_v))
+        scale[rows] = np.where(best == 0, scale[rows] / 4, np.minimum(1, 2 * scale[rows]))
         count += costs.size
     return replace(start, u=u, v=v, evaluations=count)
 

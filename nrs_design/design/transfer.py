@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import zip_longest
 from typing import Any
 
 import numpy as np
@@ -130,18 +131,15 @@ def hurwitz(coefficients: ArrayLike) -> BoolArray:
 
 def _routh(rows: FloatArray) -> BoolArray:
     """Run Routh's array on rows whose first entry is not zero."""
-    degree = rows.shape[1] - 1
-    above, below = (np.zeros((len(rows), degree // 2 + 2)) for _ in range(2))
-    above[:, : degree // 2 + 1] = rows[:, 0::2] / rows[:, :1]
-    below[:, : (degree + 1) // 2] = rows[:, 1::2] / rows[:, :1]
+    columns = list((rows / rows[:, :1]).T)
+    above, below = columns[0::2], columns[1::2]
     stable = np.ones(len(rows), dtype=np.bool_)
-    for _ in range(degree):
+    for _ in range(len(columns) - 1):
         # NaN fails this comparison: a row that overflowed must not pass for stable.
-        stable &= below[:, 0] > 0
-        ratio = above[:, 0] / np.where(stable, below[:, 0], 1.0)
-        remainder = np.zeros_like(above)
-        remainder[:, :-1] = above[:, 1:] - ratio[:, None] * below[:, 1:]
-        above, below = below, remainder
+        stable &= below[0] > 0
+        ratio = above[0] / np.where(stable, below[0], 1.0)
+        pairs = zip_longest(above[1:], below[1:], fillvalue=0.0)
+        above, below = below, [upper - ratio * lower for upper, lower in pairs]
     return stable
 
 

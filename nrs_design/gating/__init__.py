@@ -1,1 +1,1 @@
-"""The gate: proof obligations, their rules, the lock, and the formats that CI systems read."""
+"""The gate: every spec of a project, its proof obligations, and whether they are met."""

@@ -93,10 +93,17 @@ def marker(index: int) -> str:
     return MARKERS[index % len(MARKERS)]
 
 
-def legend(axes: Axes, columns: int = 2) -> None:
+def short(name: str, limit: int = 26) -> str:
+    """Shorten a name for a label in a figure; the tables have it in full."""
+    if len(name) <= limit:
+        return name
+    head = limit // 2
+    return f"{name[:head]}…{name[head + 1 - limit :]}"
+
+
+def legend(figure: Figure, axes: Axes, columns: int = 2) -> None:
     """Put a legend below the axes, where it hides no data; none for a single series."""
     handles, labels = axes.get_legend_handles_labels()
     if len(handles) > 1:
-        axes.figure.legend(  # type: ignore[union-attr]
-            handles, labels, loc="outside lower center", ncols=min(columns, len(handles))
-        )
+        columns = min(columns, len(handles))
+        figure.legend(handles, labels, loc="outside lower center", ncols=columns)

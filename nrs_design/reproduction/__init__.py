@@ -1,1 +1,1 @@
-"""The dissertation's published numbers beside recomputed ones."""
+"""The numbers that the thesis prints, beside what this package computes."""

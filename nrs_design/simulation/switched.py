@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -10,6 +11,11 @@ from numpy.typing import NDArray
 from nrs_design.switched.system import SwitchedSystem, Time
 
 Array = NDArray[np.float64]
+
+# Growth per step below which a run of an unstable mode is shown as one on the stability limit.
+_MARGINAL = 1e-5
+_MARGINAL_STEPS = 628
+_FEWEST, _MOST = 20, 4000
 
 
 @dataclass(frozen=True)
@@ -99,6 +105,76 @@ def worst_direction(system: SwitchedSystem, Q: Array) -> Array:
     inverse = np.linalg.inv(np.linalg.cholesky(Q))
     worst = max((_slowest(inverse, drift) for drift in _drift(system, Q)), key=lambda pair: pair[0])
     return inverse.T @ worst[1]
+
+
+def mode_rates(system: SwitchedSystem, Q: Array) -> Array:
+    """Return how fast ``sqrt(x' Q x)`` decays at least in every mode by itself.
+
+    Parameters
+    ----------
+    system : SwitchedSystem
+        Modes.
+    Q : ndarray, shape (n, n)
+        Symmetric and positive definite.
+
+    Returns
+    -------
+    ndarray, shape (m,)
+        Continuous time: the largest alpha with ``A'Q + QA + 2 alpha Q <= 0``, in 1/s; negative
+        where the norm can grow. Discrete time: the smallest rho with ``A'QA <= rho^2 Q``.
+    """
+    inverse = np.linalg.inv(np.linalg.cholesky(Q))
+    largest = np.linalg.eigvalsh(inverse @ np.array(_drift(system, Q)) @ inverse.T)[:, -1]
+    if system.time is Time.DISCRETE:
+        return np.asarray(np.sqrt(np.maximum(largest, 0.0)))
+    return np.asarray(-largest / 2)
+
+
+def norms(response: TimeResponse, Q: Array) -> Array:
+    """Return ``sqrt(x' Q x)`` over its first value; shape (N + 1,)."""
+    squares = np.einsum("ti,ij,tj->t", response.state, Q, response.state)
+    return np.asarray(np.sqrt(np.maximum(squares, 0.0) / squares[0]))
+
+
+def fine_step(system: SwitchedSystem) -> float:
+    """Return a step that resolves the fastest eigenvalue, in s; one in discrete time."""
+    if system.time is Time.DISCRETE:
+        return 1.0
+    fastest = float(np.abs(eigenvalues(system)).max())
+    return 0.1 / fastest if fastest > 0 else 0.1
+
+
+def eigenvalues(system: SwitchedSystem) -> NDArray[np.complex128]:
+    """Return the eigenvalues of every mode, in 1/s in continuous time; shape (m, n)."""
+    matrices = np.array([mode.A.floats() for mode in system.modes])
+    return np.asarray(np.linalg.eigvals(matrices), dtype=np.complex128)
+
+
+def unstable_run(system: SwitchedSystem, mode: int, growth: float = 100.0) -> TimeResponse:
+    """Stay in one mode, from the real part of the eigenvector that is worst for stability.
+
+    Parameters
+    ----------
+    system : SwitchedSystem
+        Modes.
+    mode : int
+        Index of the mode to stay in.
+    growth : float
+        The run ends when the eigenvalue has let the state grow by this factor; where it lies on
+        the stability limit, after ten periods or time constants.
+    """
+    values, vectors = np.linalg.eig(np.array(system.modes[mode].A.floats()))
+    continuous = system.time is Time.CONTINUOUS
+    worst = int(np.argmax(values.real if continuous else np.abs(values)))
+    initial = vectors[:, worst].real / np.linalg.norm(vectors[:, worst].real)
+    step = fine_step(system)
+    if continuous:
+        exponent = float(values[worst].real) * step
+    else:
+        exponent = math.log(max(float(abs(values[worst])), 1.0))
+    steps = math.log(growth) / exponent if exponent > _MARGINAL else _MARGINAL_STEPS
+    signal = np.full(min(max(math.ceil(steps), _FEWEST), _MOST), mode, dtype=np.int64)
+    return simulate_switching(system, signal, initial, step)
 
 
 def _drift(system: SwitchedSystem, Q: Array) -> list[Array]:

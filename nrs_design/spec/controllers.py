@@ -97,7 +97,7 @@ class ForceControllerSpec(SpecModel):
     )
     damping_ratio: UnitFraction | None = Field(
         default=None,
-        description="wanted damping ratio of the dominant poles, between 0 and 1, no unit; chooses Kp",
+        description="wanted damping ratio of the dominant poles, in (0, 1), no unit; chooses Kp",
     )
 
     _contacts = field_validator("contacts")(_distinct)

@@ -1,5 +1,5 @@
 """M. S. Branicky, "Multiple Lyapunov functions and other analysis tools for switched and hybrid
-systems", IEEE Transactions on Automatic Control 43(4), 1998, example 1.
+systems", IEEE Transactions on Automatic Control 43(4), 1998.
 
 Two Hurwitz modes that are unstable under some switching.
 """

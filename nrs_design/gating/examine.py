@@ -1,0 +1,150 @@
+"""From a verdict and its evidence to the obligations of one spec."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from nrs_design.certificates.certificate import (
+    Certificate,
+    CommonQuadratic,
+    Evidence,
+    claim,
+    rate_text,
+)
+from nrs_design.certificates.second_opinion import unstable_mode
+from nrs_design.gating.obligations import Obligation, Status
+from nrs_design.gating.places import Places
+from nrs_design.gating.rules import (
+    CERTIFICATE_HOLDS,
+    MODE_STABLE,
+    STIFFNESS_RANGE,
+    SWITCHING_STABLE,
+    Rule,
+)
+from nrs_design.spec import InteractionDesignSpec, LoadedSpec
+from nrs_design.spec.document import Position
+from nrs_design.switched.system import Mode, SwitchedSystem, Time
+
+if TYPE_CHECKING:
+    from nrs_design.design.evidence import DesignEvidence
+
+
+@dataclass(frozen=True)
+class Examiner:
+    """Makes obligations about one spec, each with its place.
+
+    Parameters
+    ----------
+    loaded : LoadedSpec
+        The spec.
+    places : Places
+        Its lines and columns.
+    """
+
+    loaded: LoadedSpec
+    places: Places
+
+    @classmethod
+    def of(cls, loaded: LoadedSpec) -> Examiner:
+        """Return the examiner of a spec."""
+        return cls(loaded, Places(loaded))
+
+    def obligation(
+        self, rule: Rule, subject: str, status: Status, message: str, place: Position
+    ) -> Obligation:
+        """Return an obligation at a place in this spec."""
+        path = self.loaded.path
+        return Obligation(rule, path, subject, status, message, place.line, place.column)
+
+    def stability(
+        self, system: SwitchedSystem, evidence: Evidence | None, searched: str
+    ) -> tuple[Obligation, ...]:
+        """Return NRS101 for every mode, and NRS102 for the system.
+
+        Parameters
+        ----------
+        system : SwitchedSystem
+            Assembled from the spec.
+        evidence : Evidence or None
+            Checked; None if the verdict is inconclusive.
+        searched : str
+            What was tried, for the message of an inconclusive verdict.
+        """
+        proved = isinstance(evidence, CommonQuadratic)
+        modes = tuple(self._mode(mode, system.time, proved=proved) for mode in system.modes)
+        if evidence is None:
+            status = Status.INCONCLUSIVE
+            message = f"neither a proof nor a refutation was found ({searched})"
+        else:
+            status = Status.PROVED if proved else Status.REFUTED
+            message = claim(system, evidence)
+        place = self.places.at("switching")
+        return (*modes, self.obligation(SWITCHING_STABLE, "system", status, message, place))
+
+    def _mode(self, mode: Mode, time: Time, *, proved: bool) -> Obligation:
+        region = "Hurwitz" if time is Time.CONTINUOUS else "Schur"
+        # A common quadratic function makes every mode stable: no need to decide it again.
+        witness = None if proved else unstable_mode(mode, time)
+        if witness is None:
+            status, message = Status.PROVED, f"mode {mode.name} is {region}"
+        else:
+            status = Status.REFUTED
+            message = f"mode {mode.name} is not {region} (eigenvalue {witness.eigenvalue})"
+        return self.obligation(
+            MODE_STABLE, mode.name, status, message, self.places.mode(mode.name)
+        )
+
+    def certificate(self, file: Path, fault: str | None) -> Obligation:
+        """Return NRS104 from the outcome of a re-check; None says that the certificate holds."""
+        if fault is None:
+            status, message = Status.MET, f"{file.as_posix()} holds, checked exactly"
+        else:
+            status, message = Status.MISSED, f"{file.as_posix()} is rejected: {fault}"
+        return self.obligation(
+            CERTIFICATE_HOLDS, "certificate", status, message, self.places.at("name")
+        )
+
+    def stiffness_ranges(self, evidence: DesignEvidence) -> Iterator[Obligation]:
+        """Yield NRS103 for every impedance controller."""
+        from nrs_design.models.plant import build_plant
+
+        spec = self.loaded.spec
+        assert isinstance(spec, InteractionDesignSpec)
+        plant = build_plant(spec)
+        for item in evidence.impedance:
+            controller = spec.controllers[item.name]
+            assert controller.type == "impedance"
+            highest = float(plant.environment(controller.environment).stiffness.high)
+            limit = item.margins.stiffness_limit
+            reached = highest < limit
+            verb = "stays below" if reached else "reaches"
+            message = (
+                f"design goal: the stiffness of {controller.environment}, up to {highest:.6g} "
+                f"N*m/rad, {verb} the limit {limit:.6g} N*m/rad of controller {item.name} "
+                "(floating point, not a proof)"
+            )
+            yield self.obligation(
+                STIFFNESS_RANGE,
+                item.name,
+                Status.MET if reached else Status.MISSED,
+                message,
+                self.places.at("controllers", item.name),
+            )
+
+
+def rate_of(certificate: Certificate | None) -> tuple[str | None, str | None]:
+    """Return the certified rate as text and its name; None where nothing is proved."""
+    if certificate is None or not isinstance(certificate.evidence, CommonQuadratic):
+        return None, None
+    time = certificate.system.time
+    name = "alpha" if time is Time.CONTINUOUS else "rho"
+    return rate_text(certificate.evidence.rate, time), name
+
+
+def common_quadratic_of(certificate: Certificate) -> str:
+    """Tell what a certificate says about a common quadratic function."""
+    # It would make every mode stable, so an unstable mode rules it out.
+    return "exists" if isinstance(certificate.evidence, CommonQuadratic) else "impossible"

@@ -1,0 +1,70 @@
+"""Which spec files a list of files and folders means."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable, Iterator
+from pathlib import Path
+
+from nrs_design.errors import NrsDesignError, SpecError
+
+SUFFIX = ".nrs.yaml"
+
+
+def find_specs(paths: Iterable[Path]) -> tuple[Path, ...]:
+    """List the spec files of files and folders, sorted, each once.
+
+    A folder stands for all ``*.nrs.yaml`` below it, hidden folders left out. Links to folders
+    are not followed. A file is taken as it is named, whether it exists or not: reading it is
+    where that shows.
+
+    Raises
+    ------
+    NrsDesignError
+        If a folder has no spec, because a gate over nothing would pass.
+    SpecError
+        If a link in a folder leads to a spec outside of it.
+    """
+    found: dict[str, Path] = {}
+    for path in paths:
+        for spec in _specs_of(path):
+            found.setdefault(os.path.realpath(spec), spec)
+    return tuple(sorted(found.values()))
+
+
+def _specs_of(path: Path) -> list[Path]:
+    if not path.is_dir():
+        return [path]
+    specs = sorted(_specs_below(path))
+    if not specs:
+        raise NrsDesignError(
+            f"there is no *{SUFFIX} in this folder",
+            path=path,
+            remedy="name a spec file or a folder with specs",
+        )
+    return specs
+
+
+def _specs_below(root: Path) -> Iterator[Path]:
+    inside = os.path.realpath(root)
+    for folder, subfolders, files in os.walk(root, onerror=_refuse):
+        subfolders[:] = [name for name in subfolders if not name.startswith(".")]
+        for name in files:
+            if name.endswith(SUFFIX):
+                spec = Path(folder, name)
+                if os.path.commonpath([inside, os.path.realpath(spec)]) != inside:
+                    raise SpecError(
+                        "is a link that leads out of the folder",
+                        path=spec,
+                        remedy="name the spec itself, or remove the link",
+                    )
+                yield spec
+
+
+def _refuse(error: OSError) -> None:
+    """Fail on a folder that cannot be listed: a spec in it would go unnoticed."""
+    raise SpecError(
+        f"cannot be listed ({error.strerror})",
+        path=Path(os.fsdecode(error.filename)),
+        remedy="make the folder readable, or name the specs one by one",
+    )

@@ -1,0 +1,46 @@
+"""For other programs: the versioned envelope, with every obligation."""
+
+from __future__ import annotations
+
+import json
+from typing import Any
+
+from nrs_design.gating.obligations import GateOutcome, Obligation, SpecOutcome
+from nrs_design.gating.paths import from_here
+
+
+def to_json(outcome: GateOutcome) -> str:
+    """Return one JSON document."""
+    document = {
+        "schema": "nrs-design/gate/1",
+        "passed": outcome.severity == 0,
+        "specs": [_spec(spec) for spec in outcome.specs],
+        "notes": list(outcome.notes),
+    }
+    return json.dumps(document, indent=2, ensure_ascii=True) + "\n"
+
+
+def _spec(spec: SpecOutcome) -> dict[str, Any]:
+    return {
+        "path": from_here(spec.path),
+        "spec_sha256": spec.sha256,
+        "verdict": spec.verdict,
+        "common_quadratic": spec.common_quadratic,
+        "rate": spec.rate,
+        "rate_name": spec.rate_name,
+        "modes": spec.modes,
+        "certificate": None if spec.certificate is None else from_here(spec.certificate),
+        "certificate_id": spec.certificate_id,
+        "obligations": [_obligation(item) for item in spec.obligations],
+    }
+
+
+def _obligation(item: Obligation) -> dict[str, Any]:
+    return {
+        "rule": item.rule.id,
+        "subject": item.subject,
+        "status": str(item.status),
+        "message": item.message,
+        "line": item.line,
+        "column": item.column,
+    }

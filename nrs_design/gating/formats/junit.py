@@ -1,0 +1,62 @@
+"""For test reporters: JUnit XML, one test case per proof obligation, one suite per spec."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from xml.etree import ElementTree
+
+from nrs_design.gating.obligations import GateOutcome, Obligation, SpecOutcome, Status
+from nrs_design.gating.paths import from_here
+
+# Everything that XML 1.0 does not allow, even escaped.
+_NOT_XML = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
+
+
+def to_junit(outcome: GateOutcome) -> str:
+    """Return the XML document; it has no times, so that equal runs give equal files."""
+    every = [item for spec in outcome.specs for item in spec.obligations]
+    root = ElementTree.Element("testsuites", name="nrs-design", **_counts(every))
+    for spec in outcome.specs:
+        _add_suite(root, spec)
+    ElementTree.indent(root)
+    body = ElementTree.tostring(root, encoding="unicode")
+    return f'<?xml version="1.0" encoding="UTF-8"?>\n{body}\n'
+
+
+def _add_suite(root: ElementTree.Element, spec: SpecOutcome) -> None:
+    name = _xml(from_here(spec.path))
+    suite = ElementTree.SubElement(root, "testsuite", name=name, **_counts(spec.obligations))
+    for item in spec.obligations:
+        case = ElementTree.SubElement(
+            suite,
+            "testcase",
+            classname=name,
+            name=_xml(f"{item.rule.id} {item.rule.title}: {item.subject}"),
+            file=name,
+        )
+        if item.line is not None:
+            case.set("line", str(item.line))
+        if not item.fulfilled:
+            _add_failure(case, item)
+
+
+def _add_failure(case: ElementTree.Element, item: Obligation) -> None:
+    is_error = item.status is Status.ERROR
+    failure = ElementTree.SubElement(
+        case,
+        "error" if is_error else "failure",
+        type=item.rule.id if is_error else str(item.status),
+        message=_xml(item.message),
+    )
+    failure.text = _xml(item.rule.remedy)
+
+
+def _counts(items: Sequence[Obligation]) -> dict[str, str]:
+    broken = [item.status for item in items if not item.fulfilled]
+    errors = broken.count(Status.ERROR)
+    return {"tests": str(len(items)), "failures": str(len(broken) - errors), "errors": str(errors)}
+
+
+def _xml(text: str) -> str:
+    return _NOT_XML.sub(lambda found: found[0].encode("unicode_escape").decode(), text)

@@ -1,0 +1,60 @@
+"""For people: one table, and a line for every obligation that is not fulfilled."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from nrs_design.gating.obligations import (
+    GateOutcome,
+    Obligation,
+    SpecOutcome,
+    count_by_verdict,
+)
+from nrs_design.gating.paths import printable
+
+COLUMNS = ("spec", "verdict", "common quadratic", "decay rate", "modes", "certificate")
+SHORT_ID = 12
+
+
+def to_text(outcome: GateOutcome) -> str:
+    """Return the table, the failures worst first, and a line that sums up."""
+    parts = [*_table([COLUMNS, *map(_row, outcome.specs)])]
+    if outcome.broken:
+        parts += ["", *map(_line, outcome.broken)]
+    return "\n".join([*parts, "", _summary(outcome)]) + "\n"
+
+
+def _row(spec: SpecOutcome) -> Sequence[str]:
+    unit = " 1/s" if spec.rate_name == "alpha" else ""
+    return (
+        printable(spec.path),
+        spec.verdict or "-",
+        spec.common_quadratic or "-",
+        f"{spec.rate_name} = {spec.rate}{unit}" if spec.rate else "-",
+        "-" if spec.modes is None else str(spec.modes),
+        (spec.certificate_id or "-")[:SHORT_ID],
+    )
+
+
+def _table(rows: Sequence[Sequence[str]]) -> list[str]:
+    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
+    lines = [
+        "  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip()
+        for row in rows
+    ]
+    return [lines[0], "-" * (sum(widths) + 2 * (len(widths) - 1)), *lines[1:]]
+
+
+def _line(item: Obligation) -> str:
+    place = [printable(item.path), *(str(n) for n in (item.line, item.column) if n is not None)]
+    return f"{':'.join(place)}: {item.rule.id} {item.status}: {printable(item.message)}"
+
+
+def _summary(outcome: GateOutcome) -> str:
+    counts = ", ".join(f"{n} {verdict}" for verdict, n in count_by_verdict(outcome.specs).items())
+    broken = len(outcome.broken)
+    total = sum(len(spec.obligations) for spec in outcome.specs)
+    ending = "all fulfilled" if not broken else f"{broken} not fulfilled (nrs-design explain RULE)"
+    count = len(outcome.specs)
+    specs = "1 spec" if count == 1 else f"{count} specs"
+    return f"{specs}: {counts}; {total} obligations, {ending}"

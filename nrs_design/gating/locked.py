@@ -1,0 +1,152 @@
+"""``gate --locked``: re-check what was locked, without designing or solving anything."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Sequence
+from pathlib import Path
+
+from nrs_design.certificates.certificate import Certificate
+from nrs_design.certificates.verify import verify
+from nrs_design.gating.examine import Examiner, common_quadratic_of, rate_of
+from nrs_design.gating.lock import Lock, LockedSpec, relative_to_lock
+from nrs_design.gating.obligations import GateOutcome, Obligation, SpecOutcome, Status, failed
+from nrs_design.gating.rules import LOCKED, SWITCHING_STABLE
+from nrs_design.spec import InteractionDesignSpec, LoadedSpec, read_spec
+
+Progress = Callable[[str], None]
+RENEW = "run nrs-design gate without --locked"
+
+
+def run_locked(
+    specs: Sequence[Path], lock: Lock, file: Path, progress: Progress = lambda step: None
+) -> GateOutcome:
+    """Re-check every spec against the lock file, exactly and without any solver.
+
+    Parameters
+    ----------
+    specs : sequence of Path
+        As `nrs_design.gating.find_specs.find_specs` lists them.
+    lock : Lock
+        What was locked.
+    file : Path
+        Where the lock file is; paths in it are relative to it.
+    progress : callable
+        Told the name of each step.
+
+    Returns
+    -------
+    GateOutcome
+        Locked specs that no longer exist are part of it. Those that exist but were not named
+        are only noted.
+    """
+    entries = {entry.path: entry for entry in lock.specs}
+    outcomes = []
+    for path in specs:
+        progress(str(path))
+        entry = entries.pop(relative_to_lock(path, file), None)
+        outcomes.append(_examine_safely(path, entry, file))
+    rest = {entry.path: file.parent / entry.path for entry in entries.values()}
+    gone = [_gone(path, file) for path in rest.values() if not path.is_file()]
+    unnamed = sorted(name for name, path in rest.items() if path.is_file())
+    notes = (f"locked, but not among the given paths: {', '.join(unnamed)}",) if unnamed else ()
+    return GateOutcome(tuple(outcomes + gone), notes)
+
+
+def _examine_safely(path: Path, entry: LockedSpec | None, file: Path) -> SpecOutcome:
+    try:
+        return _examine(read_spec(path), entry, file)
+    except Exception as error:
+        # One spec must not keep the others from being examined, whatever goes wrong with it.
+        return failed(path, error)
+
+
+def _examine(loaded: LoadedSpec, entry: LockedSpec | None, file: Path) -> SpecOutcome:
+    examiner = Examiner.of(loaded)
+    if entry is None:
+        return _missed(examiner, f"this spec is not in {file.name} ({RENEW})")
+    if entry.sha256 != loaded.sha256:
+        return _missed(examiner, f"this spec has changed since it was locked ({RENEW})")
+    if entry.certificate is None:
+        return _inconclusive(examiner, file)
+    place = Path(os.path.normpath(file.parent / entry.certificate.file))
+    checked = verify(place, loaded)
+    if checked.certificate is None or checked.fault is not None:
+        obligation = examiner.certificate(place, checked.fault or "it holds no claim")
+        return SpecOutcome(loaded.path, (obligation,), loaded.sha256, certificate=place)
+    certificate = checked.certificate
+    if difference := _find_difference(certificate, entry, loaded):
+        return _missed(examiner, f"{place.as_posix()} {difference} ({RENEW})")
+    return _confirmed(examiner, certificate, place, file)
+
+
+def _confirmed(
+    examiner: Examiner, certificate: Certificate, place: Path, file: Path
+) -> SpecOutcome:
+    rate, rate_name = rate_of(certificate)
+    return SpecOutcome(
+        path=examiner.loaded.path,
+        obligations=(
+            *examiner.stability(certificate.system, certificate.evidence, ""),
+            examiner.certificate(place, None),
+            _agrees(examiner, file),
+        ),
+        sha256=examiner.loaded.sha256,
+        verdict=certificate.verdict,
+        common_quadratic=common_quadratic_of(certificate),
+        rate=rate,
+        rate_name=rate_name,
+        modes=len(certificate.system.modes),
+        certificate=place,
+        certificate_id=certificate.id,
+    )
+
+
+def _find_difference(
+    certificate: Certificate, entry: LockedSpec, loaded: LoadedSpec
+) -> str | None:
+    """Say how a valid certificate differs from what was locked, or from what the spec asks for."""
+    if entry.certificate is None or certificate.id != entry.certificate.id:
+        return "is not the certificate that was locked"
+    if (certificate.verdict, rate_of(certificate)[0]) != (entry.verdict, entry.rate):
+        return "has another verdict or rate than the lock file says"
+    spec = loaded.spec
+    if isinstance(spec, InteractionDesignSpec) and certificate.coordinates != spec.coordinates:
+        return f"is about {certificate.coordinates} coordinates, not those of the spec"
+    return None
+
+
+def _inconclusive(examiner: Examiner, file: Path) -> SpecOutcome:
+    obligation = examiner.obligation(
+        SWITCHING_STABLE,
+        "system",
+        Status.INCONCLUSIVE,
+        f"neither a proof nor a refutation is locked in {file.name}",
+        examiner.places.at("switching"),
+    )
+    return SpecOutcome(
+        path=examiner.loaded.path,
+        obligations=(obligation, _agrees(examiner, file)),
+        sha256=examiner.loaded.sha256,
+        verdict="inconclusive",
+        common_quadratic="unknown",
+    )
+
+
+def _agrees(examiner: Examiner, file: Path) -> Obligation:
+    return examiner.obligation(
+        LOCKED, "lock", Status.MET, f"as in {file.name}", examiner.places.at("name")
+    )
+
+
+def _missed(examiner: Examiner, message: str) -> SpecOutcome:
+    obligation = examiner.obligation(
+        LOCKED, "lock", Status.MISSED, message, examiner.places.at("name")
+    )
+    return SpecOutcome(examiner.loaded.path, (obligation,), examiner.loaded.sha256)
+
+
+def _gone(path: Path, file: Path) -> SpecOutcome:
+    shown = Path(os.path.relpath(path))
+    message = f"this spec is in {file.name}, but no longer exists ({RENEW})"
+    return SpecOutcome(shown, (Obligation(LOCKED, shown, "lock", Status.MISSED, message),))

@@ -1,0 +1,186 @@
+"""What the gate finds: obligations, by spec, each with its status and its place in the file."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from enum import StrEnum
+from pathlib import Path
+
+from nrs_design.errors import NrsDesignError
+from nrs_design.gating.rules import INTERNAL, RULES, Rule
+
+
+class Status(StrEnum):
+    """How an obligation ended; see `nrs_design.gating.rules.WORDS`.
+
+    What is decided in exact arithmetic is proved or refuted. Design goals, which are computed in
+    floating point, and agreement between files are met or missed.
+    """
+
+    PROVED = "proved"
+    MET = "met"
+    INCONCLUSIVE = "inconclusive"
+    MISSED = "missed"
+    REFUTED = "refuted"
+    ERROR = "error"
+
+
+@dataclass(frozen=True, slots=True)
+class Obligation:
+    """One thing that must hold for one spec.
+
+    Parameters
+    ----------
+    rule : Rule
+        What must hold.
+    path : Path
+        The spec, as it was named.
+    subject : str
+        What it must hold for: a mode, a controller, the system, a file.
+    status : Status
+        How it ended.
+    message : str
+        What was found; one line.
+    line, column : int or None
+        Place in the spec, counted from 1, as far as it is known.
+    """
+
+    rule: Rule
+    path: Path
+    subject: str
+    status: Status
+    message: str
+    line: int | None = None
+    column: int | None = None
+
+    @property
+    def fulfilled(self) -> bool:
+        """Whether it lets the gate pass."""
+        return self.status in (Status.PROVED, Status.MET)
+
+    @property
+    def severity(self) -> int:
+        """0 if fulfilled; then inconclusive, missed or refuted, error, internal error."""
+        if self.rule is INTERNAL:
+            return 4
+        return _SEVERITY[self.status]
+
+
+_SEVERITY = {
+    Status.PROVED: 0,
+    Status.MET: 0,
+    Status.INCONCLUSIVE: 1,
+    Status.MISSED: 2,
+    Status.REFUTED: 2,
+    Status.ERROR: 3,
+}
+
+
+@dataclass(frozen=True, slots=True)
+class SpecOutcome:
+    """Everything that was found about one spec.
+
+    Parameters
+    ----------
+    path : Path
+        The spec, as it was named.
+    obligations : tuple of Obligation
+        At least one.
+    sha256 : str or None
+        Hash of the spec, if it could be read.
+    verdict, common_quadratic : str or None
+        Of the certification; None if there was none.
+    rate : str or None
+        Certified rate with six digits, rounded to its safe side.
+    rate_name : str or None
+        ``alpha`` (1/s, continuous time) or ``rho`` (per step, discrete time).
+    modes : int or None
+        Number of modes.
+    certificate : Path or None
+        Its file.
+    certificate_id : str or None
+        Its id.
+    """
+
+    path: Path
+    obligations: tuple[Obligation, ...]
+    sha256: str | None = None
+    verdict: str | None = None
+    common_quadratic: str | None = None
+    rate: str | None = None
+    rate_name: str | None = None
+    modes: int | None = None
+    certificate: Path | None = None
+    certificate_id: str | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class GateOutcome:
+    """What one run of the gate found.
+
+    Parameters
+    ----------
+    specs : tuple of SpecOutcome
+        In the order of their paths.
+    notes : tuple of str
+        What a person should know beside it.
+    """
+
+    specs: tuple[SpecOutcome, ...]
+    notes: tuple[str, ...] = ()
+
+    @property
+    def broken(self) -> tuple[Obligation, ...]:
+        """Obligations that are not fulfilled, worst first, else in their order."""
+        every = (item for spec in self.specs for item in spec.obligations)
+        return tuple(
+            sorted(
+                (item for item in every if not item.fulfilled), key=lambda item: -item.severity
+            )
+        )
+
+    @property
+    def severity(self) -> int:
+        """That of the worst obligation."""
+        return max((item.severity for item in self.broken), default=0)
+
+
+def failed(path: Path, error: Exception, sha256: str | None = None) -> SpecOutcome:
+    """Return the outcome of a spec that an error stopped; an unforeseen one is a defect."""
+    if isinstance(error, NrsDesignError):
+        obligation = of_error(path, error)
+    else:
+        message = f"{type(error).__name__}: {error}"
+        obligation = Obligation(INTERNAL, path, "nrs-design", Status.ERROR, _one_line(message))
+    return SpecOutcome(path, (obligation,), sha256)
+
+
+def of_error(path: Path, error: NrsDesignError) -> Obligation:
+    """Return the obligation of a spec that ended in an error, with the place and the remedy."""
+    elsewhere = error.path is not None and error.path != path
+    message = f"{error.location}: {error.message}" if elsewhere else error.message
+    if error.remedy:
+        message += f" ({error.remedy})"
+    return Obligation(
+        RULES[error.rule],
+        path,
+        "spec",
+        Status.ERROR,
+        _one_line(message),
+        None if elsewhere else error.line,
+        None if elsewhere else error.column,
+    )
+
+
+def count_by_verdict(specs: Iterable[SpecOutcome]) -> dict[str, int]:
+    """Count specs by verdict; those without one count as ``without verdict``."""
+    counts: dict[str, int] = {}
+    for spec in specs:
+        key = spec.verdict or "without verdict"
+        counts[key] = counts.get(key, 0) + 1
+    return counts
+
+
+def _one_line(text: str) -> str:
+    return " ".join(text.split())

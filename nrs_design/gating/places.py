@@ -1,0 +1,43 @@
+"""Where in a spec file the things stand that obligations are about."""
+
+from __future__ import annotations
+
+from nrs_design.spec import LoadedSpec, SwitchedSystemSpec
+from nrs_design.spec.document import Mapping, Node, Position, Sequence, parse_document
+
+
+class Places:
+    """Lines and columns of one spec.
+
+    Parameters
+    ----------
+    loaded : LoadedSpec
+        The spec; its text is parsed once more, for the positions.
+    """
+
+    def __init__(self, loaded: LoadedSpec) -> None:
+        self._root = parse_document(loaded.text, loaded.path)
+        spec = loaded.spec
+        modes = spec.modes if isinstance(spec, SwitchedSystemSpec) else ()
+        self._indices = {mode.name: index for index, mode in enumerate(modes)}
+
+    def mode(self, name: str) -> Position:
+        """Where a given mode stands, or the controller that an assembled mode belongs to."""
+        if name in self._indices:
+            return self.at("modes", self._indices[name])
+        # Labels have no slash: what follows it names the contact.
+        return self.at("controllers", name.partition("/")[0])
+
+    def at(self, *keys: str | int) -> Position:
+        """Where a key or an item stands; what holds it, if it is not written out."""
+        node: Node = self._root
+        place = node.position
+        for key in keys:
+            if isinstance(node, Mapping) and isinstance(key, str) and key in node.entries:
+                place, node = node.keys[key], node.entries[key]
+            elif isinstance(node, Sequence) and isinstance(key, int) and key < len(node.items):
+                node = node.items[key]
+                place = node.position
+            else:
+                break
+        return place

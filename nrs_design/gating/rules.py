@@ -1,0 +1,203 @@
+"""The catalogue of rules: what each finding means, and what to do about it.
+
+Ids are stable: they stand in lock files, annotations, baselines of code scanners and in the
+``rule`` of every error in `nrs_design.errors`. An id is never given a second meaning.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from types import MappingProxyType
+
+
+@dataclass(frozen=True, slots=True)
+class Rule:
+    """One kind of finding.
+
+    Parameters
+    ----------
+    id : str
+        Such as ``NRS102``.
+    title : str
+        What should be the case, in a few words.
+    explanation : str
+        What the rule means and how it is decided.
+    remedy : str
+        What to do if it is broken.
+    """
+
+    id: str
+    title: str
+    explanation: str
+    remedy: str
+
+
+@dataclass(frozen=True, slots=True)
+class Word:
+    """One word that an obligation can end with: what it means, and what to do then."""
+
+    word: str
+    explanation: str
+    remedy: str
+
+
+COMMAND = Rule(
+    "NRS000",
+    "The command can be carried out",
+    "What the command was asked to do is not possible with what it was given.",
+    "Follow the message; `nrs-design COMMAND --help` shows an example of every command.",
+)
+SPEC = Rule(
+    "NRS001",
+    "The spec can be read",
+    "A spec is a YAML file with exact numbers and units. It is read strictly: an unknown key, a "
+    "number without its unit, a duplicate or an impossible value is an error, never a guess. In "
+    "one run of the gate, every spec has a name of its own, because its files are named after it.",
+    "Correct the place that is named by line and column; `nrs-design schema` describes the format.",
+)
+DESIGN = Rule(
+    "NRS002",
+    "The design problem has an answer",
+    "The requirements of the spec cannot be met within the bounds that it sets, or the command "
+    "needs a design where the spec gives matrices.",
+    "Widen the bounds on the gains, or relax the requirement that is named.",
+)
+ASSEMBLY = Rule(
+    "NRS003",
+    "The modes make one switched system",
+    "All modes must share one state. Loops with and without virtual inertia, for example, have "
+    "states of different sizes, so no statement about switching between them is possible.",
+    "Make the controllers alike (all with Mt > 0 or all without), or write one spec for each kind.",
+)
+CERTIFICATE = Rule(
+    "NRS004",
+    "The certificate or lock file can be read",
+    "The file is missing, is not of the expected format, or does not belong to the spec that it "
+    "is held against.",
+    "Make it anew with `nrs-design certify-switching` or `nrs-design gate`; never edit it.",
+)
+OUTPUT = Rule(
+    "NRS005",
+    "The results can be written",
+    "Results are written whole or not at all, and never through a symbolic link.",
+    "Choose another place with --out or --reports, or make the folder writable.",
+)
+MODE_STABLE = Rule(
+    "NRS101",
+    "Every mode is stable",
+    "Staying in one mode forever is an admissible switching signal, so every mode must be Hurwitz "
+    "(all eigenvalues in the left half plane) or, in discrete time, Schur (inside the unit "
+    "circle). Decided in exact arithmetic from the characteristic polynomial.",
+    "Look at the eigenvalue and at the signs of this mode's matrix; for a controller, lower the "
+    "loop gain: raise Bt, lower Kp, or narrow the range of the environment.",
+)
+SWITCHING_STABLE = Rule(
+    "NRS102",
+    "The system is stable under the declared switching",
+    "Every solution must decay exponentially, whatever the order and the times of the switches "
+    "that the spec allows. Proved by one quadratic Lyapunov function for all modes, checked in "
+    "exact arithmetic; refuted by an unstable mode. Stable modes alone do not suffice.",
+    "If refuted, mend the unstable mode first. If inconclusive, neither was found: bring the modes "
+    "closer together (similar Bt, narrower ranges) and try again. The gate fails until there is "
+    "a proof.",
+)
+STIFFNESS_RANGE = Rule(
+    "NRS103",
+    "The declared stiffness is below the stiffness limit",
+    "For every impedance controller, the whole declared stiffness range of the environment that "
+    "it is designed for lies below the stiffness at which its loop first becomes unstable (at "
+    "nominal damping). A design goal, computed in floating point: not a proof. What is proved "
+    "about the range is NRS102, at every corner of the parameter box and so inside it.",
+    "Raise Bt or its upper bound, or narrow the stiffness range to what really occurs.",
+)
+CERTIFICATE_HOLDS = Rule(
+    "NRS104",
+    "The certificate holds for its spec",
+    "The certificate file is read back and re-checked from the spec alone, in exact arithmetic and "
+    "without any solver: the matrices are assembled from the spec, the gains, the function and "
+    "the rate come from the certificate, and every other field must follow from these.",
+    "Make it anew with `nrs-design gate`. If a fresh certificate is rejected, report a defect.",
+)
+LOCKED = Rule(
+    "NRS105",
+    "The lock file agrees with the specs",
+    "With --locked, every spec must have an entry with the hash of its present content and with "
+    "the certificate that was locked, and every locked spec must still exist.",
+    "Run `nrs-design gate` without --locked, look at what changed, and commit the new lock file "
+    "together with its certificates.",
+)
+INTERNAL = Rule(
+    "NRS900",
+    "The program works as intended",
+    "Two independent computations disagree, or the program met a case that it was not written "
+    "for. This is a defect of nrs-design and says nothing about the spec: it is no verdict.",
+    "Report it with the spec and the output of the single command with -v.",
+)
+
+RULES: Mapping[str, Rule] = MappingProxyType(
+    {
+        rule.id: rule
+        for rule in (
+            COMMAND,
+            SPEC,
+            DESIGN,
+            ASSEMBLY,
+            CERTIFICATE,
+            OUTPUT,
+            MODE_STABLE,
+            SWITCHING_STABLE,
+            STIFFNESS_RANGE,
+            CERTIFICATE_HOLDS,
+            LOCKED,
+            INTERNAL,
+        )
+    }
+)
+
+WORDS: Mapping[str, Word] = MappingProxyType(
+    {
+        word.word: word
+        for word in (
+            Word(
+                "proved",
+                "The statement holds for the matrices of the spec with the gains as they ship: its "
+                "evidence passed an exact check. It says nothing beyond the listed assumptions.",
+                "Nothing. Keep the certificate; `nrs-design verify CERT SPEC` re-checks it. "
+                "Exit code 0.",
+            ),
+            Word(
+                "refuted",
+                "The statement is false, and a witness shows it: a mode that is not stable by "
+                "itself, decided exactly.",
+                "Mend the spec or the design: the message names the mode and its eigenvalue. "
+                "Exit code 1.",
+            ),
+            Word(
+                "inconclusive",
+                "Neither a proof nor a refutation was found. This is not a statement of "
+                "stability, nor of instability.",
+                "Bring the modes closer together, narrow the ranges, or try another --method of "
+                "certify-switching. A gate fails closed. Exit code 3.",
+            ),
+            Word(
+                "met",
+                "A goal is reached that is no statement of stability: a design goal computed in "
+                "floating point, or the agreement of files.",
+                "Nothing. Exit code 0.",
+            ),
+            Word(
+                "missed",
+                "A goal is missed that is no statement of stability: a design goal computed in "
+                "floating point, or the agreement of files.",
+                "Read the rule that is named with it, by `nrs-design explain RULE`. Exit code 1.",
+            ),
+            Word(
+                "error",
+                "The question could not be asked: a file, the design or the assembly of the "
+                "modes failed before there was a verdict.",
+                "Correct what the message names. Exit code 2, or 4 for a defect of nrs-design.",
+            ),
+        )
+    }
+)

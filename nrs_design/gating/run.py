@@ -1,0 +1,151 @@
+"""The gate itself: design, certify, write, re-check, for every spec."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from nrs_design.certificates.certificate import dump
+from nrs_design.certificates.verify import verify
+from nrs_design.errors import SpecError
+from nrs_design.gating.examine import Examiner, rate_of
+from nrs_design.gating.obligations import GateOutcome, Obligation, SpecOutcome, failed
+from nrs_design.gating.paths import is_utf8
+from nrs_design.gating.places import Places
+from nrs_design.output import write_output
+from nrs_design.pipeline import Result, run_certification, run_evidence
+from nrs_design.spec import LoadedSpec, read_spec
+
+Progress = Callable[[str], None]
+
+
+@dataclass(frozen=True, slots=True)
+class Files:
+    """Where the files of a spec go: ``NAME.cert.json`` and, if asked for, ``NAME.html``."""
+
+    folder: Path
+    html: bool = True
+
+    def certificate(self, name: str) -> Path:
+        """Return the certificate file of the spec of that name."""
+        return self.folder / f"{name}.cert.json"
+
+    def report(self, name: str) -> Path:
+        """Return the report file of the spec of that name."""
+        return self.folder / f"{name}.html"
+
+
+def run_gate(
+    specs: Sequence[Path], files: Files, progress: Progress = lambda step: None
+) -> GateOutcome:
+    """Design and certify every spec, and write its certificate and report.
+
+    Parameters
+    ----------
+    specs : sequence of Path
+        As `nrs_design.gating.find_specs.find_specs` lists them.
+    files : Files
+        Where to write.
+    progress : callable
+        Told the name of each step.
+
+    Returns
+    -------
+    GateOutcome
+        A spec that fails is part of it, and does not keep the others from being examined.
+    """
+    read = [_read(path) for path in specs]
+    shared = _shared_names(item for item in read if isinstance(item, LoadedSpec))
+    return GateOutcome(
+        tuple(
+            item
+            if isinstance(item, SpecOutcome)
+            else _examine_safely(item, item.spec.name in shared, files, progress)
+            for item in read
+        )
+    )
+
+
+def _read(path: Path) -> LoadedSpec | SpecOutcome:
+    try:
+        if not is_utf8(path):
+            raise SpecError("the name of the file is not UTF-8", path=path, remedy="rename it")
+        return read_spec(path)
+    except Exception as error:
+        return failed(path, error)
+
+
+def _shared_names(specs: Iterable[LoadedSpec]) -> set[str]:
+    counts = Counter(loaded.spec.name for loaded in specs)
+    return {name for name, count in counts.items() if count > 1}
+
+
+def _examine_safely(
+    loaded: LoadedSpec, shares_its_name: bool, files: Files, progress: Progress
+) -> SpecOutcome:
+    try:
+        if shares_its_name:
+            raise _shared_name(loaded)
+        return _examine(loaded, files, lambda step: progress(f"{loaded.spec.name}: {step}"))
+    except Exception as error:
+        # One spec must not keep the others from being examined, whatever goes wrong with it.
+        return failed(loaded.path, error, loaded.sha256)
+
+
+def _shared_name(loaded: LoadedSpec) -> SpecError:
+    place = Places(loaded).at("name")
+    return SpecError(
+        f"another spec is named {loaded.spec.name!r} too, and their files would overwrite each "
+        "other",
+        path=loaded.path,
+        line=place.line,
+        column=place.column,
+        remedy="give every spec a name of its own",
+    )
+
+
+def _examine(loaded: LoadedSpec, files: Files, progress: Progress) -> SpecOutcome:
+    result = run_certification(loaded, progress=progress)
+    certification, certificate = result.certification, result.certificate
+    examiner = Examiner.of(loaded)
+    searched = "; ".join(f"{a.step}: {a.outcome}" for a in certification.attempts)
+    obligations = examiner.stability(certification.system, certification.evidence, searched)
+    file = None
+    if certificate is not None:
+        file = files.certificate(loaded.spec.name)
+        write_output(file, dump(certificate))
+        progress("re-check")
+        obligations += (examiner.certificate(file, verify(file, loaded).fault),)
+    obligations += _goals_and_report(result, examiner, files, progress)
+    rate, rate_name = rate_of(certificate)
+    return SpecOutcome(
+        path=loaded.path,
+        obligations=obligations,
+        sha256=loaded.sha256,
+        verdict=str(certification.verdict),
+        common_quadratic=str(certification.common_quadratic),
+        rate=rate,
+        rate_name=rate_name,
+        modes=len(certification.system.modes),
+        certificate=file,
+        certificate_id=None if certificate is None else certificate.id,
+    )
+
+
+def _goals_and_report(
+    result: Result, examiner: Examiner, files: Files, progress: Progress
+) -> tuple[Obligation, ...]:
+    evidence = None
+    if result.design is not None:
+        progress("margins")
+        evidence = run_evidence(result.loaded, result.design)
+    if files.html:
+        progress("report")
+        # Drawing costs seconds to import; a run without reports must not pay for it.
+        from nrs_design.reporting import build_report, render_html
+
+        html = render_html(build_report(result, evidence))
+        write_output(files.report(result.loaded.spec.name), html)
+    return () if evidence is None else tuple(examiner.stiffness_ranges(evidence))

@@ -1,0 +1,1 @@
+"""The figures of the report: one function each, from results to a matplotlib figure."""

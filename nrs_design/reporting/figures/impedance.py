@@ -1,0 +1,93 @@
+"""Impedance design over frequency: what the robot displays, and how sensitive the loop is."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from nrs_design.design.impedance import displayed_impedance, sensitivity
+from nrs_design.reporting.style import INK, MUTED, color, legend, marker, new_axes, short, styled
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+    from nrs_design.design.evidence import ImpedanceEvidence
+    from nrs_design.design.transfer import FloatArray
+
+_POINTS = 400
+
+
+@styled
+def draw_displayed_impedance(items: Sequence[ImpedanceEvidence]) -> Figure:
+    """Draw the magnitude of the displayed impedance beside the desired one.
+
+    Parameters
+    ----------
+    items : sequence of ImpedanceEvidence
+        One curve for each controller, in nominal contact.
+    """
+    figure, axes = new_axes(4.3)
+    omega = _frequencies(items)
+    for index, item in enumerate(items):
+        shown = np.abs(displayed_impedance(item.problem.loop, item.Mt, item.Bt, omega))
+        axes.loglog(omega, shown, color=color(index), label=f"{short(item.name)}, displayed")
+        axes.axhline(
+            item.problem.desired,
+            color=color(index),
+            linestyle=(0, (5, 3)),
+            linewidth=1.3,
+            label=f"{short(item.name)}, desired",
+        )
+    _finish(axes, items, "Impedance magnitude [N·m·s/rad]")
+    legend(figure, axes)
+    return figure
+
+
+@styled
+def draw_sensitivity(items: Sequence[ImpedanceEvidence]) -> Figure:
+    """Draw the magnitude of the sensitivity with its peak Ms, one curve for each controller."""
+    figure, axes = new_axes(4.3)
+    omega = _frequencies(items)
+    for index, item in enumerate(items):
+        magnitude = np.abs(sensitivity(item.problem.loop, item.Mt, item.Bt, omega))
+        peak, at = item.margins.sensitivity_peak, item.margins.sensitivity_peak_frequency
+        label = f"{short(item.name)}, Ms = {peak:.3f}"
+        axes.loglog(omega, magnitude, color=color(index), label=label)
+        if math.isfinite(at):
+            axes.plot(at, peak, marker(index), color=color(index), markeredgecolor=INK)
+    axes.axhline(1.0, color=MUTED, linewidth=1.0)
+    _finish(axes, items, "Sensitivity magnitude |L| [1]")
+    legend(figure, axes)
+    return figure
+
+
+def _frequencies(items: Sequence[ImpedanceEvidence]) -> FloatArray:
+    """Return frequencies in rad/s from far below the bandwidth to beyond it and every peak."""
+    bandwidth = items[0].problem.bandwidth
+    peaks = [item.margins.sensitivity_peak_frequency for item in items]
+    highest = max([bandwidth, *(peak for peak in peaks if math.isfinite(peak))])
+    return np.geomspace(bandwidth / 100, 10 * highest, _POINTS)
+
+
+def _finish(axes: Axes, items: Sequence[ImpedanceEvidence], ylabel: str) -> None:
+    bandwidth = items[0].problem.bandwidth
+    axes.axvline(bandwidth, color=MUTED, linewidth=1.0, linestyle=":")
+    axes.annotate(
+        f"bandwidth {bandwidth / (2 * math.pi):.3g} Hz",
+        (bandwidth, 1.0),
+        xycoords=("data", "axes fraction"),
+        xytext=(-4, -4),
+        textcoords="offset points",
+        rotation=90,
+        ha="right",
+        va="top",
+        fontsize=8.5,
+        color=MUTED,
+    )
+    axes.set_xlabel("Frequency [rad/s]")
+    axes.set_ylabel(ylabel)
+    axes.set_xlim(bandwidth / 100, None)

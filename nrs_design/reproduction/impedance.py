@@ -1,0 +1,139 @@
+"""Chapters 6.3.1, 6.3.2.1 and 6.4.1: desired impedance and the optimal admittances."""
+
+from __future__ import annotations
+
+from math import pi
+
+from nrs_design.design.impedance import ImpedanceLoop, ImpedanceProblem, optimize_impedance
+from nrs_design.design.margins import stiffness_limit
+from nrs_design.design.transfer import TransferFunction
+from nrs_design.reproduction import thesis
+from nrs_design.reproduction.row import Row, Tolerance, misprint, reproduced
+
+LOOPS = (("G as in 6.1", thesis.PRINTED_LOOP), ("G exact", thesis.EXACT_LOOP))
+ZDES = thesis.TORQUE / thesis.VELOCITY
+
+# Name, section, stiffness, desired impedance, least Mt, printed optimum, with more digits.
+DESIGNS = (
+    ("soft, Mt free", "6.3.1.1", thesis.SOFT, ZDES, 0.0, ("0", "2.15"), ("0", "2.1514")),
+    ("soft, Mt >= 0.01", "6.3.2.1", thesis.SOFT, ZDES, 0.01, ("0.01", "2.15"), ("0.01", "2.1496")),
+    (
+        "soft, half the impedance",
+        "6.3.2.1",
+        thesis.SOFT,
+        ZDES / 2,
+        0.01,
+        ("0.01", "1.04"),
+        ("0.01", "1.0414"),
+    ),
+    (
+        "stiff, Mt >= 0.01",
+        "6.4.1",
+        thesis.STIFF,
+        ZDES,
+        0.01,
+        ("0.01", "2.11"),
+        ("0.01", "2.1094"),
+    ),
+)
+# Bt, stiffness in use and where, and the limit with its tolerance; Mt = 0.01.
+LIMITS = (
+    (1.04, "43.0356", "6.3.2.2", "75.9", 0.3),
+    (2.11, "61.6608", "6.4.1", "225.6", 0.5),
+    (2.15, "43.0356", "6.3.2.2", "232.3", 0.5),
+)
+# Thesis 2.5, measured on surgeons: 1002 +- 568 N/m at 0.24 m.
+HAND = tuple(k * 0.24**2 for k in (1002 - 568, 1002 + 568))
+
+
+def rows() -> tuple[Row, ...]:
+    """Recompute what is desired, the four optima with either G, and how stiff is too stiff."""
+    return (*_goals(), *_optima(), *_limits())
+
+
+def _goals() -> tuple[Row, ...]:
+    tight = Tolerance(1e-5)
+    return (
+        reproduced(
+            "desired impedance",
+            "6.2",
+            "2.1486",
+            ZDES,
+            "N m s/rad",
+            tight,
+            right="2.14859",
+        ),
+        reproduced("half of it", "6.3.2.1", "1.0743", ZDES / 2, "N m s/rad", tight),
+        reproduced(
+            "upper end of the band",
+            "6.4",
+            "12.57",
+            2 * pi * thesis.BANDWIDTH_IN_HERTZ,
+            "rad/s",
+            Tolerance(5e-4),
+        ),
+        reproduced("k_soft", "6.3.1.1", "43.0356", float(thesis.SOFT), "N m/rad", tight),
+        reproduced("k_stiff", "6.4.1", "61.6608", float(thesis.STIFF), "N m/rad", tight),
+        misprint(
+            "stiffness behind k_soft",
+            "6.3.1.1",
+            "752.69",
+            float(thesis.SOFT) / 0.24**2,
+            "N/m",
+            tight,
+            right="747.1461",
+            note="The section cites the third experiment, then computes with the mean of three.",
+        ),
+    )
+
+
+def _optima() -> tuple[Row, ...]:
+    return tuple(
+        reproduced(
+            f"Mt, Bt: {name}; {source}",
+            section,
+            printed,
+            _optimum(loop, float(k), desired, least),
+            "kg m^2, N m s/rad",
+            Tolerance(absolute=2e-3),
+            right=right,
+        )
+        for name, section, k, desired, least, printed, right in DESIGNS
+        for source, loop in LOOPS
+    )
+
+
+def _optimum(
+    loop: TransferFunction, stiffness: float, desired: float, least: float
+) -> tuple[float, float]:
+    problem = ImpedanceProblem(
+        loop=ImpedanceLoop(loop, stiffness),
+        desired=desired,
+        bandwidth=2 * pi * thesis.BANDWIDTH_IN_HERTZ,
+        mass_bounds=(least, 1.0),
+        damping_bounds=(0.1, 20.0),
+    )
+    optimum = optimize_impedance(problem)
+    return optimum.Mt, optimum.Bt
+
+
+def _limits() -> tuple[Row, ...]:
+    return tuple(_limit(*entry) for entry in LIMITS)
+
+
+def _limit(Bt: float, used: str, section: str, right: str, tolerance: float) -> Row:
+    limit = stiffness_limit(ImpedanceLoop(thesis.EXACT_LOOP, float(used)), 0.01, Bt)
+    hand = (
+        f" A surgeon's hand, {HAND[0]:.1f} to {HAND[1]:.1f} N m/rad by the thesis's own figures, "
+        "reaches beyond it."
+    )
+    return reproduced(
+        f"largest stable stiffness, Mt 0.01, Bt {Bt}",
+        section,
+        f"Hurwitz at {used}",
+        limit,
+        "N m/rad",
+        Tolerance(absolute=tolerance),
+        right=right,
+        note="The thesis states no limit." + (hand if limit < HAND[1] else ""),
+    )

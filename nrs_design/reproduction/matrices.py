@@ -1,0 +1,56 @@
+"""The state matrices of chapter 6, as printed and as they follow from the loops."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+
+from nrs_design.controllers.laws import Admittance, ProportionalForce
+from nrs_design.models.environment import Contact
+from nrs_design.reproduction import thesis
+from nrs_design.switched.close_loop import (
+    Row,
+    force_mode,
+    impedance_mode,
+    realize,
+    to_force_coordinates,
+)
+from nrs_design.switched.matrix import RationalMatrix
+from nrs_design.switched.system import Mode, SwitchedSystem, Time
+
+MOTION = realize(thesis.REALIZED_LOOP)
+
+
+def contact(stiffness: Fraction) -> Contact:
+    """Return an elastic environment, stiffness in N m/rad."""
+    return Contact("contact", stiffness, Fraction(0))
+
+
+def impedance_rows(stiffness: Fraction, Mt: str, Bt: str, coordinates: str) -> list[Row]:
+    """Return A of an impedance mode (thesis 6.28), in deflection or force coordinates."""
+    environment = contact(stiffness)
+    rows = impedance_mode(MOTION, Admittance(Fraction(Mt), Fraction(Bt)), environment)
+    return rows if coordinates == "deflection" else to_force_coordinates(rows, MOTION, environment)
+
+
+def hybrid_rows() -> tuple[list[Row], list[Row]]:
+    """Return A of the position mode and of the force mode (thesis 6.44 and 6.46)."""
+    force = force_mode(MOTION, ProportionalForce(thesis.FORCE_GAIN), contact(thesis.SOFT))
+    return [list(row) for row in MOTION.A], force
+
+
+def printed_rows(damping: str, force: tuple[str, str]) -> list[Row]:
+    """Return an A of 6.3.2.2 or 6.4.1 digit by digit: entries (3, 3), (4, 1) and (4, 2) vary."""
+    texts = (
+        ("0", "1", "0", "0"),
+        ("1618.80", "-56.89", "-1", "0"),
+        ("0", "0", damping, "100"),
+        (*force, "0", "0"),
+    )
+    return [[Fraction(text) for text in row] for row in texts]
+
+
+def family(name: str, *modes: list[Row]) -> SwitchedSystem:
+    """Return the switched system of some matrices."""
+    named = tuple(Mode(f"A{i + 1}", RationalMatrix.from_rows(rows)) for i, rows in enumerate(modes))
+    states = tuple(f"x{i + 1}" for i in range(len(modes[0])))
+    return SwitchedSystem(name, Time.CONTINUOUS, states, named, ())

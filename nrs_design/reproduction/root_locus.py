@@ -1,0 +1,116 @@
+"""Chapter 4.3 and equation 6.1: the PD controller and the motion loop that it closes."""
+
+from __future__ import annotations
+
+from math import degrees, exp, pi, sqrt
+
+from nrs_design.design.root_locus import PdDesign, design_pd, motion_loop_response
+from nrs_design.reproduction import thesis
+from nrs_design.reproduction.row import Row, Tolerance, misprint, reproduced
+
+
+def rows() -> tuple[Row, ...]:
+    """Recompute the design by angle and magnitude condition, then what it really gives."""
+    return (*_design(), *_closed_loop())
+
+
+def _pd(time_constant: float) -> PdDesign:
+    gain = float(thesis.ACTUATOR.gain)
+    return design_pd(gain, time_constant, thesis.DAMPING_RATIO, thesis.SETTLING_TIME)
+
+
+def _design() -> tuple[Row, ...]:
+    # The thesis places the zero with the pole of 4.26b, the gain with the rounded 0.0351 s of 4.29.
+    unrounded, rounded = _pd(1 / thesis.BREAK_FREQUENCY), _pd(float(thesis.ACTUATOR.time_constant))
+    return (
+        reproduced(
+            "wanted poles",
+            "4.27b",
+            "-28.4900 +- 28.49861j",
+            unrounded.wanted_poles[0],
+            "rad/s",
+            Tolerance(1e-4),
+        ),
+        misprint(
+            "angle of the zero",
+            "4.28",
+            "44.9914",
+            degrees(unrounded.zero_angle),
+            "deg",
+            Tolerance(1e-5),
+            right="45.0182",
+            note="For the pole at 28.4767 1/s, which gives the printed zero. The printed angle is "
+            f"that of tau_m = 0.0351 s ({degrees(rounded.zero_angle):.4f}), whose zero would be "
+            f"at {rounded.zero:.4f} 1/s.",
+        ),
+        reproduced("zero", "4.29", "56.9706", unrounded.zero, "1/s", Tolerance(5e-4)),
+        misprint(
+            "gain K",
+            "4.30",
+            "2060",
+            rounded.derivative_gain,
+            "rpm s/rad",
+            Tolerance(1e-3),
+            right="2065.4",
+            note="Read off the drawn locus and rounded; the magnitude condition gives this value. "
+            "What follows in the thesis, and here, uses 2060.",
+        ),
+        reproduced(
+            "Kp = K z",
+            "4.31",
+            "117359.43",
+            thesis.DERIVATIVE_GAIN * thesis.ZERO,
+            "rpm/rad",
+            Tolerance(1e-5),
+        ),
+    )
+
+
+def _closed_loop() -> tuple[Row, ...]:
+    loop = thesis.EXACT_LOOP
+    response = motion_loop_response(loop)
+    second_order = exp(-pi * thesis.DAMPING_RATIO / sqrt(1 - thesis.DAMPING_RATIO**2))
+    return (
+        misprint(
+            "closed-loop poles at K = 2060",
+            "4.3",
+            "-28.4900 +- 28.49861j",
+            response.poles[0],
+            "rad/s",
+            Tolerance(1e-3),
+            right="-28.453 +- 28.448j",
+            note="The wanted poles are taken for the ones reached; with the rounded gain the poles "
+            "fall short of them.",
+        ),
+        reproduced(
+            "damping ratio at K = 2060",
+            "4.3",
+            "0.707",
+            response.damping_ratio,
+            "",
+            Tolerance(1e-3),
+        ),
+        misprint(
+            "step overshoot at K = 2060",
+            "4.3",
+            "that of zeta = 0.707",
+            100 * response.overshoot,
+            "%",
+            Tolerance(absolute=0.2),
+            right="6.8",
+            note="No overshoot is printed. The criterion zeta = 0.707 stands for "
+            f"{100 * second_order:.1f} % in a second-order system without a zero; the zero of "
+            "the PD controller stays in the closed loop and adds to it.",
+        ),
+        misprint(
+            "motion loop G, numerator and denominator",
+            "6.1",
+            ("0.99", "56.82", "0.0351", "1.99", "56.82"),
+            (*loop.numerator, *loop.denominator),
+            "",
+            # The print differs by less than a thousandth of the largest coefficient.
+            Tolerance(absolute=2e-3),
+            right=("0.9974", "56.822", "0.0351", "1.9974", "56.822"),
+            note="Cut off instead of rounded: 6.33 prints 1.997 for the same coefficient.",
+        ),
+    )

@@ -1,0 +1,81 @@
+"""Chapters 6.3.2, 6.3.3.2 and 6.4.1: what the thesis says about stability under switching."""
+
+from __future__ import annotations
+
+from nrs_design.certificates.certificate import CommonQuadratic, rate_text
+from nrs_design.certificates.certify import Certification, certify
+from nrs_design.reproduction import thesis
+from nrs_design.reproduction.matrices import family, hybrid_rows, impedance_rows, printed_rows
+from nrs_design.reproduction.row import Row, Verdict, claim
+from nrs_design.switched.system import SwitchedSystem
+
+STABLE = "stable under arbitrary switching"
+
+
+def rows() -> tuple[Row, ...]:
+    """Prove or refute every claim about stability under switching, exactly."""
+    return (*_designs(), _as_printed(), _zero_mass())
+
+
+def _designs() -> tuple[Row, ...]:
+    agility = ("insertion and withdrawal, Bt 2.15 and 1.04", "6.3.2.2", _withdrawal("0.01"))
+    hybrid = ("position and force control, Kp 0.02", "6.3.3.2", family("hybrid", *hybrid_rows()))
+    tool = impedance_rows(thesis.STIFF, "0.01", "2.11", "force")
+    tissue = impedance_rows(thesis.SOFT, "0.01", "2.15", "force")
+    both = ("tool and tissue, Bt 2.11 and 2.15", "6.4.1", family("tool", tool, tissue))
+    return tuple(_proved(*entry) for entry in (agility, hybrid, both))
+
+
+def _proved(name: str, section: str, system: SwitchedSystem) -> Row:
+    found = certify(system)
+    return claim(
+        name,
+        section,
+        STABLE,
+        _describe(found),
+        verdict=Verdict.REPRODUCED,
+        holds=found.verdict == "proved",
+        note="By a common quadratic function, checked exactly; matrices with the right signs, in "
+        "the thesis's states.",
+    )
+
+
+def _as_printed() -> Row:
+    force = ("70183.13", "1231.97")
+    found = certify(family("print", printed_rows("-215", force), printed_rows("-104", force)))
+    return claim(
+        "A1 and A2 as printed",
+        "6.3.2.2",
+        STABLE,
+        _describe(found),
+        verdict=Verdict.PRINT_IS_WRONG,
+        holds=found.verdict == "refuted",
+        note="Neither printed matrix is Hurwitz: the sign of entry (2, 1) is wrong.",
+    )
+
+
+def _zero_mass() -> Row:
+    without, with_mass = certify(_withdrawal("0")), certify(_withdrawal("0.01"))
+    return claim(
+        "Bt 2.15 and 1.04 without virtual mass",
+        "6.3.2.1",
+        "Mt = 0 must be avoided",
+        f"Mt = 0: {_describe(without)}; Mt = 0.01: {_describe(with_mass)}",
+        verdict=Verdict.PRINT_IS_WRONG,
+        holds=without.verdict == with_mass.verdict == "proved",
+        note="Stability under switching is no reason to avoid Mt = 0: with it, too, the pair has "
+        "a common quadratic function.",
+    )
+
+
+def _withdrawal(Mt: str) -> SwitchedSystem:
+    insertion, withdrawal = (
+        impedance_rows(thesis.SOFT, Mt, Bt, "force") for Bt in ("2.15", "1.04")
+    )
+    return family("withdrawal", insertion, withdrawal)
+
+
+def _describe(found: Certification) -> str:
+    if not isinstance(found.evidence, CommonQuadratic):
+        return str(found.verdict)
+    return f"{found.verdict}, alpha = {rate_text(found.evidence.rate, found.system.time)} 1/s"

@@ -1,0 +1,52 @@
+"""The whole table. A new capability adds its module of rows to `TOPICS`, and nothing else."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from nrs_design.reproduction import (
+    actuator,
+    computed_torque,
+    experiments,
+    force_loop,
+    impedance,
+    modes,
+    root_locus,
+    specimens,
+    switching,
+)
+from nrs_design.reproduction.row import Row
+
+# In the order of the thesis.
+TOPICS = (
+    actuator,
+    computed_torque,
+    root_locus,
+    specimens,
+    impedance,
+    modes,
+    force_loop,
+    switching,
+    experiments,
+)
+
+
+def reproduce(progress: Callable[[str], None] = lambda topic: None) -> tuple[Row, ...]:
+    """Recompute every number of every topic.
+
+    Parameters
+    ----------
+    progress : callable
+        Told the name of each topic as it begins.
+    """
+    table: list[Row] = []
+    for topic in TOPICS:
+        progress(topic.__name__.rpartition(".")[2].replace("_", " "))
+        table.extend(topic.rows())
+    return tuple(table)
+
+
+def count_verdicts(table: tuple[Row, ...]) -> dict[str, int]:
+    """Return how many rows have each verdict that occurs, the most frequent first."""
+    found = [str(row.verdict) for row in table]
+    return {verdict: found.count(verdict) for verdict in sorted(set(found), key=found.count)[::-1]}

@@ -4,64 +4,25 @@ from __future__ import annotations
 
 import hashlib
 import json
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
-from decimal import ROUND_DOWN, ROUND_UP, Context, Decimal
 from enum import StrEnum
-from fractions import Fraction
 from typing import Any
 
-from nrs_design.switched.system import SwitchedSystem, Time
+from nrs_design.certificates.evidence import AbstractEvidence, Shows
+from nrs_design.switched.system import SwitchedSystem
 
-SCHEMA = "nrs-design/certificate/1"
+SCHEMA = "nrs-design/certificate/2"
 
 Gains = Mapping[str, Mapping[str, str]]
 
 
-class Kind(StrEnum):
-    """What a certificate shows, and by which argument."""
+class Verdict(StrEnum):
+    """What is known about uniform exponential stability under the declared switching."""
 
-    COMMON_QUADRATIC = "common-quadratic"
-    UNSTABLE_MODE = "unstable-mode"
-
-
-@dataclass(frozen=True, slots=True)
-class CommonQuadratic:
-    """Evidence of stability: one quadratic Lyapunov function for all modes.
-
-    Parameters
-    ----------
-    Q : tuple of tuple of int, shape (n, n)
-        Numerators of the symmetric matrix of ``V(x) = x' Q x``.
-    denominator_log2 : int
-        Q is these numerators over two to this power.
-    rate : Fraction
-        Continuous time: the decay rate alpha in 1/s, with ``A'Q + QA + 2 alpha Q < 0``.
-        Discrete time: the contraction rho per step, with ``A'QA < rho^2 Q``.
-    """
-
-    Q: tuple[tuple[int, ...], ...]
-    denominator_log2: int
-    rate: Fraction
-
-
-@dataclass(frozen=True, slots=True)
-class UnstableMode:
-    """Evidence of instability: one mode that is not Hurwitz (not Schur, in discrete time).
-
-    Parameters
-    ----------
-    mode : str
-        Its name.
-    eigenvalue : str
-        An eigenvalue that is not in the stable region, to six digits, for the reader.
-    """
-
-    mode: str
-    eigenvalue: str
-
-
-Evidence = CommonQuadratic | UnstableMode
+    PROVED = "proved"
+    REFUTED = "refuted"
+    INCONCLUSIVE = "inconclusive"
 
 
 @dataclass(frozen=True, slots=True)
@@ -78,8 +39,8 @@ class Certificate:
         Designed gains (float32, as exact decimals) by controller; empty for given matrices.
     system : SwitchedSystem
         Its time axis, names and assumptions are quoted; its matrices are never stored.
-    evidence : CommonQuadratic or UnstableMode
-        The numbers to check.
+    statements : tuple of AbstractEvidence
+        What is shown, each with its numbers; at least one.
     version : str
         Version of this package.
     """
@@ -89,13 +50,13 @@ class Certificate:
     coordinates: str | None
     gains: Gains
     system: SwitchedSystem
-    evidence: Evidence
+    statements: tuple[AbstractEvidence, ...]
     version: str
 
     @property
     def verdict(self) -> str:
-        """``proved`` or ``refuted``."""
-        return "proved" if isinstance(self.evidence, CommonQuadratic) else "refuted"
+        """``proved``, ``refuted``, or ``inconclusive`` if it shows neither."""
+        return str(verdict_of(self.statements))
 
     @property
     def id(self) -> str:
@@ -103,43 +64,20 @@ class Certificate:
         return content_id(to_document(self))
 
 
-def claim(system: SwitchedSystem, evidence: Evidence) -> str:
-    """Say in words what the evidence shows about the system."""
-    continuous = system.time is Time.CONTINUOUS
-    law = "x' = A x" if continuous else "x+ = A x"
-    if isinstance(evidence, UnstableMode):
-        region = "Hurwitz" if continuous else "Schur"
-        return (
-            f"Mode {evidence.mode} is not {region} (eigenvalue {evidence.eigenvalue}): staying in "
-            f"it is an admissible switching signal, so {law} is not uniformly exponentially stable."
-        )
-    bound = "exp(-alpha t) |x(0)|" if continuous else "rho^t |x(0)|"
-    value = rate_text(evidence.rate, system.time)
-    rate = f"alpha = {value} 1/s" if continuous else f"rho = {value}"
-    count = len(system.modes)
-    among = "its one mode" if count == 1 else f"the {count} modes"
-    return (
-        f"Every solution of {law}, switching arbitrarily among {among}, satisfies "
-        f"|x(t)| <= {bound} with {rate}, in the norm |x| = sqrt(x' Q x)."
-    )
-
-
-def rate_text(rate: Fraction, time: Time) -> str:
-    """Write a rate with six digits, rounded to its safe side (slower decay)."""
-    rounding = ROUND_DOWN if time is Time.CONTINUOUS else ROUND_UP
-    context = Context(prec=6, rounding=rounding)
-    return str(context.divide(Decimal(rate.numerator), Decimal(rate.denominator)))
+def verdict_of(statements: Iterable[AbstractEvidence]) -> Verdict:
+    """Return the verdict that checked statements carry."""
+    shown = {statement.shows for statement in statements}
+    if Shows.STABILITY in shown:
+        return Verdict.PROVED
+    return Verdict.REFUTED if Shows.INSTABILITY in shown else Verdict.INCONCLUSIVE
 
 
 def to_document(certificate: Certificate) -> dict[str, Any]:
     """Return the JSON document of a certificate, without its id."""
-    evidence = certificate.evidence
     system = certificate.system
-    document: dict[str, Any] = {
+    return {
         "schema": SCHEMA,
-        "kind": str(_kind(evidence)),
         "verdict": certificate.verdict,
-        "claim": claim(system, evidence),
         "spec": {"name": certificate.spec_name, "sha256": certificate.spec_sha256},
         "time": str(system.time),
         "coordinates": certificate.coordinates,
@@ -147,17 +85,12 @@ def to_document(certificate: Certificate) -> dict[str, Any]:
         "modes": [mode.name for mode in system.modes],
         "gains": {name: dict(values) for name, values in certificate.gains.items()},
         "assumptions": list(system.assumptions),
+        "statements": [
+            {"kind": item.kind, "claim": item.claim(system), **item.to_fields()}
+            for item in certificate.statements
+        ],
         "package": {"name": "nrs-design", "version": certificate.version},
     }
-    if isinstance(evidence, CommonQuadratic):
-        document["Q"] = {
-            "numerators": [list(row) for row in evidence.Q],
-            "denominator_log2": evidence.denominator_log2,
-        }
-        document["rate"] = str(evidence.rate)
-    else:
-        document["unstable_mode"] = {"name": evidence.mode, "eigenvalue": evidence.eigenvalue}
-    return document
 
 
 def content_id(document: Mapping[str, Any]) -> str:
@@ -172,6 +105,3 @@ def dump(certificate: Certificate) -> str:
     document = to_document(certificate)
     return json.dumps({**document, "id": content_id(document)}, indent=2, ensure_ascii=True) + "\n"
 
-
-def _kind(evidence: Evidence) -> Kind:
-    return Kind.COMMON_QUADRATIC if isinstance(evidence, CommonQuadratic) else Kind.UNSTABLE_MODE

@@ -1,35 +1,46 @@
-"""Decide the stability of a switched system: search, round, check exactly, report honestly."""
+"""Decide the stability of a switched system: the ladder of searches, cheapest first."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
 from enum import StrEnum
 from functools import partial
 from time import perf_counter
 
-from nrs_design.certificates.certificate import CommonQuadratic, Evidence
-from nrs_design.certificates.second_opinion import confirm
-from nrs_design.certificates.steps import (
-    Family,
-    Step,
+from numpy.linalg import LinAlgError
+
+from nrs_design.certificates.certificate import Verdict, verdict_of
+from nrs_design.certificates.evidence import (
+    AbstractEvidence,
+    BlockTriangular,
+    CommonPolynomial,
+    CommonQuadratic,
+    Shows,
+)
+from nrs_design.certificates.evidence.block_triangular import diagonal_block
+from nrs_design.certificates.search.family import Family, floats_in_silence
+from nrs_design.certificates.search.rungs import (
+    Finding,
+    Rung,
     examine_every_mode,
     examine_suspicious_modes,
+    prove_obstruction,
     search_by_gradient,
     search_by_lmi,
+    search_mixture,
+    search_period,
+    search_polynomial,
 )
-from nrs_design.errors import DesignError
+from nrs_design.certificates.search.structure import merge_equal_modes, triangular_blocks
+from nrs_design.certificates.second_opinion import confirm
+from nrs_design.errors import DesignError, InternalError
 from nrs_design.switched.system import SwitchedSystem, Time
 
 Progress = Callable[[str], None]
 
-
-class Verdict(StrEnum):
-    """What is known about uniform exponential stability under the declared switching."""
-
-    PROVED = "proved"
-    REFUTED = "refuted"
-    INCONCLUSIVE = "inconclusive"
+DEFAULT_MAX_DEGREE = 12
+DEFAULT_BUDGET = 60.0
 
 
 class CommonQuadraticStatus(StrEnum):
@@ -41,16 +52,39 @@ class CommonQuadraticStatus(StrEnum):
 
 
 class Method(StrEnum):
-    """Which search looks for the common quadratic function."""
+    """The rungs of the ladder, or all of them in turn."""
 
     AUTO = "auto"
     LMI = "lmi"
     GRADIENT = "gradient"
+    OBSTRUCTION = "obstruction"
+    MIXTURE = "mixture"
+    PERIOD = "period"
+    POLYNOMIAL = "polynomial"
+
+
+@dataclass(frozen=True, slots=True)
+class Limits:
+    """How far the searches go.
+
+    Parameters
+    ----------
+    max_degree : int
+        Highest degree of a homogeneous polynomial function.
+    budget : float
+        No new rung is begun after so many seconds.
+    optimize_rate : bool
+        Look for the largest provable decay rate, not only for some.
+    """
+
+    max_degree: int = DEFAULT_MAX_DEGREE
+    budget: float = DEFAULT_BUDGET
+    optimize_rate: bool = True
 
 
 @dataclass(frozen=True, slots=True)
 class Attempt:
-    """One step of the search: what was tried, how it ended, and its time in s."""
+    """One rung: what was tried, how it ended, and its time in s."""
 
     step: str
     outcome: str
@@ -59,7 +93,7 @@ class Attempt:
 
 @dataclass(frozen=True, slots=True)
 class Certification:
-    """The verdict on one system, with its evidence (None if inconclusive).
+    """The verdict on one system, with everything that was shown on the way.
 
     Parameters
     ----------
@@ -70,93 +104,229 @@ class Certification:
     common_quadratic : CommonQuadraticStatus
         Whether a common quadratic function exists.
     method : str
-        The step that settled it, or the last one tried.
-    evidence : Evidence or None
-        Checked in exact arithmetic.
+        The rung that settled it, or what was asked for.
+    statements : tuple of AbstractEvidence
+        The deciding evidence first, if any. Each has passed the exact check.
     attempts : tuple of Attempt
-        Every step in order.
+        Every rung in order.
     """
 
     system: SwitchedSystem
     verdict: Verdict
     common_quadratic: CommonQuadraticStatus
     method: str
-    evidence: Evidence | None
+    statements: tuple[AbstractEvidence, ...]
     attempts: tuple[Attempt, ...]
+
+    @property
+    def evidence(self) -> AbstractEvidence | None:
+        """The statement that decides the verdict, or None."""
+        if self.verdict is Verdict.INCONCLUSIVE:
+            return None
+        return self.statements[0]
 
 
 def certify(
     system: SwitchedSystem,
     method: Method = Method.AUTO,
-    *,
-    optimize_rate: bool = True,
+    limits: Limits | None = None,
     progress: Progress = lambda step: None,
 ) -> Certification:
     """Prove or refute uniform exponential stability under arbitrary switching.
+
+    Equal modes are merged, and a family that is block triangular in a common order of the states
+    is decided block by block. Then the rungs are climbed, cheapest first, until one decides.
 
     Parameters
     ----------
     system : SwitchedSystem
         Exact modes.
     method : Method
-        Semidefinite programming, the gradient iteration, or one after the other.
-    optimize_rate : bool
-        Look for the largest provable decay rate, not only for some.
+        One rung, or all of them in turn.
+    limits : Limits, optional
+        How far to go.
     progress : callable
-        Told the name of each step as it begins.
+        Told the name of each rung as it begins.
 
     Returns
     -------
     Certification
-        Any evidence in it has passed the exact check and flint's second opinion.
+        Every statement in it has passed the exact check and flint's second opinion.
 
     Raises
     ------
     DesignError
-        If the gradient iteration is asked for in discrete time, where it is not defined.
+        If the rung is not defined in discrete time.
     InternalError
         If two exact computations disagree.
     """
-    if method is Method.GRADIENT and system.time is Time.DISCRETE:
+    if method in (Method.GRADIENT, Method.MIXTURE) and system.time is Time.DISCRETE:
         raise DesignError(
-            "the gradient iteration is for continuous time", remedy="use --method lmi"
+            f"the method {method} is for continuous time", remedy="use --method auto"
         )
-    family = Family.of(system)
-    attempts: list[Attempt] = []
-    for name, step in _steps(method, optimize_rate, system.time):
-        progress(name)
-        start = perf_counter()
-        evidence, outcome = step(family)
-        attempts.append(Attempt(name, outcome, perf_counter() - start))
-        if evidence is not None:
-            confirm(system, evidence)
-            return _settled(system, name, evidence, tuple(attempts))
-    return Certification(
-        system,
-        Verdict.INCONCLUSIVE,
-        CommonQuadraticStatus.UNKNOWN,
-        str(method),
-        None,
-        tuple(attempts),
+    limits = limits or Limits()
+    merged = merge_equal_modes(system)
+    blocks = triangular_blocks(merged)
+    if len(blocks) == 1:
+        result = _climb(merged, method, limits, progress)
+    else:
+        parts = [_certify_block(merged, block, method, limits, progress) for block in blocks]
+        result = _combine(merged, blocks, parts)
+    statements = tuple(spread(statement, merged, system) for statement in result.statements)
+    for statement in statements:
+        if fault := statement.find_fault(system):
+            raise InternalError(f"evidence was lost between two forms of one system: {fault}")
+        confirm(system, statement)
+    return replace(result, system=system, statements=statements)
+
+
+def _certify_block(
+    system: SwitchedSystem,
+    block: tuple[int, ...],
+    method: Method,
+    limits: Limits,
+    progress: Progress,
+) -> Certification:
+    """Certify the family of one diagonal block."""
+    full = diagonal_block(system, block)
+    merged = merge_equal_modes(full)
+    result = _climb(merged, method, limits, progress)
+    return replace(
+        result,
+        system=full,
+        statements=tuple(spread(statement, merged, full) for statement in result.statements),
     )
 
 
-def _steps(method: Method, optimize_rate: bool, time: Time) -> list[tuple[str, Step]]:
-    """List the steps, cheapest first; the exact test of every mode only if no proof was found."""
-    steps: list[tuple[str, Step]] = [("suspicious modes", examine_suspicious_modes)]
-    if method is not Method.GRADIENT:
-        steps.append(("lmi", partial(search_by_lmi, optimize_rate=optimize_rate)))
-    if method is not Method.LMI and time is Time.CONTINUOUS:
-        steps.append(("gradient", search_by_gradient))
-    return [*steps, ("every mode", examine_every_mode)]
-
-
-def _settled(
-    system: SwitchedSystem, step: str, evidence: Evidence, attempts: tuple[Attempt, ...]
+def _climb(
+    system: SwitchedSystem, method: Method, limits: Limits, progress: Progress
 ) -> Certification:
-    if isinstance(evidence, CommonQuadratic):
-        verdict, status = Verdict.PROVED, CommonQuadraticStatus.EXISTS
-    else:
-        # A common quadratic function would make every mode stable.
-        verdict, status = Verdict.REFUTED, CommonQuadraticStatus.IMPOSSIBLE
-    return Certification(system, verdict, status, step, evidence, attempts)
+    """Try one rung after the other until one decides, or the budget is used up."""
+    with floats_in_silence():
+        family = Family.of(system)
+    begun = perf_counter()
+    attempts: list[Attempt] = []
+    remarks: list[AbstractEvidence] = []
+    for name, rung in _rungs(method, limits, system.time, remarks):
+        start = perf_counter()
+        if start - begun > limits.budget:
+            attempts.append(Attempt(name, "not begun: the budget of time is used up", 0.0))
+            break
+        progress(name)
+        evidence, outcome = _take(rung, family)
+        attempts.append(Attempt(name, outcome, perf_counter() - start))
+        if evidence is None:
+            continue
+        if evidence.shows is Shows.NO_COMMON_QUADRATIC:
+            remarks.append(evidence)
+            continue
+        return _conclude(system, name, (evidence, *remarks), tuple(attempts))
+    return _conclude(system, str(method), tuple(remarks), tuple(attempts))
+
+
+def _rungs(
+    method: Method, limits: Limits, time: Time, remarks: list[AbstractEvidence]
+) -> Iterator[tuple[str, Rung]]:
+    """Yield the rungs, cheapest first; what has been shown so far decides what is worth trying."""
+    everything = method is Method.AUTO
+    yield "suspicious modes", examine_suspicious_modes
+    if everything or method is Method.LMI:
+        yield "lmi", partial(search_by_lmi, optimize_rate=limits.optimize_rate)
+    if everything or method is Method.OBSTRUCTION:
+        yield "obstruction", prove_obstruction
+    if (everything and not remarks and time is Time.CONTINUOUS) or method is Method.GRADIENT:
+        yield "gradient", search_by_gradient
+    yield "every mode", examine_every_mode
+    if (everything and time is Time.CONTINUOUS) or method is Method.MIXTURE:
+        yield "mixture", search_mixture
+    degrees = range(2, limits.max_degree // 2 + 1)
+    if everything or method is Method.POLYNOMIAL:
+        for d in degrees[:2]:
+            yield f"polynomial of degree {2 * d}", partial(search_polynomial, degree=d)
+    if everything or method is Method.PERIOD:
+        yield "period", search_period
+    if everything or method is Method.POLYNOMIAL:
+        for d in degrees[2:]:
+            yield f"polynomial of degree {2 * d}", partial(search_polynomial, degree=d)
+
+
+def _take(rung: Rung, family: Family) -> Finding:
+    """Try one rung; where floating point fails, nothing is found."""
+    try:
+        with floats_in_silence():
+            return rung(family)
+    except (LinAlgError, OverflowError) as error:
+        return None, f"floating point failed ({error})"
+
+
+def _conclude(
+    system: SwitchedSystem,
+    method: str,
+    statements: tuple[AbstractEvidence, ...],
+    attempts: tuple[Attempt, ...],
+) -> Certification:
+    status = CommonQuadraticStatus.UNKNOWN
+    verdict = verdict_of(statements)
+    kinds = {type(statement) for statement in statements}
+    if CommonQuadratic in kinds:
+        status = CommonQuadraticStatus.EXISTS
+    elif verdict is Verdict.REFUTED or any(
+        statement.shows is Shows.NO_COMMON_QUADRATIC for statement in statements
+    ):
+        # A common quadratic function would prove stability.
+        status = CommonQuadraticStatus.IMPOSSIBLE
+    return Certification(system, verdict, status, method, statements, attempts)
+
+
+def _combine(
+    system: SwitchedSystem, blocks: tuple[tuple[int, ...], ...], parts: list[Certification]
+) -> Certification:
+    """Put the certifications of the diagonal blocks together."""
+    attempts = tuple(
+        replace(attempt, step=f"block {k + 1}: {attempt.step}")
+        for k, part in enumerate(parts)
+        for attempt in part.attempts
+    )
+    statements: list[AbstractEvidence] = []
+    refuted = [k for k, part in enumerate(parts) if part.verdict is Verdict.REFUTED]
+    deciding = tuple((k, part.evidence) for k, part in enumerate(parts) if part.evidence)
+    if refuted:
+        statements.append(BlockTriangular(blocks, ((refuted[0], parts[refuted[0]].statements[0]),)))
+    elif len(deciding) == len(blocks):
+        statements.append(BlockTriangular(blocks, deciding))
+    for k, part in enumerate(parts):
+        for statement in part.statements:
+            if statement.shows is Shows.NO_COMMON_QUADRATIC:
+                statements.append(BlockTriangular(blocks, ((k, statement),)))
+    method = "blocks: " + ", ".join(dict.fromkeys(part.method for part in parts))
+    result = _conclude(system, method, tuple(statements), attempts)
+    if all(part.common_quadratic is CommonQuadraticStatus.EXISTS for part in parts):
+        return replace(result, common_quadratic=CommonQuadraticStatus.EXISTS)
+    return result
+
+
+def spread(
+    statement: AbstractEvidence, merged: SwitchedSystem, system: SwitchedSystem
+) -> AbstractEvidence:
+    """Carry evidence over from merged modes to all of them.
+
+    Only polynomial functions hold numbers for every mode; names of modes stay valid.
+    """
+    if isinstance(statement, CommonPolynomial) and len(merged.modes) < len(system.modes):
+        forms = {m.A: N for m, N in zip(merged.modes, statement.vanishing, strict=True)}
+        return replace(statement, vanishing=tuple(forms[mode.A] for mode in system.modes))
+    if isinstance(statement, BlockTriangular):
+        return replace(
+            statement,
+            parts=tuple(
+                (k, _spread_part(part, statement.blocks[k], merged, system))
+                for k, part in statement.parts
+            ),
+        )
+    return statement
+
+
+def _spread_part(
+    part: AbstractEvidence, block: tuple[int, ...], merged: SwitchedSystem, system: SwitchedSystem
+) -> AbstractEvidence:
+    return spread(part, diagonal_block(merged, block), diagonal_block(system, block))

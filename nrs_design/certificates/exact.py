@@ -20,6 +20,14 @@ def is_symmetric(M: IntegerMatrix) -> bool:
     return [list(row) for row in M] == [list(column) for column in zip(*M, strict=True)]
 
 
+def add(left: IntegerMatrix, right: IntegerMatrix, weight: int = 1) -> list[list[int]]:
+    """Return ``left + weight right``."""
+    return [
+        [a + weight * b for a, b in zip(*rows, strict=True)]
+        for rows in zip(left, right, strict=True)
+    ]
+
+
 def is_positive_definite(M: IntegerMatrix) -> bool:
     """Decide whether a symmetric integer matrix is positive definite.
 
@@ -52,6 +60,41 @@ def is_positive_definite(M: IntegerMatrix) -> bool:
             ]
         previous = pivot
     return True
+
+
+def is_positive_semidefinite(M: IntegerMatrix) -> bool:
+    """Decide whether a symmetric integer matrix is positive semidefinite.
+
+    Elimination as in `is_positive_definite`, with a symmetric choice of pivots: the Schur
+    complement of a positive diagonal entry is positive semidefinite iff the matrix is, and a
+    matrix with no positive diagonal entry is positive semidefinite iff it is zero.
+
+    Raises
+    ------
+    ValueError
+        If M is empty or not symmetric.
+    """
+    if not M or not is_symmetric(M):
+        raise ValueError("a definiteness test needs a symmetric matrix")
+    rows = [list(row) for row in M]
+    while rows:
+        k = max(range(len(rows)), key=lambda i: rows[i][i])
+        pivot, pivot_row = rows[k][k], rows[k]
+        if pivot <= 0:
+            return not any(map(any, rows))
+        rest = [i for i in range(len(rows)) if i != k]
+        rows = [[pivot * rows[i][j] - pivot_row[i] * pivot_row[j] for j in rest] for i in rest]
+        divisor = gcd(*(entry for row in rows for entry in row)) or 1
+        rows = [[entry // divisor for entry in row] for row in rows]
+    return True
+
+
+def congruence(L: IntegerMatrix, Q: IntegerMatrix) -> list[list[int]]:
+    """Return ``L' Q L``."""
+    columns = list(zip(*L, strict=True))
+    QL = [[sum(map(mul, row, column)) for column in columns] for row in Q]
+    images = list(zip(*QL, strict=True))
+    return [[sum(map(mul, column, image)) for image in images] for column in columns]
 
 
 def lyapunov_decrease(

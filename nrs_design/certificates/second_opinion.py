@@ -9,13 +9,20 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
-from nrs_design.certificates.certificate import CommonQuadratic, Evidence, UnstableMode
-from nrs_design.certificates.check import decrease, is_stable
+from nrs_design.certificates.evidence import (
+    AbstractEvidence,
+    BlockTriangular,
+    UnstableMixture,
+    UnstableMode,
+)
+from nrs_design.certificates.evidence.block_triangular import diagonal_block
+from nrs_design.certificates.evidence.unstable_mixture import mixture
 from nrs_design.errors import InternalError
-from nrs_design.switched.system import Mode, SwitchedSystem, Time
+from nrs_design.switched.matrix import RationalMatrix
+from nrs_design.switched.system import SwitchedSystem, Time
 
 
-def confirm(system: SwitchedSystem, evidence: Evidence) -> None:
+def confirm(system: SwitchedSystem, evidence: AbstractEvidence) -> None:
     """Confirm evidence that the trusted check has accepted.
 
     Raises
@@ -23,23 +30,20 @@ def confirm(system: SwitchedSystem, evidence: Evidence) -> None:
     InternalError
         If flint comes to another conclusion.
     """
-    if isinstance(evidence, CommonQuadratic):
-        forms = [evidence.Q, *(decrease(mode, evidence, system.time) for mode in system.modes)]
-        agreed = all(_has_positive_spectrum(form) for form in forms)
-    else:
-        mode = next(mode for mode in system.modes if mode.name == evidence.mode)
-        agreed = not _is_surely_stable(mode, system.time)
-    if not agreed:
+    if not _agrees(system, evidence):
         raise InternalError("the integer check and flint disagree about the same certificate")
 
 
-def unstable_mode(mode: Mode, time: Time) -> UnstableMode | None:
-    """Return the evidence against one mode, with its worst eigenvalue, or None if it is stable."""
-    if is_stable(mode, time):
-        return None
-    centers = [complex(root) for root in _spectrum(mode)]
-    worst = max(centers, key=lambda z: z.real if time is Time.CONTINUOUS else abs(z))
-    return UnstableMode(mode.name, _text(worst))
+def _agrees(system: SwitchedSystem, evidence: AbstractEvidence) -> bool:
+    if isinstance(evidence, UnstableMode):
+        matrix = next(mode.A for mode in system.modes if mode.name == evidence.mode)
+        return not _is_surely_stable(matrix, system.time)
+    if isinstance(evidence, UnstableMixture):
+        return not _is_surely_stable(mixture(system, evidence.weights), system.time)
+    if isinstance(evidence, BlockTriangular):
+        blocks = evidence.blocks
+        return all(_agrees(diagonal_block(system, blocks[k]), part) for k, part in evidence.parts)
+    return all(_has_positive_spectrum(form) for _, form in evidence.forms(system))
 
 
 def _has_positive_spectrum(M: Sequence[Sequence[int]]) -> bool:
@@ -54,22 +58,11 @@ def _has_positive_spectrum(M: Sequence[Sequence[int]]) -> bool:
     return all((c > 0) == ((n - k) % 2 == 0) and c != 0 for k, c in enumerate(coefficients))
 
 
-def _spectrum(mode: Mode) -> list[Any]:
-    """Return rigorous enclosures of the eigenvalues."""
+def _is_surely_stable(A: RationalMatrix, time: Time) -> bool:
+    """Tell whether rigorous enclosures of all eigenvalues lie in the stable region."""
     from flint import fmpz_mat
 
-    polynomial = fmpz_mat([list(row) for row in mode.A.numerators]).charpoly()
-    roots: list[Any] = polynomial.complex_roots()
-    return [root / mode.A.denominator for root, _ in roots]
-
-
-def _is_surely_stable(mode: Mode, time: Time) -> bool:
+    roots: list[Any] = fmpz_mat([list(row) for row in A.numerators]).charpoly().complex_roots()
     if time is Time.CONTINUOUS:
-        return all(root.real < 0 for root in _spectrum(mode))
-    return all(abs(root) < 1 for root in _spectrum(mode))
-
-
-def _text(z: complex) -> str:
-    if z.imag == 0 or abs(z.imag) < 1e-14 * abs(z):
-        return f"{z.real:.6g}"
-    return f"{z.real:.6g} +- {abs(z.imag):.6g}j"
+        return all(root.real < 0 for root, _ in roots)
+    return all(abs(root / A.denominator) < 1 for root, _ in roots)

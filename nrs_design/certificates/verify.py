@@ -7,25 +7,20 @@ evidence and the rate. Every other field is regenerated and must agree to the le
 from __future__ import annotations
 
 import json
-import re
 from collections.abc import Mapping
 from dataclasses import dataclass
-from fractions import Fraction
 from pathlib import Path
 from typing import Any, NoReturn
 
 from nrs_design.certificates.certificate import (
     SCHEMA,
     Certificate,
-    CommonQuadratic,
-    Evidence,
-    Kind,
-    UnstableMode,
     content_id,
     to_document,
 )
-from nrs_design.certificates.check import find_fault
-from nrs_design.certificates.second_opinion import confirm, unstable_mode
+from nrs_design.certificates.evidence import AbstractEvidence, read_evidence
+from nrs_design.certificates.evidence.fields import read_text
+from nrs_design.certificates.second_opinion import confirm
 from nrs_design.errors import CertificateError, NrsDesignError
 from nrs_design.spec import LoadedSpec
 from nrs_design.switched.assemble import assemble
@@ -74,11 +69,13 @@ def verify_document(document: Mapping[str, Any], spec: LoadedSpec) -> Verificati
         return Verification(None, f"a field is missing or malformed ({error})")
     except NrsDesignError as error:
         return Verification(None, error.message)
-    fault = _find_difference(document, certificate) or find_fault(
-        certificate.system, certificate.evidence
-    )
+    system = certificate.system
+    fault = _find_difference(document, certificate)
+    for statement in certificate.statements:
+        fault = fault or statement.find_fault(system)
     if fault is None:
-        confirm(certificate.system, certificate.evidence)
+        for statement in certificate.statements:
+            confirm(system, statement)
     return Verification(certificate, fault)
 
 
@@ -118,24 +115,18 @@ def _rebuild(document: Mapping[str, Any], spec: LoadedSpec) -> Certificate:
         coordinates=coordinates,
         gains=gains,
         system=system,
-        evidence=_evidence(document, system),
-        version=_text(document["package"]["version"]),
+        statements=_statements(document, system),
+        version=read_text(document["package"]["version"]),
     )
 
 
-def _evidence(document: Mapping[str, Any], system: SwitchedSystem) -> Evidence:
-    if document["kind"] == Kind.UNSTABLE_MODE:
-        return _unstable_mode(_text(document["unstable_mode"]["name"]), system)
-    Q = tuple(tuple(_integer(entry) for entry in row) for row in document["Q"]["numerators"])
-    exponent = _integer(document["Q"]["denominator_log2"])
-    return CommonQuadratic(Q, exponent, _ratio(document["rate"]))
-
-
-def _unstable_mode(name: str, system: SwitchedSystem) -> UnstableMode:
-    for mode in system.modes:
-        if mode.name == name and (evidence := unstable_mode(mode, system.time)):
-            return evidence
-    raise ValueError(f"the spec has no unstable mode {name}")
+def _statements(
+    document: Mapping[str, Any], system: SwitchedSystem
+) -> tuple[AbstractEvidence, ...]:
+    statements = tuple(read_evidence(fields, system) for fields in document["statements"])
+    if not statements:
+        raise ValueError("it states nothing")
+    return statements
 
 
 def _find_difference(document: Mapping[str, Any], certificate: Certificate) -> str | None:
@@ -146,25 +137,6 @@ def _find_difference(document: Mapping[str, Any], certificate: Certificate) -> s
         ):
             return f"its field '{key}' does not follow from the spec and the evidence"
     return None
-
-
-def _integer(value: object) -> int:
-    if type(value) is not int:
-        raise TypeError(f"expected an integer, not {value!r}")
-    return value
-
-
-def _ratio(value: object) -> Fraction:
-    text = _text(value)
-    if not re.fullmatch(r"[0-9]{1,2000}(/[0-9]{1,2000})?", text):
-        raise ValueError("the rate is not a ratio of integers")
-    return Fraction(text)
-
-
-def _text(value: object) -> str:
-    if not isinstance(value, str):
-        raise TypeError(f"expected a text, not {value!r}")
-    return value
 
 
 def _no_float(text: str) -> NoReturn:

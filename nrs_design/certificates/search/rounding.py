@@ -8,12 +8,14 @@ from math import floor, frexp, gcd
 import numpy as np
 from numpy.typing import NDArray
 
-from nrs_design.certificates.certificate import CommonQuadratic
-from nrs_design.certificates.check import find_fault
+from nrs_design.certificates.evidence import CommonQuadratic
+
 from nrs_design.switched.system import SwitchedSystem, Time
 
 BITS = (4, 6, 8, 10, 12, 16, 20, 24, 32, 40, 50, 60)
 RATE_BITS = 16
+# Python reads and writes integers of at most 4300 decimal digits, so a certificate has no longer.
+MAX_ENTRY_BITS = 14_000
 
 
 def round_to_evidence(
@@ -28,17 +30,17 @@ def round_to_evidence(
     Q : ndarray, shape (n, n)
         Candidate in the coordinates scaled by ``2^d``.
     exponents : ndarray of int, shape (n,)
-        The d of `nrs_design.certificates.balance.balance`.
+        The d of `nrs_design.certificates.search.balance.balance`.
     rate : Fraction
         Rate to claim.
     """
     largest = np.abs(Q).max()
     if not np.isfinite(largest) or largest == 0:
         return None
-    normalized = np.ldexp((Q + Q.T) / 2, -int(np.frexp(largest)[1]))
+    unit = np.ldexp(Q, -int(np.frexp(largest)[1]))
     for bits in BITS:
-        evidence = _unscale(normalized, exponents, bits, rate)
-        if find_fault(system, evidence) is None:
+        evidence = _unscale((unit + unit.T) / 2, exponents, bits, rate)
+        if _is_printable(evidence) and evidence.find_fault(system) is None:
             return evidence
     return None
 
@@ -53,6 +55,10 @@ def round_rate(rate: float, time: Time) -> Fraction:
 def _round_down(value: float) -> Fraction:
     shift = RATE_BITS - frexp(value)[1]
     return Fraction(floor(Fraction(value) * Fraction(2) ** shift)) / Fraction(2) ** shift
+
+
+def _is_printable(evidence: CommonQuadratic) -> bool:
+    return all(abs(q).bit_length() <= MAX_ENTRY_BITS for row in evidence.Q for q in row)
 
 
 def _unscale(

@@ -1,0 +1,94 @@
+"""One mode that is not stable by itself."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import Any, ClassVar, Self
+
+from nrs_design.certificates.evidence.abstract import AbstractEvidence, Shows
+from nrs_design.certificates.evidence.fields import read_text
+from nrs_design.certificates.exact import IntegerMatrix, is_hurwitz, is_schur
+from nrs_design.switched.matrix import RationalMatrix
+from nrs_design.switched.system import SwitchedSystem, Switching, Time
+
+
+@dataclass(frozen=True, slots=True)
+class UnstableMode(AbstractEvidence):
+    """Staying in one mode, which is not Hurwitz (discrete time: not Schur), is admissible.
+
+    Parameters
+    ----------
+    mode : str
+        Its name.
+    eigenvalue : str
+        Its worst eigenvalue, to six digits, for the reader.
+    """
+
+    kind: ClassVar[str] = "unstable-mode"
+    allows_unequal_modes: ClassVar[bool] = True
+
+    mode: str
+    eigenvalue: str
+
+    @property
+    def shows(self) -> Shows:
+        """Instability."""
+        return Shows.INSTABILITY
+
+    def fits(self, switching: Switching) -> bool:
+        """Tell that it always applies: no rule forces a signal to leave its first mode."""
+        return True
+
+    def find_misfit(self, system: SwitchedSystem) -> str | None:
+        """Check that the mode exists and is not stable."""
+        named = [mode for mode in system.modes if mode.name == self.mode]
+        if len(named) != 1:
+            return f"there is no single mode named {self.mode}"
+        return f"mode {self.mode} is stable" if is_stable(named[0].A, system.time) else None
+
+    def forms(self, system: SwitchedSystem) -> Iterator[tuple[str, IntegerMatrix]]:
+        """Yield nothing: no matrix has to be positive definite."""
+        yield from ()
+
+    def claim(self, system: SwitchedSystem) -> str:
+        """State that the mode is not stable, and what follows."""
+        continuous = system.time is Time.CONTINUOUS
+        region = "Hurwitz" if continuous else "Schur"
+        law = "x' = A x" if continuous else "x+ = A x"
+        return (
+            f"Mode {self.mode} is not {region} (eigenvalue {self.eigenvalue}): staying in "
+            f"it is an admissible switching signal, so {law} is not uniformly exponentially stable."
+        )
+
+    def to_fields(self) -> dict[str, Any]:
+        """Return the mode and its eigenvalue."""
+        return {"mode": self.mode, "eigenvalue": self.eigenvalue}
+
+    @classmethod
+    def from_fields(cls, fields: Mapping[str, Any], system: SwitchedSystem) -> Self:
+        """Read the mode's name; its eigenvalue is computed again."""
+        name = read_text(fields["mode"])
+        matrix = next((mode.A for mode in system.modes if mode.name == name), None)
+        if matrix is None:
+            raise ValueError(f"the spec has no mode {name}")
+        return cls(name, worst_eigenvalue(matrix, system.time))
+
+
+def is_stable(A: RationalMatrix, time: Time) -> bool:
+    """TRUSTED: decide whether a matrix is Hurwitz (continuous time) or Schur (discrete time)."""
+    if time is Time.CONTINUOUS:
+        return is_hurwitz(A.numerators)
+    return is_schur(A.numerators, A.denominator)
+
+
+def worst_eigenvalue(A: RationalMatrix, time: Time) -> str:
+    """Return the eigenvalue nearest to or farthest beyond the stability limit, to six digits."""
+    from flint import fmpz_mat
+
+    roots: list[Any] = fmpz_mat([list(row) for row in A.numerators]).charpoly().complex_roots()
+    centers = [complex(root / A.denominator) for root, _ in roots]
+    z = max(centers, key=lambda z: z.real if time is Time.CONTINUOUS else abs(z))
+    if abs(z.imag) <= 1e-14 * abs(z):
+        return f"{z.real:.6g}"
+    return f"{z.real:.6g} +- {abs(z.imag):.6g}j"

@@ -1,0 +1,143 @@
+"""A periodic switching signal along which a solution grows."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any, ClassVar, Self
+
+from nrs_design.certificates.evidence.abstract import AbstractEvidence, Shows
+from nrs_design.certificates.evidence.fields import read_integer, read_ratio, read_text
+from nrs_design.certificates.exact import IntegerMatrix
+from nrs_design.switched.matrix import RationalMatrix
+from nrs_design.switched.system import SwitchedSystem, Switching, Time
+
+MAX_STEPS = 4096
+MAX_DWELL = 4096
+MAX_DOUBLINGS = 60
+PRECISION = 300
+
+
+@dataclass(frozen=True, slots=True)
+class UnstablePeriod(AbstractEvidence):
+    """The monodromy matrix M of a periodic signal has a spectral radius above one.
+
+    All eigenvalues at most one in modulus would give ``|tr M^k| <= n`` for every k. M is enclosed
+    in balls (exponentials by `flint.arb_mat.exp`), and ``|tr M^k| > n`` holds for the whole
+    enclosure with the stated power of two k.
+
+    Parameters
+    ----------
+    steps : tuple of (str, Fraction)
+        Mode and dwell time in s (discrete time: number of steps), in order.
+    doublings : int
+        k is two to this power.
+    """
+
+    kind: ClassVar[str] = "unstable-period"
+
+    steps: tuple[tuple[str, Fraction], ...]
+    doublings: int
+
+    @property
+    def shows(self) -> Shows:
+        """Instability."""
+        return Shows.INSTABILITY
+
+    def fits(self, switching: Switching) -> bool:
+        """Tell whether every dwell time is long enough and every switch allowed."""
+        following = zip(self.steps, (*self.steps[1:], *self.steps[:1]), strict=True)
+        switches = {(a, b) for (a, _), (b, _) in following if a != b}
+        allowed = switching.transitions
+        return (allowed is None or switches <= set(allowed)) and all(
+            dwell >= switching.dwell_time for _, dwell in self.steps
+        )
+
+    def find_misfit(self, system: SwitchedSystem) -> str | None:
+        """Check the signal, and that its monodromy matrix expands."""
+        if not 1 <= len(self.steps) <= MAX_STEPS or not 0 <= self.doublings <= MAX_DOUBLINGS:
+            return "the signal is empty or too long"
+        if not {name for name, _ in self.steps} <= {mode.name for mode in system.modes}:
+            return "the signal uses modes that do not exist"
+        if any(not 0 < dwell <= MAX_DWELL for _, dwell in self.steps):
+            return f"a dwell time is not between 0 and {MAX_DWELL}"
+        if system.time is Time.DISCRETE and any(dwell.denominator != 1 for _, dwell in self.steps):
+            return "a number of steps is not whole"
+        if not expands(system, self.steps, self.doublings):
+            return "the enclosure of the monodromy matrix does not show growth"
+        return None
+
+    def forms(self, system: SwitchedSystem) -> Iterator[tuple[str, IntegerMatrix]]:
+        """Yield nothing: no matrix has to be positive definite."""
+        yield from ()
+
+    def claim(self, system: SwitchedSystem) -> str:
+        """State the signal and what follows."""
+        continuous = system.time is Time.CONTINUOUS
+        law, unit = ("x' = A x", " s") if continuous else ("x+ = A x", " steps")
+        signal = ", ".join(f"{name} for {float(dwell):.6g}{unit}" for name, dwell in self.steps)
+        return (
+            f"Repeating the signal ({signal}) makes some solution grow without bound: the spectral "
+            f"radius over one period is above 1, so {law} is unstable under this switching."
+        )
+
+    def to_fields(self) -> dict[str, Any]:
+        """Return the signal and the power."""
+        return {
+            "steps": [[name, str(dwell)] for name, dwell in self.steps],
+            "doublings": self.doublings,
+        }
+
+    @classmethod
+    def from_fields(cls, fields: Mapping[str, Any], system: SwitchedSystem) -> Self:
+        """Read the signal and the power."""
+        steps = tuple((read_text(name), read_ratio(dwell)) for name, dwell in fields["steps"])
+        return cls(steps, read_integer(fields["doublings"]))
+
+
+def expands(
+    system: SwitchedSystem, steps: tuple[tuple[str, Fraction], ...], doublings: int
+) -> bool:
+    """TRUSTED: decide whether ``|tr M^k| > n`` is certain, k two to the power of doublings."""
+    from flint import ctx
+
+    before, ctx.prec = ctx.prec, PRECISION
+    try:
+        power = monodromy(system, steps)
+        for _ in range(doublings):
+            power = power * power
+        trace = sum((power[i, i] for i in range(system.order)), start=0 * power[0, 0])
+        return bool(abs(trace) > system.order)
+    finally:
+        ctx.prec = before
+
+
+def monodromy(system: SwitchedSystem, steps: tuple[tuple[str, Fraction], ...]) -> Any:
+    """TRUSTED: enclose the monodromy matrix of a periodic signal, at flint's current precision."""
+    from flint import arb_mat, fmpq, fmpq_mat
+
+    modes = {mode.name: mode for mode in system.modes}
+    product = arb_mat(fmpq_mat(system.order, system.order, _identity(system.order)))
+    following = (*steps[1:], *steps[:1])
+    for (name, dwell), (successor, _) in zip(steps, following, strict=True):
+        exact = _fmpq_matrix(modes[name].A)
+        if system.time is Time.CONTINUOUS:
+            factor = arb_mat(exact * fmpq(dwell.numerator, dwell.denominator)).exp()
+        else:
+            factor = arb_mat(exact ** int(dwell))
+        product = factor * product
+        reset = system.reset_map(modes[name], modes[successor])
+        if name != successor and reset is not None:
+            product = arb_mat(_fmpq_matrix(reset)) * product
+    return product
+
+
+def _fmpq_matrix(A: RationalMatrix) -> Any:
+    from flint import fmpq, fmpq_mat
+
+    return fmpq_mat(*A.shape, [fmpq(v, A.denominator) for row in A.numerators for v in row])
+
+
+def _identity(n: int) -> list[int]:
+    return [int(i == j) for i in range(n) for j in range(n)]

@@ -1,0 +1,1 @@
+"""Untrusted searches for evidence: floating point, solvers, heuristics. Nothing here decides."""

@@ -1,0 +1,55 @@
+"""The modes in floating point: what every search works on."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from nrs_design.certificates.search.balance import balance, scale
+from nrs_design.certificates.search.decay import limit_rate
+from nrs_design.switched.system import SwitchedSystem
+
+
+@dataclass(frozen=True)
+class Family:
+    """The modes in floating point, scaled by powers of two.
+
+    Parameters
+    ----------
+    system : SwitchedSystem
+        The exact modes.
+    matrices : ndarray, shape (m, n, n)
+        ``2^-d A 2^d``.
+    exponents : ndarray of int, shape (n,)
+        The d.
+    limit : float
+        Rate of the slowest mode.
+    """
+
+    system: SwitchedSystem
+    matrices: NDArray[np.float64]
+    exponents: NDArray[np.int64]
+    limit: float
+
+    @classmethod
+    def of(cls, system: SwitchedSystem) -> Family:
+        """Convert and balance the modes of a system."""
+        matrices = np.array([mode.A.floats() for mode in system.modes])
+        exponents = balance(matrices)
+        scaled = scale(matrices, exponents)
+        if not np.isfinite(scaled).all():
+            scaled, exponents = matrices, np.zeros_like(exponents)
+        return cls(system, scaled, exponents, limit_rate(scaled, system.time))
+
+
+@contextmanager
+def floats_in_silence() -> Iterator[None]:
+    """Let floating point over- and underflow without a word: it only chooses what to try."""
+    with warnings.catch_warnings(), np.errstate(all="ignore"):
+        warnings.simplefilter("ignore", RuntimeWarning)
+        yield

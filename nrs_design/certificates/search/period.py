@@ -1,0 +1,166 @@
+"""Search for a periodic switching signal along which a solution grows."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from itertools import combinations, product
+from math import ceil, log, log2
+
+import numpy as np
+from numpy.typing import NDArray
+
+from nrs_design.certificates.evidence import UnstablePeriod
+from nrs_design.switched.system import SwitchedSystem, Time
+
+Array = NDArray[np.float64]
+ComplexArray = NDArray[np.complex128]
+
+DWELLS = 48
+MAX_PAIRS = 60
+STARTS = 4
+MAX_WORDS = 20_000
+MAX_WORD_LENGTH = 16
+DWELL_BITS = (8, 12, 16, 24, 40)
+
+
+def find_growing_period(system: SwitchedSystem, matrices: Array) -> UnstablePeriod | None:
+    """Search for a period with a spectral radius above one, and enclose it rigorously.
+
+    Parameters
+    ----------
+    system : SwitchedSystem
+        Exact modes.
+    matrices : ndarray, shape (m, n, n)
+        The same in floating point, perhaps scaled.
+    """
+    if system.time is Time.DISCRETE:
+        return _first_word(system, matrices)
+    flows = _Flows.of(matrices)
+    for order, dwells in _candidates(matrices, flows):
+        for bits in DWELL_BITS:
+            steps = tuple(
+                (system.modes[i].name, _short(dwell, bits))
+                for i, dwell in zip(order, dwells, strict=True)
+            )
+            if evidence := _enclose(system, steps, _period_radius(flows, order, steps)):
+                return evidence
+    return None
+
+
+def _enclose(
+    system: SwitchedSystem, steps: tuple[tuple[str, Fraction], ...], radius: float
+) -> UnstablePeriod | None:
+    """Try powers from where the trace should exceed n."""
+    if not radius > 1:
+        return None
+    first = max(0, ceil(log2(log(2 * system.order) / log(radius))))
+    for doublings in range(first, first + 4):
+        evidence = UnstablePeriod(steps, doublings)
+        if evidence.find_fault(system) is None:
+            return evidence
+    return None
+
+
+def _period_radius(
+    flows: _Flows, order: Sequence[int], steps: tuple[tuple[str, Fraction], ...]
+) -> float:
+    dwells = np.array([float(dwell) for _, dwell in steps])
+    return float(np.exp(flows.growth(order, dwells) * dwells.sum()))
+
+
+def _short(dwell: float, bits: int) -> Fraction:
+    """Round a dwell time to so many significant bits."""
+    shift = bits - int(np.frexp(dwell)[1])
+    return Fraction(round(Fraction(dwell) * Fraction(2) ** shift)) / Fraction(2) ** shift
+
+
+@dataclass(frozen=True)
+class _Flows:
+    """Exponentials of the modes, by their eigenvectors: a search needs many, not perfect ones."""
+
+    values: ComplexArray
+    vectors: ComplexArray
+    inverses: ComplexArray
+
+    @classmethod
+    def of(cls, matrices: Array) -> _Flows:
+        values, vectors = np.linalg.eig(matrices.astype(complex))
+        # A defective mode is moved off its defect a little; the exact check is what counts.
+        if (np.linalg.cond(vectors) > 1e10).any():
+            rng = np.random.default_rng(0)
+            noise = 1e-6 * np.abs(matrices).max() * rng.standard_normal(matrices.shape)
+            values, vectors = np.linalg.eig(matrices + noise)
+        return cls(values, vectors, np.linalg.inv(vectors))
+
+    def at(self, mode: int, dwells: Array) -> ComplexArray:
+        """Return ``exp(A t)`` for all dwell times t; shape (..., n, n)."""
+        factors = np.exp(self.values[mode] * dwells[..., None])
+        return np.asarray((self.vectors[mode] * factors[..., None, :]) @ self.inverses[mode])
+
+    def growth(self, order: Sequence[int], dwells: Array) -> Array:
+        """Return the growth rate in 1/s of periodic signals; dwells of shape (..., steps)."""
+        monodromy = self.at(order[0], dwells[..., 0])
+        for k, mode in enumerate(order[1:], start=1):
+            monodromy = self.at(mode, dwells[..., k]) @ monodromy
+        radius = np.abs(np.linalg.eigvals(monodromy)).max(axis=-1)
+        return np.asarray(np.log(np.maximum(radius, 1e-300)) / dwells.sum(axis=-1))
+
+
+def _candidates(matrices: Array, flows: _Flows) -> Iterator[tuple[tuple[int, ...], Array]]:
+    """Yield signals that grow in floating point: two modes in turn, then four steps."""
+    grid = _dwell_grid(matrices)
+    mesh = np.stack(np.meshgrid(grid, grid, indexing="ij"), axis=-1).reshape(-1, 2)
+    scanned = []
+    for pair in list(combinations(range(len(matrices)), 2))[:MAX_PAIRS]:
+        growth = flows.growth(pair, mesh)
+        best = int(growth.argmax())
+        scanned.append((float(growth[best]), pair, mesh[best]))
+    for growth_rate, pair, dwells in sorted(scanned, key=lambda item: -item[0])[:STARTS]:
+        if growth_rate > 0:
+            yield pair, dwells
+        for order, start in _refinements(pair, dwells):
+            refined = _refine(flows, order, start)
+            if flows.growth(order, refined) > 0:
+                yield order, refined
+
+
+def _refinements(pair: tuple[int, int], dwells: Array) -> Iterator[tuple[tuple[int, ...], Array]]:
+    yield pair, dwells
+    yield (*pair, *pair), np.concatenate([dwells * 1.2, dwells * 0.8])
+
+
+def _dwell_grid(matrices: Array) -> Array:
+    """Return dwell times from far below to far above the modes' own time scales."""
+    speeds = np.abs(np.linalg.eigvals(matrices))
+    return np.geomspace(0.02 / speeds.max(), 20 / max(speeds.min(), 1e-6 * speeds.max()), DWELLS)
+
+
+def _refine(flows: _Flows, order: Sequence[int], dwells: Array) -> Array:
+    from scipy.optimize import minimize
+
+    best = minimize(
+        lambda logs: -float(flows.growth(order, np.exp(logs))),
+        np.log(dwells),
+        method="Nelder-Mead",
+        options={"maxiter": 400, "xatol": 1e-6, "fatol": 1e-12},
+    )
+    return np.asarray(np.exp(best.x))
+
+
+def _first_word(system: SwitchedSystem, matrices: Array) -> UnstablePeriod | None:
+    """Try products of modes, short ones first."""
+    m, length = len(matrices), 1
+    while length < MAX_WORD_LENGTH and m ** (length + 1) <= MAX_WORDS:
+        length += 1
+        words = np.array(list(product(range(m), repeat=length)))
+        monodromy = matrices[words[:, 0]]
+        for column in words.T[1:]:
+            monodromy = matrices[column] @ monodromy
+        radius = np.abs(np.linalg.eigvals(monodromy)).max(axis=1)
+        best = int(radius.argmax())
+        steps = tuple((system.modes[i].name, Fraction(1)) for i in words[best])
+        if evidence := _enclose(system, steps, float(radius[best])):
+            return evidence
+    return None

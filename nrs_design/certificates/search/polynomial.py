@@ -1,0 +1,243 @@
+"""Search for a common homogeneous polynomial Lyapunov function.
+
+``V(x) = z' Q z`` with z the monomials of degree d. The derivative along a mode is
+``z' (L'Q + QL) z`` with the lifted mode L, and any form that vanishes identically may be added to
+its Gram matrix. The existence of such a function for some degree is necessary for stability
+under arbitrary switching too (Mason, Boscain and Chitour 2006).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+from math import factorial, prod
+
+import numpy as np
+from numpy.typing import NDArray
+
+from nrs_design.certificates.evidence import CommonPolynomial
+from nrs_design.certificates.lift import derivative_lift, monomials, power_lift
+from nrs_design.certificates.search.lmi import decreases
+from nrs_design.certificates.search.rounding import round_rate
+from nrs_design.certificates.search.sdp import maximize_margin, pack, symmetric_basis
+from nrs_design.switched.matrix import RationalMatrix
+from nrs_design.switched.system import SwitchedSystem, Time
+
+Array = NDArray[np.float64]
+Exponents = NDArray[np.int64]
+Pair = tuple[int, int]
+
+ROUNDING_BITS = (10, 14, 18, 24, 30, 38, 46, 52)
+BACK_OFFS = (0.99, 0.9, 0.5, 0.1, 1e-2, 1e-4)
+
+
+@dataclass(frozen=True)
+class Lift:
+    """A family lifted to degree d, in floating point and in well-conditioned coordinates.
+
+    Parameters
+    ----------
+    degree : int
+        The d.
+    matrices : ndarray, shape (m, K, K)
+        Lifted modes in the coordinates ``2^e z(x)``.
+    vanishing : ndarray, shape (p, K, K)
+        Basis of the symmetric N with ``z' N z = 0`` for all x, in the same coordinates.
+    exponents : ndarray of int, shape (K,)
+        The e.
+    """
+
+    degree: int
+    matrices: Array
+    vanishing: Array
+    exponents: Exponents
+
+
+@dataclass(frozen=True)
+class Candidate:
+    """Gram matrix Q, shape (K, K), and one vanishing form per mode, shape (m, K, K)."""
+
+    Q: Array
+    vanishing: Array
+
+
+def lift_family(system: SwitchedSystem, exponents: Exponents, degree: int) -> Lift:
+    """Lift the modes exactly, then scale by powers of two.
+
+    Monomials are weighted by powers of two near ``sqrt(multinomial)``: nearly an orthonormal
+    basis in the rotation-invariant inner product of forms, so that degree keeps helping.
+
+    Parameters
+    ----------
+    system : SwitchedSystem
+        Exact modes.
+    exponents : ndarray of int, shape (n,)
+        Balancing exponents of the states.
+    degree : int
+        Half the degree of the function.
+    """
+    basis = monomials(system.order, degree)
+    weights = [factorial(degree) / prod(map(factorial, a)) for a in basis]
+    scaling = np.rint(np.log2(weights) / 2).astype(np.int64) - np.array(basis) @ exponents
+    lifted = np.array([_lift_mode(mode.A, degree, system.time).floats() for mode in system.modes])
+    matrices = np.ldexp(lifted, scaling[:, None] - scaling[None, :])
+    pairs = [group for group in products(system.order, degree) if len(group) > 1]
+    vanishing = [_difference(group[0], other, scaling) for group in pairs for other in group[1:]]
+    K = len(basis)
+    return Lift(degree, matrices, np.array(vanishing).reshape(-1, K, K), scaling)
+
+
+def products(variables: int, degree: int) -> list[list[Pair]]:
+    """Group the pairs of monomials by their product; diagonal pairs first in their group."""
+    basis = monomials(variables, degree)
+    groups: dict[tuple[int, ...], list[Pair]] = {}
+    for i, a in enumerate(basis):
+        for j in range(i, len(basis)):
+            key = tuple(p + q for p, q in zip(a, basis[j], strict=True))
+            groups.setdefault(key, []).append((i, j))
+    return [sorted(group, key=lambda pair: pair[0] != pair[1]) for group in groups.values()]
+
+
+def find_common_polynomial(lift: Lift, time: Time, rate: float) -> Candidate | None:
+    """Maximize the margin by semidefinite programming.
+
+    Parameters
+    ----------
+    lift : Lift
+        As `lift_family` gives it.
+    time : Time
+        Continuous or discrete.
+    rate : float
+        alpha in 1/s, or rho per step.
+
+    Returns
+    -------
+    Candidate or None
+        None if the margin is not positive.
+    """
+    lifted_rate = rate * lift.degree if time is Time.CONTINUOUS else rate**lift.degree
+    m, K = lift.matrices.shape[:2]
+    basis, identity = symmetric_basis(K), pack(np.eye(K))
+    size, forms = len(basis), len(lift.vanishing)
+    directions = np.linalg.qr(pack(lift.vanishing).T)[0].T if forms else np.zeros((0, size))
+    blocks = [np.zeros((size, size + m * forms + 1)) for _ in range(m + 2)]
+    blocks[0][:, :size] = np.eye(size)
+    blocks[1][:, :size] = -np.eye(size)
+    for k, block in enumerate(blocks[2:]):
+        images = decreases(lift.matrices[k], basis, time, lifted_rate)
+        block[:, :size] = -pack(images).T
+        block[:, size + k * forms : size + (k + 1) * forms] = -directions.T
+        block[:, -1] = identity
+    offset = np.concatenate([identity, np.zeros(size * (m + 1))])
+    x = maximize_margin(np.vstack(blocks), offset, [K] * (m + 2))
+    if x is None or x[-1] <= 0:
+        return None
+    weights = x[size:-1].reshape(m, forms)
+    Q = np.tensordot(x[:size], basis, axes=1)
+    return Candidate(Q, np.tensordot(weights @ directions, basis, axes=1))
+
+
+def round_polynomial(
+    system: SwitchedSystem, lift: Lift, candidate: Candidate, limit: float
+) -> CommonPolynomial | None:
+    """Round a candidate to integers at the best rate that it shows; None if nothing passes.
+
+    Parameters
+    ----------
+    system : SwitchedSystem
+        Exact modes.
+    lift : Lift
+        The lift that the candidate belongs to.
+    candidate : Candidate
+        Found by `find_common_polynomial`.
+    limit : float
+        Rate of the slowest mode, which no function exceeds.
+    """
+    best = _own_rate(lift, candidate, system.time)
+    for back_off in BACK_OFFS:
+        if system.time is Time.CONTINUOUS:
+            rate = round_rate(min(best, limit) * back_off, system.time)
+        else:
+            rate = round_rate(1 - (1 - max(best, limit)) * back_off, system.time)
+        for bits in ROUNDING_BITS:
+            evidence = _integers(system, lift, candidate, rate, bits)
+            if evidence.find_fault(system) is None:
+                return evidence
+    return None
+
+
+def _own_rate(lift: Lift, candidate: Candidate, time: Time) -> float:
+    """Return the rate that Q and the vanishing forms show, by generalized eigenvalues."""
+    forms = decreases(lift.matrices, candidate.Q, time, 0.0) + candidate.vanishing
+    inverse = np.linalg.inv(np.linalg.cholesky(candidate.Q))
+    smallest = float(np.linalg.eigvalsh(inverse @ forms @ inverse.T).min())
+    if time is Time.CONTINUOUS:
+        return smallest / (2 * lift.degree)
+    return float(max(-smallest, 0.0) ** (0.5 / lift.degree))
+
+
+def _integers(
+    system: SwitchedSystem, lift: Lift, candidate: Candidate, rate: Fraction, bits: int
+) -> CommonPolynomial:
+    exponents = lift.exponents - lift.exponents.min()
+    normalized = int(np.frexp(np.abs(candidate.Q).max())[1])
+    Q = _round(np.ldexp(candidate.Q, bits - normalized), exponents, 1)
+    groups = products(system.order, lift.degree)
+    vanishing = []
+    for mode, N in zip(system.modes, candidate.vanishing, strict=True):
+        # The integer form of the decrease is this multiple of the floating-point one.
+        factor = _form_factor(mode.A, lift.degree, rate, system.time)
+        rounded = _round(np.ldexp(N, bits - normalized), exponents, factor)
+        vanishing.append(_make_vanish(rounded, groups))
+    return CommonPolynomial(
+        degree=lift.degree,
+        Q=tuple(map(tuple, Q)),
+        denominator_log2=max(0, bits + 2 * int(-lift.exponents.min())),
+        vanishing=tuple(tuple(map(tuple, N)) for N in vanishing),
+        rate=rate,
+    )
+
+
+def _round(M: Array, exponents: Exponents, factor: int) -> list[list[int]]:
+    """Round to integers, then undo the scaling: ``factor 2^e M 2^e``."""
+    return [
+        [factor * (round(float(v)) << int(ei + ej)) for v, ej in zip(row, exponents, strict=True)]
+        for row, ei in zip((M + M.T) / 2, exponents, strict=True)
+    ]
+
+
+def _make_vanish(N: list[list[int]], groups: list[list[Pair]]) -> list[list[int]]:
+    """Correct one entry for each product of monomials so that ``z' N z`` vanishes exactly."""
+    for group in groups:
+        total = sum(N[i][j] * (1 if i == j else 2) for i, j in group)
+        i, j = group[0]
+        # Without a diagonal pair in the group, the total is even.
+        N[i][j] -= total if i == j else total // 2
+        N[j][i] = N[i][j]
+    return N
+
+
+def _form_factor(A: RationalMatrix, degree: int, rate: Fraction, time: Time) -> int:
+    """Return the positive integer by which `lifted_decrease` exceeds the true decrease."""
+    if time is Time.CONTINUOUS:
+        return A.denominator * (degree * rate).denominator
+    return int(A.denominator ** (2 * degree) * (rate**degree).denominator ** 2)
+
+
+def _lift_mode(A: RationalMatrix, degree: int, time: Time) -> RationalMatrix:
+    if time is Time.CONTINUOUS:
+        rows, denominator = derivative_lift(A.numerators, degree), A.denominator
+    else:
+        rows, denominator = power_lift(A.numerators, degree), A.denominator**degree
+    return RationalMatrix(tuple(map(tuple, rows)), denominator)
+
+
+def _difference(one: Pair, other: Pair, scaling: Exponents) -> Array:
+    """Return the form ``z_i z_j - z_k z_l`` of two pairs with the same product, scaled."""
+    form = np.zeros((len(scaling), len(scaling)))
+    for (i, j), sign in ((one, 1.0), (other, -1.0)):
+        form[i, j] += sign / 2
+        form[j, i] += sign / 2
+    return np.ldexp(form, -scaling[:, None] - scaling[None, :])
+
+

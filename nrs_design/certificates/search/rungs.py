@@ -1,0 +1,160 @@
+"""The rungs of the ladder: each looks for evidence and says in words how it ended.
+
+Floating point only chooses what to try. What a rung returns has passed the exact check.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+
+import numpy as np
+from numpy.typing import NDArray
+
+from nrs_design.certificates.evidence import AbstractEvidence, CommonQuadratic, UnstableMode
+from nrs_design.certificates.evidence.unstable_mode import is_stable, worst_eigenvalue
+from nrs_design.certificates.search.decay import largest_position, rate_at, rate_of
+from nrs_design.certificates.search.family import Family
+from nrs_design.certificates.search.gradient import iterate_gradient
+from nrs_design.certificates.search.lmi import find_common_quadratic
+from nrs_design.certificates.search.mixture import find_unstable_mixture
+from nrs_design.certificates.search.obstruction import round_obstruction, solve_dual
+from nrs_design.certificates.search.period import find_growing_period
+from nrs_design.certificates.search.polynomial import (
+    find_common_polynomial,
+    lift_family,
+    round_polynomial,
+)
+from nrs_design.certificates.search.rounding import round_rate, round_to_evidence
+from nrs_design.switched.system import Mode, Time
+
+# How far below the best rate found the claimed one may lie: a wider gap needs fewer digits.
+BACK_OFFS = (0.9995, 0.998, 0.99, 0.9, 0.5, 0.1, 1e-3)
+# Modes nearer to the stability limit than this, relative to their norm, get an exact test first.
+SUSPICION = 1e-7
+OUT_OF_RANGE = "the modes are beyond the range of floating point"
+
+# Larger lifts are beyond the solver, and beyond patience.
+MAX_LIFT = 60
+
+Finding = tuple[AbstractEvidence | None, str]
+Rung = Callable[[Family], Finding]
+
+
+def examine_suspicious_modes(family: Family) -> Finding:
+    """Test exactly the modes that floating-point eigenvalues do not show to be stable."""
+    suspicious = [
+        mode for mode, ok in zip(family.system.modes, _seems_stable(family), strict=True) if not ok
+    ]
+    return _first_unstable(suspicious, family.system.time)
+
+
+def examine_every_mode(family: Family) -> Finding:
+    """Test every mode exactly."""
+    return _first_unstable(family.system.modes, family.system.time)
+
+
+def search_by_lmi(family: Family, *, optimize_rate: bool) -> Finding:
+    """Search by semidefinite programming; then, if asked to, raise the rate."""
+    time = family.system.time
+    if not np.isfinite(family.limit):
+        return None, OUT_OF_RANGE
+    Q = find_common_quadratic(family.matrices, time, rate_at(0.0, family.limit, time))
+    if Q is None:
+        return None, "the solver found no candidate with positive margins"
+    if optimize_rate:
+        best = largest_position(family.matrices, time, family.limit)
+        for back_off in BACK_OFFS:
+            rate = rate_at(best * back_off, family.limit, time)
+            candidate = find_common_quadratic(family.matrices, time, rate)
+            if candidate is not None and (evidence := _round(family, candidate, rate)):
+                return evidence, "found with the largest decay rate"
+    return _round_at_own_rate(family, Q)
+
+
+def search_by_gradient(family: Family) -> Finding:
+    """Search by the Liberzon-Tempo iteration."""
+    if not np.isfinite(family.limit):
+        return None, OUT_OF_RANGE
+    result = iterate_gradient(family.matrices)
+    if result.Q is None:
+        return None, f"not converged after {result.updates} updates"
+    evidence, outcome = _round_at_own_rate(family, result.Q)
+    return evidence, f"{outcome} after {result.updates} updates"
+
+
+def prove_obstruction(family: Family) -> Finding:
+    """Search for a proof that there is no common quadratic function."""
+    multipliers = solve_dual(family.matrices, family.system.time)
+    if multipliers is None:
+        return None, "the dual has no strict solution"
+    evidence = round_obstruction(family.system, multipliers, family.exponents)
+    if evidence is None:
+        return None, "a dual solution was found, but no rounding of it passes the exact check"
+    return evidence, "no common quadratic function exists"
+
+
+def search_polynomial(family: Family, *, degree: int) -> Finding:
+    """Search for a common homogeneous polynomial of degree 2d, with d given."""
+    system = family.system
+    lift = lift_family(system, family.exponents, degree)
+    size = lift.matrices.shape[1]
+    if size > MAX_LIFT:
+        return None, f"the lift to {size} states is too large"
+    candidate = find_common_polynomial(lift, system.time, rate_at(0.0, family.limit, system.time))
+    if candidate is None:
+        return None, "the solver found no candidate with positive margins"
+    evidence = round_polynomial(system, lift, candidate, family.limit)
+    if evidence is None:
+        return None, "a candidate was found, but no rounding of it passes the exact check"
+    return evidence, "found"
+
+
+def search_mixture(family: Family) -> Finding:
+    """Search for an unstable convex combination of modes."""
+    evidence = find_unstable_mixture(family.system, family.matrices)
+    return evidence, "found" if evidence else "every combination tried is stable"
+
+
+def search_period(family: Family) -> Finding:
+    """Search for a periodic signal that makes solutions grow."""
+    evidence = find_growing_period(family.system, family.matrices)
+    return evidence, "found" if evidence else "no periodic signal tried makes solutions grow"
+
+
+def _round_at_own_rate(family: Family, Q: NDArray[np.float64]) -> Finding:
+    """Round a candidate at a rate just below the one that it shows itself."""
+    rate = rate_of(family.matrices, Q, family.system.time)
+    for back_off in BACK_OFFS:
+        slower = rate_at(back_off, rate, family.system.time)
+        if evidence := _round(family, Q, slower):
+            return evidence, "found"
+    return None, "a candidate was found, but no rounding of it passes the exact check"
+
+
+def _round(family: Family, Q: NDArray[np.float64], rate: float) -> CommonQuadratic | None:
+    if not np.isfinite(rate):
+        return None
+    claimed = round_rate(rate, family.system.time)
+    if claimed <= 0 or (family.system.time is Time.DISCRETE and claimed >= 1):
+        return None
+    return round_to_evidence(family.system, Q, family.exponents, claimed)
+
+
+def _seems_stable(family: Family) -> NDArray[np.bool_]:
+    if not np.isfinite(family.matrices).all():
+        return np.zeros(len(family.matrices), dtype=bool)
+    eigenvalues = np.linalg.eigvals(family.matrices)
+    size = np.abs(family.matrices).max(axis=(1, 2))
+    if family.system.time is Time.CONTINUOUS:
+        return np.asarray(eigenvalues.real.max(axis=1) < -SUSPICION * size)
+    return np.asarray(np.abs(eigenvalues).max(axis=1) < 1 - SUSPICION)
+
+
+def _first_unstable(modes: Iterable[Mode], time: Time) -> Finding:
+    count = 0
+    for mode in modes:
+        count += 1
+        if not is_stable(mode.A, time):
+            evidence = UnstableMode(mode.name, worst_eigenvalue(mode.A, time))
+            return evidence, f"mode {mode.name} is not stable"
+    return None, f"{count} modes tested exactly, all stable" if count else "none"

@@ -29,6 +29,8 @@ from nrs_design.certificates.search.rungs import (
     search_by_gradient,
     search_by_lmi,
     search_mixture,
+    search_mode_quadratic,
+    search_parameter_quadratic,
     search_period,
     search_polynomial,
 )
@@ -59,6 +61,8 @@ class Method(StrEnum):
     GRADIENT = "gradient"
     OBSTRUCTION = "obstruction"
     MIXTURE = "mixture"
+    MODE_QUADRATIC = "mode-quadratic"
+    PARAMETER_QUADRATIC = "parameter-quadratic"
     PERIOD = "period"
     POLYNOMIAL = "polynomial"
 
@@ -160,13 +164,15 @@ def certify(
     InternalError
         If two exact computations disagree.
     """
-    if method in (Method.GRADIENT, Method.MIXTURE) and system.time is Time.DISCRETE:
-        raise DesignError(
-            f"the method {method} is for continuous time", remedy="use --method auto"
-        )
     limits = limits or Limits()
-    merged = merge_equal_modes(system)
-    blocks = triangular_blocks(merged)
+    if method is not Method.AUTO and method not in _applicable(system) | {Method.MODE_QUADRATIC}:
+        raise DesignError(
+            f"the method {method} does not apply to this kind of switching and time",
+            remedy="use --method auto",
+        )
+    simple = system.switching.is_arbitrary and system.is_uniform
+    merged = merge_equal_modes(system) if simple else system
+    blocks = triangular_blocks(merged) if simple else (tuple(range(system.order)),)
     if len(blocks) == 1:
         result = _climb(merged, method, limits, progress)
     else:
@@ -207,7 +213,7 @@ def _climb(
     begun = perf_counter()
     attempts: list[Attempt] = []
     remarks: list[AbstractEvidence] = []
-    for name, rung in _rungs(method, limits, system.time, remarks):
+    for name, rung in _rungs(system, method, limits, remarks):
         start = perf_counter()
         if start - begun > limits.budget:
             attempts.append(Attempt(name, "not begun: the budget of time is used up", 0.0))
@@ -225,29 +231,51 @@ def _climb(
 
 
 def _rungs(
-    method: Method, limits: Limits, time: Time, remarks: list[AbstractEvidence]
+    system: SwitchedSystem, method: Method, limits: Limits, remarks: list[AbstractEvidence]
 ) -> Iterator[tuple[str, Rung]]:
     """Yield the rungs, cheapest first; what has been shown so far decides what is worth trying."""
-    everything = method is Method.AUTO
-    yield "suspicious modes", examine_suspicious_modes
-    if everything or method is Method.LMI:
+    wanted = _applicable(system) if method is Method.AUTO else {method}
+    if system.is_uniform:
+        yield "suspicious modes", examine_suspicious_modes
+    if Method.LMI in wanted:
         yield "lmi", partial(search_by_lmi, optimize_rate=limits.optimize_rate)
-    if everything or method is Method.OBSTRUCTION:
+    if Method.OBSTRUCTION in wanted:
         yield "obstruction", prove_obstruction
-    if (everything and not remarks and time is Time.CONTINUOUS) or method is Method.GRADIENT:
+    if Method.GRADIENT in wanted and not remarks:
         yield "gradient", search_by_gradient
     yield "every mode", examine_every_mode
-    if (everything and time is Time.CONTINUOUS) or method is Method.MIXTURE:
+    if Method.PARAMETER_QUADRATIC in wanted:
+        yield "parameter quadratic", search_parameter_quadratic
+    if Method.MODE_QUADRATIC in wanted:
+        yield "mode quadratic", search_mode_quadratic
+    if Method.MIXTURE in wanted:
         yield "mixture", search_mixture
-    degrees = range(2, limits.max_degree // 2 + 1)
-    if everything or method is Method.POLYNOMIAL:
-        for d in degrees[:2]:
-            yield f"polynomial of degree {2 * d}", partial(search_polynomial, degree=d)
-    if everything or method is Method.PERIOD:
+    degrees = range(2, limits.max_degree // 2 + 1) if Method.POLYNOMIAL in wanted else ()
+    for d in degrees[:2]:
+        yield f"polynomial of degree {2 * d}", partial(search_polynomial, degree=d)
+    if Method.PERIOD in wanted:
         yield "period", search_period
-    if everything or method is Method.POLYNOMIAL:
-        for d in degrees[2:]:
-            yield f"polynomial of degree {2 * d}", partial(search_polynomial, degree=d)
+    for d in degrees[2:]:
+        yield f"polynomial of degree {2 * d}", partial(search_polynomial, degree=d)
+
+
+def _applicable(system: SwitchedSystem) -> set[Method]:
+    """Return the rungs that can decide a system with its kind of switching."""
+    switching = system.switching
+    wanted = {Method.MODE_QUADRATIC}
+    if system.is_uniform and not switching.resets:
+        wanted |= {Method.LMI, Method.OBSTRUCTION, Method.POLYNOMIAL}
+    if system.is_uniform:
+        wanted |= {Method.PERIOD}
+    if system.time is Time.CONTINUOUS and system.is_uniform and not switching.resets:
+        wanted |= {Method.GRADIENT}
+    if switching.is_arbitrary:
+        wanted -= {Method.MODE_QUADRATIC} if system.time is Time.CONTINUOUS else set()
+        wanted |= {Method.MIXTURE} if system.time is Time.CONTINUOUS else set()
+    if switching.fixed_ends:
+        wanted -= {Method.MODE_QUADRATIC}
+        wanted |= {Method.PARAMETER_QUADRATIC}
+    return wanted
 
 
 def _take(rung: Rung, family: Family) -> Finding:

@@ -68,7 +68,7 @@ class Switching:
     @property
     def is_arbitrary(self) -> bool:
         """Whether every signal is possible and the state is continuous."""
-        return self.dwell_time == 0 and self.transitions is None and not self.resets
+        return self == ARBITRARY
 
 
 ARBITRARY = Switching()

@@ -11,6 +11,7 @@ from nrs_design.certificates.evidence.common_polynomial import CommonPolynomial
 from nrs_design.certificates.evidence.common_quadratic import CommonQuadratic
 from nrs_design.certificates.evidence.mode_quadratic import ModeQuadratic
 from nrs_design.certificates.evidence.no_common_quadratic import NoCommonQuadratic
+from nrs_design.certificates.evidence.parameter_quadratic import ParameterQuadratic
 from nrs_design.certificates.evidence.unstable_mixture import UnstableMixture
 from nrs_design.certificates.evidence.unstable_mode import UnstableMode
 from nrs_design.certificates.evidence.unstable_period import UnstablePeriod
@@ -21,6 +22,7 @@ KINDS: tuple[type[AbstractEvidence], ...] = (
     CommonPolynomial,
     ModeQuadratic,
     NoCommonQuadratic,
+    ParameterQuadratic,
     UnstableMode,
     UnstableMixture,
     UnstablePeriod,
@@ -50,6 +52,7 @@ __all__ = [
     "CommonQuadratic",
     "ModeQuadratic",
     "NoCommonQuadratic",
+    "ParameterQuadratic",
     "Shows",
     "UnstableMixture",
     "UnstableMode",

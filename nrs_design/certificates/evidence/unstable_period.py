@@ -50,8 +50,12 @@ class UnstablePeriod(AbstractEvidence):
         following = zip(self.steps, (*self.steps[1:], *self.steps[:1]), strict=True)
         switches = {(a, b) for (a, _), (b, _) in following if a != b}
         allowed = switching.transitions
-        return (allowed is None or switches <= set(allowed)) and all(
-            dwell >= switching.dwell_time for _, dwell in self.steps
+        ends = {name: end for pair in switching.fixed_ends for end, name in enumerate(pair)}
+        return (
+            (allowed is None or switches <= set(allowed))
+            and all(dwell >= switching.dwell_time for _, dwell in self.steps)
+            # A constant parameter is at one of its ends all the time.
+            and len({ends.get(name) for name, _ in self.steps}) == 1
         )
 
     def find_misfit(self, system: SwitchedSystem) -> str | None:

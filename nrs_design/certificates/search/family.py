@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from nrs_design.certificates.search.balance import balance, scale
 from nrs_design.certificates.search.decay import limit_rate
-from nrs_design.switched.system import SwitchedSystem
+from nrs_design.switched.system import SwitchedSystem, Time
 
 
 @dataclass(frozen=True)
@@ -38,13 +38,18 @@ class Family:
 
     @classmethod
     def of(cls, system: SwitchedSystem) -> Family:
-        """Convert and balance the modes of a system."""
-        matrices = np.array([mode.A.floats() for mode in system.modes])
+        """Convert and balance the modes of a system; modes of unequal size only give the limit."""
+        floats = [np.array(mode.A.floats()) for mode in system.modes]
+        limits = [limit_rate(A[None], system.time) for A in floats]
+        limit = min(limits) if system.time is Time.CONTINUOUS else max(limits)
+        if not system.is_uniform:
+            return cls(system, np.zeros((0, 0, 0)), np.zeros(0, dtype=np.int64), limit)
+        matrices = np.array(floats)
         exponents = balance(matrices)
         scaled = scale(matrices, exponents)
         if not np.isfinite(scaled).all():
             scaled, exponents = matrices, np.zeros_like(exponents)
-        return cls(system, scaled, exponents, limit_rate(scaled, system.time))
+        return cls(system, scaled, exponents, limit)
 
 
 @contextmanager

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from itertools import combinations, product
+from itertools import product
 from math import ceil, log, log2
 
 import numpy as np
@@ -38,15 +38,30 @@ def find_growing_period(system: SwitchedSystem, matrices: Array) -> UnstablePeri
     if system.time is Time.DISCRETE:
         return _first_word(system, matrices)
     flows = _Flows.of(matrices)
-    for order, dwells in _candidates(matrices, flows):
+    shortest = float(system.switching.dwell_time)
+    for order, dwells in _candidates(flows, _allowed_pairs(system), _grid(matrices), shortest):
         for bits in DWELL_BITS:
             steps = tuple(
-                (system.modes[i].name, _short(dwell, bits))
+                (system.modes[i].name, max(_short(dwell, bits), system.switching.dwell_time))
                 for i, dwell in zip(order, dwells, strict=True)
             )
             if evidence := _enclose(system, steps, _period_radius(flows, order, steps)):
                 return evidence
     return None
+
+
+def _allowed_pairs(system: SwitchedSystem) -> list[tuple[int, int]]:
+    """Return the pairs of modes that may follow each other both ways, at one parameter value."""
+    index = {mode.name: k for k, mode in enumerate(system.modes)}
+    switches = {(index[a.name], index[b.name]) for a, b in system.transitions()}
+    ends = {name: end for pair in system.switching.fixed_ends for end, name in enumerate(pair)}
+    return [
+        (i, j)
+        for i, j in sorted(switches)
+        if i < j
+        and (j, i) in switches
+        and ends.get(system.modes[i].name) == ends.get(system.modes[j].name)
+    ][:MAX_PAIRS]
 
 
 def _enclose(
@@ -105,48 +120,50 @@ class _Flows:
         for k, mode in enumerate(order[1:], start=1):
             monodromy = self.at(mode, dwells[..., k]) @ monodromy
         radius = np.abs(np.linalg.eigvals(monodromy)).max(axis=-1)
-        return np.asarray(np.log(np.maximum(radius, 1e-300)) / dwells.sum(axis=-1))
+        period = np.maximum(dwells.sum(axis=-1), 1e-300)
+        return np.asarray(np.log(np.maximum(radius, 1e-300)) / period)
 
 
-def _candidates(matrices: Array, flows: _Flows) -> Iterator[tuple[tuple[int, ...], Array]]:
+def _candidates(
+    flows: _Flows, pairs: list[tuple[int, int]], grid: Array, shortest: float
+) -> Iterator[tuple[tuple[int, ...], Array]]:
     """Yield signals that grow in floating point: two modes in turn, then four steps."""
-    grid = _dwell_grid(matrices)
-    mesh = np.stack(np.meshgrid(grid, grid, indexing="ij"), axis=-1).reshape(-1, 2)
+    times = np.concatenate([[shortest], shortest + grid]) if shortest else grid
+    mesh = np.stack(np.meshgrid(times, times, indexing="ij"), axis=-1).reshape(-1, 2)
     scanned = []
-    for pair in list(combinations(range(len(matrices)), 2))[:MAX_PAIRS]:
+    for pair in pairs:
         growth = flows.growth(pair, mesh)
         best = int(growth.argmax())
         scanned.append((float(growth[best]), pair, mesh[best]))
     for growth_rate, pair, dwells in sorted(scanned, key=lambda item: -item[0])[:STARTS]:
         if growth_rate > 0:
             yield pair, dwells
-        for order, start in _refinements(pair, dwells):
-            refined = _refine(flows, order, start)
+        four = np.concatenate([dwells * 1.2, dwells * 0.8])
+        for order, start in ((pair, dwells), ((*pair, *pair), four)):
+            refined = _refine(flows, order, start, shortest)
             if flows.growth(order, refined) > 0:
                 yield order, refined
 
 
-def _refinements(pair: tuple[int, int], dwells: Array) -> Iterator[tuple[tuple[int, ...], Array]]:
-    yield pair, dwells
-    yield (*pair, *pair), np.concatenate([dwells * 1.2, dwells * 0.8])
-
-
-def _dwell_grid(matrices: Array) -> Array:
-    """Return dwell times from far below to far above the modes' own time scales."""
+def _grid(matrices: Array) -> Array:
+    """Return times from far below to far above the modes' own time scales."""
     speeds = np.abs(np.linalg.eigvals(matrices))
-    return np.geomspace(0.02 / speeds.max(), 20 / max(speeds.min(), 1e-6 * speeds.max()), DWELLS)
+    longest = 20 / max(speeds.min(), 1e-6 * speeds.max())
+    return np.geomspace(0.02 / speeds.max(), longest, DWELLS)
 
 
-def _refine(flows: _Flows, order: Sequence[int], dwells: Array) -> Array:
+def _refine(flows: _Flows, order: Sequence[int], dwells: Array, shortest: float) -> Array:
+    """Climb from a start, over the logarithms of the times beyond the shortest."""
     from scipy.optimize import minimize
 
+    beyond = np.maximum(dwells - shortest, 1e-6 * dwells.max())
     best = minimize(
-        lambda logs: -float(flows.growth(order, np.exp(logs))),
-        np.log(dwells),
+        lambda logs: -float(flows.growth(order, shortest + np.exp(logs))),
+        np.log(beyond),
         method="Nelder-Mead",
         options={"maxiter": 400, "xatol": 1e-6, "fatol": 1e-12},
     )
-    return np.asarray(np.exp(best.x))
+    return np.asarray(shortest + np.exp(best.x))
 
 
 def _first_word(system: SwitchedSystem, matrices: Array) -> UnstablePeriod | None:

@@ -39,7 +39,7 @@ def round_to_evidence(
         return None
     unit = np.ldexp(Q, -int(np.frexp(largest)[1]))
     for bits in BITS:
-        evidence = _unscale((unit + unit.T) / 2, exponents, bits, rate)
+        evidence = _evidence(unit, exponents, bits, rate)
         if _is_printable(evidence) and evidence.find_fault(system) is None:
             return evidence
     return None
@@ -61,17 +61,30 @@ def _is_printable(evidence: CommonQuadratic) -> bool:
     return all(abs(q).bit_length() <= MAX_ENTRY_BITS for row in evidence.Q for q in row)
 
 
-def _unscale(
+def unscale(
+    Q: NDArray[np.float64], exponents: NDArray[np.int64], bits: int
+) -> tuple[tuple[tuple[int, ...], ...], int]:
+    """Round to integers over ``2^bits`` and undo the scaling exactly, ``2^-d Q 2^-d``.
+
+    Returns
+    -------
+    tuple
+        The integers, and the logarithm of their denominator, which is two to a power.
+    """
+    shifts = [int(exponents.max() - e) for e in exponents]
+    rows = tuple(
+        tuple(round(float(q) * 2.0**bits) << (si + sj) for q, sj in zip(row, shifts, strict=True))
+        for row, si in zip((Q + Q.T) / 2, shifts, strict=True)
+    )
+    return rows, bits + 2 * int(exponents.max())
+
+
+def _evidence(
     Q: NDArray[np.float64], exponents: NDArray[np.int64], bits: int, rate: Fraction
 ) -> CommonQuadratic:
-    """Round to integers over ``2^bits`` and undo the scaling exactly, ``2^-d Q 2^-d``."""
-    shifts = [int(exponents.max() - e) for e in exponents]
-    rows = [
-        [round(float(q) * 2.0**bits) << (si + sj) for q, sj in zip(row, shifts, strict=True)]
-        for row, si in zip(Q, shifts, strict=True)
-    ]
-    # The scale of Q is free: drop common factors of two, and keep the denominator an integer.
+    """Round, and drop common factors of two: the scale of Q is free."""
+    rows, denominator_log2 = unscale(Q, exponents, bits)
     common = gcd(*(entry for row in rows for entry in row)) or 1
     twos = (common & -common).bit_length() - 1
     reduced = tuple(tuple(entry >> twos for entry in row) for row in rows)
-    return CommonQuadratic(reduced, max(bits + 2 * int(exponents.max()) - twos, 0), rate)
+    return CommonQuadratic(reduced, max(denominator_log2 - twos, 0), rate)

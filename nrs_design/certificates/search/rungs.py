@@ -17,7 +17,9 @@ from nrs_design.certificates.search.family import Family
 from nrs_design.certificates.search.gradient import iterate_gradient
 from nrs_design.certificates.search.lmi import find_common_quadratic
 from nrs_design.certificates.search.mixture import find_unstable_mixture
+from nrs_design.certificates.search.mode_quadratic import find_mode_quadratic
 from nrs_design.certificates.search.obstruction import round_obstruction, solve_dual
+from nrs_design.certificates.search.parameter_quadratic import find_parameter_quadratic
 from nrs_design.certificates.search.period import find_growing_period
 from nrs_design.certificates.search.polynomial import (
     find_common_polynomial,
@@ -107,6 +109,20 @@ def search_polynomial(family: Family, *, degree: int) -> Finding:
     if evidence is None:
         return None, "a candidate was found, but no rounding of it passes the exact check"
     return evidence, "found"
+
+
+def search_mode_quadratic(family: Family) -> Finding:
+    """Search for one quadratic function per mode, for constrained switching."""
+    evidence = find_mode_quadratic(family.system, family.limit)
+    return evidence, "found" if evidence else "no candidate passes the exact check"
+
+
+def search_parameter_quadratic(family: Family) -> Finding:
+    """Search for a quadratic function that is affine in a constant parameter."""
+    evidence = find_parameter_quadratic(
+        family.system, family.matrices, family.exponents, family.limit
+    )
+    return evidence, "found" if evidence else "no candidate passes the exact check"
 
 
 def search_mixture(family: Family) -> Finding:

@@ -1,0 +1,91 @@
+"""Search for a quadratic function that is affine in one constant parameter."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from nrs_design.certificates.evidence import ParameterQuadratic
+from nrs_design.certificates.search.lmi import decreases
+from nrs_design.certificates.search.rounding import round_rate, unscale
+from nrs_design.certificates.search.sdp import maximize_margin, pack, symmetric_basis
+from nrs_design.switched.system import SwitchedSystem, Time
+
+Array = NDArray[np.float64]
+
+BITS = (6, 8, 10, 14, 20, 28, 40, 50)
+BISECTIONS = 12
+BACK_OFFS = (0.999, 0.99, 0.9, 0.5, 0.1, 1e-3)
+
+
+def find_parameter_quadratic(
+    system: SwitchedSystem, matrices: Array, exponents: NDArray[np.int64], limit: float
+) -> ParameterQuadratic | None:
+    """Search for the function with the largest rate, round it, and check.
+
+    Parameters
+    ----------
+    system : SwitchedSystem
+        Exact modes, continuous time, with `fixed_ends`.
+    matrices : ndarray, shape (m, n, n)
+        The modes in coordinates scaled by ``2^d``.
+    exponents : ndarray of int, shape (n,)
+        The d.
+    limit : float
+        Rate of the slowest mode, in 1/s.
+    """
+    index = {mode.name: k for k, mode in enumerate(system.modes)}
+    ends = [(index[low], index[high]) for low, high in system.switching.fixed_ends]
+    pairs = matrices[np.array(ends)]
+    if _solve(pairs, 0.0) is None:
+        return None
+    low, high = 0.0, 1.0
+    for _ in range(BISECTIONS):
+        middle = (low + high) / 2
+        low, high = (low, middle) if _solve(pairs, middle * limit) is None else (middle, high)
+    for back_off in BACK_OFFS:
+        rate = low * back_off * limit
+        functions = _solve(pairs, rate)
+        claimed = round_rate(rate, Time.CONTINUOUS) if rate > 0 else 0
+        if functions is None or claimed <= 0:
+            continue
+        unit = int(np.frexp(np.abs(functions).max())[1])
+        for bits in BITS:
+            (first, denominator_log2), (last, _) = (
+                unscale(np.ldexp(Q, -unit), exponents, bits) for Q in functions
+            )
+            evidence = ParameterQuadratic(first, last, denominator_log2, claimed)
+            if evidence.find_fault(system) is None:
+                return evidence
+    return None
+
+
+def _solve(pairs: Array, rate: float) -> Array | None:
+    """Maximize the margin of all conditions; return both ends of Q, shape (2, n, n)."""
+    n = pairs.shape[-1]
+    basis, identity = symmetric_basis(n), pack(np.eye(n))
+    size = len(basis)
+    rows, constants = [], []
+
+    def add_cone(low: Array | None, high: Array | None, margin: float, constant: float) -> None:
+        block = np.zeros((size, 2 * size + 1))
+        for images, columns in ((low, slice(0, size)), (high, slice(size, 2 * size))):
+            if images is not None:
+                block[:, columns] = -pack(images).T
+        block[:, -1] = margin * identity
+        rows.append(block)
+        constants.append(constant * identity)
+
+    add_cone(-basis, None, 0.0, 1.0)
+    add_cone(None, -basis, 0.0, 1.0)
+    add_cone(basis, None, 1.0, 0.0)
+    add_cone(None, basis, 1.0, 0.0)
+    for A, B in pairs:
+        at_low, at_high = (decreases(M, basis, Time.CONTINUOUS, rate) for M in (A, B))
+        add_cone(at_low, None, 1.0, 0.0)
+        add_cone(None, at_high, 1.0, 0.0)
+        add_cone(at_high, at_low, 1.0, 0.0)
+    x = maximize_margin(np.vstack(rows), np.concatenate(constants), [n] * len(rows))
+    if x is None or x[-1] <= 0:
+        return None
+    return np.tensordot(x[:-1].reshape(2, size), basis, axes=1)

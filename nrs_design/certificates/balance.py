@@ -31,8 +31,8 @@ def balance(matrices: NDArray[np.float64]) -> NDArray[np.int64]:
         before = exponents.copy()
         for i in range(len(total)):
             row, column = total[i].sum(), total[:, i].sum()
-            if row > 0 and column > 0:
-                step = int(np.rint(0.5 * np.log2(row / column)))
+            if 0 < row < np.inf and 0 < column < np.inf:
+                step = int(np.rint(0.5 * (np.log2(row) - np.log2(column))))
                 exponents[i] += step
                 total[i] = np.ldexp(total[i], -step)
                 total[:, i] = np.ldexp(total[:, i], step)

@@ -8,13 +8,17 @@ from enum import StrEnum
 from functools import partial
 from time import perf_counter
 
+from numpy.linalg import LinAlgError
+
 from nrs_design.certificates.certificate import CommonQuadratic, Evidence
 from nrs_design.certificates.second_opinion import confirm
 from nrs_design.certificates.steps import (
     Family,
+    Finding,
     Step,
     examine_every_mode,
     examine_suspicious_modes,
+    floats_in_silence,
     search_by_gradient,
     search_by_lmi,
 )
@@ -121,12 +125,13 @@ def certify(
         raise DesignError(
             "the gradient iteration is for continuous time", remedy="use --method lmi"
         )
-    family = Family.of(system)
+    with floats_in_silence():
+        family = Family.of(system)
     attempts: list[Attempt] = []
     for name, step in _steps(method, optimize_rate, system.time):
         progress(name)
         start = perf_counter()
-        evidence, outcome = step(family)
+        evidence, outcome = _take(step, family)
         attempts.append(Attempt(name, outcome, perf_counter() - start))
         if evidence is not None:
             confirm(system, evidence)
@@ -149,6 +154,15 @@ def _steps(method: Method, optimize_rate: bool, time: Time) -> list[tuple[str, S
     if method is not Method.LMI and time is Time.CONTINUOUS:
         steps.append(("gradient", search_by_gradient))
     return [*steps, ("every mode", examine_every_mode)]
+
+
+def _take(step: Step, family: Family) -> Finding:
+    """Take one step; where floating point fails, nothing is found."""
+    try:
+        with floats_in_silence():
+            return step(family)
+    except (LinAlgError, OverflowError) as error:
+        return None, f"floating point failed ({error})"
 
 
 def _settled(

@@ -16,7 +16,12 @@ TOLERANCE = 1e-4
 
 
 def limit_rate(matrices: NDArray[np.float64], time: Time) -> float:
-    """Return the rate of the slowest mode: ``-max Re`` in 1/s, or the largest spectral radius."""
+    """Return the rate of the slowest mode: ``-max Re`` in 1/s, or the largest spectral radius.
+
+    Not a number if the matrices are beyond the range of floating point.
+    """
+    if not np.isfinite(matrices).all():
+        return np.nan
     eigenvalues = np.linalg.eigvals(matrices)
     if time is Time.CONTINUOUS:
         return float(-eigenvalues.real.max())
@@ -67,4 +72,4 @@ def rate_of(matrices: NDArray[np.float64], Q: NDArray[np.float64], time: Time) -
     values = np.linalg.eigvalsh(forms)
     if time is Time.CONTINUOUS:
         return float(values[:, 0].min()) / 2
-    return float(np.sqrt(-values[:, 0].min()))
+    return float(np.sqrt(max(-values[:, 0].min(), 0.0)))

@@ -20,6 +20,8 @@ Matrices = NDArray[np.float64]
 ALL_AT_ONCE_ROWS = 6000
 FIRST_MODES = 8
 MARGIN_FLOOR = 1e-10
+# In continuous time, the unit of time is chosen so that the largest entry is just below 2^3.
+ENTRY_LOG2 = 3
 
 
 def decreases(matrices: Matrices, Q: NDArray[np.float64], time: Time, rate: float) -> Matrices:
@@ -54,12 +56,13 @@ def find_common_quadratic(
     ndarray, shape (n, n), or None
         A candidate with positive margins in floating point, or None.
     """
+    matrices, rate = _normalize(matrices, time, rate)
     m, n = matrices.shape[:2]
     all_at_once = m * n * (n + 1) // 2 <= ALL_AT_ONCE_ROWS
     active = np.arange(m) if all_at_once else np.linspace(0, m - 1, FIRST_MODES).astype(int)
     while True:
         Q = _solve(matrices[active], time, rate)
-        if Q is None:
+        if Q is None or not np.isfinite(decreases(matrices, Q, time, rate)).all():
             return None
         margin = margins(matrices, Q, time, rate)
         if margin.min() > 0:
@@ -69,6 +72,14 @@ def find_common_quadratic(
         violated = np.setdiff1d(np.flatnonzero(margin <= 0), active)
         worst = violated[np.argsort(margin[violated])][: len(active)]
         active = np.sort(np.concatenate([active, worst]))
+
+
+def _normalize(matrices: Matrices, time: Time, rate: float) -> tuple[Matrices, float]:
+    """Choose the unit of time by the largest entry; it does not change the Q that fit."""
+    if time is Time.DISCRETE:
+        return matrices, rate
+    exponent = ENTRY_LOG2 - int(np.frexp(np.abs(matrices).max())[1])
+    return np.ldexp(matrices, exponent), float(np.ldexp(rate, exponent))
 
 
 def _solve(matrices: Matrices, time: Time, rate: float) -> NDArray[np.float64] | None:

@@ -14,6 +14,8 @@ from nrs_design.switched.system import SwitchedSystem, Time
 
 BITS = (4, 6, 8, 10, 12, 16, 20, 24, 32, 40, 50, 60)
 RATE_BITS = 16
+# Python reads and writes integers of at most 4300 decimal digits, so a certificate has no longer.
+MAX_ENTRY_BITS = 14_000
 
 
 def round_to_evidence(
@@ -35,10 +37,10 @@ def round_to_evidence(
     largest = np.abs(Q).max()
     if not np.isfinite(largest) or largest == 0:
         return None
-    normalized = np.ldexp((Q + Q.T) / 2, -int(np.frexp(largest)[1]))
+    unit = np.ldexp(Q, -int(np.frexp(largest)[1]))
     for bits in BITS:
-        evidence = _unscale(normalized, exponents, bits, rate)
-        if find_fault(system, evidence) is None:
+        evidence = _unscale((unit + unit.T) / 2, exponents, bits, rate)
+        if _is_printable(evidence) and find_fault(system, evidence) is None:
             return evidence
     return None
 
@@ -46,13 +48,17 @@ def round_to_evidence(
 def round_rate(rate: float, time: Time) -> Fraction:
     """Round a rate to a short dyadic number on its safe side (slower decay)."""
     if time is Time.DISCRETE:
-        return 1 - _round_down(1 - rate)
-    return _round_down(rate)
+        return 1 - _round_down(1 - Fraction(rate))
+    return _round_down(Fraction(rate))
 
 
-def _round_down(value: float) -> Fraction:
+def _round_down(value: Fraction) -> Fraction:
     shift = RATE_BITS - frexp(value)[1]
-    return Fraction(floor(Fraction(value) * Fraction(2) ** shift)) / Fraction(2) ** shift
+    return Fraction(floor(value * Fraction(2) ** shift)) / Fraction(2) ** shift
+
+
+def _is_printable(evidence: CommonQuadratic) -> bool:
+    return all(abs(q).bit_length() <= MAX_ENTRY_BITS for row in evidence.Q for q in row)
 
 
 def _unscale(

@@ -5,7 +5,9 @@ Floating point only chooses what to try. What a step returns has passed the exac
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+import warnings
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 
 import numpy as np
@@ -24,6 +26,7 @@ from nrs_design.switched.system import Mode, SwitchedSystem, Time
 BACK_OFFS = (0.9995, 0.998, 0.99, 0.9, 0.5, 0.1, 1e-3)
 # Modes nearer to the stability limit than this, relative to their norm, get an exact test first.
 SUSPICION = 1e-7
+OUT_OF_RANGE = "the modes are beyond the range of floating point"
 
 Finding = tuple[Evidence | None, str]
 Step = Callable[["Family"], Finding]
@@ -56,7 +59,17 @@ class Family:
         matrices = np.array([mode.A.floats() for mode in system.modes])
         exponents = balance(matrices)
         scaled = scale(matrices, exponents)
+        if not np.isfinite(scaled).all():
+            scaled, exponents = matrices, np.zeros_like(exponents)
         return cls(system, scaled, exponents, limit_rate(scaled, system.time))
+
+
+@contextmanager
+def floats_in_silence() -> Iterator[None]:
+    """Let floating point over- and underflow without a word: it only chooses what to try."""
+    with warnings.catch_warnings(), np.errstate(all="ignore"):
+        warnings.simplefilter("ignore", RuntimeWarning)
+        yield
 
 
 def examine_suspicious_modes(family: Family) -> Finding:
@@ -75,6 +88,8 @@ def examine_every_mode(family: Family) -> Finding:
 def search_by_lmi(family: Family, *, optimize_rate: bool) -> Finding:
     """Search by semidefinite programming; then, if asked to, raise the rate."""
     time = family.system.time
+    if not np.isfinite(family.limit):
+        return None, OUT_OF_RANGE
     Q = find_common_quadratic(family.matrices, time, rate_at(0.0, family.limit, time))
     if Q is None:
         return None, "the solver found no candidate with positive margins"
@@ -90,6 +105,8 @@ def search_by_lmi(family: Family, *, optimize_rate: bool) -> Finding:
 
 def search_by_gradient(family: Family) -> Finding:
     """Search by the Liberzon-Tempo iteration."""
+    if not np.isfinite(family.limit):
+        return None, OUT_OF_RANGE
     result = iterate_gradient(family.matrices)
     if result.Q is None:
         return None, f"not converged after {result.updates} updates"
@@ -101,13 +118,15 @@ def _round_at_own_rate(family: Family, Q: NDArray[np.float64]) -> Finding:
     """Round a candidate at a rate just below the one that it shows itself."""
     rate = rate_of(family.matrices, Q, family.system.time)
     for back_off in BACK_OFFS:
-        slower = rate * back_off if family.system.time is Time.CONTINUOUS else rate**back_off
+        slower = rate_at(back_off, rate, family.system.time)
         if evidence := _round(family, Q, slower):
             return evidence, "found"
     return None, "a candidate was found, but no rounding of it passes the exact check"
 
 
 def _round(family: Family, Q: NDArray[np.float64], rate: float) -> CommonQuadratic | None:
+    if not np.isfinite(rate):
+        return None
     claimed = round_rate(rate, family.system.time)
     if claimed <= 0 or (family.system.time is Time.DISCRETE and claimed >= 1):
         return None
@@ -115,6 +134,8 @@ def _round(family: Family, Q: NDArray[np.float64], rate: float) -> CommonQuadrat
 
 
 def _seems_stable(family: Family) -> NDArray[np.bool_]:
+    if not np.isfinite(family.matrices).all():
+        return np.zeros(len(family.matrices), dtype=bool)
     eigenvalues = np.linalg.eigvals(family.matrices)
     size = np.abs(family.matrices).max(axis=(1, 2))
     if family.system.time is Time.CONTINUOUS:

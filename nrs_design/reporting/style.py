@@ -23,6 +23,7 @@ BLUE, VERMILLION, GREEN, PURPLE, SKY, ORANGE = (
 )
 CYCLE = (BLUE, VERMILLION, GREEN, PURPLE, SKY, ORANGE)
 MARKERS = ("o", "s", "^", "D", "v", "P", "X", "*")
+ALARM = "#a00000"
 INK, MUTED, GRID = "#1b1f24", "#5a6472", "#dfe3e8"
 
 _SETTINGS = {

@@ -34,7 +34,7 @@ def run(quick: bool) -> tuple[Comparison, ...]:
     """Measure all four designs together."""
     problems = [_problem(*design) for design in DESIGNS]
     (theirs, ours), (evolved, found) = time_side_by_side(
-        1 if quick else 5,
+        3 if quick else 21,
         lambda: [_evolve(problem) for problem in problems],
         lambda: [optimize_impedance(problem).cost for problem in problems],
     )

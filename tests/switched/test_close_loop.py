@@ -52,6 +52,10 @@ def polynomial(rows):
     ]
 
 
+def objects(*entries):
+    return np.array(entries, dtype=object)
+
+
 def stable(rows):
     return is_hurwitz(RationalMatrix.from_rows(rows).numerators)
 

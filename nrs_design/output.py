@@ -22,10 +22,10 @@ def write_output(path: Path, content: str | bytes) -> None:
     Raises
     ------
     OutputError
-        If the place cannot be written to, or is a link or a folder.
+        If the place cannot be written to, or is a link, a folder or a device.
     """
-    if path.is_symlink() or path.is_dir():
-        kind = "a symbolic link" if path.is_symlink() else "a folder"
+    if path.is_symlink() or (path.exists() and not path.is_file()):
+        kind = "a symbolic link" if path.is_symlink() else "a folder or a device"
         raise OutputError(f"is {kind}, not a file", path=path, remedy="name another file")
     data = content.encode() if isinstance(content, str) else content
     try:

@@ -15,7 +15,7 @@ from nrs_design.spec import InteractionDesignSpec, LoadedSpec
 from nrs_design.switched.assemble import assemble
 
 if TYPE_CHECKING:
-    from nrs_design.certificates.certify import Certification, Method
+    from nrs_design.certificates.certify import Certification, Limits, Method
     from nrs_design.design.evidence import DesignEvidence
 
 Progress = Callable[[str], None]
@@ -40,7 +40,7 @@ class Result:
     certification : Certification
         The verdict with every attempt.
     certificate : Certificate or None
-        What may be written to a file; None if the verdict is inconclusive.
+        What may be written to a file; None if nothing was shown.
     """
 
     loaded: LoadedSpec
@@ -85,7 +85,7 @@ def run_certification(
     *,
     method: Method | None = None,
     coordinates: str | None = None,
-    optimize_rate: bool = True,
+    limits: Limits | None = None,
     progress: Progress = _silent,
 ) -> Result:
     """Take a spec all the way to a verdict.
@@ -98,8 +98,8 @@ def run_certification(
         Search method; all of them in turn by default.
     coordinates : {"deflection", "force"}, optional
         Overrides what the spec says.
-    optimize_rate : bool
-        Look for the largest provable decay rate.
+    limits : Limits, optional
+        How far the searches go.
     progress : callable
         Told the name of each step.
 
@@ -117,9 +117,7 @@ def run_certification(
         coordinates = coordinates or loaded.spec.coordinates
     gains = gains_of(design) if design else {}
     system = assemble(loaded.spec, gains, coordinates)
-    certification = certify(
-        system, method or Methods.AUTO, optimize_rate=optimize_rate, progress=progress
-    )
+    certification = certify(system, method or Methods.AUTO, limits, progress)
     certificate = (
         Certificate(
             spec_name=loaded.spec.name,
@@ -127,10 +125,10 @@ def run_certification(
             coordinates=coordinates,
             gains=gains,
             system=system,
-            evidence=certification.evidence,
+            statements=certification.statements,
             version=__version__,
         )
-        if certification.evidence
+        if certification.statements
         else None
     )
     return Result(loaded, design, coordinates, certification, certificate)

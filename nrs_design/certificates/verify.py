@@ -23,10 +23,20 @@ from nrs_design.certificates.evidence.fields import read_text
 from nrs_design.certificates.second_opinion import confirm
 from nrs_design.errors import CertificateError, NrsDesignError
 from nrs_design.spec import LoadedSpec
+from nrs_design.spec.exact import quoted
 from nrs_design.switched.assemble import assemble
 from nrs_design.switched.system import SwitchedSystem
 
 MAX_BYTES = 256 * 2**20
+# What a hostile document can raise before the exact check: all of it means rejection.
+_MALFORMED = (
+    KeyError,
+    TypeError,
+    ValueError,
+    ArithmeticError,
+    AttributeError,
+    RecursionError,
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,25 +67,21 @@ def verify(path: Path, spec: LoadedSpec) -> Verification:
 
 def verify_document(document: Mapping[str, Any], spec: LoadedSpec) -> Verification:
     """Re-check a parsed certificate; see `verify`."""
-    if document.get("id") != content_id(document):
-        return Verification(None, "its content does not match its id: it was altered")
-    if document.get("schema") != SCHEMA:
-        return Verification(None, f"its schema is not {SCHEMA}")
-    if document.get("spec") != {"name": spec.spec.name, "sha256": spec.sha256}:
-        return Verification(None, "it belongs to another spec, or the spec has changed since")
     try:
+        foreign = _find_foreign(document, spec)
+        if foreign is not None:
+            return Verification(None, foreign)
         certificate = _rebuild(document, spec)
-    except (KeyError, TypeError, ValueError, ZeroDivisionError, AttributeError) as error:
+        fault = _find_difference(document, certificate)
+        for statement in certificate.statements:
+            fault = fault or statement.find_fault(certificate.system)
+    except _MALFORMED as error:
         return Verification(None, f"a field is missing or malformed ({error})")
     except NrsDesignError as error:
         return Verification(None, error.message)
-    system = certificate.system
-    fault = _find_difference(document, certificate)
-    for statement in certificate.statements:
-        fault = fault or statement.find_fault(system)
     if fault is None:
         for statement in certificate.statements:
-            confirm(system, statement)
+            confirm(certificate.system, statement)
     return Verification(certificate, fault)
 
 
@@ -88,11 +94,11 @@ def read_document(path: Path) -> dict[str, Any]:
         If the file is missing, too large, or not such JSON.
     """
     try:
-        if path.stat().st_size > MAX_BYTES:
-            raise CertificateError("larger than any certificate", path=path)
-        text = path.read_bytes().decode("utf-8")
         document = json.loads(
-            text, parse_float=_no_float, parse_constant=_no_float, object_pairs_hook=_unique
+            _read_bytes(path).decode("utf-8"),
+            parse_float=_no_float,
+            parse_constant=_no_float,
+            object_pairs_hook=_unique,
         )
     except OSError as error:
         raise CertificateError(f"cannot be read ({error.strerror})", path=path) from error
@@ -105,9 +111,31 @@ def read_document(path: Path) -> dict[str, Any]:
     return document
 
 
+def _read_bytes(path: Path) -> bytes:
+    """Read a whole file, but never an endless one."""
+    if path.exists() and not (path.is_file() or path.is_dir()):
+        raise CertificateError("is not a regular file", path=path)
+    with path.open("rb") as file:
+        content = file.read(MAX_BYTES + 1)
+    if len(content) > MAX_BYTES:
+        raise CertificateError("larger than any certificate", path=path)
+    return content
+
+
+def _find_foreign(document: Mapping[str, Any], spec: LoadedSpec) -> str | None:
+    """Say why a document is not an unaltered certificate for this spec."""
+    if document.get("id") != content_id(document):
+        return "its content does not match its id: it was altered"
+    if document.get("schema") != SCHEMA:
+        return f"its schema is not {SCHEMA}"
+    if document.get("spec") != {"name": spec.spec.name, "sha256": spec.sha256}:
+        return "it belongs to another spec, or the spec has changed since"
+    return None
+
+
 def _rebuild(document: Mapping[str, Any], spec: LoadedSpec) -> Certificate:
     coordinates = document["coordinates"]
-    gains = document["gains"]
+    gains = _mapping(document["gains"])
     system = assemble(spec.spec, gains, coordinates)
     return Certificate(
         spec_name=spec.spec.name,
@@ -132,15 +160,26 @@ def _statements(
 def _find_difference(document: Mapping[str, Any], certificate: Certificate) -> str | None:
     expected = to_document(certificate)
     for key in sorted(expected.keys() | (document.keys() - {"id"})):
-        if json.dumps(document.get(key), sort_keys=True) != json.dumps(
-            expected.get(key), sort_keys=True
+        # Membership too: a missing field is not the same as one that is null.
+        if (key in document) != (key in expected) or _text_of(document, key) != _text_of(
+            expected, key
         ):
-            return f"its field '{key}' does not follow from the spec and the evidence"
+            return f"its field {quoted(key)} does not follow from the spec and the evidence"
     return None
 
 
+def _text_of(document: Mapping[str, Any], key: str) -> str:
+    return json.dumps(document.get(key), sort_keys=True)
+
+
+def _mapping(value: object) -> dict[str, Any]:
+    if not isinstance(value, dict):
+        raise TypeError(f"expected an object, not {quoted(str(value))}")
+    return value
+
+
 def _no_float(text: str) -> NoReturn:
-    raise ValueError(f"{text} is a floating-point number; certificates hold integers only")
+    raise ValueError(f"{quoted(text)} is a floating-point number; certificates hold integers only")
 
 
 def _unique(pairs: list[tuple[str, Any]]) -> dict[str, Any]:

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import os
 import sys
+from pathlib import Path
 from typing import Annotated
 
 import typer
@@ -11,8 +13,13 @@ from nrs_design import __version__
 from nrs_design.cli import exit_codes
 from nrs_design.cli.certify_switching import certify_switching
 from nrs_design.cli.check import check
+from nrs_design.cli.explain import explain
+from nrs_design.cli.export import export
+from nrs_design.cli.gate import gate
 from nrs_design.cli.init import init
 from nrs_design.cli.optimize import optimize
+from nrs_design.cli.report import report
+from nrs_design.cli.reproduce import reproduce
 from nrs_design.cli.schema import schema
 from nrs_design.cli.tune import tune
 from nrs_design.cli.verify import verify
@@ -35,6 +42,11 @@ app.command("optimize")(optimize)
 app.command("tune")(tune)
 app.command("certify-switching")(certify_switching)
 app.command("verify")(verify)
+app.command("report")(report)
+app.command("reproduce")(reproduce)
+app.command("export")(export)
+app.command("gate")(gate)
+app.command("explain")(explain)
 
 
 def _show_version(requested: bool) -> None:
@@ -53,16 +65,41 @@ def _root(
     """Hold the options of the program itself."""
 
 
-def main() -> None:
-    """Run the program; an error that the user can mend is one message and exit code 2."""
+def _open_closed_streams() -> None:
+    """Give the program the streams that its caller has closed, so that it can print in vain."""
+    nowhere = Path(os.devnull)
+    sys.stdout = sys.stdout or nowhere.open("w")
+    sys.stderr = sys.stderr or nowhere.open("w")
+
+
+def _run() -> None:
+    """Run the commands and flush, so that a verdict that was not delivered is no success.
+
+    Click ends with exit code 1 when the reader of the output has gone: not our "refuted".
+    """
     try:
         app()
+    except SystemExit as end:
+        if isinstance(end.__context__, BrokenPipeError):
+            raise end.__context__ from None
+        sys.stdout.flush()
+        raise
+
+
+def main() -> None:
+    """Run the program; an error that the user can mend is one message and exit code 2."""
+    _open_closed_streams()
+    try:
+        _run()
     except NrsDesignError as error:
         print(f"error[{error.rule}]: {error}", file=sys.stderr)
         sys.exit(exit_codes.USAGE)
-    except BrokenPipeError:
-        # The reader of our output has gone; there is nobody left to tell.
-        sys.stderr.close()
+    except OSError as error:
+        # What could not be written must not be tried again at exit.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
+        # Where the reader of our output has gone, there is nobody left to tell.
+        if not isinstance(error, BrokenPipeError):
+            print(f"error: the output cannot be written ({error.strerror})", file=sys.stderr)
         sys.exit(exit_codes.USAGE)
     except Exception as error:
         if "-v" in sys.argv or "--verbose" in sys.argv:

@@ -15,7 +15,7 @@ WIDE = 160
 def print_json(command: str, content: dict[str, Any]) -> None:
     """Print the versioned envelope of a command."""
     envelope = {"schema": f"nrs-design/{command}/1", **content}
-    print(json.dumps(envelope, indent=2, ensure_ascii=False, allow_nan=False))
+    print(json.dumps(envelope, indent=2, ensure_ascii=True, allow_nan=False))
 
 
 def print_table(title: str, columns: Sequence[str], rows: Sequence[Sequence[str]]) -> None:

@@ -2,27 +2,42 @@
 
 from __future__ import annotations
 
-import struct
 from fractions import Fraction
+
+from nrs_design.errors import DesignError
+
+# Bits of the significand, exponent of the smallest step, exponent beyond the largest number.
+PRECISION, SMALLEST, LIMIT = 24, -149, 128
 
 
 def to_float32(value: Fraction) -> Fraction:
-    """Round to the nearest single-precision number, returned exactly.
+    """Round to the nearest single-precision number (ties to even), returned exactly.
+
+    In rationals throughout: by way of a double it would be rounded twice.
 
     Raises
     ------
-    OverflowError
+    DesignError
         If the value is beyond the range of single precision.
     """
-    rounded: float = struct.unpack("<f", struct.pack("<f", float(value)))[0]
-    return Fraction(rounded)
+    exponent = value.numerator.bit_length() - value.denominator.bit_length()
+    if abs(value) < Fraction(2) ** exponent:
+        exponent -= 1
+    step = Fraction(2) ** max(exponent + 1 - PRECISION, SMALLEST)
+    rounded = round(value / step) * step
+    if abs(rounded) >= 1 << LIMIT:
+        raise DesignError(
+            "a gain is beyond the range of single precision, 3.4e38",
+            remedy="choose smaller gains, or other units",
+        )
+    return rounded
 
 
 def is_float32(value: Fraction) -> bool:
     """Tell whether a value is a single-precision number."""
     try:
         return to_float32(value) == value
-    except OverflowError:
+    except DesignError:
         return False
 
 

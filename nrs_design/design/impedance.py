@@ -8,13 +8,13 @@ the commanded one; the motion loop G follows the difference, and the environment
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import partial
 
 import numpy as np
 from numpy.typing import ArrayLike
 
+from nrs_design.design.pattern_search import Objective, Points, local_minima, refine, snap
 from nrs_design.design.transfer import (
     BoolArray,
     ComplexArray,
@@ -38,10 +38,6 @@ _SCAN = (25, 41)
 _STARTS = 4
 _VALLEY_TOLERANCE = 5e-3
 _STEP_TOLERANCE = 1e-5
-_LEAST_PROGRESS = 1e-10
-_MAX_ROUNDS = 100
-
-_Objective = Callable[[FloatArray, FloatArray], FloatArray]
 
 
 @dataclass(frozen=True)
@@ -254,8 +250,8 @@ def optimize_impedance(problem: ImpedanceProblem) -> ImpedanceOptimum:
         If no scanned admittance within the bounds gives a stable loop.
     """
     objective = _objective(problem, NODES)
-    found = _refine(objective, _scan(problem), _STEP_TOLERANCE)
-    u, v, costs = _snap(objective, found.u, found.v)
+    found = refine(objective, _scan(problem), _STEP_TOLERANCE)
+    u, v, costs = snap(objective, found.u, found.v)
     best = int(np.argmin(costs))
     Mt, Bt = _admittance(problem, u[best : best + 1], v[best : best + 1])
     return ImpedanceOptimum(
@@ -289,20 +285,6 @@ class _Samples:
         displayed = np.abs(self.target - 0.5 * np.log10(squared)).mean(axis=1)
         robust = np.sqrt(squared).mean(axis=1)
         return np.asarray(self.weights[0] * displayed + self.weights[1] * robust)
-
-
-@dataclass(frozen=True, eq=False)
-class _Points:
-    """Points of the unit square that are searched side by side.
-
-    `step` is the pattern's size in u and v, `slope` the valley's dv/du at each point.
-    """
-
-    u: FloatArray
-    v: FloatArray
-    step: FloatArray
-    slope: FloatArray
-    evaluations: int
 
 
 def _sample(problem: ImpedanceProblem, nodes: int) -> _Samples:
@@ -347,7 +329,7 @@ def _admittance(
 ) -> tuple[FloatArray, FloatArray]:
     """Map the unit square onto the bounds, corners exactly onto corners.
 
-    Steps below the search's tolerance are no mass at all.
+    A u below the search's tolerance counts as the bound itself.
     """
     (low, high), (least, most) = problem.mass_bounds, problem.damping_bounds
     u = np.where(u < _STEP_TOLERANCE, 0.0, u)
@@ -356,7 +338,7 @@ def _admittance(
     return Mt, Bt
 
 
-def _objective(problem: ImpedanceProblem, nodes: int) -> _Objective:
+def _objective(problem: ImpedanceProblem, nodes: int) -> Objective:
     return partial(_stable_cost, problem, _sample(problem, nodes), _basis(problem.loop))
 
 
@@ -377,7 +359,7 @@ def _scan_shape(problem: ImpedanceProblem) -> tuple[int, int]:
     return (1 if fixed_mass else _SCAN[0], 1 if fixed_damping else _SCAN[1])
 
 
-def _scan(problem: ImpedanceProblem) -> _Points:
+def _scan(problem: ImpedanceProblem) -> Points:
     """Return the starts of the search: local minima of a scan, and those along its valley."""
     shape = _scan_shape(problem)
     u, v = np.meshgrid(*(np.linspace(0, 1, count) for count in shape), indexing="ij")
@@ -392,11 +374,11 @@ def _scan(problem: ImpedanceProblem) -> _Points:
         )
     spacing = [1 / (count - 1) if count > 1 else 0.0 for count in shape]
     valley = _sharpen(problem, u[rows, 0], v[0, np.argmin(costs[rows], axis=1)], spacing[1])
-    cells = np.flatnonzero(_local_minima(costs))
+    cells = np.flatnonzero(local_minima(costs))
     known = np.abs(u.ravel()[cells, None] - valley.u) + np.abs(v.ravel()[cells, None] - valley.v)
     cells = cells[known.min(axis=1) > max(spacing)]
     cells = cells[np.argsort(costs.ravel()[cells], kind="stable")][:_STARTS]
-    return _Points(
+    return Points(
         u=np.r_[valley.u, u.ravel()[cells]],
         v=np.r_[valley.v, v.ravel()[cells]],
         step=np.array(spacing) / 4,
@@ -405,81 +387,22 @@ def _scan(problem: ImpedanceProblem) -> _Points:
     )
 
 
-def _sharpen(problem: ImpedanceProblem, u: FloatArray, v: FloatArray, spacing: float) -> _Points:
+def _sharpen(problem: ImpedanceProblem, u: FloatArray, v: FloatArray, spacing: float) -> Points:
     """Refine the valley ``Bt(Mt)`` of the scan and pick its lowest local minima."""
     objective = _objective(problem, _VALLEY_NODES)
     step = np.array([0.0, spacing])
-    valley = _refine(objective, _Points(u, v, step, np.zeros(len(u)), 0), _VALLEY_TOLERANCE)
+    valley = refine(objective, Points(u, v, step, np.zeros(len(u)), 0), _VALLEY_TOLERANCE)
     costs = objective(valley.u, valley.v)
-    minima = np.flatnonzero(_local_minima(costs[:, None]))
+    minima = np.flatnonzero(local_minima(costs[:, None]))
     minima = minima[np.argsort(costs[minima], kind="stable")][:_STARTS]
     slope = np.gradient(valley.v, valley.u) if len(u) > 1 else valley.slope
-    return _Points(
+    return Points(
         u=valley.u[minima],
         v=valley.v[minima],
         step=step,
         slope=slope[minima],
         evaluations=valley.evaluations + len(costs),
     )
-
-
-def _local_minima(costs: FloatArray) -> BoolArray:
-    """Mark the finite entries that no neighbor undercuts."""
-    padded = np.pad(costs, 1, constant_values=np.inf)
-    rows, columns = costs.shape
-    lowest = np.isfinite(costs)
-    for i in range(3):
-        for j in range(3):
-            lowest &= costs <= padded[i : i + rows, j : j + columns]
-    return lowest.reshape(costs.shape)
-
-
-def _refine(objective: _Objective, start: _Points, tolerance: float) -> _Points:
-    """Search from every point on a 5 x 5 pattern that moves while it improves, else shrinks.
-
-    The pattern is sheared along the valley, whose walls are kinks: a pattern across it would
-    find every neighbor higher and stop halfway down.
-    """
-    offsets = start.step * _pattern(start.step > 0)
-    u, v, scale, count = start.u.copy(), start.v.copy(), np.ones(len(start.u)), start.evaluations
-    for _ in range(_MAX_ROUNDS):
-        rows = np.flatnonzero(scale * start.step.max() > tolerance)
-        if not len(rows):
-            break
-        moves = scale[rows, None, None] * offsets
-        across = moves[..., 1] + start.slope[rows, None] * moves[..., 0]
-        tried_u = np.clip(u[rows, None] + moves[..., 0], 0.0, 1.0)
-        tried_v = np.clip(v[rows, None] + across, 0.0, 1.0)
-        costs = objective(tried_u.ravel(), tried_v.ravel()).reshape(tried_u.shape)
-        costs[:, 0] -= _LEAST_PROGRESS  # rounding noise must not count as progress
-        best = np.argmin(costs, axis=1)
-        u[rows], v[rows] = (tried[np.arange(len(rows)), best] for tried in (tried_u, tried_v))
-        scale[rows] = np.where(best == 0, scale[rows] / 4, np.minimum(1, 2 * scale[rows]))
-        count += costs.size
-    return replace(start, u=u, v=v, evaluations=count)
-
-
-def _pattern(free: BoolArray) -> FloatArray:
-    """Return the offsets in u and v, the center first; a parameter that is not free stays."""
-    axes = [[0.0, -1.0, 1.0, -2.0, 2.0] if moves else [0.0] for moves in free]
-    return np.array([(i, j) for i in axes[0] for j in axes[1]])
-
-
-def _snap(
-    objective: _Objective, u: FloatArray, v: FloatArray
-) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Move a point that is all but on a bound onto it where that costs nothing.
-
-    The map is flat at the lower bound of Mt, so rounding can hide the last step there.
-    """
-    edge_u, edge_v = (np.where(np.abs(w - np.round(w)) < 0.01, np.round(w), w) for w in (u, v))
-    costs = objective(u, v)
-    for edges in ((edge_u, v), (u, edge_v), (edge_u, edge_v)):
-        trial = objective(*edges)
-        gain = trial <= costs * (1 + 1e-12)
-        u, v = np.where(gain, edges[0], u), np.where(gain, edges[1], v)
-        costs = np.where(gain, trial, costs)
-    return u, v, costs
 
 
 def _check_bounds(name: str, bounds: tuple[float, float], *, zero_allowed: bool) -> None:

@@ -247,7 +247,7 @@ class _StepResponse:
     def sample(self, scaled_poles: ComplexArray) -> tuple[FloatArray, FloatArray]:
         """Sample once per pole until it has decayed, 16 times per time constant or radian."""
         parts = []
-        for p in scaled_poles:
+        for p in scaled_poles[scaled_poles.imag >= 0]:
             count = int(min(12 * 16 * (1 + abs(p.imag / p.real)), 20000))
             times = np.linspace(0, 12 / -p.real, count)
             parts.append((times, 1 - self._march(times[1], count) @ self.output))
@@ -260,7 +260,8 @@ class _StepResponse:
 
         states, power = self.final_state[None, :], expm(self.A * interval)
         while len(states) < count:
-            states = np.concatenate([states, states @ power.T])
+            # einsum, because BLAS would start threads for these narrow matrices.
+            states = np.concatenate([states, np.einsum("mi,ji->mj", states, power)])
             power = power @ power
         return np.asarray(states[:count], dtype=np.float64)
 

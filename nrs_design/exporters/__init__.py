@@ -1,1 +1,1 @@
-"""Designs for other programs."""
+"""Proved designs for other programs: one validated record, from which every format is made."""

@@ -93,9 +93,7 @@ class Examiner:
         else:
             status = Status.REFUTED
             message = f"mode {mode.name} is not {region} (eigenvalue {witness.eigenvalue})"
-        return self.obligation(
-            MODE_STABLE, mode.name, status, message, self.places.mode(mode.name)
-        )
+        return self.obligation(MODE_STABLE, mode.name, status, message, self.places.mode(mode.name))
 
     def certificate(self, file: Path, fault: str | None) -> Obligation:
         """Return NRS104 from the outcome of a re-check; None says that the certificate holds."""

@@ -33,7 +33,7 @@ def find_specs(paths: Iterable[Path]) -> tuple[Path, ...]:
 
 
 def _specs_of(path: Path) -> list[Path]:
-    if not path.is_dir():
+    if not os.path.isdir(path):
         return [path]
     specs = sorted(_specs_below(path))
     if not specs:

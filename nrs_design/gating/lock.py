@@ -12,9 +12,9 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_valida
 
 from nrs_design import __version__
 from nrs_design.errors import CertificateError
-from nrs_design.gating.obligations import SpecOutcome
+from nrs_design.gating.obligations import GateOutcome, SpecOutcome
+from nrs_design.output import write_output
 
-SCHEMA = "nrs-design/lock/1"
 MAX_BYTES = 64 * 2**20
 
 Sha256 = Annotated[str, Field(pattern="^[0-9a-f]{64}$")]
@@ -75,6 +75,20 @@ def make_lock(specs: Iterable[SpecOutcome], file: Path) -> Lock:
     return Lock(specs=sorted(entries, key=lambda entry: entry.path))
 
 
+def write_lock(outcome: GateOutcome, file: Path) -> GateOutcome:
+    """Write the lock file, and note it; where a spec has no verdict, leave the file as it is.
+
+    Raises
+    ------
+    OutputError
+        If it cannot be written.
+    """
+    if any(spec.verdict is None for spec in outcome.specs):
+        return outcome.with_note(f"{file} not written: not every spec has a verdict")
+    write_output(file, dump_lock(make_lock(outcome.specs, file)))
+    return outcome.with_note(f"{file} written")
+
+
 def dump_lock(lock: Lock) -> str:
     """Return the text of the lock file: sorted, and without times."""
     document = lock.model_dump(mode="json", by_alias=True)
@@ -91,9 +105,7 @@ def read_lock(file: Path) -> Lock:
     """
     remedy = "make it with nrs-design gate, without --locked"
     try:
-        if file.stat().st_size > MAX_BYTES:
-            raise CertificateError("larger than any lock file", path=file)
-        document = json.loads(file.read_bytes().decode(), object_pairs_hook=_unique)
+        document = json.loads(_read_bytes(file).decode(), object_pairs_hook=_unique)
         return Lock.model_validate(document)
     except OSError as error:
         raise CertificateError(
@@ -107,6 +119,17 @@ def read_lock(file: Path) -> Lock:
         ) from error
     except (ValueError, RecursionError) as error:
         raise CertificateError(f"not a lock file: {error}", path=file, remedy=remedy) from error
+
+
+def _read_bytes(file: Path) -> bytes:
+    """Read a whole file, but never an endless one."""
+    if file.exists() and not file.is_file():
+        raise CertificateError("is not a regular file", path=file)
+    with file.open("rb") as stream:
+        content = stream.read(MAX_BYTES + 1)
+    if len(content) > MAX_BYTES:
+        raise CertificateError("larger than any lock file", path=file)
+    return content
 
 
 def relative_to_lock(path: Path, lock: Path) -> str:

@@ -42,13 +42,13 @@ def run_locked(
     """
     entries = {entry.path: entry for entry in lock.specs}
     outcomes = []
-    for path in specs:
-        progress(str(path))
+    for number, path in enumerate(specs, start=1):
+        progress(f"spec {number} of {len(specs)}")
         entry = entries.pop(relative_to_lock(path, file), None)
         outcomes.append(_examine_safely(path, entry, file))
     rest = {entry.path: file.parent / entry.path for entry in entries.values()}
-    gone = [_gone(path, file) for path in rest.values() if not path.is_file()]
-    unnamed = sorted(name for name, path in rest.items() if path.is_file())
+    gone = [_gone(path, file) for path in rest.values() if not os.path.isfile(path)]
+    unnamed = sorted(name for name, path in rest.items() if os.path.isfile(path))
     notes = (f"locked, but not among the given paths: {', '.join(unnamed)}",) if unnamed else ()
     return GateOutcome(tuple(outcomes + gone), notes)
 
@@ -102,9 +102,7 @@ def _confirmed(
     )
 
 
-def _find_difference(
-    certificate: Certificate, entry: LockedSpec, loaded: LoadedSpec
-) -> str | None:
+def _find_difference(certificate: Certificate, entry: LockedSpec, loaded: LoadedSpec) -> str | None:
     """Say how a valid certificate differs from what was locked, or from what the spec asks for."""
     if entry.certificate is None or certificate.id != entry.certificate.id:
         return "is not the certificate that was locked"

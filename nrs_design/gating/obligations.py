@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import StrEnum
 from pathlib import Path
 
@@ -135,15 +135,17 @@ class GateOutcome:
         """Obligations that are not fulfilled, worst first, else in their order."""
         every = (item for spec in self.specs for item in spec.obligations)
         return tuple(
-            sorted(
-                (item for item in every if not item.fulfilled), key=lambda item: -item.severity
-            )
+            sorted((item for item in every if not item.fulfilled), key=lambda item: -item.severity)
         )
 
     @property
     def severity(self) -> int:
         """That of the worst obligation."""
         return max((item.severity for item in self.broken), default=0)
+
+    def with_note(self, note: str) -> GateOutcome:
+        """Return the same outcome with one more note."""
+        return replace(self, notes=(*self.notes, note))
 
 
 def failed(path: Path, error: Exception, sha256: str | None = None) -> SpecOutcome:

@@ -10,7 +10,8 @@ def number(value: float, digits: int = 4) -> str:
     """Write a number with so many significant digits; infinity is ``unlimited``."""
     if math.isinf(value):
         return "unlimited"
-    return f"{value:.{digits}g}"
+    # Rounded first, so that 5520 does not come out as 5.52e+03.
+    return f"{float(f'{value:.{digits}g}'):.15g}"
 
 
 def root(value: complex, digits: int = 4) -> str:

@@ -23,6 +23,7 @@ BLUE, VERMILLION, GREEN, PURPLE, SKY, ORANGE = (
 )
 CYCLE = (BLUE, VERMILLION, GREEN, PURPLE, SKY, ORANGE)
 MARKERS = ("o", "s", "^", "D", "v", "P", "X", "*")
+ALARM = "#a00000"
 INK, MUTED, GRID = "#1b1f24", "#5a6472", "#dfe3e8"
 
 _SETTINGS = {
@@ -60,12 +61,19 @@ def figure_style() -> Iterator[None]:
 
 
 def styled(draw: Callable[P, Figure]) -> Callable[P, Figure]:
-    """Run a drawing function within `figure_style`."""
+    """Run a drawing function within `figure_style`, and settle the layout of its figure.
+
+    The layout is found by iteration from the last one, so a figure laid out anew at every
+    rendering would differ from one to the next.
+    """
 
     @wraps(draw)
     def drawn(*args: P.args, **kwargs: P.kwargs) -> Figure:
         with figure_style():
-            return draw(*args, **kwargs)
+            figure = draw(*args, **kwargs)
+            figure.draw_without_rendering()
+            figure.set_layout_engine("none")
+            return figure
 
     return drawn
 

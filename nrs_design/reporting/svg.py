@@ -24,8 +24,8 @@ def to_svg(illustration: Illustration) -> str:
     """
     svg = _savefig(illustration.figure)
     svg = svg[svg.index("<svg") :].rstrip()
-    svg = re.sub(r' xmlns(:xlink)?="[^"]*"', "", svg).replace("xlink:href=", "href=")
-    svg = re.sub(r'<svg width="[^"]*" height="[^"]*"|<svg height="[^"]*" width="[^"]*"', "<svg", svg)
+    svg = re.sub(r'^<svg[^>]*? viewBox="([^"]*)"[^>]*>', r'<svg viewBox="\1" role="img">', svg)
+    svg = svg.replace("xlink:href=", "href=")
     prefix = illustration.name
     svg = re.sub(r'\bid="', f'id="{prefix}-', svg)
     svg = re.sub(r'href="#', f'href="#{prefix}-', svg)
@@ -34,11 +34,9 @@ def to_svg(illustration: Illustration) -> str:
 
 def to_png(figure: Figure, dpi: int = 200) -> bytes:
     """Return the figure as a PNG image without date or program name."""
-    from matplotlib.backends.backend_agg import FigureCanvasAgg
-
     buffer = io.BytesIO()
     with figure_style():
-        FigureCanvasAgg(figure).print_png(buffer, metadata={"Software": None}, dpi=dpi)
+        figure.savefig(buffer, format="png", dpi=dpi, metadata={"Software": None})
     return buffer.getvalue()
 
 

@@ -42,7 +42,7 @@ LIMITS = (
     (2.11, "61.6608", "6.4.1", "225.6", 0.5),
     (2.15, "43.0356", "6.3.2.2", "232.3", 0.5),
 )
-# Thesis 2.5, measured on surgeons: 1002 +- 568 N/m at 0.24 m.
+# Thesis 6.1 cites 1002 +- 568 N/m for surgeons' hands; contact is at 0.24 m.
 HAND = tuple(k * 0.24**2 for k in (1002 - 568, 1002 + 568))
 
 

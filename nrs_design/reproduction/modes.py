@@ -44,7 +44,7 @@ def _realization() -> tuple[Row, ...]:
             ("-1618.80", "-56.89"),
             (-den[2] / den[0], -den[1] / den[0]),
             "1/s^2, 1/s",
-            CLOSE,
+            Tolerance(5e-4),
         ),
         reproduced(
             "Cp",
@@ -140,6 +140,7 @@ def _not_hurwitz(name: str, section: str, rows: list[MatrixRow]) -> Row:
         section,
         "Hurwitz",
         ", ".join(map(format_number, _spectrum(rows))),
+        "1/s",
         verdict=Verdict.PRINT_IS_WRONG,
         holds=not is_stable(system.modes[0], system.time),
         note=WRONG_SIGN,

@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import StrEnum
+from math import isfinite
 
 Number = float | complex
 Value = Number | Sequence[Number]
 Printed = str | tuple[str, ...]
+
+# Digits that a recomputed value shows, unless the print has more.
+DIGITS = 6
 
 
 class Verdict(StrEnum):
@@ -38,8 +43,8 @@ class Row:
     unit : str
         Of both.
     deviation : float or None
-        Largest difference between value and print over the largest printed number; the
-        difference itself where the print is zero; None where the print is not a number.
+        Difference between value and print over the print (the difference itself where the print
+        is zero), the largest one of several numbers; None where the print is not a number.
     verdict : Verdict
         ``drift`` says that the package no longer computes what this row has on record.
     note : str
@@ -58,7 +63,7 @@ class Row:
 
 @dataclass(frozen=True, slots=True)
 class Tolerance:
-    """How far two values may be apart: relative to the largest entry, or absolute."""
+    """How far a value may be from its target, entry by entry: relative to it, or absolute."""
 
     relative: float = 0.0
     absolute: float = 0.0
@@ -67,8 +72,10 @@ class Tolerance:
         """Tell whether a value agrees with its target; NaN agrees with nothing."""
         if len(value) != len(target):
             return False
-        bound = max(self.absolute, self.relative * max(map(abs, target)))
-        return all(abs(v - t) <= bound for v, t in zip(value, target, strict=True))
+        return all(
+            abs(v - t) <= max(self.absolute, self.relative * abs(t))
+            for v, t in zip(value, target, strict=True)
+        )
 
 
 def reproduced(
@@ -126,20 +133,29 @@ def misprint(
 
 
 def claim(
-    name: str, section: str, printed: str, value: str, *, verdict: Verdict, holds: bool, note: str
+    name: str,
+    section: str,
+    printed: str,
+    value: str,
+    unit: str = "",
+    *,
+    verdict: Verdict,
+    holds: bool,
+    note: str,
 ) -> Row:
     """Return the row of a statement in words.
 
     Parameters
     ----------
-    name, section, printed, value, note : str
-        See `Row`; `value` says in words what was found.
+    name, section, printed, value, unit, note : str
+        See `Row`; `value` says what was found.
     verdict : Verdict
         What is on record.
     holds : bool
         Whether the computation still says so; if not, the row is a drift.
     """
-    return Row(name, section, printed, value, "", None, verdict if holds else Verdict.DRIFT, note)
+    verdict = verdict if holds else Verdict.DRIFT
+    return Row(name, section, printed, value, unit, None, verdict, note)
 
 
 def hardware_only(name: str, section: str, printed: str, unit: str, note: str = "") -> Row:
@@ -157,11 +173,11 @@ def drifted(rows: Sequence[Row]) -> tuple[Row, ...]:
     return tuple(row for row in rows if row.verdict is Verdict.DRIFT)
 
 
-def format_number(value: Number) -> str:
-    """Write a number with six digits, and a complex one as the pair that it stands for."""
+def format_number(value: Number, digits: int = DIGITS) -> str:
+    """Write a number, and a complex one as the pair that it stands for."""
     if isinstance(value, complex) and value.imag:
-        return f"{value.real:.6g} +- {abs(value.imag):.6g}j"
-    return f"{value.real:.6g}"
+        return f"{value.real:.{digits}g} +- {abs(value.imag):.{digits}g}j"
+    return f"{value.real:.{digits}g}"
 
 
 def _row(
@@ -175,15 +191,23 @@ def _row(
 ) -> Row:
     text = printed if isinstance(printed, str) else ", ".join(printed)
     deviation = _deviation(values, _numbers(printed)) if _is_numeric(printed) else None
-    value = ", ".join(map(format_number, values))
+    digits = max(DIGITS, _significant_digits(text)) if _is_numeric(printed) else DIGITS
+    value = ", ".join(format_number(number, digits) for number in values)
     return Row(name, section, text, value, unit, deviation, verdict, note)
 
 
 def _deviation(values: Sequence[Number], printed: Sequence[Number]) -> float | None:
     if len(values) != len(printed):
         return None
-    scale = max(map(abs, printed)) or 1.0
-    return max(abs(v - p) for v, p in zip(values, printed, strict=True)) / scale
+    parts = [abs(v - p) / (abs(p) or 1.0) for v, p in zip(values, printed, strict=True)]
+    # JSON has neither NaN nor infinity; the row is a drift anyway.
+    return max(parts) if all(map(isfinite, parts)) else None
+
+
+def _significant_digits(text: str) -> int:
+    """Count the digits of the longest number in a text, exponents and leading zeros left out."""
+    numbers = (part.partition("e")[0] for part in re.split(r"[,+]", text))
+    return max(len(re.sub(r"[^0-9]", "", number).lstrip("0")) for number in numbers)
 
 
 def _sequence(value: Value) -> tuple[Number, ...]:

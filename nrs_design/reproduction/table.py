@@ -15,7 +15,7 @@ from nrs_design.reproduction import (
     specimens,
     switching,
 )
-from nrs_design.reproduction.row import Row
+from nrs_design.reproduction.row import Row, Verdict
 
 # In the order of the thesis.
 TOPICS = (
@@ -47,6 +47,6 @@ def reproduce(progress: Callable[[str], None] = lambda topic: None) -> tuple[Row
 
 
 def count_verdicts(table: tuple[Row, ...]) -> dict[str, int]:
-    """Return how many rows have each verdict that occurs, the most frequent first."""
-    found = [str(row.verdict) for row in table]
-    return {verdict: found.count(verdict) for verdict in sorted(set(found), key=found.count)[::-1]}
+    """Return how many rows have each verdict that occurs."""
+    found = [row.verdict for row in table]
+    return {str(verdict): found.count(verdict) for verdict in Verdict if verdict in found}

@@ -94,7 +94,7 @@ def worst_switching(
     states, chosen = [initial], []
     for _ in range(steps):
         candidates = transitions @ states[-1]
-        values = np.einsum("mi,ij,mj->m", candidates, Q, candidates)
+        values = ((candidates @ Q) * candidates).sum(axis=1)
         chosen.append(int(values.argmax()))
         states.append(candidates[chosen[-1]])
     return TimeResponse(_times(step, steps), np.array(states), np.array(chosen))
@@ -172,7 +172,8 @@ def unstable_run(system: SwitchedSystem, mode: int, growth: float = 100.0) -> Ti
         exponent = float(values[worst].real) * step
     else:
         exponent = math.log(max(float(abs(values[worst])), 1.0))
-    steps = math.log(growth) / exponent if exponent > _MARGINAL else _MARGINAL_STEPS
+    marginal = _MARGINAL_STEPS if continuous else _FEWEST
+    steps = math.log(growth) / exponent if exponent > _MARGINAL else marginal
     signal = np.full(min(max(math.ceil(steps), _FEWEST), _MOST), mode, dtype=np.int64)
     return simulate_switching(system, signal, initial, step)
 

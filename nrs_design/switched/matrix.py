@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from math import lcm
+from math import inf, lcm
 
 Rows = Sequence[Sequence[Fraction | int]]
 
@@ -49,14 +49,21 @@ class RationalMatrix:
         return [[Fraction(entry, self.denominator) for entry in row] for row in self.numerators]
 
     def floats(self) -> list[list[float]]:
-        """Return the entries, each rounded once to the nearest double."""
-        return [[entry / self.denominator for entry in row] for row in self.numerators]
+        """Return the entries, each rounded once to the nearest double (infinite beyond them)."""
+        return [[_to_float(entry, self.denominator) for entry in row] for row in self.numerators]
 
 
 def multiply(left: Rows, right: Rows) -> list[list[Fraction]]:
     """Return the exact matrix product ``left @ right``."""
     columns = list(zip(*right, strict=True))
     return [[_dot(row, column) for column in columns] for row in left]
+
+
+def _to_float(numerator: int, denominator: int) -> float:
+    try:
+        return numerator / denominator
+    except OverflowError:
+        return inf if numerator > 0 else -inf
 
 
 def _dot(left: Iterable[Fraction | int], right: Iterable[Fraction | int]) -> Fraction:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
+from math import comb
 from typing import Any, ClassVar, Self
 
 from nrs_design.certificates.evidence.abstract import AbstractEvidence, Shows
@@ -22,7 +23,7 @@ from nrs_design.certificates.evidence.fields import (
     read_ratio,
 )
 from nrs_design.certificates.exact import IntegerMatrix, add, lyapunov_decrease, stein_decrease
-from nrs_design.certificates.lift import derivative_lift, monomials, power_lift, vanishes
+from nrs_design.certificates.lift import derivative_lift, power_lift, vanishes
 from nrs_design.switched.system import Mode, SwitchedSystem, Time
 
 MAX_DEGREE = 64
@@ -68,7 +69,7 @@ class CommonPolynomial(AbstractEvidence):
         n, d = system.order, self.degree
         if not 1 <= d <= MAX_DEGREE // 2:
             return f"degree {2 * d} is not between 2 and {MAX_DEGREE}"
-        size = len(monomials(n, d))
+        size = comb(n + d - 1, d)
         if len(self.vanishing) != len(system.modes):
             return "there is not one vanishing form for each mode"
         if not all(is_square(M, size) for M in (self.Q, *self.vanishing)):

@@ -8,6 +8,7 @@ from decimal import ROUND_DOWN, ROUND_UP, Context, Decimal
 from fractions import Fraction
 from typing import Any
 
+from nrs_design.spec.exact import quoted
 from nrs_design.switched.system import Time
 
 Matrix = tuple[tuple[int, ...], ...]
@@ -34,14 +35,14 @@ def read_integers(value: Any) -> Matrix:
 def read_integer(value: object) -> int:
     """Read an integer; a truth value is none."""
     if type(value) is not int:
-        raise TypeError(f"expected an integer, not {value!r}")
+        raise TypeError(f"expected an integer, not {quoted(str(value))}")
     return value
 
 
 def read_text(value: object) -> str:
     """Read a text."""
     if not isinstance(value, str):
-        raise TypeError(f"expected a text, not {value!r}")
+        raise TypeError(f"expected a text, not {quoted(str(value))}")
     return value
 
 
@@ -49,7 +50,7 @@ def read_ratio(value: object) -> Fraction:
     """Read a nonnegative ratio of integers, such as 3/8."""
     text = read_text(value)
     if not re.fullmatch(r"[0-9]{1,2000}(/[0-9]{1,2000})?", text):
-        raise ValueError(f"{text[:40]!r} is not a ratio of integers")
+        raise ValueError(f"{quoted(text)} is not a ratio of integers")
     return Fraction(text)
 
 

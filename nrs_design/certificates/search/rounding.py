@@ -48,13 +48,13 @@ def round_to_evidence(
 def round_rate(rate: float, time: Time) -> Fraction:
     """Round a rate to a short dyadic number on its safe side (slower decay)."""
     if time is Time.DISCRETE:
-        return 1 - _round_down(1 - rate)
-    return _round_down(rate)
+        return 1 - _round_down(1 - Fraction(rate))
+    return _round_down(Fraction(rate))
 
 
-def _round_down(value: float) -> Fraction:
+def _round_down(value: Fraction) -> Fraction:
     shift = RATE_BITS - frexp(value)[1]
-    return Fraction(floor(Fraction(value) * Fraction(2) ** shift)) / Fraction(2) ** shift
+    return Fraction(floor(value * Fraction(2) ** shift)) / Fraction(2) ** shift
 
 
 def _is_printable(evidence: CommonQuadratic) -> bool:

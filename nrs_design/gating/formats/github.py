@@ -30,7 +30,8 @@ def _annotation(item: Obligation) -> str:
 
 
 def _data(text: str) -> str:
-    return text.replace("%", "%25").replace("\r", "%0D").replace("\n", "%0A")
+    encodable = text.encode(errors="backslashreplace").decode()
+    return encodable.replace("%", "%25").replace("\r", "%0D").replace("\n", "%0A")
 
 
 def _property(text: str) -> str:

@@ -16,7 +16,7 @@ _NOT_XML = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
 def to_junit(outcome: GateOutcome) -> str:
     """Return the XML document; it has no times, so that equal runs give equal files."""
     every = [item for spec in outcome.specs for item in spec.obligations]
-    root = ElementTree.Element("testsuites", name="nrs-design", **_counts(every))
+    root = ElementTree.Element("testsuites", {"name": "nrs-design", **_counts(every)})
     for spec in outcome.specs:
         _add_suite(root, spec)
     ElementTree.indent(root)
@@ -26,7 +26,7 @@ def to_junit(outcome: GateOutcome) -> str:
 
 def _add_suite(root: ElementTree.Element, spec: SpecOutcome) -> None:
     name = _xml(from_here(spec.path))
-    suite = ElementTree.SubElement(root, "testsuite", name=name, **_counts(spec.obligations))
+    suite = ElementTree.SubElement(root, "testsuite", {"name": name, **_counts(spec.obligations)})
     for item in spec.obligations:
         case = ElementTree.SubElement(
             suite,

@@ -11,6 +11,7 @@ import numpy as np
 from nrs_design.design.root_locus import locus_gains, root_locus
 from nrs_design.design.transfer import TransferFunction, poles
 from nrs_design.reporting.style import (
+    ALARM,
     BLUE,
     INK,
     MUTED,
@@ -50,7 +51,8 @@ def draw_root_locus(
     figure, axes = new_axes(4.4)
     start = poles(open_loop)
     zeros = np.roots(open_loop.numerator)
-    _limit(axes, np.concatenate([start, zeros, np.asarray(wanted), np.asarray(reached)]))
+    points = np.concatenate([start, zeros, np.asarray(wanted), np.asarray(reached)])
+    _limit(axes, points, room=0.35)
     for branch in root_locus(open_loop, locus_gains(open_loop, gain)).T:
         axes.plot(branch.real, branch.imag, color=BLUE, zorder=2)
     axes.plot(start.real, start.imag, "x", color=INK, markersize=8, label="open-loop poles")
@@ -90,7 +92,7 @@ def draw_eigenvalues(
         axes.plot(row.real, row.imag, shape, color=tint, mfc="none", label=label)
     unstable = values[_outside(values, time)]
     if len(unstable):
-        _mark(axes, unstable.tolist(), "X", "#a00000", "not in the stable region", 10, filled=True)
+        _mark(axes, unstable.tolist(), "o", ALARM, "not in the stable region", 15, filled=False)
     _finish(axes, "1/s" if time is Time.CONTINUOUS else "1")
     legend(figure, axes, 2)
     return figure
@@ -102,9 +104,7 @@ def _outside(values: NDArray[np.complex128], time: Time) -> NDArray[np.bool_]:
     return np.asarray(np.abs(values) >= 1 - 1e-9)
 
 
-def _border(
-    axes: Axes, values: NDArray[np.complex128], time: Time, rate: float | None
-) -> None:
+def _border(axes: Axes, values: NDArray[np.complex128], time: Time, rate: float | None) -> None:
     if time is Time.CONTINUOUS:
         _limit(axes, np.append(values.ravel(), 0.0))
         right = axes.get_xlim()[1]
@@ -130,14 +130,14 @@ def _mark(
     axes.plot(x, y, shape, color=tint, mfc=fill, markersize=size, label=label, zorder=4)
 
 
-def _limit(axes: Axes, points: NDArray[np.complex128]) -> None:
-    """Show all points with some room around them."""
+def _limit(axes: Axes, points: NDArray[np.complex128], room: float = 0.12) -> None:
+    """Show all points with some room around them, as a fraction of their extent."""
     size = float(np.abs(points).max()) or 1.0
     left, right = float(points.real.min()), float(points.real.max())
     height = max(float(np.abs(points.imag).max()), 0.15 * size)
-    room = 0.12 * max(right - left, 0.3 * size)
-    axes.set_xlim(left - room, max(right, 0.0) + room)
-    axes.set_ylim(-1.3 * height, 1.3 * height)
+    side = max(right - left, 0.3 * size)
+    axes.set_xlim(left - room * side, max(right, 0.0) + 0.12 * side)
+    axes.set_ylim(-(1.2 + room) * height, (1.2 + room) * height)
 
 
 def _finish(axes: Axes, unit: str = "rad/s") -> None:

@@ -75,19 +75,8 @@ def _frequencies(items: Sequence[ImpedanceEvidence]) -> FloatArray:
 
 def _finish(axes: Axes, items: Sequence[ImpedanceEvidence], ylabel: str) -> None:
     bandwidth = items[0].problem.bandwidth
-    axes.axvline(bandwidth, color=MUTED, linewidth=1.0, linestyle=":")
-    axes.annotate(
-        f"bandwidth {bandwidth / (2 * math.pi):.3g} Hz",
-        (bandwidth, 1.0),
-        xycoords=("data", "axes fraction"),
-        xytext=(-4, -4),
-        textcoords="offset points",
-        rotation=90,
-        ha="right",
-        va="top",
-        fontsize=8.5,
-        color=MUTED,
-    )
+    label = f"bandwidth {bandwidth / (2 * math.pi):.3g} Hz"
+    axes.axvline(bandwidth, color=MUTED, linewidth=1.4, linestyle=":", label=label)
     axes.set_xlabel("Frequency [rad/s]")
     axes.set_ylabel(ylabel)
     axes.set_xlim(bandwidth / 100, None)

@@ -40,19 +40,20 @@ def draw_quadratic(Q: Array, states: Sequence[str]) -> Figure:
     n = len(Q)
     diagonal = np.sqrt(np.diag(Q))
     scaled = Q / np.outer(diagonal, diagonal)
-    figure, axes = new_axes(4.2)
-    image = axes.imshow(scaled, cmap="PuOr", vmin=-1, vmax=1)
+    figure, axes = new_axes(2.6 + 0.2 * min(n, _WRITTEN))
+    image = axes.imshow(scaled, cmap="PuOr", vmin=-1, vmax=1, aspect="auto")
     axes.grid(visible=False)
     axes.spines[:].set_visible(False)
     if n <= _WRITTEN:
-        axes.set_xticks(range(n), [short(name, 12) for name in states])
-        axes.set_yticks(range(n), [short(name, 12) for name in states])
+        labels = [short(name, 14) for name in states]
+        axes.set_xticks(range(n), labels, rotation=0 if n <= 4 else 35)
+        axes.set_yticks(range(n), labels)
         for (i, j), value in np.ndenumerate(scaled):
             tint = "white" if abs(value) > 0.7 else INK
             axes.text(j, i, f"{value:.2f}", ha="center", va="center", color=tint, fontsize=9)
     axes.set_xlabel("State j")
     axes.set_ylabel("State i")
-    figure.colorbar(image, ax=axes, label="Q(i,j) / sqrt(Q(i,i) Q(j,j)) [1]")
+    figure.colorbar(image, ax=axes, label="Scaled entry of Q [1]")
     return figure
 
 
@@ -83,6 +84,7 @@ def draw_mode_rates(names: Sequence[str], rates: Array, claimed: float, time: Ti
     room = 0.08 * (high - low) or 0.1 * abs(high)
     axes.set_xlim(low - room, high + room)
     quantity = "Decay rate in the norm of Q [1/s]" if continuous else "Contraction per step [1]"
+    axes.locator_params(axis="x", nbins=5)
     axes.set_xlabel(quantity)
     axes.set_ylabel("Mode")
     legend(figure, axes)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -19,7 +18,7 @@ from nrs_design.reporting.style import (
     short,
     styled,
 )
-from nrs_design.switched.system import Time
+from nrs_design.switched.system import SwitchedSystem, Time
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -28,17 +27,14 @@ if TYPE_CHECKING:
     from nrs_design.simulation.switched import Array, TimeResponse
 
 _ROWS = 10
-# Below this fraction of the start, a simulated norm is rounding noise.
-_NOISE = 1e-12
 
 
 @styled
 def draw_run(
     response: TimeResponse,
     norm: Array,
-    bound: Array | None,
-    names: Sequence[str],
-    time: Time,
+    bound: tuple[str, Array] | None,
+    system: SwitchedSystem,
     label: str,
 ) -> Figure:
     """Draw a norm over time, its proved bound, and below them the mode that is active.
@@ -49,37 +45,32 @@ def draw_run(
         The run.
     norm : ndarray, shape (N + 1,)
         Norm of its states over the first one.
-    bound : ndarray, shape (N + 1,), or None
-        What the certificate allows at most.
-    names : sequence of str
-        Of all modes.
-    time : Time
-        Continuous or discrete.
+    bound : tuple of str and ndarray, shape (N + 1,), or None
+        A curve to hold it against, with its label.
+    system : SwitchedSystem
+        Names of the modes, and the time axis.
     label : str
         Which norm it is.
     """
     used = list(dict.fromkeys(response.mode.tolist()))[:_ROWS]
     figure = new_figure(4.2 + 0.22 * len(used))
-    above, below = figure.subplots(
-        2, 1, sharex=True, height_ratios=[4.0, 0.2 + 0.3 * len(used)]
-    )
-    discrete = time is Time.DISCRETE
+    above, below = figure.subplots(2, 1, sharex=True, height_ratios=[4.0, 0.2 + 0.3 * len(used)])
+    discrete = system.time is Time.DISCRETE
     shape = {"marker": "o", "markersize": 2.5} if discrete and len(norm) <= 80 else {}
-    above.semilogy(response.time, np.maximum(norm, _NOISE), color=BLUE, label="run", **shape)
+    above.semilogy(
+        response.time, np.maximum(norm, np.finfo(float).tiny), color=BLUE, label="run", **shape
+    )
     if bound is not None:
-        name = "proved bound, " + ("rho^t" if discrete else "exp(-alpha t)")
-        above.semilogy(response.time, bound, "--", color=VERMILLION, label=name)
+        above.semilogy(response.time, bound[1], "--", color=VERMILLION, label=bound[0])
     above.set_ylabel(label)
-    _draw_modes(below, response, used, [names[i] for i in used])
+    _draw_modes(below, response, used, [system.modes[i].name for i in used])
     below.set_xlabel("Time [steps]" if discrete else "Time [s]")
     legend(figure, above)
     return figure
 
 
 @styled
-def draw_phase_plane(
-    response: TimeResponse, Q: Array | None, names: Sequence[str], states: Sequence[str]
-) -> Figure:
+def draw_phase_plane(response: TimeResponse, Q: Array | None, system: SwitchedSystem) -> Figure:
     """Draw a run of a system with two states, and the ellipse that it cannot leave.
 
     Parameters
@@ -88,23 +79,30 @@ def draw_phase_plane(
         The run; two states.
     Q : ndarray, shape (2, 2), or None
         Matrix of the Lyapunov function, None where there is none.
-    names, states : sequence of str
-        Of the modes and of the states.
+    system : SwitchedSystem
+        Names of modes and states, and the time axis.
     """
     figure, axes = new_axes(5.0)
+    # In discrete time only the points are states; the lines lead from one to the next.
+    line = "o-" if system.time is Time.DISCRETE else "-"
     if Q is not None:
         x, y = _ellipse(Q, response.state[0])
         axes.plot(x, y, "--", color=VERMILLION, linewidth=1.3, label="V(x) = V(x(0))")
     for row, mode in enumerate(list(dict.fromkeys(response.mode.tolist()))[:_ROWS]):
         path = _path_in(response, mode)
-        axes.plot(path[:, 0], path[:, 1], color=color(row), label=f"mode {short(names[mode])}")
+        name = f"mode {short(system.modes[mode].name)}"
+        axes.plot(path[:, 0], path[:, 1], line, color=color(row), markersize=3, label=name)
     axes.plot(*response.state[0], "o", color=INK, label="start")
     axes.plot(0, 0, "+", color=MUTED, markersize=11, label="rest")
-    axes.set_xlabel(f"{states[0]}")
-    axes.set_ylabel(f"{states[1]}")
-    axes.set_aspect("equal", adjustable="datalim")
+    axes.set_xlabel(_with_unit(system.states[0]))
+    axes.set_ylabel(_with_unit(system.states[1]))
     legend(figure, axes, 3)
     return figure
+
+
+def _with_unit(state: str) -> str:
+    """Label a state; given matrices and the canonical form come without units."""
+    return f"State {state}" if "[" in state else f"State {state} [no unit given]"
 
 
 def _draw_modes(axes: Axes, response: TimeResponse, used: list[int], names: list[str]) -> None:
@@ -121,7 +119,7 @@ def _draw_modes(axes: Axes, response: TimeResponse, used: list[int], names: list
         axes.broken_barh(spans, (row - 0.35, 0.7), color=color(row), linewidth=0)
     axes.set_yticks(range(len(used)), [short(name) for name in names])
     axes.set_ylim(len(used) - 0.4, -0.6)
-    axes.set_ylabel("Active mode")
+    axes.set_title("Active mode", loc="left", fontsize=9.5)
     axes.grid(visible=False, axis="y")
 
 

@@ -19,10 +19,10 @@ NO_CLAIM = (
     "Neither a proof nor a refutation was found. This is no statement about stability: the modes "
     "may be stable or unstable under switching."
 )
-_NOT_COVERED_BY_A_DESIGN = (
+_NOT_COVERED_BY_A_DESIGN: tuple[str, ...] = (
     "Sampling, delay and quantization of the controller: the proof is in continuous time.",
     "Friction, backlash, and saturation of motor or driver.",
-    "Loss of contact: no mode describes free motion of a compliant controller.",
+    "Loss of contact: no mode describes a compliant controller in free motion.",
     "Tissue that does not follow the linear model of the spec, such as viscous creep or a "
     "stiffness that depends on depth.",
     "Parameter values outside the declared ranges, and motor constants other than those given.",
@@ -30,7 +30,7 @@ _NOT_COVERED_BY_A_DESIGN = (
     "The size of velocities and torques: the states decay, but no limit on them is proved.",
     "Cost, margins, pole positions and tracking quality: design values in floating point.",
 )
-_NOT_COVERED_BY_MATRICES = (
+_NOT_COVERED_BY_MATRICES: tuple[str, ...] = (
     "Whether the matrices describe the real system: they are taken from the spec as they are.",
     "Inputs, disturbances, and jumps of the state at a switch.",
     "Dynamics outside the modes (and outside their convex combinations).",
@@ -63,7 +63,7 @@ def facts(result: Result) -> tuple[tuple[str, str], ...]:
     rows += [
         ("Package", f"nrs-design {__version__}"),
         ("SHA-256 of the spec", result.loaded.sha256),
-        ("Certificate", result.certificate.id if result.certificate else "none"),
+        ("Certificate id", result.certificate.id if result.certificate else "none"),
     ]
     return tuple(rows)
 
@@ -89,14 +89,20 @@ def recheck_section(result: Result) -> Section:
             f"certify-switching {result.loaded.path.name} again."
         )
         return Section("How to check again", (Paragraph(text),))
-    command = f"nrs-design verify {name}.cert.json {result.loaded.path.name}"
-    text = (
-        "This page is no proof; the certificate is. To check it again, run: "
-        f"{command}. This assembles the modes anew from the spec and decides everything in "
-        "integer arithmetic; it runs no solver and uses no number of this page. The certificate's "
-        "id and the hash of the spec must be those at the head of this report."
+    spec = result.loaded.path.name
+    return Section(
+        "How to check again",
+        (
+            Paragraph("This page is no proof; the certificate is. To check it again, run:"),
+            Bullets("", (f"nrs-design verify {name}.cert.json {spec}",)),
+            Paragraph(
+                "This assembles the modes anew from the spec and decides everything in integer "
+                "arithmetic; it runs no solver and uses no number of this page. The id of the "
+                "certificate and the hash of the spec must be those at the head of this report. "
+                f"The certificate is the file that nrs-design certify-switching {spec} writes."
+            ),
+        ),
     )
-    return Section("How to check again", (Paragraph(text),))
 
 
 def _rate(certification: Certification) -> list[tuple[str, str]]:
@@ -113,8 +119,6 @@ def _proved(result: Result) -> tuple[Block, ...]:
     certification = result.certification
     design = isinstance(result.loaded.spec, InteractionDesignSpec)
     not_covered = _NOT_COVERED_BY_A_DESIGN if design else _NOT_COVERED_BY_MATRICES
-    if not any("free motion" in text for text in certification.system.assumptions):
-        not_covered = tuple(text for text in not_covered if "free motion" not in text)
     return (
         Bullets("Proved", (claim_of(certification), *_meaning(certification.system, design))),
         Bullets("Not proved", not_covered),

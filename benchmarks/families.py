@@ -1,0 +1,61 @@
+"""Random families of modes with a known common quadratic function, seeded."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from nrs_design.switched.matrix import RationalMatrix
+from nrs_design.switched.system import Mode, SwitchedSystem, Time
+
+Matrices = NDArray[np.float64]
+
+
+def stable_family(n: int, m: int, seed: int) -> Matrices:
+    """Return m modes, shape (m, n, n), that share a random Q, in three decimals.
+
+    ``A = Q^-1 (K - S/2)`` with K skew and S positive definite gives ``A'Q + QA = -S``.
+    """
+    rng = np.random.default_rng(seed)
+    R = rng.normal(size=(n, n))
+    Q = R @ R.T / n + 0.3 * np.eye(n)
+    S = _gram(rng, m, n, n) + 0.3 * np.eye(n)
+    return np.asarray(np.round(np.linalg.solve(Q, _skew(rng, m, n) - S / 2), 3))
+
+
+def narrow_family(n: int, m: int, seed: int, margin: float) -> Matrices:
+    """Return m modes whose decrease in the shared Q = I is barely more than `margin` somewhere.
+
+    In each mode S is nearly singular in half of the directions; few modes already pin Q down.
+    """
+    rng = np.random.default_rng(seed)
+    S = _gram(rng, m, n, n // 2) + margin * np.eye(n)
+    return np.asarray(np.round(_skew(rng, m, n) - S / 2, 4))
+
+
+def crowded_family(n: int, m: int, seed: int, spread: float) -> Matrices:
+    """Return m modes ``spread N - I`` with N random: many of them bind at the best Q."""
+    rng = np.random.default_rng(seed)
+    N = rng.normal(size=(m, n, n)) / np.sqrt(n)
+    return np.asarray(np.round(spread * N - np.eye(n), 4))
+
+
+def to_system(matrices: Matrices, decimals: int) -> SwitchedSystem:
+    """Return the exact switched system of matrices with so many decimals."""
+    scale = 10**decimals
+    modes = tuple(
+        Mode(f"m{i}", RationalMatrix(tuple(tuple(int(a) for a in row) for row in A), scale))
+        for i, A in enumerate(np.rint(matrices * scale))
+    )
+    states = tuple(f"x{i + 1}" for i in range(matrices.shape[1]))
+    return SwitchedSystem("family", Time.CONTINUOUS, states, modes, ())
+
+
+def _gram(rng: np.random.Generator, m: int, n: int, rank: int) -> Matrices:
+    R = rng.normal(size=(m, n, rank))
+    return np.asarray(R @ R.transpose(0, 2, 1) / n, dtype=np.float64)
+
+
+def _skew(rng: np.random.Generator, m: int, n: int) -> Matrices:
+    K = rng.normal(size=(m, n, n))
+    return np.asarray((K - K.transpose(0, 2, 1)) / np.sqrt(n), dtype=np.float64)

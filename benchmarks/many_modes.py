@@ -1,0 +1,35 @@
+"""Many modes with a common quadratic function: all of them in one problem, or added lazily."""
+
+from __future__ import annotations
+
+from benchmarks.families import stable_family, to_system
+from benchmarks.measure import Comparison, time_side_by_side
+from benchmarks.peers import Solution, solve_all_at_once
+from nrs_design.certificates.certify import Certification, certify
+
+SIZES = ((6, 512), (6, 2048), (4, 1024))
+QUICK_SIZES = ((6, 512),)
+TARGET = 20.0
+
+
+def run(quick: bool) -> tuple[Comparison, ...]:
+    """Measure inside this process, with all imports done."""
+    return tuple(_compare(n, m, 1 if quick else 3) for n, m in (QUICK_SIZES if quick else SIZES))
+
+
+def _compare(n: int, m: int, repeats: int) -> Comparison:
+    matrices = stable_family(n, m, seed=n * m)
+    system = to_system(matrices, decimals=3)
+    certify(to_system(matrices[:2], decimals=3), optimize_rate=False)
+    (theirs, ours), (solution, found) = time_side_by_side(
+        repeats,
+        lambda: solve_all_at_once(matrices),
+        lambda: certify(system, optimize_rate=False),
+    )
+    assert isinstance(solution, Solution)
+    assert isinstance(found, Certification)
+    note = (
+        f"t* = {solution.t:.3g}; peer: {solution.status} in floating point; "
+        f"ours: {found.verdict}, all {m} modes checked exactly"
+    )
+    return Comparison(f"n = {n}, m = {m}", "cvxpy, all modes", theirs, ours, TARGET, note)

@@ -1,0 +1,116 @@
+"""Measuring: medians of repeats, whole child processes, and the machine that it is done on."""
+
+from __future__ import annotations
+
+import json
+import os
+import platform
+import subprocess
+import sys
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from importlib.metadata import version
+from pathlib import Path
+from statistics import median
+from time import perf_counter
+
+LAUNCHER = Path(__file__).with_name("launcher.py")
+LIBRARIES = ("nrs-design", "numpy", "scipy", "clarabel", "cvxpy")
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """One line of the results.
+
+    Parameters
+    ----------
+    work : str
+        What both sides do.
+    peer : str
+        What is compared with.
+    peer_seconds : float or None
+        Median; None if it did not end, see `note`.
+    our_seconds : float
+        Median.
+    target : float
+        Least ratio peer/ours that is aimed for.
+    note : str
+        Verdicts, memory and other circumstances.
+    at_least_seconds : float or None
+        Time after which a peer that did not end was stopped.
+    """
+
+    work: str
+    peer: str
+    peer_seconds: float | None
+    our_seconds: float
+    target: float
+    note: str = ""
+    at_least_seconds: float | None = None
+
+    @property
+    def ratio(self) -> float:
+        """How many times as long the peer takes (at least so many, if it was stopped)."""
+        return (self.peer_seconds or self.at_least_seconds or float("nan")) / self.our_seconds
+
+    @property
+    def met(self) -> bool:
+        """Whether the target is met."""
+        return self.ratio >= self.target
+
+
+@dataclass(frozen=True)
+class Child:
+    """What a child process took: wall time in s, peak memory in MB, output and exit code."""
+
+    seconds: float
+    megabytes: float
+    output: str
+    code: int
+
+
+def time_side_by_side(
+    repeats: int, *functions: Callable[[], object]
+) -> tuple[list[float], list[object]]:
+    """Run all functions in turn, again and again; return median times and last results.
+
+    Taking turns spreads a disturbance of the machine over all sides.
+    """
+    times: list[list[float]] = [[] for _ in functions]
+    results: list[object] = [None] * len(functions)
+    for _ in range(repeats):
+        for i, function in enumerate(functions):
+            start = perf_counter()
+            results[i] = function()
+            times[i].append(perf_counter() - start)
+    return [median(series) for series in times], results
+
+
+def run_child(command: Sequence[str]) -> Child:
+    """Run a command in a cold process of its own.
+
+    A small launcher waits for it: the peak memory that Linux reports for a child is never less
+    than that of the process which started it.
+    """
+    launcher = [sys.executable, "-I", "-S", str(LAUNCHER), *command]
+    done = subprocess.run(launcher, capture_output=True, text=True, check=True)
+    return Child(**json.loads(done.stdout))
+
+
+def machine_facts() -> str:
+    """Describe the machine in one line."""
+    cores = len(os.sched_getaffinity(0))
+    libraries = ", ".join(f"{name} {version(name)}" for name in LIBRARIES)
+    return (
+        f"{cores} cores, {_processor()}, load {os.getloadavg()[0]:.1f}, "
+        f"{platform.system()} {platform.machine()}, Python {platform.python_version()}, {libraries}"
+    )
+
+
+def _processor() -> str:
+    try:
+        lines = Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines()
+    except OSError:
+        return platform.processor() or "unknown processor"
+    names = [line.partition(":")[2].strip() for line in lines if line.startswith("model name")]
+    return names[0] if names else "unknown processor"

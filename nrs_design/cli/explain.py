@@ -1,0 +1,67 @@
+"""``nrs-design explain``: what a rule or a verdict means, and what to do about it."""
+
+from __future__ import annotations
+
+import textwrap
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from nrs_design.cli.options import Json
+from nrs_design.cli.printing import print_json
+from nrs_design.errors import NrsDesignError
+
+if TYPE_CHECKING:
+    from nrs_design.gating.rules import Rule, Word
+
+WIDTH = 88
+
+
+def explain(
+    rule: Annotated[
+        str | None, typer.Argument(metavar="[RULE]", help="A rule (NRS102) or verdict (refuted).")
+    ] = None,
+    as_json: Json = False,
+) -> None:
+    """Explain a rule or a verdict; without one, list them all.
+
+    Example: nrs-design explain NRS102
+    """
+    from nrs_design.gating.rules import RULES, WORDS
+
+    if rule is None:
+        _list(list(RULES.values()), list(WORDS.values()), as_json=as_json)
+    elif rule.upper() in RULES:
+        entry = RULES[rule.upper()]
+        _explain(f"{entry.id}: {entry.title}", entry, as_json=as_json)
+    elif rule.lower() in WORDS:
+        _explain(rule.lower(), WORDS[rule.lower()], as_json=as_json)
+    else:
+        raise NrsDesignError(
+            f"there is no rule or verdict {rule!r}",
+            remedy="`nrs-design explain` without one lists them",
+        )
+
+
+def _list(rules: list[Rule], words: list[Word], *, as_json: bool) -> None:
+    from dataclasses import asdict
+
+    if as_json:
+        print_json("explain", {"rules": [*map(asdict, rules)], "verdicts": [*map(asdict, words)]})
+        return
+    for rule in rules:
+        print(f"{rule.id}  {rule.title}")
+    print("\nVerdicts: " + ", ".join(word.word for word in words))
+    print("nrs-design explain RULE says what one of them means, and what to do.")
+
+
+def _explain(title: str, entry: Rule | Word, *, as_json: bool) -> None:
+    from dataclasses import asdict
+
+    if as_json:
+        print_json("explain", asdict(entry))
+        return
+    print(title)
+    for heading, text in (("Meaning", entry.explanation), ("What to do", entry.remedy)):
+        print(f"\n{heading}")
+        print(textwrap.fill(text, WIDTH, initial_indent="  ", subsequent_indent="  "))

@@ -1,0 +1,118 @@
+"""``nrs-design gate``: every proof obligation of a project, for CI."""
+
+from __future__ import annotations
+
+import sys
+from enum import StrEnum
+from pathlib import Path
+from time import perf_counter
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from nrs_design.cli import exit_codes
+from nrs_design.cli.options import Json, Quiet
+from nrs_design.cli.printing import note, progress
+from nrs_design.errors import NrsDesignError
+
+if TYPE_CHECKING:
+    from nrs_design.gating.obligations import GateOutcome
+
+# By severity of the worst obligation, from none to a defect of this program.
+OF_SEVERITY = (
+    exit_codes.PROVED,
+    exit_codes.INCONCLUSIVE,
+    exit_codes.REFUTED,
+    exit_codes.USAGE,
+    exit_codes.INTERNAL,
+)
+
+
+class FormatOption(StrEnum):
+    """Formats by name."""
+
+    TEXT = "text"
+    GITHUB = "github"
+    SARIF = "sarif"
+    JUNIT = "junit"
+    JSON = "json"
+
+
+def gate(
+    paths: Annotated[
+        list[Path], typer.Argument(metavar="PATH...", help="Spec files, or folders of them.")
+    ],
+    format_: Annotated[
+        FormatOption, typer.Option("--format", help="What to print.")
+    ] = FormatOption.TEXT,
+    out: Annotated[Path | None, typer.Option(help="Write it to this file, not to stdout.")] = None,
+    locked: Annotated[
+        bool,
+        typer.Option("--locked", help="Only re-check what is locked: no solver, nothing written."),
+    ] = False,
+    lock: Annotated[Path, typer.Option(help="Lock file.")] = Path("nrs.lock"),
+    reports: Annotated[
+        Path, typer.Option("--reports", help="Folder for certificates and HTML reports.")
+    ] = Path("reports"),
+    no_reports: Annotated[
+        bool, typer.Option("--no-reports", help="Write certificates, but no HTML reports.")
+    ] = False,
+    as_json: Json = False,
+    quiet: Quiet = False,
+) -> None:
+    """Certify every spec, write certificates, reports and the lock file, and fail closed.
+
+    The exit code is that of the worst obligation: 4 before 2 before 1 before 3 before 0.
+
+    Example: nrs-design gate specs
+
+    Example: nrs-design gate --locked --format github specs
+    """
+    from nrs_design.gating.formats import FORMATS
+    from nrs_design.output import write_output
+
+    if as_json and format_ not in (FormatOption.TEXT, FormatOption.JSON):
+        raise NrsDesignError(
+            f"--json and --format {format_} exclude each other", remedy="keep one of them"
+        )
+    chosen = FormatOption.JSON if as_json else format_
+    start = perf_counter()
+    outcome = (
+        _re_check(paths, lock, quiet=quiet)
+        if locked
+        else _certify(paths, lock, reports, html=not no_reports, quiet=quiet)
+    )
+    document = FORMATS[chosen](outcome)
+    if out is not None:
+        write_output(out, document)
+    else:
+        sys.stdout.write(document)
+    if out is not None or chosen is not FormatOption.TEXT:
+        note(FORMATS["text"](outcome), quiet=quiet)
+    for text in outcome.notes:
+        note(f"note: {text}", quiet=quiet)
+    note(f"{perf_counter() - start:.1f} s", quiet=quiet)
+    raise typer.Exit(OF_SEVERITY[outcome.severity])
+
+
+def _certify(
+    paths: list[Path], lock: Path, reports: Path, *, html: bool, quiet: bool
+) -> GateOutcome:
+    from nrs_design.gating.find_specs import find_specs
+    from nrs_design.gating.lock import write_lock
+    from nrs_design.gating.run import Files, run_gate
+
+    specs = find_specs(paths)
+    with progress("gate", quiet=quiet) as step:
+        outcome = run_gate(specs, Files(reports, html=html), step)
+    return write_lock(outcome, lock)
+
+
+def _re_check(paths: list[Path], lock: Path, *, quiet: bool) -> GateOutcome:
+    from nrs_design.gating.find_specs import find_specs
+    from nrs_design.gating.lock import read_lock
+    from nrs_design.gating.locked import run_locked
+
+    specs, content = find_specs(paths), read_lock(lock)
+    with progress("gate", quiet=quiet) as step:
+        return run_locked(specs, content, lock, step)

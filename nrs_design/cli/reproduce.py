@@ -1,0 +1,88 @@
+"""``nrs-design reproduce``: the numbers of the thesis, print beside recomputed."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from nrs_design.cli import exit_codes
+from nrs_design.cli.options import Json, Quiet
+from nrs_design.cli.printing import note, print_json, print_table, progress
+
+if TYPE_CHECKING:
+    from nrs_design.reproduction.row import Row
+
+
+def reproduce(
+    html: Annotated[
+        Path | None, typer.Option(metavar="FILE", help="Write the table as an HTML page, too.")
+    ] = None,
+    as_json: Json = False,
+    quiet: Quiet = False,
+) -> None:
+    """Recompute the numbers that the thesis prints, and say which of them are wrong in print.
+
+    Exit code 0: every row is what it is on record to be. 1: a recomputed value has drifted.
+
+    Example: nrs-design reproduce --html reports/reproduce.html
+    """
+    from nrs_design.output import write_output
+    from nrs_design.reproduction.page import render_page
+    from nrs_design.reproduction.row import drifted
+    from nrs_design.reproduction.table import reproduce as recompute
+
+    with progress("recomputing", quiet=quiet) as step:
+        table = recompute(step)
+    if html is not None:
+        write_output(html, render_page(table))
+    if as_json:
+        print_json("reproduce", _summary(table))
+    else:
+        _print(table, quiet=quiet)
+    if html is not None:
+        note(f"page written to {html}", quiet=quiet)
+    for row in drifted(table):
+        note(f"drift: {row.section} {row.name}: {row.value} {row.unit}, printed {row.printed}")
+    raise typer.Exit(exit_codes.REFUTED if drifted(table) else exit_codes.PROVED)
+
+
+def _summary(table: tuple[Row, ...]) -> dict[str, Any]:
+    from dataclasses import asdict
+
+    from nrs_design.reproduction.row import drifted
+    from nrs_design.reproduction.table import count_verdicts
+
+    return {
+        "counts": count_verdicts(table),
+        "drift": [row.name for row in drifted(table)],
+        "rows": [asdict(row) for row in table],
+    }
+
+
+def _print(table: tuple[Row, ...], *, quiet: bool) -> None:
+    from nrs_design.reproduction.page import format_deviation
+    from nrs_design.reproduction.table import count_verdicts
+
+    if not quiet:
+        cells = [
+            [
+                row.section,
+                row.name,
+                row.printed,
+                row.value or "",
+                row.unit,
+                format_deviation(row.deviation),
+                str(row.verdict),
+            ]
+            for row in table
+        ]
+        columns = ["section", "quantity", "printed", "recomputed", "unit", "deviation", "verdict"]
+        print_table("", columns, cells)
+        for row in table:
+            if row.note:
+                print(f"{row.section} {row.name}: {row.note}")
+        print()
+    counts = count_verdicts(table)
+    print(", ".join(f"{count} {verdict}" for verdict, count in counts.items()))

@@ -1,0 +1,116 @@
+"""A deterministic pattern search on the unit square, run from several points side by side."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from nrs_design.design.transfer import BoolArray, FloatArray
+
+Objective = Callable[[FloatArray, FloatArray], FloatArray]
+
+_MAX_ROUNDS = 100
+_LEAST_PROGRESS = 1e-10
+
+
+@dataclass(frozen=True, eq=False)
+class Points:
+    """Points of the unit square that are searched side by side.
+
+    Parameters
+    ----------
+    u, v : ndarray, shape (m,)
+        Coordinates, 0 to 1.
+    step : ndarray, shape (2,)
+        Size of the pattern in u and v; 0 holds a coordinate.
+    slope : ndarray, shape (m,)
+        Direction dv/du of the valley at each point.
+    evaluations : int
+        Objective values spent so far.
+    """
+
+    u: FloatArray
+    v: FloatArray
+    step: FloatArray
+    slope: FloatArray
+    evaluations: int
+
+
+def refine(objective: Objective, start: Points, tolerance: float) -> Points:
+    """Search from every point on a 5 x 5 pattern that moves while it improves, else shrinks.
+
+    The pattern is sheared along the valley, whose walls are kinks: a pattern across it would
+    find every neighbor higher and stop halfway down.
+
+    Parameters
+    ----------
+    objective : callable
+        Maps arrays u, v of one shape (n,) to n costs; infinite where a point is not allowed.
+    start : Points
+        Points to start from.
+    tolerance : float
+        Size of the pattern at which a search ends.
+
+    Returns
+    -------
+    Points
+        Where the searches ended, in the order of `start`.
+    """
+    offsets = start.step * _pattern(start.step > 0)
+    u, v, scale, count = start.u.copy(), start.v.copy(), np.ones(len(start.u)), start.evaluations
+    for _ in range(_MAX_ROUNDS):
+        rows = np.flatnonzero(scale * start.step.max() > tolerance)
+        if not len(rows):
+            break
+        moves = scale[rows, None, None] * offsets
+        across = moves[..., 1] + start.slope[rows, None] * moves[..., 0]
+        tried_u = np.clip(u[rows, None] + moves[..., 0], 0.0, 1.0)
+        tried_v = np.clip(v[rows, None] + across, 0.0, 1.0)
+        costs = objective(tried_u.ravel(), tried_v.ravel()).reshape(tried_u.shape)
+        costs[:, 0] -= _LEAST_PROGRESS  # rounding noise must not count as progress
+        best = np.argmin(costs, axis=1)
+        u[rows], v[rows] = (tried[np.arange(len(rows)), best] for tried in (tried_u, tried_v))
+        scale[rows] = np.where(best == 0, scale[rows] / 4, np.minimum(1, 2 * scale[rows]))
+        count += costs.size
+    return replace(start, u=u, v=v, evaluations=count)
+
+
+def _pattern(free: BoolArray) -> FloatArray:
+    """Return the offsets in u and v, the center first; a parameter that is not free stays."""
+    axes = [[0.0, -1.0, 1.0, -2.0, 2.0] if moves else [0.0] for moves in free]
+    return np.array([(i, j) for i in axes[0] for j in axes[1]])
+
+
+def snap(
+    objective: Objective, u: FloatArray, v: FloatArray
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Move points within 0.01 of an edge onto it where that costs nothing.
+
+    An objective that is flat near an edge lets rounding hide the last step there.
+
+    Returns
+    -------
+    u, v, costs : ndarray, shape (m,)
+        The points and the objective there.
+    """
+    edge_u, edge_v = (np.where(np.abs(w - np.round(w)) < 0.01, np.round(w), w) for w in (u, v))
+    costs = objective(u, v)
+    for edges in ((edge_u, v), (u, edge_v), (edge_u, edge_v)):
+        trial = objective(*edges)
+        gain = trial <= costs * (1 + 1e-12)
+        u, v = np.where(gain, edges[0], u), np.where(gain, edges[1], v)
+        costs = np.where(gain, trial, costs)
+    return u, v, costs
+
+
+def local_minima(costs: FloatArray) -> BoolArray:
+    """Mark the finite entries that no neighbor undercuts."""
+    padded = np.pad(costs, 1, constant_values=np.inf)
+    rows, columns = costs.shape
+    lowest = np.isfinite(costs)
+    for i in range(3):
+        for j in range(3):
+            lowest &= costs <= padded[i : i + rows, j : j + columns]
+    return lowest

@@ -1,0 +1,104 @@
+"""From a spec to an export record, by way of a proof."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+from nrs_design.certificates.certificate import Certificate
+from nrs_design.certificates.verify import verify
+from nrs_design.controllers.controller_design import ControllerDesign
+from nrs_design.errors import DesignError
+from nrs_design.exporters.record import ExportRecord, build_record, find_mismatch
+from nrs_design.pipeline import run_certification, run_design
+from nrs_design.spec import InteractionDesignSpec, LoadedSpec
+
+Progress = Callable[[str], None]
+
+
+@dataclass(frozen=True, slots=True)
+class Export:
+    """What may be exported, or why nothing may.
+
+    Parameters
+    ----------
+    verdict : {"proved", "refuted", "inconclusive", "rejected"}
+        Rejected: the given certificate does not hold, or does not cover the design.
+    record : ExportRecord or None
+        Only with the verdict proved.
+    certificate : Certificate or None
+        The proof of the record.
+    reason : str
+        Why there is no record; empty if there is one.
+    """
+
+    verdict: str
+    record: ExportRecord | None
+    certificate: Certificate | None
+    reason: str = ""
+
+
+def export_design(
+    loaded: LoadedSpec, certificate: Path | None = None, progress: Progress = lambda step: None
+) -> Export:
+    """Design a spec and return its export record, if the design is proved.
+
+    Parameters
+    ----------
+    loaded : LoadedSpec
+        The spec.
+    certificate : Path, optional
+        A certificate to be re-checked; without it the design is certified afresh.
+    progress : callable
+        Told the name of each step.
+
+    Raises
+    ------
+    DesignError
+        If the spec gives matrices, which have no gains, or the design has no answer.
+    CertificateError
+        If the given file is not a certificate at all.
+    """
+    if not isinstance(loaded.spec, InteractionDesignSpec):
+        raise DesignError(
+            "a switched-system spec has no gains to export",
+            path=loaded.path,
+            remedy="use certify-switching, or a spec of kind interaction-design",
+        )
+    if certificate is None:
+        return _certified_afresh(loaded, progress)
+    progress("design")
+    design = run_design(loaded)
+    assert design is not None
+    progress("re-check")
+    return _certified_by(certificate, loaded, loaded.spec.coordinates, design)
+
+
+def _certified_afresh(loaded: LoadedSpec, progress: Progress) -> Export:
+    result = run_certification(loaded, progress=progress)
+    verdict = str(result.certification.verdict)
+    if result.design is None or result.certificate is None or verdict != "proved":
+        return Export(verdict, None, None, f"the design is not proved: {verdict}")
+    return _proved(result.design, result.certificate)
+
+
+def _certified_by(
+    file: Path, loaded: LoadedSpec, coordinates: str, design: ControllerDesign
+) -> Export:
+    checked = verify(file, loaded)
+    if checked.certificate is None or checked.fault is not None:
+        return Export("rejected", None, None, f"{file} is rejected: {checked.fault}")
+    found = checked.certificate
+    if found.verdict == "refuted":
+        return Export("refuted", None, None, f"{file} refutes the design")
+    fault = find_mismatch(design, found)
+    if fault is None and found.coordinates != coordinates:
+        fault = f"is about {found.coordinates} coordinates, not those of the spec"
+    if fault is not None:
+        return Export("rejected", None, None, f"{file} {fault}")
+    return _proved(design, found)
+
+
+def _proved(design: ControllerDesign, certificate: Certificate) -> Export:
+    return Export("proved", build_record(design, certificate), certificate)

@@ -1,0 +1,214 @@
+"""The export record: the gains that ship, and the proof that covers them. JSON is its dump."""
+
+from __future__ import annotations
+
+import json
+import struct
+from dataclasses import fields
+from fractions import Fraction
+from typing import Annotated, Literal
+
+from pydantic import BaseModel, ConfigDict, Field, model_validator
+
+from nrs_design import __version__
+from nrs_design.certificates.certificate import (
+    Certificate,
+    CommonQuadratic,
+    claim,
+    rate_text,
+)
+from nrs_design.controllers.controller_design import ControllerDesign
+from nrs_design.controllers.float32 import exact_decimal
+from nrs_design.controllers.gains import UNITS, gains_of
+from nrs_design.controllers.laws import (
+    Admittance,
+    Law,
+    PositionControl,
+    ProportionalDerivative,
+    ProportionalForce,
+)
+from nrs_design.errors import CertificateError
+from nrs_design.switched.system import Time
+
+LawName = Literal["motion", "impedance", "force", "position"]
+Sha256 = Annotated[str, Field(pattern="^[0-9a-f]{64}$")]
+
+_NAMES: dict[type[Law | ProportionalDerivative], LawName] = {
+    ProportionalDerivative: "motion",
+    Admittance: "impedance",
+    ProportionalForce: "force",
+    PositionControl: "position",
+}
+
+
+class _Frozen(BaseModel):
+    model_config = ConfigDict(
+        extra="forbid", frozen=True, strict=True, populate_by_name=True, allow_inf_nan=False
+    )
+
+
+class Gain(_Frozen):
+    """One gain, three times the same number.
+
+    ``exact`` is its exact decimal, ``float32`` the JSON number that reads back as the same
+    single-precision number, and ``float32_bits`` that number's bits in hexadecimal.
+    """
+
+    name: str
+    unit: str
+    exact: str
+    float32: float
+    float32_bits: str = Field(pattern="^0x[0-9a-f]{8}$")
+
+    @model_validator(mode="after")
+    def _check_agreement(self) -> Gain:
+        bits = int(self.float32_bits, 16)
+        held: float = struct.unpack(">f", bits.to_bytes(4, "big"))[0]
+        # The text tells -0 from 0.
+        if repr(held) != repr(self.float32) or exact_decimal(Fraction(self.float32)) != self.exact:
+            raise ValueError(f"the three forms of gain {self.name} are not the same number")
+        return self
+
+
+class MotionController(_Frozen):
+    """The PD controller of the motion loop, ``delta = Kp e + Kd e'``."""
+
+    law: Literal["motion"] = "motion"
+    gains: tuple[Gain, ...]
+
+
+class CompliantController(_Frozen):
+    """One controller, with what it was designed for and what it may touch."""
+
+    name: str
+    law: Literal["impedance", "force", "position"]
+    environment: str | None
+    contacts: tuple[str, ...]
+    gains: tuple[Gain, ...]
+
+
+class SpecReference(_Frozen):
+    """The spec that the design belongs to."""
+
+    name: str
+    sha256: Sha256
+
+
+class DecayRate(_Frozen):
+    """The certified rate: exactly, and with six digits rounded to its safe side."""
+
+    exact: str
+    rounded: str
+    unit: Literal["1/s"] = "1/s"
+
+
+class Proof(_Frozen):
+    """What is proved about these gains, and by which certificate."""
+
+    verdict: Literal["proved"] = "proved"
+    claim: str
+    certificate_id: Sha256
+    decay_rate: DecayRate
+    coordinates: Literal["deflection", "force"]
+    assumptions: tuple[str, ...]
+
+
+class Package(_Frozen):
+    """What made the record."""
+
+    name: Literal["nrs-design"] = "nrs-design"
+    version: str
+
+
+class ExportRecord(_Frozen):
+    """A proved design, complete: every format is rendered from this and nothing else."""
+
+    schema_id: Literal["nrs-design/export/1"] = Field(default="nrs-design/export/1", alias="schema")
+    package: Package
+    spec: SpecReference
+    motion: MotionController
+    controllers: tuple[CompliantController, ...] = Field(min_length=1)
+    proof: Proof
+
+
+def build_record(design: ControllerDesign, certificate: Certificate) -> ExportRecord:
+    """Put a design and its proof together.
+
+    Parameters
+    ----------
+    design : ControllerDesign
+        The gains that ship.
+    certificate : Certificate
+        Made or re-checked just now; it must prove stability of exactly these gains.
+
+    Raises
+    ------
+    CertificateError
+        If the certificate proves nothing, or is about other gains.
+    """
+    fault = find_mismatch(design, certificate)
+    evidence = certificate.evidence
+    if fault is not None or not isinstance(evidence, CommonQuadratic):
+        raise CertificateError(f"the certificate {fault}")
+    return ExportRecord(
+        package=Package(version=__version__),
+        spec=SpecReference(name=certificate.spec_name, sha256=certificate.spec_sha256),
+        motion=MotionController(gains=_gains(design.motion)),
+        controllers=tuple(
+            CompliantController.model_validate(
+                {
+                    "name": controller.name,
+                    "law": _NAMES[type(controller.law)],
+                    "environment": controller.environment,
+                    "contacts": controller.contacts,
+                    "gains": _gains(controller.law),
+                }
+            )
+            for controller in design.controllers
+        ),
+        proof=Proof.model_validate(
+            {
+                "claim": claim(certificate.system, evidence),
+                "certificate_id": certificate.id,
+                "decay_rate": DecayRate(
+                    exact=str(evidence.rate), rounded=rate_text(evidence.rate, Time.CONTINUOUS)
+                ),
+                "coordinates": certificate.coordinates,
+                "assumptions": certificate.system.assumptions,
+            }
+        ),
+    )
+
+
+def find_mismatch(design: ControllerDesign, certificate: Certificate) -> str | None:
+    """Say why a valid certificate does not cover a design; None if it does."""
+    if certificate.verdict != "proved":
+        return "refutes stability"
+    designed = gains_of(design)
+    for name in designed.keys() | certificate.gains.keys():
+        if dict(certificate.gains.get(name, {})) != designed.get(name):
+            return f"is about other gains of {name} than the designed ones"
+    return None
+
+
+def dump_record(record: ExportRecord) -> str:
+    """Return the JSON text of a record."""
+    return json.dumps(record.model_dump(mode="json", by_alias=True), indent=2) + "\n"
+
+
+def _gains(law: Law | ProportionalDerivative) -> tuple[Gain, ...]:
+    kind = _NAMES[type(law)]
+    return tuple(
+        _gain(field.name, UNITS[kind, field.name], getattr(law, field.name))
+        for field in fields(law)
+    )
+
+
+def _gain(name: str, unit: str, value: Fraction) -> Gain:
+    return Gain(
+        name=name,
+        unit=unit,
+        exact=exact_decimal(value),
+        float32=float(value),
+        float32_bits="0x" + struct.pack(">f", float(value)).hex(),
+    )

@@ -1,0 +1,237 @@
+"""The design: gains as shipped, motion loop, impedance and force control."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from fractions import Fraction
+from typing import TYPE_CHECKING
+
+from nrs_design.controllers.controller_design import ControllerDesign
+from nrs_design.controllers.gains import MOTION, UNITS, gains_of
+from nrs_design.controllers.laws import Admittance, Law, PositionControl
+from nrs_design.design.transfer import TransferFunction, poles
+from nrs_design.models.plant import build_plant
+from nrs_design.reporting.document import Block, Illustration, Paragraph, Section, Table
+from nrs_design.reporting.figures.complex_plane import draw_root_locus
+from nrs_design.reporting.figures.impedance import draw_displayed_impedance, draw_sensitivity
+from nrs_design.reporting.formatting import number, polynomial, root, roots
+from nrs_design.spec import InteractionDesignSpec
+
+if TYPE_CHECKING:
+    from nrs_design.design.evidence import DesignEvidence, ForceEvidence, ImpedanceEvidence
+
+# More controllers than these make a table too wide for a page, or a figure too full.
+_COLUMNS = 4
+_CURVES = 6
+
+_NOMINAL = (
+    "Design values in floating point, for contact at the nominal stiffness; no part of the proof."
+)
+_IMPEDANCE_ROWS: tuple[tuple[str, Callable[[ImpedanceEvidence], str]], ...] = (
+    ("Desired impedance [N·m·s/rad]", lambda item: number(item.problem.desired, 5)),
+    ("Nominal stiffness [N·m/rad]", lambda item: number(item.problem.loop.stiffness, 6)),
+    ("Nominal damping [N·m·s/rad]", lambda item: number(item.problem.loop.damping, 5)),
+    ("Mt at the optimum [kg·m²]", lambda item: number(item.optimum.Mt, 6)),
+    ("Bt at the optimum [N·m·s/rad]", lambda item: number(item.optimum.Bt, 6)),
+    ("Mt as shipped [kg·m²]", lambda item: number(item.Mt, 6)),
+    ("Bt as shipped [N·m·s/rad]", lambda item: number(item.Bt, 6)),
+    ("Cost as shipped [1]", lambda item: number(item.cost, 5)),
+    ("Sensitivity peak Ms [1]", lambda item: number(item.margins.sensitivity_peak)),
+    ("Frequency of Ms [rad/s]", lambda item: number(item.margins.sensitivity_peak_frequency)),
+    ("Gain margin, up [factor]", lambda item: number(item.margins.gain_margin)),
+    ("Gain margin, down [factor]", lambda item: number(item.margins.gain_margin_low)),
+    ("Phase margin [deg]", lambda item: number(math.degrees(item.margins.phase_margin))),
+    ("Delay margin [ms]", lambda item: number(1e3 * item.margins.delay_margin)),
+    ("Disk margin [1]", lambda item: number(item.margins.disk_margin)),
+    ("Stiffness limit [N·m/rad]", lambda item: number(item.margins.stiffness_limit)),
+)
+_FORCE_ROWS: tuple[tuple[str, Callable[[ForceEvidence], str]], ...] = (
+    ("Kp [rad/(N·m)]", lambda item: number(item.loop.gain, 6)),
+    ("Nominal stiffness [N·m/rad]", lambda item: number(item.stiffness, 6)),
+    ("Closed-loop poles [rad/s]", lambda item: roots(item.loop.poles)),
+    ("Damping ratio [1]", lambda item: number(item.loop.damping_ratio)),
+    ("Natural frequency [rad/s]", lambda item: number(item.loop.natural_frequency)),
+    ("Steady error over command [1]", lambda item: number(item.loop.steady_state_ratio)),
+)
+
+
+def design_sections(
+    spec: InteractionDesignSpec, design: ControllerDesign, evidence: DesignEvidence | None
+) -> tuple[Section, ...]:
+    """Describe a design; without evidence only its gains."""
+    gains = Section("Designed gains", (_gain_table(design),))
+    if evidence is None:
+        text = (
+            "What the gains achieve is not shown: poles and margins exist only where the nominal "
+            "loops are stable."
+        )
+        return (Section("Designed gains", (*gains.blocks, Paragraph(text))),)
+    parts = [gains, _motion_section(spec, design, evidence)]
+    if evidence.impedance:
+        parts.append(_impedance_section(evidence.impedance))
+    if evidence.force:
+        parts.append(_force_section(evidence))
+    return tuple(parts)
+
+
+def _gain_table(design: ControllerDesign) -> Table:
+    laws: dict[str, Law] = {controller.name: controller.law for controller in design.controllers}
+    rows = []
+    for name, gains in gains_of(design).items():
+        kind = "motion" if name == MOTION else _kind(laws[name])
+        for gain, text in gains.items():
+            unit = UNITS[kind, gain].replace("*", "·").replace("^2", "²")
+            rows.append((name, gain, number(float(Fraction(text)), 6), unit, text))
+        if not gains:
+            rows.append((name, "none: the motion loop alone", "", "", ""))
+    columns = ("Controller", "Gain", "Value", "Unit", "Exact value that ships (float32)")
+    return Table("Gains of one axis", columns, tuple(rows))
+
+
+def _kind(law: Law) -> str:
+    if isinstance(law, PositionControl):
+        return "position"
+    return "impedance" if isinstance(law, Admittance) else "force"
+
+
+def _motion_section(
+    spec: InteractionDesignSpec, design: ControllerDesign, evidence: DesignEvidence
+) -> Section:
+    G = evidence.motion
+    text = (
+        f"Motion loop in use: G(s) = ({polynomial(G.numerator, 6)}) / "
+        f"({polynomial(G.denominator, 6)}), from commanded to actual velocity. "
+        f"{_source(spec, evidence)}"
+    )
+    return Section(
+        "Motion loop",
+        (Paragraph(text), _motion_table(design, evidence), _motion_locus(spec, design, evidence)),
+    )
+
+
+def _source(spec: InteractionDesignSpec, evidence: DesignEvidence) -> str:
+    if evidence.motion_source == "given":
+        return "The spec states this G itself; it need not be the one that the PD gains make."
+    given = spec.motion_loop
+    names = [
+        name
+        for name, value in (("derivative gain", given.derivative_gain), ("zero", given.zero))
+        if value is not None
+    ]
+    if names:
+        return f"It follows from the PD controller, whose {' and '.join(names)} the spec gives."
+    return "It follows from the PD controller that was designed by root locus."
+
+
+def _motion_table(design: ControllerDesign, evidence: DesignEvidence) -> Table:
+    wanted, reached, motion = evidence.wanted, evidence.reached, design.motion
+    damping = -wanted.wanted_poles[0].real / wanted.natural_frequency
+    wanted_Kp = wanted.derivative_gain * wanted.zero
+    rows = (
+        ("Kd [rpm·s/rad]", number(wanted.derivative_gain, 6), number(float(motion.Kd), 6)),
+        ("Zero Kp/Kd [1/s]", number(wanted.zero, 6), number(float(motion.zero), 6)),
+        (
+            "Kp [rpm/rad]",
+            number(wanted_Kp, 6),
+            number(float(motion.Kp), 6),
+        ),
+        ("Poles [rad/s]", root(wanted.wanted_poles[0], 5), roots(reached.poles, 5)),
+        ("Damping ratio [1]", number(damping), number(reached.damping_ratio)),
+        (
+            "Natural frequency [rad/s]",
+            number(wanted.natural_frequency),
+            number(reached.natural_frequency),
+        ),
+        ("Overshoot [%]", "–", number(100 * reached.overshoot, 3)),
+        ("Bandwidth [rad/s]", "–", number(reached.bandwidth)),
+    )
+    return Table(
+        "Motion loop: wanted and reached", ("", "Root locus asks for", "G and gains in use"), rows
+    )
+
+
+def _motion_locus(
+    spec: InteractionDesignSpec, design: ControllerDesign, evidence: DesignEvidence
+) -> Illustration:
+    actuator = build_plant(spec).actuator
+    gain, zero, Kd = float(actuator.gain), float(design.motion.zero), float(design.motion.Kd)
+    lag = float(actuator.time_constant)
+    open_loop = TransferFunction((gain, gain * zero), (lag, 1.0, 0.0))
+    closed = TransferFunction((1.0,), (lag, 1.0 + Kd * gain, Kd * gain * zero))
+    caption = (
+        f"Poles of the motion loop while Kd grows from 0, with the zero kept at {number(-zero, 6)} "
+        f"1/s. Squares: poles that damping ratio and settling time ask for. Diamonds: poles with "
+        f"the shipped gains, {roots(poles(closed).tolist())} rad/s."
+    )
+    if evidence.motion_source == "given":
+        caption += " The G that the spec states has its own poles, given in the table."
+    figure = draw_root_locus(open_loop, Kd, evidence.wanted.wanted_poles, poles(closed).tolist())
+    return Illustration("root-locus", "Root locus of the PD design", caption, figure)
+
+
+def _impedance_section(items: tuple[ImpedanceEvidence, ...]) -> Section:
+    drawn = items[:_CURVES]
+    rest = "" if len(drawn) == len(items) else f" The first {_CURVES} controllers are drawn."
+    displayed = Illustration(
+        "displayed-impedance",
+        "Displayed and desired impedance",
+        "Magnitude of the impedance that the operator feels in nominal contact (solid) and the "
+        f"desired one (dashed); the dotted line is the bandwidth of the motion.{rest}",
+        draw_displayed_impedance(drawn),
+    )
+    sensitivity = Illustration(
+        "sensitivity",
+        "Sensitivity",
+        "Magnitude of L = 1/(1 + G Ze Y) in nominal contact; the marker is its peak Ms. A value "
+        f"above 1 (gray line) amplifies disturbances of that frequency.{rest}",
+        draw_sensitivity(drawn),
+    )
+    tables = _by_controller(
+        "Impedance controllers",
+        [label for label, _ in _IMPEDANCE_ROWS],
+        [item.name for item in items],
+        [[value(item) for _, value in _IMPEDANCE_ROWS] for item in items],
+    )
+    return Section("Impedance control", (Paragraph(_NOMINAL), *tables, displayed, sensitivity))
+
+
+def _force_section(evidence: DesignEvidence) -> Section:
+    tables = _by_controller(
+        "Force controllers",
+        [label for label, _ in _FORCE_ROWS],
+        [item.name for item in evidence.force],
+        [[value(item) for _, value in _FORCE_ROWS] for item in evidence.force],
+    )
+    loci = (_force_locus(evidence.motion, item) for item in evidence.force[:_CURVES])
+    return Section("Force control", (Paragraph(_NOMINAL), *tables, *loci))
+
+
+def _force_locus(motion: TransferFunction, item: ForceEvidence) -> Illustration:
+    scaled = tuple(item.stiffness * c for c in motion.numerator)
+    open_loop = TransferFunction(scaled, motion.denominator)
+    # A gain of zero is allowed; the locus still needs a range of gains.
+    gain = item.loop.gain or 1 / item.stiffness
+    caption = (
+        f"Poles of the force loop of {item.name} while Kp grows from 0, at the nominal stiffness "
+        f"{number(item.stiffness, 6)} N·m/rad. Diamonds: Kp = {number(item.loop.gain)} rad/(N·m)."
+    )
+    figure = draw_root_locus(open_loop, gain, (), item.loop.poles)
+    return Illustration(
+        f"force-locus-{item.name}".replace(".", "-"),
+        f"Root locus of the force loop: {item.name}",
+        caption,
+        figure,
+    )
+
+
+def _by_controller(
+    title: str, labels: Sequence[str], names: Sequence[str], columns: Sequence[Sequence[str]]
+) -> list[Block]:
+    """Make tables with a row for each quantity and a column for each controller."""
+    tables: list[Block] = []
+    for start in range(0, len(names), _COLUMNS):
+        part = slice(start, start + _COLUMNS)
+        rows = tuple(zip(labels, *columns[part], strict=True))
+        tables.append(Table(title, ("", *names[part]), rows))
+    return tables

@@ -1,0 +1,27 @@
+"""The table as one self-contained HTML page."""
+
+from __future__ import annotations
+
+from nrs_design import __version__
+from nrs_design.reproduction.row import Row
+from nrs_design.reproduction.table import count_verdicts
+
+
+def render_page(table: tuple[Row, ...]) -> str:
+    """Return the page; the same rows give the same bytes."""
+    from jinja2 import Environment, PackageLoader, StrictUndefined
+
+    environment = Environment(
+        loader=PackageLoader("nrs_design.reproduction"),
+        autoescape=True,
+        undefined=StrictUndefined,
+        keep_trailing_newline=True,
+    )
+    environment.filters["deviation"] = format_deviation
+    template = environment.get_template("reproduce.html.j2")
+    return template.render(rows=table, counts=count_verdicts(table), version=__version__)
+
+
+def format_deviation(deviation: float | None) -> str:
+    """Write a deviation with two digits, and none at all as nothing."""
+    return "" if deviation is None else f"{deviation:.1e}" if deviation else "0"

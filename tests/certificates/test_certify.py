@@ -1,0 +1,312 @@
+"""The whole search on families whose answer is known; lying solvers; hard numbers.
+
+The verdict may be inconclusive where numbers are extreme. It may never be wrong.
+"""
+
+from fractions import Fraction
+
+import numpy as np
+import pytest
+
+from nrs_design.certificates import lmi, steps
+from nrs_design.certificates.certificate import CommonQuadratic, UnstableMode
+from nrs_design.certificates.certify import (
+    CommonQuadraticStatus,
+    Method,
+    Verdict,
+    certify,
+)
+from nrs_design.certificates.gradient import GradientResult
+from nrs_design.errors import DesignError, InternalError
+from nrs_design.pipeline import run_certification
+from nrs_design.spec import read_spec
+from nrs_design.switched.system import Time
+from tests.support import ROOT, dayawansa_martin, family, holds, is_stable_by_lyapunov
+
+ROTATION = [[0, 1], [-1, 0]]
+SINGULAR = [["-0.36", "-0.48"], ["-0.48", "-0.64"]]
+STABLE = dayawansa_martin(5)
+MARGINAL = family([[-1, 0], [0, -1]], ROTATION)
+UNSTABLE = family([[-1, 0], [0, -1]], [[1, 0], [0, -1]])
+NOT_QUADRATIC = dayawansa_martin(6)
+
+
+def settle(system, **options):
+    """Certify, and hold the evidence against the definition in fractions."""
+    result = certify(system, **options)
+    if result.verdict is Verdict.PROVED:
+        assert result.common_quadratic is CommonQuadraticStatus.EXISTS
+        assert isinstance(result.evidence, CommonQuadratic)
+    elif result.verdict is Verdict.REFUTED:
+        assert result.common_quadratic is CommonQuadraticStatus.IMPOSSIBLE
+        assert isinstance(result.evidence, UnstableMode)
+    else:
+        assert result.common_quadratic is CommonQuadraticStatus.UNKNOWN
+        assert result.evidence is None
+    assert result.evidence is None or holds(system, result.evidence)
+    return result
+
+
+class TestNearTheThreshold:
+    """Dayawansa and Martin 1999: quadratic iff a < 3 + 2 sqrt(2) = 5.82842712474619..."""
+
+    @pytest.mark.parametrize("a", ["1", "3", "5", "5.8", "5.82", "5.828", "5.8284"])
+    def test_proved_below(self, a):
+        assert settle(dayawansa_martin(a), optimize_rate=False).verdict is Verdict.PROVED
+
+    @pytest.mark.parametrize("a", ["5.8285", "5.829", "5.83", "6", "12"])
+    def test_not_proved_above(self, a):
+        assert settle(dayawansa_martin(a)).verdict is Verdict.INCONCLUSIVE
+
+    def test_best_rate_is_safe_and_close(self):
+        """With A + alpha I in place of A, a = 5 stays quadratic up to alpha about 0.10557."""
+        rate = settle(STABLE).evidence.rate
+        assert Fraction("0.105") < rate < Fraction("0.1056")
+
+
+class TestModes:
+    @pytest.mark.parametrize(
+        "A", [ROTATION, SINGULAR, [[0, 0], [0, 0]], [[0, 1], [0, 0]], [[1, 0], [0, -1]]]
+    )
+    @pytest.mark.parametrize("others", [0, 1, 3])
+    def test_one_bad_mode_refutes(self, A, others):
+        result = settle(family(*[[[-1, 0], [0, -1]]] * others, A))
+        assert result.verdict is Verdict.REFUTED
+        assert result.evidence.mode == f"m{others}"
+
+    @pytest.mark.parametrize(
+        "A",
+        [
+            ROTATION,
+            [["0.6", "0.8"], ["-0.8", "0.6"]],
+            [[1, 0], [0, 0]],
+            [[0, 0], [0, -1]],
+            [[2, 0], [0, 0]],
+        ],
+    )
+    def test_one_bad_mode_refutes_in_discrete_time(self, A):
+        result = settle(family([[0, 0], [0, 0]], A, time=Time.DISCRETE))
+        assert result.verdict is Verdict.REFUTED
+
+    @pytest.mark.parametrize("digits", [6, 9, 15, 30, 90])
+    def test_barely_stable_and_barely_unstable(self, digits):
+        tiny = Fraction(1, 10**digits)
+        barely = settle(family([[-tiny, 1], [-1, -tiny]]))
+        assert barely.verdict is not Verdict.REFUTED
+        assert settle(family([[tiny, 1], [-1, tiny]])).verdict is Verdict.REFUTED
+        assert settle(family([[1 + tiny]], time=Time.DISCRETE)).verdict is Verdict.REFUTED
+        assert settle(family([[1 - tiny]], time=Time.DISCRETE)).verdict is not Verdict.REFUTED
+
+    @pytest.mark.parametrize("optimize_rate", [True, False])
+    @pytest.mark.parametrize(
+        ("A", "time", "verdict"),
+        [
+            (-1, Time.CONTINUOUS, Verdict.PROVED),
+            (0, Time.CONTINUOUS, Verdict.REFUTED),
+            (1, Time.CONTINUOUS, Verdict.REFUTED),
+            ("-1e-9", Time.CONTINUOUS, Verdict.PROVED),
+            (0, Time.DISCRETE, Verdict.PROVED),
+            ("1/2", Time.DISCRETE, Verdict.PROVED),
+            ("-1/2", Time.DISCRETE, Verdict.PROVED),
+            (1, Time.DISCRETE, Verdict.REFUTED),
+            (-1, Time.DISCRETE, Verdict.REFUTED),
+        ],
+    )
+    def test_one_state_one_mode(self, A, time, verdict, optimize_rate):
+        assert settle(family([[A]], time=time), optimize_rate=optimize_rate).verdict is verdict
+
+    @pytest.mark.parametrize("optimize_rate", [True, False])
+    @pytest.mark.parametrize("A", [[[0, 0], [0, 0]], [[0, 1], [0, 0]], [["1/2", 5], [0, "-1/2"]]])
+    def test_dead_beat_and_defective_modes(self, A, optimize_rate):
+        result = settle(family(A, time=Time.DISCRETE), optimize_rate=optimize_rate)
+        assert result.verdict is Verdict.PROVED
+
+    def test_identical_modes(self):
+        pair = family(*[[[-1, 4], [-4, -2]]] * 5)
+        assert settle(pair).verdict is Verdict.PROVED
+
+    def test_many_modes(self):
+        """300 modes around -I, more than enter the solver at once."""
+        generator = np.random.default_rng(3)
+        matrices = [
+            [
+                [Fraction(int(e), 100) - 2 * (i == j) for j, e in enumerate(row)]
+                for i, row in enumerate(A)
+            ]
+            for A in generator.integers(-40, 40, (300, 5, 5))
+        ]
+        assert settle(family(*matrices), optimize_rate=False).verdict is Verdict.PROVED
+
+    def test_many_modes_with_one_bad_one(self):
+        matrices = [[[-1, Fraction(i, 300)], [0, -1]] for i in range(300)]
+        matrices[217] = SINGULAR
+        assert settle(family(*matrices)).evidence.mode == "m217"
+
+    def test_many_states(self):
+        A = [[-2 if i == j else int(j == i + 1) for j in range(20)] for i in range(20)]
+        B = [list(column) for column in zip(*A, strict=True)]
+        assert settle(family(A, B), optimize_rate=False).verdict is Verdict.PROVED
+
+
+class TestScales:
+    """In other units of time and of the states, the answer is the same."""
+
+    @pytest.mark.parametrize("scale", ["1e-100", "1e-9", "1e-5", "1e5", "1e9", "1e100", "1e190"])
+    def test_unit_of_time(self, scale):
+        result = settle(dayawansa_martin(5, Fraction(scale)))
+        assert result.verdict is Verdict.PROVED
+        assert 0.105 < result.evidence.rate / Fraction(scale) < 0.1056
+        above = settle(dayawansa_martin(6, Fraction(scale)))
+        assert above.verdict is Verdict.INCONCLUSIVE
+
+    @pytest.mark.parametrize("scale", ["1e-100", "1e-5", "1e5", "1e100"])
+    def test_units_of_the_states(self, scale):
+        s = Fraction(scale)
+        pair = [[[-1, -s], [1 / s, -1]], [[-1, -5 * s], [1 / (5 * s), -1]]]
+        assert settle(family(*pair)).verdict is Verdict.PROVED
+
+    def test_entries_from_1e_minus_5_to_1e5(self):
+        A = [["-1e-5", "1e5", 0], [0, "-1e5", "1"], ["-1e-5", 0, "-1e-1"]]
+        stable = is_stable_by_lyapunov(family(A).modes[0].A.fractions())
+        result = settle(family(A))
+        assert stable
+        assert result.verdict is not Verdict.REFUTED
+
+    @pytest.mark.parametrize("scale", ["1e-190", "1e-100", "1e-5", "1e5", "1e100", "1e190"])
+    @pytest.mark.parametrize("time", list(Time))
+    def test_nothing_crashes(self, scale, time):
+        s = Fraction(scale)
+        for matrices in (
+            [[[-1, s], [0, -1]], [[-1, 0], [1 / s, -1]]],
+            [[[-1, s], [0, -1]], [[-1 / s, 0], [1, -1]]],
+            [[[-s, 0], [0, -1 / s]]],
+            [[[Fraction(1, 2), s], [0, Fraction(1, 2)]]],
+            [[[Fraction(1, 2), s], [s, Fraction(1, 2)]]],
+            [[[0, s], [0, 0]], [[0, 0], [s, 0]]],
+        ):
+            settle(family(*matrices, time=time), optimize_rate=False)
+
+    def test_beyond_floating_point(self):
+        huge = 10**400
+        assert settle(family([[-huge, 0], [0, -1]])).verdict is Verdict.INCONCLUSIVE
+        assert settle(family([[huge, 0], [0, -1]])).verdict is Verdict.REFUTED
+
+
+class TestMethods:
+    @pytest.mark.parametrize(
+        "system",
+        [STABLE, dayawansa_martin("1/5"), family([[-1, 1], [-1, -1]], [[-2, 3], [-3, -2]])],
+    )
+    def test_gradient_and_lmi_agree_where_it_is_easy(self, system):
+        for method in (Method.GRADIENT, Method.LMI, Method.AUTO):
+            assert settle(system, method=method).verdict is Verdict.PROVED
+
+    def test_gradient_proves_the_robot(self):
+        loaded = read_spec(ROOT / "specs" / "neuroboscope" / "soft-tissue.nrs.yaml")
+        result = run_certification(loaded, method=Method.GRADIENT)
+        assert result.certification.verdict is Verdict.PROVED
+        assert result.certification.method == "gradient"
+
+    def test_gradient_gives_up(self):
+        result = settle(NOT_QUADRATIC, method=Method.GRADIENT)
+        assert result.verdict is Verdict.INCONCLUSIVE
+        assert any("not converged" in attempt.outcome for attempt in result.attempts)
+
+    def test_gradient_is_refused_in_discrete_time(self):
+        with pytest.raises(DesignError, match="continuous") as caught:
+            certify(family([["1/2"]], time=Time.DISCRETE), Method.GRADIENT)
+        assert caught.value.remedy == "use --method lmi"
+
+    def test_steps_are_told_and_timed(self):
+        told = []
+        result = certify(NOT_QUADRATIC, progress=told.append)
+        assert told == ["suspicious modes", "lmi", "gradient", "every mode"]
+        assert [attempt.step for attempt in result.attempts] == told
+        assert all(attempt.seconds >= 0 for attempt in result.attempts)
+
+
+LIES = {
+    "indefinite": lambda n: np.diag([1.0] + [-1.0] * (n - 1)),
+    "negative": lambda n: -np.eye(n),
+    "zero": lambda n: np.zeros((n, n)),
+    "identity": np.eye,
+    "singular": lambda n: np.ones((n, n)),
+    "skew": lambda n: np.triu(np.ones((n, n))) - np.tril(np.ones((n, n)), -1),
+    "lopsided": lambda n: np.eye(n) + np.triu(np.full((n, n), 1e9), 1),
+    "nan": lambda n: np.full((n, n), np.nan),
+    "one nan": lambda n: np.where(np.eye(n) > 0, 1.0, np.nan),
+    "inf": lambda n: np.full((n, n), np.inf),
+    "mixed inf": lambda n: np.diag([np.inf] + [1.0] * (n - 1)),
+    "huge": lambda n: 1.5e308 * np.eye(n),
+    "tiny": lambda n: 5e-324 * np.eye(n),
+    "stretched": lambda n: np.diag(10.0 ** np.linspace(-300, 300, n)),
+    "slightly wrong": lambda n: np.eye(n) - 1e-9 * np.ones((n, n)),
+}
+SYSTEMS = {
+    "stable": (STABLE, {Verdict.PROVED, Verdict.INCONCLUSIVE}),
+    "not quadratic": (NOT_QUADRATIC, {Verdict.INCONCLUSIVE}),
+    "marginal": (MARGINAL, {Verdict.REFUTED}),
+    "unstable": (UNSTABLE, {Verdict.REFUTED}),
+    "antistable": (family([[1, 0], [0, 1]]), {Verdict.REFUTED}),
+    "saddle": (family([[-1, 0], [0, 1]]), {Verdict.REFUTED}),
+    "stable discrete": (
+        family([["1/2", 0], [1, "1/2"]], time=Time.DISCRETE),
+        {Verdict.PROVED, Verdict.INCONCLUSIVE},
+    ),
+    "unstable discrete": (family([[2, 0], [0, 2]], time=Time.DISCRETE), {Verdict.REFUTED}),
+}
+
+
+@pytest.mark.parametrize("lie", LIES)
+@pytest.mark.parametrize("name", SYSTEMS)
+class TestLyingSolvers:
+    """Whatever the search returns, and even if no mode is tested before it."""
+
+    @pytest.fixture(autouse=True)
+    def _only_the_lie(self, monkeypatch):
+        monkeypatch.setattr(
+            steps, "_seems_stable", lambda family: np.ones(len(family.matrices), bool)
+        )
+        monkeypatch.setattr(steps, "iterate_gradient", lambda matrices: GradientResult(None, 0))
+
+    def test_the_solver(self, monkeypatch, lie, name):
+        monkeypatch.setattr(lmi, "_solve", lambda matrices, *rest: LIES[lie](matrices.shape[1]))
+        self.never_wrong(name)
+
+    def test_the_search(self, monkeypatch, lie, name):
+        def answer(matrices, *rest):
+            return LIES[lie](matrices.shape[1])
+
+        monkeypatch.setattr(steps, "find_common_quadratic", answer)
+        monkeypatch.setattr("nrs_design.certificates.decay.find_common_quadratic", answer)
+        self.never_wrong(name)
+
+    def test_the_gradient(self, monkeypatch, lie, name):
+        def answer(matrices):
+            return GradientResult(LIES[lie](matrices.shape[1]), 1)
+
+        monkeypatch.setattr(steps, "iterate_gradient", answer)
+        monkeypatch.setattr(steps, "find_common_quadratic", lambda *arguments: None)
+        self.never_wrong(name)
+
+    def never_wrong(self, name):
+        system, allowed = SYSTEMS[name]
+        for optimize_rate in (True, False):
+            assert settle(system, optimize_rate=optimize_rate).verdict in allowed
+
+
+def test_slightly_wrong_answers_do_not_pass(monkeypatch):
+    """A Q for a = 5.82 is not one for a = 5.9, however near."""
+    below = certify(dayawansa_martin("5.82"), optimize_rate=False).evidence
+    Q = np.array(below.Q, dtype=float)
+    monkeypatch.setattr(lmi, "_solve", lambda matrices, time, rate: Q)
+    assert settle(dayawansa_martin("5.9")).verdict is Verdict.INCONCLUSIVE
+
+
+def test_a_wrong_check_is_vetoed(monkeypatch):
+    """If the trusted check accepted anything, flint would still stop a wrong proof."""
+    monkeypatch.setattr("nrs_design.certificates.rounding.find_fault", lambda *arguments: None)
+    monkeypatch.setattr(steps, "find_common_quadratic", lambda *arguments: np.eye(2))
+    monkeypatch.setattr(steps, "rate_of", lambda *arguments: 0.5)
+    with pytest.raises(InternalError):
+        certify(NOT_QUADRATIC, optimize_rate=False)

@@ -1,0 +1,78 @@
+"""Flint's veto: it agrees on everything that is right, and stops everything else."""
+
+import flint
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from nrs_design.certificates.certificate import UnstableMode
+from nrs_design.certificates.certify import certify
+from nrs_design.certificates.exact import is_positive_definite
+from nrs_design.certificates.second_opinion import _has_positive_spectrum, confirm, unstable_mode
+from nrs_design.errors import InternalError
+from nrs_design.switched.system import Time
+from tests.support import family
+
+INTS = st.integers(-9, 9)
+STABLE = family([[-1, 1], [-1, -1]], [[-2, 3], [-3, -2]])
+UNSTABLE = family([[-1, 0], [0, -2]], [[0, 1], [-1, 0]])
+
+
+@settings(deadline=None)
+@given(st.sampled_from([1, 4, 9, 16, 25]).flatmap(lambda k: st.lists(INTS, min_size=k, max_size=k)))
+def test_descartes_agrees_with_bareiss(entries):
+    n = round(len(entries) ** 0.5)
+    M = [
+        [entries[i * n + j] + entries[j * n + i] + 12 * (i == j) for j in range(n)]
+        for i in range(n)
+    ]
+    assert _has_positive_spectrum(M) == is_positive_definite(M)
+
+
+@pytest.mark.parametrize(
+    ("A", "time", "eigenvalue"),
+    [
+        ([[0, 1], [-1, 0]], Time.CONTINUOUS, "0 +- 1j"),
+        ([["-0.36", "-0.48"], ["-0.48", "-0.64"]], Time.CONTINUOUS, "0"),
+        ([[1, 0], [0, -5]], Time.CONTINUOUS, "1"),
+        ([["1/2", 0], [0, -3]], Time.DISCRETE, "-3"),
+        ([["0.6", "0.8"], ["-0.8", "0.6"]], Time.DISCRETE, "0.6 +- 0.8j"),
+    ],
+)
+def test_worst_eigenvalue(A, time, eigenvalue):
+    (mode,) = family(A, time=time).modes
+    assert unstable_mode(mode, time) == UnstableMode("m0", eigenvalue)
+
+
+def test_stable_mode_gives_no_evidence():
+    assert unstable_mode(STABLE.modes[0], Time.CONTINUOUS) is None
+
+
+def test_no_proof_without_flint(monkeypatch):
+    class Upset:
+        def __init__(self, rows):
+            self.n = len(rows)
+
+        def charpoly(self):
+            return flint.fmpz_poly([1] * self.n + [1])
+
+    monkeypatch.setattr(flint, "fmpz_mat", Upset)
+    with pytest.raises(InternalError, match="disagree"):
+        certify(STABLE)
+
+
+def test_no_refutation_without_flint(monkeypatch):
+    evidence = certify(UNSTABLE).evidence
+    monkeypatch.setattr(
+        "nrs_design.certificates.second_opinion._spectrum", lambda mode: [flint.acb(-1)]
+    )
+    with pytest.raises(InternalError, match="disagree"):
+        confirm(UNSTABLE, evidence)
+
+
+def test_veto_on_a_stable_mode_called_unstable():
+    with pytest.raises(InternalError):
+        confirm(STABLE, UnstableMode("m0", "0"))
+    discrete = family([["1/2"]], time=Time.DISCRETE)
+    with pytest.raises(InternalError):
+        confirm(discrete, UnstableMode("m0", "0"))

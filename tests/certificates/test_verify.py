@@ -1,0 +1,488 @@
+"""Tampering with certificates, field by field.
+
+A certificate is signed by nothing but its own hash, so an attacker can always compute the id anew.
+These re-signed changes are legitimate, because the result is another true statement about the
+same spec, and `verify` says in its answer what it has checked (`LEGITIMATE` below lists them):
+
+- ``package.version``: any text; it says who wrote the file, not what holds;
+- ``Q.denominator_log2``: any integer; Q is scaled by a positive factor, and neither the proof nor
+  the norm in the claim depends on it;
+- ``Q.numerators`` and ``rate``: other numbers, if they prove what the (regenerated) claim says;
+- ``gains`` of which the spec fixes only the bounds: other single-precision numbers, or the same
+  ones written otherwise, for which the evidence still holds;
+- ``coordinates``: the other ones, with the texts that belong to them, if the evidence holds there;
+- an unstable mode: any other mode that is unstable, with its own eigenvalue.
+
+Everything else must be rejected, and nothing may crash.
+"""
+
+import copy
+import json
+from collections.abc import Iterator
+from contextlib import suppress
+from fractions import Fraction
+from pathlib import Path
+
+import pytest
+
+from nrs_design.certificates.certificate import CommonQuadratic, claim, content_id, dump
+from nrs_design.certificates.second_opinion import unstable_mode
+from nrs_design.certificates.verify import (
+    Verification,
+    read_document,
+    verify,
+    verify_document,
+)
+from nrs_design.controllers.float32 import exact_decimal
+from nrs_design.errors import CertificateError
+from nrs_design.pipeline import run_certification
+from nrs_design.spec import LoadedSpec, read_spec
+from tests.support import (
+    COMMUTING,
+    FORCE_LIMIT,
+    PRINT_ERROR,
+    SOFT_TISSUE,
+    holds,
+    write_spec,
+)
+
+SPECS = {
+    "given": COMMUTING,
+    "impedance": SOFT_TISSUE,
+    "force": FORCE_LIMIT,
+    "unstable": PRINT_ERROR,
+}
+DROP = object()
+
+
+@pytest.fixture(scope="module", params=SPECS)
+def pair(request):
+    return signed(request.param)
+
+
+@pytest.fixture(scope="module")
+def given():
+    return signed("given")
+
+
+@pytest.fixture(scope="module")
+def impedance():
+    return signed("impedance")
+
+
+@pytest.fixture(scope="module")
+def unstable():
+    return signed("unstable")
+
+
+def signed(name: str) -> tuple[dict, LoadedSpec]:
+    loaded = read_spec(SPECS[name])
+    return json.loads(dump(run_certification(loaded, optimize_rate=False).certificate)), loaded
+
+
+def resign(document):
+    return {**document, "id": content_id(document)}
+
+
+def leaves(node, path=()) -> Iterator[tuple]:
+    """Every place in a document, inner nodes too."""
+    if path:
+        yield path
+    if isinstance(node, (dict, list)):
+        children = node.items() if isinstance(node, dict) else enumerate(node)
+        for key, child in children:
+            yield from leaves(child, (*path, key))
+
+
+def at(document, path):
+    for key in path:
+        document = document[key]
+    return document
+
+
+def changed(document, path, value):
+    """Copy of a document with one place replaced or dropped."""
+    tampered = copy.deepcopy(document)
+    parent = at(tampered, path[:-1])
+    if value is DROP:
+        del parent[path[-1]]
+    else:
+        parent[path[-1]] = value
+    return tampered
+
+
+def mutations(value) -> list:
+    """Ways to spoil one value."""
+    common = [DROP, None, True, False, 0, 1, -1, "", "x", [], {}, [value], {"x": value}, "\ud800"]
+    if isinstance(value, bool) or value is None:
+        special = []
+    elif isinstance(value, int):
+        special = [-value, value + 1, value - 1, value ^ 1, value ^ (1 << 7), str(value), 2 * value]
+    elif isinstance(value, str):
+        special = [value + " ", value[:-1], value.upper(), value[::-1], "-" + value, value + "0"]
+        special += [value.replace("1", "2"), value.replace("max", "min"), value + "\x00"]
+        special += [value.replace("proved", "refuted"), value.replace("8", "9", 1)]
+    elif isinstance(value, list):
+        special = [value[::-1], value[1:], value[:-1], value + value[-1:], [*value, None]]
+    else:
+        special = [{**value, "extra": None}, {**value, "": 0}, list(value), dict.fromkeys(value, 0)]
+    return [m for m in common + special if m is DROP or type(m) is not type(value) or m != value]
+
+
+def is_true(outcome: Verification) -> bool:
+    certificate = outcome.certificate
+    return holds(certificate.system, certificate.evidence)
+
+
+def may_change(path, document) -> bool:
+    """Tell whether a re-signed change at this place alone can be legitimate."""
+    if path in {("package", "version"), ("Q", "denominator_log2")}:
+        return True
+    if path[:2] == ("Q", "numerators"):
+        return True
+    return path[0] == "gains" and len(path) == 3
+
+
+def test_untouched_certificates_hold(pair):
+    document, spec = pair
+    outcome = verify_document(document, spec)
+    assert outcome.fault is None
+    assert is_true(outcome)
+
+
+def test_every_change_is_noticed_by_the_id(pair):
+    document, spec = pair
+    count = 0
+    for path in leaves(document):
+        for value in mutations(at(document, path)):
+            tampered = changed(document, path, value)
+            outcome = verify_document(tampered, spec)
+            assert outcome.fault == "its content does not match its id: it was altered", path
+            count += 1
+    assert count > 500
+
+
+def test_every_re_signed_change_is_rejected_or_true(pair):
+    """Accepted only where `may_change`, and then what is said is true in exact arithmetic."""
+    document, spec = pair
+    accepted = []
+    for path in leaves(document):
+        if path == ("id",):
+            continue
+        for value in mutations(at(document, path)):
+            outcome = verify_document(resign(changed(document, path, value)), spec)
+            if outcome.fault is None:
+                accepted.append(path)
+                assert may_change(path, document), (path, value)
+                assert is_true(outcome), (path, value)
+    assert ("package", "version") in accepted
+
+
+@pytest.mark.parametrize("extra", ["note", "unstable_mode", "", "Q ", "\ud800", "ID"])
+def test_fields_that_do_not_belong(pair, extra):
+    document, spec = pair
+    for value in (None, 0, "", {}):
+        outcome = verify_document(resign({**document, extra: value}), spec)
+        assert outcome.fault is not None
+
+
+class TestLegitimate:
+    """The list at the top of this file: accepted, and true."""
+
+    def accept(self, document, spec):
+        outcome = verify_document(resign(document), spec)
+        assert outcome.fault is None
+        assert is_true(outcome)
+        return outcome.certificate
+
+    def test_version(self, pair):
+        document, spec = pair
+        self.accept(changed(document, ("package", "version"), "99.0"), spec)
+
+    @pytest.mark.parametrize("exponent", [0, -7, 10**4000])
+    def test_scale_in_the_exponent(self, given, exponent):
+        document, spec = given
+        self.accept(changed(document, ("Q", "denominator_log2"), exponent), spec)
+
+    @pytest.mark.parametrize("factor", [3, 10**100])
+    def test_scale_in_the_numerators(self, impedance, factor):
+        document, spec = impedance
+        Q = [[factor * q for q in row] for row in document["Q"]["numerators"]]
+        self.accept(changed(document, ("Q", "numerators"), Q), spec)
+
+    def test_slower_rate_with_its_own_claim(self, impedance):
+        document, spec = impedance
+        slower = Fraction(document["rate"]) / 2
+        certificate = verify_document(document, spec).certificate
+        evidence = CommonQuadratic(certificate.evidence.Q, 0, slower)
+        words = claim(certificate.system, evidence)
+        restated = {**document, "rate": str(slower), "claim": words}
+        assert self.accept(restated, spec).evidence.rate == slower
+
+    def test_other_gain_within_the_bounds(self, impedance):
+        document, spec = impedance
+        # One unit in the last place of the single-precision 2.15.
+        other = Fraction(document["gains"]["insertion"]["Bt"]) + Fraction(1, 2**22)
+        tampered = changed(document, ("gains", "insertion", "Bt"), exact_decimal(other))
+        assert self.accept(tampered, spec).gains["insertion"]["Bt"] == exact_decimal(other)
+
+    def test_same_gain_written_otherwise(self, impedance):
+        document, spec = impedance
+        self.accept(changed(document, ("gains", "motion", "Kd"), "2.06e3"), spec)
+
+    def test_other_unstable_mode(self, unstable):
+        document, spec = unstable
+        result = run_certification(spec).certificate
+        evidence = unstable_mode(result.system.modes[1], result.system.time)
+        restated = {
+            **document,
+            "unstable_mode": {"name": evidence.mode, "eigenvalue": evidence.eigenvalue},
+            "claim": claim(result.system, evidence),
+        }
+        assert document["unstable_mode"]["name"] == "insertion"
+        assert self.accept(restated, spec).evidence.mode == "withdrawal"
+
+
+class TestForgery:
+    """Deliberate attacks, each with the id computed anew."""
+
+    def reject(self, document, spec, reason):
+        outcome = verify_document(resign(document), spec)
+        assert outcome.fault is not None
+        assert reason in outcome.fault
+
+    def test_faster_rate_with_its_own_claim(self, given):
+        document, spec = given
+        certificate = verify_document(document, spec).certificate
+        for rate in (Fraction(1), Fraction(2), Fraction(10**6)):
+            evidence = CommonQuadratic(certificate.evidence.Q, 0, rate)
+            words = claim(certificate.system, evidence)
+            self.reject({**document, "rate": str(rate), "claim": words}, spec, "does not decrease")
+
+    @pytest.mark.parametrize("rate", ["0", "0/5"])
+    def test_rate_zero(self, given, rate):
+        document, spec = given
+        self.reject({**document, "rate": rate}, spec, "")
+
+    @pytest.mark.parametrize(
+        "rate",
+        ["-1", "1/0", "2/4", "1e-3", "0.5", "nan", "", " 1", "1\n", "1" * 2001, "\uff11", "1_0", 1],
+    )
+    def test_malformed_rate(self, given, rate):
+        document, spec = given
+        self.reject({**document, "rate": rate}, spec, "")
+
+    def test_claim_of_more_than_was_proved(self, given):
+        document, spec = given
+        words = document["claim"].replace("<=", "<")
+        self.reject({**document, "claim": words}, spec, "'claim'")
+
+    def test_dropped_and_swapped_modes(self, impedance):
+        document, spec = impedance
+        self.reject({**document, "modes": document["modes"][1:]}, spec, "'modes'")
+        self.reject({**document, "modes": document["modes"][::-1]}, spec, "'modes'")
+
+    def test_dropped_assumption(self, impedance):
+        document, spec = impedance
+        for i in range(len(document["assumptions"])):
+            self.reject(changed(document, ("assumptions", i), DROP), spec, "'assumptions'")
+
+    def test_changed_spec(self, tmp_path):
+        spec = write_spec(tmp_path / "a.yaml", [[-1, 0], [0, -1]])
+        document = json.loads(dump(run_certification(spec).certificate))
+        assert verify_document(document, spec).fault is None
+        unstable = write_spec(tmp_path / "b.yaml", [[1, 0], [0, -1]])
+        assert "another spec" in verify_document(document, unstable).fault
+        moved = {**document, "spec": {"name": "given", "sha256": unstable.sha256}}
+        self.reject(moved, unstable, "does not decrease")
+
+    def test_one_more_blank_line_is_another_spec(self, tmp_path):
+        path = tmp_path / "a.yaml"
+        spec = write_spec(path, [[-1, 0], [0, -1]])
+        document = json.loads(dump(run_certification(spec).certificate))
+        path.write_text(path.read_text() + "\n")
+        assert "another spec" in verify_document(document, read_spec(path)).fault
+
+    def test_refutation_of_a_stable_system(self, given):
+        document, spec = given
+        forged = {k: v for k, v in document.items() if k not in ("Q", "rate")}
+        forged |= {"kind": "unstable-mode", "verdict": "refuted"}
+        for name in ("a", "b", "c", "\ud800"):
+            forged["unstable_mode"] = {"name": name, "eigenvalue": "1"}
+            self.reject(forged, spec, "no unstable mode")
+
+    def test_proof_of_an_unstable_system(self, unstable):
+        document, spec = unstable
+        forged = {k: v for k, v in document.items() if k != "unstable_mode"}
+        forged |= {"kind": "common-quadratic", "verdict": "proved", "rate": "1/1000"}
+        identity = [[int(i == j) for j in range(4)] for i in range(4)]
+        forged["Q"] = {"numerators": identity, "denominator_log2": 0}
+        self.reject(forged, spec, "'claim'")
+        certificate = run_certification(spec).certificate
+        evidence = CommonQuadratic(tuple(map(tuple, identity)), 0, Fraction(1, 1000))
+        forged["claim"] = claim(certificate.system, evidence)
+        self.reject(forged, spec, "does not decrease")
+
+    @pytest.mark.parametrize(
+        ("controller", "gain", "value"),
+        [
+            ("insertion", "Bt", "-2.150000095367431640625"),
+            ("insertion", "Bt", "0"),
+            ("insertion", "Bt", "0.015625"),  # below its lower bound
+            ("insertion", "Bt", "1024"),  # above its upper bound
+            ("insertion", "Bt", "2.15"),  # not a single-precision number
+            ("insertion", "Bt", "1e39"),  # beyond single precision
+            ("insertion", "Mt", "0"),
+            ("insertion", "Mt", "-0.00999999977648258209228515625"),
+            ("motion", "Kp", "0"),
+            ("motion", "Kd", "2061"),  # the spec fixes it
+            ("motion", "Kp", "117359.4453125"),
+        ],
+    )
+    def test_gains_outside_the_spec(self, impedance, controller, gain, value):
+        document, spec = impedance
+        self.reject(changed(document, ("gains", controller, gain), value), spec, "gain")
+
+    def test_gain_for_which_the_evidence_does_not_hold(self, impedance):
+        document, spec = impedance
+        tampered = changed(document, ("gains", "withdrawal", "Bt"), "0.125")
+        self.reject(tampered, spec, "does not decrease")
+
+    def test_gain_that_overflows_the_other(self, tmp_path):
+        """With only the zero fixed, Kp = Kd z leaves single precision."""
+        text = SOFT_TISSUE.read_text().replace("  derivative_gain: 2060 rpm*s/rad\n", "")
+        path = tmp_path / "zero.nrs.yaml"
+        path.write_text(text)
+        spec = read_spec(path)
+        document = json.loads(dump(run_certification(spec, optimize_rate=False).certificate))
+        tampered = changed(document, ("gains", "motion", "Kd"), str(2**127))
+        self.reject(tampered, spec, "single precision")
+
+    @pytest.mark.parametrize("coordinates", ["Deflection", "", None, 1, ["deflection"], {}])
+    def test_unknown_coordinates(self, impedance, coordinates):
+        document, spec = impedance
+        self.reject({**document, "coordinates": coordinates}, spec, "coordinates")
+
+    def test_other_coordinates_need_their_own_texts(self, impedance):
+        document, spec = impedance
+        assert document["coordinates"] == "deflection"
+        self.reject({**document, "coordinates": "force"}, spec, "does not follow")
+
+    @pytest.mark.parametrize("coordinates", ["deflection", "force", ""])
+    def test_coordinates_of_given_matrices(self, given, coordinates):
+        document, spec = given
+        self.reject({**document, "coordinates": coordinates}, spec, "")
+
+    @pytest.mark.parametrize("gains", [None, [], "", 0, False, {"motion": {}}])
+    def test_gains_of_given_matrices(self, given, gains):
+        document, spec = given
+        self.reject({**document, "gains": gains}, spec, "")
+
+    def test_other_schema(self, given):
+        document, spec = given
+        self.reject({**document, "schema": "nrs-design/certificate/2"}, spec, "schema")
+
+    def test_nesting_too_deep_for_the_canonical_form(self, given):
+        document, spec = given
+        node: list = []
+        for _ in range(100_000):
+            node = [node]
+        deep = {**document, "assumptions": node}
+        assert "malformed" in verify_document(deep, spec).fault
+        # Unchain it step by step: freeing it at once would overflow the stack, too.
+        while node:
+            node = node.pop()
+
+    def test_integer_too_long_for_text(self, given):
+        document, spec = given
+        long = changed(document, ("Q", "denominator_log2"), 10**5000)
+        assert "malformed" in verify_document(long, spec).fault
+
+
+class TestFiles:
+    """Whatever the file holds: one clear error or a rejection."""
+
+    @pytest.mark.parametrize(
+        ("content", "reason"),
+        [
+            (b"", "not a certificate"),
+            (b"{", "not a certificate"),
+            (b"[]", "expected a JSON object"),
+            (b"null", "expected a JSON object"),
+            (b"3", "expected a JSON object"),
+            (b'"text"', "expected a JSON object"),
+            (b'{"rate": 0.5}', "floating-point"),
+            (b'{"rate": 1e3}', "floating-point"),
+            (b'{"rate": NaN}', "floating-point"),
+            (b'{"rate": -Infinity}', "floating-point"),
+            (b'{"rate": 0.' + b"1" * 10_000 + b"}", "floating-point"),
+            (b'{"a": 1, "a": 1}', "a key occurs twice"),
+            (b'{"a": {"b": 1, "b": 2}}', "a key occurs twice"),
+            (b'{"Q": ' + b"7" * 4301 + b"}", "4300"),
+            (b'{"a": ' + b"[" * 5000 + b"]" * 5000 + b"}", "recursion"),
+            (b'{"a": ' * 5000 + b"1" + b"}" * 5000, "recursion"),
+            (b"\xff\xfe{}", "not a certificate"),
+            (b"\xef\xbb\xbf{}", "not a certificate"),
+            (b"{} {}", "not a certificate"),
+            (b'{"a": 1,}', "not a certificate"),
+            (b"{'a': 1}", "not a certificate"),
+            (b'{"a": "\n"}', "not a certificate"),
+            (b"kind: switched-system\n", "not a certificate"),
+        ],
+    )
+    def test_not_a_certificate(self, tmp_path, given, content, reason):
+        path = tmp_path / "c.json"
+        path.write_bytes(content)
+        with pytest.raises(CertificateError, match=reason) as caught:
+            verify(path, given[1])
+        assert caught.value.path == path
+        assert len(str(caught.value)) < 500
+
+    @pytest.mark.parametrize("depth", range(900, 1000, 3))
+    def test_no_depth_slips_between_reading_and_hashing(self, tmp_path, given, depth):
+        path = tmp_path / "c.json"
+        path.write_text('{"a": ' + "[" * depth + "]" * depth + "}")
+        with suppress(CertificateError):
+            assert verify(path, given[1]).fault
+
+    @pytest.mark.parametrize("content", ["{}", '{"id": null}', '{"id": 1}', '{"id": {}}'])
+    def test_objects_without_content(self, tmp_path, given, content):
+        path = tmp_path / "c.json"
+        path.write_text(content)
+        assert "id" in verify(path, given[1]).fault
+
+    def test_missing_file(self, tmp_path, given):
+        with pytest.raises(CertificateError, match="No such file"):
+            verify(tmp_path / "none.json", given[1])
+
+    def test_directory(self, tmp_path, given):
+        with pytest.raises(CertificateError, match="directory"):
+            verify(tmp_path, given[1])
+
+    def test_device(self, given):
+        with pytest.raises(CertificateError, match="not a regular file"):
+            verify(Path("/dev/zero"), given[1])
+
+    def test_too_large(self, tmp_path, given, monkeypatch):
+        monkeypatch.setattr("nrs_design.certificates.verify.MAX_BYTES", 100)
+        path = tmp_path / "c.json"
+        path.write_text(json.dumps(given[0]))
+        with pytest.raises(CertificateError, match="larger"):
+            verify(path, given[1])
+
+    def test_round_trip(self, tmp_path, pair):
+        document, spec = pair
+        path = tmp_path / "c.json"
+        path.write_text(json.dumps(document))
+        assert read_document(path) == document
+        assert verify(path, spec).fault is None
+
+
+@pytest.mark.parametrize("name", SPECS)
+@pytest.mark.parametrize("other", SPECS)
+def test_wrong_kind_of_spec(name, other):
+    document, _ = signed(name)
+    spec = read_spec(SPECS[other])
+    assert (verify_document(document, spec).fault is None) == (name == other)
+    moved = {**document, "spec": {"name": spec.spec.name, "sha256": spec.sha256}}
+    assert (verify_document(resign(moved), spec).fault is None) == (name == other)

@@ -1,0 +1,166 @@
+import json
+import sys
+from pathlib import Path
+
+import pytest
+
+from nrs_design.certificates.certificate import content_id, dump
+from nrs_design.certificates.verify import verify
+from nrs_design.cli import main
+from nrs_design.exporters.record import ExportRecord
+from nrs_design.pipeline import run_certification
+from nrs_design.spec import read_spec
+
+SPECS = Path(__file__).parents[2] / "specs"
+SPEC = SPECS / "neuroboscope/soft-tissue.nrs.yaml"
+
+
+@pytest.fixture
+def export(monkeypatch, tmp_path):
+    """Type ``nrs-design export`` in an empty folder; the exit code comes back."""
+    monkeypatch.chdir(tmp_path)
+
+    def run(*arguments):
+        monkeypatch.setattr(sys, "argv", ["nrs-design", "export", *map(str, arguments)])
+        with pytest.raises(SystemExit) as caught:
+            main()
+        return int(caught.value.code or 0)
+
+    return run
+
+
+@pytest.fixture(scope="module")
+def certificate():
+    """Text of a certificate of the design."""
+    return dump(run_certification(read_spec(SPEC)).certificate)
+
+
+def files():
+    return sorted(str(path) for path in Path().rglob("*") if path.is_file())
+
+
+def test_export_writes_the_record_and_its_certificate(export):
+    assert export(SPEC) == 0
+    assert files() == ["reports/soft-tissue.cert.json", "reports/soft-tissue.export.json"]
+    record = ExportRecord.model_validate_json(Path("reports/soft-tissue.export.json").read_text())
+    checked = verify(Path("reports/soft-tissue.cert.json"), read_spec(SPEC))
+    assert checked.fault is None
+    assert record.proof.certificate_id == checked.certificate.id
+    assert record.spec.sha256 == read_spec(SPEC).sha256
+
+
+def test_certificate_goes_beside_the_output(export):
+    assert export(SPEC, "--out", "a/b.json", "--json") == 0
+    assert files() == ["a/b.json", "a/soft-tissue.cert.json"]
+
+
+def test_json(export, capsys):
+    assert export(SPEC, "--json") == 0
+    document = json.loads(capsys.readouterr().out)
+    assert document["schema"] == "nrs-design/export/1"
+    assert document["verdict"] == "proved"
+    assert document["record"] == json.loads(Path(document["file"]).read_text())
+
+
+def test_given_certificate_is_used_and_not_written_again(export, certificate):
+    Path("mine.json").write_text(certificate)
+    assert export(SPEC, "--certificate", "mine.json") == 0
+    assert files() == ["mine.json", "reports/soft-tissue.export.json"]
+
+
+def signed(text, edit):
+    document = json.loads(text)
+    edit(document)
+    document["id"] = content_id(document)
+    return json.dumps(document)
+
+
+def other_gain(document):
+    """The proof may well hold for a gain nearby, but it is not the one that was designed."""
+    document["gains"]["insertion"]["Bt"] = "2.125"
+
+
+def raised_rate(document):
+    document["rate"] = "99"
+
+
+@pytest.mark.parametrize("edit", [other_gain, raised_rate])
+def test_certificate_that_does_not_cover_the_design(export, certificate, capsys, edit):
+    Path("mine.json").write_text(signed(certificate, edit))
+    assert export(SPEC, "--certificate", "mine.json") == 1
+    assert files() == ["mine.json"]
+    assert "not exported" in capsys.readouterr().out
+
+
+def test_valid_certificate_of_other_gains(export, tmp_path, capsys):
+    """A certificate that verifies, since the gains are within the bounds of the spec."""
+    from dataclasses import replace
+
+    from nrs_design.certificates.certify import certify
+    from nrs_design.switched.assemble import assemble
+
+    loaded = read_spec(SPEC)
+    design = run_certification(loaded)
+    gains = {**design.certificate.gains, "insertion": {"Mt": "0.015625", "Bt": "2.125"}}
+    system = assemble(loaded.spec, gains, "deflection")
+    evidence = certify(system).evidence
+    other = replace(design.certificate, gains=gains, system=system, evidence=evidence)
+    Path("mine.json").write_text(dump(other))
+    assert verify(Path("mine.json"), loaded).fault is None
+    assert export(SPEC, "--certificate", "mine.json") == 1
+    assert "other gains of insertion" in capsys.readouterr().out
+    assert files() == ["mine.json"]
+
+
+def test_certificate_in_other_coordinates(export, capsys):
+    other = run_certification(read_spec(SPEC), coordinates="force").certificate
+    Path("mine.json").write_text(dump(other))
+    assert export(SPEC, "--certificate", "mine.json") == 1
+    assert "force coordinates" in capsys.readouterr().out
+
+
+def test_certificate_that_is_none(export):
+    assert export(SPEC, "--certificate", "missing.json") == 2
+    Path("mine.json").write_text("[]")
+    assert export(SPEC, "--certificate", "mine.json") == 2
+    assert files() == ["mine.json"]
+
+
+def test_refuted_design_is_not_exported(export, capsys):
+    text = SPEC.read_text().replace("768.17 N/m]}", "90000 N/m]}")
+    Path("stiff.nrs.yaml").write_text(text)
+    assert export("stiff.nrs.yaml") == 1
+    assert "not exported: the design is not proved: refuted" in capsys.readouterr().out
+    assert files() == ["stiff.nrs.yaml"]
+    refuting = run_certification(read_spec("stiff.nrs.yaml")).certificate
+    Path("mine.json").write_text(dump(refuting))
+    assert export("stiff.nrs.yaml", "--certificate", "mine.json", "--json") == 1
+    assert json.loads(capsys.readouterr().out)["verdict"] == "refuted"
+    assert files() == ["mine.json", "stiff.nrs.yaml"]
+
+
+def test_inconclusive_design_is_not_exported(export, monkeypatch):
+    from nrs_design.certificates.certify import Certification, CommonQuadraticStatus, Verdict
+
+    def give_up(system, *arguments, **options):
+        unknown = CommonQuadraticStatus.UNKNOWN
+        return Certification(system, Verdict.INCONCLUSIVE, unknown, "auto", None, ())
+
+    monkeypatch.setattr("nrs_design.certificates.certify.certify", give_up)
+    assert export(SPEC) == 3
+    assert files() == []
+
+
+def test_given_matrices_have_no_gains(export, capsys):
+    assert export(SPECS / "examples/commuting.nrs.yaml") == 2
+    assert "error[NRS002]" in capsys.readouterr().err
+    assert files() == []
+
+
+def test_outputs_that_cannot_be(export, capsys):
+    Path("file").touch()
+    assert export(SPEC, "--out", "file/x.json") == 2
+    assert export(SPEC, "--out", "soft-tissue.cert.json") == 2
+    assert "is the certificate file" in capsys.readouterr().err
+    assert export(SPEC, "--format", "fortran") == 2
+    assert files() == ["file"]

@@ -1,0 +1,184 @@
+import json
+import os
+import subprocess
+import sys
+import xml.etree.ElementTree as ET
+from pathlib import Path
+
+import pytest
+
+from nrs_design.cli import main
+
+ROOT = Path(__file__).parents[2]
+PRINT_ERROR = ROOT / "docs/examples/thesis-print-error.nrs.yaml"
+STABLE = """\
+kind: switched-system
+name: stable
+time: continuous
+modes:
+  - {name: a, A: [[-1, 1], [-1, -1]]}
+switching: arbitrary
+"""
+BROKEN = STABLE.replace("A: [[-1, 1], [-1, -1]]", "A: [[-1, 1]]")
+
+
+@pytest.fixture
+def gate(monkeypatch, tmp_path):
+    """Type ``nrs-design gate`` in an empty folder that has one good spec; the exit code is back."""
+    monkeypatch.chdir(tmp_path)
+    Path("specs").mkdir()
+    Path("specs/stable.nrs.yaml").write_text(STABLE)
+
+    def run(*arguments):
+        monkeypatch.setattr(sys, "argv", ["nrs-design", "gate", *map(str, arguments)])
+        with pytest.raises(SystemExit) as caught:
+            main()
+        return int(caught.value.code or 0)
+
+    return run
+
+
+def test_shipped_specs_pass_locked_and_unlocked(gate, capsys):
+    assert gate(ROOT / "specs", "--no-reports") == 0
+    assert "all fulfilled" in capsys.readouterr().out
+    assert gate(ROOT / "specs", "--locked") == 0
+
+
+def test_the_print_error_of_the_thesis_fails_locked_and_unlocked(gate, capsys):
+    """Thesis 6.3.2.2 prints +1618.80 where -1618.80 is right."""
+    assert gate(PRINT_ERROR, "--no-reports") == 1
+    assert ":14:5: NRS101 refuted: mode insertion is not Hurwitz" in capsys.readouterr().out
+    assert gate(PRINT_ERROR, "--locked") == 1
+
+
+def test_as_typed(gate, tmp_path):
+    done = subprocess.run(
+        [sys.executable, "-m", "nrs_design", "gate", "specs", "--no-reports"],
+        cwd=tmp_path,
+        env={**os.environ, "PYTHONPATH": str(ROOT)},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert done.returncode == 0, done.stderr
+    assert "specs/stable.nrs.yaml" in done.stdout
+    assert "nrs.lock written" in done.stderr
+    assert "1 s" not in done.stdout.replace("1 spec", ""), "times belong on stderr"
+    assert sorted(p.name for p in tmp_path.iterdir()) == ["nrs.lock", "reports", "specs"]
+    assert [p.name for p in (tmp_path / "reports").iterdir()] == ["stable.cert.json"]
+
+
+def test_usage(gate):
+    assert gate() == 2
+    assert gate("specs", "--format", "xml") == 2
+    assert gate("specs", "--json", "--format", "sarif") == 2
+
+
+def test_no_specs_at_all(gate, capsys):
+    Path("empty").mkdir()
+    assert gate("empty") == 2
+    assert "there is no *.nrs.yaml in this folder" in capsys.readouterr().err
+
+
+def test_broken_spec_is_worse_than_a_refuted_one(gate, capsys):
+    Path("specs/broken.nrs.yaml").write_text(BROKEN)
+    assert gate("specs", PRINT_ERROR, "--no-reports") == 2
+    out, err = capsys.readouterr()
+    assert "specs/broken.nrs.yaml:5:18: NRS001 error" in out
+    assert "thesis-print-error" in out
+    assert "nrs.lock not written" in err
+    assert not Path("nrs.lock").exists()
+
+
+def test_inconclusive_is_exit_3_and_refuted_is_worse(gate, monkeypatch):
+    from nrs_design.certificates import certify as module
+    from nrs_design.certificates.certify import Certification, CommonQuadraticStatus, Verdict
+
+    def give_up_on_stable(system, *arguments, **options):
+        if system.name != "stable":
+            return certify(system, *arguments, **options)
+        unknown = CommonQuadraticStatus.UNKNOWN
+        return Certification(system, Verdict.INCONCLUSIVE, unknown, "auto", None, ())
+
+    certify = module.certify
+    monkeypatch.setattr(module, "certify", give_up_on_stable)
+    assert gate("specs", "--no-reports") == 3
+    assert gate("specs", "--locked") == 3
+    assert gate("specs", PRINT_ERROR, "--no-reports") == 1
+
+
+def test_internal_error_is_exit_4(gate, monkeypatch, capsys):
+    def fail(*arguments, **options):
+        raise ZeroDivisionError("unforeseen")
+
+    monkeypatch.setattr("nrs_design.certificates.certify.certify", fail)
+    Path("specs/broken.nrs.yaml").write_text(BROKEN)
+    assert gate("specs", "--no-reports") == 4
+    assert "NRS900 error: ZeroDivisionError: unforeseen" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize("format_", ["github", "sarif", "junit", "json"])
+def test_documents_go_to_stdout_and_the_table_to_stderr(gate, capsys, format_):
+    assert gate("specs", "--no-reports", "--format", format_) == 0
+    out, err = capsys.readouterr()
+    assert "common quadratic" in err
+    assert "common quadratic" not in out
+    assert gate("specs", "--no-reports", "--format", format_, "--out", "ci/gate.out", "-q") == 0
+    assert capsys.readouterr() == ("", "")
+    assert Path("ci/gate.out").read_text() == out
+
+
+def test_documents_are_the_same_on_repeat(gate, capsys):
+    for format_ in ("sarif", "junit"):
+        texts = set()
+        for _ in range(2):
+            assert gate("specs", PRINT_ERROR, "--no-reports", "--format", format_) == 1
+            texts.add(capsys.readouterr().out)
+        assert len(texts) == 1
+
+
+def test_documents_parse(gate, capsys):
+    gate(PRINT_ERROR, "--no-reports", "--format", "sarif")
+    assert len(json.loads(capsys.readouterr().out)["runs"][0]["results"]) == 3
+    gate(PRINT_ERROR, "--no-reports", "--format", "junit")
+    assert ET.fromstring(capsys.readouterr().out).get("failures") == "3"
+    gate(PRINT_ERROR, "--no-reports", "--json")
+    assert json.loads(capsys.readouterr().out)["schema"] == "nrs-design/gate/1"
+
+
+@pytest.mark.parametrize(
+    "name", ["a b.nrs.yaml", "100%.nrs.yaml", "[red]x[bold].nrs.yaml", "-x;é#"]
+)
+def test_hostile_file_names(gate, capsys, name):
+    Path("specs/stable.nrs.yaml").rename(f"specs/{name}")
+    assert gate(f"specs/{name}", "--no-reports") == 0
+    assert name in capsys.readouterr().out
+    assert gate(f"specs/{name}", "--locked", "--format", "github") == 0
+
+
+def test_places_that_cannot_be_written(gate, capsys):
+    file = Path("specs/stable.nrs.yaml")
+    assert gate("specs", "--no-reports", "--reports", file / "reports") == 2
+    assert "NRS005 error" in capsys.readouterr().out
+    assert gate("specs", "--no-reports", "--lock", file / "nrs.lock") == 2
+    assert "error[NRS005]" in capsys.readouterr().err
+    assert gate("specs", "--no-reports", "--out", file / "out") == 2
+    assert file.read_text() == STABLE
+
+
+def test_locked_without_a_lock(gate, capsys):
+    assert gate("specs", "--locked") == 2
+    assert "error[NRS004]: nrs.lock" in capsys.readouterr().err
+    assert [p.name for p in Path().iterdir()] == ["specs"]
+
+
+def test_locked_with_other_folders(gate):
+    assert gate("specs", "--no-reports", "--reports", "certs", "--lock", "ci/a.lock") == 0
+    assert gate("specs", "--locked", "--lock", "ci/a.lock") == 0
+    Path("certs/stable.cert.json").unlink()
+    assert gate("specs", "--locked", "--lock", "ci/a.lock") == 2
+
+
+def test_reports_are_written_by_default(gate):
+    assert gate("specs") == 0
+    assert "<html" in Path("reports/stable.html").read_text()

@@ -1,0 +1,85 @@
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+from typer.testing import CliRunner
+
+from nrs_design.cli.app import app
+from nrs_design.errors import OutputError
+
+ROOT = Path(__file__).parents[2]
+COMMUTING = str(ROOT / "specs/examples/commuting.nrs.yaml")
+PRINT_ERROR = str(ROOT / "docs/examples/thesis-print-error.nrs.yaml")
+INCONCLUSIVE = """\
+kind: switched-system
+name: no-quadratic
+time: continuous
+modes:
+  - {name: a, A: [[-1, -1], [1, -1]]}
+  - {name: b, A: [[-1, -7], ["1/7", -1]]}
+switching: arbitrary
+"""
+
+
+def run(*arguments: str):
+    return CliRunner().invoke(app, ["report", *arguments])
+
+
+def test_default_is_a_page_in_reports(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    done = run(COMMUTING)
+    assert done.exit_code == 0
+    assert done.stdout == "commuting: PROVED\n"
+    page = (tmp_path / "reports/commuting.html").read_text()
+    assert page.startswith("<!DOCTYPE html>")
+
+
+def test_pdf_and_its_default_name(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    assert run(COMMUTING, "--format", "pdf").exit_code == 0
+    assert (tmp_path / "reports/commuting.pdf").read_bytes().startswith(b"%PDF-")
+
+
+def test_png_writes_one_file_per_figure(tmp_path):
+    done = run(COMMUTING, "--format", "png", "--out", str(tmp_path / "figures"), "--json")
+    written = json.loads(done.stdout)["files"]
+    assert sorted(map(Path, written)) == sorted((tmp_path / "figures").iterdir())
+    assert tmp_path / "figures/phase-plane.png" in map(Path, written)
+
+
+def test_refuted_still_gets_its_report(tmp_path):
+    out = tmp_path / "r.html"
+    done = run(PRINT_ERROR, "--out", str(out), "--json")
+    assert done.exit_code == 1
+    document = json.loads(done.stdout)
+    assert document["schema"] == "nrs-design/report/1"
+    assert document["verdict"] == "refuted"
+    assert len(document["certificate_id"]) == 64
+    assert document["certificate_id"] in out.read_text()
+
+
+def test_inconclusive_exits_with_three(tmp_path):
+    spec = tmp_path / "no-quadratic.nrs.yaml"
+    spec.write_text(INCONCLUSIVE)
+    done = run(str(spec), "--out", str(tmp_path / "r.html"), "-q")
+    assert done.exit_code == 3
+    assert done.stderr == ""
+
+
+def test_unwritable_place_is_an_output_error(tmp_path):
+    (tmp_path / "file").write_text("")
+    done = run(COMMUTING, "--out", str(tmp_path / "file/r.html"))
+    assert isinstance(done.exception, OutputError)
+
+
+@pytest.mark.parametrize("wrong", ["docx", ""])
+def test_unknown_format_is_a_usage_error(wrong):
+    assert run(COMMUTING, "--format", wrong).exit_code == 2
+
+
+def test_missing_spec_writes_nothing(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    assert run("missing.nrs.yaml").exit_code != 0
+    assert list(tmp_path.iterdir()) == []

@@ -1,0 +1,115 @@
+"""``nrs-design reproduce`` as typed."""
+
+import json
+import subprocess
+import sys
+from dataclasses import replace
+
+import pytest
+from typer.testing import CliRunner
+
+from nrs_design.cli.app import app
+from nrs_design.reproduction import specimens, table
+from nrs_design.reproduction.row import Verdict
+
+
+@pytest.fixture
+def short(monkeypatch):
+    """Leave only the quick rows of the specimens in the table."""
+    monkeypatch.setattr(table, "TOPICS", (specimens,))
+
+
+@pytest.fixture
+def drifting(short, monkeypatch):
+    good = specimens.rows()
+    bad = replace(good[1], verdict=Verdict.DRIFT, value="700")
+    monkeypatch.setattr(specimens, "rows", lambda: (good[0], bad, *good[2:]))
+
+
+def run(*arguments):
+    return CliRunner().invoke(app, ["reproduce", *arguments])
+
+
+def test_the_command_as_typed():
+    done = subprocess.run(
+        [sys.executable, "-m", "nrs_design", "reproduce", "--json"], capture_output=True, text=True
+    )
+    assert done.returncode == 0, done.stderr
+    document = json.loads(done.stdout)
+    assert document["schema"] == "nrs-design/reproduce/1"
+    assert document["drift"] == []
+    assert set(document["rows"][0]) == {
+        "name", "section", "printed", "value", "unit", "deviation", "verdict", "note",
+    }  # fmt: skip
+    assert sum(document["counts"].values()) == len(document["rows"]) > 60
+    assert {row["verdict"] for row in document["rows"]} == {
+        "reproduced", "print is wrong", "hardware only", "needs data that the thesis omits",
+    }  # fmt: skip
+
+
+@pytest.mark.usefixtures("short")
+def test_text_has_table_notes_and_counts():
+    result = run()
+    assert result.exit_code == 0
+    assert "mean of the fits" in result.stdout
+    assert "6.1 elastic fits, soft specimen: The records" in result.stdout
+    assert result.stdout.rstrip().endswith("2 reproduced, 2 needs data that the thesis omits")
+
+
+@pytest.mark.usefixtures("short")
+def test_quiet_prints_the_counts_only():
+    assert len(run("--quiet").stdout.splitlines()) == 1
+
+
+@pytest.mark.usefixtures("drifting")
+def test_a_drift_exits_1_and_is_named():
+    result = run("--quiet")
+    assert result.exit_code == 1
+    assert "drift: 6.1 mean of the fits, soft specimen: 700 N/m, printed 747.14" in result.stderr
+
+
+@pytest.mark.usefixtures("drifting")
+def test_json_of_a_drift():
+    result = run("--json")
+    assert result.exit_code == 1
+    assert json.loads(result.stdout)["drift"] == ["mean of the fits, soft specimen"]
+
+
+@pytest.mark.usefixtures("short")
+def test_html_is_written_whole(tmp_path):
+    page = tmp_path / "new" / "page.html"
+    assert run("--html", str(page)).exit_code == 0
+    assert page.read_text(encoding="utf-8").rstrip().endswith("</html>")
+    assert [path.name for path in page.parent.iterdir()] == ["page.html"]
+
+
+@pytest.mark.usefixtures("short")
+def test_json_stays_clean_beside_html(tmp_path):
+    result = run("--json", "--html", str(tmp_path / "page.html"))
+    assert json.loads(result.stdout)["rows"]
+    assert "page written to" in result.stderr
+
+
+def test_unwritable_page_is_a_usage_error(tmp_path):
+    blocked = tmp_path / "file"
+    blocked.write_text("")
+    done = subprocess.run(
+        [sys.executable, "-m", "nrs_design", "reproduce", "-q", "--html", str(blocked / "a.html")],
+        capture_output=True,
+        text=True,
+    )
+    assert done.returncode == 2
+    assert done.stderr.startswith("error[NRS005]")
+
+
+def test_help_has_an_example_and_stays_lean():
+    code = (
+        "import sys; from nrs_design.cli.app import app\n"
+        "try: app(['reproduce', '--help'])\n"
+        "except SystemExit: pass\n"
+        "heavy = {'numpy', 'scipy', 'control', 'cvxpy', 'matplotlib', 'jinja2', 'clarabel'}\n"
+        "sys.exit(len(heavy & set(sys.modules)))"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
+    assert done.returncode == 0
+    assert "nrs-design reproduce --html" in done.stdout

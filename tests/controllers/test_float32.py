@@ -1,0 +1,121 @@
+import struct
+from fractions import Fraction
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from nrs_design.controllers.float32 import (
+    exact_decimal,
+    is_float32,
+    round_significant,
+    to_float32,
+)
+from nrs_design.errors import DesignError
+
+LARGEST = (2 - Fraction(1, 2**23)) * 2**127
+
+
+@pytest.mark.parametrize(
+    ("value", "rounded"),
+    [
+        ("0.01", "0.00999999977648258209228515625"),
+        ("2.15", "2.150000095367431640625"),
+        ("1.04", "1.03999996185302734375"),
+        ("2060", "2060"),
+        ("117359.436", "117359.4375"),
+        ("0", "0"),
+        ("-0.1", "-0.100000001490116119384765625"),
+        ("16777217", "16777216"),  # 2^24 + 1, ties to even
+        ("16777219", "16777220"),
+    ],
+)
+def test_known_numbers(value, rounded):
+    assert to_float32(Fraction(value)) == Fraction(rounded)
+    assert exact_decimal(to_float32(Fraction(value))) == rounded
+
+
+@given(st.floats(width=64, allow_nan=False, min_value=-3e38, max_value=3e38))
+def test_agrees_with_the_hardware(value):
+    assert to_float32(Fraction(value)) == Fraction(float(np.float32(value)))
+
+
+def test_rounded_once():
+    """By way of a double, 1 + 2^-24 + 2^-60 would become 1 + 2^-24, a tie, and then 1."""
+    value = 1 + Fraction(1, 2**24) + Fraction(1, 2**60)
+    assert to_float32(value) == 1 + Fraction(1, 2**23)
+
+
+@given(st.binary(min_size=4, max_size=4))
+def test_every_single_precision_number_is_one(pattern):
+    (value,) = struct.unpack("<f", pattern)
+    if np.isfinite(value):
+        exact = Fraction(value)
+        assert is_float32(exact)
+        assert to_float32(exact) == exact
+        assert Fraction(exact_decimal(exact)) == exact
+
+
+@given(st.fractions(max_denominator=10**12))
+def test_nearest(value):
+    if abs(value) > LARGEST:
+        return
+    rounded = to_float32(value)
+    step = abs(rounded) * Fraction(1, 2**23) + Fraction(1, 2**149)
+    assert abs(rounded - value) <= step / 2
+    assert is_float32(rounded)
+
+
+@pytest.mark.parametrize("exponent", [-149, -150, -200, -5000])
+def test_smallest_numbers(exponent):
+    value = Fraction(2) ** exponent
+    assert to_float32(value) == (value if exponent == -149 else 0)
+    assert to_float32(-3 * Fraction(2) ** -150) == -(Fraction(2) ** -148)
+
+
+def test_beyond_the_range():
+    assert to_float32(LARGEST) == LARGEST
+    for value in (Fraction(2) ** 128, -(Fraction(2) ** 128), Fraction(10) ** 5000):
+        assert not is_float32(value)
+        with pytest.raises(DesignError, match="single precision"):
+            to_float32(value)
+
+
+@pytest.mark.parametrize("text", ["0.1", "2.15", "1/3", "16777217"])
+def test_not_single_precision(text):
+    assert not is_float32(Fraction(text))
+
+
+@pytest.mark.parametrize(
+    ("value", "text"),
+    [
+        (0, "0"),
+        ("-1/2", "-0.5"),
+        ("1/1024", "0.0009765625"),
+        (2**100, str(2**100)),
+        ("5/4", "1.25"),
+    ],
+)
+def test_exact_decimal(value, text):
+    assert exact_decimal(Fraction(value)) == text
+
+
+def test_no_terminating_expansion():
+    with pytest.raises(ValueError, match="1/3"):
+        exact_decimal(Fraction(1, 3))
+
+
+@pytest.mark.parametrize(
+    ("value", "digits", "rounded"),
+    [
+        (2065.4, 3, "2070"),
+        (2.1496, 3, "2.15"),
+        (56.9706, 4, "56.97"),
+        (9.99, 1, "10"),
+        (-0.012345, 2, "-0.012"),
+        (0.0, 3, "0"),
+    ],
+)
+def test_round_significant(value, digits, rounded):
+    assert round_significant(value, digits) == Fraction(rounded)

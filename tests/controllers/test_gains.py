@@ -1,0 +1,149 @@
+"""Gains as text, and what a spec lets them be."""
+
+from fractions import Fraction
+
+import pytest
+
+from nrs_design.controllers.float32 import is_float32
+from nrs_design.controllers.gains import UNITS, design_from_gains, gains_of
+from nrs_design.errors import CertificateError, SpecError
+from nrs_design.pipeline import run_design
+from nrs_design.spec import parse_spec, read_spec
+from tests.support import FORCE_LIMIT, SOFT_TISSUE
+
+PATHS = {"impedance": SOFT_TISSUE, "force": FORCE_LIMIT}
+
+
+def gains(kind="impedance"):
+    loaded = read_spec(PATHS[kind])
+    return loaded.spec, gains_of(run_design(loaded))
+
+
+def altered(texts, controller, gain, value):
+    return {**texts, controller: {**texts[controller], gain: value}}
+
+
+def test_gains_of_the_thesis():
+    """Thesis 6.3.2.1: Mt = 0.01, Bt = 2.15 and 1.04; thesis 4.3: Kd = 2060, Kp = 117359.43."""
+    _, texts = gains()
+    assert texts == {
+        "motion": {"Kp": "117359.4375", "Kd": "2060"},
+        "insertion": {
+            "Mt": "0.00999999977648258209228515625",
+            "Bt": "2.150000095367431640625",
+        },
+        "withdrawal": {
+            "Mt": "0.00999999977648258209228515625",
+            "Bt": "1.03999996185302734375",
+        },
+    }
+
+
+@pytest.mark.parametrize("kind", PATHS)
+def test_round_trip(kind):
+    spec, texts = gains(kind)
+    design = design_from_gains(spec, texts)
+    assert gains_of(design) == texts
+    assert design == run_design(read_spec(PATHS[kind]))
+    assert all(is_float32(Fraction(text)) for values in texts.values() for text in values.values())
+
+
+def test_every_gain_has_a_unit():
+    kinds = {
+        "motion": "motion",
+        "insertion": "impedance",
+        "withdrawal": "impedance",
+        "force": "force",
+    }
+    for kind in PATHS:
+        for name, values in gains(kind)[1].items():
+            for gain in values:
+                assert (kinds[name], gain) in UNITS
+
+
+@pytest.mark.parametrize("change", ["missing", "extra", "renamed", "none"])
+def test_wrong_set_of_controllers(change):
+    spec, texts = gains()
+    changed = {
+        "missing": {k: v for k, v in texts.items() if k != "insertion"},
+        "extra": {**texts, "other": texts["insertion"]},
+        "renamed": {("Insertion" if k == "insertion" else k): v for k, v in texts.items()},
+        "none": {},
+    }[change]
+    with pytest.raises(CertificateError, match="insertion, motion, withdrawal"):
+        design_from_gains(spec, changed)
+
+
+@pytest.mark.parametrize(
+    ("controller", "values"),
+    [
+        ("insertion", {}),
+        ("insertion", {"Mt": "1"}),
+        ("insertion", {"Mt": "1", "Bt": "1", "Kt": "1"}),
+        ("insertion", {"Kp": "1"}),
+        ("motion", {"Kp": "1", "Kd": "1", "Ki": "1"}),
+    ],
+)
+def test_wrong_set_of_gains(controller, values):
+    spec, texts = gains()
+    with pytest.raises(CertificateError, match=f"gains of {controller} are not"):
+        design_from_gains(spec, {**texts, controller: values})
+
+
+def test_position_control_has_no_gains():
+    spec, texts = gains("force")
+    with pytest.raises(CertificateError, match="none"):
+        design_from_gains(spec, {**texts, "position": {"Kp": "1"}})
+
+
+@pytest.mark.parametrize(
+    ("controller", "gain", "value", "reason"),
+    [
+        ("insertion", "Bt", "2.15", "single-precision"),
+        ("insertion", "Bt", "1e99", "single-precision"),
+        ("insertion", "Bt", "0.0625", "outside its bounds"),
+        ("insertion", "Bt", "20.000001907348632812", "single-precision"),
+        ("insertion", "Bt", "20.0000019073486328125", "outside its bounds"),
+        ("insertion", "Mt", "0", "outside its bounds"),
+        ("insertion", "Mt", "2", "outside its bounds"),
+        ("motion", "Kd", "0", "not positive"),
+        ("motion", "Kp", "-117359.4375", "not positive"),
+        ("motion", "Kd", "2061", "what the spec fixes"),
+        ("motion", "Kp", "117359.4453125", "what the spec fixes"),
+    ],
+)
+def test_gains_that_the_spec_does_not_allow(controller, gain, value, reason):
+    spec, texts = gains()
+    with pytest.raises(CertificateError, match=reason):
+        design_from_gains(spec, altered(texts, controller, gain, value))
+
+
+@pytest.mark.parametrize("value", ["nan", "inf", "", "1 ", "0x1", "one"])
+def test_not_numbers(value):
+    spec, texts = gains()
+    with pytest.raises(SpecError):
+        design_from_gains(spec, altered(texts, "insertion", "Bt", value))
+
+
+def test_bounds_are_closed_after_rounding():
+    spec, texts = gains()
+    for value in ("20", "0.100000001490116119384765625"):
+        design = design_from_gains(spec, altered(texts, "insertion", "Bt", value))
+        assert design.controllers[0].law.Bt == Fraction(value)
+
+
+def test_fixed_force_gain():
+    spec, texts = gains("force")
+    for value in ("0.015625", "-0.0199999995529651641845703125"):
+        with pytest.raises(CertificateError, match="what the spec fixes"):
+            design_from_gains(spec, altered(texts, "force", "Kp", value))
+
+
+def test_free_force_gain_may_not_be_negative():
+    text = FORCE_LIMIT.read_text().replace(
+        "proportional_gain: 0.02 rad/(N*m)", "damping_ratio: 0.741"
+    )
+    spec, (_, texts) = parse_spec(text), gains("force")
+    assert design_from_gains(spec, altered(texts, "force", "Kp", "0.5")).controllers[1].law.Kp
+    with pytest.raises(CertificateError):
+        design_from_gains(spec, altered(texts, "force", "Kp", "-0.5"))

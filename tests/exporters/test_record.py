@@ -1,0 +1,138 @@
+import json
+import struct
+from dataclasses import replace
+from fractions import Fraction
+from pathlib import Path
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from pydantic import ValidationError
+
+from nrs_design.controllers.float32 import exact_decimal
+from nrs_design.errors import CertificateError, DesignError
+from nrs_design.exporters.export import export_design
+from nrs_design.exporters.record import ExportRecord, Gain, build_record, dump_record
+from nrs_design.pipeline import run_certification
+from nrs_design.spec import read_spec
+
+SPECS = Path(__file__).parents[2] / "specs"
+
+
+@pytest.fixture(scope="module")
+def result():
+    return run_certification(read_spec(SPECS / "neuroboscope/soft-tissue.nrs.yaml"))
+
+
+@pytest.fixture
+def record(result):
+    return build_record(result.design, result.certificate)
+
+
+@given(st.floats(width=32, allow_nan=False, allow_infinity=False))
+def test_three_forms_of_a_gain_are_the_same_number(value):
+    bits = struct.pack(">f", value).hex()
+    exact = exact_decimal(Fraction(value))
+    gain = Gain(name="Kp", unit="rpm/rad", exact=exact, float32=value, float32_bits=f"0x{bits}")
+    back = json.loads(gain.model_dump_json())["float32"]
+    assert struct.pack(">f", back).hex() == bits
+    assert Fraction(exact) == Fraction(value)
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        {"exact": "0.5000001"},
+        {"float32": 0.25},
+        {"float32": float("inf")},
+        {"float32": float("nan")},
+        {"float32_bits": "0x3f000001"},
+        {"float32_bits": "0x7fc00000"},
+        {"float32_bits": "3f000000"},
+        {"exact": 0.5},
+        {"extra": 1},
+    ],
+    ids=str,
+)
+def test_forms_that_differ_are_refused(change):
+    good = {"name": "k", "unit": "1", "exact": "0.5", "float32": 0.5, "float32_bits": "0x3f000000"}
+    assert Gain(**good).exact == "0.5"
+    with pytest.raises(ValidationError):
+        Gain.model_validate({**good, **change})
+
+
+def test_published_gains_as_single_precision_numbers(record):
+    """Thesis 6.3.2.1: Mt = 0.01, Bt = 2.15 and 1.04; thesis 4.3: Kd = 2060, Kp = 117359.43."""
+    shipped = {
+        (controller.name, gain.name): (gain.float32_bits, gain.unit)
+        for controller in record.controllers
+        for gain in controller.gains
+    }
+    assert shipped == {
+        ("insertion", "Mt"): ("0x3c23d70a", "kg*m^2"),
+        ("insertion", "Bt"): ("0x4009999a", "N*m*s/rad"),
+        ("withdrawal", "Mt"): ("0x3c23d70a", "kg*m^2"),
+        ("withdrawal", "Bt"): ("0x3f851eb8", "N*m*s/rad"),
+    }
+    Kp, Kd = record.motion.gains
+    assert (Kd.name, Kd.exact, Kd.unit) == ("Kd", "2060", "rpm*s/rad")
+    assert Kp.float32 == pytest.approx(117359.43, rel=1e-7)
+
+
+def test_proof_is_that_of_the_certificate(record, result):
+    proof = record.proof
+    assert proof.certificate_id == result.certificate.id
+    assert proof.assumptions == result.certificate.system.assumptions
+    assert Fraction(proof.decay_rate.exact) == result.certificate.evidence.rate
+    assert Fraction(proof.decay_rate.rounded) <= result.certificate.evidence.rate
+    assert proof.coordinates == "deflection"
+
+
+def test_json_is_the_dump_of_the_record(record):
+    text = dump_record(record)
+    assert ExportRecord.model_validate_json(text) == record
+    assert dump_record(ExportRecord.model_validate_json(text)) == text
+    assert json.loads(text)["schema"] == "nrs-design/export/1"
+
+
+def test_record_is_frozen_and_strict(record):
+    with pytest.raises(ValidationError):
+        record.spec = None
+    document = json.loads(dump_record(record))
+    for change in ({"extra": 1}, {"schema": "other"}, {"controllers": []}):
+        with pytest.raises(ValidationError):
+            ExportRecord.model_validate_json(json.dumps({**document, **change}))
+    document["proof"]["verdict"] = "inconclusive"
+    with pytest.raises(ValidationError):
+        ExportRecord.model_validate_json(json.dumps(document))
+
+
+def test_certificate_of_other_gains_is_refused(result):
+    gains = {**result.certificate.gains, "insertion": {"Mt": "0.5", "Bt": "2"}}
+    with pytest.raises(CertificateError, match="other gains of insertion"):
+        build_record(result.design, replace(result.certificate, gains=gains))
+    fewer = {"motion": result.certificate.gains["motion"]}
+    with pytest.raises(CertificateError, match="other gains"):
+        build_record(result.design, replace(result.certificate, gains=fewer))
+
+
+def test_certificate_that_refutes_is_refused(result):
+    from nrs_design.certificates.certificate import UnstableMode
+
+    refuting = replace(result.certificate, evidence=UnstableMode("insertion", "1"))
+    with pytest.raises(CertificateError, match="refutes"):
+        build_record(result.design, refuting)
+
+
+def test_force_and_position_controllers():
+    loaded = read_spec(SPECS / "neuroboscope/force-limit.nrs.yaml")
+    record = export_design(loaded).record
+    position, force = record.controllers
+    assert (position.law, position.gains, position.contacts) == ("position", (), ())
+    assert (force.law, force.environment, force.gains[0].unit) == ("force", "soft", "rad/(N*m)")
+
+
+def test_given_matrices_have_no_gains():
+    with pytest.raises(DesignError, match="no gains") as caught:
+        export_design(read_spec(SPECS / "examples/commuting.nrs.yaml"))
+    assert caught.value.remedy

@@ -1,0 +1,73 @@
+"""A project with two small specs that has passed the gate once."""
+
+import shutil
+from pathlib import Path
+
+import pytest
+
+from nrs_design.gating.find_specs import find_specs
+from nrs_design.gating.lock import make_lock, write_lock
+from nrs_design.gating.run import Files, run_gate
+
+STABLE = """\
+kind: switched-system
+name: stable
+time: continuous
+modes:
+  - {name: a, A: [[-1, 1], [-1, -1]]}
+  - {name: b, A: [[-2, 3], [-3, -2]]}
+switching: arbitrary
+"""
+UNSTABLE = """\
+kind: switched-system
+name: unstable
+time: discrete
+modes:
+  - {name: good, A: [["1/2", 0], [0, "1/2"]]}
+  - {name: bad, A: [["1/2", 0], [0, 1]]}
+switching: arbitrary
+"""
+BROKEN = STABLE.replace("time: continuous", "time: sideways")
+SOFT_TISSUE = Path(__file__).parents[2] / "specs/neuroboscope/soft-tissue.nrs.yaml"
+
+
+@pytest.fixture(scope="session")
+def gated(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A folder with specs, certificates and nrs.lock; never to be changed."""
+    root = tmp_path_factory.mktemp("gated")
+    folder = root / "specs"
+    folder.mkdir()
+    (folder / "stable.nrs.yaml").write_text(STABLE)
+    shutil.copy(SOFT_TISSUE, folder)
+    outcome = run_gate(find_specs([folder]), Files(root / "reports", html=False))
+    write_lock(outcome, root / "nrs.lock")
+    assert make_lock(outcome.specs, root / "nrs.lock").specs
+    return root
+
+
+@pytest.fixture
+def project(gated: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A copy of the gated folder, and the working folder."""
+    root = tmp_path / "project"
+    shutil.copytree(gated, root)
+    monkeypatch.chdir(root)
+    return root
+
+
+@pytest.fixture
+def inconclusive(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Let every search end without a proof and without a refutation."""
+    from nrs_design.certificates.certify import (
+        Attempt,
+        Certification,
+        CommonQuadraticStatus,
+        Verdict,
+    )
+
+    def give_up(system, *arguments, **options):
+        attempts = (Attempt("lmi", "nothing found", 0.25),)
+        return Certification(
+            system, Verdict.INCONCLUSIVE, CommonQuadraticStatus.UNKNOWN, "auto", None, attempts
+        )
+
+    monkeypatch.setattr("nrs_design.certificates.certify.certify", give_up)

@@ -1,0 +1,59 @@
+from pathlib import Path
+
+import pytest
+
+from nrs_design.errors import NrsDesignError, SpecError
+from nrs_design.gating.find_specs import find_specs
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    root = tmp_path / "specs"
+    for name in ("b.nrs.yaml", "a/z.nrs.yaml", "a/y.yaml", ".venv/x.nrs.yaml", "c.nrs.yaml.bak"):
+        file = root / name
+        file.parent.mkdir(parents=True, exist_ok=True)
+        file.touch()
+    return root
+
+
+def test_folder_means_all_specs_below_it_sorted_without_hidden_ones(folder):
+    assert find_specs([folder]) == (folder / "a/z.nrs.yaml", folder / "b.nrs.yaml")
+
+
+def test_a_spec_named_twice_is_listed_once(folder):
+    assert find_specs([folder / "a", folder, folder / "a/../a/z.nrs.yaml"]) == find_specs([folder])
+
+
+def test_a_file_is_taken_whatever_its_name(folder):
+    named = [folder / "a/y.yaml", folder / "missing"]
+    assert find_specs(named) == tuple(named)
+
+
+def test_an_empty_folder_is_refused(tmp_path):
+    with pytest.raises(NrsDesignError, match=r"no \*\.nrs\.yaml") as caught:
+        find_specs([tmp_path])
+    assert caught.value.path == tmp_path
+
+
+def test_links_to_folders_are_not_followed(folder, tmp_path):
+    (tmp_path / "outside").mkdir()
+    (tmp_path / "outside/o.nrs.yaml").touch()
+    (folder / "link").symlink_to(tmp_path / "outside")
+    (folder / "loop").symlink_to(folder)
+    assert len(find_specs([folder])) == 2
+
+
+def test_a_link_to_a_spec_outside_is_refused(folder, tmp_path):
+    (tmp_path / "o.nrs.yaml").touch()
+    (folder / "o.nrs.yaml").symlink_to(tmp_path / "o.nrs.yaml")
+    with pytest.raises(SpecError, match="out of the folder"):
+        find_specs([folder])
+
+
+def test_a_link_to_a_spec_inside_is_the_same_spec(folder):
+    (folder / "a/0.nrs.yaml").symlink_to(folder / "b.nrs.yaml")
+    assert find_specs([folder]) == (folder / "a/0.nrs.yaml", folder / "a/z.nrs.yaml")
+
+
+def test_a_name_that_no_file_can_have_is_left_to_reading(tmp_path):
+    assert find_specs([tmp_path / ("x" * 5000)])

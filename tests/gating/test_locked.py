@@ -1,0 +1,234 @@
+import json
+import os
+import subprocess
+import sys
+
+import pytest
+
+from nrs_design.certificates.certificate import content_id
+from nrs_design.gating.find_specs import find_specs
+from nrs_design.gating.lock import read_lock, write_lock
+from nrs_design.gating.locked import run_locked
+from nrs_design.gating.obligations import Status
+from nrs_design.gating.run import Files, run_gate
+
+from .conftest import UNSTABLE
+
+
+@pytest.fixture
+def check(project):
+    def run(*names):
+        specs = find_specs([project / name for name in names or ("specs",)])
+        return run_locked(specs, read_lock(project / "nrs.lock"), project / "nrs.lock")
+
+    return run
+
+
+def broken(outcome):
+    return [(item.rule.id, str(item.status)) for item in outcome.broken]
+
+
+def edit_lock(project, edit):
+    document = json.loads((project / "nrs.lock").read_text())
+    edit(document["specs"])
+    (project / "nrs.lock").write_text(json.dumps(document))
+
+
+def edit_certificate(project, edit):
+    """Change the certificate of the pair of modes, and sign it again."""
+    file = project / "reports/stable.cert.json"
+    document = json.loads(file.read_text())
+    edit(document)
+    document["id"] = content_id(document)
+    file.write_text(json.dumps(document))
+    return document["id"]
+
+
+def test_unchanged_project_passes(check):
+    outcome = check()
+    assert outcome.severity == 0
+    assert [spec.verdict for spec in outcome.specs] == ["proved", "proved"]
+    assert {item.rule.id for spec in outcome.specs for item in spec.obligations} == {
+        "NRS101",
+        "NRS102",
+        "NRS104",
+        "NRS105",
+    }
+
+
+def test_changed_spec(check, project):
+    with (project / "specs/stable.nrs.yaml").open("a") as file:
+        file.write("# only a comment\n")
+    outcome = check()
+    assert broken(outcome) == [("NRS105", "missed")]
+    assert "has changed since it was locked" in outcome.broken[0].message
+
+
+def test_new_spec(check, project):
+    (project / "specs/new.nrs.yaml").write_text(UNSTABLE)
+    outcome = check()
+    assert broken(outcome) == [("NRS105", "missed")]
+    assert "is not in nrs.lock" in outcome.broken[0].message
+
+
+def test_spec_that_is_gone(check, project):
+    (project / "specs/stable.nrs.yaml").unlink()
+    outcome = check()
+    assert broken(outcome) == [("NRS105", "missed")]
+    assert "no longer exists" in outcome.broken[0].message
+    assert outcome.broken[0].path.as_posix() == "specs/stable.nrs.yaml"
+
+
+def test_renamed_spec_fails_twice(check, project):
+    (project / "specs/stable.nrs.yaml").rename(project / "specs/other.nrs.yaml")
+    assert broken(check()) == [("NRS105", "missed")] * 2
+
+
+def test_locked_spec_that_was_not_named_is_noted(check):
+    outcome = check("specs/stable.nrs.yaml")
+    assert outcome.severity == 0
+    assert "specs/soft-tissue.nrs.yaml" in outcome.notes[0]
+
+
+def test_missing_certificate(check, project):
+    (project / "reports/stable.cert.json").unlink()
+    assert broken(check()) == [("NRS004", "error")]
+
+
+def test_certificate_that_is_no_json(check, project):
+    (project / "reports/stable.cert.json").write_text("{")
+    assert broken(check()) == [("NRS004", "error")]
+
+
+def test_edited_certificate(check, project):
+    file = project / "reports/stable.cert.json"
+    file.write_text(file.read_text().replace("Every solution", "No solution"))
+    assert broken(check()) == [("NRS104", "missed")]
+
+
+def test_certificate_of_another_spec(check, project):
+    (project / "reports/stable.cert.json").write_bytes(
+        (project / "reports/soft-tissue.cert.json").read_bytes()
+    )
+    assert broken(check()) == [("NRS104", "missed")]
+
+
+def test_valid_certificate_other_than_the_locked_one(check, project):
+    def scale(document):
+        document["Q"]["denominator_log2"] += 1
+
+    new = edit_certificate(project, scale)
+    outcome = check()
+    assert broken(outcome) == [("NRS105", "missed")]
+    assert "not the certificate that was locked" in outcome.broken[0].message
+    # Locked by its id, it holds: a scaled function proves the same.
+    edit_lock(project, lambda specs: specs[1]["certificate"].update(id=new))
+    assert check().severity == 0
+
+
+def test_false_certificate_with_a_lock_to_match(check, project):
+    def flip(document):
+        numerators = document["Q"]["numerators"]
+        numerators[0][0] = -numerators[0][0]
+
+    new = edit_certificate(project, flip)
+    edit_lock(project, lambda specs: specs[1]["certificate"].update(id=new))
+    assert broken(check()) == [("NRS104", "missed")]
+
+
+@pytest.mark.parametrize(
+    "change", [{"rate": "99"}, {"rate": None}, {"verdict": "refuted"}], ids=str
+)
+def test_lock_that_says_more_than_its_certificate(check, project, change):
+    edit_lock(project, lambda specs: specs[1].update(change))
+    assert broken(check()) == [("NRS105", "missed")]
+
+
+def test_forged_hash(check, project):
+    edit_lock(project, lambda specs: specs[1].update(sha256="0" * 64))
+    assert broken(check()) == [("NRS105", "missed")]
+
+
+def test_dropped_entry(check, project):
+    edit_lock(project, lambda specs: specs.pop())
+    assert broken(check()) == [("NRS105", "missed")]
+
+
+@pytest.mark.parametrize("file", ["/dev/zero", "../../../nowhere", "reports", "a\0b", "x" * 5000])
+def test_hostile_certificate_paths(check, project, file):
+    edit_lock(project, lambda specs: specs[1]["certificate"].update(file=file))
+    assert broken(check()) == [("NRS004", "error")]
+
+
+def test_certificate_in_other_coordinates_than_the_spec(check, project):
+    from nrs_design.certificates.certificate import dump
+    from nrs_design.pipeline import run_certification
+    from nrs_design.spec import read_spec
+
+    loaded = read_spec(project / "specs/soft-tissue.nrs.yaml")
+    certificate = run_certification(loaded, coordinates="force").certificate
+    (project / "reports/soft-tissue.cert.json").write_text(dump(certificate))
+    edit_lock(project, lambda specs: specs[0]["certificate"].update(id=certificate.id))
+    from nrs_design.gating.examine import rate_of
+
+    edit_lock(project, lambda specs: specs[0].update(rate=rate_of(certificate)[0]))
+    outcome = check()
+    assert broken(outcome) == [("NRS105", "missed")]
+    assert "force coordinates" in outcome.broken[0].message
+
+
+def test_refuted_spec_stays_refuted(project):
+    (project / "specs/unstable.nrs.yaml").write_text(UNSTABLE)
+    specs = find_specs([project / "specs"])
+    write_lock(run_gate(specs, Files(project / "reports", html=False)), project / "nrs.lock")
+    outcome = run_locked(specs, read_lock(project / "nrs.lock"), project / "nrs.lock")
+    assert broken(outcome) == [("NRS101", "refuted"), ("NRS102", "refuted")]
+    assert outcome.severity == 2
+
+
+@pytest.mark.parametrize("name", ["stable", "soft-tissue"])
+def test_inconclusive_spec_stays_inconclusive(project, inconclusive, name):
+    spec = project / f"specs/{name}.nrs.yaml"
+    outcome = run_gate([spec], Files(project / "reports", html=False))
+    write_lock(outcome, project / "nrs.lock")
+    again = run_locked([spec], read_lock(project / "nrs.lock"), project / "nrs.lock")
+    assert broken(again) == [("NRS102", str(Status.INCONCLUSIVE))]
+    assert (again.severity, again.specs[0].verdict) == (1, "inconclusive")
+
+
+def test_a_defect_in_one_spec_stops_no_other(check, monkeypatch):
+    from nrs_design.gating import locked
+
+    def fail_once(path, loaded):
+        if loaded.spec.name == "soft-tissue":
+            raise RuntimeError("unforeseen")
+        return verify(path, loaded)
+
+    verify = locked.verify
+    monkeypatch.setattr(locked, "verify", fail_once)
+    outcome = check()
+    assert [spec.verdict for spec in outcome.specs] == [None, "proved"]
+    assert outcome.severity == 4
+
+
+def test_nothing_is_written_and_no_solver_is_loaded(project):
+    before = {p: p.stat().st_mtime_ns for p in project.rglob("*")}
+    program = (
+        "import sys\n"
+        "from nrs_design.cli import main\n"
+        "sys.argv = ['nrs-design', 'gate', '--locked', 'specs']\n"
+        "try:\n    main()\nexcept SystemExit as end:\n    assert not end.code, end.code\n"
+        "heavy = {'clarabel', 'scipy', 'control', 'matplotlib', 'cvxpy', 'reportlab', 'jinja2'}\n"
+        "print(sorted(heavy & set(sys.modules)))\n"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", program],
+        cwd=project,
+        env={**os.environ, "PYTHONDONTWRITEBYTECODE": "1"},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert done.returncode == 0, done.stderr
+    assert done.stdout.rstrip().endswith("[]")
+    assert {p: p.stat().st_mtime_ns for p in project.rglob("*")} == before

@@ -1,0 +1,55 @@
+import re
+
+import pytest
+
+from nrs_design import errors
+from nrs_design.cli import exit_codes
+from nrs_design.cli.gate import OF_SEVERITY
+from nrs_design.gating.obligations import Status
+from nrs_design.gating.rules import RULES, WORDS
+
+# Ids are stable: baselines of code scanners and lock files outlive a release.
+PUBLISHED = [
+    *(f"NRS00{i}" for i in range(6)),
+    *(f"NRS10{i}" for i in range(1, 6)),
+    "NRS900",
+]
+
+
+def test_ids_are_stable():
+    assert list(RULES) == PUBLISHED
+    assert all(rule.id == key for key, rule in RULES.items())
+
+
+def test_every_error_has_its_rule():
+    classes = [errors.NrsDesignError, *errors.NrsDesignError.__subclasses__()]
+    assert [error.rule for error in classes] == sorted({error.rule for error in classes})
+    assert {error.rule for error in classes} <= RULES.keys()
+
+
+@pytest.mark.parametrize("rule", RULES.values(), ids=lambda rule: rule.id)
+def test_every_rule_says_what_it_means_and_what_to_do(rule):
+    assert re.fullmatch("NRS[0-9]{3}", rule.id)
+    assert not rule.title.endswith(".")
+    assert rule.explanation.endswith(".")
+    assert rule.remedy.endswith(".")
+
+
+def test_every_status_is_explained_with_its_exit_code():
+    assert WORDS.keys() == {str(status) for status in Status}
+    assert "Exit code 3." in WORDS["inconclusive"].remedy
+
+
+def test_a_design_goal_is_not_called_a_proof():
+    assert "not a proof" in RULES["NRS103"].explanation
+
+
+def test_exit_codes_get_worse_with_severity():
+    """Internal before usage before refuted before inconclusive before proved."""
+    assert OF_SEVERITY == (
+        exit_codes.PROVED,
+        exit_codes.INCONCLUSIVE,
+        exit_codes.REFUTED,
+        exit_codes.USAGE,
+        exit_codes.INTERNAL,
+    )

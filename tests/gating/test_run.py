@@ -1,0 +1,163 @@
+import json
+from pathlib import Path
+
+import pytest
+
+from nrs_design.certificates.verify import verify
+from nrs_design.errors import InternalError
+from nrs_design.gating.obligations import Status
+from nrs_design.gating.run import Files, run_gate
+from nrs_design.spec import read_spec
+
+from .conftest import BROKEN, SOFT_TISSUE, STABLE, UNSTABLE
+
+ROOT = Path(__file__).parents[2]
+
+
+@pytest.fixture
+def examine(tmp_path):
+    """Gate the given texts as specs s0, s1, ... without reports."""
+
+    def run(*texts):
+        paths = [tmp_path / f"s{i}.nrs.yaml" for i in range(len(texts))]
+        for path, text in zip(paths, texts, strict=True):
+            path.write_text(text)
+        return run_gate(paths, Files(tmp_path / "reports", html=False))
+
+    return run
+
+
+def found(spec):
+    return [(item.rule.id, item.subject, str(item.status)) for item in spec.obligations]
+
+
+def test_proved_spec(examine, tmp_path):
+    (spec,) = examine(STABLE).specs
+    assert found(spec) == [
+        ("NRS101", "a", "proved"),
+        ("NRS101", "b", "proved"),
+        ("NRS102", "system", "proved"),
+        ("NRS104", "certificate", "met"),
+    ]
+    assert (spec.verdict, spec.common_quadratic, spec.modes) == ("proved", "exists", 2)
+    file = tmp_path / "reports/stable.cert.json"
+    assert spec.certificate == file
+    assert spec.certificate_id == json.loads(file.read_text())["id"]
+    assert verify(file, read_spec(spec.path)).fault is None
+
+
+def test_refuted_spec_names_the_unstable_modes_with_their_place(examine):
+    outcome = examine(UNSTABLE)
+    assert found(outcome.specs[0]) == [
+        ("NRS101", "good", "proved"),
+        ("NRS101", "bad", "refuted"),
+        ("NRS102", "system", "refuted"),
+        ("NRS104", "certificate", "met"),
+    ]
+    assert outcome.severity == 2
+    bad = outcome.broken[0]
+    assert UNSTABLE.split("\n")[bad.line - 1][bad.column - 1 :].startswith("{name: bad")
+    assert "not Schur (eigenvalue 1)" in bad.message
+
+
+def test_inconclusive_fails(examine, inconclusive):
+    outcome = examine(STABLE)
+    (broken,) = outcome.broken
+    assert (broken.rule.id, broken.status) == ("NRS102", Status.INCONCLUSIVE)
+    assert "nothing found" in broken.message
+    assert "0.25" not in broken.message, "times differ from run to run"
+    assert outcome.severity == 1
+    assert outcome.specs[0].certificate is None
+
+
+def test_a_broken_spec_does_not_keep_the_others_from_being_examined(examine):
+    outcome = examine(BROKEN, STABLE.replace("name: stable", "name: other"))
+    assert [spec.verdict for spec in outcome.specs] == [None, "proved"]
+    (broken,) = outcome.broken
+    assert (broken.rule.id, broken.status, broken.line) == ("NRS001", Status.ERROR, 3)
+    assert outcome.severity == 3
+
+
+def test_missing_and_misnamed_files_are_errors(tmp_path):
+    missing = tmp_path / "missing.nrs.yaml"
+    not_utf8 = tmp_path / "\udcff.nrs.yaml"
+    outcome = run_gate([missing, not_utf8], Files(tmp_path, html=False))
+    assert [spec.obligations[0].rule.id for spec in outcome.specs] == ["NRS001", "NRS001"]
+    assert "not UTF-8" in outcome.specs[1].obligations[0].message
+
+
+def test_two_specs_of_one_name_would_overwrite_each_other(examine, tmp_path):
+    outcome = examine(STABLE, UNSTABLE, STABLE + "# the same name\n")
+    assert [spec.verdict for spec in outcome.specs] == [None, "refuted", None]
+    assert [(b.line, b.column) for b in outcome.broken[:2]] == [(2, 1), (2, 1)]
+    assert not (tmp_path / "reports/stable.cert.json").exists()
+
+
+def test_a_defect_of_one_examination_is_the_worst_and_stops_no_other(examine, monkeypatch):
+    from nrs_design.gating import run
+
+    def disagree(loaded, **options):
+        if loaded.spec.name == "stable":
+            raise InternalError("two computations disagree")
+        return certify(loaded, **options)
+
+    certify = run.run_certification
+    monkeypatch.setattr(run, "run_certification", disagree)
+    outcome = examine(BROKEN, STABLE.replace("name: stable", "name: other"), STABLE)
+    assert [spec.verdict for spec in outcome.specs] == [None, "proved", None]
+    assert [item.rule.id for item in outcome.broken] == ["NRS900", "NRS001"]
+    assert outcome.severity == 4
+
+
+def test_a_certificate_that_does_not_hold_when_read_back_is_reported(examine, monkeypatch):
+    from nrs_design.certificates.certificate import dump
+    from nrs_design.gating import run
+
+    monkeypatch.setattr(run, "dump", lambda certificate: dump(certificate).replace("Every", "No"))
+    outcome = examine(STABLE)
+    (broken,) = outcome.broken
+    assert (broken.rule.id, broken.status) == ("NRS104", Status.MISSED)
+
+
+def test_unwritable_folder_is_an_error_of_every_spec(tmp_path):
+    spec = tmp_path / "s.nrs.yaml"
+    spec.write_text(STABLE)
+    outcome = run_gate([spec], Files(spec / "reports", html=False))
+    assert outcome.broken[0].rule.id == "NRS005"
+    assert outcome.broken[0].line is None
+    assert outcome.severity == 3
+
+
+def test_reports_are_written_where_asked_for(tmp_path):
+    spec = tmp_path / "s.nrs.yaml"
+    spec.write_text(STABLE)
+    outcome = run_gate([spec], Files(tmp_path / "reports"))
+    assert outcome.severity == 0, outcome.broken
+    assert "<html" in (tmp_path / "reports/stable.html").read_text()
+
+
+def test_the_print_error_of_the_thesis_is_refuted(tmp_path):
+    """Thesis 6.3.2.2 prints +1618.80 where -1618.80 is right."""
+    path = ROOT / "docs/examples/thesis-print-error.nrs.yaml"
+    outcome = run_gate([path], Files(tmp_path, html=False))
+    assert [item.subject for item in outcome.broken] == ["insertion", "withdrawal", "system"]
+
+
+class TestStiffnessRange:
+    def test_goal_is_met_but_not_called_proved(self, tmp_path):
+        (spec,) = run_gate([SOFT_TISSUE], Files(tmp_path, html=False)).specs
+        goals = [item for item in spec.obligations if item.rule.id == "NRS103"]
+        assert [item.subject for item in goals] == ["insertion", "withdrawal"]
+        assert {item.status for item in goals} == {Status.MET}
+        assert all("not a proof" in item.message for item in goals)
+        # 768.17 N/m at 0.24 m (thesis 6.1 and 6.3.1).
+        assert all("up to 44.2466 N*m/rad" in item.message for item in goals)
+
+    def test_goal_is_missed_beyond_the_limit(self, tmp_path):
+        text = SOFT_TISSUE.read_text().replace("768.17 N/m]}", "90000 N/m]}")
+        path = tmp_path / "stiff.nrs.yaml"
+        path.write_text(text)
+        outcome = run_gate([path], Files(tmp_path, html=False))
+        missed = [item for item in outcome.broken if item.rule.id == "NRS103"]
+        assert {item.status for item in missed} == {Status.MISSED}
+        assert outcome.specs[0].verdict == "refuted"

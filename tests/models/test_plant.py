@@ -1,0 +1,53 @@
+from fractions import Fraction
+
+import pytest
+
+from nrs_design.models.environment import Interval
+from nrs_design.models.plant import build_plant
+from nrs_design.spec import load_spec, parse_spec
+from tests.support import SOFT_TISSUE
+
+F = Fraction
+KELVIN_VOIGT = """\
+  hand:
+    model: kelvin-voigt
+    stiffness: {nominal: 1002 N/m, range: [434 N/m, 1570 N/m]}
+    damping: {nominal: 5 N*s/m, range: [0 N*s/m, 10 N*s/m]}
+    lever_arm: 0.24 m
+  rotational:
+    model: kelvin-voigt
+    stiffness: 43 N*m/rad
+    damping: 1/2 N*m*s/rad
+controllers:
+"""
+
+
+def test_soft_tissue_of_the_thesis():
+    """Thesis 6.3.1.1: 747.1461 N/m at 0.24 m is 43.0356 N m/rad."""
+    plant = build_plant(load_spec(SOFT_TISSUE))
+    assert plant.actuator.gain == F("4.8417e-4")
+    assert plant.actuator.time_constant == F("0.0351")
+    soft = plant.environment("soft")
+    assert soft.stiffness.nominal == F("747.1461") * F("0.0576")
+    assert float(soft.stiffness.nominal) == pytest.approx(43.0356, rel=1e-5)
+    assert soft.stiffness.low == F("720.56") * F("0.0576")
+    assert soft.damping == Interval.point(F(0))
+
+
+def test_lever_arm_applies_to_stiffness_and_damping():
+    """Surgeon's hand, 1002 +- 568 N/m at 0.24 m: 25.0 to 90.4 N m/rad."""
+    plant = build_plant(
+        parse_spec(SOFT_TISSUE.read_text().replace("controllers:\n", KELVIN_VOIGT, 1))
+    )
+    hand = plant.environment("hand")
+    assert float(hand.stiffness.low) == pytest.approx(24.998, abs=1e-3)
+    assert float(hand.stiffness.high) == pytest.approx(90.432, abs=1e-3)
+    assert hand.damping == Interval(5 * F("0.0576"), F(0), 10 * F("0.0576"))
+    rotational = plant.environment("rotational")
+    assert rotational.stiffness == Interval.point(F(43))
+    assert rotational.damping == Interval.point(F(1, 2))
+
+
+def test_unknown_environment():
+    with pytest.raises(StopIteration):
+        build_plant(load_spec(SOFT_TISSUE)).environment("other")

@@ -1,0 +1,137 @@
+"""The whole table: what the thesis prints in chapters 4 and 6."""
+
+from types import SimpleNamespace
+
+import pytest
+
+from nrs_design.reproduction import impedance, modes, table, thesis
+from nrs_design.reproduction.row import Verdict
+from nrs_design.reproduction.table import TOPICS, count_verdicts, reproduce
+
+
+@pytest.fixture(scope="module")
+def rows():
+    return reproduce()
+
+
+@pytest.fixture(scope="module")
+def find(rows):
+    def one(name, section):
+        (row,) = [row for row in rows if (row.name, row.section) == (name, section)]
+        return row
+
+    return one
+
+
+def test_nothing_has_drifted(rows):
+    assert [row for row in rows if row.verdict is Verdict.DRIFT] == []
+
+
+def test_every_verdict_occurs(rows):
+    assert set(count_verdicts(rows)) == {
+        "reproduced",
+        "print is wrong",
+        "hardware only",
+        "needs data that the thesis omits",
+    }
+
+
+def test_rows_are_distinct(rows):
+    assert len({(row.name, row.section) for row in rows}) == len(rows)
+
+
+def test_a_wrong_print_says_what_is_right(rows):
+    assert all(row.note for row in rows if row.verdict is Verdict.PRINT_IS_WRONG)
+
+
+def test_a_value_stands_beside_every_print_that_can_be_recomputed(rows):
+    silent = {Verdict.HARDWARE_ONLY, Verdict.OMITTED_DATA}
+    assert all((row.value is None) == (row.verdict in silent) for row in rows)
+
+
+# Thesis, section and print; the recomputed value is right to the digits given here.
+@pytest.mark.parametrize(
+    ("name", "section", "printed", "value", "verdict"),
+    [
+        ("armature resistance R", "4.1", "3.7754", "3.74541", "print is wrong"),
+        ("angle of the zero", "4.28", "44.9914", "45.0181", "print is wrong"),
+        ("Kp = K z", "4.31", "117359.43", "117359.44", "reproduced"),
+        ("desired impedance", "6.2", "2.1486", "2.14859", "reproduced"),
+        ("upper end of the band", "6.4", "12.57", "12.5664", "reproduced"),
+        ("k_soft", "6.3.1.1", "43.0356", "43.0356", "reproduced"),
+        ("A2: entry (3,3)", "6.4.1", "-410", "-215", "print is wrong"),
+        ("A2: entry (4,1)", "6.4.1", "79666.19", "69666.05", "print is wrong"),
+        ("damping ratio at Kp = 0.02", "6.3.3.1", "0.707", "0.741234", "print is wrong"),
+        ("A1 and A2 as printed", "6.3.2.2", "stable under arbitrary switching", "refuted",
+         "print is wrong"),
+    ],
+)  # fmt: skip
+def test_published_row(find, name, section, printed, value, verdict):
+    row = find(name, section)
+    assert (row.printed, row.value, row.verdict) == (printed, value, verdict)
+
+
+@pytest.mark.parametrize("source", ["G as in 6.1", "G exact"])
+@pytest.mark.parametrize(
+    ("design", "section", "Bt"),
+    [
+        ("soft, Mt free", "6.3.1.1", "2.15"),
+        ("soft, Mt >= 0.01", "6.3.2.1", "2.15"),
+        ("soft, half the impedance", "6.3.2.1", "1.04"),
+        ("stiff, Mt >= 0.01", "6.4.1", "2.11"),
+    ],
+)
+def test_optimum_to_the_printed_digit_with_either_loop(find, design, section, Bt, source):
+    row = find(f"Mt, Bt: {design}; {source}", section)
+    Mt, value = map(float, row.value.split(", "))
+    assert row.printed == f"{Mt:g}, {Bt}"
+    assert f"{value:.2f}" == Bt
+    assert row.verdict == "reproduced"
+
+
+def test_eigenvalues_of_the_printed_matrix_are_unstable(find):
+    row = find("eigenvalues of A1 as printed", "6.3.2.2")
+    assert row.value == "10.6523 +- 17.71j, -75.4711, -217.724"
+
+
+def test_zero_mass_is_proved_either_way(find):
+    row = find("Bt 2.15 and 1.04 without virtual mass", "6.3.2.1")
+    assert row.verdict == "print is wrong"
+    assert row.value.count("proved") == 2
+
+
+def test_stiff_hand_is_beyond_the_limit(find):
+    notes = [
+        find(f"largest stable stiffness, Mt 0.01, Bt {Bt}", section).note
+        for Bt, section in ((1.04, "6.3.2.2"), (2.15, "6.3.2.2"))
+    ]
+    assert ["25.0 to 90.4" in note for note in notes] == [True, False]
+
+
+def test_a_changed_computation_becomes_a_drift(monkeypatch):
+    biased = SimpleNamespace(Mt=0.01, Bt=2.16)
+    monkeypatch.setattr(impedance, "optimize_impedance", lambda problem: biased)
+    drifts = {row.name for row in impedance.rows() if row.verdict is Verdict.DRIFT}
+    assert "Mt, Bt: soft, Mt >= 0.01; G exact" in drifts
+    assert "k_soft" not in drifts
+
+
+def test_a_sign_that_comes_out_right_becomes_a_drift(monkeypatch):
+    monkeypatch.setattr(modes, "printed_rows", lambda damping, force: [[-1]])
+    drifts = {row.name for row in modes.rows() if row.verdict is Verdict.DRIFT}
+    assert drifts == {"eigenvalues of A1 as printed", "eigenvalues of A2 as printed"}
+
+
+def test_values_follow_the_inputs(monkeypatch):
+    before = [row.value for row in impedance.rows()]
+    monkeypatch.setattr(thesis, "SOFT", thesis.SOFT * 2)
+    after = [row.value for row in impedance.rows()]
+    assert before != after
+
+
+def test_a_topic_is_added_in_one_place(monkeypatch):
+    topic = SimpleNamespace(__name__="nrs_design.reproduction.new", rows=TOPICS[0].rows)
+    monkeypatch.setattr(table, "TOPICS", (topic,))
+    names: list[str] = []
+    assert reproduce(names.append) == TOPICS[0].rows()
+    assert names == ["new"]

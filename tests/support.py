@@ -1,0 +1,153 @@
+"""Builders and exact oracles that several tests share."""
+
+import os
+import subprocess
+import sys
+from collections.abc import Sequence
+from fractions import Fraction
+from pathlib import Path
+
+from flint import fmpq, fmpq_mat
+
+from nrs_design.certificates.certificate import Evidence, UnstableMode
+from nrs_design.spec import LoadedSpec, parse_exact, read_spec
+from nrs_design.switched.matrix import RationalMatrix
+from nrs_design.switched.system import Mode, SwitchedSystem, Time
+
+ROOT = Path(__file__).parents[1]
+ROBOT = ROOT / "specs" / "neuroboscope"
+SOFT_TISSUE = ROBOT / "soft-tissue.nrs.yaml"
+FORCE_LIMIT = ROBOT / "force-limit.nrs.yaml"
+COMMUTING = ROOT / "specs" / "examples" / "commuting.nrs.yaml"
+PRINT_ERROR = ROOT / "docs" / "examples" / "thesis-print-error.nrs.yaml"
+
+
+Entry = int | str | Fraction
+
+
+def exact(rows: Sequence[Sequence[Entry]]) -> list[list[Fraction]]:
+    """Read a matrix of integers, fractions or exact decimals."""
+    return [[parse_exact(e) if isinstance(e, str) else Fraction(e) for e in row] for row in rows]
+
+
+def matrix(rows: Sequence[Sequence[Entry]]) -> RationalMatrix:
+    return RationalMatrix.from_rows(exact(rows))
+
+
+def family(*matrices: Sequence[Sequence[Entry]], time: Time = Time.CONTINUOUS) -> SwitchedSystem:
+    """Make a switched system with modes m0, m1, ..."""
+    modes = tuple(Mode(f"m{i}", matrix(rows)) for i, rows in enumerate(matrices))
+    states = tuple(f"x{i + 1}" for i in range(len(matrices[0])))
+    return SwitchedSystem("family", time, states, modes, ())
+
+
+def dayawansa_martin(a: Entry, scale: Entry = 1) -> SwitchedSystem:
+    """Pair with a common quadratic Lyapunov function iff a < 3 + 2 sqrt(2)."""
+    value, factor = exact([[a, scale]])[0]
+    pair = [[[-1, -1], [1, -1]], [[-1, -value], [1 / value, -1]]]
+    return family(*([[factor * e for e in row] for row in A] for A in pair))
+
+
+def write_spec(
+    path: Path, *matrices: Sequence[Sequence[Entry]], time: str = "continuous"
+) -> LoadedSpec:
+    """Write and read a switched-system spec."""
+    lines = ["kind: switched-system", "name: given", f"time: {time}", "modes:"]
+    for i, rows in enumerate(matrices):
+        text = ", ".join("[" + ", ".join(f'"{Fraction(e)}"' for e in row) + "]" for row in rows)
+        lines.append(f"  - {{name: m{i}, A: [{text}]}}")
+    path.write_text("\n".join([*lines, "switching: arbitrary", ""]))
+    return read_spec(path)
+
+
+def run(
+    *arguments: str | Path, cwd: Path, environment: dict[str, str] | None = None
+) -> subprocess.CompletedProcess[str]:
+    """Run the command line as a user types it."""
+    command = [sys.executable, "-m", "nrs_design", *map(str, arguments)]
+    env = {**os.environ, **(environment or {})}
+    return subprocess.run(command, capture_output=True, text=True, cwd=cwd, env=env, check=False)
+
+
+def holds(system: SwitchedSystem, evidence: Evidence) -> bool:
+    """Oracle: the definition of either kind of evidence, in fractions."""
+    discrete = system.time is Time.DISCRETE
+    if isinstance(evidence, UnstableMode):
+        (mode,) = [mode for mode in system.modes if mode.name == evidence.mode]
+        return not is_stable_by_lyapunov(mode.A.fractions(), discrete=discrete)
+    Q, rate = exact(evidence.Q), evidence.rate
+    if rate <= 0 or (discrete and rate >= 1) or not is_definite_by_ldl(Q):
+        return False
+    return all(
+        is_definite_by_ldl(_decrease(mode.A.fractions(), Q, rate, discrete))
+        for mode in system.modes
+    )
+
+
+def _decrease(
+    A: list[list[Fraction]], Q: list[list[Fraction]], rate: Fraction, discrete: bool
+) -> list[list[Fraction]]:
+    n = len(A)
+    QA = _product(Q, A)
+    if not discrete:
+        return [[-QA[i][j] - QA[j][i] - 2 * rate * Q[i][j] for j in range(n)] for i in range(n)]
+    AQA = _product([list(column) for column in zip(*A, strict=True)], QA)
+    return [[rate**2 * Q[i][j] - AQA[i][j] for j in range(n)] for i in range(n)]
+
+
+def is_definite_by_ldl(M: Sequence[Sequence[Entry]]) -> bool:
+    """Oracle: pivots of Gaussian elimination in fractions."""
+    rows = [[Fraction(e) for e in row] for row in M]
+    for k, pivot_row in enumerate(rows):
+        if pivot_row[k] <= 0:
+            return False
+        for i in range(k + 1, len(rows)):
+            factor = rows[i][k] / pivot_row[k]
+            rows[i] = [a - factor * b for a, b in zip(rows[i], pivot_row, strict=True)]
+    return True
+
+
+def is_stable_by_lyapunov(A: Sequence[Sequence[Entry]], *, discrete: bool = False) -> bool:
+    """Oracle: A is Hurwitz iff ``A'P + PA = -I`` (Schur iff ``A'PA - P = -I``) has P > 0.
+
+    Solved exactly; no characteristic polynomial is involved.
+    """
+    n = len(A)
+    pairs = [(i, j) for i in range(n) for j in range(i, n)]
+    position = {pair: k for k, pair in enumerate(pairs)}
+    columns = [_image(A, i, j, discrete) for i, j in pairs]
+    left = fmpq_mat(len(pairs), len(pairs))
+    right = fmpq_mat(len(pairs), 1)
+    for row, (i, j) in enumerate(pairs):
+        right[row, 0] = fmpq(-int(i == j))
+        for column, image in enumerate(columns):
+            left[row, column] = fmpq(image[i][j].numerator, image[i][j].denominator)
+    if left.det() == 0:
+        return False
+    P = left.solve(right)
+    values = [Fraction(int(P[k, 0].p), int(P[k, 0].q)) for k in range(len(pairs))]
+    return is_definite_by_ldl(
+        [[values[position[min(i, j), max(i, j)]] for j in range(n)] for i in range(n)]
+    )
+
+
+def _image(A: Sequence[Sequence[Entry]], i: int, j: int, discrete: bool) -> list[list[Fraction]]:
+    """Apply the Lyapunov (or Stein) operator to the symmetric unit matrix at (i, j)."""
+    n = len(A)
+    E = [[Fraction(int((r, c) in {(i, j), (j, i)})) for c in range(n)] for r in range(n)]
+    F = [[Fraction(e) for e in row] for row in A]
+    EA = _product(E, F)
+    if discrete:
+        image = _product([list(column) for column in zip(*F, strict=True)], EA)
+        return [[a - b for a, b in zip(*rows, strict=True)] for rows in zip(image, E, strict=True)]
+    return [[EA[r][c] + EA[c][r] for c in range(n)] for r in range(n)]
+
+
+def _product(X: list[list[Fraction]], Y: list[list[Fraction]]) -> list[list[Fraction]]:
+    return [
+        [
+            sum((a * b for a, b in zip(row, column, strict=True)), Fraction(0))
+            for column in zip(*Y, strict=False)
+        ]
+        for row in X
+    ]

@@ -1,0 +1,96 @@
+from fractions import Fraction
+
+import pytest
+
+from nrs_design.controllers.gains import gains_of
+from nrs_design.errors import AssemblyError, CertificateError
+from nrs_design.pipeline import run_design
+from nrs_design.spec import load_spec, parse_spec, read_spec
+from nrs_design.switched.assemble import GIVEN_MATRICES, assemble, motion_loop
+from nrs_design.switched.system import Time
+from tests.support import COMMUTING, FORCE_LIMIT, SOFT_TISSUE
+
+GIVEN_LOOP = """motion_loop:
+  transfer_function:
+    numerator: [28.416, 1618.80]
+    denominator: [1, 56.89, 1618.80]
+"""
+
+
+def design_of(path):
+    loaded = read_spec(path)
+    design = run_design(loaded)
+    return loaded.spec, design, gains_of(design)
+
+
+def test_given_matrices():
+    system = assemble(load_spec(COMMUTING), {}, None)
+    assert [mode.name for mode in system.modes] == ["a", "b"]
+    assert system.modes[1].A.numerators == ((-2, 3), (-3, -2))
+    assert system.time is Time.CONTINUOUS
+    assert system.states == ("x1", "x2")
+    assert system.assumptions == GIVEN_MATRICES
+
+
+def test_decimals_are_read_exactly():
+    spec = parse_spec(
+        "kind: switched-system\nname: s\ntime: discrete\nswitching: arbitrary\n"
+        "modes: [{name: a, A: [[-0.36, 1e-100], ['1/6', 0.1]]}]\n"
+    )
+    system = assemble(spec, {}, None)
+    assert system.modes[0].A.fractions() == [
+        [Fraction(-9, 25), Fraction(1, 10**100)],
+        [Fraction(1, 6), Fraction(1, 10)],
+    ]
+    assert system.time is Time.DISCRETE
+
+
+@pytest.mark.parametrize(
+    ("gains", "coordinates"), [({"motion": {}}, None), ({}, "deflection"), ({}, "")]
+)
+def test_given_matrices_have_no_design(gains, coordinates):
+    with pytest.raises(AssemblyError, match="neither gains nor coordinates"):
+        assemble(load_spec(COMMUTING), gains, coordinates)
+
+
+def test_designs_come_back_from_their_gains():
+    spec, _, gains = design_of(SOFT_TISSUE)
+    system = assemble(spec, gains, "deflection")
+    assert system.name == "soft-tissue"
+    assert system.order == 4
+    Bt = Fraction(gains["insertion"]["Bt"])
+    Mt = Fraction(gains["insertion"]["Mt"])
+    assert system.modes[0].A.fractions()[2][2] == -Bt / Mt
+
+
+@pytest.mark.parametrize("coordinates", [None, "", "Force", "position"])
+def test_unknown_coordinates(coordinates):
+    spec, _, gains = design_of(SOFT_TISSUE)
+    with pytest.raises(AssemblyError, match="coordinates"):
+        assemble(spec, gains, coordinates)
+
+
+def test_missing_gains():
+    spec, _, gains = design_of(FORCE_LIMIT)
+    with pytest.raises(CertificateError, match="gains"):
+        assemble(spec, {"motion": gains["motion"]}, "deflection")
+
+
+def test_motion_loop_from_the_gains_that_ship():
+    """Thesis 6.1 with Kd = 2060 and z = 56.9706: 0.9974, 56.82 over 0.0351, 1.9974, 56.82."""
+    spec, design, _ = design_of(SOFT_TISSUE)
+    loop = motion_loop(spec, design.motion)
+    assert loop.numerator == (
+        2060 * Fraction("4.8417e-4"),
+        Fraction("117359.4375") * Fraction("4.8417e-4"),
+    )
+    assert loop.denominator == (Fraction("0.0351"), 1 + loop.numerator[0], loop.numerator[1])
+
+
+def test_motion_loop_that_the_spec_states():
+    text = SOFT_TISSUE.read_text().replace("motion_loop:\n", GIVEN_LOOP)
+    spec = parse_spec(text)
+    _, design, _ = design_of(SOFT_TISSUE)
+    loop = motion_loop(spec, design.motion)
+    assert loop.numerator == (Fraction("28.416"), Fraction("1618.80"))
+    assert loop.denominator == (Fraction(1), Fraction("56.89"), Fraction("1618.80"))

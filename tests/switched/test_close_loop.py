@@ -1,0 +1,258 @@
+"""Closed loops entry by entry, against the published matrices and against other formulas."""
+
+from fractions import Fraction
+from itertools import product
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from nrs_design.certificates.exact import characteristic_polynomial, is_hurwitz
+from nrs_design.controllers.controller_design import Controller, ControllerDesign
+from nrs_design.controllers.laws import (
+    Admittance,
+    PositionControl,
+    ProportionalDerivative,
+    ProportionalForce,
+)
+from nrs_design.design.impedance import ImpedanceLoop
+from nrs_design.design.margins import stiffness_limit
+from nrs_design.design.transfer import TransferFunction
+from nrs_design.errors import AssemblyError
+from nrs_design.models.actuator import Actuator
+from nrs_design.models.environment import Contact, Environment, Interval
+from nrs_design.models.motion_loop import MotionLoop
+from nrs_design.models.plant import Plant
+from nrs_design.switched.close_loop import (
+    close_loop,
+    force_mode,
+    impedance_mode,
+    realize,
+    to_force_coordinates,
+)
+from nrs_design.switched.matrix import RationalMatrix
+
+F = Fraction
+# Thesis 6.3.2.2: Ap = [[0, 1], [-1618.80, -56.89]], Cp = [1618.80, 28.416].
+LOOP = MotionLoop((F("28.416"), F("1618.80")), (F(1), F("56.89"), F("1618.80")))
+MOTION = realize(LOOP)
+# 752.69 N/m at 0.24 m, the stiffness in the printed matrices (43.355 N m/rad).
+PRINTED = Contact("soft", F("752.69") * F("0.24") ** 2, F(0))
+SOFT = Contact("soft", F("43.0356"), F(0))
+NO_DAMPING = F(0)
+positive = st.fractions("1/100", 100, max_denominator=1000)
+
+
+def polynomial(rows):
+    A = RationalMatrix.from_rows(rows)
+    n = len(rows)
+    return [F(c, A.denominator**k) for k, c in enumerate(characteristic_polynomial(A.numerators))][
+        : n + 1
+    ]
+
+
+def objects(*entries):
+    return np.array(entries, dtype=object)
+
+
+def stable(rows):
+    return is_hurwitz(RationalMatrix.from_rows(rows).numerators)
+
+
+class TestPublished:
+    @pytest.mark.parametrize(("Bt", "entry"), [("2.15", -215), ("1.04", -104)])
+    def test_matrices_of_thesis_6322(self, Bt, entry):
+        """With -1618.80, as errata have it. The print's last row is good to five digits."""
+        law = Admittance(F("0.01"), F(Bt))
+        rows = to_force_coordinates(impedance_mode(MOTION, law, PRINTED), MOTION, PRINTED)
+        assert rows[0] == [0, 1, 0, 0]
+        assert rows[1] == [F("-1618.80"), F("-56.89"), -1, 0]
+        assert rows[2] == [0, 0, entry, 100]
+        assert rows[3] == [PRINTED.stiffness * F("1618.80"), PRINTED.stiffness * F("28.416"), 0, 0]
+        assert float(rows[3][0]) == pytest.approx(70183.13, rel=2e-5)
+        assert float(rows[3][1]) == pytest.approx(1231.97, rel=2e-5)
+
+    @pytest.mark.parametrize(
+        ("Bt", "eigenvalues"),
+        [
+            ("2.15", [-217.470, -14.694 + 32.617j, -14.694 - 32.617j, -25.031]),
+            ("1.04", [-111.737, -5.424 + 39.978j, -5.424 - 39.978j, -38.306]),
+        ],
+    )
+    @pytest.mark.parametrize("coordinates", ["deflection", "force"])
+    def test_eigenvalues(self, Bt, eigenvalues, coordinates):
+        rows = impedance_mode(MOTION, Admittance(F("0.01"), F(Bt)), SOFT)
+        if coordinates == "force":
+            rows = to_force_coordinates(rows, MOTION, SOFT)
+        found = np.linalg.eigvals(np.array(rows, dtype=float))
+        wanted = np.array(eigenvalues)
+        for value in wanted:
+            assert np.abs(found - value).min() < 2e-3
+        for value in found:
+            assert np.abs(wanted - value).min() < 2e-3
+
+    @pytest.mark.parametrize("Bt", ["1.04", "2.11", "2.15"])
+    @pytest.mark.parametrize("damping", ["0", "1/50"])
+    def test_stiffness_limit(self, Bt, damping):
+        """Exact bisection over the assembled mode, against the design's crossing formula."""
+        low, high = F(1), F(1000)
+        law = Admittance(F("0.01"), F(Bt))
+        while high - low > F(1, 1000):
+            middle = (low + high) / 2
+            if stable(impedance_mode(MOTION, law, Contact("x", middle, F(damping)))):
+                low = middle
+            else:
+                high = middle
+        motion = TransferFunction(
+            tuple(map(float, LOOP.numerator)), tuple(map(float, LOOP.denominator))
+        )
+        limit = stiffness_limit(ImpedanceLoop(motion, 1.0, float(F(damping))), 0.01, float(F(Bt)))
+        assert float(low) == pytest.approx(limit, abs=2e-3)
+
+    def test_known_stiffness_limits(self):
+        """75.9 N m/rad for Bt = 1.04 and 232.3 for Bt = 2.15, both at Mt = 0.01."""
+        for Bt, limit in (("1.04", "75.9"), ("2.15", "232.3")):
+            law = Admittance(F("0.01"), F(Bt))
+            margin = F("0.5")
+            assert stable(impedance_mode(MOTION, law, Contact("x", F(limit) - margin, F(0))))
+            assert not stable(impedance_mode(MOTION, law, Contact("x", F(limit) + margin, F(0))))
+
+
+class TestImpedance:
+    @given(positive, positive, positive, st.fractions(0, 10, max_denominator=100), st.booleans())
+    def test_characteristic_polynomial(self, Mt, Bt, k, b, massless):
+        """s den(s)(Mt s + Bt) + num(s)(b s + k), over its leading coefficient."""
+        law = Admittance(F(0) if massless else Mt, Bt)
+        rows = impedance_mode(MOTION, law, Contact("x", k, b))
+        num, den = LOOP.numerator, LOOP.denominator
+        free = np.polymul(
+            np.array([*den, 0], dtype=object), np.array([law.Mt, law.Bt], dtype=object)
+        )
+        touch = np.polymul(np.array(num, dtype=object), np.array([b, k], dtype=object))
+        total = np.trim_zeros(np.polyadd(free, touch), "f")
+        assert polynomial(rows) == [c / total[0] for c in total]
+
+    @given(positive, positive, positive, st.fractions(0, 10, max_denominator=100), st.booleans())
+    def test_coordinates_are_similar(self, Mt, Bt, k, b, massless):
+        law, contact = Admittance(F(0) if massless else Mt, Bt), Contact("x", k, b)
+        rows = impedance_mode(MOTION, law, contact)
+        assert polynomial(to_force_coordinates(rows, MOTION, contact)) == polynomial(rows)
+
+    @given(
+        st.tuples(positive, st.fractions(0, 10)),
+        st.tuples(positive, st.fractions(0, 10)),
+        st.booleans(),
+    )
+    def test_affine_in_stiffness_and_damping(self, one, other, massless):
+        """What makes the corners of a parameter box enough, in either coordinates."""
+        law = Admittance(F(0) if massless else F("0.01"), F(2))
+        middle = tuple((a + b) / 2 for a, b in zip(one, other, strict=True))
+        contacts = [Contact("x", *point) for point in (one, middle, other)]
+        for force in (False, True):
+            first, half, last = (self.rows(law, contact, force) for contact in contacts)
+            for a, m, b in zip(first, half, last, strict=True):
+                assert [(x + y) / 2 for x, y in zip(a, b, strict=True)] == m
+
+    def rows(self, law, contact, force):
+        rows = impedance_mode(MOTION, law, contact)
+        return to_force_coordinates(rows, MOTION, contact) if force else rows
+
+    def test_without_inertia(self):
+        rows = impedance_mode(MOTION, Admittance(F(0), F(2)), Contact("x", F(43), F(0)))
+        assert rows == [
+            [0, 1, 0],
+            [F("-1618.80"), F("-56.89"), F(-43, 2)],
+            [F("1618.80"), F("28.416"), 0],
+        ]
+
+    def test_damped_contact(self):
+        rows = impedance_mode(MOTION, Admittance(F(1, 100), F(2)), Contact("x", F(43), F(3)))
+        assert rows[2] == [300 * F("1618.80"), 300 * F("28.416"), -200, 4300]
+
+
+class TestForce:
+    @given(st.fractions(0, 1), positive)
+    def test_state_feedback_of_thesis_646(self, Kp, k):
+        rows = force_mode(MOTION, ProportionalForce(Kp), Contact("x", k, F(0)))
+        assert rows == [
+            [0, 1],
+            [F("-1618.80") * (1 + Kp * k), F("-56.89") - Kp * k * F("28.416")],
+        ]
+
+    def test_damping_is_not_modelled(self):
+        with pytest.raises(AssemblyError, match="damping") as caught:
+            force_mode(MOTION, ProportionalForce(F(1)), Contact("jelly/b-min", F(1), F(1)))
+        assert "jelly/b-min" in caught.value.message
+        assert "elastic" in caught.value.remedy
+
+
+class TestRealization:
+    def test_transfer_function_comes_back(self):
+        loop = MotionLoop((F(3), F(5)), (F(2), F(7), F(11), F(13)))
+        motion = realize(loop)
+        for s in (F(0), F(1), F(-1, 3), F(10)):
+            n = motion.order
+            x = [s**i for i in range(n)]  # (s - A) x = (den/leading) B in this canonical form
+            residue = s * x[-1] - sum(a * b for a, b in zip(motion.A[-1], x, strict=True))
+            gain = sum(c * b for c, b in zip(motion.C, x, strict=True)) / residue
+            assert gain == (3 * s + 5) / (2 * s**3 + 7 * s**2 + 11 * s + 13)
+            assert [s * x[i] - x[i + 1] for i in range(n - 1)] == [0] * (n - 1)
+
+    @pytest.mark.parametrize(
+        ("numerator", "denominator"),
+        [((1, 1), (1, 1)), ((1, 1, 1), (1, 1)), ((1,), (1,)), ((1,), (0, 1))],
+    )
+    def test_not_strictly_proper(self, numerator, denominator):
+        with pytest.raises(AssemblyError, match="strictly proper"):
+            realize(MotionLoop(tuple(map(F, numerator)), tuple(map(F, denominator))))
+
+
+def impedance(name, Mt, contacts=("soft",)):
+    return Controller(name, Admittance(F(Mt), F(2)), contacts[0], contacts)
+
+
+def assembled(*controllers, coordinates="deflection"):
+    soft = Environment("soft", Interval(F(43), F(41), F(45)), Interval.point(F(0)))
+    hand = Environment("hand", Interval(F(50), F(25), F(90)), Interval(F(1), F(0), F(2)))
+    plant = Plant(Actuator(F(1), F(1)), (soft, hand))
+    design = ControllerDesign(ProportionalDerivative(F(1), F(1)), controllers)
+    return close_loop("robot", plant, LOOP, design, coordinates)
+
+
+class TestAssembly:
+    def test_one_mode_for_each_corner(self):
+        system = assembled(impedance("in", "0.01", ("soft", "hand")), impedance("out", "0.1"))
+        corners = [f"in/hand/k-{k}/b-{b}" for k, b in product(("min", "max"), repeat=2)]
+        names = ["in/soft/k-min", "in/soft/k-max", *corners, "out/soft/k-min", "out/soft/k-max"]
+        assert [mode.name for mode in system.modes] == names
+        assert system.states == ("xp1", "xp2", "vm [rad/s]", "delta [rad]")
+        assert all(mode.A.shape == (4, 4) for mode in system.modes)
+
+    def test_names_of_states(self):
+        assert assembled(impedance("a", 0)).states == ("xp1", "xp2", "delta [rad]")
+        force = assembled(impedance("a", 0), coordinates="force")
+        assert force.states == ("xp1", "xp2", "F [N*m]")
+        position = assembled(Controller("p", PositionControl(), None, ()))
+        assert position.states == ("xp1", "xp2")
+        assert position.modes[0].A.fractions() == [list(row) for row in MOTION.A]
+
+    def test_assumptions_name_what_they_depend_on(self):
+        deflection = " ".join(assembled(impedance("in", 0)).assumptions)
+        force = " ".join(assembled(impedance("in", 0), coordinates="force").assumptions)
+        assert "in is active only in contact with soft." in deflection
+        assert "the force may jump" in deflection
+        assert "not physical in lasting contact" in force
+        assert "free motion is not one of the modes" in deflection
+        position = " ".join(assembled(Controller("p", PositionControl(), None, ())).assumptions)
+        assert "free motion" not in position
+
+    def test_mixed_inertia(self):
+        with pytest.raises(AssemblyError, match="3 and 4 states") as caught:
+            assembled(impedance("a", 0), impedance("b", 1))
+        assert "none of them" in caught.value.remedy
+
+    def test_force_control_of_a_damped_environment(self):
+        law = ProportionalForce(F("0.02"))
+        with pytest.raises(AssemblyError, match="damping"):
+            assembled(Controller("f", law, "hand", ("hand",)))

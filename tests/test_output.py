@@ -1,0 +1,78 @@
+import os
+import stat
+
+import pytest
+
+from nrs_design.errors import OutputError
+from nrs_design.output import write_output
+
+
+@pytest.mark.parametrize(
+    ("content", "data"), [("é\n", "é\n".encode()), (b"\x00\xff", b"\x00\xff"), ("", b"")]
+)
+def test_text_and_bytes(tmp_path, content, data):
+    path = tmp_path / "new" / "folder" / "out"
+    write_output(path, content)
+    assert path.read_bytes() == data
+    assert stat.S_IMODE(path.stat().st_mode) == 0o644
+    assert list(path.parent.iterdir()) == [path]
+
+
+def test_replaces_a_file(tmp_path):
+    path = tmp_path / "out"
+    path.write_text("old")
+    write_output(path, "new")
+    assert path.read_text() == "new"
+
+
+@pytest.mark.parametrize("target", ["there", "nowhere"])
+def test_links_are_refused(tmp_path, target):
+    (tmp_path / "there").write_text("precious")
+    link = tmp_path / "out"
+    link.symlink_to(tmp_path / target)
+    with pytest.raises(OutputError, match="symbolic link"):
+        write_output(link, "new")
+    assert (tmp_path / "there").read_text() == "precious"
+    assert link.is_symlink()
+
+
+def test_folders_and_devices_are_refused(tmp_path):
+    """A program that runs as root could otherwise replace a device by a file."""
+    pipe = tmp_path / "pipe"
+    os.mkfifo(pipe)
+    for path in (tmp_path, pipe):
+        with pytest.raises(OutputError, match="a folder or a device"):
+            write_output(path, "new")
+    assert stat.S_ISFIFO(pipe.stat().st_mode)
+
+
+def test_file_in_the_place_of_a_folder(tmp_path):
+    (tmp_path / "file").write_text("")
+    with pytest.raises(OutputError, match="cannot be written") as caught:
+        write_output(tmp_path / "file" / "out", "new")
+    assert caught.value.path == tmp_path / "file" / "out"
+
+
+@pytest.mark.parametrize("step", ["replace", "chmod"])
+def test_failure_leaves_nothing(tmp_path, monkeypatch, step):
+    path = tmp_path / "out"
+    path.write_text("old")
+
+    def fail(*arguments):
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(os, step, fail)
+    with pytest.raises(OutputError, match="No space left"):
+        write_output(path, "new")
+    assert list(tmp_path.iterdir()) == [path]
+    assert path.read_text() == "old"
+
+
+def test_interruption_leaves_nothing(tmp_path, monkeypatch):
+    def interrupt(*arguments):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(os, "replace", interrupt)
+    with pytest.raises(KeyboardInterrupt):
+        write_output(tmp_path / "out", "new")
+    assert not list(tmp_path.iterdir())

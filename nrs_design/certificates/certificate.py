@@ -9,7 +9,13 @@ from dataclasses import dataclass
 from enum import StrEnum
 from typing import Any
 
-from nrs_design.certificates.evidence import AbstractEvidence, Shows
+from nrs_design.certificates.evidence import (
+    AbstractEvidence,
+    BlockTriangular,
+    CommonQuadratic,
+    Shows,
+    UnstableMode,
+)
 from nrs_design.switched.system import SwitchedSystem
 
 SCHEMA = "nrs-design/certificate/2"
@@ -23,6 +29,14 @@ class Verdict(StrEnum):
     PROVED = "proved"
     REFUTED = "refuted"
     INCONCLUSIVE = "inconclusive"
+
+
+class CommonQuadraticStatus(StrEnum):
+    """What is known about a common quadratic Lyapunov function."""
+
+    EXISTS = "exists"
+    IMPOSSIBLE = "impossible"
+    UNKNOWN = "unknown"
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,6 +73,16 @@ class Certificate:
         return str(verdict_of(self.statements))
 
     @property
+    def evidence(self) -> AbstractEvidence | None:
+        """The statement that decides the verdict, or None."""
+        return deciding(self.statements)
+
+    @property
+    def common_quadratic(self) -> CommonQuadraticStatus:
+        """What the statements say about a common quadratic function."""
+        return common_quadratic_of(self.system, self.statements)
+
+    @property
     def id(self) -> str:
         """SHA-256 over the canonical content."""
         return content_id(to_document(self))
@@ -70,6 +94,29 @@ def verdict_of(statements: Iterable[AbstractEvidence]) -> Verdict:
     if Shows.STABILITY in shown:
         return Verdict.PROVED
     return Verdict.REFUTED if Shows.INSTABILITY in shown else Verdict.INCONCLUSIVE
+
+
+def deciding(statements: Iterable[AbstractEvidence]) -> AbstractEvidence | None:
+    """Return the statement that decides the verdict, or None."""
+    decisive = (Shows.STABILITY, Shows.INSTABILITY)
+    return next((item for item in statements if item.shows in decisive), None)
+
+
+def common_quadratic_of(
+    system: SwitchedSystem, statements: Iterable[AbstractEvidence]
+) -> CommonQuadraticStatus:
+    """Return what checked statements say about a common quadratic function."""
+    for item in statements:
+        parts = [part for _, part in item.parts] if isinstance(item, BlockTriangular) else [item]
+        if all(isinstance(part, CommonQuadratic) for part in parts):
+            return CommonQuadraticStatus.EXISTS
+        # Where no reset moves the state, such a function would prove stability.
+        unstable = item.shows is Shows.INSTABILITY and not system.switching.resets
+        if item.shows is Shows.NO_COMMON_QUADRATIC or unstable:
+            return CommonQuadraticStatus.IMPOSSIBLE
+        if any(isinstance(part, UnstableMode) for part in parts):
+            return CommonQuadraticStatus.IMPOSSIBLE
+    return CommonQuadraticStatus.UNKNOWN
 
 
 def to_document(certificate: Certificate) -> dict[str, Any]:
@@ -104,4 +151,3 @@ def dump(certificate: Certificate) -> str:
     """Return the text of the certificate file."""
     document = to_document(certificate)
     return json.dumps({**document, "id": content_id(document)}, indent=2, ensure_ascii=True) + "\n"
-

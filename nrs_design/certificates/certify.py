@@ -10,12 +10,17 @@ from time import perf_counter
 
 from numpy.linalg import LinAlgError
 
-from nrs_design.certificates.certificate import Verdict, verdict_of
+from nrs_design.certificates.certificate import (
+    CommonQuadraticStatus,
+    Verdict,
+    common_quadratic_of,
+    deciding,
+    verdict_of,
+)
 from nrs_design.certificates.evidence import (
     AbstractEvidence,
     BlockTriangular,
     CommonPolynomial,
-    CommonQuadratic,
     Shows,
 )
 from nrs_design.certificates.evidence.block_triangular import diagonal_block
@@ -43,14 +48,6 @@ Progress = Callable[[str], None]
 
 DEFAULT_MAX_DEGREE = 12
 DEFAULT_BUDGET = 60.0
-
-
-class CommonQuadraticStatus(StrEnum):
-    """What is known about a common quadratic Lyapunov function."""
-
-    EXISTS = "exists"
-    IMPOSSIBLE = "impossible"
-    UNKNOWN = "unknown"
 
 
 class Method(StrEnum):
@@ -125,9 +122,7 @@ class Certification:
     @property
     def evidence(self) -> AbstractEvidence | None:
         """The statement that decides the verdict, or None."""
-        if self.verdict is Verdict.INCONCLUSIVE:
-            return None
-        return self.statements[0]
+        return deciding(self.statements)
 
 
 def certify(
@@ -293,17 +288,8 @@ def _conclude(
     statements: tuple[AbstractEvidence, ...],
     attempts: tuple[Attempt, ...],
 ) -> Certification:
-    status = CommonQuadraticStatus.UNKNOWN
-    verdict = verdict_of(statements)
-    kinds = {type(statement) for statement in statements}
-    if CommonQuadratic in kinds:
-        status = CommonQuadraticStatus.EXISTS
-    elif verdict is Verdict.REFUTED or any(
-        statement.shows is Shows.NO_COMMON_QUADRATIC for statement in statements
-    ):
-        # A common quadratic function would prove stability.
-        status = CommonQuadraticStatus.IMPOSSIBLE
-    return Certification(system, verdict, status, method, statements, attempts)
+    status = common_quadratic_of(system, statements)
+    return Certification(system, verdict_of(statements), status, method, statements, attempts)
 
 
 def _combine(
@@ -327,10 +313,7 @@ def _combine(
             if statement.shows is Shows.NO_COMMON_QUADRATIC:
                 statements.append(BlockTriangular(blocks, ((k, statement),)))
     method = "blocks: " + ", ".join(dict.fromkeys(part.method for part in parts))
-    result = _conclude(system, method, tuple(statements), attempts)
-    if all(part.common_quadratic is CommonQuadraticStatus.EXISTS for part in parts):
-        return replace(result, common_quadratic=CommonQuadraticStatus.EXISTS)
-    return result
+    return _conclude(system, method, tuple(statements), attempts)
 
 
 def spread(

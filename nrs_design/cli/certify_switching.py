@@ -17,11 +17,17 @@ if TYPE_CHECKING:
 
 
 class MethodOption(StrEnum):
-    """Search methods by name."""
+    """Rungs of the ladder by name."""
 
     AUTO = "auto"
     LMI = "lmi"
     GRADIENT = "gradient"
+    OBSTRUCTION = "obstruction"
+    MIXTURE = "mixture"
+    MODE_QUADRATIC = "mode-quadratic"
+    PARAMETER_QUADRATIC = "parameter-quadratic"
+    PERIOD = "period"
+    POLYNOMIAL = "polynomial"
 
 
 class CoordinatesOption(StrEnum):
@@ -36,7 +42,9 @@ def certify_switching(
     out: Annotated[
         Path | None, typer.Option(help="Certificate file; default reports/NAME.cert.json.")
     ] = None,
-    method: Annotated[MethodOption, typer.Option(help="Search method.")] = MethodOption.AUTO,
+    method: Annotated[
+        MethodOption, typer.Option(help="One rung of the ladder, or all.")
+    ] = MethodOption.AUTO,
     coordinates: Annotated[
         CoordinatesOption | None,
         typer.Option(help="Override the spec: deflection (physical) or force (the thesis's)."),
@@ -44,16 +52,22 @@ def certify_switching(
     optimize_rate: Annotated[
         bool, typer.Option(help="Look for the largest provable decay rate.")
     ] = True,
+    max_degree: Annotated[
+        int, typer.Option(min=2, max=64, help="Highest degree of a polynomial function.")
+    ] = 12,
+    budget: Annotated[
+        float, typer.Option(min=0.0, help="Begin no new rung after so many seconds.")
+    ] = 60.0,
     as_json: Json = False,
     quiet: Quiet = False,
     verbose: Verbose = False,
 ) -> None:
-    """Prove or refute exponential stability under arbitrary switching, and keep the certificate.
+    """Prove or refute exponential stability under the declared switching; keep the certificate.
 
     Example: nrs-design certify-switching specs/neuroboscope/soft-tissue.nrs.yaml
     """
     from nrs_design.certificates.certificate import dump
-    from nrs_design.certificates.certify import Method
+    from nrs_design.certificates.certify import Limits, Method
     from nrs_design.output import write_output
     from nrs_design.pipeline import run_certification
     from nrs_design.spec import read_spec
@@ -64,7 +78,7 @@ def certify_switching(
             loaded,
             method=Method(str(method)),
             coordinates=None if coordinates is None else str(coordinates),
-            optimize_rate=optimize_rate,
+            limits=Limits(max_degree, budget, optimize_rate),
             progress=step,
         )
     path = None
@@ -80,17 +94,19 @@ def certify_switching(
 
 def summary(result: Result, path: Path | None) -> dict[str, Any]:
     """Return what ``--json`` prints."""
-    from nrs_design.certificates.certificate import CommonQuadratic, claim
-
     certification = result.certification
     evidence = certification.evidence
-    rate = evidence.rate if isinstance(evidence, CommonQuadratic) else None
+    rate = None if evidence is None else evidence.proved_rate(certification.system)
     return {
         "spec": result.loaded.spec.name,
         "spec_sha256": result.loaded.sha256,
         "verdict": str(certification.verdict),
         "common_quadratic": str(certification.common_quadratic),
-        "claim": claim(certification.system, evidence) if evidence else None,
+        "claim": evidence.claim(certification.system) if evidence else None,
+        "statements": [
+            {"kind": statement.kind, "claim": statement.claim(certification.system)}
+            for statement in certification.statements
+        ],
         "method": certification.method,
         "decay_rate": None if rate is None else float(rate),
         "decay_rate_exact": None if rate is None else str(rate),
@@ -111,8 +127,6 @@ def summary(result: Result, path: Path | None) -> dict[str, Any]:
 
 
 def _print(result: Result, path: Path | None, *, quiet: bool, verbose: bool) -> None:
-    from nrs_design.certificates.certificate import claim
-
     certification = result.certification
     name = result.loaded.spec.name
     print(
@@ -121,11 +135,11 @@ def _print(result: Result, path: Path | None, *, quiet: bool, verbose: bool) -> 
     )
     if quiet:
         return
-    if certification.evidence:
-        print(f"  {claim(certification.system, certification.evidence)}")
-    else:
+    for statement in certification.statements:
+        print(f"  {statement.claim(certification.system)}")
+    if certification.evidence is None:
         print("  Neither a proof nor a refutation was found; this is not a statement of stability.")
-    if verbose or not certification.evidence:
+    if verbose or certification.evidence is None:
         for attempt in certification.attempts:
             print(f"  {attempt.step}: {attempt.outcome} ({attempt.seconds * 1e3:.1f} ms)")
     print("  modes: " + ", ".join(_shortened([m.name for m in certification.system.modes])))

@@ -11,12 +11,8 @@ from typing import Annotated, Literal
 from pydantic import BaseModel, ConfigDict, Field, model_validator
 
 from nrs_design import __version__
-from nrs_design.certificates.certificate import (
-    Certificate,
-    CommonQuadratic,
-    claim,
-    rate_text,
-)
+from nrs_design.certificates.certificate import Certificate
+from nrs_design.certificates.evidence.fields import rate_text
 from nrs_design.controllers.controller_design import ControllerDesign
 from nrs_design.controllers.float32 import exact_decimal
 from nrs_design.controllers.gains import UNITS, gains_of
@@ -148,7 +144,8 @@ def build_record(design: ControllerDesign, certificate: Certificate) -> ExportRe
     """
     fault = find_mismatch(design, certificate)
     evidence = certificate.evidence
-    if fault is not None or not isinstance(evidence, CommonQuadratic):
+    rate = None if evidence is None else evidence.proved_rate(certificate.system)
+    if fault is not None or evidence is None or rate is None:
         raise CertificateError(f"the certificate {fault}")
     return ExportRecord(
         package=Package(version=__version__),
@@ -168,11 +165,9 @@ def build_record(design: ControllerDesign, certificate: Certificate) -> ExportRe
         ),
         proof=Proof.model_validate(
             {
-                "claim": claim(certificate.system, evidence),
+                "claim": evidence.claim(certificate.system),
                 "certificate_id": certificate.id,
-                "decay_rate": DecayRate(
-                    exact=str(evidence.rate), rounded=rate_text(evidence.rate, Time.CONTINUOUS)
-                ),
+                "decay_rate": DecayRate(exact=str(rate), rounded=rate_text(rate, Time.CONTINUOUS)),
                 "coordinates": certificate.coordinates,
                 "assumptions": certificate.system.assumptions,
             }
@@ -183,7 +178,7 @@ def build_record(design: ControllerDesign, certificate: Certificate) -> ExportRe
 def find_mismatch(design: ControllerDesign, certificate: Certificate) -> str | None:
     """Say why a valid certificate does not cover a design; None if it does."""
     if certificate.verdict != "proved":
-        return "refutes stability"
+        return "does not prove stability"
     designed = gains_of(design)
     for name in designed.keys() | certificate.gains.keys():
         if dict(certificate.gains.get(name, {})) != designed.get(name):

@@ -7,14 +7,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from nrs_design.certificates.certificate import (
-    Certificate,
-    CommonQuadratic,
-    Evidence,
-    claim,
-    rate_text,
-)
-from nrs_design.certificates.second_opinion import unstable_mode
+from nrs_design.certificates.certificate import Certificate
+from nrs_design.certificates.evidence import AbstractEvidence, Shows
+from nrs_design.certificates.evidence.fields import rate_text
+from nrs_design.certificates.evidence.unstable_mode import is_stable, worst_eigenvalue
 from nrs_design.gating.obligations import Obligation, Status
 from nrs_design.gating.places import Places
 from nrs_design.gating.rules import (
@@ -60,7 +56,7 @@ class Examiner:
         return Obligation(rule, path, subject, status, message, place.line, place.column)
 
     def stability(
-        self, system: SwitchedSystem, evidence: Evidence | None, searched: str
+        self, system: SwitchedSystem, evidence: AbstractEvidence | None, searched: str
     ) -> tuple[Obligation, ...]:
         """Return NRS101 for every mode, and NRS102 for the system.
 
@@ -68,31 +64,31 @@ class Examiner:
         ----------
         system : SwitchedSystem
             Assembled from the spec.
-        evidence : Evidence or None
+        evidence : AbstractEvidence or None
             Checked; None if the verdict is inconclusive.
         searched : str
             What was tried, for the message of an inconclusive verdict.
         """
-        proved = isinstance(evidence, CommonQuadratic)
+        proved = evidence is not None and evidence.shows is Shows.STABILITY
         modes = tuple(self._mode(mode, system.time, proved=proved) for mode in system.modes)
         if evidence is None:
             status = Status.INCONCLUSIVE
             message = f"neither a proof nor a refutation was found ({searched})"
         else:
             status = Status.PROVED if proved else Status.REFUTED
-            message = claim(system, evidence)
+            message = evidence.claim(system)
         place = self.places.at("switching")
         return (*modes, self.obligation(SWITCHING_STABLE, "system", status, message, place))
 
     def _mode(self, mode: Mode, time: Time, *, proved: bool) -> Obligation:
         region = "Hurwitz" if time is Time.CONTINUOUS else "Schur"
-        # A common quadratic function makes every mode stable: no need to decide it again.
-        witness = None if proved else unstable_mode(mode, time)
-        if witness is None:
+        # Staying in a mode is a switching signal: a proof covers it, no need to decide again.
+        if proved or is_stable(mode.A, time):
             status, message = Status.PROVED, f"mode {mode.name} is {region}"
         else:
             status = Status.REFUTED
-            message = f"mode {mode.name} is not {region} (eigenvalue {witness.eigenvalue})"
+            eigenvalue = worst_eigenvalue(mode.A, time)
+            message = f"mode {mode.name} is not {region} (eigenvalue {eigenvalue})"
         return self.obligation(MODE_STABLE, mode.name, status, message, self.places.mode(mode.name))
 
     def certificate(self, file: Path, fault: str | None) -> Obligation:
@@ -135,14 +131,15 @@ class Examiner:
 
 def rate_of(certificate: Certificate | None) -> tuple[str | None, str | None]:
     """Return the certified rate as text and its name; None where nothing is proved."""
-    if certificate is None or not isinstance(certificate.evidence, CommonQuadratic):
+    evidence = None if certificate is None else certificate.evidence
+    if certificate is None or evidence is None:
         return None, None
-    time = certificate.system.time
-    name = "alpha" if time is Time.CONTINUOUS else "rho"
-    return rate_text(certificate.evidence.rate, time), name
+    rate, time = evidence.proved_rate(certificate.system), certificate.system.time
+    if rate is None:
+        return None, None
+    return rate_text(rate, time), "alpha" if time is Time.CONTINUOUS else "rho"
 
 
 def common_quadratic_of(certificate: Certificate) -> str:
     """Tell what a certificate says about a common quadratic function."""
-    # It would make every mode stable, so an unstable mode rules it out.
-    return "exists" if isinstance(certificate.evidence, CommonQuadratic) else "impossible"
+    return str(certificate.common_quadratic)

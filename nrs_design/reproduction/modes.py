@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from nrs_design.certificates.check import is_stable
+from nrs_design.certificates.evidence.unstable_mode import is_stable
 from nrs_design.reproduction import thesis
 from nrs_design.reproduction.matrices import (
     MOTION,
@@ -142,7 +142,7 @@ def _not_hurwitz(name: str, section: str, rows: list[MatrixRow]) -> Row:
         ", ".join(map(format_number, _spectrum(rows))),
         "1/s",
         verdict=Verdict.PRINT_IS_WRONG,
-        holds=not is_stable(system.modes[0], system.time),
+        holds=not is_stable(system.modes[0].A, system.time),
         note=WRONG_SIGN,
     )
 

@@ -13,7 +13,8 @@ MAX_EXPONENT = 100
 
 # A leading zero ("010") is octal in older YAML and ten in newer: it is refused.
 _INTEGER = r"(?:0|[1-9][0-9]*)"
-DECIMAL_PATTERN = rf"[+-]?(?:{_INTEGER}(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][+-]?[0-9]+)?"
+UNSIGNED_DECIMAL_PATTERN = rf"(?:{_INTEGER}(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][+-]?[0-9]+)?"
+DECIMAL_PATTERN = rf"[+-]?{UNSIGNED_DECIMAL_PATTERN}"
 RATIO_PATTERN = rf"[+-]?{_INTEGER}/[1-9][0-9]*"
 
 _DECIMAL = re.compile(DECIMAL_PATTERN)
@@ -51,6 +52,11 @@ def quoted(text: str) -> str:
     return repr(text if len(text) <= 40 else text[:37] + "...")
 
 
+def is_number(text: str) -> bool:
+    """Whether the text is written as an integer, a decimal or a ratio; caps are not checked."""
+    return bool(_RATIO.fullmatch(text) or _DECIMAL.fullmatch(text))
+
+
 def parse_exact(text: str) -> Fraction:
     """Read an integer, a decimal or a ratio ``p/q`` exactly.
 
@@ -80,7 +86,7 @@ def parse_exact(text: str) -> Fraction:
     if _DECIMAL.fullmatch(text):
         _refuse_huge_exponent(text)
         return Fraction(text)
-    raise _fault(text)
+    raise number_fault(text) or SpecError(f"{quoted(text)} is not a number", remedy=_EXPECTED)
 
 
 def _refuse_huge_exponent(text: str) -> None:
@@ -93,11 +99,12 @@ def _refuse_huge_exponent(text: str) -> None:
         )
 
 
-def _fault(text: str) -> SpecError:
+def number_fault(text: str) -> SpecError | None:
+    """Recognize a number that is written in a way that is not read, and say why; else None."""
     for pattern, message, remedy in _FAULTS:
         if pattern.fullmatch(text):
             return SpecError(f"the number {quoted(text)} {message}{_named(text)}", remedy=remedy)
-    return SpecError(f"{quoted(text)} is not a number", remedy=_EXPECTED)
+    return None
 
 
 def _named(text: str) -> str:

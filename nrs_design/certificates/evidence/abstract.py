@@ -5,6 +5,7 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Iterator, Mapping
 from enum import StrEnum
+from fractions import Fraction
 from typing import Any, ClassVar, Self
 
 from nrs_design.certificates.exact import IntegerMatrix, is_positive_definite, is_symmetric
@@ -34,6 +35,10 @@ class AbstractEvidence(ABC):
     @abstractmethod
     def shows(self) -> Shows:
         """What follows if it holds."""
+
+    def proved_rate(self, system: SwitchedSystem) -> Fraction | None:
+        """Return the rate of decay (alpha in 1/s, or rho per step), if it shows one."""
+        return None
 
     @abstractmethod
     def find_misfit(self, system: SwitchedSystem) -> str | None:

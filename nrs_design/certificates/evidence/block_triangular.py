@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
+from fractions import Fraction
 from typing import Any, ClassVar, Self
 
 from nrs_design.certificates.evidence.abstract import AbstractEvidence, Shows
 from nrs_design.certificates.evidence.fields import read_integer
 from nrs_design.certificates.exact import IntegerMatrix
 from nrs_design.switched.matrix import RationalMatrix
-from nrs_design.switched.system import Mode, SwitchedSystem, Switching
+from nrs_design.switched.system import Mode, SwitchedSystem, Switching, Time
 
 Blocks = tuple[tuple[int, ...], ...]
 
@@ -40,6 +41,14 @@ class BlockTriangular(AbstractEvidence):
     def shows(self) -> Shows:
         """What the parts show; they all show the same."""
         return self.parts[0][1].shows
+
+    def proved_rate(self, system: SwitchedSystem) -> Fraction | None:
+        """Return the slowest of the parts' rates: solutions decay at any slower one."""
+        rates = [part.proved_rate(diagonal_block(system, self.blocks[k])) for k, part in self.parts]
+        known = [rate for rate in rates if rate is not None]
+        if not known or len(known) < len(rates):
+            return None
+        return min(known) if system.time is Time.CONTINUOUS else max(known)
 
     def fits(self, switching: Switching) -> bool:
         """Tell whether its parts fit; they are about the same signals."""

@@ -64,6 +64,10 @@ class CommonPolynomial(AbstractEvidence):
         """Stability."""
         return Shows.STABILITY
 
+    def proved_rate(self, system: SwitchedSystem) -> Fraction:
+        """Return the claimed rate."""
+        return self.rate
+
     def find_misfit(self, system: SwitchedSystem) -> str | None:
         """Check shapes, the sign of the rate, and that each N vanishes identically."""
         n, d = system.order, self.degree

@@ -48,6 +48,10 @@ class CommonQuadratic(AbstractEvidence):
         """Stability."""
         return Shows.STABILITY
 
+    def proved_rate(self, system: SwitchedSystem) -> Fraction:
+        """Return the claimed rate."""
+        return self.rate
+
     def find_misfit(self, system: SwitchedSystem) -> str | None:
         """Check shapes and the sign of the rate."""
         if not is_square(self.Q, system.order):

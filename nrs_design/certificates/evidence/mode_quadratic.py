@@ -67,6 +67,10 @@ class ModeQuadratic(AbstractEvidence):
         """Tell that it covers every rule."""
         return True
 
+    def proved_rate(self, system: SwitchedSystem) -> Fraction:
+        """Return the claimed rate."""
+        return self.rate
+
     def find_misfit(self, system: SwitchedSystem) -> str | None:
         """Check shapes, rate and, where time is free or discrete, the switches."""
         if [name for name, _ in self.functions] != [mode.name for mode in system.modes]:
@@ -105,7 +109,9 @@ class ModeQuadratic(AbstractEvidence):
             yield failure, form(A.numerators, A.denominator, Q[mode.name], self.rate)
         if _dwell(system) > 0:
             for source, target in system.transitions():
-                failure = f"after the dwell time, {source.name} to {target.name} raises the function"
+                failure = (
+                    f"after the dwell time, {source.name} to {target.name} raises the function"
+                )
                 yield failure, self._dwell_form(system, source, target, Q)
 
     def _dwell_form(
@@ -119,7 +125,9 @@ class ModeQuadratic(AbstractEvidence):
             jump = _image(system, source, target, flow)
             image, square = congruence(jump.numerators, Q[target.name]), jump.denominator**2
             left = scale.numerator * square
-            return add([[left * q for q in row] for row in Q[source.name]], image, -scale.denominator)
+            return add(
+                [[left * q for q in row] for row in Q[source.name]], image, -scale.denominator
+            )
         return _enclosed_form(system, source, target, Q, self.rate)
 
     def claim(self, system: SwitchedSystem) -> str:
@@ -254,14 +262,10 @@ def _lower_integers(form: list[list[Any]]) -> IntegerMatrix:
     unit = Fraction(scale) / largest
     slack = n * (radius * unit + 1)
     rounded = [[round(mids[min(i, j)][max(i, j)] * unit) for j in range(n)] for i in range(n)]
-    return [
-        [rounded[i][j] - (int(slack) + 1 if i == j else 0) for j in range(n)] for i in range(n)
-    ]
+    return [[rounded[i][j] - (int(slack) + 1 if i == j else 0) for j in range(n)] for i in range(n)]
 
 
 def _fraction(ball: Any) -> Fraction:
     """Return an exact ball (of radius zero) as a fraction."""
     mantissa, exponent = ball.man_exp()
     return Fraction(int(mantissa)) * Fraction(2) ** int(exponent)
-
-

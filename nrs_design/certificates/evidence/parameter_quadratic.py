@@ -26,7 +26,7 @@ from nrs_design.switched.system import SwitchedSystem, Time
 
 @dataclass(frozen=True, slots=True)
 class ParameterQuadratic(AbstractEvidence):
-    """``V(x) = x' Q(p) x`` with ``Q(p) = (1 - p) Q_low + p Q_high`` decreases for every p in [0, 1].
+    """``V(x) = x' Q(p) x`` with ``Q(p) = (1-p) Q_low + p Q_high`` decreases for all p in [0, 1].
 
     With ``M_ab = -(A_a'Q_b + Q_b A_a + 2 alpha Q_b)``, the decrease at p is
     ``(1-p)^2 M_ll + p(1-p) (M_lh + M_hl) + p^2 M_hh``, positive definite if the three
@@ -53,6 +53,10 @@ class ParameterQuadratic(AbstractEvidence):
     def shows(self) -> Shows:
         """Stability."""
         return Shows.STABILITY
+
+    def proved_rate(self, system: SwitchedSystem) -> Fraction:
+        """Return the claimed rate."""
+        return self.rate
 
     def find_misfit(self, system: SwitchedSystem) -> str | None:
         """Check time, pairs, shapes and rate."""

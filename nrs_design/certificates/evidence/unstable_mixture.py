@@ -85,9 +85,7 @@ class UnstableMixture(AbstractEvidence):
         return cls(weights, worst_eigenvalue(mixture(system, weights), system.time))
 
 
-def mixture(
-    system: SwitchedSystem, weights: tuple[tuple[str, Fraction], ...]
-) -> RationalMatrix:
+def mixture(system: SwitchedSystem, weights: tuple[tuple[str, Fraction], ...]) -> RationalMatrix:
     """Return the exact weighted sum of modes."""
     modes = {mode.name: mode.A.fractions() for mode in system.modes}
     n = system.order

@@ -44,9 +44,7 @@ def find_unstable_mixture(system: SwitchedSystem, matrices: Array) -> UnstableMi
             for mode, share in zip(system.modes, shares, strict=True)
             if share > 0
         )
-        evidence = UnstableMixture(
-            named, worst_eigenvalue(mixture(system, named), system.time)
-        )
+        evidence = UnstableMixture(named, worst_eigenvalue(mixture(system, named), system.time))
         if evidence.find_fault(system) is None:
             return evidence
     return None

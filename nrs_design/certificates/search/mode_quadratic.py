@@ -77,11 +77,8 @@ class _Problem:
         modes = {mode.name: k for k, mode in enumerate(self.system.modes)}
         i, j = modes[source], modes[target]
         reset = self.system.reset_map(self.system.modes[i], self.system.modes[j])
-        if reset is None:
-            G = np.eye(len(self.matrices[i]))
-        else:
-            G = np.array(reset.floats())
-        return np.ldexp(G, self.exponents[i][None, :] - self.exponents[j][:, None])
+        G = np.eye(len(self.matrices[i])) if reset is None else np.array(reset.floats())
+        return np.asarray(np.ldexp(G, self.exponents[i][None, :] - self.exponents[j][:, None]))
 
     def rate_at(self, position: float, limit: float) -> float:
         """Return the rate between mere stability (0) and the slowest mode's (1)."""
@@ -98,7 +95,9 @@ class _Problem:
         strict_switches = self._steps() > 0
         flows = [self._flow(A, rate) for A in self.matrices]
 
-        def add_cone(n: int, parts: list[tuple[int, Array]], margin: float, constant: float) -> None:
+        def add_cone(
+            n: int, parts: list[tuple[int, Array]], margin: float, constant: float
+        ) -> None:
             block = np.zeros((n * (n + 1) // 2, variables))
             for k, images in parts:
                 block[:, starts[k] : starts[k + 1]] -= pack(images).T
@@ -140,7 +139,7 @@ class _Problem:
     def round(self, functions: list[Array], rate: float) -> ModeQuadratic | None:
         """Round all functions to integers over one denominator, and check."""
         claimed = round_rate(rate, self.system.time)
-        if not 0 < claimed or (self.system.time is Time.DISCRETE and claimed >= 1):
+        if not claimed > 0 or (self.system.time is Time.DISCRETE and claimed >= 1):
             return None
         largest = max(np.abs(Q).max() for Q in functions)
         unit = int(np.frexp(largest)[1])
@@ -159,8 +158,7 @@ class _Problem:
             scaled = np.ldexp((Q + Q.T) / 2, bits - unit)
             rows = tuple(
                 tuple(
-                    round(float(v)) << int(2 * top - di - dj)
-                    for v, dj in zip(row, d, strict=True)
+                    round(float(v)) << int(2 * top - di - dj) for v, dj in zip(row, d, strict=True)
                 )
                 for row, di in zip(scaled, d, strict=True)
             )

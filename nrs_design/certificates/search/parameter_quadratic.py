@@ -46,9 +46,9 @@ def find_parameter_quadratic(
     for back_off in BACK_OFFS:
         rate = low * back_off * limit
         functions = _solve(pairs, rate)
-        claimed = round_rate(rate, Time.CONTINUOUS) if rate > 0 else 0
-        if functions is None or claimed <= 0:
+        if functions is None or rate <= 0:
             continue
+        claimed = round_rate(rate, Time.CONTINUOUS)
         unit = int(np.frexp(np.abs(functions).max())[1])
         for bits in BITS:
             (first, denominator_log2), (last, _) = (

@@ -157,8 +157,12 @@ def _refine(flows: _Flows, order: Sequence[int], dwells: Array, shortest: float)
     from scipy.optimize import minimize
 
     beyond = np.maximum(dwells - shortest, 1e-6 * dwells.max())
+
+    def decline(logs: Array) -> float:
+        return -float(flows.growth(order, shortest + np.exp(logs)))
+
     best = minimize(
-        lambda logs: -float(flows.growth(order, shortest + np.exp(logs))),
+        decline,
         np.log(beyond),
         method="Nelder-Mead",
         options={"maxiter": 400, "xatol": 1e-6, "fatol": 1e-12},

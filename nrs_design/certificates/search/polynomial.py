@@ -78,7 +78,8 @@ def lift_family(system: SwitchedSystem, exponents: Exponents, degree: int) -> Li
     """
     basis = monomials(system.order, degree)
     weights = [factorial(degree) / prod(map(factorial, a)) for a in basis]
-    scaling = np.rint(np.log2(weights) / 2).astype(np.int64) - np.array(basis) @ exponents
+    scaling: Exponents = np.rint(np.log2(weights) / 2).astype(np.int64)
+    scaling -= np.array(basis, dtype=np.int64) @ exponents
     lifted = np.array([_lift_mode(mode.A, degree, system.time).floats() for mode in system.modes])
     matrices = np.ldexp(lifted, scaling[:, None] - scaling[None, :])
     pairs = [group for group in products(system.order, degree) if len(group) > 1]
@@ -238,6 +239,4 @@ def _difference(one: Pair, other: Pair, scaling: Exponents) -> Array:
     for (i, j), sign in ((one, 1.0), (other, -1.0)):
         form[i, j] += sign / 2
         form[j, i] += sign / 2
-    return np.ldexp(form, -scaling[:, None] - scaling[None, :])
-
-
+    return np.asarray(np.ldexp(form, -scaling[:, None] - scaling[None, :]))

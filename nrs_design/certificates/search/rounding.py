@@ -9,7 +9,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from nrs_design.certificates.evidence import CommonQuadratic
-
 from nrs_design.switched.system import SwitchedSystem, Time
 
 BITS = (4, 6, 8, 10, 12, 16, 20, 24, 32, 40, 50, 60)

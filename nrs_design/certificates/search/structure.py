@@ -41,9 +41,7 @@ def _sources_first(driven_by: np.ndarray[tuple[int, int], np.dtype[np.bool_]]) -
     remaining, order = set(range(len(driven_by))), []
     while remaining:
         # A block that drives no other remaining block comes next.
-        index = min(
-            k for k in remaining if not any(driven_by[j, k] for j in remaining if j != k)
-        )
+        index = min(k for k in remaining if not any(driven_by[j, k] for j in remaining if j != k))
         order.append(index)
         remaining.remove(index)
     return order

@@ -21,13 +21,13 @@ SECTION = re.compile(
 
 def public(module):
     """Public functions and classes that a module defines, and the public methods of its classes."""
-    for name, thing in vars(module).items():
+    for name, thing in list(vars(module).items()):
         if name.startswith("_") or getattr(thing, "__module__", None) != module.__name__:
             continue
         if inspect.isfunction(thing) or inspect.isclass(thing):
             yield name, thing
         if inspect.isclass(thing):
-            for key, member in vars(thing).items():
+            for key, member in list(vars(thing).items()):
                 function = getattr(member, "__func__", getattr(member, "fget", member))
                 if not key.startswith("_") and inspect.isfunction(function):
                     yield f"{name}.{key}", function

@@ -88,12 +88,22 @@ def test_every_axis_is_labelled_with_its_unit(report, case):
         assert item.caption.endswith("."), item.name
 
 
-@pytest.mark.parametrize("case", ["proved", "force"])
-def test_published_gains_and_margins(report, case):
-    # Thesis 6.3.2.1 (Bt 2.15 and 1.04 with Mt 0.01), 6.3.3.1 (Kp 0.02, damping 0.741).
-    text = words(report(case))
-    expected = {"proved": ("2.15", "1.04", "0.01", "75.9"), "force": ("0.02", "0.741", "54.9")}
-    assert all(value in text for value in expected[case])
+@pytest.mark.parametrize(
+    ("case", "section", "label", "published", "tolerance"),
+    [
+        # Thesis 6.3.2.1: insertion and withdrawal.
+        ("proved", "Impedance control", "Bt as shipped [N·m·s/rad]", (2.15, 1.04), 1e-9),
+        ("proved", "Impedance control", "Mt as shipped [kg·m²]", (0.01, 0.01), 1e-9),
+        # Thesis 6.3.3.1.
+        ("force", "Force control", "Damping ratio [1]", (0.741,), 5e-4),
+        ("force", "Force control", "Natural frequency [rad/s]", (54.9,), 0.05),
+    ],
+)
+def test_published_values(report, case, section, label, published, tolerance):
+    part = next(part for part in report(case).sections if part.title == section)
+    table = next(block for block in part.blocks if isinstance(block, Table))
+    row = next(row for row in table.rows if row[0] == label)
+    assert [float(cell) for cell in row[1:]] == pytest.approx(published, abs=tolerance)
 
 
 def test_source_of_the_motion_loop_is_named(report):

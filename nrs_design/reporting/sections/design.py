@@ -218,7 +218,7 @@ def _force_locus(motion: TransferFunction, item: ForceEvidence) -> Illustration:
     )
     figure = draw_root_locus(open_loop, gain, (), item.loop.poles)
     return Illustration(
-        f"force-locus-{item.name}".replace(".", "-"),
+        f"force-locus-{item.name}",
         f"Root locus of the force loop: {item.name}",
         caption,
         figure,

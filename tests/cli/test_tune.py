@@ -1,0 +1,67 @@
+"""`nrs-design tune`, as a user types it."""
+
+import json
+
+import pytest
+
+from tests.support import COMMUTING, FORCE_LIMIT, SOFT_TISSUE, run
+
+GIVEN = """motion_loop:
+  transfer_function: {numerator: [28.416, 1618.80], denominator: [1, 56.89, 1618.80]}
+"""
+
+
+def test_motion_loop_of_the_thesis(tmp_path):
+    """Thesis 4.3: zero 56.9706, gain 2065.4 (2060 used), poles -28.453 +- 28.448j, 6.8 %."""
+    result = run("tune", FORCE_LIMIT, "--json", cwd=tmp_path)
+    assert result.returncode == 0, result.stderr
+    document = json.loads(result.stdout)
+    assert document["schema"] == "nrs-design/tune/1"
+    motion = document["motion"]
+    assert motion["root_locus"]["zero"] == pytest.approx(56.9706, rel=5e-4)
+    assert motion["root_locus"]["derivative_gain"] == pytest.approx(2065.4, rel=1e-3)
+    assert motion["Kd"] == 2060
+    assert motion["Kp"] == 117359.4375
+    upper = next(pole for pole in motion["poles"] if pole[1] > 0)
+    assert upper == pytest.approx([-28.453, 28.448], rel=1e-3)
+    assert motion["overshoot_percent"] == pytest.approx(6.8, abs=0.2)
+
+
+def test_force_loop_of_the_thesis(tmp_path):
+    """Thesis 6.3.3.1: Kp = 0.02; the damping ratio it really gives is 0.741 at 54.9 rad/s."""
+    (force,) = json.loads(run("tune", FORCE_LIMIT, "--json", cwd=tmp_path).stdout)["force"]
+    assert force["name"] == "force"
+    assert force["Kp"] == pytest.approx(0.02)
+    assert force["damping_ratio"] == pytest.approx(0.741, abs=1e-3)
+    assert force["natural_frequency"] == pytest.approx(54.9, abs=0.1)
+
+
+def test_tables(tmp_path):
+    result = run("tune", FORCE_LIMIT, "-q", cwd=tmp_path)
+    assert result.returncode == 0
+    assert "force-limit: motion loop" in result.stdout
+    assert "force-limit: force loop" in result.stdout
+    assert "2060" in result.stdout
+
+
+def test_given_motion_loop_is_said_to_be_given(tmp_path):
+    text = SOFT_TISSUE.read_text().replace("motion_loop:\n", GIVEN)
+    (tmp_path / "given.nrs.yaml").write_text(text)
+    assert "The spec states G itself" in run("tune", "given.nrs.yaml", cwd=tmp_path).stdout
+    document = json.loads(run("tune", "given.nrs.yaml", "--json", cwd=tmp_path).stdout)
+    assert document["motion"]["loop"]["source"] == "given"
+
+
+def test_given_matrices(tmp_path):
+    result = run("tune", COMMUTING, cwd=tmp_path)
+    assert result.returncode == 2
+    assert "nothing to tune" in result.stderr
+
+
+def test_gains_beyond_single_precision(tmp_path):
+    text = SOFT_TISSUE.read_text()
+    text = text.replace("2060 rpm*s/rad", "1e29 rpm*s/rad").replace("56.9706 1/s", "1e29 1/s")
+    (tmp_path / "huge.nrs.yaml").write_text(text)
+    result = run("tune", "huge.nrs.yaml", cwd=tmp_path)
+    assert result.returncode == 2
+    assert "single precision" in result.stderr

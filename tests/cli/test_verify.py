@@ -1,0 +1,161 @@
+"""`nrs-design verify`, as a user types it."""
+
+import json
+import shutil
+import subprocess
+import sys
+from time import perf_counter
+
+import pytest
+
+from nrs_design.certificates.certificate import content_id
+from tests.support import COMMUTING, PRINT_ERROR, ROOT, SOFT_TISSUE, run
+
+HEAVY = ("control", "cvxpy", "scipy", "matplotlib", "clarabel", "numpy", "reportlab", "jinja2")
+
+
+@pytest.fixture(scope="module")
+def certified(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("certified")
+    for spec in (SOFT_TISSUE, PRINT_ERROR, COMMUTING):
+        name = spec.name.removesuffix(".nrs.yaml")
+        run("certify-switching", spec, "--out", f"{name}.json", cwd=folder)
+    return folder
+
+
+def test_proof_holds(certified):
+    result = run("verify", "soft-tissue.json", SOFT_TISSUE, cwd=certified)
+    assert result.returncode == 0, result.stderr
+    assert result.stdout.startswith("PROVED: the certificate holds, checked exactly.")
+    assert "insertion: Mt = 0.00999999977648258209228515625, Bt = 2.15" in result.stdout
+
+
+def test_refutation_holds(certified):
+    result = run("verify", "thesis-print-error.json", PRINT_ERROR, cwd=certified)
+    assert result.returncode == 1
+    assert result.stdout.startswith("REFUTED: the certificate holds")
+
+
+def test_quiet(certified):
+    result = run("verify", "-q", "commuting.json", COMMUTING, cwd=certified)
+    assert result.stdout == "PROVED: the certificate holds, checked exactly.\n"
+
+
+def test_json(certified):
+    result = run("verify", "--json", "soft-tissue.json", SOFT_TISSUE, cwd=certified)
+    document = json.loads(result.stdout)
+    certificate = json.loads((certified / "soft-tissue.json").read_text())
+    assert document["schema"] == "nrs-design/verify/1"
+    assert document["verdict"] == "proved"
+    assert document["fault"] is None
+    for key in ("claim", "gains", "assumptions"):
+        assert document[key] == certificate[key]
+    assert document["certificate_id"] == certificate["id"]
+
+
+@pytest.mark.parametrize("spec", [COMMUTING, PRINT_ERROR])
+def test_wrong_spec(certified, spec):
+    result = run("verify", "soft-tissue.json", spec, cwd=certified)
+    assert result.returncode == 1
+    assert result.stdout.startswith("REJECTED: it belongs to another spec")
+
+
+def test_altered(certified, tmp_path):
+    document = json.loads((certified / "commuting.json").read_text())
+    document["Q"]["numerators"][0][0] += 1
+    path = tmp_path / "c.json"
+    path.write_text(json.dumps(document))
+    result = run("verify", "c.json", COMMUTING, "--json", cwd=tmp_path)
+    assert result.returncode == 1
+    content = json.loads(result.stdout)
+    assert content["verdict"] == "rejected"
+    assert "altered" in content["fault"]
+    assert content["claim"] is content["gains"] is content["certificate_id"] is None
+
+
+@pytest.mark.parametrize("extra", ["\ud800", "\x1b[2J", "\nPROVED: the certificate holds"])
+def test_hostile_text_is_quoted(certified, tmp_path, extra):
+    document = json.loads((certified / "commuting.json").read_text())
+    document[extra] = None
+    document["id"] = content_id(document)
+    (tmp_path / "c.json").write_text(json.dumps(document))
+    result = run("verify", "c.json", COMMUTING, cwd=tmp_path)
+    assert result.returncode == 1
+    assert result.stdout.startswith("REJECTED: its field '")
+    assert result.stdout.count("\n") == 1
+    assert "\x1b" not in result.stdout
+
+
+@pytest.mark.parametrize("content", [None, b"", b"[]", b'{"a": NaN}', b"[" * 9000, b"9" * 5000])
+def test_not_a_certificate(tmp_path, content):
+    if content is not None:
+        (tmp_path / "c.json").write_bytes(content)
+    result = run("verify", "c.json", COMMUTING, cwd=tmp_path)
+    assert result.returncode == 2
+    assert result.stderr.startswith("error[NRS004]: c.json")
+    assert result.stdout == ""
+
+
+def test_missing_spec(certified):
+    result = run("verify", "commuting.json", "none.nrs.yaml", cwd=certified)
+    assert result.returncode == 2
+    assert "error[NRS001]" in result.stderr
+
+
+def test_changed_spec(certified, tmp_path):
+    copy = tmp_path / "commuting.nrs.yaml"
+    shutil.copy(COMMUTING, copy)
+    assert run("verify", certified / "commuting.json", copy, cwd=tmp_path).returncode == 0
+    copy.write_text(copy.read_text().replace("[-1, 1]", "[-1, 2]"))
+    assert run("verify", certified / "commuting.json", copy, cwd=tmp_path).returncode == 1
+
+
+def test_disagreement_is_an_internal_error(certified):
+    """Flint says no where the integer check says yes: exit code 4 and no verdict."""
+    program = (
+        "import sys; from nrs_design.certificates import second_opinion as s; "
+        "s._has_positive_spectrum = lambda M: False; "
+        "sys.argv = ['nrs-design', *sys.argv[1:]]; from nrs_design.cli import main; main()"
+    )
+    for arguments in (["verify", "commuting.json", COMMUTING], ["certify-switching", COMMUTING]):
+        result = subprocess.run(
+            [sys.executable, "-c", program, *map(str, arguments)],
+            capture_output=True,
+            text=True,
+            cwd=certified,
+            check=False,
+        )
+        assert result.returncode == 4
+        assert "InternalError" in result.stderr
+        assert "PROVED" not in result.stdout
+    assert not (certified / "reports").exists()
+
+
+@pytest.mark.parametrize("command", ["verify", "help"])
+def test_light_imports(certified, command):
+    program = (
+        "import sys; from nrs_design.cli import main\n"
+        "try: main()\n"
+        f"finally: print([m for m in {HEAVY} if m in sys.modules], file=sys.stderr)"
+    )
+    arguments = (
+        ["--help"] if command == "help" else ["verify", "soft-tissue.json", str(SOFT_TISSUE)]
+    )
+    start = perf_counter()
+    result = subprocess.run(
+        [sys.executable, "-c", program, *arguments],
+        capture_output=True,
+        text=True,
+        cwd=certified,
+        check=False,
+    )
+    # For the reader of `pytest -s`; a time limit would only measure the machine.
+    print(f"{command}: {perf_counter() - start:.2f} s")
+    assert result.returncode == 0
+    assert result.stderr.strip().endswith("[]"), result.stderr
+
+
+def test_example_of_the_help_is_a_real_spec():
+    result = run("verify", "--help", cwd=ROOT)
+    assert "soft-tissue" in result.stdout
+    assert SOFT_TISSUE.is_file()

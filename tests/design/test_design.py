@@ -1,0 +1,92 @@
+"""Gains of whole specs, rounded to what ships."""
+
+from fractions import Fraction
+
+import pytest
+
+from nrs_design.controllers.float32 import is_float32, to_float32
+from nrs_design.design.design import (
+    design_controllers,
+    desired_impedance,
+    root_locus_design,
+    to_transfer_function,
+)
+from nrs_design.models.motion_loop import MotionLoop
+from nrs_design.models.plant import build_plant
+from nrs_design.spec import load_spec, parse_spec
+from tests.support import FORCE_LIMIT, ROBOT, SOFT_TISSUE
+
+
+def design(text):
+    spec = parse_spec(text)
+    return design_controllers(spec, build_plant(spec))
+
+
+@pytest.mark.parametrize(
+    ("name", "gains"),
+    [
+        ("soft-tissue", {"insertion": ("0.01", "2.15"), "withdrawal": ("0.01", "1.04")}),
+        ("tissue-and-tool", {"tissue": ("0.01", "2.15"), "tool": ("0.01", "2.11")}),
+    ],
+)
+def test_gains_of_the_thesis(name, gains):
+    found = design((ROBOT / f"{name}.nrs.yaml").read_text())
+    for controller in found.controllers:
+        Mt, Bt = gains[controller.name]
+        assert controller.law.Mt == to_float32(Fraction(Mt))
+        assert controller.law.Bt == to_float32(Fraction(Bt))
+
+
+def test_motion_gains_follow_the_root_locus_if_none_are_given():
+    text = SOFT_TISSUE.read_text()
+    text = text.replace("  derivative_gain: 2060 rpm*s/rad\n", "").replace(
+        "  zero: 56.9706 1/s\n", ""
+    )
+    spec, motion = parse_spec(text), design(text).motion
+    wanted = root_locus_design(spec)
+    # Three significant digits, as the spec asks for.
+    assert float(motion.Kd) == pytest.approx(wanted.derivative_gain, rel=5e-3)
+    assert motion.Kd == 2070
+    assert float(motion.zero) == pytest.approx(57.0, rel=1e-6)
+
+
+@pytest.mark.parametrize("digits", [1, 4, 7])
+def test_all_gains_are_single_precision(digits):
+    text = SOFT_TISSUE.read_text().replace("significant_digits: 3", f"significant_digits: {digits}")
+    found = design(text)
+    numbers = [found.motion.Kp, found.motion.Kd]
+    numbers += [gain for c in found.controllers for gain in (c.law.Mt, c.law.Bt)]
+    assert all(map(is_float32, numbers))
+
+
+def test_rounding_never_leaves_the_bounds():
+    text = SOFT_TISSUE.read_text().replace("max: 20 N*m*s/rad", "max: 0.994 N*m*s/rad")
+    found = design(text.replace("significant_digits: 3", "significant_digits: 1"))
+    for controller in found.controllers:
+        assert controller.law.Bt <= to_float32(Fraction("0.994"))
+
+
+def test_force_gain_as_given_and_from_a_damping_ratio():
+    text = FORCE_LIMIT.read_text()
+    assert design(text).controllers[1].law.Kp == to_float32(Fraction("0.02"))
+    asked = text.replace("proportional_gain: 0.02 rad/(N*m)", "damping_ratio: 0.741")
+    assert float(design(asked).controllers[1].law.Kp) == pytest.approx(0.02, rel=0.02)
+
+
+def test_desired_impedance():
+    """Thesis 6.2: 0.3 N m over 8 deg/s is 2.1486 N m s/rad."""
+    spec = load_spec(SOFT_TISSUE)
+    insertion, withdrawal = (spec.controllers[name] for name in ("insertion", "withdrawal"))
+    assert desired_impedance(spec, insertion) == pytest.approx(2.14859, rel=1e-5)
+    assert desired_impedance(spec, withdrawal) == pytest.approx(2.14859 / 2, rel=1e-5)
+    given = SOFT_TISSUE.read_text().replace(
+        "desired_impedance_ratio: 0.5", "desired_impedance: 3.5 N*m*s/rad"
+    )
+    spec = parse_spec(given)
+    assert desired_impedance(spec, spec.controllers["withdrawal"]) == 3.5
+
+
+def test_transfer_function_in_floating_point():
+    loop = MotionLoop((Fraction(1, 2),), (Fraction(1), Fraction(1, 3)))
+    found = to_transfer_function(loop)
+    assert (found.numerator, found.denominator) == ((0.5,), (1.0, 1 / 3))

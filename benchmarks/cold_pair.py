@@ -21,6 +21,7 @@ def run(quick: bool) -> tuple[Comparison, ...]:
         out = str(Path(folder) / "pair.cert.json")
         spec = str(HERE / "soft-tissue-pair.nrs.yaml")
         ours = [sys.executable, "-m", "nrs_design", "certify-switching", spec, "--out", out]
+        ours.append("--no-optimize-rate")
         peer = [sys.executable, str(HERE / "peer_pair.py")]
         pairs = [(run_child(peer), run_child([*ours, "--json"])) for _ in range(3 if quick else 9)]
     theirs, mine = pairs[-1]

@@ -48,6 +48,7 @@ Progress = Callable[[str], None]
 
 DEFAULT_MAX_DEGREE = 12
 DEFAULT_BUDGET = 60.0
+FEW_UPDATES = 500
 
 
 class Method(StrEnum):
@@ -232,6 +233,9 @@ def _rungs(
     wanted = _applicable(system) if method is Method.AUTO else {method}
     if system.is_uniform:
         yield "suspicious modes", examine_suspicious_modes
+    if method is Method.AUTO and Method.GRADIENT in wanted and not limits.optimize_rate:
+        # Without a solver to load, a few cheap steps settle easy families.
+        yield "short gradient", partial(search_by_gradient, max_updates=FEW_UPDATES)
     if Method.LMI in wanted:
         yield "lmi", partial(search_by_lmi, optimize_rate=limits.optimize_rate)
     if Method.OBSTRUCTION in wanted:

@@ -7,6 +7,8 @@ from dataclasses import dataclass
 from fractions import Fraction
 from itertools import product
 
+from nrs_design.errors import AssemblyError
+
 
 @dataclass(frozen=True, slots=True)
 class Interval:
@@ -27,6 +29,16 @@ class Interval:
         if self.low == self.high:
             return (("", self.low),)
         return (("min", self.low), ("max", self.high))
+
+    @property
+    def middle(self) -> Fraction:
+        """The value halfway between the ends."""
+        return (self.low + self.high) / 2
+
+    def scaled(self, scale: Fraction) -> Interval:
+        """Return the interval stretched about its nominal value; with 0, that value only."""
+        ends = (self.nominal + scale * (end - self.nominal) for end in (self.low, self.high))
+        return Interval(self.nominal, *ends)
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,6 +82,29 @@ class Environment:
     def nominal(self) -> Contact:
         """The environment at its nominal parameters."""
         return Contact(self.name, self.stiffness.nominal, self.damping.nominal)
+
+    @property
+    def middle(self) -> Contact:
+        """The environment halfway between all ends."""
+        return Contact(self.name, self.stiffness.middle, self.damping.middle)
+
+    def scaled(self, scale: Fraction) -> Environment:
+        """Return the environment with its ranges stretched about the nominal values.
+
+        Raises
+        ------
+        AssemblyError
+            If the stiffness would not stay positive, or the damping would become negative.
+        """
+        stiffness, damping = self.stiffness.scaled(scale), self.damping.scaled(scale)
+        if stiffness.low <= 0 or damping.low < 0:
+            quantity = "stiffness" if stiffness.low <= 0 else "damping"
+            raise AssemblyError(
+                f"with its ranges scaled by {float(scale):.6g}, environment {self.name} reaches a "
+                f"{quantity} that no elastic or damped material has",
+                remedy="scale the ranges by less",
+            )
+        return Environment(self.name, stiffness, damping)
 
     def vertices(self) -> Iterator[Contact]:
         """Yield the corners of the parameter box."""

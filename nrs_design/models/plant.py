@@ -34,6 +34,16 @@ class Plant:
         """Return the environment of that name; the spec guarantees that it exists."""
         return next(environment for environment in self.environments if environment.name == name)
 
+    def scaled(self, scale: Fraction) -> Plant:
+        """Return the plant with the range of every parameter stretched about its nominal value.
+
+        Raises
+        ------
+        AssemblyError
+            If a stiffness would not stay positive, or a damping would become negative.
+        """
+        return Plant(self.actuator, tuple(e.scaled(scale) for e in self.environments))
+
 
 def build_plant(spec: InteractionDesignSpec) -> Plant:
     """Convert the plant of a spec to exact SI numbers.

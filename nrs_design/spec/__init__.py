@@ -1,5 +1,6 @@
 """Specs: YAML files with exact numbers, units and line numbers, as frozen models."""
 
+from nrs_design.spec.affine import Affine
 from nrs_design.spec.controllers import (
     ControllerSpec,
     CostWeights,
@@ -12,16 +13,20 @@ from nrs_design.spec.exact import parse_exact
 from nrs_design.spec.interaction import DesignSpec, InteractionDesignSpec
 from nrs_design.spec.load import LoadedSpec, Spec, load_spec, parse_spec, read_spec
 from nrs_design.spec.motion import ActuatorSpec, LimitsSpec, MotionLoopSpec, TransferFunctionSpec
+from nrs_design.spec.parameters import ParameterSpec
 from nrs_design.spec.quantity import Quantity
 from nrs_design.spec.quantity_fields import Bounds, RangedQuantity
 from nrs_design.spec.switched_system import ModeSpec, SwitchedSystemSpec
+from nrs_design.spec.switching import DwellTime, ResetSpec, SwitchingSpec
 
 __all__ = [
     "ActuatorSpec",
+    "Affine",
     "Bounds",
     "ControllerSpec",
     "CostWeights",
     "DesignSpec",
+    "DwellTime",
     "ElasticSpec",
     "EnvironmentSpec",
     "ForceControllerSpec",
@@ -32,11 +37,14 @@ __all__ = [
     "LoadedSpec",
     "ModeSpec",
     "MotionLoopSpec",
+    "ParameterSpec",
     "PositionControllerSpec",
     "Quantity",
     "RangedQuantity",
+    "ResetSpec",
     "Spec",
     "SwitchedSystemSpec",
+    "SwitchingSpec",
     "TransferFunctionSpec",
     "load_spec",
     "parse_exact",

@@ -40,6 +40,11 @@ class ElasticSpec(SpecModel):
         return self
 
     @property
+    def fixed(self) -> bool:
+        """Whether every parameter has a single value."""
+        return self.stiffness.fixed
+
+    @property
     def rotational_stiffness(self) -> RangedQuantity:
         """Stiffness at the pivot, in N*m/rad: ``k r^2`` for a linear one."""
         return at_pivot(self.stiffness, self.lever_arm, "N*m/rad")
@@ -60,6 +65,11 @@ class KelvinVoigtSpec(SpecModel):
         _check_arm(self.stiffness, "stiffness", self.lever_arm)
         _check_arm(self.damping, "damping", self.lever_arm)
         return self
+
+    @property
+    def fixed(self) -> bool:
+        """Whether every parameter has a single value."""
+        return self.stiffness.fixed and self.damping.fixed
 
     @property
     def rotational_stiffness(self) -> RangedQuantity:

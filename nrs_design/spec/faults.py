@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import difflib
+from itertools import islice
 from collections.abc import Callable, Collection, Iterable
 from pathlib import Path
-from typing import Any, TypeVar, get_args
+from typing import Any, TypeVar, get_args, get_origin
 
 from pydantic import BaseModel, ValidationError
 from pydantic_core import ErrorDetails, PydanticCustomError
@@ -17,6 +18,7 @@ from nrs_design.spec.exact import quoted
 Location = tuple[int | str, ...]
 _T = TypeVar("_T")
 
+MAX_LISTED = 20
 _FAULT = "spec_fault"
 # Below a choice between models, validation inserts the tag of the chosen one.
 _CHOICES = {"environments": "model", "controllers": "type"}
@@ -60,9 +62,10 @@ def reported(read: Callable[[], _T], *at: int | str) -> _T:
 
 
 def did_you_mean(word: str, choices: Collection[str], noun: str = "write one of") -> str:
-    """Suggest the nearest choice, and list them all."""
+    """Suggest the nearest choice, and list them all if they are few."""
     near = difflib.get_close_matches(word, choices, n=1)
-    listing = f"{noun} {', '.join(choices)}" if choices else f"{noun} nothing"
+    more = ", ..." * (len(choices) > MAX_LISTED)
+    listing = f"{noun} {', '.join(islice(choices, MAX_LISTED)) or 'nothing'}{more}"
     return f"did you mean {near[0]}? {listing}" if near else listing
 
 
@@ -195,7 +198,8 @@ def dotted(location: Iterable[int | str]) -> str:
 def fields_at(model: type[BaseModel], location: Location) -> dict[str, str]:
     """Names and descriptions of the keys at a location as validation reports it, tags included."""
     if not location:
-        return {name: field.description or "" for name, field in model.model_fields.items()}
+        fields = model.model_fields.items()
+        return {field.alias or name: field.description or "" for name, field in fields}
     field = model.model_fields.get(str(location[0]))
     arms = _models_in(field.annotation) if field else []
     rest = location[1:]
@@ -203,6 +207,8 @@ def fields_at(model: type[BaseModel], location: Location) -> dict[str, str]:
         key = _CHOICES[str(location[0])]
         arms = [arm for arm in arms if rest[1] in get_args(arm.model_fields[key].annotation)]
         rest = rest[2:]
+    elif field and get_origin(field.annotation) is dict:
+        rest = rest[1:]
     while rest and isinstance(rest[0], int):
         rest = rest[1:]
     return fields_at(arms[0], rest) if arms else {}

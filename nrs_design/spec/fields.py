@@ -16,7 +16,7 @@ NAME_PATTERN = "^[a-z0-9][a-z0-9._-]{0,63}$"
 LABEL_PATTERN = "^[A-Za-z0-9][A-Za-z0-9._-]{0,63}$"
 MAX_TITLE = 200
 
-_NUMBER: dict[str, Any] = {
+NUMBER_SCHEMA: dict[str, Any] = {
     "anyOf": [
         {"type": "number"},
         {"type": "string", "pattern": f"^(?:{DECIMAL_PATTERN}|{RATIO_PATTERN})$"},
@@ -78,12 +78,12 @@ def read_title(value: object) -> str:
     return text
 
 
-Exact = Annotated[Fraction, PlainValidator(read_exact), WithJsonSchema(_NUMBER)]
+Exact = Annotated[Fraction, PlainValidator(read_exact), WithJsonSchema(NUMBER_SCHEMA)]
 UnitFraction = Annotated[
-    Fraction, _number(lambda x: 0 < x < 1, "between 0 and 1"), WithJsonSchema(_NUMBER)
+    Fraction, _number(lambda x: 0 < x < 1, "between 0 and 1"), WithJsonSchema(NUMBER_SCHEMA)
 ]
-Weight = Annotated[Fraction, _number(lambda x: x >= 0, "zero or positive"), WithJsonSchema(_NUMBER)]
-Positive = Annotated[Fraction, _number(lambda x: x > 0, "positive"), WithJsonSchema(_NUMBER)]
+Weight = Annotated[Fraction, _number(lambda x: x >= 0, "zero or positive"), WithJsonSchema(NUMBER_SCHEMA)]
+Positive = Annotated[Fraction, _number(lambda x: x > 0, "positive"), WithJsonSchema(NUMBER_SCHEMA)]
 Digits = Annotated[
     int,
     PlainValidator(read_digits),

@@ -17,6 +17,7 @@ from nrs_design.spec.faults import did_you_mean, fault
 from nrs_design.spec.fields import Digits, Label, Name, Title
 from nrs_design.spec.model import SpecModel
 from nrs_design.spec.motion import ActuatorSpec, LimitsSpec, MotionLoopSpec
+from nrs_design.spec.switching import DwellTime, Switching, check_names
 
 MAX_ENTRIES = 64
 
@@ -51,7 +52,10 @@ class InteractionDesignSpec(SpecModel):
         description="state of the contact: deflection stays continuous when the stiffness "
         "switches; force is what the thesis uses",
     )
-    switching: Literal["arbitrary"] = Field(description="when controllers change: arbitrary")
+    switching: Switching = Field(
+        description="when controllers change: arbitrary, or rules with dwell_time and transitions "
+        "between controllers"
+    )
 
     @model_validator(mode="after")
     def _check_controllers(self) -> InteractionDesignSpec:
@@ -59,6 +63,9 @@ class InteractionDesignSpec(SpecModel):
         for name, controller in self.controllers.items():
             if not isinstance(controller, PositionControllerSpec):
                 _check_references(name, controller, self.environments)
+        check_names(self.switching, self.controllers, "controller")
+        if self.switching.dwell_time is not None:
+            _check_dwell_time(self.switching.dwell_time, self)
         return self
 
 
@@ -93,3 +100,27 @@ def _check_references(
                 name,
                 *at,
             )
+
+
+def _check_dwell_time(dwell: DwellTime, spec: InteractionDesignSpec) -> None:
+    """Check that nothing changes during a dwell time: the environment obeys no rule of ours."""
+    at = ("switching", "dwell_time")
+    if dwell.unit != "s":
+        raise fault(f"{dwell.text!r} is not a time", "write seconds, such as '2.76 s'", *at)
+    for name, controller in spec.controllers.items():
+        contacts = () if isinstance(controller, PositionControllerSpec) else controller.contacts
+        if len(contacts) > 1:
+            raise fault(
+                f"a dwell time and several contacts of {name!r} exclude each other: the contact "
+                "may change at any time, whatever the controller",
+                "leave dwell_time out, or write a spec for each environment",
+                *at,
+            )
+        for contact in contacts:
+            if not spec.environments[contact].fixed:
+                raise fault(
+                    f"a dwell time and the range of environment {contact!r} exclude each other: "
+                    "its parameters may move during the dwell time, and the proof would not hold",
+                    "leave dwell_time out, or give the environment its nominal values only",
+                    *at,
+                )

@@ -2,41 +2,66 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Mapping
+from fractions import Fraction
 from typing import Annotated, Literal
 
 from pydantic import Field, model_validator
 
-from nrs_design.spec.faults import fault
-from nrs_design.spec.fields import Exact, Label, Name, Title
+from nrs_design.spec.faults import did_you_mean, fault
+from nrs_design.spec.fields import Label, Name, Title
 from nrs_design.spec.model import SpecModel
+from nrs_design.spec.parameters import MAX_PARAMETERS, Entry, ParameterName, ParameterSpec
+from nrs_design.spec.switching import (
+    MAX_DIMENSION,
+    MAX_TRANSITIONS,
+    ResetSpec,
+    Switching,
+    Transition,
+    check_names,
+    check_rows,
+)
 
-MAX_DIMENSION = 64
 MAX_MODES = 20_000
 
-Row = Annotated[tuple[Exact, ...], Field(min_length=1, max_length=MAX_DIMENSION)]
-Matrix = Annotated[tuple[Row, ...], Field(min_length=1, max_length=MAX_DIMENSION)]
+_Row = Annotated[tuple[Entry, ...], Field(min_length=1, max_length=MAX_DIMENSION)]
+_Matrix = Annotated[tuple[_Row, ...], Field(min_length=1, max_length=MAX_DIMENSION)]
 
 
 class ModeSpec(SpecModel):
     """One mode ``x' = A x`` (or ``x+ = A x``)."""
 
     name: Label = Field(description="name of the mode, unique in this file")
-    A: Matrix = Field(
-        description="state matrix as a list of rows, n x n with n <= 64; integers, decimals or "
-        '"p/q", read exactly; unit 1/s in continuous time'
+    A: _Matrix = Field(
+        description="state matrix as a list of rows, n x n with n <= 64; integers, decimals, "
+        '"p/q" or expressions that are affine in the parameters such as "3/4*k - m + 0.5", read '
+        "exactly; unit 1/s in continuous time"
     )
+
+    @property
+    def dimension(self) -> int:
+        """Number of states n."""
+        return len(self.A)
+
+    @property
+    def parameters(self) -> frozenset[str]:
+        """Names of the parameters that the matrix depends on."""
+        return frozenset(name for row in self.A for entry in row for name in entry.names)
+
+    def matrix(self, values: Mapping[str, Fraction]) -> list[list[Fraction]]:
+        """Return the matrix at the given parameter values.
+
+        Raises
+        ------
+        KeyError
+            If a parameter of the matrix has no value.
+        """
+        return [[entry.at(values) for entry in row] for row in self.A]
 
     @model_validator(mode="after")
     def _check_square(self) -> ModeSpec:
+        check_rows(self.A, "A")
         n = len(self.A[0])
-        for index, row in enumerate(self.A):
-            if len(row) != n:
-                raise fault(
-                    f"row {index + 1} has {len(row)} entries, the first has {n}",
-                    "give all rows the same length",
-                    "A",
-                    index,
-                )
         if len(self.A) != n:
             raise fault(
                 f"the matrix is {len(self.A)} x {n}, not square",
@@ -47,7 +72,7 @@ class ModeSpec(SpecModel):
 
 
 class SwitchedSystemSpec(SpecModel):
-    """A finite family of linear modes."""
+    """A finite family of linear modes, or of boxes of modes."""
 
     kind: Literal["switched-system"] = Field(description="what this file describes")
     name: Name = Field(description="short name: lower-case letters, digits, '.', '_', '-'")
@@ -55,32 +80,175 @@ class SwitchedSystemSpec(SpecModel):
     time: Literal["continuous", "discrete"] = Field(
         description="continuous: x' = A x; discrete: x+ = A x"
     )
-    modes: Annotated[tuple[ModeSpec, ...], Field(min_length=1, max_length=MAX_MODES)] = Field(
-        description="the modes, at least one, all of the same size"
+    parameters: Annotated[
+        dict[ParameterName, ParameterSpec], Field(max_length=MAX_PARAMETERS)
+    ] = Field(
+        default_factory=dict,
+        description="uncertain numbers that the matrices depend on: name -> nominal and range",
     )
-    switching: Literal["arbitrary"] = Field(description="when modes change: arbitrary")
+    modes: Annotated[tuple[ModeSpec, ...], Field(min_length=1, max_length=MAX_MODES)] = Field(
+        description="the modes, at least one; of the same size, unless resets link them"
+    )
+    switching: Switching = Field(
+        description="when modes change: arbitrary, or rules with dwell_time and transitions"
+    )
+    resets: Annotated[tuple[ResetSpec, ...], Field(max_length=MAX_TRANSITIONS)] = Field(
+        default=(), description="what switches do to the state; the others leave it as it is"
+    )
 
     @property
     def dimension(self) -> int:
-        """Number of states n."""
-        return len(self.modes[0].A)
+        """Number of states n of the largest mode."""
+        return max(mode.dimension for mode in self.modes)
 
     @model_validator(mode="after")
-    def _check_modes(self) -> SwitchedSystemSpec:
-        names: set[str] = set()
-        for index, mode in enumerate(self.modes):
-            if mode.name in names:
-                raise fault(
-                    f"another mode is named {mode.name!r}", "rename it", "modes", index, "name"
-                )
-            names.add(mode.name)
-            if len(mode.A) != self.dimension:
-                raise fault(
-                    f"the matrix is {len(mode.A)} x {len(mode.A)}, the first mode's is "
-                    f"{self.dimension} x {self.dimension}",
-                    "all modes share one state",
-                    "modes",
-                    index,
-                    "A",
-                )
+    def _check(self) -> SwitchedSystemSpec:
+        modes = _modes_by_name(self.modes)
+        _check_parameters(self)
+        check_names(self.switching, modes, "mode")
+        _check_dwell_time(self)
+        resets = _resets_by_transition(self, modes)
+        _check_sizes(self, modes, resets)
         return self
+
+
+def _modes_by_name(modes: tuple[ModeSpec, ...]) -> dict[str, ModeSpec]:
+    found: dict[str, ModeSpec] = {}
+    for index, mode in enumerate(modes):
+        if mode.name in found:
+            raise fault(f"another mode is named {mode.name!r}", "rename it", "modes", index, "name")
+        found[mode.name] = mode
+    return found
+
+
+def _check_parameters(spec: SwitchedSystemSpec) -> None:
+    used: set[str] = set()
+    for index, mode in enumerate(spec.modes):
+        used |= mode.parameters
+        if not mode.parameters <= spec.parameters.keys():
+            _report_unknown(spec, index)
+    constant = [name for name, parameter in spec.parameters.items() if not parameter.varies]
+    if len(constant) > 1:
+        raise fault(
+            f"{constant[0]!r} has varies: false already, and at most one parameter may",
+            "leave it out here: what holds for a varying parameter holds for a constant one",
+            "parameters",
+            constant[1],
+            "varies",
+        )
+    for name in spec.parameters:
+        if name not in used:
+            raise fault(
+                "no matrix depends on this parameter", "remove it or use it", "parameters", name
+            )
+    corners = sum(2 ** len(mode.parameters) for mode in spec.modes)
+    if corners > MAX_MODES:
+        raise fault(
+            f"the modes have {corners} corners in all, at most {MAX_MODES} are read",
+            "declare fewer parameters",
+            "parameters",
+        )
+
+
+def _report_unknown(spec: SwitchedSystemSpec, index: int) -> None:
+    for i, row in enumerate(spec.modes[index].A):
+        for j, entry in enumerate(row):
+            for name in entry.names:
+                if name not in spec.parameters:
+                    raise fault(
+                        f"{name!r} is not a number, and there is no parameter of that name",
+                        did_you_mean(name, spec.parameters, "parameters here are"),
+                        *("modes", index, "A", i, j),
+                    )
+
+
+def _check_dwell_time(spec: SwitchedSystemSpec) -> None:
+    dwell = spec.switching.dwell_time
+    if dwell is None:
+        return
+    unit, example = ("s", "2.76 s") if spec.time == "continuous" else ("steps", "3 steps")
+    if dwell.unit != unit:
+        raise fault(
+            f"{dwell.text!r} is not a dwell time in {spec.time} time, expected {unit}",
+            f"such as {example!r}",
+            *("switching", "dwell_time"),
+        )
+    ranged = next((name for name, p in spec.parameters.items() if not p.fixed), None)
+    if ranged is not None:
+        raise fault(
+            f"a dwell time and the range of parameter {ranged!r} exclude each other: the proof "
+            "with a dwell time holds for constant matrices only",
+            "leave dwell_time out, or give the parameter its nominal value only",
+            *("switching", "dwell_time"),
+        )
+
+
+def _resets_by_transition(
+    spec: SwitchedSystemSpec, modes: Mapping[str, ModeSpec]
+) -> dict[Transition, ResetSpec]:
+    allowed = None if spec.switching.transitions is None else set(spec.switching.transitions)
+    found: dict[Transition, ResetSpec] = {}
+    for index, reset in enumerate(spec.resets):
+        at = ("resets", index)
+        for key, name in (("from", reset.source), ("to", reset.target)):
+            if name not in modes:
+                raise fault(f"there is no mode {name!r}", did_you_mean(name, modes), *at, key)
+        transition = (reset.source, reset.target)
+        if reset.source == reset.target:
+            raise fault("a switch leads to another mode", "name two modes", *at, "to")
+        if allowed is not None and transition not in allowed:
+            raise fault(
+                f"the switch from {reset.source} to {reset.target} is not allowed",
+                "add it to switching.transitions, or remove this reset",
+                *at,
+            )
+        if transition in found:
+            raise fault("this switch has a reset already", "keep one of them", *at)
+        _check_shape(reset, modes, *at)
+        found[transition] = reset
+    return found
+
+
+def _check_shape(reset: ResetSpec, modes: Mapping[str, ModeSpec], *at: int | str) -> None:
+    rows, columns = modes[reset.target].dimension, modes[reset.source].dimension
+    if reset.shape != (rows, columns):
+        raise fault(
+            f"the map is {reset.shape[0]} x {reset.shape[1]}, expected {rows} x {columns}: "
+            f"{reset.target} has {rows} states, {reset.source} has {columns}",
+            "write a row for each state after the switch, a column for each state before it",
+            *(*at, "map"),
+        )
+
+
+def _check_sizes(
+    spec: SwitchedSystemSpec,
+    modes: Mapping[str, ModeSpec],
+    resets: Mapping[Transition, ResetSpec],
+) -> None:
+    """A switch between states of different sizes must say what becomes of the state."""
+    if len({mode.dimension for mode in spec.modes}) == 1:
+        return
+    for (source, target), at in _transitions(spec):
+        n, m = modes[source].dimension, modes[target].dimension
+        if n != m and (source, target) not in resets:
+            raise fault(
+                f"{source} has {n} states and {target} has {m}, and the switch from {source} to "
+                f"{target} has no reset",
+                f"give all modes the same size, or add {{from: {source}, to: {target}, map: ...}} "
+                f"with {m} x {n} entries to resets",
+                *at,
+            )
+
+
+def _transitions(
+    spec: SwitchedSystemSpec,
+) -> Iterator[tuple[Transition, tuple[str | int, ...]]]:
+    """Yield the allowed transitions, and where to report a fault of each."""
+    if spec.switching.transitions is not None:
+        for index, transition in enumerate(spec.switching.transitions):
+            yield transition, ("switching", "transitions", index)
+        return
+    for source in spec.modes:
+        for index, target in enumerate(spec.modes):
+            if source is not target:
+                yield (source.name, target.name), ("modes", index, "A")

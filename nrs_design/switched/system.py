@@ -57,7 +57,8 @@ class Switching:
     fixed_ends : tuple of (str, str)
         Pairs of modes that are the two ends of a parameter that is unknown but does not change:
         the mode in force is ``(1 - p) low + p high`` with one p for all pairs and all times. Every
-        mode is in one pair, or there are none.
+        mode is in one pair, or there are none. Transitions then never lead from one end to the
+        other; an argument that uses them must hold for every p, not only for the two ends.
     """
 
     dwell_time: Fraction = Fraction(0)
@@ -87,7 +88,7 @@ class SwitchedSystem:
     states : tuple of str
         Name and unit of each state.
     modes : tuple of Mode
-        At least one; all of the same size.
+        At least one; all of the same size, unless resets link states of different sizes.
     assumptions : tuple of str
         What a statement about these matrices takes for granted about the robot.
     switching : Switching
@@ -113,7 +114,8 @@ class SwitchedSystem:
 
     def transitions(self) -> list[tuple[Mode, Mode]]:
         """Return the allowed switches from one mode to another."""
-        allowed = self.switching.transitions
+        transitions = self.switching.transitions
+        allowed = None if transitions is None else frozenset(transitions)
         return [
             (source, target)
             for source in self.modes

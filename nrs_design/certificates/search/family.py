@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from nrs_design.certificates.search.balance import balance, scale
 from nrs_design.certificates.search.decay import limit_rate
+from nrs_design.switched.matrix import RationalMatrix
 from nrs_design.switched.system import SwitchedSystem, Time
 
 
@@ -39,7 +40,7 @@ class Family:
     @classmethod
     def of(cls, system: SwitchedSystem) -> Family:
         """Convert and balance the modes of a system; modes of unequal size only give the limit."""
-        floats = [np.array(mode.A.floats()) for mode in system.modes]
+        floats = [_to_floats(mode.A) for mode in system.modes]
         limits = [limit_rate(A[None], system.time) for A in floats]
         limit = min(limits) if system.time is Time.CONTINUOUS else max(limits)
         if not system.is_uniform:
@@ -50,6 +51,14 @@ class Family:
         if not np.isfinite(scaled).all():
             scaled, exponents = matrices, np.zeros_like(exponents)
         return cls(system, scaled, exponents, limit)
+
+
+def _to_floats(A: RationalMatrix) -> NDArray[np.float64]:
+    """Convert in one go where the integers allow; a search needs no correct rounding."""
+    try:
+        return np.array(A.numerators, dtype=np.int64) / float(A.denominator)
+    except OverflowError:
+        return np.array(A.floats())
 
 
 @contextmanager

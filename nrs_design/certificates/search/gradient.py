@@ -40,12 +40,10 @@ def iterate_gradient(
     max_updates : int
         Updates after which the search gives up.
     """
-    from scipy.linalg import solve_continuous_lyapunov
-
     m, n = matrices.shape[:2]
     theta = np.eye(n)
     shifted = matrices + rate * theta
-    Q = solve_continuous_lyapunov(shifted[0].T, -theta)
+    Q = _solve_lyapunov(shifted[0], theta)
     quiet = updates = i = 0
     while quiet < m and updates < max_updates:
         A = shifted[i]
@@ -57,6 +55,14 @@ def iterate_gradient(
             quiet += 1
         i = (i + 1) % m
     return GradientResult(Q if quiet == m else None, updates)
+
+
+def _solve_lyapunov(A: NDArray[np.float64], theta: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Solve ``A'Q + QA = -theta`` as one linear system; the matrices are small."""
+    n, identity = len(A), np.eye(len(A))
+    operator = np.kron(A.T, identity) + np.kron(identity, A.T)
+    Q = np.linalg.solve(operator, -theta.ravel()).reshape(n, n)
+    return np.asarray((Q + Q.T) / 2)
 
 
 def _step(A: NDArray[np.float64], x: NDArray[np.float64], v: float) -> NDArray[np.float64]:

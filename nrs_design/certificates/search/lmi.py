@@ -7,11 +7,10 @@ evidence: whatever it returns goes through the exact check.
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 from numpy.typing import NDArray
 
+from nrs_design.certificates.search.sdp import maximize_margin, pack, symmetric_basis
 from nrs_design.switched.system import Time
 
 Matrices = NDArray[np.float64]
@@ -19,6 +18,8 @@ Matrices = NDArray[np.float64]
 # Below so many cone rows one solve with all modes is faster than adding modes lazily.
 ALL_AT_ONCE_ROWS = 6000
 FIRST_MODES = 8
+# A probe with the first modes alone is worth its time where it is a small share of all of them.
+PROBE_BELOW_SHARE = 8
 MARGIN_FLOOR = 1e-10
 # In continuous time, the unit of time is chosen so that the largest entry is just below 2^3.
 ENTRY_LOG2 = 3
@@ -58,8 +59,9 @@ def find_common_quadratic(
     """
     matrices, rate = _normalize(matrices, time, rate)
     m, n = matrices.shape[:2]
-    all_at_once = m * n * (n + 1) // 2 <= ALL_AT_ONCE_ROWS
-    active = np.arange(m) if all_at_once else np.linspace(0, m - 1, FIRST_MODES).astype(int)
+    few_rows = m * n * (n + 1) // 2 <= ALL_AT_ONCE_ROWS
+    probing = not few_rows or m >= PROBE_BELOW_SHARE * FIRST_MODES
+    active = np.linspace(0, m - 1, FIRST_MODES).astype(int) if probing else np.arange(m)
     while True:
         Q = _solve(matrices[active], time, rate)
         if Q is None or not np.isfinite(decreases(matrices, Q, time, rate)).all():
@@ -69,6 +71,9 @@ def find_common_quadratic(
             return Q
         if margin[active].min() <= MARGIN_FLOOR:
             return None
+        if few_rows:
+            active = np.arange(m)
+            continue
         violated = np.setdiff1d(np.flatnonzero(margin <= 0), active)
         worst = violated[np.argsort(margin[violated])][: len(active)]
         active = np.sort(np.concatenate([active, worst]))
@@ -84,50 +89,13 @@ def _normalize(matrices: Matrices, time: Time, rate: float) -> tuple[Matrices, f
 
 def _solve(matrices: Matrices, time: Time, rate: float) -> NDArray[np.float64] | None:
     """Solve the margin form for the given modes; None if the result is not finite."""
-    import clarabel
-    from scipy import sparse
-
     m, n = matrices.shape[:2]
-    basis, pack = _symmetric_basis(n), _packing(n)
+    basis, identity = symmetric_basis(n), pack(np.eye(n))
     size = len(basis)
     images = np.stack([decreases(matrices, E, time, rate) for E in basis], axis=1)
     rows = -np.swapaxes(pack(images), 1, 2).reshape(m * size, size)
-    identity = pack(np.eye(n))
     columns = np.vstack([np.eye(size), -np.eye(size), rows])
     margin = np.concatenate([np.zeros(2 * size), np.tile(identity, m)])
-    A = sparse.csc_matrix(np.column_stack([columns, margin]))
-    b = np.concatenate([identity, np.zeros(size * (m + 1))])
-    q = np.zeros(size + 1)
-    q[-1] = -1.0
-    cones = [clarabel.PSDTriangleConeT(n)] * (m + 2)
-    settings = clarabel.DefaultSettings()
-    settings.verbose = False
-    settings.max_threads = 1
-    P = sparse.csc_matrix((size + 1, size + 1))
-    solution: Any = clarabel.DefaultSolver(P, q, A, b, cones, settings).solve()
-    x = np.asarray(solution.x)
-    if x.shape != (size + 1,) or not np.isfinite(x).all():
-        return None
-    return np.tensordot(x[:-1], basis, axes=1)
-
-
-def _symmetric_basis(n: int) -> NDArray[np.float64]:
-    """Return the orthonormal basis of symmetric matrices, in the solver's triangle order."""
-    i, j = _triangle(n)
-    basis = np.zeros((len(i), n, n))
-    weight = np.where(i == j, 1.0, np.sqrt(0.5))
-    basis[np.arange(len(i)), i, j] = weight
-    basis[np.arange(len(i)), j, i] = weight
-    return basis
-
-
-def _packing(n: int) -> Any:
-    i, j = _triangle(n)
-    weight = np.where(i == j, 1.0, np.sqrt(2.0))
-    return lambda M: M[..., i, j] * weight
-
-
-def _triangle(n: int) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-    """Return the indices of the upper triangle, column by column."""
-    column, row = np.tril_indices(n)
-    return row, column
+    offset = np.concatenate([identity, np.zeros(size * (m + 1))])
+    x = maximize_margin(np.column_stack([columns, margin]), offset, [n] * (m + 2))
+    return None if x is None else np.tensordot(x[:-1], basis, axes=1)

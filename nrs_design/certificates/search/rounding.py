@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from fractions import Fraction
 from math import floor, frexp, gcd
 
@@ -16,9 +17,15 @@ RATE_BITS = 16
 # Python reads and writes integers of at most 4300 decimal digits, so a certificate has no longer.
 MAX_ENTRY_BITS = 14_000
 
+Screen = Callable[[NDArray[np.float64]], bool]
+
 
 def round_to_evidence(
-    system: SwitchedSystem, Q: NDArray[np.float64], exponents: NDArray[np.int64], rate: Fraction
+    system: SwitchedSystem,
+    Q: NDArray[np.float64],
+    exponents: NDArray[np.int64],
+    rate: Fraction,
+    passes: Screen = lambda rounded: True,
 ) -> CommonQuadratic | None:
     """Return exact evidence near a candidate, or None if no rounding of it passes.
 
@@ -32,12 +39,17 @@ def round_to_evidence(
         The d of `nrs_design.certificates.search.balance.balance`.
     rate : Fraction
         Rate to claim.
+    passes : callable
+        Tells in floating point, of a rounded candidate, whether the exact check is worth its time.
     """
     largest = np.abs(Q).max()
     if not np.isfinite(largest) or largest == 0:
         return None
     unit = np.ldexp(Q, -int(np.frexp(largest)[1]))
     for bits in BITS:
+        rounded = np.ldexp(np.rint(np.ldexp((unit + unit.T) / 2, bits)), -bits)
+        if bits < BITS[-1] and not passes(rounded):
+            continue
         evidence = _evidence(unit, exponents, bits, rate)
         if _is_printable(evidence) and evidence.find_fault(system) is None:
             return evidence

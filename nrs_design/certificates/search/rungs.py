@@ -15,7 +15,7 @@ from nrs_design.certificates.evidence.unstable_mode import is_stable, worst_eige
 from nrs_design.certificates.search.decay import largest_position, rate_at, rate_of
 from nrs_design.certificates.search.family import Family
 from nrs_design.certificates.search.gradient import iterate_gradient
-from nrs_design.certificates.search.lmi import find_common_quadratic
+from nrs_design.certificates.search.lmi import find_common_quadratic, margins
 from nrs_design.certificates.search.mixture import find_unstable_mixture
 from nrs_design.certificates.search.mode_quadratic import find_mode_quadratic
 from nrs_design.certificates.search.obstruction import round_obstruction, solve_dual
@@ -73,11 +73,11 @@ def search_by_lmi(family: Family, *, optimize_rate: bool) -> Finding:
     return _round_at_own_rate(family, Q)
 
 
-def search_by_gradient(family: Family) -> Finding:
+def search_by_gradient(family: Family, *, max_updates: int = 20_000) -> Finding:
     """Search by the Liberzon-Tempo iteration."""
     if not np.isfinite(family.limit):
         return None, OUT_OF_RANGE
-    result = iterate_gradient(family.matrices)
+    result = iterate_gradient(family.matrices, max_updates=max_updates)
     if result.Q is None:
         return None, f"not converged after {result.updates} updates"
     evidence, outcome = _round_at_own_rate(family, result.Q)
@@ -148,12 +148,17 @@ def _round_at_own_rate(family: Family, Q: NDArray[np.float64]) -> Finding:
 
 
 def _round(family: Family, Q: NDArray[np.float64], rate: float) -> CommonQuadratic | None:
+    time = family.system.time
     if not np.isfinite(rate):
         return None
-    claimed = round_rate(rate, family.system.time)
-    if claimed <= 0 or (family.system.time is Time.DISCRETE and claimed >= 1):
+    claimed = round_rate(rate, time)
+    if claimed <= 0 or (time is Time.DISCRETE and claimed >= 1):
         return None
-    return round_to_evidence(family.system, Q, family.exponents, claimed)
+
+    def passes(rounded: NDArray[np.float64]) -> bool:
+        return bool(margins(family.matrices, rounded, time, float(claimed)).min() > 0)
+
+    return round_to_evidence(family.system, Q, family.exponents, claimed, passes)
 
 
 def _seems_stable(family: Family) -> NDArray[np.bool_]:

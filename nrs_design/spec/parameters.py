@@ -1,0 +1,129 @@
+"""Parameters of a switched system: what they are called, and where they lie."""
+
+from __future__ import annotations
+
+import re
+from fractions import Fraction
+from typing import Annotated
+
+from pydantic import Field, PlainValidator, WithJsonSchema, model_validator
+
+from nrs_design.spec.affine import Affine
+from nrs_design.spec.exact import parse_exact, quoted
+from nrs_design.spec.expression import EXPRESSION_PATTERN, parse_affine
+from nrs_design.spec.faults import as_text, fault, reported
+from nrs_design.spec.fields import NUMBER_SCHEMA, read_exact
+from nrs_design.spec.model import SpecModel
+
+PARAMETER_PATTERN = "^[A-Za-z][A-Za-z0-9_]{0,31}$"
+MAX_PARAMETERS = 16
+# Beyond this a number is a slip of the pen, and products of such numbers leave the floats.
+LARGEST = Fraction(10) ** 30
+
+# Where a number is expected, these are read as attempts at one.
+_RESERVED = frozenset("nan inf infinity true false yes no on off null".split())
+
+
+def read_name(value: object) -> str:
+    """Read the name of a parameter."""
+    text = as_text(value)
+    if not re.fullmatch(PARAMETER_PATTERN, text):
+        raise fault(
+            f"{quoted(text)} is not a name of a parameter",
+            "use a letter, then up to 31 letters, digits and '_'",
+        )
+    if text.lower() in _RESERVED:
+        raise fault(f"{quoted(text)} is a reserved word", "choose another name")
+    return text
+
+
+def read_entry(value: object) -> Affine:
+    """Read a matrix entry: an exact number, or an expression that is affine in the parameters."""
+    if isinstance(value, Affine):
+        return value
+    if isinstance(value, str):
+        return reported(lambda: parse_affine(value))
+    return Affine(read_exact(value))
+
+
+def _read_switch(value: object) -> bool:
+    if isinstance(value, bool):
+        return value
+    text = as_text(value)
+    if text not in ("true", "false"):
+        raise fault(f"{quoted(text)} is not known", "write true or false")
+    return text == "true"
+
+
+def _read_value(value: object, *at: int | str) -> Fraction:
+    if not isinstance(value, int | Fraction):
+        text = as_text(value, *at)
+        value = reported(lambda: parse_exact(text), *at)
+    number = read_exact(value)
+    if abs(number) > LARGEST:
+        raise fault(f"{number} is beyond +-1e30", "choose another unit or scale", *at)
+    return number
+
+
+def _read_range(value: object) -> tuple[Fraction, Fraction]:
+    if not isinstance(value, tuple | list) or len(value) != 2:
+        raise fault("expected two numbers", "write [lowest, highest]")
+    return _read_value(value[0], 0), _read_value(value[1], 1)
+
+
+_Value = Annotated[Fraction, PlainValidator(_read_value), WithJsonSchema(NUMBER_SCHEMA)]
+_Range = Annotated[
+    tuple[Fraction, Fraction],
+    PlainValidator(_read_range),
+    WithJsonSchema({"type": "array", "items": NUMBER_SCHEMA, "minItems": 2, "maxItems": 2}),
+]
+ParameterName = Annotated[
+    str,
+    PlainValidator(read_name),
+    WithJsonSchema({"type": "string", "pattern": PARAMETER_PATTERN}),
+]
+Switch = Annotated[bool, PlainValidator(_read_switch), WithJsonSchema({"type": "boolean"})]
+Entry = Annotated[
+    Affine,
+    PlainValidator(read_entry),
+    WithJsonSchema(
+        {"anyOf": [*NUMBER_SCHEMA["anyOf"], {"type": "string", "pattern": EXPRESSION_PATTERN}]}
+    ),
+]
+
+
+class ParameterSpec(SpecModel):
+    """An uncertain number that the matrices depend on."""
+
+    nominal: _Value = Field(description="value that is meant, an exact number, no unit")
+    range: _Range = Field(
+        default_factory=lambda data: (data.get("nominal"), data.get("nominal")),
+        description="[lowest, highest] value that the proof covers; default: the nominal one",
+    )
+    varies: Switch = Field(
+        default=True,
+        description="true: may change arbitrarily fast within its range; false: unknown, but it "
+        "does not change; at most one parameter",
+    )
+
+    @property
+    def fixed(self) -> bool:
+        """Whether the range is a single value."""
+        return self.range[0] == self.range[1]
+
+    @model_validator(mode="after")
+    def _check_order(self) -> ParameterSpec:
+        low, high = self.range
+        if high < low:
+            raise fault(
+                f"the range ends at {high}, below its start {low}",
+                "write [lowest, highest]",
+                "range",
+            )
+        if not low <= self.nominal <= high:
+            raise fault(
+                f"nominal {self.nominal} is outside the range [{low}, {high}]",
+                "widen the range or correct the nominal value",
+                "nominal",
+            )
+        return self

@@ -1,0 +1,222 @@
+"""Which switching signals there are: dwell time, allowed transitions, resets."""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Annotated, Any
+
+from pydantic import BeforeValidator, Field, PlainValidator, WithJsonSchema, model_validator
+
+from nrs_design.errors import SpecError
+from nrs_design.spec import kinds
+from nrs_design.spec.exact import parse_exact, quoted
+from nrs_design.spec.faults import as_text, did_you_mean, fault, reported
+from nrs_design.spec.fields import Exact, Label
+from nrs_design.spec.model import SpecModel
+from nrs_design.spec.quantity import QUANTITY_PATTERN, parse_quantity
+
+MAX_TRANSITIONS = 20_000
+MAX_DIMENSION = 64
+# Seconds or steps; a system with slower modes is better written in another unit of time.
+LONGEST_DWELL = 4096
+
+ARBITRARY = "arbitrary"
+_FORM = "write 'arbitrary', or {dwell_time: ..., transitions: [[from, to], ...]}"
+_DWELL_TIME = (
+    "shortest time in a mode before the next switch, in s; a number of steps in discrete time"
+)
+_TRANSITIONS = "allowed switches as [from, to]; default: all"
+
+Row = Annotated[tuple[Exact, ...], Field(min_length=1, max_length=MAX_DIMENSION)]
+Matrix = Annotated[tuple[Row, ...], Field(min_length=1, max_length=MAX_DIMENSION)]
+Transition = tuple[str, str]
+
+
+@dataclass(frozen=True, slots=True)
+class DwellTime:
+    """Shortest time in a mode.
+
+    Parameters
+    ----------
+    text : str
+        As written, such as ``2.76 s`` or ``3 steps``.
+    value : Fraction
+        In s, or the number of steps.
+    unit : {"s", "steps"}
+        Which of the two it is.
+    """
+
+    text: str
+    value: Fraction
+    unit: str
+
+
+def parse_dwell_time(text: str) -> DwellTime:
+    """Read a time such as ``2.76 s``, or a number of steps such as ``3 steps``.
+
+    Raises
+    ------
+    SpecError
+        If it is neither, is not positive, or is beyond 4096 s or steps.
+    """
+    number, _, unit = text.partition(" ")
+    if unit.strip(" ") in ("step", "steps"):
+        dwell = DwellTime(text, parse_exact(number), "steps")
+        if dwell.value.denominator != 1:
+            raise SpecError(f"{quoted(text)} is not a whole number", remedy="write whole steps")
+    else:
+        dwell = DwellTime(text, parse_quantity(text, kinds.DWELL_TIME).exact, "s")
+    if not 0 < dwell.value <= LONGEST_DWELL:
+        raise SpecError(
+            f"{quoted(text)} is not between 0 and {LONGEST_DWELL} {dwell.unit}",
+            remedy="give a positive dwell time, or leave dwell_time out",
+        )
+    return dwell
+
+
+def _read_dwell_time(value: object) -> DwellTime:
+    if isinstance(value, DwellTime):
+        return value
+    text = as_text(value)
+    return reported(lambda: parse_dwell_time(text))
+
+
+def _read_transitions(value: object) -> tuple[Transition, ...]:
+    if not isinstance(value, tuple | list):
+        raise fault("expected a list", "write [[from, to], ...]")
+    if len(value) > MAX_TRANSITIONS:
+        raise fault(f"more than {MAX_TRANSITIONS} transitions are not read", "list fewer")
+    found: dict[Transition, None] = {}
+    for index, pair in enumerate(value):
+        if not isinstance(pair, tuple | list) or len(pair) != 2:
+            raise fault("expected two names", "write [from, to]", index)
+        transition = (as_text(pair[0], index, 0), as_text(pair[1], index, 1))
+        if transition[0] == transition[1]:
+            raise fault("a switch leads to another mode", "remove it: staying is free", index)
+        if transition in found:
+            raise fault("this transition is listed twice", "list each once", index)
+        found[transition] = None
+    return tuple(found)
+
+
+_DWELL_SCHEMA: dict[str, Any] = {"type": "string", "pattern": QUANTITY_PATTERN}
+_TRANSITIONS_SCHEMA: dict[str, Any] = {
+    "type": "array",
+    "items": {
+        "type": "array",
+        "items": {"type": ["string", "integer"]},
+        "minItems": 2,
+        "maxItems": 2,
+    },
+}
+
+
+class SwitchingSpec(SpecModel):
+    """Rules for the switching signal; without any, it is arbitrary."""
+
+    dwell_time: Annotated[
+        DwellTime | None, PlainValidator(_read_dwell_time), WithJsonSchema(_DWELL_SCHEMA)
+    ] = Field(default=None, description=_DWELL_TIME)
+    transitions: Annotated[
+        tuple[Transition, ...] | None,
+        PlainValidator(_read_transitions),
+        WithJsonSchema(_TRANSITIONS_SCHEMA),
+    ] = Field(default=None, description=_TRANSITIONS)
+
+    @property
+    def is_arbitrary(self) -> bool:
+        """Whether there are no rules."""
+        return self.dwell_time is None and self.transitions is None
+
+    def __str__(self) -> str:
+        """Say the rules in a few words."""
+        rules = []
+        if self.dwell_time is not None:
+            rules.append(f"dwell time {self.dwell_time.text}")
+        if self.transitions is not None:
+            count = len(self.transitions)
+            rules.append(f"{count} allowed transition{'s' * (count != 1)}")
+        return ", ".join(rules) or ARBITRARY
+
+
+def _read_switching(value: object) -> object:
+    if isinstance(value, str):
+        if value != ARBITRARY:
+            raise fault(f"{quoted(value)} is not known", _FORM)
+        return SwitchingSpec()
+    if isinstance(value, dict) and not value:
+        raise fault("no rule is given", _FORM)
+    return value
+
+
+Switching = Annotated[
+    SwitchingSpec,
+    BeforeValidator(_read_switching),
+    WithJsonSchema(
+        {
+            "anyOf": [
+                {"enum": [ARBITRARY]},
+                {
+                    "type": "object",
+                    "properties": {
+                        "dwell_time": _DWELL_SCHEMA | {"description": _DWELL_TIME},
+                        "transitions": _TRANSITIONS_SCHEMA | {"description": _TRANSITIONS},
+                    },
+                    "minProperties": 1,
+                    "additionalProperties": False,
+                },
+            ]
+        }
+    ),
+]
+
+
+class ResetSpec(SpecModel):
+    """What a switch does to the state, ``x+ = map x`` (thesis 5.9)."""
+
+    source: Label = Field(alias="from", description="name of the mode before the switch")
+    target: Label = Field(alias="to", description="name of the mode after the switch")
+    map: Matrix = Field(
+        description="matrix of x+ = map x as a list of rows, as many rows as the mode after the "
+        "switch has states, as many columns as the mode before it; exact numbers"
+    )
+
+    @property
+    def shape(self) -> tuple[int, int]:
+        """Rows and columns."""
+        return len(self.map), len(self.map[0])
+
+    @model_validator(mode="after")
+    def _check_rows(self) -> ResetSpec:
+        check_rows(self.map, "map")
+        return self
+
+
+def check_rows(rows: Collection[Collection[object]], *at: int | str) -> None:
+    """Report a fault if the rows of a matrix have different lengths."""
+    n = len(next(iter(rows)))
+    for index, row in enumerate(rows):
+        if len(row) != n:
+            raise fault(
+                f"row {index + 1} has {len(row)} entries, the first has {n}",
+                "give all rows the same length",
+                *at,
+                index,
+            )
+
+
+def check_names(switching: SwitchingSpec, names: Collection[str], noun: str) -> None:
+    """Report a fault if a transition names something that does not exist."""
+    for index, transition in enumerate(switching.transitions or ()):
+        for side, name in enumerate(transition):
+            if name not in names:
+                raise fault(
+                    f"there is no {noun} {quoted(name)}",
+                    did_you_mean(name, names),
+                    "switching",
+                    "transitions",
+                    index,
+                    side,
+                )

@@ -9,12 +9,17 @@ from typing import NamedTuple
 from nrs_design.spec import kinds
 from nrs_design.spec.controllers import ControllerSpec, ImpedanceControllerSpec
 from nrs_design.spec.environment import EnvironmentSpec, KelvinVoigtSpec
+from nrs_design.spec.exact import exact_text
 from nrs_design.spec.interaction import InteractionDesignSpec
 from nrs_design.spec.load import Spec
 from nrs_design.spec.motion import LimitsSpec
+from nrs_design.spec.parameters import ParameterSpec
 from nrs_design.spec.quantity import Quantity, QuantityKind
 from nrs_design.spec.quantity_fields import Bounds, RangedQuantity
 from nrs_design.spec.switched_system import SwitchedSystemSpec
+from nrs_design.spec.switching import SwitchingSpec
+
+MAX_LISTED = 20
 
 
 class Row(NamedTuple):
@@ -45,12 +50,38 @@ def describe(spec: Spec) -> tuple[Row, ...]:
 
 
 def _modes(spec: SwitchedSystemSpec) -> Iterator[Row]:
-    n = spec.dimension
     yield Row("time", spec.time, "", "")
-    yield Row("switching", spec.switching, "", "")
+    yield from _switching(spec.switching)
+    for name, parameter in spec.parameters.items():
+        yield from _parameter(f"parameters.{name}", parameter)
     unit = "1/s" if spec.time == "continuous" else ""
     for index, mode in enumerate(spec.modes):
-        yield Row(f"modes[{index}]", mode.name, f"{n} x {n}", unit)
+        n = mode.dimension
+        depends = f"{n} x {n}" + "".join(f", {name}" for name in sorted(mode.parameters))
+        yield Row(f"modes[{index}]", mode.name, depends, unit)
+    for index, reset in enumerate(spec.resets):
+        shape = f"{reset.shape[0]} x {reset.shape[1]}"
+        yield Row(f"resets[{index}]", f"{reset.source} to {reset.target}", shape, "")
+
+
+def _parameter(name: str, parameter: ParameterSpec) -> Iterator[Row]:
+    yield _number(name, parameter.nominal)
+    if not parameter.fixed:
+        yield _coefficients(f"{name}.range", parameter.range)
+        change = "arbitrarily fast" if parameter.varies else "unknown, but constant"
+        yield Row(f"{name}.varies", str(parameter.varies).lower(), change, "")
+
+
+def _switching(switching: SwitchingSpec) -> Iterator[Row]:
+    if switching.is_arbitrary:
+        yield Row("switching", str(switching), "", "")
+    if switching.dwell_time is not None:
+        dwell = switching.dwell_time
+        yield Row("switching.dwell_time", dwell.text, _text(float(dwell.value)), dwell.unit)
+    if switching.transitions is not None:
+        pairs = [f"{source} to {target}" for source, target in switching.transitions]
+        listed = ", ".join(pairs[:MAX_LISTED]) + ", ..." * (len(pairs) > MAX_LISTED)
+        yield Row("switching.transitions", listed or "none", str(len(pairs)), "")
 
 
 def _interaction(spec: InteractionDesignSpec) -> Iterator[Row]:
@@ -66,7 +97,7 @@ def _interaction(spec: InteractionDesignSpec) -> Iterator[Row]:
         yield from _controller(f"controllers.{name}", controller, spec.limits)
     yield Row("design.significant_digits", str(spec.design.significant_digits), "", "")
     yield Row("coordinates", spec.coordinates, "", "")
-    yield Row("switching", spec.switching, "", "")
+    yield from _switching(spec.switching)
 
 
 def _motion_loop(spec: InteractionDesignSpec) -> Iterator[Row]:
@@ -126,7 +157,7 @@ def _desired_impedance(name: str, controller: ImpedanceControllerSpec, limits: L
     if controller.desired_impedance is not None:
         return _row(name, controller.desired_impedance, kinds.IMPEDANCE)
     ratio = controller.desired_impedance_ratio
-    written = "torque/velocity" if ratio is None else f"{_decimal(ratio)} * torque/velocity"
+    written = "torque/velocity" if ratio is None else f"{exact_text(ratio)} * torque/velocity"
     value = float(1 if ratio is None else ratio) * limits.torque.si / limits.velocity.si
     return Row(name, written, _text(value), kinds.IMPEDANCE.si_unit)
 
@@ -143,18 +174,12 @@ def _row(name: str, quantity: Quantity, kind: QuantityKind) -> Row:
 
 
 def _number(name: str, number: Fraction) -> Row:
-    return Row(name, _decimal(number), _text(float(number)), "")
+    return Row(name, exact_text(number), _text(float(number)), "")
 
 
 def _coefficients(name: str, numbers: tuple[Fraction, ...]) -> Row:
     value = ", ".join(_text(float(number)) for number in numbers)
-    return Row(name, f"[{', '.join(map(_decimal, numbers))}]", f"[{value}]", "")
-
-
-def _decimal(number: Fraction) -> str:
-    """Write a fraction as the shortest decimal if that is exact, as ``p/q`` otherwise."""
-    text = repr(float(number)).removesuffix(".0")
-    return text if Fraction(text) == number else str(number)
+    return Row(name, f"[{', '.join(map(exact_text, numbers))}]", f"[{value}]", "")
 
 
 def _text(value: float) -> str:

@@ -52,6 +52,15 @@ def quoted(text: str) -> str:
     return repr(text if len(text) <= 40 else text[:37] + "...")
 
 
+def exact_text(number: Fraction) -> str:
+    """Write a fraction as the shortest decimal if that is exact, as ``p/q`` otherwise."""
+    try:
+        text = repr(float(number)).removesuffix(".0")
+    except OverflowError:
+        return str(number)
+    return text if Fraction(text) == number else str(number)
+
+
 def is_number(text: str) -> bool:
     """Whether the text is written as an integer, a decimal or a ratio; caps are not checked."""
     return bool(_RATIO.fullmatch(text) or _DECIMAL.fullmatch(text))

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
+from fractions import Fraction
 
 from nrs_design.controllers.controller_design import ControllerDesign
 from nrs_design.controllers.gains import design_from_gains
@@ -11,19 +13,28 @@ from nrs_design.errors import AssemblyError
 from nrs_design.models.actuator import Actuator
 from nrs_design.models.motion_loop import MotionLoop, close_motion_loop
 from nrs_design.models.plant import build_plant
-from nrs_design.spec import InteractionDesignSpec, Spec, SwitchedSystemSpec
+from nrs_design.spec import (
+    InteractionDesignSpec,
+    PositionControllerSpec,
+    Spec,
+    SwitchedSystemSpec,
+)
+from nrs_design.switched.assumptions import GIVEN_MATRICES, assume_matrices, scale_texts
 from nrs_design.switched.close_loop import close_loop
-from nrs_design.switched.matrix import RationalMatrix
+from nrs_design.switched.constraints import assemble_switching
+from nrs_design.switched.parameters import corner_modes, read_parameters
 from nrs_design.switched.system import Mode, SwitchedSystem, Time
 
-GIVEN_MATRICES = (
-    "The modes are the matrices of the spec, taken exactly; the input is zero.",
-    "The state is continuous at a switch (identity resets); any switching signal is possible.",
-)
+__all__ = ["GIVEN_MATRICES", "assemble", "from_design", "from_matrices", "has_ranges"]
+
+DECLARED = Fraction(1)
 
 
 def assemble(
-    spec: Spec, gains: Mapping[str, Mapping[str, str]], coordinates: str | None
+    spec: Spec,
+    gains: Mapping[str, Mapping[str, str]],
+    coordinates: str | None,
+    scale: Fraction = DECLARED,
 ) -> SwitchedSystem:
     """Assemble the switched system of a spec from its text and the designed gains.
 
@@ -35,34 +46,69 @@ def assemble(
         As `nrs_design.controllers.gains.gains_of` gives them; empty for given matrices.
     coordinates : {"deflection", "force"} or None
         None for given matrices.
+    scale : Fraction
+        Not negative: every declared range is stretched by it about its nominal value. 0 leaves the
+        nominal values only.
 
     Raises
     ------
     AssemblyError, CertificateError
-        If gains or coordinates do not fit the spec.
+        If gains or coordinates do not fit the spec, if a stiffness does not stay positive, or if
+        the rules of switching make too many switches.
     """
+    if scale < 0:
+        raise AssemblyError(f"ranges cannot be scaled by {scale}", remedy="give a scale >= 0")
     if isinstance(spec, SwitchedSystemSpec):
         if gains or coordinates is not None:
             raise AssemblyError("given matrices have neither gains nor coordinates")
-        return from_matrices(spec)
-    return from_design(spec, design_from_gains(spec, gains), coordinates)
+        return from_matrices(spec, scale)
+    return from_design(spec, design_from_gains(spec, gains), coordinates, scale)
 
 
-def from_matrices(spec: SwitchedSystemSpec) -> SwitchedSystem:
-    """Return the system of a `switched-system` spec."""
-    modes = tuple(Mode(mode.name, RationalMatrix.from_rows(mode.A)) for mode in spec.modes)
-    states = tuple(f"x{i + 1}" for i in range(len(spec.modes[0].A)))
-    return SwitchedSystem(spec.name, Time(spec.time), states, modes, GIVEN_MATRICES)
+def has_ranges(spec: Spec) -> bool:
+    """Tell whether a spec declares a range, of a parameter or of an environment that is touched."""
+    if isinstance(spec, SwitchedSystemSpec):
+        return any(not parameter.fixed for parameter in spec.parameters.values())
+    touched = {
+        contact
+        for controller in spec.controllers.values()
+        if not isinstance(controller, PositionControllerSpec)
+        for contact in controller.contacts
+    }
+    return any(not spec.environments[name].fixed for name in touched)
+
+
+def from_matrices(spec: SwitchedSystemSpec, scale: Fraction = DECLARED) -> SwitchedSystem:
+    """Return the system of a `switched-system` spec, one mode for each corner of its boxes."""
+    parameters = read_parameters(spec, scale)
+    modes: list[Mode] = []
+    groups = {}
+    for mode in spec.modes:
+        corners, groups[mode.name] = corner_modes(mode, parameters)
+        modes += corners
+    return SwitchedSystem(
+        spec.name,
+        Time(spec.time),
+        tuple(f"x{i + 1}" for i in range(spec.dimension)),
+        tuple(modes),
+        assume_matrices(spec, parameters, scale),
+        assemble_switching(spec.switching, groups, spec.resets),
+    )
 
 
 def from_design(
-    spec: InteractionDesignSpec, design: ControllerDesign, coordinates: str | None
+    spec: InteractionDesignSpec,
+    design: ControllerDesign,
+    coordinates: str | None,
+    scale: Fraction = DECLARED,
 ) -> SwitchedSystem:
-    """Return the closed loop of an interaction design."""
+    """Return the closed loop of an interaction design, one mode for each corner of its boxes."""
     if coordinates not in ("deflection", "force"):
         raise AssemblyError(f"unknown coordinates {coordinates!r}: deflection or force")
     loop = motion_loop(spec, design.motion)
-    return close_loop(spec.name, build_plant(spec), loop, design, coordinates)
+    plant = build_plant(spec).scaled(scale)
+    system = close_loop(spec.name, plant, loop, design, coordinates, spec.switching)
+    return replace(system, assumptions=(*system.assumptions, *scale_texts(scale)))
 
 
 def motion_loop(spec: InteractionDesignSpec, motion: ProportionalDerivative) -> MotionLoop:

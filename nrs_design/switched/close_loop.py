@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 from fractions import Fraction
+from itertools import chain
 
 from nrs_design.controllers.controller_design import Controller, ControllerDesign
 from nrs_design.controllers.laws import Admittance, PositionControl, ProportionalForce
@@ -16,7 +17,11 @@ from nrs_design.errors import AssemblyError
 from nrs_design.models.environment import Contact
 from nrs_design.models.motion_loop import MotionLoop
 from nrs_design.models.plant import Plant
+from nrs_design.spec import SwitchingSpec
+from nrs_design.switched.assumptions import CONTINUOUS, rule_texts
+from nrs_design.switched.constraints import assemble_switching
 from nrs_design.switched.matrix import RationalMatrix, multiply
+from nrs_design.switched.parameters import Corner, check_affine
 from nrs_design.switched.system import Mode, SwitchedSystem, Time
 
 Row = list[Fraction]
@@ -59,7 +64,12 @@ def realize(loop: MotionLoop) -> Realization:
 
 
 def close_loop(
-    name: str, plant: Plant, loop: MotionLoop, design: ControllerDesign, coordinates: str
+    name: str,
+    plant: Plant,
+    loop: MotionLoop,
+    design: ControllerDesign,
+    coordinates: str,
+    rules: SwitchingSpec | None = None,
 ) -> SwitchedSystem:
     """Assemble every mode of an interaction design.
 
@@ -80,6 +90,8 @@ def close_loop(
     coordinates : {"deflection", "force"}
         Last state of an impedance mode: the deflection (continuous when the stiffness changes
         in contact, so the physical choice) or the force (the thesis's choice).
+    rules : SwitchingSpec, optional
+        Rules for the change of controllers; by default any may follow any other at any time.
 
     Raises
     ------
@@ -87,11 +99,12 @@ def close_loop(
         If the modes do not share one state, or the coordinates do not apply.
     """
     motion = realize(loop)
-    modes = tuple(
-        mode
+    rules = rules or SwitchingSpec()
+    parts = {
+        controller.name: tuple(_controller_modes(controller, plant, motion, coordinates))
         for controller in design.controllers
-        for mode in _controller_modes(controller, plant, motion, coordinates)
-    )
+    }
+    modes = tuple(chain.from_iterable(parts.values()))
     sizes = sorted({mode.A.shape[0] for mode in modes})
     if len(sizes) != 1:
         raise AssemblyError(
@@ -99,8 +112,10 @@ def close_loop(
             remedy="give all impedance controllers a virtual inertia Mt > 0, or none of them",
         )
     states = _state_names(motion.order, sizes[0], coordinates)
-    assumptions = _assumptions(design, coordinates, given=loop.given)
-    return SwitchedSystem(name, Time.CONTINUOUS, states, modes, assumptions)
+    assumptions = _assumptions(design, coordinates, rules, given=loop.given)
+    groups = {key: tuple(Corner(mode.name) for mode in part) for key, part in parts.items()}
+    switching = assemble_switching(rules, groups)
+    return SwitchedSystem(name, Time.CONTINUOUS, states, modes, assumptions, switching)
 
 
 def _controller_modes(
@@ -111,14 +126,22 @@ def _controller_modes(
         yield Mode(controller.name, RationalMatrix.from_rows(motion.A))
         return
     for environment in map(plant.environment, controller.contacts):
+        corners = []
         for contact in environment.vertices():
-            if isinstance(law, Admittance):
-                rows = impedance_mode(motion, law, contact)
-                if coordinates == "force":
-                    rows = to_force_coordinates(rows, motion, contact)
-            else:
-                rows = force_mode(motion, law, contact)
-            yield Mode(f"{controller.name}/{contact.label}", RationalMatrix.from_rows(rows))
+            label = f"{controller.name}/{contact.label}"
+            corners.append(_contact_rows(law, contact, motion, coordinates))
+            yield Mode(label, RationalMatrix.from_rows(corners[-1]))
+        middle = _contact_rows(law, environment.middle, motion, coordinates)
+        check_affine(middle, corners, f"{controller.name}/{environment.name}")
+
+
+def _contact_rows(
+    law: Admittance | ProportionalForce, contact: Contact, motion: Realization, coordinates: str
+) -> list[Row]:
+    if isinstance(law, ProportionalForce):
+        return force_mode(motion, law, contact)
+    rows = impedance_mode(motion, law, contact)
+    return to_force_coordinates(rows, motion, contact) if coordinates == "force" else rows
 
 
 def impedance_mode(motion: Realization, law: Admittance, contact: Contact) -> list[Row]:
@@ -183,7 +206,9 @@ def _state_names(motion_order: int, size: int, coordinates: str) -> tuple[str, .
     return tuple(names)
 
 
-def _assumptions(design: ControllerDesign, coordinates: str, *, given: bool) -> tuple[str, ...]:
+def _assumptions(
+    design: ControllerDesign, coordinates: str, rules: SwitchingSpec, *, given: bool
+) -> tuple[str, ...]:
     motion = (
         "The motion loop is the transfer function G(s) that the spec states, whatever the motion "
         "gains listed here."
@@ -209,7 +234,18 @@ def _assumptions(design: ControllerDesign, coordinates: str, *, given: bool) -> 
         "In contact, the environment follows its linear model; its parameters stay in the "
         "declared ranges and may change arbitrarily fast.",
         *((last, "Contact is not lost: free motion is not one of the modes.") if impedance else ()),
-        "States are continuous at a switch (identity resets); any switching signal is possible.",
+        *_switch_texts(rules),
         "Continuous time: sampling, delay, quantization, friction and saturation are not modelled.",
         "The gains are the single-precision numbers listed here.",
     )
+
+
+def _switch_texts(rules: SwitchingSpec) -> tuple[str, ...]:
+    if rules.is_arbitrary:
+        return (f"States are {CONTINUOUS}; any switching signal is possible.",)
+    environment = (
+        "While a controller is active, the environment that it touches may change among its "
+        "contacts at any time."
+    )
+    contacts = () if rules.dwell_time is not None else (environment,)
+    return (f"States are {CONTINUOUS}.", *rule_texts(rules, "controller"), *contacts)

@@ -1,22 +1,23 @@
-"""From the switching rules of a spec to those of the assembled modes, and to words."""
+"""From the switching rules of a spec to those of the assembled modes."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from fractions import Fraction
-from itertools import permutations, product
+from itertools import chain, islice, permutations, product
+from typing import TypeVar
 
 from nrs_design.errors import AssemblyError
 from nrs_design.spec import ResetSpec, SwitchingSpec
 from nrs_design.switched.matrix import RationalMatrix
-from nrs_design.switched.parameters import Corner, Parameter, pair_ends
+from nrs_design.switched.parameters import Corner, pair_ends
 from nrs_design.switched.system import Reset, Switching
 
-MAX_ASSEMBLED_TRANSITIONS = 200_000
-MAX_LISTED = 20
+MAX_ASSEMBLED = 200_000
 
 Groups = Mapping[str, Sequence[Corner]]
 Transition = tuple[str, str]
+T = TypeVar("T")
 
 
 def assemble_switching(
@@ -46,12 +47,31 @@ def assemble_switching(
     dwell = Fraction(0) if rules.dwell_time is None else rules.dwell_time.value
     transitions = None
     if rules.transitions is not None or ends:
-        named = rules.transitions
-        pairs: Iterator[Transition] = iter(named) if named is not None else permutations(groups, 2)
-        transitions = _limited(_expand(pairs, groups, free=True))
-    assembled = tuple(
-        Reset(*pair, RationalMatrix.from_rows(reset.map))
-        for reset in resets
-        for pair in _expand([(reset.source, reset.target)], groups, free=False)
-    )
-    return Switching(dwell, transitions, assembled, ends)
+        named = permutations(groups, 2) if rules.transitions is None else rules.transitions
+        stays = ((name, name) for name in groups)
+        transitions = _limited(_expand(chain(stays, named), groups))
+    return Switching(dwell, transitions, _limited(_assembled_resets(resets, groups)), ends)
+
+
+def _assembled_resets(resets: Sequence[ResetSpec], groups: Groups) -> Iterator[Reset]:
+    for reset in resets:
+        matrix = RationalMatrix.from_rows(reset.map)
+        for source, target in _expand([(reset.source, reset.target)], groups):
+            yield Reset(source, target, matrix)
+
+
+def _expand(pairs: Iterable[Transition], groups: Groups) -> Iterator[Transition]:
+    for source, target in pairs:
+        for a, b in product(groups[source], groups[target]):
+            if a.mode != b.mode and a.end == b.end:
+                yield a.mode, b.mode
+
+
+def _limited(found: Iterator[T]) -> tuple[T, ...]:
+    kept = tuple(islice(found, MAX_ASSEMBLED + 1))
+    if len(kept) > MAX_ASSEMBLED:
+        raise AssemblyError(
+            f"the rules make more than {MAX_ASSEMBLED} switches between corners",
+            remedy="declare fewer transitions, resets, parameters or ranges",
+        )
+    return kept

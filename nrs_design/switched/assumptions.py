@@ -1,0 +1,89 @@
+"""What a statement about given matrices, or about any switching, takes for granted, in words."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from fractions import Fraction
+
+from nrs_design.spec import SwitchedSystemSpec, SwitchingSpec
+from nrs_design.spec.exact import exact_text
+from nrs_design.switched.parameters import Parameter
+
+MAX_LISTED = 20
+CONTINUOUS = "continuous at a switch (identity resets)"
+GIVEN_MATRICES = (
+    "The modes are the matrices of the spec, taken exactly; the input is zero.",
+    f"The state is {CONTINUOUS}; any switching signal is possible.",
+)
+
+
+def assume_matrices(
+    spec: SwitchedSystemSpec, parameters: Sequence[Parameter], scale: Fraction
+) -> tuple[str, ...]:
+    """Say what holds for a `switched-system` spec."""
+    return (
+        GIVEN_MATRICES[0],
+        *map(_parameter_text, parameters),
+        *scale_texts(scale),
+        *_switch_texts(spec),
+    )
+
+
+def _switch_texts(spec: SwitchedSystemSpec) -> tuple[str, ...]:
+    if spec.switching.is_arbitrary and not spec.resets:
+        return GIVEN_MATRICES[1:]
+    jump = f"The state is {CONTINUOUS}."
+    if spec.resets:
+        jump = (
+            f"At a switch {_listed([(r.source, r.target) for r in spec.resets])} the state is "
+            "mapped as the resets of the spec say; at every other switch it is continuous."
+        )
+    return jump, *rule_texts(spec.switching, "mode")
+
+
+def rule_texts(rules: SwitchingSpec, noun: str) -> tuple[str, ...]:
+    """Say which switching signals are possible, between modes or controllers."""
+    if rules.is_arbitrary:
+        return ("Any switching signal is possible.",)
+    texts = []
+    if rules.dwell_time is not None:
+        texts.append(
+            f"Every {noun} stays active for at least {exact_text(rules.dwell_time.value)} "
+            f"{rules.dwell_time.unit} before the next switch."
+        )
+    if rules.transitions is not None:
+        texts.append(
+            f"The {noun} changes only {_listed(rules.transitions)}."
+            if rules.transitions
+            else f"The {noun} never changes."
+        )
+    else:
+        texts.append(f"Any {noun} may follow any other.")
+    return tuple(texts)
+
+
+def scale_texts(scale: Fraction) -> tuple[str, ...]:
+    """Say by how much the ranges of the spec are stretched, unless they are as declared."""
+    if scale == 1:
+        return ()
+    return (f"All ranges of the spec are scaled about their nominal values by {scale}.",)
+
+
+def _parameter_text(parameter: Parameter) -> str:
+    interval = parameter.interval
+    if interval.low == interval.high:
+        return f"Parameter {parameter.name} is {exact_text(interval.low)}."
+    ends = f"[{exact_text(interval.low)}, {exact_text(interval.high)}]"
+    if parameter.varies:
+        return f"Parameter {parameter.name} stays in {ends} and may change arbitrarily fast."
+    return (
+        f"Parameter {parameter.name} is unknown in {ends}, but constant: it has one value in all "
+        "modes and at all times."
+    )
+
+
+def _listed(transitions: Sequence[tuple[str, str]]) -> str:
+    texts = [f"from {source} to {target}" for source, target in transitions]
+    if len(texts) > MAX_LISTED:
+        return f"along the {len(texts)} transitions that the spec lists"
+    return ", ".join(texts)

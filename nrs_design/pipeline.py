@@ -4,21 +4,28 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from fractions import Fraction
 from typing import TYPE_CHECKING
 
 from nrs_design import __version__
 from nrs_design.certificates.certificate import Certificate
 from nrs_design.controllers.controller_design import ControllerDesign
 from nrs_design.controllers.gains import gains_of
+from nrs_design.errors import DesignError
 from nrs_design.models.plant import build_plant
 from nrs_design.spec import InteractionDesignSpec, LoadedSpec
-from nrs_design.switched.assemble import assemble
+from nrs_design.switched.assemble import assemble, has_ranges
+from nrs_design.switched.system import SwitchedSystem
 
 if TYPE_CHECKING:
     from nrs_design.certificates.certify import Certification, Limits, Method
+    from nrs_design.certificates.margin import BoxMargin
     from nrs_design.design.evidence import DesignEvidence
 
 Progress = Callable[[str], None]
+
+# Seconds for each of the boxes that a search for the largest one tries.
+MARGIN_BUDGET = 10.0
 
 
 def _silent(step: str) -> None:
@@ -132,3 +139,46 @@ def run_certification(
         else None
     )
     return Result(loaded, design, coordinates, certification, certificate)
+
+
+def run_margin(
+    result: Result, limits: Limits | None = None, progress: Progress = _silent
+) -> BoxMargin:
+    """Find the largest box around the nominal values that still has a proof.
+
+    Parameters
+    ----------
+    result : Result
+        Of the spec as it stands; its design is kept.
+    limits : Limits, optional
+        How far the searches go at each scale; the decay rate is not optimized.
+    progress : callable
+        Told the name of each step.
+
+    Raises
+    ------
+    DesignError
+        If the spec declares no range.
+    """
+    from dataclasses import replace
+
+    from nrs_design.certificates.certify import Limits as DefaultLimits
+    from nrs_design.certificates.certify import certify
+    from nrs_design.certificates.margin import find_margin
+
+    spec = result.loaded.spec
+    if not has_ranges(spec):
+        raise DesignError(
+            "the spec declares no range, so there is no box to stretch",
+            path=result.loaded.path,
+            remedy="give an environment or a parameter a range",
+        )
+    gains = gains_of(result.design) if result.design else {}
+    limits = limits or DefaultLimits()
+    quick = replace(limits, optimize_rate=False, budget=min(limits.budget, MARGIN_BUDGET))
+
+    def assemble_at(scale: Fraction) -> SwitchedSystem:
+        progress(f"box scaled by {float(scale):.4g}")
+        return assemble(spec, gains, result.coordinates, scale)
+
+    return find_margin(assemble_at, lambda system: certify(system, limits=quick))

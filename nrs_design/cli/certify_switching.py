@@ -13,6 +13,7 @@ from nrs_design.cli.options import Json, Quiet, SpecFile, Verbose
 from nrs_design.cli.printing import note, print_json, progress
 
 if TYPE_CHECKING:
+    from nrs_design.certificates.margin import BoxMargin
     from nrs_design.pipeline import Result
 
 
@@ -58,6 +59,9 @@ def certify_switching(
     budget: Annotated[
         float, typer.Option(min=0.0, help="Begin no new rung after so many seconds.")
     ] = 60.0,
+    margin: Annotated[
+        bool, typer.Option("--margin", help="Find the largest box of ranges that has a proof.")
+    ] = False,
     as_json: Json = False,
     quiet: Quiet = False,
     verbose: Verbose = False,
@@ -69,26 +73,29 @@ def certify_switching(
     from nrs_design.certificates.certificate import dump
     from nrs_design.certificates.certify import Limits, Method
     from nrs_design.output import write_output
-    from nrs_design.pipeline import run_certification
+    from nrs_design.pipeline import run_certification, run_margin
     from nrs_design.spec import read_spec
 
     loaded = read_spec(spec)
+    limits = Limits(max_degree, budget, optimize_rate)
     with progress(f"certifying {loaded.spec.name}", quiet=quiet) as step:
         result = run_certification(
             loaded,
             method=Method(str(method)),
             coordinates=None if coordinates is None else str(coordinates),
-            limits=Limits(max_degree, budget, optimize_rate),
+            limits=limits,
             progress=step,
         )
+        box = run_margin(result, limits, step) if margin else None
     path = None
     if result.certificate is not None:
         path = out or Path("reports") / f"{loaded.spec.name}.cert.json"
         write_output(path, dump(result.certificate))
     if as_json:
-        print_json("certify-switching", summary(result, path))
+        print_json("certify-switching", summary(result, path) | margin_summary(box))
     else:
         _print(result, path, quiet=quiet, verbose=verbose)
+        _print_margin(box)
     raise typer.Exit(exit_codes.OF_VERDICT[str(result.certification.verdict)])
 
 
@@ -124,6 +131,34 @@ def summary(result: Result, path: Path | None) -> dict[str, Any]:
         "certificate": None if path is None else str(path),
         "certificate_id": result.certificate.id if result.certificate else None,
     }
+
+
+def margin_summary(box: BoxMargin | None) -> dict[str, Any]:
+    """Return what ``--json`` prints about the largest box, if it was asked for."""
+    if box is None:
+        return {}
+    return {
+        "margin": {
+            "proved_scale": None if box.proved is None else float(box.proved),
+            "refuted_scale": None if box.refuted is None else float(box.refuted),
+            "method": box.proof.method if box.proof else None,
+        }
+    }
+
+
+def _print_margin(box: BoxMargin | None) -> None:
+    if box is None:
+        return
+    if box.proved is None or box.proof is None:
+        print("  largest box: not even the nominal values are proved")
+        return
+    beyond = (
+        f"; scaled by {float(box.refuted):.6g} they are refuted" if box.refuted is not None else ""
+    )
+    print(
+        f"  largest box: scaled by {float(box.proved):.6g} about their nominal values, all ranges "
+        f"are proved ({box.proof.method}){beyond}"
+    )
 
 
 def _print(result: Result, path: Path | None, *, quiet: bool, verbose: bool) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from dataclasses import dataclass
 from fractions import Fraction
 
@@ -34,15 +35,18 @@ class Plant:
         """Return the environment of that name; the spec guarantees that it exists."""
         return next(environment for environment in self.environments if environment.name == name)
 
-    def scaled(self, scale: Fraction) -> Plant:
-        """Return the plant with the range of every parameter stretched about its nominal value.
+    def scaled(self, scale: Fraction, touched: Collection[str]) -> Plant:
+        """Return the plant with the ranges of its touched environments stretched.
+
+        Every parameter is stretched about its nominal value.
 
         Raises
         ------
         AssemblyError
             If a stiffness would not stay positive, or a damping would become negative.
         """
-        return Plant(self.actuator, tuple(e.scaled(scale) for e in self.environments))
+        environments = (e.scaled(scale) if e.name in touched else e for e in self.environments)
+        return Plant(self.actuator, tuple(environments))
 
 
 def build_plant(spec: InteractionDesignSpec) -> Plant:

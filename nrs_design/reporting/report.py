@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from nrs_design.certificates.certificate import CommonQuadratic
+from nrs_design.certificates.evidence import CommonQuadratic
 from nrs_design.reporting.document import Report, Section
 from nrs_design.reporting.sections.design import design_sections
 from nrs_design.reporting.sections.modes import lyapunov_section, modes_section

@@ -3,19 +3,20 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
+from nrs_design.simulation.margins import drift
+from nrs_design.simulation.norms import Array, Norm
 from nrs_design.switched.system import SwitchedSystem, Time
-
-Array = NDArray[np.float64]
 
 # Growth per step below which a run of an unstable mode is shown as one on the stability limit.
 _MARGINAL = 1e-5
 _MARGINAL_STEPS = 628
 _FEWEST, _MOST = 20, 4000
+_DIRECTIONS = 500
 
 
 @dataclass(frozen=True)
@@ -27,7 +28,8 @@ class TimeResponse:
     time : ndarray, shape (N + 1,)
         In s, or step numbers in discrete time.
     state : ndarray, shape (N + 1, n)
-        The state at these times.
+        The state at these times, after the switch if there is one; where modes differ in size, a
+        smaller state is filled up with zeros.
     mode : ndarray of int, shape (N,)
         Index of the mode that was active in each interval.
     """
@@ -55,7 +57,7 @@ def simulate_switching(
     Parameters
     ----------
     system : SwitchedSystem
-        Modes.
+        Modes of one size, without resets.
     signal : ndarray of int, shape (N,)
         Mode index in each step.
     initial : ndarray, shape (n,)
@@ -67,22 +69,22 @@ def simulate_switching(
     states = [initial]
     for mode in signal:
         states.append(transitions[mode] @ states[-1])
-    return TimeResponse(_times(step, len(signal)), np.array(states), signal)
+    return TimeResponse(times(step, len(signal)), np.array(states), signal)
 
 
 def worst_switching(
-    system: SwitchedSystem, Q: Array, initial: Array, step: float, steps: int
+    system: SwitchedSystem, norm: Norm, initial: Array, step: float, steps: int
 ) -> TimeResponse:
-    """Simulate the greedy adversary: always the mode after which ``x' Q x`` is largest.
+    """Simulate the greedy adversary: always the mode after which the norm is largest.
 
-    It is a bad run, not the worst one: nothing is proved by it.
+    It switches as it likes, and it is a bad run, not the worst one: nothing is proved by it.
 
     Parameters
     ----------
     system : SwitchedSystem
-        Modes.
-    Q : ndarray, shape (n, n)
-        Matrix of the function to make large.
+        Modes of one size.
+    norm : callable
+        What to make large.
     initial : ndarray, shape (n,)
         State at time zero.
     step : float
@@ -94,60 +96,54 @@ def worst_switching(
     states, chosen = [initial], []
     for _ in range(steps):
         candidates = transitions @ states[-1]
-        values = ((candidates @ Q) * candidates).sum(axis=1)
-        chosen.append(int(values.argmax()))
+        chosen.append(int(norm(candidates).argmax()))
         states.append(candidates[chosen[-1]])
-    return TimeResponse(_times(step, steps), np.array(states), np.array(chosen))
+    return TimeResponse(times(step, steps), np.array(states), np.array(chosen))
 
 
 def worst_direction(system: SwitchedSystem, Q: Array) -> Array:
     """Return the unit state (in the norm of Q) from which ``x' Q x`` decreases the slowest."""
     inverse = np.linalg.inv(np.linalg.cholesky(Q))
-    worst = max((_slowest(inverse, drift) for drift in _drift(system, Q)), key=lambda pair: pair[0])
+    worst = max((_slowest(inverse, form) for form in drift(system, Q)), key=lambda pair: pair[0])
     return inverse.T @ worst[1]
 
 
-def mode_rates(system: SwitchedSystem, Q: Array) -> Array:
-    """Return how fast ``sqrt(x' Q x)`` decays at least in every mode by itself.
-
-    Parameters
-    ----------
-    system : SwitchedSystem
-        Modes.
-    Q : ndarray, shape (n, n)
-        Symmetric and positive definite.
-
-    Returns
-    -------
-    ndarray, shape (m,)
-        Continuous time: the largest alpha with ``A'Q + QA + 2 alpha Q <= 0``, in 1/s; negative
-        where the norm can grow. Discrete time: the smallest rho with ``A'QA <= rho^2 Q``.
-    """
-    inverse = np.linalg.inv(np.linalg.cholesky(Q))
-    largest = np.linalg.eigvalsh(inverse @ np.array(_drift(system, Q)) @ inverse.T)[:, -1]
-    if system.time is Time.DISCRETE:
-        return np.asarray(np.sqrt(np.maximum(largest, 0.0)))
-    return np.asarray(-largest / 2)
+def sampled_direction(system: SwitchedSystem, norm: Norm, step: float) -> Array:
+    """Return the state of norm one, among some, whose norm is largest after one step."""
+    n = system.order
+    rng = np.random.default_rng(0)
+    directions = rng.standard_normal((_DIRECTIONS, n)) / norm(np.eye(n))
+    directions /= norm(directions)[:, None]
+    images = directions @ transition_matrices(system, step).transpose(0, 2, 1)
+    return np.asarray(directions[norm(images).max(axis=0).argmax()])
 
 
-def norms(response: TimeResponse, Q: Array) -> Array:
-    """Return ``sqrt(x' Q x)`` over its first value; shape (N + 1,)."""
-    squares = np.einsum("ti,ij,tj->t", response.state, Q, response.state)
-    return np.asarray(np.sqrt(np.maximum(squares, 0.0) / squares[0]))
+def norms(response: TimeResponse, norm: Norm) -> Array:
+    """Return the norm over its first value; shape (N + 1,)."""
+    values = norm(response.state)
+    return np.asarray(values / values[0])
 
 
 def fine_step(system: SwitchedSystem) -> float:
     """Return a step that resolves the fastest eigenvalue, in s; one in discrete time."""
     if system.time is Time.DISCRETE:
         return 1.0
-    fastest = float(np.abs(eigenvalues(system)).max())
+    fastest = max(float(np.abs(values).max()) for values in eigenvalues(system))
     return 0.1 / fastest if fastest > 0 else 0.1
 
 
-def eigenvalues(system: SwitchedSystem) -> NDArray[np.complex128]:
-    """Return the eigenvalues of every mode, in 1/s in continuous time; shape (m, n)."""
-    matrices = np.array([mode.A.floats() for mode in system.modes])
-    return np.asarray(np.linalg.eigvals(matrices), dtype=np.complex128)
+def eigenvalues(system: SwitchedSystem) -> list[NDArray[np.complex128]]:
+    """Return the eigenvalues of every mode, in 1/s in continuous time."""
+    return [
+        np.asarray(np.linalg.eigvals(np.array(mode.A.floats())), dtype=np.complex128)
+        for mode in system.modes
+    ]
+
+
+def alone(system: SwitchedSystem, mode: int) -> SwitchedSystem:
+    """Return the system that stays in one mode."""
+    kept = system.modes[mode]
+    return replace(system, modes=(kept,), states=system.states[: kept.A.shape[0]])
 
 
 def unstable_run(system: SwitchedSystem, mode: int, growth: float = 100.0) -> TimeResponse:
@@ -156,7 +152,7 @@ def unstable_run(system: SwitchedSystem, mode: int, growth: float = 100.0) -> Ti
     Parameters
     ----------
     system : SwitchedSystem
-        Modes.
+        Modes of one size.
     mode : int
         Index of the mode to stay in.
     growth : float
@@ -178,17 +174,11 @@ def unstable_run(system: SwitchedSystem, mode: int, growth: float = 100.0) -> Ti
     return simulate_switching(system, signal, initial, step)
 
 
-def _drift(system: SwitchedSystem, Q: Array) -> list[Array]:
-    matrices = [np.array(mode.A.floats()) for mode in system.modes]
-    if system.time is Time.DISCRETE:
-        return [A.T @ Q @ A for A in matrices]
-    return [A.T @ Q + Q @ A for A in matrices]
-
-
-def _slowest(inverse: Array, drift: Array) -> tuple[float, Array]:
-    values, vectors = np.linalg.eigh(inverse @ drift @ inverse.T)
-    return float(values[-1]), vectors[:, -1]
-
-
-def _times(step: float, steps: int) -> Array:
+def times(step: float, steps: int) -> Array:
+    """Return sampling instants from zero; shape (steps + 1,)."""
     return np.asarray(step * np.arange(steps + 1), dtype=float)
+
+
+def _slowest(inverse: Array, form: Array) -> tuple[float, Array]:
+    values, vectors = np.linalg.eigh(inverse @ form @ inverse.T)
+    return float(values[-1]), vectors[:, -1]

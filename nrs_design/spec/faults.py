@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import difflib
-from itertools import islice
 from collections.abc import Callable, Collection, Iterable
+from itertools import islice
 from pathlib import Path
 from typing import Any, TypeVar, get_args, get_origin
 
@@ -63,7 +63,8 @@ def reported(read: Callable[[], _T], *at: int | str) -> _T:
 
 def did_you_mean(word: str, choices: Collection[str], noun: str = "write one of") -> str:
     """Suggest the nearest choice, and list them all if they are few."""
-    near = difflib.get_close_matches(word, choices, n=1)
+    alike = [choice for choice in choices if choice.lower() == word.lower()]
+    near = alike or difflib.get_close_matches(word, choices, n=1)
     more = ", ..." * (len(choices) > MAX_LISTED)
     listing = f"{noun} {', '.join(islice(choices, MAX_LISTED)) or 'nothing'}{more}"
     return f"did you mean {near[0]}? {listing}" if near else listing

@@ -82,7 +82,9 @@ Exact = Annotated[Fraction, PlainValidator(read_exact), WithJsonSchema(NUMBER_SC
 UnitFraction = Annotated[
     Fraction, _number(lambda x: 0 < x < 1, "between 0 and 1"), WithJsonSchema(NUMBER_SCHEMA)
 ]
-Weight = Annotated[Fraction, _number(lambda x: x >= 0, "zero or positive"), WithJsonSchema(NUMBER_SCHEMA)]
+Weight = Annotated[
+    Fraction, _number(lambda x: x >= 0, "zero or positive"), WithJsonSchema(NUMBER_SCHEMA)
+]
 Positive = Annotated[Fraction, _number(lambda x: x > 0, "positive"), WithJsonSchema(NUMBER_SCHEMA)]
 Digits = Annotated[
     int,

@@ -21,7 +21,7 @@ MAX_PARAMETERS = 16
 LARGEST = Fraction(10) ** 30
 
 # Where a number is expected, these are read as attempts at one.
-_RESERVED = frozenset("nan inf infinity true false yes no on off null".split())
+_RESERVED = frozenset(["nan", "inf", "infinity", "true", "false", "yes", "no", "on", "off", "null"])
 
 
 def read_name(value: object) -> str:

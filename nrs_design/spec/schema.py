@@ -77,7 +77,12 @@ def _plain(schema: Any, *, names: bool = False) -> Any:
         for key, value in schema.items()
         if names or key not in _INTERNAL
     }
-    return kept if names else _described_reference(_required_value(kept))
+    return kept if names else _described_reference(_closed(_required_value(kept)))
+
+
+def _closed(schema: dict[str, Any]) -> dict[str, Any]:
+    """Refuse keys that are no names where a pattern says what a name is."""
+    return schema | {"additionalProperties": False} if "patternProperties" in schema else schema
 
 
 def _required_value(schema: dict[str, Any]) -> dict[str, Any]:

@@ -80,11 +80,11 @@ class SwitchedSystemSpec(SpecModel):
     time: Literal["continuous", "discrete"] = Field(
         description="continuous: x' = A x; discrete: x+ = A x"
     )
-    parameters: Annotated[
-        dict[ParameterName, ParameterSpec], Field(max_length=MAX_PARAMETERS)
-    ] = Field(
-        default_factory=dict,
-        description="uncertain numbers that the matrices depend on: name -> nominal and range",
+    parameters: Annotated[dict[ParameterName, ParameterSpec], Field(max_length=MAX_PARAMETERS)] = (
+        Field(
+            default_factory=dict,
+            description="uncertain numbers that the matrices depend on: name -> nominal and range",
+        )
     )
     modes: Annotated[tuple[ModeSpec, ...], Field(min_length=1, max_length=MAX_MODES)] = Field(
         description="the modes, at least one; of the same size, unless resets link them"
@@ -155,9 +155,10 @@ def _report_unknown(spec: SwitchedSystemSpec, index: int) -> None:
         for j, entry in enumerate(row):
             for name in entry.names:
                 if name not in spec.parameters:
+                    known = did_you_mean(name, spec.parameters, "parameters here are")
                     raise fault(
                         f"{name!r} is not a number, and there is no parameter of that name",
-                        did_you_mean(name, spec.parameters, "parameters here are"),
+                        known if spec.parameters else "write a number, or declare parameters",
                         *("modes", index, "A", i, j),
                     )
 
@@ -225,7 +226,7 @@ def _check_sizes(
     modes: Mapping[str, ModeSpec],
     resets: Mapping[Transition, ResetSpec],
 ) -> None:
-    """A switch between states of different sizes must say what becomes of the state."""
+    """Check that a switch between different states says what becomes of the state."""
     if len({mode.dimension for mode in spec.modes}) == 1:
         return
     for (source, target), at in _transitions(spec):

@@ -69,13 +69,17 @@ def has_ranges(spec: Spec) -> bool:
     """Tell whether a spec declares a range, of a parameter or of an environment that is touched."""
     if isinstance(spec, SwitchedSystemSpec):
         return any(not parameter.fixed for parameter in spec.parameters.values())
-    touched = {
+    return any(not spec.environments[name].fixed for name in _touched(spec))
+
+
+def _touched(spec: InteractionDesignSpec) -> set[str]:
+    """Names of the environments that some controller touches."""
+    return {
         contact
         for controller in spec.controllers.values()
         if not isinstance(controller, PositionControllerSpec)
         for contact in controller.contacts
     }
-    return any(not spec.environments[name].fixed for name in touched)
 
 
 def from_matrices(spec: SwitchedSystemSpec, scale: Fraction = DECLARED) -> SwitchedSystem:
@@ -106,7 +110,7 @@ def from_design(
     if coordinates not in ("deflection", "force"):
         raise AssemblyError(f"unknown coordinates {coordinates!r}: deflection or force")
     loop = motion_loop(spec, design.motion)
-    plant = build_plant(spec).scaled(scale)
+    plant = build_plant(spec).scaled(scale, _touched(spec))
     system = close_loop(spec.name, plant, loop, design, coordinates, spec.switching)
     return replace(system, assumptions=(*system.assumptions, *scale_texts(scale)))
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from fractions import Fraction
-from itertools import chain, islice, permutations, product
+from itertools import chain, islice, product
 from typing import TypeVar
 
 from nrs_design.errors import AssemblyError
@@ -26,8 +26,8 @@ def assemble_switching(
     """Carry the rules of a spec over to the assembled modes.
 
     Corners and contacts of one name follow each other freely, because parameters and environment
-    move as they like. Switches between names are allowed, and reset, for all their corners. The
-    ends of a constant parameter never follow each other.
+    move as they like. Switches between names are allowed, and reset, for all their corners. That a
+    parameter is constant is kept apart, in `fixed_ends`: transitions allow for more, never less.
 
     Parameters
     ----------
@@ -46,10 +46,9 @@ def assemble_switching(
     ends = tuple(pair for corners in groups.values() for pair in pair_ends(corners))
     dwell = Fraction(0) if rules.dwell_time is None else rules.dwell_time.value
     transitions = None
-    if rules.transitions is not None or ends:
-        named = permutations(groups, 2) if rules.transitions is None else rules.transitions
+    if rules.transitions is not None:
         stays = ((name, name) for name in groups)
-        transitions = _limited(_expand(chain(stays, named), groups))
+        transitions = _limited(_expand(chain(stays, rules.transitions), groups))
     return Switching(dwell, transitions, _limited(_assembled_resets(resets, groups)), ends)
 
 
@@ -63,7 +62,7 @@ def _assembled_resets(resets: Sequence[ResetSpec], groups: Groups) -> Iterator[R
 def _expand(pairs: Iterable[Transition], groups: Groups) -> Iterator[Transition]:
     for source, target in pairs:
         for a, b in product(groups[source], groups[target]):
-            if a.mode != b.mode and a.end == b.end:
+            if a.mode != b.mode:
                 yield a.mode, b.mode
 
 

@@ -57,8 +57,9 @@ class Switching:
     fixed_ends : tuple of (str, str)
         Pairs of modes that are the two ends of a parameter that is unknown but does not change:
         the mode in force is ``(1 - p) low + p high`` with one p for all pairs and all times. Every
-        mode is in one pair, or there are none. Transitions then never lead from one end to the
-        other; an argument that uses them must hold for every p, not only for the two ends.
+        mode is in one pair, or there are none. Transitions take no notice of it: they lead from
+        any end to any end, as if the parameter moved. What holds for all these signals holds for
+        the fewer ones of a constant parameter; a signal that grows must keep to one end.
     """
 
     dwell_time: Fraction = Fraction(0)

@@ -1,11 +1,12 @@
 """Small valid specs to be spoiled, and the refusal that must follow."""
 
 from collections.abc import Callable
+from fractions import Fraction
 
 import pytest
 
 from nrs_design.errors import SpecError
-from nrs_design.spec import InteractionDesignSpec, SwitchedSystemSpec, parse_spec
+from nrs_design.spec import InteractionDesignSpec, ModeSpec, SwitchedSystemSpec, parse_spec
 
 IMPEDANCE = """\
 kind: interaction-design
@@ -70,6 +71,11 @@ def switched(text: str) -> SwitchedSystemSpec:
     spec = parse_spec(text)
     assert isinstance(spec, SwitchedSystemSpec)
     return spec
+
+
+def numbers(mode: ModeSpec) -> list[tuple[Fraction, ...]]:
+    """Rows of a matrix that depends on no parameter."""
+    return [tuple(row) for row in mode.matrix({})]
 
 
 def spoiled(sample: str, old: str, new: str) -> str:

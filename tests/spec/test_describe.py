@@ -76,3 +76,44 @@ def test_modes_are_shown_by_name_and_size() -> None:
     assert ("time", "continuous", "", "") in rows
     discrete = switched(spoiled(SWITCHED, "continuous", "discrete"))
     assert ("modes[0]", "a", "2 x 2", "") in describe(discrete)
+
+
+def test_parameters_rules_and_resets() -> None:
+    text = """\
+kind: switched-system
+name: sample
+time: discrete
+parameters:
+  k: {nominal: 43, range: ["1/3", 90]}
+  m: {nominal: 1, range: [0.5, 2], varies: false}
+  r: {nominal: 2}
+modes:
+  - {name: a, A: [[0, 1], [-2 - k, -1]]}
+  - {name: b, A: [[m - r*2]]}
+switching: {transitions: [[a, b], [b, a]]}
+resets:
+  - {from: a, to: b, map: [[1, 0]]}
+  - {from: b, to: a, map: [[1], [0]]}
+"""
+    rows = describe(switched(text))
+    assert ("switching.transitions", "a to b, b to a", "2", "") in rows
+    assert ("parameters.k", "43", "43", "") in rows
+    assert ("parameters.k.range", "[1/3, 90]", "[0.333333, 90]", "") in rows
+    assert ("parameters.k.varies", "true", "arbitrarily fast", "") in rows
+    assert ("parameters.m.varies", "false", "unknown, but constant", "") in rows
+    assert [row for row in rows if row.name.startswith("parameters.r")] == [
+        ("parameters.r", "2", "2", "")
+    ]
+    assert ("modes[0]", "a", "2 x 2, k", "") in rows
+    assert ("modes[1]", "b", "1 x 1, m, r", "") in rows
+    assert ("resets[0]", "a to b", "1 x 2", "") in rows
+    assert ("resets[1]", "b to a", "2 x 1", "") in rows
+
+
+def test_dwell_times() -> None:
+    rows = describe(switched(spoiled(SWITCHED, "arbitrary", "{dwell_time: 500 ms}")))
+    assert ("switching.dwell_time", "500 ms", "0.5", "s") in rows
+    discrete = spoiled(SWITCHED, "continuous", "discrete")
+    rows = describe(switched(spoiled(discrete, "arbitrary", "{dwell_time: 3 steps}")))
+    assert ("switching.dwell_time", "3 steps", "3", "steps") in rows
+    assert ("switching", "arbitrary", "", "") in describe(switched(SWITCHED))

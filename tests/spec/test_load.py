@@ -98,7 +98,7 @@ def test_spoiled_specs_load_or_are_refused_inside_the_file(sample: str, seed: in
 
 
 def test_many_faults_are_counted_quickly() -> None:
-    modes = "".join("  - {nam: a, A: [[x]]}\n" for _ in range(2000))
+    modes = "".join("  - {nam: a, A: [[1 1]]}\n" for _ in range(2000))
     error = refusal(f"kind: switched-system\nname: a\ntime: discrete\nmodes:\n{modes}")
     assert "`switching` is missing" in error.message
     assert "4000 more faults" in error.message

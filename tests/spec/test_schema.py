@@ -7,6 +7,7 @@ import pytest
 from jsonschema import Draft7Validator
 from ruamel.yaml import YAML
 
+from nrs_design.spec import parse_spec
 from nrs_design.spec.schema import json_schema
 from nrs_design.spec.templates import TEMPLATES
 
@@ -14,6 +15,22 @@ from .samples import FORCE, IMPEDANCE, SWITCHED, refusal, spoiled
 
 ROOT = Path(__file__).resolve().parents[2]
 SHIPPED = sorted([*ROOT.glob("specs/**/*.nrs.yaml"), *ROOT.glob("docs/examples/*.nrs.yaml")])
+RULES = """\
+kind: switched-system
+name: sample
+time: continuous
+parameters:
+  k: {nominal: 43, range: [25, 90]}
+  m: {nominal: 1, range: ["0.5", 2], varies: false}
+modes:
+  - {name: a, A: [[0, 1], [-2 - k, -1]]}
+  - {name: b, A: [["1/6", 1], ["-(3/4*k - m/10.0 + 0.5)", -1e-3]]}
+switching: {transitions: [[a, b], [b, a]]}
+resets:
+  - {from: a, to: b, map: [[1, 0], [0, "1/2"]]}
+"""
+DWELL = spoiled(SWITCHED, "switching: arbitrary", "switching: {dwell_time: 2.76 s}")
+STEPS = SWITCHED.replace("continuous", "discrete").replace("arbitrary", "{dwell_time: 3 steps}")
 
 
 def faults(text: str) -> list[str]:
@@ -34,9 +51,12 @@ def test_shipped_specs_validate(path: Path) -> None:
     assert faults(path.read_text()) == []
 
 
-@pytest.mark.parametrize("text", [*TEMPLATES.values(), IMPEDANCE, FORCE, SWITCHED])
+@pytest.mark.parametrize(
+    "text", [*TEMPLATES.values(), IMPEDANCE, FORCE, SWITCHED, RULES, DWELL, STEPS]
+)
 def test_templates_and_samples_validate(text: str) -> None:
     assert faults(text) == []
+    assert parse_spec(text)
 
 
 @pytest.mark.parametrize(
@@ -50,6 +70,23 @@ def test_templates_and_samples_validate(text: str) -> None:
         (SWITCHED, '"1/6"', "true"),
         (SWITCHED, "[[-1, -1], [1, -1]]", "[]"),
         (SWITCHED, "switching: arbitrary\n", ""),
+        (SWITCHED, "switching: arbitrary", "switching: never"),
+        (SWITCHED, "switching: arbitrary", "switching: {}"),
+        (SWITCHED, "switching: arbitrary", "switching: {dwell: 1 s}"),
+        (SWITCHED, "switching: arbitrary", "switching: {dwell_time: 1}"),
+        (SWITCHED, "switching: arbitrary", "switching: {transitions: [[a]]}"),
+        (SWITCHED, "switching: arbitrary", "switching: {transitions: [[a, b, a]]}"),
+        (RULES, "range: [25, 90]", "range: [25]"),
+        (RULES, "nominal: 43", "nominal: 43 N"),
+        (RULES, "nominal: 43, ", ""),
+        (RULES, "varies: false", "varies: 1"),
+        (RULES, "  k:", "  k-1:"),
+        (RULES, "-2 - k", "k/0"),
+        (RULES, "-2 - k", "k^2"),
+        (RULES, "-2 - k", "k = 2"),
+        (RULES, "from: a, ", ""),
+        (RULES, "map: ", "matrix: "),
+        (RULES, '"1/2"]]', "k]]"),
         (IMPEDANCE, "747.1461 N/m", "747.1461"),
         (IMPEDANCE, "747.1461 N/m", "{nominal: 1 N/m, range: [1 N/m]}"),
         (IMPEDANCE, "model: elastic", "model: rigid"),
@@ -86,7 +123,17 @@ def properties(schema: Any) -> Iterator[tuple[str, dict[str, Any]]]:
 def test_every_key_is_described() -> None:
     definitions = json_schema()["definitions"]
     described = dict(properties(definitions))
-    assert {"velocity", "Mt", "A", "range", "min", "lever_arm"} <= described.keys()
+    assert {
+        "velocity",
+        "Mt",
+        "A",
+        "range",
+        "min",
+        "lever_arm",
+        "dwell_time",
+        "from",
+        "varies",
+    } <= described.keys()
     assert [n for n, inner in properties(definitions) if not inner.get("description")] == []
 
 

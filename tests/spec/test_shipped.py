@@ -11,6 +11,8 @@ from nrs_design.spec import (
     load_spec,
 )
 
+from .samples import numbers
+
 ROOT = Path(__file__).resolve().parents[2]
 PATHS = sorted([*ROOT.glob("specs/**/*.nrs.yaml"), *ROOT.glob("docs/examples/*.nrs.yaml")])
 
@@ -35,6 +37,15 @@ def test_all_are_found() -> None:
         "commuting",
         "dayawansa-martin-5",
         "thesis-print-error",
+        "tissue-x-withdrawal",
+        "hand-range-no-mass",
+        "hand-range",
+        "wide-range",
+        "geromel-colaneri",
+        "dayawansa-martin-6",
+        "ando-shih",
+        "oscillator-range",
+        "unknown-constant",
     }
 
 
@@ -100,24 +111,118 @@ def test_tissue_and_tool_meet_both_environments() -> None:
 
 def test_commuting_modes_commute() -> None:
     # Narendra and Balakrishnan 1994.
-    a, b = (mode.A for mode in system("specs/examples/commuting.nrs.yaml").modes)
+    a, b = map(numbers, system("specs/examples/commuting.nrs.yaml").modes)
     n = range(2)
 
-    def product(x: tuple[tuple[Fraction, ...], ...], y: tuple[tuple[Fraction, ...], ...]) -> object:
+    def product(x: list[tuple[Fraction, ...]], y: list[tuple[Fraction, ...]]) -> object:
         return [[sum(x[i][k] * y[k][j] for k in n) for j in n] for i in n]
 
     assert product(a, b) == product(b, a)
 
 
 def test_dayawansa_and_martin() -> None:
-    a, b = (mode.A for mode in system("specs/examples/dayawansa-martin-5.nrs.yaml").modes)
-    assert list(a) == [(-1, -1), (1, -1)]
-    assert list(b) == [(-1, -5), (Fraction(1, 5), -1)]
+    for parameter in (5, 6):
+        path = f"specs/examples/dayawansa-martin-{parameter}.nrs.yaml"
+        a, b = map(numbers, system(path).modes)
+        assert a == [(-1, -1), (1, -1)]
+        assert b == [(-1, -parameter), (Fraction(1, parameter), -1)]
 
 
 def test_print_error_is_as_printed() -> None:
     # Thesis 6.3.2.2.
-    first, second = (mode.A for mode in system("docs/examples/thesis-print-error.nrs.yaml").modes)
+    first, second = map(numbers, system("docs/examples/thesis-print-error.nrs.yaml").modes)
     assert first[1][0] == second[1][0] == Fraction("1618.80")
     assert first[3] == second[3] == (Fraction("70183.13"), Fraction("1231.97"), 0, 0)
     assert (first[2], second[2]) == ((0, 0, -215, 100), (0, 0, -104, 100))
+
+
+def test_geromel_and_colaneri() -> None:
+    spec = system("specs/examples/geromel-colaneri.nrs.yaml")
+    stiff, soft = map(numbers, spec.modes)
+    assert stiff == [(0, 1), (-10, -1)]
+    assert soft == [(0, 1), (Fraction(-1, 10), Fraction(-1, 2))]
+    assert spec.switching.dwell_time is not None
+    # Shown by their condition from 2.75084 s on.
+    assert spec.switching.dwell_time.value == Fraction("2.76")
+
+
+def test_ando_and_shih() -> None:
+    spec = system("specs/examples/ando-shih.nrs.yaml")
+    c = Fraction("0.99")
+    assert [numbers(mode) for mode in spec.modes] == [[(c, 0), (c, 0)], [(0, c), (0, -c)]]
+    assert spec.time == "discrete"
+
+
+def test_oscillator_is_within_the_limit_of_stability() -> None:
+    # Zelentsovsky 1994: quadratic up to 3.82, stable up to 6.98513.
+    spec = system("specs/examples/oscillator-range.nrs.yaml")
+    low, high = spec.parameters["k"].range
+    assert (low, spec.parameters["k"].varies) == (0, True)
+    assert Fraction("3.82") < high < Fraction("6.98513")
+    assert spec.modes[0].matrix({"k": high}) == [[0, 1], [-2 - high, -1]]
+
+
+def test_constant_parameter_has_a_function_that_depends_on_it() -> None:
+    # Q = [[2 + k + 1/2, 1/2], [1/2, 1]] is affine in k; its decrease in the ends and the mixed term
+    # must all be negative, then it decreases for every constant k in the range.
+    spec = system("specs/examples/unknown-constant.nrs.yaml")
+    ends = spec.parameters["k"].range
+    assert ends[1] > Fraction("6.98513")
+    assert not spec.parameters["k"].varies
+
+    def decrease(k_system: Fraction, k_function: Fraction) -> tuple[Fraction, Fraction, Fraction]:
+        (_, one), (a, b) = spec.modes[0].matrix({"k": k_system})
+        assert one == 1
+        q11, q12, q22 = k_function + Fraction(5, 2), Fraction(1, 2), Fraction(1)
+        assert q11 * q22 > q12**2
+        return 2 * q12 * a, q11 + q12 * b + q22 * a, 2 * (q12 + q22 * b)
+
+    low, high = ends
+    mixed = zip(decrease(low, high), decrease(high, low), strict=True)
+    for m11, m12, m22 in (decrease(low, low), decrease(high, high), [x + y for x, y in mixed]):
+        assert m11 < 0
+        assert m11 * m22 > m12**2
+
+
+def test_tissue_x_withdrawal_covers_tissue_and_tool() -> None:
+    spec = design("tissue-x-withdrawal")
+    low, high = spec.environments["tissue"].rotational_stiffness.range
+    # Thesis 6.3.1 and 6.4.1: 747.1461 and 1070.5 N/m at 0.24 m.
+    assert (low.exact, high.exact) == (43, 62)
+    assert low.si < 43.0356 < 61.6608 < high.si
+    assert gains(spec) == [("0.01", "2.15"), ("0.01", "1.04")]
+
+
+@pytest.mark.parametrize(
+    ("folder", "name", "Mt"),
+    [("specs/neuroboscope", "hand-range-no-mass", "0"), ("docs/examples", "hand-range", "0.01")],
+)
+def test_range_of_hands(folder: str, name: str, Mt: str) -> None:
+    # Tugal et al. 2022: 1002 +- 568 N/m.
+    spec = load_spec(ROOT / folder / f"{name}.nrs.yaml")
+    assert isinstance(spec, InteractionDesignSpec)
+    hand = spec.environments["hand"]
+    assert [end.value for end in hand.stiffness.range] == [1002 - 568, 1002 + 568]
+    low, high = hand.rotational_stiffness.range
+    assert (low.exact, high.exact) == (Fraction("24.9984"), Fraction("90.432"))
+    assert gains(spec) == [(Mt, "2.15"), (Mt, "1.04")]
+
+
+def test_wide_range() -> None:
+    spec = load_spec(ROOT / "docs/examples/wide-range.nrs.yaml")
+    assert isinstance(spec, InteractionDesignSpec)
+    (environment,) = spec.environments.values()
+    assert [end.exact for end in environment.rotational_stiffness.range] == [1, 200]
+    assert gains(spec) == [("0", "2.15")]
+
+
+def gains(spec: InteractionDesignSpec) -> list[tuple[str, str]]:
+    """Fixed inertia and damping of every impedance controller, as written."""
+    found = []
+    for controller in spec.controllers.values():
+        assert isinstance(controller, ImpedanceControllerSpec)
+        assert controller.Mt.fixed
+        assert controller.Bt.fixed
+        texts = (controller.Mt.min.text, controller.Bt.min.text)
+        found.append((texts[0].partition(" ")[0], texts[1].partition(" ")[0]))
+    return found

@@ -4,7 +4,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from .samples import SWITCHED, place_of, refusal, spoiled, switched
+from .samples import SWITCHED, numbers, place_of, refusal, spoiled, switched
 
 
 def test_reads_dayawansa_and_martin_exactly() -> None:
@@ -12,13 +12,13 @@ def test_reads_dayawansa_and_martin_exactly() -> None:
     assert spec.time == "continuous"
     assert spec.dimension == 2
     assert [mode.name for mode in spec.modes] == ["a", "b"]
-    assert list(spec.modes[1].A) == [(-1, -6), (Fraction(1, 6), -1)]
+    assert numbers(spec.modes[1]) == [(-1, -6), (Fraction(1, 6), -1)]
 
 
 def test_decimals_are_not_rounded() -> None:
     # The eigenvalue of this matrix is exactly 0 in decimal, not in binary arithmetic.
     text = spoiled(SWITCHED, "[[-1, -1], [1, -1]]", "[[-0.36, -0.48], [-0.48, -0.64]]")
-    (a, b), (c, d) = switched(text).modes[0].A
+    (a, b), (c, d) = numbers(switched(text).modes[0])
     assert a * d - b * c == 0
 
 
@@ -35,7 +35,7 @@ def test_numbers_may_name_modes() -> None:
         ("name: b", "name: a b", "a b", "not a name"),
         ("[[-1, -1], [1, -1]]", "[[-1, -1], [1]]", "[1]]", "row 2 has 1 entries, the first has 2"),
         ("[[-1, -1], [1, -1]]", "[[-1, -1]]", "[[-1, -1]]", "1 x 2, not square"),
-        ("[[-1, -1], [1, -1]]", "[[-1]]", "[[-1, -6]", "2 x 2, the first mode's is 1 x 1"),
+        ("[[-1, -1], [1, -1]]", "[[-1]]", "[[-1, -6]", "a has 1 states and b has 2"),
         ("[[-1, -1], [1, -1]]", "[]", "[]", "must not be empty"),
         ("[[-1, -1], [1, -1]]", "[[]]", "[]]}", "must not be empty"),
         ("[[-1, -1], [1, -1]]", "[-1, -1]", "-1, -1]}", "expected a list"),
@@ -56,7 +56,8 @@ def test_numbers_may_name_modes() -> None:
         ("{name: a, A: [[-1, -1], [1, -1]]}", "a", "a\n  - {name: b", "expected a mapping"),
         ("switching: arbitrary", "switching: never", "never", "'arbitrary'"),
         ("switching: arbitrary", "swiching: arbitrary", "swiching", "did you mean switching?"),
-        ("switching", "resets: []\nswitching", "resets", "unknown key `resets`"),
+        ("switching", "reset: []\nswitching", "reset", "did you mean resets?"),
+        ("[[-1, -1], [1, -1]]", "[[-1, k], [1, -1]]", "k]", "declare parameters"),
     ],
 )
 def test_refuses_with_place_and_remedy(old: str, new: str, at: str, said: str) -> None:
@@ -106,4 +107,4 @@ def test_matrices_survive_the_round_trip(rows: list[list[Fraction]]) -> None:
     matrix = "[" + ", ".join("[" + ", ".join(f'"{x}"' for x in row) + "]" for row in rows) + "]"
     head = SWITCHED.partition("  - ")[0]
     spec = switched(f"{head}  - {{name: a, A: {matrix}}}\nswitching: arbitrary\n")
-    assert list(spec.modes[0].A) == [tuple(row) for row in rows]
+    assert numbers(spec.modes[0]) == [tuple(row) for row in rows]

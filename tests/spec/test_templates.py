@@ -1,7 +1,11 @@
+import re
+
 import pytest
 
 from nrs_design.spec import parse_spec
 from nrs_design.spec.interaction import InteractionDesignSpec
+from nrs_design.spec.switched_system import SwitchedSystemSpec
+from nrs_design.spec.switching import parse_dwell_time
 from nrs_design.spec.templates import TEMPLATES
 
 
@@ -13,7 +17,7 @@ def test_names() -> None:
 def test_templates_load_and_point_to_their_schema(name: str) -> None:
     text = TEMPLATES[name]
     assert text.splitlines()[0] == "# yaml-language-server: $schema=./nrs.schema.json"
-    assert parse_spec(text).switching == "arbitrary"
+    assert parse_spec(text).switching.is_arbitrary
     assert text.isascii()
     assert max(map(len, text.splitlines())) <= 105
 
@@ -31,3 +35,35 @@ def test_hybrid_template_has_both_modes() -> None:
     spec = parse_spec(TEMPLATES["hybrid-force"])
     assert isinstance(spec, InteractionDesignSpec)
     assert {controller.type for controller in spec.controllers.values()} == {"position", "force"}
+
+
+def uncommented(name: str) -> str:
+    """Text of a template with the rules that it shows in comments instead of `arbitrary`."""
+    lines = [line for line in TEMPLATES[name].splitlines() if not line.startswith("switching:")]
+    shown = [re.sub("^# (?=  |parameters:$|switching:$|resets:$)", "", line) for line in lines]
+    # A dwell time goes with neither ranges nor several contacts.
+    return "\n".join(line for line in shown if "dwell_time:" not in line)
+
+
+def test_parameters_rules_and_resets_of_the_template_are_right() -> None:
+    spec = parse_spec(uncommented("switched-system"))
+    assert isinstance(spec, SwitchedSystemSpec)
+    assert {name: p.varies for name, p in spec.parameters.items()} == {"k": True, "m": False}
+    assert [mode.parameters for mode in spec.modes] == [set(), set(), {"k", "m"}]
+    assert spec.switching.transitions == (("a", "b"), ("b", "a"), ("b", "c"), ("c", "a"))
+    assert [(reset.source, reset.target) for reset in spec.resets] == [("a", "b")]
+
+
+@pytest.mark.parametrize("name", ["interaction-design", "hybrid-force"])
+def test_rules_between_controllers_are_right(name: str) -> None:
+    spec = parse_spec(uncommented(name))
+    assert isinstance(spec, InteractionDesignSpec)
+    a, b = spec.controllers
+    assert spec.switching.transitions == ((a, b), (b, a))
+
+
+@pytest.mark.parametrize("name", TEMPLATES)
+def test_dwell_time_of_the_template_is_right(name: str) -> None:
+    shown = re.search("^# +dwell_time: (.*?) +#", TEMPLATES[name], re.MULTILINE)
+    assert shown
+    assert parse_dwell_time(shown[1]).unit == "s"

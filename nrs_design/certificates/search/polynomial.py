@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from fractions import Fraction
-from math import factorial, prod
+from math import comb, factorial, prod
 
 import numpy as np
 from numpy.typing import NDArray
@@ -86,6 +86,13 @@ def lift_family(system: SwitchedSystem, exponents: Exponents, degree: int) -> Li
     vanishing = [_difference(group[0], other, scaling) for group in pairs for other in group[1:]]
     K = len(basis)
     return Lift(degree, matrices, np.array(vanishing).reshape(-1, K, K), scaling)
+
+
+def count_variables(variables: int, modes: int, degree: int) -> int:
+    """Return the size of the semidefinite program before anything is lifted."""
+    size = comb(variables + degree - 1, degree)
+    symmetric = size * (size + 1) // 2
+    return symmetric + modes * (symmetric - comb(variables + 2 * degree - 1, 2 * degree)) + 1
 
 
 def products(variables: int, degree: int) -> list[list[Pair]]:

@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from nrs_design.certificates.certificate import CommonQuadratic, rate_text
+from nrs_design.certificates.evidence import CommonQuadratic
+from nrs_design.certificates.evidence.fields import rate_text
 from nrs_design.reporting.document import Block, Illustration, Paragraph, Section, Table
 from nrs_design.reporting.figures.complex_plane import draw_eigenvalues
 from nrs_design.reporting.figures.lyapunov import draw_mode_rates, draw_quadratic

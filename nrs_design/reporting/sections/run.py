@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from nrs_design.certificates.certificate import CommonQuadratic, UnstableMode
+from nrs_design.certificates.evidence import AbstractEvidence, CommonQuadratic, UnstableMode
 from nrs_design.reporting.document import Illustration, Section
 from nrs_design.reporting.figures.run import draw_phase_plane, draw_run
 from nrs_design.reporting.sections.modes import hardest_modes, scaled_matrix
@@ -41,7 +41,7 @@ _GREEDY = (
 )
 
 
-def run_section(system: SwitchedSystem, evidence: CommonQuadratic | UnstableMode | None) -> Section:
+def run_section(system: SwitchedSystem, evidence: AbstractEvidence | None) -> Section:
     """Simulate one run and draw it.
 
     Parameters
@@ -53,9 +53,9 @@ def run_section(system: SwitchedSystem, evidence: CommonQuadratic | UnstableMode
     """
     if isinstance(evidence, UnstableMode):
         return Section("Simulated witness", _witness(system, evidence))
-    if evidence is None:
-        return Section("Simulated switching", _unbounded(system))
-    return Section("Simulated switching", _bounded(system, evidence))
+    if isinstance(evidence, CommonQuadratic):
+        return Section("Simulated switching", _bounded(system, evidence))
+    return Section("Simulated switching", _unbounded(system))
 
 
 def _bounded(system: SwitchedSystem, evidence: CommonQuadratic) -> tuple[Illustration, ...]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from nrs_design.reporting.document import Bullets, Section, Table
+from nrs_design.reporting.formatting import number
 
 if TYPE_CHECKING:
     from nrs_design.certificates.certify import Certification
@@ -15,7 +16,19 @@ def assumptions_section(certification: Certification) -> Section:
     return Section("Assumptions", (Bullets("", certification.system.assumptions),))
 
 
-def search_section(certification: Certification) -> Section:
-    """List the steps of the search; times are left out, they differ from run to run."""
-    rows = tuple((attempt.step, attempt.outcome) for attempt in certification.attempts)
-    return Section("Search", (Table("Steps in the order tried", ("Step", "Outcome"), rows),))
+def rungs_section(certification: Certification, *, times: bool) -> Section:
+    """List every rung of the search with its outcome.
+
+    Parameters
+    ----------
+    certification : Certification
+        With its attempts.
+    times : bool
+        Add how long each took; that differs from run to run.
+    """
+    columns = ("Rung", "Outcome", "Time [ms]") if times else ("Rung", "Outcome")
+    rows = tuple(
+        (attempt.step, attempt.outcome, number(1e3 * attempt.seconds, 3))[: len(columns)]
+        for attempt in certification.attempts
+    )
+    return Section("Rungs tried", (Table("In the order tried", columns, rows),))

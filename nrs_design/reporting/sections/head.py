@@ -1,0 +1,97 @@
+"""The head of the report: what is claimed, in short facts."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from nrs_design import __version__
+from nrs_design.certificates.evidence import AbstractEvidence, ModeQuadratic, Shows
+from nrs_design.certificates.evidence.fields import rate_text
+from nrs_design.reporting.formatting import plural
+from nrs_design.switched.system import SwitchedSystem, Time
+
+if TYPE_CHECKING:
+    from nrs_design.certificates.certify import Certification
+    from nrs_design.pipeline import Result
+
+NO_CLAIM = (
+    "Neither a proof nor a refutation was found. This is no statement about stability: the modes "
+    "may be stable or unstable under switching."
+)
+
+
+def claim_of(certification: Certification) -> str:
+    """Return what the certificate claims about stability, or that there is nothing to claim."""
+    if certification.evidence is None:
+        return NO_CLAIM
+    return certification.evidence.claim(certification.system)
+
+
+def remarks_of(certification: Certification) -> tuple[str, ...]:
+    """Return what else is shown, beside the claim that decides."""
+    return tuple(
+        statement.claim(certification.system)
+        for statement in certification.statements
+        if statement is not certification.evidence
+    )
+
+
+def facts(result: Result) -> tuple[tuple[str, str], ...]:
+    """Return switching, hashes, versions and rates for the head of the report."""
+    certification = result.certification
+    system = certification.system
+    count = f"{plural(len(system.modes), 'mode')} of {plural(system.order, 'state')}"
+    if not system.is_uniform:
+        count = f"{plural(len(system.modes), 'mode')} of at most {plural(system.order, 'state')}"
+    rows = [
+        ("Spec", result.loaded.spec.name),
+        ("Switching", switching_words(result)),
+        ("Switches among", f"{count}, in {system.time} time"),
+        ("Common quadratic function", str(certification.common_quadratic)),
+        ("Settled by", certification.method if certification.evidence else "nothing"),
+        *_rate(system, certification.evidence),
+    ]
+    if result.coordinates is not None:
+        rows.append(("Coordinates", result.coordinates))
+    rows += [
+        ("Package", f"nrs-design {__version__}"),
+        ("SHA-256 of the spec", result.loaded.sha256),
+        ("Certificate id", result.certificate.id if result.certificate else "none"),
+    ]
+    return tuple(rows)
+
+
+def switching_words(result: Result) -> str:
+    """Say which switching signals the spec declares, in a few words."""
+    switching = result.certification.system.switching
+    words = [str(result.loaded.spec.switching)]
+    if switching.resets:
+        words.append("the state is reset at some switches")
+    if switching.fixed_ends:
+        words.append("one parameter is unknown but constant")
+    return "; ".join(words)
+
+
+def proved_rate(system: SwitchedSystem, evidence: AbstractEvidence | None) -> float | None:
+    """Return the proved rate in floating point, or None where no decay is proved."""
+    if evidence is None or evidence.shows is not Shows.STABILITY:
+        return None
+    rate = evidence.proved_rate(system)
+    return None if rate is None else float(rate)
+
+
+def _rate(system: SwitchedSystem, evidence: AbstractEvidence | None) -> list[tuple[str, str]]:
+    if evidence is None or evidence.shows is not Shows.STABILITY:
+        return []
+    rate = evidence.proved_rate(system)
+    if rate is None:
+        return []
+    text = rate_text(rate, system.time)
+    constant = ", up to a constant factor" if isinstance(evidence, ModeQuadratic) else ""
+    open_end = ", and any slower one" if evidence.kind == "block-triangular" else ""
+    if open_end:
+        # The slowest block's rate itself is not reached where blocks are coupled.
+        constant = ", not attained, up to a constant factor"
+    if system.time is Time.CONTINUOUS:
+        return [("Proved decay rate alpha", f"{text} 1/s{constant}")]
+    return [("Proved contraction rho", f"{text} per step{constant}")]

@@ -1,0 +1,34 @@
+"""How to check the certificate again without trusting the report."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from nrs_design.reporting.document import Bullets, Paragraph, Section
+
+if TYPE_CHECKING:
+    from nrs_design.pipeline import Result
+
+
+def recheck_section(result: Result) -> Section:
+    """Tell how to check the certificate again without trusting this report."""
+    name, spec = result.loaded.spec.name, result.loaded.path.name
+    if result.certificate is None:
+        text = (
+            "There is no certificate to check. After a change of the spec, run nrs-design "
+            f"certify-switching {spec} again."
+        )
+        return Section("How to check again", (Paragraph(text),))
+    return Section(
+        "How to check again",
+        (
+            Paragraph("This page is no proof; the certificate is. To check it again, run:"),
+            Bullets("", (f"nrs-design verify {name}.cert.json {spec}",)),
+            Paragraph(
+                "This assembles the modes anew from the spec and decides everything in exact "
+                "arithmetic; it runs no solver and uses no number of this page. The id of the "
+                "certificate and the hash of the spec must be those at the head of this report. "
+                f"The certificate is the file that nrs-design certify-switching {spec} writes."
+            ),
+        ),
+    )

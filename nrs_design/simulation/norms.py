@@ -1,0 +1,143 @@
+"""Lyapunov functions in floating point, as norms of states."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from fractions import Fraction
+
+import numpy as np
+from numpy.typing import NDArray
+
+from nrs_design.certificates.evidence import CommonPolynomial, ModeQuadratic, ParameterQuadratic
+from nrs_design.certificates.exact import IntegerMatrix
+from nrs_design.certificates.lift import monomials
+from nrs_design.switched.matrix import RationalMatrix
+from nrs_design.switched.system import Mode, SwitchedSystem, Switching
+
+Array = NDArray[np.float64]
+
+# From states, shape (..., n), to their norms, shape (...); twice the state has twice the norm.
+Norm = Callable[[Array], Array]
+
+_SAMPLES = 720
+_ROUNDS = 4
+
+
+def quadratic_norm(Q: Array) -> Norm:
+    """Return ``sqrt(x' Q x)``.
+
+    Parameters
+    ----------
+    Q : ndarray, shape (n, n)
+        Symmetric and positive definite.
+    """
+    root = np.linalg.cholesky(Q)
+
+    def norm(states: Array) -> Array:
+        return np.asarray(np.linalg.norm(states @ root, axis=-1))
+
+    return norm
+
+
+def polynomial_norm(evidence: CommonPolynomial, order: int) -> Norm:
+    """Return ``V(x)^(1/2d)`` times a constant, for a form V of degree 2d.
+
+    Parameters
+    ----------
+    evidence : CommonPolynomial
+        The Gram matrix of V.
+    order : int
+        Number of states n.
+    """
+    basis = np.array(monomials(order, evidence.degree))
+    exponents = diagonal_exponents(evidence.Q)
+    values, vectors = np.linalg.eigh(scaled_form(evidence.Q, exponents))
+    root = vectors * np.sqrt(np.maximum(values, 0.0))
+    # Only ratios of norms are shown, so the largest weight may be one.
+    weights = np.ldexp(1.0, np.array(exponents) - max(exponents))
+
+    def norm(states: Array) -> Array:
+        z = np.prod(states[..., None, :] ** basis, axis=-1) * weights
+        return np.asarray(np.linalg.norm(z @ root, axis=-1) ** (1 / evidence.degree))
+
+    return norm
+
+
+def diagonal_exponents(Q: IntegerMatrix) -> list[int]:
+    """Return e such that ``Q_ii / 4^e_i`` is between a half and four."""
+    return [Q[i][i].bit_length() // 2 for i in range(len(Q))]
+
+
+def scaled_form(M: IntegerMatrix, exponents: Sequence[int], scale: int = 1) -> Array:
+    """Return ``M_ij / (scale 2^(e_i + e_j))``: integers may be beyond the range of doubles."""
+    return np.array(
+        [
+            [
+                float(Fraction(entry, scale << (a + b)))
+                for b, entry in zip(exponents, row, strict=True)
+            ]
+            for a, row in zip(exponents, M, strict=True)
+        ]
+    )
+
+
+def scaled_matrices(*matrices: IntegerMatrix) -> list[Array]:
+    """Return symmetric matrices in floating point, all divided by their largest entry."""
+    largest = max(abs(entry) for M in matrices for row in M for entry in row)
+    return [np.array([[entry / largest for entry in row] for row in M]) for M in matrices]
+
+
+def mode_functions(evidence: ModeQuadratic) -> dict[str, Array]:
+    """Return the matrix of every mode, all divided by the largest entry of all."""
+    names = [name for name, _ in evidence.functions]
+    matrices = scaled_matrices(*(Q for _, Q in evidence.functions))
+    return dict(zip(names, matrices, strict=True))
+
+
+def function_at(evidence: ParameterQuadratic, p: float) -> Array:
+    """Return Q at one value of the parameter, from 0 (low end) to 1 (high end)."""
+    low, high = scaled_matrices(evidence.low, evidence.high)
+    return (1 - p) * low + p * high
+
+
+def system_at(system: SwitchedSystem, p: Fraction) -> SwitchedSystem:
+    """Return the modes at one value of a constant parameter, switched arbitrarily.
+
+    Parameters
+    ----------
+    system : SwitchedSystem
+        With the two ends of the parameter.
+    p : Fraction
+        From 0 (low end) to 1 (high end).
+    """
+    matrices = {mode.name: mode.A.fractions() for mode in system.modes}
+    modes = []
+    for low, high in system.switching.fixed_ends:
+        rows = [
+            [(1 - p) * a + p * b for a, b in zip(*pair, strict=True)]
+            for pair in zip(matrices[low], matrices[high], strict=True)
+        ]
+        modes.append(Mode(name_between(low, high), RationalMatrix.from_rows(rows)))
+    return replace(system, modes=tuple(modes), switching=Switching())
+
+
+def name_between(low: str, high: str) -> str:
+    """Name what two ends have in common, such as ``a`` for ``a/m-min`` and ``a/m-max``."""
+    same = [a for a, b in zip(low.split("/"), high.split("/"), strict=False) if a == b]
+    return "/".join(same) or f"{low} to {high}"
+
+
+def level_curve(norm: Norm, level: float) -> tuple[Array, Array]:
+    """Return points of a level curve in the plane.
+
+    The curve may be far from round, so the directions are adapted to the points found.
+    """
+    angle = np.linspace(0, 2 * np.pi, _SAMPLES + 1)
+    circle = np.stack([np.cos(angle), np.sin(angle)], axis=1)
+    shape: Array = np.diag(1 / norm(np.eye(2)))
+    for _ in range(_ROUNDS):
+        directions = circle @ shape.T
+        points = directions / norm(directions)[:, None]
+        shape = np.asarray(np.linalg.cholesky(points.T @ points))
+    return level * points[:, 0], level * points[:, 1]

@@ -1,0 +1,176 @@
+"""Simulation of a periodic switching signal, from the direction that grows the most."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import reduce
+
+import numpy as np
+
+from nrs_design.simulation.norms import Array
+from nrs_design.simulation.switched import TimeResponse, fine_step
+from nrs_design.switched.system import SwitchedSystem, Time
+
+# Mode index and time spent in it, in s or steps.
+Steps = Sequence[tuple[int, float]]
+
+_SAMPLES = 4000
+_FEWEST, _MOST = 3, 60
+_HALVINGS = 40
+# Of the average's own growth, what fast switching has to reach.
+_SHARE = 0.6
+
+
+@dataclass(frozen=True)
+class PeriodicRun:
+    """A run over some periods.
+
+    Parameters
+    ----------
+    response : TimeResponse
+        The run.
+    period : float
+        In s, or steps.
+    radius : float
+        Spectral radius over one period: the factor of growth in the long run.
+    """
+
+    response: TimeResponse
+    period: float
+    radius: float
+
+
+def periodic_run(system: SwitchedSystem, steps: Steps, growth: float = 1000.0) -> PeriodicRun:
+    """Simulate a periodic signal until its growth can be seen.
+
+    Parameters
+    ----------
+    system : SwitchedSystem
+        Modes of one size; resets are applied where the signal switches.
+    steps : sequence of (int, float)
+        Mode and time in it, over one period.
+    growth : float
+        The run ends when the state has grown by this factor, but not before three periods (if
+        that is not too far), nor after sixty.
+    """
+    legs = _legs(system, steps)
+    monodromy = reduce(lambda product, leg: leg.whole @ product, legs, np.eye(system.order))
+    values, vectors = np.linalg.eig(monodromy)
+    leading = int(np.abs(values).argmax())
+    radius = float(np.abs(values[leading]))
+    initial = vectors[:, leading].real
+    initial = initial / np.linalg.norm(initial)
+    response = _repeat(legs, initial, _periods(radius, growth, sum(leg.pieces for leg in legs)))
+    return PeriodicRun(response, sum(time for _, time in steps), radius)
+
+
+def one_period(run: PeriodicRun) -> TimeResponse:
+    """Return the first period of a run."""
+    response = run.response
+    # Sums of dwell times may miss the end of the period by a rounding error.
+    end = max(int(np.searchsorted(response.time, run.period * (1 - 1e-9))), 1)
+    return TimeResponse(response.time[: end + 1], response.state[: end + 1], response.mode[:end])
+
+
+def mixture_matrix(system: SwitchedSystem, weights: Sequence[tuple[str, Fraction]]) -> Array:
+    """Return the weighted sum of modes in floating point."""
+    modes = {mode.name: np.array(mode.A.floats()) for mode in system.modes}
+    return np.asarray(sum(float(w) * modes[name] for name, w in weights))
+
+
+def steps_of_mixture(
+    system: SwitchedSystem, weights: Sequence[tuple[str, Fraction]]
+) -> list[tuple[int, float]]:
+    """Return one period in which every mode has its share, short enough to follow the average.
+
+    Parameters
+    ----------
+    system : SwitchedSystem
+        Modes, in continuous time.
+    weights : sequence of (str, Fraction)
+        Share of each mode.
+    """
+    index = {mode.name: k for k, mode in enumerate(system.modes)}
+    wanted = float(np.linalg.eigvals(mixture_matrix(system, weights)).real.max())
+    shortest = fine_step(system)
+    period = shortest * 2.0**10
+    for _ in range(_HALVINGS):
+        steps = [(index[name], float(weight) * period) for name, weight in weights]
+        if period <= shortest and wanted <= 0:
+            break
+        if _growth_rate(system, steps) >= _SHARE * wanted > 0:
+            break
+        period /= 2
+    return steps
+
+
+@dataclass(frozen=True)
+class _Leg:
+    """One step of the period: its mode, and its flow in pieces (the last with the reset)."""
+
+    mode: int
+    piece: Array
+    last: Array
+    pieces: int
+    time: float
+
+    @property
+    def whole(self) -> Array:
+        return np.asarray(self.last @ np.linalg.matrix_power(self.piece, self.pieces - 1))
+
+
+def _legs(system: SwitchedSystem, steps: Steps) -> list[_Leg]:
+    from scipy.linalg import expm
+
+    fine = fine_step(system)
+    # Many steps in a period leave fewer samples for each.
+    most = max(1, _SAMPLES // (_FEWEST * len(steps)))
+    following = (*steps[1:], *steps[:1])
+    legs = []
+    for (mode, time), (successor, _) in zip(steps, following, strict=True):
+        A = np.array(system.modes[mode].A.floats())
+        discrete = system.time is Time.DISCRETE
+        pieces = int(time) if discrete else min(max(1, math.ceil(time / fine)), most)
+        piece = A if discrete else expm(A * (time / pieces))
+        reset = system.reset_map(system.modes[mode], system.modes[successor])
+        jumps = reset is not None and mode != successor
+        last = np.array(reset.floats()) @ piece if jumps and reset is not None else piece
+        legs.append(_Leg(mode, piece, last, pieces, time))
+    return legs
+
+
+def _repeat(legs: Sequence[_Leg], initial: Array, periods: int) -> TimeResponse:
+    states, modes, instants = [initial], [], [0.0]
+    for _ in range(periods):
+        for leg in legs:
+            begin = instants[-1]
+            for k in range(1, leg.pieces + 1):
+                factor = leg.last if k == leg.pieces else leg.piece
+                states.append(factor @ states[-1])
+                modes.append(leg.mode)
+                instants.append(begin + leg.time * k / leg.pieces)
+    return TimeResponse(np.array(instants), np.array(states), np.array(modes))
+
+
+def _periods(radius: float, growth: float, samples: int) -> int:
+    exponent = math.log(max(radius, 1.0))
+    wanted = math.ceil(math.log(growth) / exponent) if exponent > 1e-6 else _MOST
+    # Three periods of a growth by many decades would leave the range of doubles.
+    fewest = _FEWEST if exponent < 100 else 1
+    return max(fewest, min(wanted, _MOST, _SAMPLES // samples))
+
+
+def _growth_rate(system: SwitchedSystem, steps: Steps) -> float:
+    from scipy.linalg import expm
+
+    product = np.eye(system.order)
+    with np.errstate(over="ignore", invalid="ignore"):
+        for mode, time in steps:
+            product = expm(np.array(system.modes[mode].A.floats()) * time) @ product
+    if not np.isfinite(product).all():
+        return -math.inf
+    radius = float(np.abs(np.linalg.eigvals(product)).max())
+    return math.log(max(radius, 1e-300)) / sum(time for _, time in steps)

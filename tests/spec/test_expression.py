@@ -1,0 +1,201 @@
+import ast
+from fractions import Fraction
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from nrs_design.errors import SpecError
+from nrs_design.spec.affine import Affine
+from nrs_design.spec.expression import MAX_DEPTH, MAX_LENGTH, parse_affine
+
+from .samples import message_of
+
+NAMES = ("k", "m", "r2", "B_t")
+
+
+@pytest.mark.parametrize(
+    ("text", "constant", "slopes"),
+    [
+        ("-2 - k", -2, {"k": -1}),
+        ("3/4*k - m + 0.5", "0.5", {"k": "3/4", "m": -1}),
+        ("k", 0, {"k": 1}),
+        ("-k", 0, {"k": -1}),
+        ("+k", 0, {"k": 1}),
+        ("k/4", 0, {"k": "1/4"}),
+        ("k*3/4", 0, {"k": "3/4"}),
+        ("-(k + m)/3 + 1/6", "1/6", {"k": "-1/3", "m": "-1/3"}),
+        ("2*(k - (m - 1))", 2, {"k": 2, "m": -2}),
+        ("1e-3*k", 0, {"k": "0.001"}),
+        ("2 * -k", 0, {"k": -2}),
+        ("k - k", 0, {}),
+        ("0*k", 0, {}),
+        ("(k - k)*m", 0, {}),
+        ("1 + 1/2*4/3", "5/3", {}),
+        ("6/3/2", 1, {}),
+        ("k-1", -1, {"k": 1}),
+    ],
+)
+def test_reads_exactly(text: str, constant: int | str, slopes: dict[str, int | str]) -> None:
+    expected = tuple(sorted((name, Fraction(value)) for name, value in slopes.items()))
+    assert parse_affine(text) == Affine(Fraction(constant), expected)
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("k*m", "not affine in the parameters: it multiplies k by m"),
+        ("k*k", "it multiplies k by k"),
+        ("(k + 1)*(2 - m)", "it multiplies k by m"),
+        ("1 + 2*k*m", "it multiplies k by m"),
+        ("k^2", "it takes a power"),
+        ("k**2", "it takes a power"),
+        ("k/m", "it divides by m"),
+        ("1/m", "it divides by m"),
+        ("2/(k - 1)", "it divides by k"),
+    ],
+)
+def test_what_is_not_affine_becomes_a_parameter_of_its_own(text: str, said: str) -> None:
+    with pytest.raises(SpecError) as caught:
+        parse_affine(text)
+    assert said in caught.value.message
+    assert "parameter of its own, with its own range" in str(caught.value.remedy)
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("", "is empty"),
+        (" k", "has spaces around it"),
+        ("k +", "ends too early"),
+        ("-", "ends too early"),
+        ("(k", "is not closed"),
+        ("k)", "')' is out of place"),
+        ("()", "')' is out of place"),
+        ("(k m)", "no operator before 'm'"),
+        ("2k", "no operator before 'k'"),
+        ("k 2", "no operator before '2'"),
+        ("k(2)", "'(' is out of place"),
+        ("* k", "'*' is out of place"),
+        ("k/0", "divides by zero"),
+        ("k/(1 - 1)", "divides by zero"),
+        ("k/0.0", "divides by zero"),
+        ("1/0", "divides by zero"),
+        ("k − 1", "typographic minus"),
+        ("к + 1", "outside ASCII"),
+        ("k + ２", "outside ASCII"),
+        ("k,m", "',' is not read"),
+        ("k = 2", "'=' is not read"),
+        ("__import__('os')", "'_' is not read"),
+        ("k.real", "'.' is not read"),
+        ("k[0]", "'[' is not read"),
+        ("k\t+ 1", "is not read"),
+        ("k + 010", "no operator before '10'"),
+        ("1e101*k", "exponent"),
+        ("1e60*1e60*k", "beyond 1e100"),
+        ("1/1e60/1e60 + 1e99*1e99", "beyond 1e100"),
+        ("k" + "+k" * MAX_LENGTH, "at most 200 are read"),
+        ("(" * (MAX_DEPTH + 1) + "k" + ")" * (MAX_DEPTH + 1), "deeper than 20"),
+        ("-" * (MAX_DEPTH + 1) + "k", "deeper than 20"),
+    ],
+)
+def test_refuses(text: str, said: str) -> None:
+    assert said in message_of(lambda: parse_affine(text))
+
+
+def test_depth_is_allowed_up_to_the_limit() -> None:
+    text = "(" * MAX_DEPTH + "k" + ")" * MAX_DEPTH
+    assert parse_affine(text) == Affine.of_parameter("k")
+
+
+fractions = st.fractions(-1000, 1000, max_denominator=50)
+points = st.fixed_dictionaries(dict.fromkeys(NAMES, fractions))
+
+
+def written(number: Fraction) -> str:
+    return f"({number})"
+
+
+def affine_texts(constant: bool) -> st.SearchStrategy[str]:
+    leaves = st.builds(written, fractions)
+    if not constant:
+        leaves = leaves | st.sampled_from(NAMES)
+    numbers = st.builds(written, fractions)
+    nonzero = st.builds(written, fractions.filter(bool))
+    return st.recursive(
+        leaves,
+        lambda inner: st.one_of(
+            st.builds("{} + {}".format, inner, inner),
+            st.builds("({}) - ({})".format, inner, inner),
+            st.builds("{}*({})".format, numbers, inner),
+            st.builds("({}) * {}".format, inner, numbers),
+            st.builds("({})/{}".format, inner, nonzero),
+            st.builds("-({})".format, inner),
+        ),
+        max_leaves=6,
+    ).filter(lambda text: len(text) <= MAX_LENGTH)
+
+
+def evaluated(text: str, values: dict[str, Fraction]) -> Fraction:
+    """Evaluate a text of our own making with Python's parser."""
+
+    def value(node: ast.AST) -> Fraction:
+        match node:
+            case ast.Expression(body=body):
+                return value(body)
+            case ast.Constant(value=int(number)):
+                return Fraction(number)
+            case ast.Name(id=name):
+                return values[name]
+            case ast.UnaryOp(op=ast.USub(), operand=operand):
+                return -value(operand)
+            case ast.BinOp(left=left, op=operator, right=right):
+                a, b = value(left), value(right)
+                match operator:
+                    case ast.Add():
+                        return a + b
+                    case ast.Sub():
+                        return a - b
+                    case ast.Mult():
+                        return a * b
+                    case ast.Div():
+                        return a / b
+        raise AssertionError(ast.dump(node))
+
+    return value(ast.parse(text, mode="eval"))
+
+
+@given(affine_texts(constant=False), points)
+def test_agrees_with_rational_arithmetic(text: str, values: dict[str, Fraction]) -> None:
+    assert parse_affine(text).at(values) == evaluated(text, values)
+
+
+@given(affine_texts(constant=False), points, points, fractions)
+def test_is_affine(text: str, p: dict[str, Fraction], q: dict[str, Fraction], t: Fraction) -> None:
+    f = parse_affine(text)
+    between = {name: (1 - t) * p[name] + t * q[name] for name in NAMES}
+    assert f.at(between) == (1 - t) * f.at(p) + t * f.at(q)
+
+
+@given(affine_texts(constant=True))
+def test_expressions_without_parameters_are_constant(text: str) -> None:
+    assert parse_affine(text) == Affine(evaluated(text, {}))
+
+
+@given(st.text(max_size=250) | st.text("km()+-*/^. 0129eE_", max_size=60))
+def test_garbage_is_refused_and_never_evaluated(text: str) -> None:
+    found: list[Affine] = []
+    message = message_of(lambda: found.append(parse_affine(text)))
+    # Anything but a SpecError passes through and fails this test.
+    assert bool(message) != bool(found)
+    assert all(slope for function in found for _, slope in function.slopes)
+
+
+def test_equal_functions_are_equal() -> None:
+    assert parse_affine("m + k - 1") == parse_affine("-(1 - k) + m")
+    assert parse_affine("k").plus(parse_affine("-k")).is_constant
+
+
+def test_evaluation_needs_every_parameter() -> None:
+    with pytest.raises(KeyError):
+        parse_affine("k + m").at({"k": Fraction(1)})

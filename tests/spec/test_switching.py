@@ -1,0 +1,234 @@
+"""Rules of switching and resets, in both kinds of specs."""
+
+from fractions import Fraction
+
+import pytest
+
+from nrs_design.spec.switching import DwellTime, SwitchingSpec, parse_dwell_time
+
+from .samples import (
+    FORCE,
+    IMPEDANCE,
+    SWITCHED,
+    interaction,
+    message_of,
+    place_of,
+    refusal,
+    spoiled,
+    switched,
+)
+
+RULES = "switching: {dwell_time: 2.76 s, transitions: [[a, b], [b, a]]}\n"
+RESETS = """\
+resets:
+  - {from: a, to: b, map: [[1, 0], [0, "1/2"]]}
+"""
+SAMPLE = spoiled(SWITCHED, "switching: arbitrary\n", RULES + RESETS)
+UNEQUAL = """\
+kind: switched-system
+name: unequal
+time: continuous
+modes:
+  - {name: a, A: [[-1, -1], [1, -1]]}
+  - {name: b, A: [[-1]]}
+switching: arbitrary
+resets:
+  - {from: a, to: b, map: [[1, 0]]}
+  - {from: b, to: a, map: [[1], [0]]}
+"""
+PAIR = IMPEDANCE.replace(
+    "switching: arbitrary",
+    """\
+  withdrawal: {type: impedance, environment: soft, Mt: 0.01 kg*m^2, Bt: 1.04 N*m*s/rad}
+switching: {dwell_time: 500 ms, transitions: [[insertion, withdrawal]]}""",
+)
+
+
+def test_reads_rules_and_resets() -> None:
+    spec = switched(SAMPLE)
+    assert spec.switching.dwell_time == DwellTime("2.76 s", Fraction("2.76"), "s")
+    assert spec.switching.transitions == (("a", "b"), ("b", "a"))
+    assert not spec.switching.is_arbitrary
+    (reset,) = spec.resets
+    assert (reset.source, reset.target, reset.shape) == ("a", "b", (2, 2))
+    assert reset.map == ((1, 0), (0, Fraction(1, 2)))
+
+
+def test_arbitrary_has_no_rules() -> None:
+    assert switched(SWITCHED).switching == SwitchingSpec()
+    assert str(switched(SWITCHED).switching) == "arbitrary"
+    assert str(switched(SAMPLE).switching) == "dwell time 2.76 s, 2 allowed transitions"
+
+
+def test_states_of_different_sizes_are_linked_by_resets() -> None:
+    spec = switched(UNEQUAL)
+    assert spec.dimension == 2
+    assert [mode.dimension for mode in spec.modes] == [2, 1]
+
+
+def test_only_allowed_switches_need_a_reset() -> None:
+    text = spoiled(UNEQUAL, "switching: arbitrary", "switching: {transitions: [[b, a]]}")
+    text = spoiled(text, "  - {from: a, to: b, map: [[1, 0]]}\n", "")
+    assert len(switched(text).resets) == 1
+    assert switched(spoiled(text, "[[b, a]]", "[]").partition("resets:")[0]).resets == ()
+
+
+def test_rules_of_controllers() -> None:
+    spec = interaction(PAIR)
+    assert spec.switching.dwell_time == DwellTime("500 ms", Fraction(1, 2), "s")
+    assert spec.switching.transitions == (("insertion", "withdrawal"),)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "at", "said"),
+    [
+        ("2.76 s", "2.76", "2.76", "write '2.76 s'"),
+        ("2.76 s", "0 s", "0 s", "not between 0 and 4096 s"),
+        ("2.76 s", "-1 s", "-1 s", "not between 0 and 4096 s"),
+        ("2.76 s", "4097 s", "4097 s", "not between 0 and 4096 s"),
+        ("2.76 s", "3 steps", "3 steps", "not a dwell time in continuous time, expected s"),
+        ("2.76 s", "3 N", "3 N", "not a dwell time"),
+        ("2.76 s", "3 stepz", "3 stepz", "unknown unit 'stepz'"),
+        ("2.76 s", "[2.76 s]", "[2.76 s]", "single value"),
+        ("dwell_time", "dwel_time", "dwel_time", "did you mean dwell_time?"),
+        ("[[a, b], [b, a]]}", "[[a, c], [b, a]]}", "c], [b, a]]", "there is no mode 'c'"),
+        ("[[a, b], [b, a]]}", "[[a, a]]}", "[a, a]", "leads to another mode"),
+        ("[[a, b], [b, a]]}", "[[a, b], [a, b]]}", "[a, b]]}", "listed twice"),
+        ("[[a, b], [b, a]]}", "[a, b]}", "a, b]}", "write [from, to]"),
+        ("[[a, b], [b, a]]}", "[[a, b, a]]}", "[a, b, a]", "write [from, to]"),
+        ("[[a, b], [b, a]]}", "[[a, [b]]]}", "[b]]", "single value"),
+        ("[[a, b], [b, a]]}", "all}", "all}", "expected a list"),
+        ("[[a, b], [b, a]]}", "[[b, a]]}", "{from: a", "from a to b is not allowed"),
+        ("from: a", "from: c", "c, to", "there is no mode 'c'"),
+        ("to: b", "to: c", "c, map", "there is no mode 'c'"),
+        ("to: b", "to: a", "a, map", "leads to another mode"),
+        ("from: a, ", "", "{to: b", "resets[0].from` is missing"),
+        ("from: a", "form: a", "form", "did you mean from?"),
+        ('[[1, 0], [0, "1/2"]]', "[[1, 0]]", "[[1, 0]]", "1 x 2, expected 2 x 2"),
+        ('[[1, 0], [0, "1/2"]]', "[[1, 0], [1]]", "[1]]", "row 2 has 1 entries"),
+        ('[[1, 0], [0, "1/2"]]', "[[1, 0], [0, k]]", "k]]", "not a number"),
+        ('[[1, 0], [0, "1/2"]]', "[]", "[]}", "must not be empty"),
+        (
+            '[0, "1/2"]]}',
+            "[0, 1]]}\n  - {to: b, from: a, map: [[1, 0], [0, 1]]}",
+            "{to: b",
+            "has a reset already",
+        ),
+    ],
+)
+def test_refuses_with_place_and_remedy(old: str, new: str, at: str, said: str) -> None:
+    text = spoiled(SAMPLE, old, new)
+    error = refusal(text)
+    assert said in f"{error.message} ({error.remedy})"
+    assert (error.line, error.column) == place_of(text, at)
+
+
+@pytest.mark.parametrize("rules", ["{}", "slow", "Arbitrary", "[a, b]", "[]"])
+def test_refuses_what_is_no_rule(rules: str) -> None:
+    text = spoiled(SWITCHED, "switching: arbitrary", f"switching: {rules}")
+    error = refusal(text)
+    assert (error.line, error.column) == place_of(text, f"{rules}\n")
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "at", "said"),
+    [
+        ("  - {from: b, to: a, map: [[1], [0]]}\n", "", "[[-1, -1]", "from b to a has no reset"),
+        ("[[1], [0]]", "[[2, 0]]", "[[2, 0]]", "1 x 2, expected 2 x 1"),
+        ("[[1, 0]]", "[[2], [0]]", "[[2], [0]]", "2 x 1, expected 1 x 2"),
+    ],
+)
+def test_refuses_sizes_that_do_not_fit(old: str, new: str, at: str, said: str) -> None:
+    text = spoiled(UNEQUAL, old, new)
+    error = refusal(text)
+    assert said in error.message
+    assert (error.line, error.column) == place_of(text, at)
+
+
+def test_missing_reset_is_reported_at_the_transition() -> None:
+    text = spoiled(UNEQUAL, "switching: arbitrary", "switching: {transitions: [[a, b], [b, a]]}")
+    text = spoiled(text, "  - {from: b, to: a, map: [[1], [0]]}\n", "")
+    error = refusal(text)
+    assert "add {from: b, to: a, map: ...} with 2 x 1 entries" in str(error.remedy)
+    assert (error.line, error.column) == place_of(text, "[b, a]]}")
+
+
+@pytest.mark.parametrize(
+    ("text", "value"), [("3 steps", 3), ("1 step", 1), ("4096 steps", 4096), ("1e2 steps", 100)]
+)
+def test_steps(text: str, value: int) -> None:
+    assert parse_dwell_time(text) == DwellTime(text, Fraction(value), "steps")
+    discrete = spoiled(SWITCHED, "continuous", "discrete")
+    spec = switched(spoiled(discrete, "arbitrary", f"{{dwell_time: {text}}}"))
+    assert spec.switching.dwell_time == DwellTime(text, Fraction(value), "steps")
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("2.5 steps", "not a whole number"),
+        ("1/2 steps", "not a whole number"),
+        ("0 steps", "not between 0 and 4096 steps"),
+        ("-3 steps", "not between 0 and 4096 steps"),
+        ("4097 steps", "not between 0 and 4096 steps"),
+        ("many steps", "not a number"),
+        (" steps", "is empty"),
+        ("1e-40 s", "not a physical magnitude"),
+        ("nan s", "not a finite number"),
+    ],
+)
+def test_refuses_dwell_times(text: str, said: str) -> None:
+    assert said in message_of(lambda: parse_dwell_time(text))
+
+
+def test_discrete_time_counts_steps() -> None:
+    discrete = spoiled(SWITCHED, "continuous", "discrete")
+    text = spoiled(discrete, "arbitrary", "{dwell_time: 2 s}")
+    error = refusal(text)
+    assert "'2 s' is not a dwell time in discrete time, expected steps" in error.message
+    assert (error.line, error.column) == place_of(text, "2 s}")
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "at", "said"),
+    [
+        ("withdrawal]]", "withdrawel]]", "withdrawel", "did you mean withdrawal?"),
+        ("500 ms", "5 steps", "5 steps", "is not a time"),
+        (
+            "stiffness: 747.1461 N/m",
+            "stiffness: {nominal: 747 N/m, range: [700 N/m, 800 N/m]}",
+            "500 ms",
+            "its parameters may move during the dwell time, and the proof would not hold",
+        ),
+        (
+            "    environment: soft\n",
+            "    environment: soft\n    contacts: [soft, hand]\n",
+            "500 ms",
+            "the contact may change at any time",
+        ),
+    ],
+)
+def test_refuses_rules_of_controllers(old: str, new: str, at: str, said: str) -> None:
+    text = spoiled(PAIR, old, new)
+    error = refusal(text)
+    assert said in f"{error.message} ({error.remedy})"
+    assert (error.line, error.column) == place_of(text, at)
+
+
+def test_a_range_that_is_not_touched_does_not_matter() -> None:
+    text = spoiled(PAIR, "43 N*m/rad", "{nominal: 43 N*m/rad, range: [40 N*m/rad, 50 N*m/rad]}")
+    assert interaction(text).switching.dwell_time is not None
+
+
+def test_damping_moves_too() -> None:
+    text = spoiled(PAIR, "    environment: soft\n", "    environment: hand\n")
+    assert interaction(text).switching.dwell_time is not None
+    ranged = "{nominal: 0.5 N*m*s/rad, range: [0 N*m*s/rad, 1 N*m*s/rad]}"
+    error = refusal(spoiled(text, "damping: 0.5 N*m*s/rad", f"damping: {ranged}"))
+    assert "the range of environment 'hand' exclude each other" in error.message
+
+
+def test_position_and_force_may_be_ordered() -> None:
+    rules = "{dwell_time: 1 s, transitions: [[position, force], [force, position]]}"
+    spec = interaction(spoiled(FORCE, "switching: arbitrary", f"switching: {rules}"))
+    assert spec.switching.transitions == (("position", "force"), ("force", "position"))

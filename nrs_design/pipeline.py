@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import TYPE_CHECKING
@@ -11,7 +12,7 @@ from nrs_design import __version__
 from nrs_design.certificates.certificate import Certificate
 from nrs_design.controllers.controller_design import ControllerDesign
 from nrs_design.controllers.gains import gains_of
-from nrs_design.errors import DesignError
+from nrs_design.errors import DesignError, NrsDesignError
 from nrs_design.models.plant import build_plant
 from nrs_design.spec import InteractionDesignSpec, LoadedSpec
 from nrs_design.switched.assemble import assemble, has_ranges
@@ -57,6 +58,16 @@ class Result:
     certificate: Certificate | None
 
 
+@contextmanager
+def _placed(loaded: LoadedSpec) -> Iterator[None]:
+    """Add the spec's path to errors from stages that know the spec but not its file."""
+    try:
+        yield
+    except NrsDesignError as error:
+        error.path = error.path or loaded.path
+        raise
+
+
 def run_design(loaded: LoadedSpec) -> ControllerDesign | None:
     """Design the controllers of a spec; None for given matrices.
 
@@ -69,7 +80,8 @@ def run_design(loaded: LoadedSpec) -> ControllerDesign | None:
         return None
     from nrs_design.design.design import design_controllers
 
-    return design_controllers(loaded.spec, build_plant(loaded.spec))
+    with _placed(loaded):
+        return design_controllers(loaded.spec, build_plant(loaded.spec))
 
 
 def run_evidence(loaded: LoadedSpec, design: ControllerDesign) -> DesignEvidence:
@@ -123,7 +135,8 @@ def run_certification(
     if isinstance(loaded.spec, InteractionDesignSpec):
         coordinates = coordinates or loaded.spec.coordinates
     gains = gains_of(design) if design else {}
-    system = assemble(loaded.spec, gains, coordinates)
+    with _placed(loaded):
+        system = assemble(loaded.spec, gains, coordinates)
     certification = certify(system, method or Methods.AUTO, limits, progress)
     certificate = (
         Certificate(

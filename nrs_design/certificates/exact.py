@@ -14,10 +14,19 @@ from operator import mul
 
 IntegerMatrix = Sequence[Sequence[int]]
 
+# Elimination takes about rows^3 steps on numbers that grow with rows times bits: seconds at this.
+MAX_WORK = 10**8
+
 
 def is_symmetric(M: IntegerMatrix) -> bool:
     """Tell whether a matrix is square and equal to its transpose."""
     return [list(row) for row in M] == [list(column) for column in zip(*M, strict=True)]
+
+
+def is_too_large(M: IntegerMatrix) -> bool:
+    """Tell whether deciding anything about a matrix would take more than some seconds."""
+    bits = max((abs(entry).bit_length() for row in M for entry in row), default=0)
+    return len(M) ** 3 * bits > MAX_WORK
 
 
 def add(left: IntegerMatrix, right: IntegerMatrix, weight: int = 1) -> list[list[int]]:

@@ -47,7 +47,7 @@ class Verification:
     fault: str | None
 
 
-def verify(path: Path, spec: LoadedSpec) -> Verification:
+def verify(path: Path, spec: LoadedSpec, coordinates: str | None = None) -> Verification:
     """Re-check a certificate file against the spec that it is said to belong to.
 
     Parameters
@@ -56,19 +56,23 @@ def verify(path: Path, spec: LoadedSpec) -> Verification:
         Certificate file.
     spec : LoadedSpec
         The spec, as read from its own file.
+    coordinates : {"deflection", "force"}, optional
+        That the certificate must be about; those of the spec by default.
 
     Raises
     ------
     CertificateError
         If the file cannot be read as a certificate of this format at all.
     """
-    return verify_document(read_document(path), spec)
+    return verify_document(read_document(path), spec, coordinates)
 
 
-def verify_document(document: Mapping[str, Any], spec: LoadedSpec) -> Verification:
+def verify_document(
+    document: Mapping[str, Any], spec: LoadedSpec, coordinates: str | None = None
+) -> Verification:
     """Re-check a parsed certificate; see `verify`."""
     try:
-        foreign = _find_foreign(document, spec)
+        foreign = _find_foreign(document, spec, coordinates)
         if foreign is not None:
             return Verification(None, foreign)
         certificate = _rebuild(document, spec)
@@ -122,7 +126,9 @@ def _read_bytes(path: Path) -> bytes:
     return content
 
 
-def _find_foreign(document: Mapping[str, Any], spec: LoadedSpec) -> str | None:
+def _find_foreign(
+    document: Mapping[str, Any], spec: LoadedSpec, coordinates: str | None
+) -> str | None:
     """Say why a document is not an unaltered certificate for this spec."""
     if document.get("id") != content_id(document):
         return "its content does not match its id: it was altered"
@@ -130,6 +136,9 @@ def _find_foreign(document: Mapping[str, Any], spec: LoadedSpec) -> str | None:
         return f"its schema is not {SCHEMA}"
     if document.get("spec") != {"name": spec.spec.name, "sha256": spec.sha256}:
         return "it belongs to another spec, or the spec has changed since"
+    wanted = coordinates or getattr(spec.spec, "coordinates", None)
+    if document.get("coordinates") != wanted:
+        return f"it is about other coordinates than {wanted}"
     return None
 
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from nrs_design.cli import exit_codes
-from nrs_design.cli.options import Json, Quiet, SpecFile, Verbose
+from nrs_design.cli.options import CoordinatesOption, Json, Quiet, SpecFile, Verbose
 from nrs_design.cli.printing import note, print_json, progress
 
 if TYPE_CHECKING:
@@ -29,13 +29,6 @@ class MethodOption(StrEnum):
     PARAMETER_QUADRATIC = "parameter-quadratic"
     PERIOD = "period"
     POLYNOMIAL = "polynomial"
-
-
-class CoordinatesOption(StrEnum):
-    """State coordinates of an interaction design."""
-
-    DEFLECTION = "deflection"
-    FORCE = "force"
 
 
 def certify_switching(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from enum import StrEnum
 from pathlib import Path
 from typing import Annotated
 
@@ -11,3 +12,10 @@ SpecFile = Annotated[Path, typer.Argument(metavar="SPEC", help="Spec file (*.nrs
 Json = Annotated[bool, typer.Option("--json", help="Print one JSON document on stdout.")]
 Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="Print the result only.")]
 Verbose = Annotated[bool, typer.Option("--verbose", "-v", help="Print every step.")]
+
+
+class CoordinatesOption(StrEnum):
+    """State coordinates of an interaction design."""
+
+    DEFLECTION = "deflection"
+    FORCE = "force"

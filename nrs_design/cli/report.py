@@ -38,6 +38,10 @@ def report(
             help="File (a folder for png); default reports/NAME.html, .pdf or reports/NAME."
         ),
     ] = None,
+    times: Annotated[
+        bool,
+        typer.Option("--times", help="Add the time of every rung; pages then differ each time."),
+    ] = False,
     as_json: Json = False,
     quiet: Quiet = False,
 ) -> None:
@@ -53,7 +57,8 @@ def report(
     with progress(f"reporting {loaded.spec.name}", quiet=quiet) as step:
         result = run_certification(loaded, progress=step)
         step("figures")
-        files = _write(build_report(result, _evidence(result, quiet=quiet)), file_format, out)
+        page = build_report(result, _evidence(result, quiet=quiet), times=times)
+        files = _write(page, file_format, out)
     verdict = str(result.certification.verdict)
     if as_json:
         print_json(

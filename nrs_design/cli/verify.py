@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from nrs_design.cli import exit_codes
-from nrs_design.cli.options import Json, Quiet, SpecFile
+from nrs_design.cli.options import CoordinatesOption, Json, Quiet, SpecFile
 from nrs_design.cli.printing import print_json
 
 if TYPE_CHECKING:
@@ -18,6 +18,10 @@ if TYPE_CHECKING:
 def verify(
     certificate: Annotated[Path, typer.Argument(metavar="CERT", help="Certificate file.")],
     spec: SpecFile,
+    coordinates: Annotated[
+        CoordinatesOption | None,
+        typer.Option(help="Coordinates that the certificate is about, if not those of the spec."),
+    ] = None,
     as_json: Json = False,
     quiet: Quiet = False,
 ) -> None:
@@ -31,7 +35,9 @@ def verify(
     from nrs_design.certificates.verify import verify as verify_file
     from nrs_design.spec import read_spec
 
-    outcome = verify_file(certificate, read_spec(spec))
+    outcome = verify_file(
+        certificate, read_spec(spec), None if coordinates is None else str(coordinates)
+    )
     checked = outcome.certificate if outcome.fault is None else None
     verdict = checked.verdict if checked else "rejected"
     claims = [item.claim(checked.system) for item in checked.statements] if checked else None

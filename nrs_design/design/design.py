@@ -16,6 +16,7 @@ from nrs_design.design.force_loop import design_force_gain
 from nrs_design.design.impedance import ImpedanceLoop, ImpedanceProblem, optimize_impedance
 from nrs_design.design.root_locus import PdDesign, design_pd
 from nrs_design.design.transfer import TransferFunction
+from nrs_design.errors import DesignError
 from nrs_design.models.motion_loop import MotionLoop
 from nrs_design.models.plant import Plant
 from nrs_design.spec import (
@@ -45,11 +46,14 @@ def design_controllers(spec: InteractionDesignSpec, plant: Plant) -> ControllerD
     """
     motion = _motion(spec)
     loop = motion_loop(spec, motion)
-    controllers = tuple(
-        _controller(spec, plant, loop, name, controller)
-        for name, controller in spec.controllers.items()
-    )
-    return ControllerDesign(motion, controllers)
+    controllers = []
+    for name, controller in spec.controllers.items():
+        try:
+            controllers.append(_controller(spec, plant, loop, name, controller))
+        except DesignError as error:
+            message = f"controller {name}: {error.message}"
+            raise DesignError(message, remedy=error.remedy) from error
+    return ControllerDesign(motion, tuple(controllers))
 
 
 def root_locus_design(spec: InteractionDesignSpec) -> PdDesign:
@@ -118,6 +122,9 @@ def _controller(
     law: Admittance | ProportionalForce
     if isinstance(controller, ForceControllerSpec):
         law = ProportionalForce(_force_gain(plant, loop, controller, digits))
+    elif controller.Mt.fixed and controller.Bt.fixed:
+        # Nothing to choose; whether these gains are stable is for the certificate to say.
+        law = Admittance(to_float32(controller.Mt.min.exact), to_float32(controller.Bt.min.exact))
     else:
         optimum = optimize_impedance(impedance_problem(spec, plant, loop, controller))
         law = Admittance(

@@ -11,6 +11,7 @@ from nrs_design.certificates.certificate import Certificate
 from nrs_design.certificates.evidence import AbstractEvidence, Shows
 from nrs_design.certificates.evidence.fields import rate_text
 from nrs_design.certificates.evidence.unstable_mode import is_stable, worst_eigenvalue
+from nrs_design.errors import DesignError
 from nrs_design.gating.obligations import Obligation, Status
 from nrs_design.gating.places import Places
 from nrs_design.gating.rules import (
@@ -100,6 +101,12 @@ class Examiner:
         return self.obligation(
             CERTIFICATE_HOLDS, "certificate", status, message, self.places.at("name")
         )
+
+    def no_margins(self, error: DesignError) -> Obligation:
+        """Return NRS103 for a design that is unstable at nominal stiffness, so has no margins."""
+        message = f"design goal: {error.message} (floating point, not a proof)"
+        place = self.places.at("controllers")
+        return self.obligation(STIFFNESS_RANGE, "controllers", Status.MISSED, message, place)
 
     def stiffness_ranges(self, evidence: DesignEvidence) -> Iterator[Obligation]:
         """Yield NRS103 for every impedance controller."""

@@ -23,10 +23,11 @@ class Places:
 
     def mode(self, name: str) -> Position:
         """Where a given mode stands, or the controller that an assembled mode belongs to."""
-        if name in self._indices:
-            return self.at("modes", self._indices[name])
-        # Labels have no slash: what follows it names the contact.
-        return self.at("controllers", name.partition("/")[0])
+        # Labels have no slash: what follows it names the contact or the corner of a box.
+        label = name.partition("/")[0]
+        if label in self._indices:
+            return self.at("modes", self._indices[label])
+        return self.at("controllers", label)
 
     def at(self, *keys: str | int) -> Position:
         """Where a key or an item stands; what holds it, if it is not written out."""

@@ -6,10 +6,11 @@ from collections import Counter
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from nrs_design.certificates.certificate import dump
 from nrs_design.certificates.verify import verify
-from nrs_design.errors import SpecError
+from nrs_design.errors import DesignError, SpecError
 from nrs_design.gating.examine import Examiner, rate_of
 from nrs_design.gating.obligations import GateOutcome, Obligation, SpecOutcome, failed
 from nrs_design.gating.paths import is_utf8
@@ -17,6 +18,9 @@ from nrs_design.gating.places import Places
 from nrs_design.output import write_output
 from nrs_design.pipeline import Result, run_certification, run_evidence
 from nrs_design.spec import LoadedSpec, read_spec
+
+if TYPE_CHECKING:
+    from nrs_design.design.evidence import DesignEvidence
 
 Progress = Callable[[str], None]
 
@@ -137,10 +141,14 @@ def _examine(loaded: LoadedSpec, files: Files, progress: Progress) -> SpecOutcom
 def _goals_and_report(
     result: Result, examiner: Examiner, files: Files, progress: Progress
 ) -> tuple[Obligation, ...]:
-    evidence = None
+    evidence: DesignEvidence | None = None
+    missed: tuple[Obligation, ...] = ()
     if result.design is not None:
         progress("margins")
-        evidence = run_evidence(result.loaded, result.design)
+        try:
+            evidence = run_evidence(result.loaded, result.design)
+        except DesignError as error:
+            missed = (examiner.no_margins(error),)
     if files.html:
         progress("report")
         # Drawing costs seconds to import; a run without reports must not pay for it.
@@ -148,4 +156,4 @@ def _goals_and_report(
 
         html = render_html(build_report(result, evidence))
         write_output(files.report(result.loaded.spec.name), html)
-    return () if evidence is None else tuple(examiner.stiffness_ranges(evidence))
+    return missed if evidence is None else tuple(examiner.stiffness_ranges(evidence))

@@ -92,7 +92,9 @@ class Report:
     verdict : {"proved", "refuted", "inconclusive"}
         Of the certification.
     claim : str
-        What the certificate states, or that there is none.
+        What the certificate states about stability, or that nothing is known.
+    remarks : tuple of str
+        What else is shown, such as that no common quadratic function exists.
     facts : tuple of (str, str)
         Label and value: hashes, versions, rates.
     sections : tuple of Section
@@ -103,6 +105,7 @@ class Report:
     title: str
     verdict: str
     claim: str
+    remarks: tuple[str, ...]
     facts: tuple[tuple[str, str], ...]
     sections: tuple[Section, ...]
 

@@ -81,6 +81,7 @@ def _styles(verdict: str) -> dict[str, Any]:
             spaceBefore=9,
             spaceAfter=12,
         ),
+        "remark": ParagraphStyle("remark", body, spaceAfter=9),
         "badge": ParagraphStyle(
             "badge",
             body,
@@ -114,6 +115,8 @@ def _story(report: Report, styles: dict[str, Any]) -> Iterator[Any]:
     if report.title:
         yield _text(report.title, styles["muted"])
     yield _text(report.claim, styles["claim"])
+    for remark in report.remarks:
+        yield _text(remark, styles["remark"])
     yield from _facts(report, styles)
     for section in report.sections:
         yield from _section(section, styles)

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from nrs_design.certificates.evidence import CommonQuadratic
 from nrs_design.reporting.document import Report, Section
 from nrs_design.reporting.sections.design import design_sections
-from nrs_design.reporting.sections.modes import lyapunov_section, modes_section
-from nrs_design.reporting.sections.proof import claim_of, facts, proof_section, recheck_section
-from nrs_design.reporting.sections.run import run_section
-from nrs_design.reporting.sections.search import assumptions_section, search_section
+from nrs_design.reporting.sections.evidence import evidence_sections
+from nrs_design.reporting.sections.head import claim_of, facts, proved_rate, remarks_of
+from nrs_design.reporting.sections.modes import modes_section
+from nrs_design.reporting.sections.proof import proof_section
+from nrs_design.reporting.sections.recheck import recheck_section
+from nrs_design.reporting.sections.search import assumptions_section, rungs_section
 from nrs_design.spec import InteractionDesignSpec
 
 if TYPE_CHECKING:
@@ -18,7 +19,9 @@ if TYPE_CHECKING:
     from nrs_design.pipeline import Result
 
 
-def build_report(result: Result, evidence: DesignEvidence | None = None) -> Report:
+def build_report(
+    result: Result, evidence: DesignEvidence | None = None, *, times: bool = False
+) -> Report:
     """Say and draw everything about one spec.
 
     Parameters
@@ -28,6 +31,9 @@ def build_report(result: Result, evidence: DesignEvidence | None = None) -> Repo
     evidence : DesignEvidence, optional
         As `nrs_design.pipeline.run_evidence` gives it. Without it the report has no margins and
         no design figures.
+    times : bool
+        Add how long every rung of the search took. The same spec then gives another page each
+        time.
 
     Returns
     -------
@@ -35,18 +41,21 @@ def build_report(result: Result, evidence: DesignEvidence | None = None) -> Repo
         With its figures drawn; `render_html`, `render_pdf` and `render_png` write it out.
     """
     spec, certification = result.loaded.spec, result.certification
+    system = certification.system
     return Report(
         name=spec.name,
         title=spec.title,
         verdict=str(certification.verdict),
         claim=claim_of(certification),
+        remarks=remarks_of(certification),
         facts=facts(result),
         sections=(
             proof_section(result),
             *_design(result, evidence),
-            *_system(result),
+            modes_section(system, proved_rate(system, certification.evidence)),
+            *evidence_sections(certification),
             assumptions_section(certification),
-            search_section(certification),
+            rungs_section(certification, times=times),
             recheck_section(result),
         ),
     )
@@ -57,11 +66,3 @@ def _design(result: Result, evidence: DesignEvidence | None) -> tuple[Section, .
     if result.design is None or not isinstance(spec, InteractionDesignSpec):
         return ()
     return design_sections(spec, result.design, evidence)
-
-
-def _system(result: Result) -> tuple[Section, ...]:
-    system, evidence = result.certification.system, result.certification.evidence
-    if isinstance(evidence, CommonQuadratic):
-        modes = modes_section(system, float(evidence.rate))
-        return (modes, lyapunov_section(system, evidence), run_section(system, evidence))
-    return (modes_section(system, None), run_section(system, evidence))

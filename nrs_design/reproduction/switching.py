@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
+from nrs_design.certificates.certify import Certification, certify
 from nrs_design.certificates.evidence import CommonQuadratic
 from nrs_design.certificates.evidence.fields import rate_text
-from nrs_design.certificates.certify import Certification, certify
 from nrs_design.reproduction import thesis
 from nrs_design.reproduction.matrices import family, hybrid_rows, impedance_rows, printed_rows
 from nrs_design.reproduction.row import Row, Verdict, claim

@@ -116,9 +116,9 @@ def test_no_modes_prove_nothing():
 def test_malformed_modes():
     ragged = replace(COMMUTING, modes=(Mode("odd", matrix([[-1, 0, 0], [0, -1, 0]])),))
     assert "mode odd is not an 2 x 2" in find_fault(ragged, HALF)
-    # A denominator of the wrong sign turns an unstable mode into a stable one.
+    # Over a denominator of the wrong sign, numerators of a stable matrix are an unstable one.
     for denominator in (0, -1):
-        turned = Mode("turned", RationalMatrix(((1, 0), (0, 1)), denominator))
+        turned = Mode("turned", RationalMatrix(((-1, 0), (0, -1)), denominator))
         assert "mode turned" in find_fault(replace(COMMUTING, modes=(turned,)), HALF)
 
 

@@ -161,3 +161,23 @@ class TestStiffnessRange:
         missed = [item for item in outcome.broken if item.rule.id == "NRS103"]
         assert {item.status for item in missed} == {Status.MISSED}
         assert outcome.specs[0].verdict == "refuted"
+
+
+def test_fixed_gains_that_are_unstable_are_refuted_not_an_error(examine):
+    text = SOFT_TISSUE.read_text().replace("name: soft-tissue", "name: stiff")
+    text = text.replace("nominal: 747.1461 N/m", "nominal: 2000 N/m")
+    text = text.replace("range: [720.56 N/m, 768.17 N/m]", "range: [2000 N/m, 2000 N/m]")
+    text = text.replace("Mt: {min: 0.01 kg*m^2, max: 1 kg*m^2}", "Mt: 0.01 kg*m^2")
+    text = text.replace("Bt: {min: 0.1 N*m*s/rad, max: 20 N*m*s/rad}", "Bt: 1.04 N*m*s/rad")
+    (spec,) = examine(text).specs
+    assert spec.verdict == "refuted"
+    assert ("NRS103", "controllers", "missed") in found(spec)
+
+
+def test_a_design_without_answer_names_file_and_controller(examine, tmp_path):
+    text = SOFT_TISSUE.read_text()
+    text = text.replace("Bt: {min: 0.1 N*m*s/rad, max: 20 N*m*s/rad}", "Bt: 0.001 N*m*s/rad", 1)
+    (spec,) = examine(text).specs
+    (broken,) = [item for item in spec.obligations if item.status is Status.ERROR]
+    assert "controller insertion" in broken.message
+    assert broken.path == tmp_path / "s0.nrs.yaml"

@@ -8,7 +8,12 @@ from enum import StrEnum
 from fractions import Fraction
 from typing import Any, ClassVar, Self
 
-from nrs_design.certificates.exact import IntegerMatrix, is_positive_definite, is_symmetric
+from nrs_design.certificates.exact import (
+    IntegerMatrix,
+    is_positive_definite,
+    is_symmetric,
+    is_too_large,
+)
 from nrs_design.switched.system import SwitchedSystem, Switching
 
 
@@ -79,6 +84,8 @@ class AbstractEvidence(ABC):
         """TRUSTED: say why the evidence does not hold for the system, or None if it holds."""
         if not system.modes:
             return "the system has no modes"
+        if len({mode.name for mode in system.modes}) < len(system.modes):
+            return "two modes of the system have the same name"
         if not self.fits(system.switching):
             return f"evidence of kind {self.kind} does not cover this kind of switching"
         if not system.is_uniform and not self.allows_unequal_modes:
@@ -86,6 +93,8 @@ class AbstractEvidence(ABC):
         if (misfit := self.find_misfit(system)) is not None:
             return misfit
         for failure, form in self.forms(system):
+            if is_too_large(form):
+                return f"{failure}, or it does but its numbers are too large to check"
             if not is_symmetric(form) or not is_positive_definite(form):
                 return failure
         return None

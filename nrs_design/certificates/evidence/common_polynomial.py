@@ -27,6 +27,7 @@ from nrs_design.certificates.lift import derivative_lift, power_lift, vanishes
 from nrs_design.switched.system import Mode, SwitchedSystem, Time
 
 MAX_DEGREE = 64
+MAX_MONOMIALS = 120
 
 
 @dataclass(frozen=True, slots=True)
@@ -74,6 +75,8 @@ class CommonPolynomial(AbstractEvidence):
         if not 1 <= d <= MAX_DEGREE // 2:
             return f"degree {2 * d} is not between 2 and {MAX_DEGREE}"
         size = comb(n + d - 1, d)
+        if size > MAX_MONOMIALS:
+            return f"there are more than {MAX_MONOMIALS} monomials of degree {d}"
         if len(self.vanishing) != len(system.modes):
             return "there is not one vanishing form for each mode"
         if not all(is_square(M, size) for M in (self.Q, *self.vanishing)):

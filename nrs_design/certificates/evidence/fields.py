@@ -8,6 +8,7 @@ from decimal import ROUND_DOWN, ROUND_UP, Context, Decimal
 from fractions import Fraction
 from typing import Any
 
+from nrs_design.certificates.exact import is_too_large
 from nrs_design.spec.exact import quoted
 from nrs_design.switched.system import Time
 
@@ -29,7 +30,10 @@ def read_matrix(fields: Mapping[str, Any]) -> tuple[Matrix, int]:
 
 def read_integers(value: Any) -> Matrix:
     """Read a matrix of integers."""
-    return tuple(tuple(read_integer(entry) for entry in row) for row in value)
+    matrix = tuple(tuple(read_integer(entry) for entry in row) for row in value)
+    if is_too_large(matrix):
+        raise ValueError("a matrix is too large to check")
+    return matrix
 
 
 def read_integer(value: object) -> int:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
+from math import lcm
 from typing import Any, ClassVar, Self
 
 from nrs_design.certificates.evidence.abstract import AbstractEvidence, Shows
@@ -13,6 +14,9 @@ from nrs_design.certificates.evidence.unstable_mode import is_stable, worst_eige
 from nrs_design.certificates.exact import IntegerMatrix
 from nrs_design.switched.matrix import RationalMatrix
 from nrs_design.switched.system import SwitchedSystem, Switching, Time
+
+# Longer weights make no better mixtures, only longer computations.
+MAX_DENOMINATOR = 2**64
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,6 +55,8 @@ class UnstableMixture(AbstractEvidence):
             return "mixing modes is for continuous time"
         if any(weight <= 0 for _, weight in self.weights) or sum(w for _, w in self.weights) != 1:
             return "the weights are not positive with sum one"
+        if lcm(*(weight.denominator for _, weight in self.weights)) > MAX_DENOMINATOR:
+            return "the weights have too many digits"
         names = [name for name, _ in self.weights]
         if len(set(names)) < len(names) or not set(names) <= {m.name for m in system.modes}:
             return "the weights are not those of modes"
@@ -82,6 +88,9 @@ class UnstableMixture(AbstractEvidence):
     def from_fields(cls, fields: Mapping[str, Any], system: SwitchedSystem) -> Self:
         """Read the weights; the eigenvalue is computed again."""
         weights = tuple((read_text(name), read_ratio(w)) for name, w in fields["weights"])
+        numbers = [number for _, w in weights for number in w.as_integer_ratio()]
+        if len(weights) > len(system.modes) or lcm(1, *filter(None, numbers)) > MAX_DENOMINATOR**2:
+            raise ValueError("there are too many weights, or they have too many digits")
         return cls(weights, worst_eigenvalue(mixture(system, weights), system.time))
 
 

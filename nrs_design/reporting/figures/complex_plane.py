@@ -68,7 +68,10 @@ def draw_root_locus(
 
 @styled
 def draw_eigenvalues(
-    names: Sequence[str], values: NDArray[np.complex128], time: Time, rate: float | None
+    names: Sequence[str],
+    values: Sequence[NDArray[np.complex128]],
+    time: Time,
+    rate: float | None,
 ) -> Figure:
     """Draw the eigenvalues of all modes with the border of stability.
 
@@ -76,21 +79,22 @@ def draw_eigenvalues(
     ----------
     names : sequence of str
         Of the modes; more than eight are drawn alike.
-    values : ndarray of complex, shape (m, n)
-        Eigenvalues, in 1/s in continuous time.
+    values : sequence of ndarray of complex
+        Eigenvalues of each mode, in 1/s in continuous time.
     time : Time
         Decides the border: imaginary axis or unit circle.
     rate : float or None
         The proved rate, drawn as a second border.
     """
     figure, axes = new_axes(4.6)
-    _border(axes, values, time, rate)
+    together = np.concatenate(list(values))
+    _border(axes, together, time, rate)
     for index, (name, row) in enumerate(zip(names, values, strict=True)):
         many = len(names) > 8
         tint, shape = (BLUE, "o") if many else (color(index), marker(index))
         label = None if many else short(name)
         axes.plot(row.real, row.imag, shape, color=tint, mfc="none", label=label)
-    unstable = values[_outside(values, time)]
+    unstable = together[_outside(together, time)]
     if len(unstable):
         _mark(axes, unstable.tolist(), "o", ALARM, "not in the stable region", 15, filled=False)
     _finish(axes, "1/s" if time is Time.CONTINUOUS else "1")
@@ -106,7 +110,7 @@ def _outside(values: NDArray[np.complex128], time: Time) -> NDArray[np.bool_]:
 
 def _border(axes: Axes, values: NDArray[np.complex128], time: Time, rate: float | None) -> None:
     if time is Time.CONTINUOUS:
-        _limit(axes, np.append(values.ravel(), 0.0))
+        _limit(axes, np.append(values, 0.0))
         right = axes.get_xlim()[1]
         axes.axvspan(0.0, right, color="#f6e3da", zorder=0, linewidth=0)
         axes.axvline(0.0, color=INK, linewidth=1.0)

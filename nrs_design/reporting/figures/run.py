@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -18,13 +19,15 @@ from nrs_design.reporting.style import (
     short,
     styled,
 )
+from nrs_design.simulation.norms import Norm, level_curve
 from nrs_design.switched.system import SwitchedSystem, Time
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from nrs_design.simulation.switched import Array, TimeResponse
+    from nrs_design.simulation.norms import Array
+    from nrs_design.simulation.switched import TimeResponse
 
 _ROWS = 10
 
@@ -70,34 +73,76 @@ def draw_run(
 
 
 @styled
-def draw_phase_plane(response: TimeResponse, Q: Array | None, system: SwitchedSystem) -> Figure:
-    """Draw a run of a system with two states, and the ellipse that it cannot leave.
+def draw_mode_levels(
+    response: TimeResponse, system: SwitchedSystem, norms: Mapping[str, Norm]
+) -> Figure:
+    """Draw a run in the plane with a level curve of every mode's own function.
 
     Parameters
     ----------
     response : TimeResponse
         The run; two states.
-    Q : ndarray, shape (2, 2), or None
-        Matrix of the Lyapunov function, None where there is none.
     system : SwitchedSystem
         Names of modes and states, and the time axis.
+    norms : mapping
+        Root of the function of each mode by its name; all at the value of the first active one at
+        the start.
+    """
+    figure, axes = new_axes(5.2)
+    line = "o-" if system.time is Time.DISCRETE else "-"
+    used = list(dict.fromkeys(response.mode.tolist()))[:_ROWS]
+    start = float(norms[system.modes[used[0]].name](response.state[0]))
+    for row, mode in enumerate(used):
+        name = system.modes[mode].name
+        path = _path_in(response, mode)
+        axes.plot(*path.T, line, color=color(row), markersize=3, label=f"mode {short(name)}")
+        x, y = level_curve(norms[name], start)
+        axes.plot(x, y, "--", color=color(row), linewidth=1.2, label=f"level of V, {short(name)}")
+    _finish_plane(figure, axes, response, system, 2)
+    return figure
+
+
+@styled
+def draw_phase_plane(
+    response: TimeResponse,
+    system: SwitchedSystem,
+    norm: Norm | None = None,
+    levels: Sequence[float] = (1.0,),
+) -> Figure:
+    """Draw a run of a system with two states, and the level curves that it cannot leave.
+
+    Parameters
+    ----------
+    response : TimeResponse
+        The run; two states.
+    system : SwitchedSystem
+        Names of modes and states, and the time axis.
+    norm : callable, optional
+        Root of the Lyapunov function, where there is one.
+    levels : sequence of float
+        Level curves to draw, relative to the start; the first is named.
     """
     figure, axes = new_axes(5.0)
     # In discrete time only the points are states; the lines lead from one to the next.
     line = "o-" if system.time is Time.DISCRETE else "-"
-    if Q is not None:
-        x, y = _ellipse(Q, response.state[0])
-        axes.plot(x, y, "--", color=VERMILLION, linewidth=1.3, label="V(x) = V(x(0))")
+    if norm is not None:
+        _draw_levels(axes, norm, float(norm(response.state[0])), levels)
     for row, mode in enumerate(list(dict.fromkeys(response.mode.tolist()))[:_ROWS]):
         path = _path_in(response, mode)
         name = f"mode {short(system.modes[mode].name)}"
         axes.plot(path[:, 0], path[:, 1], line, color=color(row), markersize=3, label=name)
+    _finish_plane(figure, axes, response, system, 3)
+    return figure
+
+
+def _finish_plane(
+    figure: Figure, axes: Axes, response: TimeResponse, system: SwitchedSystem, columns: int
+) -> None:
     axes.plot(*response.state[0], "o", color=INK, label="start")
     axes.plot(0, 0, "+", color=MUTED, markersize=11, label="rest")
     axes.set_xlabel(_with_unit(system.states[0]))
     axes.set_ylabel(_with_unit(system.states[1]))
-    legend(figure, axes, 3)
-    return figure
+    legend(figure, axes, columns)
 
 
 def _with_unit(state: str) -> str:
@@ -134,9 +179,16 @@ def _path_in(response: TimeResponse, mode: int) -> Array:
     return np.stack([begins, ends, gaps], axis=1).reshape(-1, 2)
 
 
-def _ellipse(Q: Array, x: Array) -> tuple[Array, Array]:
-    angle = np.linspace(0, 2 * np.pi, 361)
-    level = float(np.sqrt(x @ Q @ x))
-    circle = level * np.array([np.cos(angle), np.sin(angle)])
-    points = np.linalg.solve(np.linalg.cholesky(Q).T, circle)
-    return points[0], points[1]
+def _draw_levels(axes: Axes, norm: Norm, start: float, levels: Sequence[float]) -> None:
+    for index, level in enumerate(levels):
+        x, y = level_curve(norm, level * start)
+        outer = index == 0
+        axes.plot(
+            x,
+            y,
+            "--" if outer else ":",
+            color=VERMILLION,
+            linewidth=1.3 if outer else 1.0,
+            label="V(x) = V(x(0))" if outer else None,
+            zorder=1.5,
+        )

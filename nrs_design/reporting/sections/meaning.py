@@ -90,12 +90,13 @@ def rules_meaning(system: SwitchedSystem, evidence: AbstractEvidence) -> tuple[s
         )
     elif switching.fixed_ends:
         texts.append("The proof does not need the parameter to be constant: it may change freely.")
-    if not switching.is_arbitrary and not isinstance(evidence, ModeQuadratic):
-        if switching.dwell_time > 0 or (switching.transitions and not switching.fixed_ends):
-            texts.append(
-                "The proof does not need the declared rules of switching: it holds for arbitrary "
-                "switching."
-            )
+    # With a constant parameter, the list of transitions only keeps its two ends apart.
+    listed = switching.transitions is not None and not switching.fixed_ends
+    if (switching.dwell_time > 0 or listed) and not isinstance(evidence, ModeQuadratic):
+        texts.append(
+            "The proof does not need the declared rules of switching: it holds for arbitrary "
+            "switching."
+        )
     return tuple(texts)
 
 

@@ -82,13 +82,14 @@ def _period(system: SwitchedSystem, evidence: UnstablePeriod) -> tuple[Block, ..
     periods = round(run.response.time[-1] / run.period)
     line = _line(run)
     unit = "s" if system.time is Time.CONTINUOUS else "steps"
+    count = plural(len(evidence.steps), "step")
     resets = " and the reset of each switch" if system.switching.resets else ""
     return (
         Paragraph(
-            f"One period lasts {run.period:.6g} {unit} and has {plural(len(evidence.steps), 'step')}"
-            f". Over one period some state grows by the factor {number(run.radius, 6)}"
+            f"One period lasts {run.period:.6g} {unit} and has {count}. "
+            f"Over one period some state grows by the factor {number(run.radius, 6)}"
             f"{_rate(run, system.time)}. The certificate shows with rigorous enclosures that the "
-            f"factor is above one; these digits are floating point."
+            "factor is above one; these digits are floating point."
         ),
         _steps_table(evidence, unit),
         Illustration(
@@ -139,7 +140,9 @@ def _mixture(system: SwitchedSystem, evidence: UnstableMixture) -> tuple[Block, 
     values = [
         np.linalg.eigvals(np.array(mode.A.floats())) for mode in system.modes if mode.name in names
     ]
-    weights = tuple((name, str(weight), number(float(weight), 4)) for name, weight in evidence.weights)
+    weights = tuple(
+        (name, str(weight), number(float(weight), 4)) for name, weight in evidence.weights
+    )
     return (
         Paragraph(f"Eigenvalues of the average: {roots(average.tolist(), 6)} 1/s."),
         Table("The average", ("Mode", "Share (exact)", "Share [1]"), weights),

@@ -30,7 +30,7 @@ from nrs_design.switched.system import SwitchedSystem
 MAX_BYTES = 256 * 2**20
 # What a hostile document can raise before the exact check: all of it means rejection.
 _MALFORMED = (
-    KeyError,
+    LookupError,
     TypeError,
     ValueError,
     ArithmeticError,

@@ -224,8 +224,9 @@ def _assumptions(
     ]
     last = {
         "deflection": "The deflection is continuous at a switch; the force may jump.",
-        "force": "The force is continuous at a switch, even where the stiffness jumps "
-        "(the thesis's coordinates; not physical in lasting contact).",
+        "force": "Wherever stiffness or damping changes, at a switch or within its range, the force "
+        "stays and the deflection jumps (the thesis's coordinates; not physical in lasting "
+        "contact).",
     }[coordinates]
     return (
         motion,

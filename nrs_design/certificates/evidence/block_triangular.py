@@ -56,14 +56,15 @@ class BlockTriangular(AbstractEvidence):
 
     def find_misfit(self, system: SwitchedSystem) -> str | None:
         """Check the structure, that the parts suffice, and each part's own fit."""
-        states = [state for block in self.blocks for state in block]
-        if sorted(states) != list(range(system.order)) or not all(self.blocks):
+        if not is_partition(self.blocks, system.order):
             return "the blocks do not partition the states"
         if not is_block_triangular(system, self.blocks):
             return "a mode is not block triangular in this order"
         indices = [index for index, _ in self.parts]
         if not self.parts or len({part.shows for _, part in self.parts}) != 1:
             return "the parts do not show one and the same"
+        if not set(indices) <= set(range(len(self.blocks))):
+            return "a part is of no block"
         needed = range(len(self.blocks)) if self.shows is Shows.STABILITY else indices[:1]
         if indices != list(needed):
             return "there is not the evidence for the blocks that is needed"
@@ -112,15 +113,21 @@ class BlockTriangular(AbstractEvidence):
         from nrs_design.certificates.evidence import read_evidence
 
         blocks = tuple(tuple(read_integer(i) for i in block) for block in fields["blocks"])
+        if not is_partition(blocks, system.order) or not fields["parts"]:
+            raise ValueError("the blocks do not partition the states, or nothing is shown of them")
         parts = []
         for part in fields["parts"]:
             index = read_integer(part["block"])
             if part["kind"] == cls.kind or not 0 <= index < len(blocks):
                 raise ValueError("a part is itself in blocks, or of no block")
-            if not all(0 <= state < system.order for state in blocks[index]):
-                raise ValueError("a block has states that do not exist")
             parts.append((index, read_evidence(part, diagonal_block(system, blocks[index]))))
         return cls(blocks, tuple(parts))
+
+
+def is_partition(blocks: Blocks, order: int) -> bool:
+    """TRUSTED: tell whether every state is in exactly one block, and no block is empty."""
+    states = [state for block in blocks for state in block]
+    return sorted(states) == list(range(order)) and all(blocks)
 
 
 def is_block_triangular(system: SwitchedSystem, blocks: Blocks) -> bool:

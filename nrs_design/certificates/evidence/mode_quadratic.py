@@ -18,10 +18,13 @@ from nrs_design.certificates.evidence.fields import (
     read_text,
 )
 from nrs_design.certificates.exact import (
+    MAX_WORK,
     IntegerMatrix,
     add,
     congruence,
     is_positive_semidefinite,
+    is_symmetric,
+    is_too_large,
     lyapunov_decrease,
     stein_decrease,
 )
@@ -31,6 +34,8 @@ from nrs_design.switched.system import Mode, SwitchedSystem, Switching, Time
 PRECISION = 300
 MIDPOINT_BITS = 160
 MAX_DWELL_STEPS = 4096
+# Balls beyond this fail; what is nearer to zero than its inverse counts as zero with that radius.
+RANGE_LOG2 = 32_768
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,8 +69,14 @@ class ModeQuadratic(AbstractEvidence):
         return Shows.STABILITY
 
     def fits(self, switching: Switching) -> bool:
-        """Tell that it covers every rule."""
-        return True
+        """Tell whether every mode in force is one of the modes, and every reset is unambiguous.
+
+        A constant parameter is anywhere between its ends, where a function for each end says
+        nothing about it.
+        """
+        switches = {(reset.source, reset.target) for reset in switching.resets}
+        unambiguous = len(switches) == len(switching.resets) and all(a != b for a, b in switches)
+        return unambiguous and not switching.fixed_ends
 
     def proved_rate(self, system: SwitchedSystem) -> Fraction:
         """Return the claimed rate."""
@@ -87,6 +98,8 @@ class ModeQuadratic(AbstractEvidence):
             return "the dwell time is not a whole number of steps"
         if misfit := find_rate_misfit(self.rate, system.time):
             return misfit
+        if system.time is Time.DISCRETE and _power_is_too_large(system, self.rate):
+            return "the dwell time is too long for such large numbers"
         return None if _dwell(system) > 0 else self._find_raising_switch(system)
 
     def _find_raising_switch(self, system: SwitchedSystem) -> str | None:
@@ -94,7 +107,9 @@ class ModeQuadratic(AbstractEvidence):
         Q = dict(self.functions)
         for source, target in system.transitions():
             jump = _jump(system, source, target, Q)
-            if not is_positive_semidefinite(jump):
+            if is_too_large(jump):
+                return f"the numbers at the switch from {source.name} are too large to check"
+            if not is_symmetric(jump) or not is_positive_semidefinite(jump):
                 return f"the switch from {source.name} to {target.name} raises the function"
         return None
 
@@ -211,18 +226,27 @@ def _image(
     return RationalMatrix.from_rows(multiply(reset.fractions(), flow.fractions()))
 
 
+def _power_is_too_large(system: SwitchedSystem, rate: Fraction) -> bool:
+    numbers = [v for mode in system.modes for row in mode.A.numerators for v in row]
+    numbers += [mode.A.denominator for mode in system.modes]
+    bits = max(abs(v).bit_length() for v in (*numbers, rate.denominator))
+    return system.order**3 * int(_dwell(system)) * bits > MAX_WORK
+
+
 def _power(A: RationalMatrix, exponent: int) -> RationalMatrix:
     n = A.shape[0]
     result = RationalMatrix.from_rows([[int(i == j) for j in range(n)] for i in range(n)])
-    for _ in range(exponent):
-        result = RationalMatrix.from_rows(multiply(A.fractions(), result.fractions()))
+    for bit in bin(exponent)[2:]:
+        result = RationalMatrix.from_rows(multiply(result.fractions(), result.fractions()))
+        if bit == "1":
+            result = RationalMatrix.from_rows(multiply(A.fractions(), result.fractions()))
     return result
 
 
 def _enclosed_form(
     system: SwitchedSystem, source: Mode, target: Mode, Q: Mapping[str, Matrix], rate: Fraction
 ) -> IntegerMatrix:
-    """Return integers M with ``M - (rounding)`` below the true form times a positive number.
+    """Return integers below the true form times a positive number.
 
     The form ``Q_i - E' Q_j E`` with ``E = G exp(B T)`` is enclosed in balls. If every entry is
     within r of a rational midpoint, then its smallest eigenvalue is at least that of the midpoint
@@ -254,8 +278,12 @@ def _enclosed_form(
 def _lower_integers(form: list[list[Any]]) -> IntegerMatrix:
     """Return integers that are below a symmetric ball matrix times a power of two."""
     n = len(form)
+    if any(not ball.abs_upper() < 2**RANGE_LOG2 for row in form for ball in row):
+        return [[0] * n for _ in range(n)]
     mids = [[_fraction(form[i][j].mid()) for j in range(n)] for i in range(n)]
     radius = max(_fraction(form[i][j].rad()) for i in range(n) for j in range(n))
+    # Both a midpoint and a radius may have been taken for zero.
+    radius += 2 * Fraction(1, 2**RANGE_LOG2)
     # Both triangles enclose the same number: take the upper one, and let the radius cover it.
     scale = 2**MIDPOINT_BITS
     largest = max((abs(v) for row in mids for v in row), default=Fraction(1)) or Fraction(1)
@@ -266,6 +294,8 @@ def _lower_integers(form: list[list[Any]]) -> IntegerMatrix:
 
 
 def _fraction(ball: Any) -> Fraction:
-    """Return an exact ball (of radius zero) as a fraction."""
+    """Return an exact ball (of radius zero) as a fraction, or zero for one very near to it."""
     mantissa, exponent = ball.man_exp()
+    if int(mantissa).bit_length() + int(exponent) < -RANGE_LOG2:
+        return Fraction(0)
     return Fraction(int(mantissa)) * Fraction(2) ** int(exponent)

@@ -55,7 +55,7 @@ class UnstableMixture(AbstractEvidence):
             return "mixing modes is for continuous time"
         if any(weight <= 0 for _, weight in self.weights) or sum(w for _, w in self.weights) != 1:
             return "the weights are not positive with sum one"
-        if lcm(*(weight.denominator for _, weight in self.weights)) > MAX_DENOMINATOR:
+        if not _are_short(self.weights):
             return "the weights have too many digits"
         names = [name for name, _ in self.weights]
         if len(set(names)) < len(names) or not set(names) <= {m.name for m in system.modes}:
@@ -88,10 +88,14 @@ class UnstableMixture(AbstractEvidence):
     def from_fields(cls, fields: Mapping[str, Any], system: SwitchedSystem) -> Self:
         """Read the weights; the eigenvalue is computed again."""
         weights = tuple((read_text(name), read_ratio(w)) for name, w in fields["weights"])
-        numbers = [number for _, w in weights for number in w.as_integer_ratio()]
-        if len(weights) > len(system.modes) or lcm(1, *filter(None, numbers)) > MAX_DENOMINATOR**2:
+        if len(weights) > len(system.modes) or not _are_short(weights):
             raise ValueError("there are too many weights, or they have too many digits")
         return cls(weights, worst_eigenvalue(mixture(system, weights), system.time))
+
+
+def _are_short(weights: tuple[tuple[str, Fraction], ...]) -> bool:
+    denominator = lcm(*(weight.denominator for _, weight in weights))
+    return denominator <= MAX_DENOMINATOR and all(weight <= 1 for _, weight in weights)
 
 
 def mixture(system: SwitchedSystem, weights: tuple[tuple[str, Fraction], ...]) -> RationalMatrix:

@@ -13,7 +13,8 @@ from nrs_design.certificates.exact import IntegerMatrix
 from nrs_design.switched.matrix import RationalMatrix
 from nrs_design.switched.system import SwitchedSystem, Switching, Time
 
-MAX_STEPS = 4096
+MAX_STEPS = 1024
+MAX_WORK = 5_000_000
 MAX_DWELL = 4096
 MAX_DOUBLINGS = 60
 PRECISION = 300
@@ -62,6 +63,8 @@ class UnstablePeriod(AbstractEvidence):
         """Check the signal, and that its monodromy matrix expands."""
         if not 1 <= len(self.steps) <= MAX_STEPS or not 0 <= self.doublings <= MAX_DOUBLINGS:
             return "the signal is empty or too long"
+        if len(self.steps) * system.order**3 > MAX_WORK:
+            return "the signal is too long for so many states"
         if not {name for name, _ in self.steps} <= {mode.name for mode in system.modes}:
             return "the signal uses modes that do not exist"
         if any(not 0 < dwell <= MAX_DWELL for _, dwell in self.steps):
@@ -129,7 +132,7 @@ def monodromy(system: SwitchedSystem, steps: tuple[tuple[str, Fraction], ...]) -
         if system.time is Time.CONTINUOUS:
             factor = arb_mat(exact * fmpq(dwell.numerator, dwell.denominator)).exp()
         else:
-            factor = arb_mat(exact ** int(dwell))
+            factor = arb_mat(exact) ** int(dwell)
         product = factor * product
         reset = system.reset_map(modes[name], modes[successor])
         if name != successor and reset is not None:

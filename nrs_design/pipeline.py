@@ -16,11 +16,11 @@ from nrs_design.errors import DesignError, NrsDesignError
 from nrs_design.models.plant import build_plant
 from nrs_design.spec import InteractionDesignSpec, LoadedSpec
 from nrs_design.switched.assemble import assemble, has_ranges
-from nrs_design.switched.system import SwitchedSystem
+from nrs_design.switched.system import SwitchedSystem, Time
 
 if TYPE_CHECKING:
     from nrs_design.certificates.certify import Certification, Limits, Method
-    from nrs_design.certificates.margin import BoxMargin
+    from nrs_design.certificates.margin import BoxMargin, DwellMargin
     from nrs_design.design.evidence import DesignEvidence
 
 Progress = Callable[[str], None]
@@ -195,3 +195,48 @@ def run_margin(
         return assemble(spec, gains, result.coordinates, scale)
 
     return find_margin(assemble_at, lambda system: certify(system, limits=quick))
+
+
+def run_shortest_dwell(
+    result: Result, limits: Limits | None = None, progress: Progress = _silent
+) -> DwellMargin:
+    """Find the shortest dwell time with a proof, whatever dwell time the spec declares.
+
+    Parameters
+    ----------
+    result : Result
+        Of the spec as it stands.
+    limits : Limits, optional
+        How far the searches go at each dwell time; the decay rate is not optimized.
+    progress : callable
+        Told the name of each step.
+
+    Raises
+    ------
+    DesignError
+        In discrete time, or if the spec declares ranges: a dwell time holds for fixed parameters.
+    """
+    from dataclasses import replace
+
+    from nrs_design.certificates.certify import Limits as DefaultLimits
+    from nrs_design.certificates.certify import certify
+    from nrs_design.certificates.margin import find_shortest_dwell
+
+    system = result.certification.system
+    if system.time is not Time.CONTINUOUS or has_ranges(result.loaded.spec):
+        raise DesignError(
+            "a shortest dwell time is for continuous time and fixed parameters",
+            path=result.loaded.path,
+            remedy="give single values instead of ranges",
+        )
+    limits = limits or DefaultLimits()
+    quick = replace(limits, optimize_rate=False, budget=min(limits.budget, MARGIN_BUDGET))
+
+    def decide(candidate: SwitchedSystem) -> Certification:
+        progress(f"dwell time {float(candidate.switching.dwell_time):.4g} s")
+        return certify(candidate, limits=quick)
+
+    largest = max(
+        abs(entry) for mode in system.modes for row in mode.A.fractions() for entry in row
+    )
+    return find_shortest_dwell(system, decide, 1 / largest if largest else Fraction(1))

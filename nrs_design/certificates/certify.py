@@ -25,6 +25,7 @@ from nrs_design.certificates.evidence import (
 )
 from nrs_design.certificates.evidence.block_triangular import diagonal_block
 from nrs_design.certificates.search.family import Family, floats_in_silence
+from nrs_design.certificates.search.limits import rate_limit
 from nrs_design.certificates.search.rungs import (
     Finding,
     Rung,
@@ -38,6 +39,8 @@ from nrs_design.certificates.search.rungs import (
     search_parameter_quadratic,
     search_period,
     search_polynomial,
+    search_preconditioned,
+    search_raw,
 )
 from nrs_design.certificates.search.structure import merge_equal_modes, triangular_blocks
 from nrs_design.certificates.second_opinion import confirm
@@ -111,6 +114,9 @@ class Certification:
         The deciding evidence first, if any. Each has passed the exact check.
     attempts : tuple of Attempt
         Every rung in order.
+    rate_limit : float or None
+        No proof can claim a faster decay (in floating point): the slowest mode's rate, in discrete
+        time the fastest growth per step along a cycle of modes. None beyond floating point.
     """
 
     system: SwitchedSystem
@@ -119,6 +125,7 @@ class Certification:
     method: str
     statements: tuple[AbstractEvidence, ...]
     attempts: tuple[Attempt, ...]
+    rate_limit: float | None = None
 
     @property
     def evidence(self) -> AbstractEvidence | None:
@@ -179,7 +186,9 @@ def certify(
         if fault := statement.find_fault(system):
             raise InternalError(f"evidence was lost between two forms of one system: {fault}")
         confirm(system, statement)
-    return replace(result, system=system, statements=statements)
+    with floats_in_silence():
+        limit = rate_limit(system)
+    return replace(result, system=system, statements=statements, rate_limit=limit)
 
 
 def _certify_block(
@@ -240,6 +249,10 @@ def _rungs(
         yield "lmi", partial(search_by_lmi, optimize_rate=limits.optimize_rate)
     if Method.OBSTRUCTION in wanted:
         yield "obstruction", prove_obstruction
+    if Method.LMI in wanted and not remarks:
+        # The solver may have stalled: other coordinates, before giving up on quadratics.
+        yield "lmi, raw", search_raw
+        yield "lmi, preconditioned", search_preconditioned
     if Method.GRADIENT in wanted and not remarks:
         yield "gradient", search_by_gradient
     yield "every mode", examine_every_mode

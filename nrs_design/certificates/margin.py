@@ -1,9 +1,9 @@
-"""The largest box of parameters around the nominal values that still has a proof."""
+"""The largest box of parameters, and the shortest dwell time, that still have a proof."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
@@ -16,6 +16,7 @@ if TYPE_CHECKING:
 
 LARGEST_SCALE = 64
 STEPS = 8
+DWELL_STEPS = 12
 
 Assemble = Callable[[Fraction], SwitchedSystem]
 Certify = Callable[[SwitchedSystem], "Certification"]
@@ -87,3 +88,67 @@ def _try(
         return None, None
     certification = certify(system)
     return certification.verdict, certification
+
+
+@dataclass(frozen=True)
+class DwellMargin:
+    """How short the time between switches may be.
+
+    Parameters
+    ----------
+    proved : Fraction or None
+        Shortest dwell time that was proved, in s (discrete time: steps); zero if arbitrary
+        switching is stable; None if none was.
+    refuted : Fraction or None
+        Longest shorter one that was refuted.
+    proof : Certification or None
+        At `proved`.
+    """
+
+    proved: Fraction | None
+    refuted: Fraction | None
+    proof: Certification | None
+
+
+def find_shortest_dwell(system: SwitchedSystem, certify: Certify, start: Fraction) -> DwellMargin:
+    """Find the largest switching rate that has a proof: the shortest provable dwell time.
+
+    Parameters
+    ----------
+    system : SwitchedSystem
+        Its own dwell time is left out of account.
+    certify : callable
+        Decides a system.
+    start : Fraction
+        A time of the order of the modes' own, in s.
+
+    Notes
+    -----
+    The bracket is found by doubling, then bisected. A proof for a dwell time is one for every
+    longer one.
+    """
+
+    def attempt(dwell: Fraction) -> Certification:
+        return certify(replace(system, switching=replace(system.switching, dwell_time=dwell)))
+
+    free = attempt(Fraction(0))
+    if free.verdict is Verdict.PROVED:
+        return DwellMargin(Fraction(0), None, free)
+    low, high = Fraction(0), start
+    refuted = low if free.verdict is Verdict.REFUTED else None
+    proof = attempt(high)
+    while proof.verdict is not Verdict.PROVED:
+        refuted = high if proof.verdict is Verdict.REFUTED else refuted
+        low, high = high, 2 * high
+        if high > LARGEST_SCALE * start:
+            return DwellMargin(None, refuted, None)
+        proof = attempt(high)
+    for _ in range(DWELL_STEPS):
+        middle = (low + high) / 2
+        found = attempt(middle)
+        if found.verdict is Verdict.PROVED:
+            high, proof = middle, found
+        else:
+            low = middle
+            refuted = middle if found.verdict is Verdict.REFUTED else refuted
+    return DwellMargin(high, refuted, proof)

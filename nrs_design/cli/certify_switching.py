@@ -13,7 +13,7 @@ from nrs_design.cli.options import CoordinatesOption, Json, Quiet, SpecFile, Ver
 from nrs_design.cli.printing import note, print_json, progress
 
 if TYPE_CHECKING:
-    from nrs_design.certificates.margin import BoxMargin
+    from nrs_design.certificates.margin import BoxMargin, DwellMargin
     from nrs_design.pipeline import Result
 
 
@@ -55,6 +55,9 @@ def certify_switching(
     margin: Annotated[
         bool, typer.Option("--margin", help="Find the largest box of ranges that has a proof.")
     ] = False,
+    shortest_dwell: Annotated[
+        bool, typer.Option("--shortest-dwell", help="Find the shortest dwell time with a proof.")
+    ] = False,
     as_json: Json = False,
     quiet: Quiet = False,
     verbose: Verbose = False,
@@ -66,7 +69,7 @@ def certify_switching(
     from nrs_design.certificates.certificate import dump
     from nrs_design.certificates.certify import Limits, Method
     from nrs_design.output import write_output
-    from nrs_design.pipeline import run_certification, run_margin
+    from nrs_design.pipeline import run_certification, run_margin, run_shortest_dwell
     from nrs_design.spec import read_spec
 
     loaded = read_spec(spec)
@@ -80,15 +83,17 @@ def certify_switching(
             progress=step,
         )
         box = run_margin(result, limits, step) if margin else None
+        dwell = run_shortest_dwell(result, limits, step) if shortest_dwell else None
     path = None
     if result.certificate is not None:
         path = out or Path("reports") / f"{loaded.spec.name}.cert.json"
         write_output(path, dump(result.certificate))
     if as_json:
-        print_json("certify-switching", summary(result, path) | margin_summary(box))
+        print_json("certify-switching", summary(result, path) | margins_summary(box, dwell))
     else:
         _print(result, path, quiet=quiet, verbose=verbose)
         _print_margin(box)
+        _print_dwell(dwell)
     raise typer.Exit(exit_codes.OF_VERDICT[str(result.certification.verdict)])
 
 
@@ -110,6 +115,7 @@ def summary(result: Result, path: Path | None) -> dict[str, Any]:
         "method": certification.method,
         "decay_rate": None if rate is None else float(rate),
         "decay_rate_exact": None if rate is None else str(rate),
+        "decay_rate_limit": certification.rate_limit,
         "decay_rate_unit": "1/s" if certification.system.time == "continuous" else "1 per step",
         "time": str(certification.system.time),
         "coordinates": result.coordinates,
@@ -126,17 +132,23 @@ def summary(result: Result, path: Path | None) -> dict[str, Any]:
     }
 
 
-def margin_summary(box: BoxMargin | None) -> dict[str, Any]:
-    """Return what ``--json`` prints about the largest box, if it was asked for."""
-    if box is None:
-        return {}
-    return {
-        "margin": {
+def margins_summary(box: BoxMargin | None, dwell: DwellMargin | None) -> dict[str, Any]:
+    """Return what ``--json`` prints about the margins that were asked for."""
+    content: dict[str, Any] = {}
+    if box is not None:
+        content["margin"] = {
             "proved_scale": None if box.proved is None else float(box.proved),
             "refuted_scale": None if box.refuted is None else float(box.refuted),
             "method": box.proof.method if box.proof else None,
         }
-    }
+    if dwell is not None:
+        content["shortest_dwell"] = {
+            "proved": None if dwell.proved is None else float(dwell.proved),
+            "refuted": None if dwell.refuted is None else float(dwell.refuted),
+            "unit": "s",
+            "method": dwell.proof.method if dwell.proof else None,
+        }
+    return content
 
 
 def _print_margin(box: BoxMargin | None) -> None:
@@ -151,6 +163,18 @@ def _print_margin(box: BoxMargin | None) -> None:
     print(
         f"  largest box: scaled by {float(box.proved):.6g} about their nominal values, all ranges "
         f"are proved ({box.proof.method}){beyond}"
+    )
+
+
+def _print_dwell(dwell: DwellMargin | None) -> None:
+    if dwell is None:
+        return
+    if dwell.proved is None or dwell.proof is None:
+        print("  shortest dwell time: none was proved")
+        return
+    below = f"; {float(dwell.refuted):.6g} s is refuted" if dwell.refuted is not None else ""
+    print(
+        f"  shortest dwell time: {float(dwell.proved):.6g} s is proved ({dwell.proof.method}){below}"
     )
 
 

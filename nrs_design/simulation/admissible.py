@@ -14,6 +14,8 @@ from nrs_design.switched.system import SwitchedSystem, Time
 
 # Fewest dwell times that a run of so many steps should hold.
 _LEGS = 8
+# Modes to start in; the worst run of them is kept.
+_STARTS = 6
 
 
 @dataclass(frozen=True)
@@ -54,17 +56,12 @@ def admissible_run(
     flows = _flows(system, step)
     roots = [np.asarray(np.linalg.cholesky(functions[m.name]).T) for m in system.modes]
     successors = _successors(system, flows, dwell)
-    mode, x = _start(flows, roots, successors, dwell)
-    states, modes = [x], []
-    move = _Move.into(mode, np.eye(len(x)), dwell, flows[mode])
-    while True:
-        states[-1] = move.reset @ states[-1]
-        for _ in range(move.steps):
-            states.append(flows[move.mode] @ states[-1])
-            modes.append(move.mode)
-        if len(modes) >= steps:
-            return TimeResponse(times(step, len(modes)), _filled(states), np.array(modes))
-        move = _least_loss(move.mode, states[-1], roots, successors)
+    runs = []
+    for mode, initial in _starts(flows, roots, successors, dwell):
+        states, modes = _follow(mode, initial, flows, roots, successors, dwell, steps)
+        runs.append((_kept(roots, states, modes), states, modes))
+    _, states, modes = max(runs, key=lambda run: run[0])
+    return TimeResponse(times(step, len(modes)), _filled(states), np.array(modes))
 
 
 def active_norms(
@@ -117,17 +114,17 @@ def _successors(system: SwitchedSystem, flows: list[Array], dwell: int) -> list[
     return moves
 
 
-def _start(
+def _starts(
     flows: list[Array], roots: list[Array], successors: list[list[_Move]], dwell: int
-) -> tuple[int, Array]:
-    """Return the mode and the state that lose the least over a dwell time and what follows it."""
-    found = (
-        (*_largest(roots, mode, move, np.linalg.matrix_power(flows[mode], dwell)), mode)
-        for mode, moves in enumerate(successors)
-        for move in (moves[1:] or moves)
-    )
-    _, initial, mode = max(found, key=lambda item: item[0])
-    return mode, initial
+) -> list[tuple[int, Array]]:
+    """Return some modes, each with the state that keeps the most over a dwell time and a move."""
+    found = []
+    for mode, moves in enumerate(successors):
+        flow = np.linalg.matrix_power(flows[mode], dwell)
+        best = max((_largest(roots, mode, move, flow) for move in moves), key=lambda item: item[0])
+        found.append((best[0], mode, best[1]))
+    found.sort(key=lambda item: -item[0])
+    return [(mode, initial) for _, mode, initial in found[:_STARTS]]
 
 
 def _largest(roots: list[Array], mode: int, move: _Move, flow: Array) -> tuple[float, Array]:
@@ -135,6 +132,35 @@ def _largest(roots: list[Array], mode: int, move: _Move, flow: Array) -> tuple[f
     inverse = np.linalg.inv(roots[mode])
     _, values, right = np.linalg.svd(roots[move.mode] @ move.reset @ flow @ inverse)
     return float(values[0]), inverse @ right[0]
+
+
+def _follow(
+    mode: int,
+    initial: Array,
+    flows: list[Array],
+    roots: list[Array],
+    successors: list[list[_Move]],
+    dwell: int,
+    steps: int,
+) -> tuple[list[Array], list[int]]:
+    """Move on greedily until there are enough steps."""
+    states, modes = [initial], []
+    move = _Move.into(mode, np.eye(len(initial)), dwell, flows[mode])
+    while True:
+        states[-1] = move.reset @ states[-1]
+        for _ in range(move.steps):
+            states.append(flows[move.mode] @ states[-1])
+            modes.append(move.mode)
+        if len(modes) >= steps:
+            return states, modes
+        move = _least_loss(move.mode, states[-1], roots, successors)
+
+
+def _kept(roots: list[Array], states: list[Array], modes: list[int]) -> float:
+    """Return the mean growth of the active function per step, as a logarithm."""
+    first = float(np.linalg.norm(roots[modes[0]] @ states[0]))
+    last = float(np.linalg.norm(roots[modes[-1]] @ states[-1]))
+    return math.log(last / first) / len(modes) if last > 0 else -math.inf
 
 
 def _least_loss(mode: int, x: Array, roots: list[Array], successors: list[list[_Move]]) -> _Move:

@@ -18,7 +18,9 @@ from nrs_design.switched.system import SwitchedSystem, Time
 Steps = Sequence[tuple[int, float]]
 
 _SAMPLES = 4000
-_FEWEST, _MOST = 3, 60
+_FEWEST, _MOST = 3, 30
+# Samples in one step of the period, where it can be afforded: a smooth curve.
+_SMOOTH = 24
 _HALVINGS = 40
 # Of the average's own growth, what fast switching has to reach.
 _SHARE = 0.6
@@ -43,7 +45,7 @@ class PeriodicRun:
     radius: float
 
 
-def periodic_run(system: SwitchedSystem, steps: Steps, growth: float = 1000.0) -> PeriodicRun:
+def periodic_run(system: SwitchedSystem, steps: Steps, growth: float = 100.0) -> PeriodicRun:
     """Simulate a periodic signal until its growth can be seen.
 
     Parameters
@@ -54,7 +56,7 @@ def periodic_run(system: SwitchedSystem, steps: Steps, growth: float = 1000.0) -
         Mode and time in it, over one period.
     growth : float
         The run ends when the state has grown by this factor, but not before three periods (if
-        that is not too far), nor after sixty.
+        that is not too far), nor after thirty.
     """
     legs = _legs(system, steps)
     monodromy = reduce(lambda product, leg: leg.whole @ product, legs, np.eye(system.order))
@@ -133,7 +135,7 @@ def _legs(system: SwitchedSystem, steps: Steps) -> list[_Leg]:
     for (mode, time), (successor, _) in zip(steps, following, strict=True):
         A = np.array(system.modes[mode].A.floats())
         discrete = system.time is Time.DISCRETE
-        pieces = int(time) if discrete else min(max(1, math.ceil(time / fine)), most)
+        pieces = int(time) if discrete else min(max(_SMOOTH, math.ceil(time / fine)), most)
         piece = A if discrete else expm(A * (time / pieces))
         reset = system.reset_map(system.modes[mode], system.modes[successor])
         jumps = reset is not None and mode != successor

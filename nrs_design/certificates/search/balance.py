@@ -5,6 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from nrs_design.switched.system import Time
+
 SWEEPS = 64
 
 
@@ -45,3 +47,27 @@ def scale(matrices: NDArray[np.float64], exponents: NDArray[np.int64]) -> NDArra
     """Return ``2^-d A 2^d`` for every matrix; exact but for under- and overflow."""
     scaled: NDArray[np.float64] = np.ldexp(matrices, exponents[None, :] - exponents[:, None])
     return scaled
+
+
+def mean_norm_coordinates(matrices: NDArray[np.float64], time: Time) -> NDArray[np.float64]:
+    """Return T such that in coordinates ``x = T z`` the mean of the modes' own norms is round.
+
+    Each stable mode has the norm ``x' P x`` of its Lyapunov equation, scaled to trace one.
+
+    Parameters
+    ----------
+    matrices : ndarray, shape (m, n, n)
+        Stable modes.
+    time : Time
+        Continuous or discrete.
+    """
+    n, identity = matrices.shape[1], np.eye(matrices.shape[1])
+    mean = np.zeros((n, n))
+    for A in matrices:
+        if time is Time.CONTINUOUS:
+            operator = np.kron(A.T, identity) + np.kron(identity, A.T)
+        else:
+            operator = np.kron(A.T, A.T) - np.eye(n * n)
+        P = np.linalg.solve(operator, -identity.ravel()).reshape(n, n)
+        mean += (P + P.T) / np.trace(P)
+    return np.asarray(np.linalg.inv(np.linalg.cholesky(mean)).T)

@@ -5,13 +5,14 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from itertools import product
+from itertools import chain, groupby, product
 from math import ceil, log, log2
 
 import numpy as np
 from numpy.typing import NDArray
 
 from nrs_design.certificates.evidence import UnstablePeriod
+from nrs_design.certificates.search.balance import mean_norm_coordinates
 from nrs_design.switched.system import SwitchedSystem, Time
 
 Array = NDArray[np.float64]
@@ -22,6 +23,8 @@ MAX_PAIRS = 60
 STARTS = 4
 MAX_WORDS = 20_000
 MAX_WORD_LENGTH = 16
+GREEDY_STEPS = 3000
+GREEDY_PERIODS = (2, 3, 4, 6, 8)
 DWELL_BITS = (8, 12, 16, 24, 40)
 
 
@@ -39,7 +42,10 @@ def find_growing_period(system: SwitchedSystem, matrices: Array) -> UnstablePeri
         return _first_word(system, matrices)
     flows = _Flows.of(matrices)
     shortest = float(system.switching.dwell_time)
-    for order, dwells in _candidates(flows, _allowed_pairs(system), _grid(matrices), shortest):
+    candidates = _candidates(flows, _allowed_pairs(system), _grid(matrices), shortest)
+    if system.switching.is_arbitrary:
+        candidates = chain(candidates, _greedy_candidates(flows, matrices))
+    for order, dwells in candidates:
         for bits in DWELL_BITS:
             steps = tuple(
                 (system.modes[i].name, max(_short(dwell, bits), system.switching.dwell_time))
@@ -143,6 +149,31 @@ def _candidates(
             refined = _refine(flows, order, start, shortest)
             if flows.growth(order, refined) > 0:
                 yield order, refined
+
+
+def _greedy_candidates(flows: _Flows, matrices: Array) -> Iterator[tuple[tuple[int, ...], Array]]:
+    """Yield signals with more steps: what an adversary settles into that always picks the worst.
+
+    It maximizes the mean of the modes' own norms after each short step. Its last few dwell times
+    are taken as a period, and refined.
+    """
+    inverse = np.linalg.inv(mean_norm_coordinates(matrices, Time.CONTINUOUS))
+    step = 0.05 / float(np.abs(np.linalg.eigvals(matrices)).max())
+    transitions = [flows.at(k, np.array(step)).real for k in range(len(matrices))]
+    x, chosen = inverse[0] + 0.1, []
+    for _ in range(GREEDY_STEPS):
+        images = [E @ x for E in transitions]
+        chosen.append(int(np.argmax([np.linalg.norm(inverse @ y) for y in images])))
+        x = images[chosen[-1]] / np.linalg.norm(images[chosen[-1]])
+    runs = [(mode, len(list(group))) for mode, group in groupby(chosen)][1:-1]
+    for length in GREEDY_PERIODS:
+        if len(runs) < length:
+            return
+        order = tuple(mode for mode, _ in runs[-length:])
+        dwells = step * np.array([count for _, count in runs[-length:]], dtype=float)
+        refined = _refine(flows, order, dwells, 0.0)
+        if flows.growth(order, refined) > 0:
+            yield order, refined
 
 
 def _grid(matrices: Array) -> Array:

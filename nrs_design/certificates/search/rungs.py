@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from nrs_design.certificates.evidence import AbstractEvidence, CommonQuadratic, UnstableMode
 from nrs_design.certificates.evidence.unstable_mode import is_stable, worst_eigenvalue
+from nrs_design.certificates.search.balance import mean_norm_coordinates, scale
 from nrs_design.certificates.search.decay import largest_position, rate_at, rate_of
 from nrs_design.certificates.search.family import Family
 from nrs_design.certificates.search.gradient import iterate_gradient
@@ -83,6 +84,28 @@ def search_by_gradient(family: Family, *, max_updates: int = 20_000) -> Finding:
         return None, f"not converged after {result.updates} updates"
     evidence, outcome = _round_at_own_rate(family, result.Q)
     return evidence, f"{outcome} after {result.updates} updates"
+
+
+def search_raw(family: Family) -> Finding:
+    """Search by semidefinite programming in the coordinates of the spec, without balancing."""
+    time = family.system.time
+    matrices = scale(family.matrices, -family.exponents)
+    Q = find_common_quadratic(matrices, time, rate_at(0.0, family.limit, time))
+    if Q is None:
+        return None, "the solver found no candidate with positive margins"
+    shifts = family.exponents[:, None] + family.exponents[None, :]
+    return _round_at_own_rate(family, np.ldexp(Q, shifts))
+
+
+def search_preconditioned(family: Family) -> Finding:
+    """Search by semidefinite programming after a change to the mean of the modes' own norms."""
+    time = family.system.time
+    T = mean_norm_coordinates(family.matrices, time)
+    inverse = np.linalg.inv(T)
+    Q = find_common_quadratic(inverse @ family.matrices @ T, time, rate_at(0.0, family.limit, time))
+    if Q is None:
+        return None, "the solver found no candidate with positive margins"
+    return _round_at_own_rate(family, inverse.T @ Q @ inverse)
 
 
 def prove_obstruction(family: Family) -> Finding:

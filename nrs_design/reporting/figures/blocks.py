@@ -54,10 +54,8 @@ def draw_blocks(system: SwitchedSystem, blocks: Sequence[Sequence[int]]) -> Figu
 
 
 def _pattern(system: SwitchedSystem) -> np.ndarray[tuple[int, ...], np.dtype[np.bool_]]:
-    return np.any(
-        [[[entry != 0 for entry in row] for row in mode.A.numerators] for mode in system.modes],
-        axis=0,
-    )
+    patterns = [[[v != 0 for v in row] for row in mode.A.numerators] for mode in system.modes]
+    return np.asarray(np.any(patterns, axis=0))
 
 
 def _cells(
@@ -69,8 +67,9 @@ def _cells(
 ) -> None:
     rows, columns = np.nonzero(cells)
     if len(rows):
-        side = np.sqrt(size)
-        axes.plot(columns, rows, "s", color=tint, markersize=side, label=label)
+        axes.plot(columns, rows, "s", color=tint, markersize=np.sqrt(size))
+        # A marker of the legend's size, whatever the cells' own.
+        axes.plot([], [], "s", color=tint, label=label)
 
 
 def _frames(axes: Axes, blocks: Sequence[Sequence[int]]) -> None:

@@ -112,6 +112,7 @@ def draw_parameter_rates(
     axes.set_xlabel("Place in the parameter's range, 0 low end, 1 high end [1]")
     axes.set_ylabel("Decay rate in the norm of Q [1/s]")
     axes.set_xlim(0, 1)
+    axes.set_ylim(0, 1.15 * float(rates.max()))
     legend(figure, axes)
     return figure
 

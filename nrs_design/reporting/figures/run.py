@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
@@ -66,6 +67,9 @@ def draw_run(
     if bound is not None:
         above.semilogy(response.time, bound[1], "--", color=VERMILLION, label=bound[0])
     above.set_ylabel(label)
+    _write_plainly(above)
+    if discrete:
+        below.locator_params(axis="x", integer=True)
     _draw_modes(below, response, used, [system.modes[i].name for i in used])
     below.set_xlabel("Time [steps]" if discrete else "Time [s]")
     legend(figure, above)
@@ -92,13 +96,14 @@ def draw_mode_levels(
     line = "o-" if system.time is Time.DISCRETE else "-"
     used = list(dict.fromkeys(response.mode.tolist()))[:_ROWS]
     start = float(norms[system.modes[used[0]].name](response.state[0]))
-    for row, mode in enumerate(used):
-        name = system.modes[mode].name
+    names = [system.modes[mode].name for mode in used]
+    for row, (mode, name) in enumerate(zip(used, names, strict=True)):
         path = _path_in(response, mode)
         axes.plot(*path.T, line, color=color(row), markersize=3, label=f"mode {short(name)}")
+    for row, name in enumerate(names):
         x, y = level_curve(norms[name], start)
         axes.plot(x, y, "--", color=color(row), linewidth=1.2, label=f"level of V, {short(name)}")
-    _finish_plane(figure, axes, response, system, 2)
+    _finish_plane(figure, axes, response, system, 3)
     return figure
 
 
@@ -143,6 +148,23 @@ def _finish_plane(
     axes.set_xlabel(_with_unit(system.states[0]))
     axes.set_ylabel(_with_unit(system.states[1]))
     legend(figure, axes, columns)
+
+
+def _write_plainly(axes: Axes) -> None:
+    """Write 0.6 rather than 6 times a power of ten where the axis spans few decades."""
+    low, high = axes.get_ylim()
+    if high > 200 * low:
+        return
+    digits = (1, 3) if high > 30 * low else (1, 2, 3, 4, 6)
+
+    def text(value: float, position: float) -> str:
+        digit = value / 10.0 ** math.floor(math.log10(value) + 1e-9)
+        # On a short axis, the ticks are chosen as on a linear one, and all are written.
+        wanted = high < 3 * low or min(abs(digit - d) for d in digits) < 0.01
+        return f"{value:.4g}" if wanted else ""
+
+    axes.yaxis.set_major_formatter(text)
+    axes.yaxis.set_minor_formatter(text)
 
 
 def _with_unit(state: str) -> str:

@@ -100,7 +100,9 @@ def _quadratic(system: SwitchedSystem, evidence: CommonQuadratic) -> tuple[Illus
     hardest = hardest_modes(system, Q, _affordable(system))
     norm, initial = quadratic_norm(Q), worst_direction(hardest, Q)
     caption = f"{_GREEDY} {_HOLDS}{_freely(system)}{_some(system, hardest)}"
-    response, run = _bounded(hardest, norm, initial, float(evidence.rate), "the norm of Q", caption)
+    response, run = _bounded(
+        hardest, norm, initial, float(evidence.rate), "in the norm of Q", caption
+    )
     return (run, *_phase_plane(hardest, response, norm, (1.0,)))
 
 
@@ -109,7 +111,7 @@ def _polynomial(system: SwitchedSystem, evidence: CommonPolynomial) -> tuple[Ill
     norm = polynomial_norm(evidence, system.order)
     initial = sampled_direction(hardest, norm, fine_step(hardest))
     caption = f"{_GREEDY} {_HOLDS}{_freely(system)}{_some(system, hardest)}"
-    label = f"V^(1/{2 * evidence.degree})"
+    label = f"in V^(1/{2 * evidence.degree})"
     response, run = _bounded(hardest, norm, initial, float(evidence.rate), label, caption)
     return (run, *_phase_plane(hardest, response, norm, _NESTED))
 
@@ -125,7 +127,7 @@ def _at_parameter(system: SwitchedSystem, evidence: ParameterQuadratic) -> tuple
         f"the decay is slowest. {_HOLDS}{_some(fixed, hardest)}"
     )
     norm, initial = quadratic_norm(Q), worst_direction(hardest, Q)
-    label = "the norm of Q at this parameter"
+    label = "in the norm of Q(p)"
     response, run = _bounded(hardest, norm, initial, float(evidence.rate), label, caption)
     return (run, *_phase_plane(hardest, response, norm, (1.0,)))
 
@@ -139,7 +141,7 @@ def _bounded(
     response = _until_small(response, norms(response, norm))
     bound = _bound(response, rate, system.time, "proved bound, ")
     figure = draw_run(
-        response, norms(response, norm), bound, system, f"|x(t)| / |x(0)|, |x| = {label} [1]"
+        response, norms(response, norm), bound, system, f"|x(t)| / |x(0)| {label} [1]"
     )
     return response, Illustration("run", _TITLE, caption, figure)
 
@@ -154,16 +156,16 @@ def _ruled(system: SwitchedSystem, evidence: ModeQuadratic) -> tuple[Illustratio
     run = Illustration(
         "run",
         _TITLE,
-        f"{_RULED} Drawn is the function of the active mode. Where the next mode takes over, it "
-        "may jump, but it stays below the dashed bound of the certificate, which holds for every "
-        "signal that keeps the rules. In a norm that is the same in all modes, the bound holds "
-        f"with the factor c.{_some(system, hardest)}",
+        f"{_RULED} Drawn is the root of V of the active mode, over its start. Where the next mode "
+        "takes over, it may jump, but it stays below the dashed bound of the certificate, which "
+        "holds for every signal that keeps the rules. In a norm that is the same in all "
+        f"modes, the bound holds with the factor c.{_some(system, hardest)}",
         draw_run(
             response,
             active_norms(hardest, response, functions),
             bound,
             hardest,
-            "Root of the active mode's V, over its start [1]",
+            "Root of V of the active mode [1]",
         ),
     )
     if system.order != 2 or not system.is_uniform:

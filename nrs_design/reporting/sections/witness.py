@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 
@@ -26,7 +27,7 @@ from nrs_design.simulation.periodic import (
     periodic_run,
     steps_of_mixture,
 )
-from nrs_design.simulation.switched import TimeResponse, alone, unstable_run
+from nrs_design.simulation.switched import TimeResponse, alone, eigenvalues, unstable_run
 from nrs_design.switched.system import SwitchedSystem, Time
 
 _EUCLIDEAN = "|x(t)| / |x(0)|, Euclidean norm [1]"
@@ -131,15 +132,13 @@ def _steps_table(evidence: UnstablePeriod, unit: str) -> Table:
 
 
 def _mixture(system: SwitchedSystem, evidence: UnstableMixture) -> tuple[Block, ...]:
-    average = np.linalg.eigvals(mixture_matrix(system, evidence.weights))
+    average = np.linalg.eigvals(mixture_matrix(system, evidence.weights)).astype(complex)
     steps = steps_of_mixture(system, evidence.weights)
-    run = periodic_run(system, steps, growth=100.0)
+    run = periodic_run(system, steps)
     rate = float(average.real.max())
     line = (f"the average alone, exp({rate:.4g} t)", np.exp(rate * run.response.time))
     names = [name for name, _ in evidence.weights]
-    values = [
-        np.linalg.eigvals(np.array(mode.A.floats())) for mode in system.modes if mode.name in names
-    ]
+    mixed = replace(system, modes=tuple(mode for mode in system.modes if mode.name in names))
     weights = tuple(
         (name, str(weight), number(float(weight), 4)) for name, weight in evidence.weights
     )
@@ -151,8 +150,8 @@ def _mixture(system: SwitchedSystem, evidence: UnstableMixture) -> tuple[Block, 
             "Eigenvalues of the average",
             "The modes that have a share in it, and their average, which is not stable.",
             draw_eigenvalues(
-                [mode.name for mode in system.modes if mode.name in names] + ["average"],
-                [*values, average],
+                [*(mode.name for mode in mixed.modes), "average"],
+                [*eigenvalues(mixed), average],
                 system.time,
                 None,
             ),

@@ -1,0 +1,49 @@
+"""The other side of a decay rate: what no proof can exceed (floating point, for people to judge)."""
+
+from __future__ import annotations
+
+from itertools import product
+from math import isfinite
+
+import numpy as np
+
+from nrs_design.switched.system import SwitchedSystem, Time
+
+MAX_WORDS = 3000
+
+
+def rate_limit(system: SwitchedSystem) -> float | None:
+    """Return a rate that solutions cannot beat, because one of them attains it.
+
+    Continuous time: the slowest mode's ``-max Re``, in 1/s. Discrete time: the largest
+    ``radius(A_k ... A_1)^(1/k)`` over short products of modes, a lower bound of the joint spectral
+    radius; where switching is constrained, of single modes only.
+
+    Parameters
+    ----------
+    system : SwitchedSystem
+        The modes.
+    """
+    floats = [np.array(mode.A.floats()) for mode in system.modes]
+    if not all(np.isfinite(A).all() for A in floats):
+        return None
+    if system.time is Time.CONTINUOUS:
+        limit = min(float(-np.linalg.eigvals(A).real.max()) for A in floats)
+    else:
+        limit = max(float(np.abs(np.linalg.eigvals(A)).max()) for A in floats)
+        if system.switching.is_arbitrary:
+            limit = max(limit, _cycle_growth(np.array(floats)))
+    return limit if isfinite(limit) else None
+
+
+def _cycle_growth(matrices: np.ndarray[tuple[int, ...], np.dtype[np.float64]]) -> float:
+    m, length, best = len(matrices), 1, 0.0
+    while m > 1 and m ** (length + 1) <= MAX_WORDS:
+        length += 1
+        words = np.array(list(product(range(m), repeat=length)))
+        products = matrices[words[:, 0]]
+        for column in words.T[1:]:
+            products = matrices[column] @ products
+        radius = np.abs(np.linalg.eigvals(products)).max()
+        best = max(best, float(radius) ** (1 / length))
+    return best

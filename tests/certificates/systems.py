@@ -1,0 +1,148 @@
+"""Systems and genuine evidence that several tests of evidence share."""
+
+from collections.abc import Sequence
+from fractions import Fraction
+from functools import cache
+
+from nrs_design.certificates.certify import Limits, Method, certify
+from nrs_design.certificates.evidence import AbstractEvidence
+from nrs_design.controllers.laws import Admittance
+from nrs_design.models.environment import Contact
+from nrs_design.switched.close_loop import Realization, impedance_mode
+from nrs_design.switched.matrix import RationalMatrix
+from nrs_design.switched.system import ARBITRARY, Mode, Reset, SwitchedSystem, Switching, Time
+
+Entry = int | str | Fraction
+Rows = Sequence[Sequence[Entry]]
+
+
+def matrix(rows: Rows) -> RationalMatrix:
+    return RationalMatrix.from_rows([[Fraction(entry) for entry in row] for row in rows])
+
+
+def family(
+    *matrices: Rows,
+    time: Time = Time.CONTINUOUS,
+    switching: Switching = ARBITRARY,
+    names: Sequence[str] | None = None,
+) -> SwitchedSystem:
+    """Make a system with modes m0, m1, ... of any sizes."""
+    labels = names or [f"m{i}" for i in range(len(matrices))]
+    modes = tuple(Mode(label, matrix(A)) for label, A in zip(labels, matrices, strict=True))
+    states = tuple(f"x{i + 1}" for i in range(max(len(A) for A in matrices)))
+    return SwitchedSystem("family", time, states, modes, (), switching)
+
+
+def dayawansa_martin(a: Entry, switching: Switching = ARBITRARY) -> SwitchedSystem:
+    """Quadratic iff a < 5.8284..., stable iff a < 11.2608... (Dayawansa and Martin 1999)."""
+    a = Fraction(a)
+    return family([[-1, -1], [1, -1]], [[-1, -a], [1 / a, -1]], switching=switching)
+
+
+def oscillator(kbar: Entry, switching: Switching = ARBITRARY) -> SwitchedSystem:
+    """Stable under arbitrary switching iff kbar < 6.98513... (Zelentsovsky 1994)."""
+    return family([[0, 1], [-2, -1]], [[0, 1], [-2 - Fraction(kbar), -1]], switching=switching)
+
+
+def geromel_colaneri(dwell: Entry, **rules: object) -> SwitchedSystem:
+    """LMI proof iff the dwell time exceeds 2.75084 s; unstable up to 2.70775 s (2006)."""
+    switching = Switching(Fraction(dwell), **rules)
+    return family([[0, 1], [-10, -1]], [[0, 1], ["-0.1", "-0.5"]], switching=switching)
+
+
+def branicky() -> SwitchedSystem:
+    """Two Hurwitz modes that grow under switching (Branicky 1998)."""
+    return family([[-1, 10], [-100, -1]], [[-1, 100], [-10, -1]])
+
+
+def golden(c: Entry) -> SwitchedSystem:
+    """Joint spectral radius c (1 + sqrt 5)/2 (Jungers 2009)."""
+    c = Fraction(c)
+    return family([[c, c], [0, c]], [[c, 0], [c, c]], time=Time.DISCRETE)
+
+
+def ando_shih(c: Entry, switching: Switching = ARBITRARY) -> SwitchedSystem:
+    """Joint spectral radius c, but no quadratic function beyond 0.7071 (Ando and Shih 1998)."""
+    c = Fraction(c)
+    pair = [[c, 0], [c, 0]], [[0, c], [0, -c]]
+    return family(*pair, time=Time.DISCRETE, switching=switching)
+
+
+def shears(switching: Switching = ARBITRARY) -> SwitchedSystem:
+    """Both modes have the eigenvalue -1 twice, their average has the eigenvalue 4."""
+    return family([[-1, 10], [0, -1]], [[-1, 0], [10, -1]], switching=switching)
+
+
+def degenerate_dual() -> SwitchedSystem:
+    """Dayawansa and Martin at a = 6 beside a decoupled stable state."""
+    return family(
+        [[-1, 0, 0], [0, -1, -1], [0, 1, -1]], [[-1, 0, 0], [0, -1, -6], [0, "1/6", -1]]
+    )
+
+
+def robot(Mt: str, contacts: Sequence[tuple[str, str]]) -> SwitchedSystem:
+    """Impedance modes on the motion loop of thesis 6.3.2.2, for pairs of stiffness and Bt."""
+    motion = Realization(
+        ((Fraction(0), Fraction(1)), (Fraction("-1618.80"), Fraction("-56.89"))),
+        (Fraction("1618.80"), Fraction("28.4160")),
+    )
+    return family(
+        *(
+            impedance_mode(
+                motion,
+                Admittance(Fraction(Mt), Fraction(Bt)),
+                Contact("contact", Fraction(k), Fraction(0)),
+            )
+            for k, Bt in contacts
+        )
+    )
+
+
+def resets_between(*maps: tuple[str, str, Rows]) -> tuple[Reset, ...]:
+    return tuple(Reset(source, target, matrix(rows)) for source, target, rows in maps)
+
+
+def rectangular() -> SwitchedSystem:
+    """A mode of two states and one of one, joined by contracting resets."""
+    resets = resets_between(("m0", "m1", [["1/2", 0]]), ("m1", "m0", [["1/2"], [0]]))
+    return family([[0, 1], [-3, -1]], [[-1]], switching=Switching(resets=resets))
+
+
+def slow_switching_in_steps() -> SwitchedSystem:
+    """Discrete time: alternating every step grows, staying four steps does not."""
+    pair = [["1/2", 2], [0, "1/2"]], [["1/2", 0], [2, "1/2"]]
+    return family(*pair, time=Time.DISCRETE, switching=Switching(Fraction(6)))
+
+
+SYSTEMS = {
+    "common-quadratic": lambda: dayawansa_martin(5),
+    "common-polynomial": lambda: dayawansa_martin(6),
+    "common-polynomial, discrete": lambda: ando_shih("0.72"),
+    "no-common-quadratic": lambda: dayawansa_martin(6),
+    "no-common-quadratic, discrete": lambda: ando_shih("0.99"),
+    "block-triangular": degenerate_dual,
+    "unstable-mode": lambda: family([[0, 1], [-1, 0]]),
+    "unstable-mixture": shears,
+    "unstable-period": branicky,
+    "unstable-period, discrete": lambda: golden("0.6181"),
+    "mode-quadratic, dwell": lambda: geromel_colaneri("2.76"),
+    "mode-quadratic, one way": lambda: dayawansa_martin(
+        12, Switching(transitions=(("m0", "m1"),))
+    ),
+    "mode-quadratic, rectangular": rectangular,
+    "mode-quadratic, discrete": lambda: ando_shih("0.99"),
+    "mode-quadratic, steps": slow_switching_in_steps,
+    "parameter-quadratic": lambda: oscillator(50, Switching(fixed_ends=(("m0", "m1"),))),
+}
+METHODS = {
+    "common-polynomial, discrete": Method.POLYNOMIAL,
+    "unstable-mixture": Method.MIXTURE,
+}
+
+
+@cache
+def genuine(example: str) -> tuple[SwitchedSystem, AbstractEvidence]:
+    """Return a system and evidence of a kind that the search really finds."""
+    system, kind = SYSTEMS[example](), example.split(",")[0]
+    found = certify(system, METHODS.get(example, Method.AUTO), Limits(optimize_rate=False))
+    return system, next(item for item in found.statements if item.kind == kind)

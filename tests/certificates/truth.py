@@ -1,0 +1,347 @@
+"""Oracles: what each kind of evidence says, recomputed from its definition.
+
+Fractions and NumPy only: no lift, no elimination and no enclosure of the package is used.
+"""
+
+from collections.abc import Mapping
+from dataclasses import replace
+from fractions import Fraction
+from itertools import product
+
+import numpy as np
+
+from nrs_design.certificates.evidence import (
+    AbstractEvidence,
+    BlockTriangular,
+    CommonPolynomial,
+    CommonQuadratic,
+    ModeQuadratic,
+    NoCommonQuadratic,
+    ParameterQuadratic,
+    UnstableMixture,
+    UnstableMode,
+    UnstablePeriod,
+)
+from nrs_design.switched.matrix import RationalMatrix
+from nrs_design.switched.system import Mode, SwitchedSystem, Time
+
+Rows = list[list[Fraction]]
+Polynomial = dict[tuple[int, ...], Fraction]
+
+
+def times(X: Rows, Y: Rows) -> Rows:
+    return [[sum(a * b for a, b in zip(r, c, strict=True)) for c in transpose(Y)] for r in X]
+
+
+def transpose(X: Rows) -> Rows:
+    return [list(column) for column in zip(*X, strict=True)]
+
+
+def combine(*terms: tuple[Fraction | int, Rows]) -> Rows:
+    rows, columns = len(terms[0][1]), len(terms[0][1][0])
+    return [
+        [sum((w * X[i][j] for w, X in terms), Fraction(0)) for j in range(columns)]
+        for i in range(rows)
+    ]
+
+
+def is_definite(M: Rows, *, strictly: bool = True) -> bool:
+    """Gaussian elimination in fractions; singular matrices by all their principal minors."""
+    M = [list(row) for row in M]
+    if any(len(row) != len(M) for row in M) or M != transpose(M):
+        return False
+    if strictly:
+        return all(determinant([row[:k] for row in M[:k]]) > 0 for k in range(1, len(M) + 1))
+    chosen = product((False, True), repeat=len(M))
+    return all(
+        determinant([[M[i][j] for j, b in enumerate(keep) if b] for i in index]) >= 0
+        for keep in chosen
+        if (index := [i for i, b in enumerate(keep) if b])
+    )
+
+
+def determinant(M: Rows) -> Fraction:
+    rows, value = [[Fraction(entry) for entry in row] for row in M], Fraction(1)
+    for k in range(len(rows)):
+        pivot = next((i for i in range(k, len(rows)) if rows[i][k] != 0), None)
+        if pivot is None:
+            return Fraction(0)
+        if pivot != k:
+            rows[k], rows[pivot], value = rows[pivot], rows[k], -value
+        value *= rows[k][k]
+        for i in range(k + 1, len(rows)):
+            factor = rows[i][k] / rows[k][k]
+            rows[i] = [a - factor * b for a, b in zip(rows[i], rows[k], strict=True)]
+    return value
+
+
+def decrease(A: Rows, Q: Rows, rate: Fraction, time: Time) -> Rows:
+    """Return ``-(A'Q + QA + 2 rate Q)`` or ``rate^2 Q - A'QA``."""
+    if time is Time.CONTINUOUS:
+        return combine((-1, times(transpose(A), Q)), (-1, times(Q, A)), (-2 * rate, Q))
+    return combine((rate**2, Q), (-1, times(transpose(A), times(Q, A))))
+
+
+def is_rate(rate: Fraction, time: Time) -> bool:
+    return 0 < rate and (time is Time.CONTINUOUS or rate < 1)
+
+
+def holds(system: SwitchedSystem, evidence: AbstractEvidence) -> bool:
+    """Tell whether what the numbers say is true for this system."""
+    return _ORACLES[type(evidence)](system, evidence)
+
+
+def _common_quadratic(system: SwitchedSystem, item: CommonQuadratic) -> bool:
+    return is_rate(item.rate, system.time) and all(
+        is_definite(form)
+        for form in (
+            item.Q,
+            *(decrease(m.A.fractions(), item.Q, item.rate, system.time) for m in system.modes),
+        )
+    )
+
+
+def _common_polynomial(system: SwitchedSystem, item: CommonPolynomial) -> bool:
+    """The Gram matrix of the decrease must be definite and expand to the decrease itself."""
+    n, d = system.order, item.degree
+    basis = sorted((a for a in product(range(d + 1), repeat=n) if sum(a) == d), reverse=True)
+    shapes_fit = all(len(M) == len(basis) for M in (item.Q, *item.vanishing))
+    if not (is_rate(item.rate, system.time) and shapes_fit and is_definite(item.Q)):
+        return False
+    V = expand(item.Q, basis)
+    for mode, N in zip(system.modes, item.vanishing, strict=True):
+        if any(expand(N, basis).values()):
+            return False
+        if not is_definite(_gram(mode.A, item, N, basis, V, system.time)):
+            return False
+    return True
+
+
+def _gram(mode, item, N, basis, V, time) -> Rows:
+    """Return a Gram matrix of the decrease with N added, as the definition of the kind has it."""
+    A = mode.fractions()
+    lifted = [_row(derive(monomial, A) if time is Time.CONTINUOUS else compose(monomial, A), basis)
+              for monomial in basis]  # fmt: skip
+    d, rate = item.degree, item.rate
+    if time is Time.CONTINUOUS:
+        form = decrease(lifted, item.Q, d * rate, time)
+        factor = mode.denominator * (d * rate).denominator
+        expected = add(scale(_derivative(V, A), -1), scale(V, -2 * d * rate))
+    else:
+        form = decrease(lifted, item.Q, rate**d, time)
+        factor = mode.denominator ** (2 * d) * (rate**d).denominator ** 2
+        expected = add(scale(V, rate ** (2 * d)), scale(_substitute(V, A), -1))
+    assert add(expand(form, basis), scale(expected, -1)) == {}
+    return combine((factor, form), (1, [[Fraction(e) for e in row] for row in N]))
+
+
+def _row(polynomial: Polynomial, basis) -> list[Fraction]:
+    return [polynomial.get(monomial, Fraction(0)) for monomial in basis]
+
+
+def expand(M: Rows, basis) -> Polynomial:
+    total: Polynomial = {}
+    for (i, a), (j, b) in product(enumerate(basis), repeat=2):
+        key = tuple(p + q for p, q in zip(a, b, strict=True))
+        total = {**total, key: total.get(key, Fraction(0)) + M[i][j]}
+    return total
+
+
+def add(p: Polynomial, q: Polynomial) -> Polynomial:
+    total = {key: p.get(key, Fraction(0)) + q.get(key, Fraction(0)) for key in p.keys() | q.keys()}
+    return {key: value for key, value in total.items() if value}
+
+
+def scale(p: Polynomial, factor: Fraction | int) -> Polynomial:
+    return {key: factor * value for key, value in p.items()}
+
+
+def derive(monomial: tuple[int, ...], A: Rows) -> Polynomial:
+    """Derivative of a monomial along ``x' = A x``."""
+    return _derivative({monomial: Fraction(1)}, A)
+
+
+def _derivative(p: Polynomial, A: Rows) -> Polynomial:
+    total: Polynomial = {}
+    n = len(A)
+    for key, value in p.items():
+        for i, j in product(range(n), repeat=2):
+            if key[i]:
+                moved = list(key)
+                moved[i] -= 1
+                moved[j] += 1
+                total = add(total, {tuple(moved): value * key[i] * A[i][j]})
+    return total
+
+
+def compose(monomial: tuple[int, ...], A: Rows) -> Polynomial:
+    """A monomial of ``A x``."""
+    return _substitute({monomial: Fraction(1)}, A)
+
+
+def _substitute(p: Polynomial, A: Rows) -> Polynomial:
+    total: Polynomial = {}
+    n = len(A)
+    for key, value in p.items():
+        term: Polynomial = {(0,) * n: value}
+        for i, exponent in enumerate(key):
+            for _ in range(exponent):
+                shifted: Polynomial = {}
+                for k, v in term.items():
+                    for j in range(n):
+                        moved = (*k[:j], k[j] + 1, *k[j + 1 :])
+                        shifted = add(shifted, {moved: v * A[i][j]})
+                term = shifted
+        total = add(total, term)
+    return total
+
+
+def _no_common_quadratic(system: SwitchedSystem, item: NoCommonQuadratic) -> bool:
+    modes = {mode.name: mode.A.fractions() for mode in system.modes}
+    n = system.order
+    total = [[Fraction(0)] * n for _ in range(n)]
+    for name, L in item.factors:
+        A, X = modes[name], times(L, transpose(L))
+        if system.time is Time.CONTINUOUS:
+            total = combine((1, total), (1, times(A, X)), (1, times(X, transpose(A))))
+        else:
+            total = combine((1, total), (1, times(times(A, X), transpose(A))), (-1, X))
+    names = [name for name, _ in item.factors]
+    return len(set(names)) == len(names) and is_definite(total)
+
+
+def _parameter_quadratic(system: SwitchedSystem, item: ParameterQuadratic) -> bool:
+    """Sample the parameter; at each value the decrease is that of a common quadratic."""
+    modes = {mode.name: mode.A.fractions() for mode in system.modes}
+    for p in (Fraction(k, 16) for k in range(17)):
+        Q = combine((1 - p, item.low), (p, item.high))
+        matrices = [
+            combine((1 - p, modes[a]), (p, modes[b])) for a, b in system.switching.fixed_ends
+        ]
+        forms = [decrease(A, Q, item.rate, system.time) for A in matrices]
+        if not all(map(is_definite, [Q, *forms])):
+            return False
+    return is_rate(item.rate, system.time)
+
+
+def _mode_quadratic(system: SwitchedSystem, item: ModeQuadratic) -> bool:
+    Q: Mapping[str, Rows] = dict(item.functions)
+    time, dwell = system.time, system.switching.dwell_time
+    if list(Q) != [m.name for m in system.modes] or not is_rate(item.rate, time):
+        return False
+    for mode in system.modes:
+        form = decrease(mode.A.fractions(), Q[mode.name], item.rate, time)
+        if not is_definite(Q[mode.name]) or not is_definite(form):
+            return False
+    return all(
+        _does_not_raise(system, source, target, Q, item.rate, dwell)
+        for source, target in system.transitions()
+    )
+
+
+def _does_not_raise(system, source, target, Q, rate, dwell) -> bool:
+    A, n = source.A.fractions(), len(source.A.numerators)
+    reset = system.reset_map(source, target)
+    identity = [[Fraction(int(i == j)) for j in range(n)] for i in range(n)]
+    G = identity if reset is None else reset.fractions()
+    if system.time is Time.DISCRETE:
+        steps, flow = int(max(dwell, 1)), identity
+        for _ in range(steps):
+            flow = times(combine((1 / rate, A)), flow)
+        jump = times(G, flow)
+        image = times(transpose(jump), times(Q[target.name], jump))
+        return is_definite(combine((1, Q[source.name]), (-1, image)))
+    if dwell == 0:
+        image = times(transpose(G), times(Q[target.name], G))
+        return is_definite(combine((1, Q[source.name]), (-1, image)), strictly=False)
+    jump = _floats(G) @ exponential((_floats(A) + float(rate) * np.eye(n)) * float(dwell))
+    before, after = _floats(Q[source.name]), _floats(Q[target.name])
+    form = before - jump.T @ after @ jump
+    return bool(np.linalg.eigvalsh(form).min() > -1e-9 * np.abs(before).max())
+
+
+def exponential(M: np.ndarray) -> np.ndarray:
+    """Taylor series of a small multiple, squared again and again."""
+    squarings = max(0, int(np.ceil(np.log2(np.abs(M).sum() + 1))) + 4)
+    term = total = np.eye(len(M))
+    for k in range(1, 20):
+        term = term @ (M / 2.0**squarings) / k
+        total = total + term
+    for _ in range(squarings):
+        total = total @ total
+    return total
+
+
+def _floats(rows) -> np.ndarray:
+    return np.array([[float(entry) for entry in row] for row in rows])
+
+
+def _unstable_mode(system: SwitchedSystem, item: UnstableMode) -> bool:
+    A = next(mode.A for mode in system.modes if mode.name == item.mode)
+    return _is_marginal_or_worse(A, system.time)
+
+
+def _unstable_mixture(system: SwitchedSystem, item: UnstableMixture) -> bool:
+    modes = {mode.name: mode.A.fractions() for mode in system.modes}
+    mean = combine(*((w, modes[name]) for name, w in item.weights))
+    proper = all(w >= 0 for _, w in item.weights) and sum(w for _, w in item.weights) == 1
+    return proper and _is_marginal_or_worse(RationalMatrix.from_rows(mean), system.time)
+
+
+def _is_marginal_or_worse(A: RationalMatrix, time: Time) -> bool:
+    values = np.linalg.eigvals(np.array(A.floats()))
+    if time is Time.CONTINUOUS:
+        return bool(values.real.max() > -1e-7)
+    return bool(np.abs(values).max() > 1 - 1e-7)
+
+
+def _unstable_period(system: SwitchedSystem, item: UnstablePeriod) -> bool:
+    modes = {mode.name: _floats(mode.A.fractions()) for mode in system.modes}
+    product_ = np.eye(system.order)
+    for name, dwell in item.steps:
+        if system.time is Time.CONTINUOUS:
+            product_ = exponential(modes[name] * float(dwell)) @ product_
+        else:
+            product_ = np.linalg.matrix_power(modes[name], int(dwell)) @ product_
+    return bool(np.abs(np.linalg.eigvals(product_)).max() > 1 - 1e-9)
+
+
+def _block_triangular(system: SwitchedSystem, item: BlockTriangular) -> bool:
+    order = [state for block in item.blocks for state in block]
+    if sorted(order) != list(range(system.order)):
+        return False
+    where = {state: k for k, block in enumerate(item.blocks) for state in block}
+    for mode in system.modes:
+        for i, j in product(range(system.order), repeat=2):
+            if where[i] > where[j] and mode.A.numerators[i][j] != 0:
+                return False
+    covered = {k for k, _ in item.parts}
+    complete = covered == set(range(len(item.blocks))) or str(item.shows) != "stability"
+    return complete and all(
+        holds(restrict(system, item.blocks[k]), part) for k, part in item.parts
+    )
+
+
+def restrict(system: SwitchedSystem, block: tuple[int, ...]) -> SwitchedSystem:
+    """Return the family of one diagonal block."""
+    modes = tuple(
+        Mode(
+            mode.name,
+            RationalMatrix.from_rows([[mode.A.fractions()[i][j] for j in block] for i in block]),
+        )
+        for mode in system.modes
+    )
+    return replace(system, states=tuple(system.states[i] for i in block), modes=modes)
+
+
+_ORACLES = {
+    CommonQuadratic: _common_quadratic,
+    CommonPolynomial: _common_polynomial,
+    NoCommonQuadratic: _no_common_quadratic,
+    ParameterQuadratic: _parameter_quadratic,
+    ModeQuadratic: _mode_quadratic,
+    UnstableMode: _unstable_mode,
+    UnstableMixture: _unstable_mixture,
+    UnstablePeriod: _unstable_period,
+    BlockTriangular: _block_triangular,
+}

@@ -173,9 +173,8 @@ def _print_dwell(dwell: DwellMargin | None) -> None:
         print("  shortest dwell time: none was proved")
         return
     below = f"; {float(dwell.refuted):.6g} s is refuted" if dwell.refuted is not None else ""
-    print(
-        f"  shortest dwell time: {float(dwell.proved):.6g} s is proved ({dwell.proof.method}){below}"
-    )
+    proved = f"{float(dwell.proved):.6g} s is proved ({dwell.proof.method})"
+    print(f"  shortest dwell time: {proved}{below}")
 
 
 def _print(result: Result, path: Path | None, *, quiet: bool, verbose: bool) -> None:

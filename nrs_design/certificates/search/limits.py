@@ -1,4 +1,4 @@
-"""The other side of a decay rate: what no proof can exceed (floating point, for people to judge)."""
+"""The other side of a decay rate: what no proof can exceed (floating point, for the reader)."""
 
 from __future__ import annotations
 

@@ -75,9 +75,7 @@ def shears(switching: Switching = ARBITRARY) -> SwitchedSystem:
 
 def degenerate_dual() -> SwitchedSystem:
     """Dayawansa and Martin at a = 6 beside a decoupled stable state."""
-    return family(
-        [[-1, 0, 0], [0, -1, -1], [0, 1, -1]], [[-1, 0, 0], [0, -1, -6], [0, "1/6", -1]]
-    )
+    return family([[-1, 0, 0], [0, -1, -1], [0, 1, -1]], [[-1, 0, 0], [0, -1, -6], [0, "1/6", -1]])
 
 
 def robot(Mt: str, contacts: Sequence[tuple[str, str]]) -> SwitchedSystem:
@@ -126,9 +124,7 @@ SYSTEMS = {
     "unstable-period": branicky,
     "unstable-period, discrete": lambda: golden("0.6181"),
     "mode-quadratic, dwell": lambda: geromel_colaneri("2.76"),
-    "mode-quadratic, one way": lambda: dayawansa_martin(
-        12, Switching(transitions=(("m0", "m1"),))
-    ),
+    "mode-quadratic, one way": lambda: dayawansa_martin(12, Switching(transitions=(("m0", "m1"),))),
     "mode-quadratic, rectangular": rectangular,
     "mode-quadratic, discrete": lambda: ando_shih("0.99"),
     "mode-quadratic, steps": slow_switching_in_steps,

@@ -1,4 +1,5 @@
 import json
+from dataclasses import replace
 from decimal import Decimal
 from fractions import Fraction
 
@@ -7,20 +8,81 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from nrs_design.certificates.certificate import (
-    CommonQuadratic,
-    UnstableMode,
-    claim,
+    SCHEMA,
+    CommonQuadraticStatus,
+    Verdict,
+    common_quadratic_of,
     content_id,
+    deciding,
     dump,
-    rate_text,
     to_document,
+    verdict_of,
 )
+from nrs_design.certificates.evidence import (
+    BlockTriangular,
+    CommonQuadratic,
+    ModeQuadratic,
+    NoCommonQuadratic,
+    UnstableMode,
+    UnstablePeriod,
+)
+from nrs_design.certificates.evidence.fields import rate_text
 from nrs_design.pipeline import run_certification
 from nrs_design.spec import read_spec
-from nrs_design.switched.system import Time
-from tests.support import COMMUTING, PRINT_ERROR, family
+from nrs_design.switched.system import Reset, Switching, Time
+from tests.support import COMMUTING, PRINT_ERROR, ROOT, family, matrix
 
 Q = ((1, 0), (0, 1))
+EXAMPLES = ROOT / "specs" / "examples"
+OBSTRUCTION = "no-common-quadratic"
+POLYNOMIAL = ["common-polynomial", OBSTRUCTION]
+PROOF = CommonQuadratic(Q, 0, Fraction(1, 2))
+IMPOSSIBLE = NoCommonQuadratic((("m0", ((1,), (0,))),))
+UNSTABLE = UnstableMode("m0", "1")
+PERIOD = UnstablePeriod((("m0", Fraction(1)), ("m1", Fraction(1))), 3)
+PER_MODE = ModeQuadratic((("m0", Q), ("m1", Q)), 0, Fraction(1, 2))
+BLOCKS = ((0,), (1,))
+EXISTS, NONE, UNKNOWN = (
+    CommonQuadraticStatus.EXISTS,
+    CommonQuadraticStatus.IMPOSSIBLE,
+    CommonQuadraticStatus.UNKNOWN,
+)
+
+
+@pytest.mark.parametrize(
+    ("statements", "verdict", "status"),
+    [
+        ((), Verdict.INCONCLUSIVE, UNKNOWN),
+        ((PROOF,), Verdict.PROVED, EXISTS),
+        ((IMPOSSIBLE,), Verdict.INCONCLUSIVE, NONE),
+        ((UNSTABLE,), Verdict.REFUTED, NONE),
+        ((PERIOD,), Verdict.REFUTED, NONE),
+        ((PERIOD, IMPOSSIBLE), Verdict.REFUTED, NONE),
+        ((PER_MODE,), Verdict.PROVED, UNKNOWN),
+        ((PER_MODE, IMPOSSIBLE), Verdict.PROVED, NONE),
+        ((IMPOSSIBLE, PER_MODE), Verdict.PROVED, NONE),
+        ((BlockTriangular(BLOCKS, ((0, PROOF), (1, PROOF))),), Verdict.PROVED, EXISTS),
+        ((BlockTriangular(BLOCKS, ((0, PROOF), (1, PER_MODE))),), Verdict.PROVED, UNKNOWN),
+        ((BlockTriangular(BLOCKS, ((1, UNSTABLE),)),), Verdict.REFUTED, NONE),
+        ((BlockTriangular(BLOCKS, ((1, IMPOSSIBLE),)),), Verdict.INCONCLUSIVE, NONE),
+    ],
+)
+def test_what_statements_say_together(statements, verdict, status):
+    system = family([[-1, 0], [0, -1]], [[-2, 0], [0, -2]])
+    assert verdict_of(statements) is verdict
+    assert common_quadratic_of(system, statements) is status
+    decisive = deciding(statements)
+    assert (decisive is None) == (verdict is Verdict.INCONCLUSIVE)
+    assert decisive is None or decisive in statements
+
+
+def test_growth_through_resets_says_nothing_about_quadratic_functions():
+    """Both modes may share a function that only the resets raise."""
+    doubling = Reset("m0", "m1", matrix([[2, 0], [0, 2]]))
+    system = family([[-1, 0], [0, -1]], [[-2, 0], [0, -2]])
+    system = replace(system, switching=Switching(resets=(doubling,)))
+    assert common_quadratic_of(system, (PERIOD,)) is UNKNOWN
+    assert common_quadratic_of(system, (UNSTABLE,)) is NONE
 
 
 @given(st.fractions(min_value=Fraction(1, 10**12), max_value=10**12))
@@ -41,22 +103,33 @@ def test_rates_of_any_size_have_a_text(rate):
 def test_claims_in_words():
     system = family([[-1, 0], [0, -1]], [[-2, 0], [0, -2]])
     evidence = CommonQuadratic(Q, 0, Fraction(2, 3))
-    assert claim(system, evidence) == (
+    assert evidence.claim(system) == (
         "Every solution of x' = A x, switching arbitrarily among the 2 modes, satisfies "
         "|x(t)| <= exp(-alpha t) |x(0)| with alpha = 0.666666 1/s, in the norm "
         "|x| = sqrt(x' Q x)."
     )
     discrete = family([[0, 0], [0, 0]], time=Time.DISCRETE)
-    assert "its one mode" in claim(discrete, evidence)
-    assert "rho^t |x(0)| with rho = 0.666667," in claim(discrete, evidence)
-    assert "not Hurwitz (eigenvalue 0 +- 1j)" in claim(system, UnstableMode("m0", "0 +- 1j"))
-    assert "not Schur" in claim(discrete, UnstableMode("m0", "1"))
+    assert "its one mode" in evidence.claim(discrete)
+    assert "rho^t |x(0)| with rho = 0.666667," in evidence.claim(discrete)
+    assert "not Hurwitz (eigenvalue 0 +- 1j)" in UnstableMode("m0", "0 +- 1j").claim(system)
+    assert "not Schur" in UnstableMode("m0", "1").claim(discrete)
 
 
-@pytest.mark.parametrize(("path", "verdict"), [(COMMUTING, "proved"), (PRINT_ERROR, "refuted")])
-def test_file_and_id(path, verdict):
+@pytest.mark.parametrize(
+    ("path", "verdict", "kinds"),
+    [
+        (COMMUTING, "proved", ["common-quadratic"]),
+        (PRINT_ERROR, "refuted", ["unstable-mode"]),
+        (EXAMPLES / "dayawansa-martin-6.nrs.yaml", "proved", POLYNOMIAL),
+        (EXAMPLES / "geromel-colaneri.nrs.yaml", "proved", ["mode-quadratic", OBSTRUCTION]),
+    ],
+)
+def test_file_and_id(path, verdict, kinds):
     certificate = run_certification(read_spec(path)).certificate
     document = json.loads(dump(certificate))
+    assert document["schema"] == SCHEMA == "nrs-design/certificate/2"
+    assert [item["kind"] for item in document["statements"]] == kinds
+    assert certificate.evidence is certificate.statements[0]
     assert document["verdict"] == certificate.verdict == verdict
     assert document["id"] == certificate.id == content_id(document)
     assert {k: v for k, v in document.items() if k != "id"} == to_document(certificate)

@@ -3,24 +3,26 @@
 The verdict may be inconclusive where numbers are extreme. It may never be wrong.
 """
 
+from dataclasses import replace
 from fractions import Fraction
 
 import numpy as np
 import pytest
 
-from nrs_design.certificates import lmi, steps
-from nrs_design.certificates.certificate import CommonQuadratic, UnstableMode
 from nrs_design.certificates.certify import (
     CommonQuadraticStatus,
+    Limits,
     Method,
     Verdict,
     certify,
 )
-from nrs_design.certificates.gradient import GradientResult
+from nrs_design.certificates.evidence import CommonQuadratic, Shows
+from nrs_design.certificates.search import lmi, rungs
+from nrs_design.certificates.search.gradient import GradientResult
 from nrs_design.errors import DesignError, InternalError
 from nrs_design.pipeline import run_certification
 from nrs_design.spec import read_spec
-from nrs_design.switched.system import Time
+from nrs_design.switched.system import Switching, Time
 from tests.support import ROOT, dayawansa_martin, family, holds, is_stable_by_lyapunov
 
 ROTATION = [[0, 1], [-1, 0]]
@@ -29,22 +31,41 @@ STABLE = dayawansa_martin(5)
 MARGINAL = family([[-1, 0], [0, -1]], ROTATION)
 UNSTABLE = family([[-1, 0], [0, -1]], [[1, 0], [0, -1]])
 NOT_QUADRATIC = dayawansa_martin(6)
+SHEARS = family([[-1, 10], [0, -1]], [[-1, 0], [10, -1]])
+SLOW = replace(dayawansa_martin(12), switching=Switching(dwell_time=Fraction(10)))
+CONSTANT = replace(dayawansa_martin(12), switching=Switching(fixed_ends=(("m0", "m1"),)))
+DISCRETE = family([["1/2", 1], [0, "1/2"]], [["1/2", 0], [0, "-1/2"]], time=Time.DISCRETE)
+UNSTABLE_BLOCK = [[-1, 0, 0], [0, -1, 0], [0, 0, 1]]
 
 
-def settle(system, **options):
-    """Certify, and hold the evidence against the definition in fractions."""
-    result = certify(system, **options)
-    if result.verdict is Verdict.PROVED:
-        assert result.common_quadratic is CommonQuadraticStatus.EXISTS
-        assert isinstance(result.evidence, CommonQuadratic)
-    elif result.verdict is Verdict.REFUTED:
+ANY_RATE = Limits(optimize_rate=False)
+# What every result must say of itself, whatever it is.
+SHOWN = {Shows.STABILITY: Verdict.PROVED, Shows.INSTABILITY: Verdict.REFUTED}
+
+
+def settle(system, method=Method.AUTO, limits=None):
+    """Certify, and hold every statement against its definition."""
+    result = certify(system, method, limits)
+    assert all(holds(system, statement) for statement in result.statements)
+    shown = {statement.shows for statement in result.statements}
+    assert not {Shows.STABILITY, Shows.INSTABILITY} <= shown
+    verdicts = [SHOWN[kind] for kind in shown if kind in SHOWN]
+    assert result.verdict is (verdicts[0] if verdicts else Verdict.INCONCLUSIVE)
+    assert (result.evidence is None) == (result.verdict is Verdict.INCONCLUSIVE)
+    if result.common_quadratic is CommonQuadraticStatus.EXISTS:
+        assert result.verdict is Verdict.PROVED
+        assert Shows.NO_COMMON_QUADRATIC not in shown
+    if result.verdict is Verdict.REFUTED:
         assert result.common_quadratic is CommonQuadraticStatus.IMPOSSIBLE
-        assert isinstance(result.evidence, UnstableMode)
-    else:
-        assert result.common_quadratic is CommonQuadraticStatus.UNKNOWN
-        assert result.evidence is None
-    assert result.evidence is None or holds(system, result.evidence)
+    if isinstance(result.evidence, CommonQuadratic):
+        assert result.common_quadratic is CommonQuadraticStatus.EXISTS
     return result
+
+
+def outcome(system, method=Method.AUTO, limits=None):
+    """Return the verdict, and whether a common quadratic function exists."""
+    result = settle(system, method, limits)
+    return str(result.verdict), str(result.common_quadratic)
 
 
 class TestNearTheThreshold:
@@ -52,11 +73,22 @@ class TestNearTheThreshold:
 
     @pytest.mark.parametrize("a", ["1", "3", "5", "5.8", "5.82", "5.828", "5.8284"])
     def test_proved_below(self, a):
-        assert settle(dayawansa_martin(a), optimize_rate=False).verdict is Verdict.PROVED
+        assert outcome(dayawansa_martin(a), limits=ANY_RATE) == ("proved", "exists")
 
-    @pytest.mark.parametrize("a", ["5.8285", "5.829", "5.83", "6", "12"])
-    def test_not_proved_above(self, a):
-        assert settle(dayawansa_martin(a)).verdict is Verdict.INCONCLUSIVE
+    @pytest.mark.parametrize("a", ["5.8285", "5.829", "5.83", "6", "8", "10"])
+    def test_no_quadratic_function_above(self, a):
+        assert outcome(dayawansa_martin(a)) == ("proved", "impossible")
+        for method in (Method.LMI, Method.GRADIENT):
+            assert outcome(dayawansa_martin(a), method) == ("inconclusive", "unknown")
+
+    @pytest.mark.parametrize("a", ["11.262", "12", "100"])
+    def test_refuted_beyond_the_limit_of_stability(self, a):
+        """Stable iff a < 11.2608..."""
+        assert outcome(dayawansa_martin(a)) == ("refuted", "impossible")
+
+    @pytest.mark.parametrize("a", ["11", "11.26"])
+    def test_never_wrong_just_below_it(self, a):
+        assert settle(dayawansa_martin(a)).verdict is not Verdict.REFUTED
 
     def test_best_rate_is_safe_and_close(self):
         """With A + alpha I in place of A, a = 5 stays quadratic up to alpha about 0.10557."""
@@ -113,12 +145,13 @@ class TestModes:
         ],
     )
     def test_one_state_one_mode(self, A, time, verdict, optimize_rate):
-        assert settle(family([[A]], time=time), optimize_rate=optimize_rate).verdict is verdict
+        limits = Limits(optimize_rate=optimize_rate)
+        assert settle(family([[A]], time=time), limits=limits).verdict is verdict
 
     @pytest.mark.parametrize("optimize_rate", [True, False])
     @pytest.mark.parametrize("A", [[[0, 0], [0, 0]], [[0, 1], [0, 0]], [["1/2", 5], [0, "-1/2"]]])
     def test_dead_beat_and_defective_modes(self, A, optimize_rate):
-        result = settle(family(A, time=Time.DISCRETE), optimize_rate=optimize_rate)
+        result = settle(family(A, time=Time.DISCRETE), limits=Limits(optimize_rate=optimize_rate))
         assert result.verdict is Verdict.PROVED
 
     def test_identical_modes(self):
@@ -135,7 +168,7 @@ class TestModes:
             ]
             for A in generator.integers(-40, 40, (300, 5, 5))
         ]
-        assert settle(family(*matrices), optimize_rate=False).verdict is Verdict.PROVED
+        assert settle(family(*matrices), limits=ANY_RATE).verdict is Verdict.PROVED
 
     def test_many_modes_with_one_bad_one(self):
         matrices = [[[-1, Fraction(i, 300)], [0, -1]] for i in range(300)]
@@ -145,7 +178,7 @@ class TestModes:
     def test_many_states(self):
         A = [[-2 if i == j else int(j == i + 1) for j in range(20)] for i in range(20)]
         B = [list(column) for column in zip(*A, strict=True)]
-        assert settle(family(A, B), optimize_rate=False).verdict is Verdict.PROVED
+        assert settle(family(A, B), limits=ANY_RATE).verdict is Verdict.PROVED
 
 
 class TestScales:
@@ -157,7 +190,8 @@ class TestScales:
         assert result.verdict is Verdict.PROVED
         assert 0.105 < result.evidence.rate / Fraction(scale) < 0.1056
         above = settle(dayawansa_martin(6, Fraction(scale)))
-        assert above.verdict is Verdict.INCONCLUSIVE
+        assert above.verdict is Verdict.PROVED
+        assert above.common_quadratic is CommonQuadraticStatus.IMPOSSIBLE
 
     @pytest.mark.parametrize("scale", ["1e-100", "1e-5", "1e5", "1e100"])
     def test_units_of_the_states(self, scale):
@@ -184,7 +218,7 @@ class TestScales:
             [[[Fraction(1, 2), s], [s, Fraction(1, 2)]]],
             [[[0, s], [0, 0]], [[0, 0], [s, 0]]],
         ):
-            settle(family(*matrices, time=time), optimize_rate=False)
+            settle(family(*matrices, time=time), limits=ANY_RATE)
 
     def test_beyond_floating_point(self):
         huge = 10**400
@@ -199,7 +233,7 @@ class TestMethods:
     )
     def test_gradient_and_lmi_agree_where_it_is_easy(self, system):
         for method in (Method.GRADIENT, Method.LMI, Method.AUTO):
-            assert settle(system, method=method).verdict is Verdict.PROVED
+            assert settle(system, method).verdict is Verdict.PROVED
 
     def test_gradient_proves_the_robot(self):
         loaded = read_spec(ROOT / "specs" / "neuroboscope" / "soft-tissue.nrs.yaml")
@@ -208,21 +242,102 @@ class TestMethods:
         assert result.certification.method == "gradient"
 
     def test_gradient_gives_up(self):
-        result = settle(NOT_QUADRATIC, method=Method.GRADIENT)
+        result = settle(NOT_QUADRATIC, Method.GRADIENT)
         assert result.verdict is Verdict.INCONCLUSIVE
         assert any("not converged" in attempt.outcome for attempt in result.attempts)
 
     def test_gradient_is_refused_in_discrete_time(self):
-        with pytest.raises(DesignError, match="continuous") as caught:
+        with pytest.raises(DesignError, match="gradient does not apply") as caught:
             certify(family([["1/2"]], time=Time.DISCRETE), Method.GRADIENT)
-        assert caught.value.remedy == "use --method lmi"
+        assert caught.value.remedy == "use --method auto"
 
     def test_steps_are_told_and_timed(self):
         told = []
-        result = certify(NOT_QUADRATIC, progress=told.append)
-        assert told == ["suspicious modes", "lmi", "gradient", "every mode"]
+        result = certify(dayawansa_martin(12), progress=told.append)
+        assert told == [
+            "suspicious modes",
+            "lmi",
+            "obstruction",
+            "every mode",
+            "mixture",
+            "polynomial of degree 4",
+            "polynomial of degree 6",
+            "period",
+        ]
         assert [attempt.step for attempt in result.attempts] == told
         assert all(attempt.seconds >= 0 for attempt in result.attempts)
+
+    @pytest.mark.parametrize(
+        ("method", "system", "expected"),
+        [
+            (Method.LMI, STABLE, ("proved", "exists")),
+            (Method.GRADIENT, STABLE, ("proved", "exists")),
+            (Method.OBSTRUCTION, STABLE, ("inconclusive", "unknown")),
+            (Method.OBSTRUCTION, NOT_QUADRATIC, ("inconclusive", "impossible")),
+            (Method.POLYNOMIAL, NOT_QUADRATIC, ("proved", "unknown")),
+            (Method.PERIOD, NOT_QUADRATIC, ("inconclusive", "unknown")),
+            (Method.PERIOD, dayawansa_martin(12), ("refuted", "impossible")),
+            (Method.MIXTURE, dayawansa_martin(12), ("inconclusive", "unknown")),
+            (Method.MIXTURE, SHEARS, ("refuted", "impossible")),
+            (Method.MODE_QUADRATIC, SLOW, ("proved", "unknown")),
+            (Method.PARAMETER_QUADRATIC, CONSTANT, ("proved", "unknown")),
+            (Method.AUTO, SLOW, ("proved", "impossible")),
+            (Method.AUTO, CONSTANT, ("proved", "impossible")),
+        ],
+    )
+    def test_every_rung_alone(self, method, system, expected):
+        assert outcome(system, method) == expected
+
+    @pytest.mark.parametrize("method", list(Method))
+    def test_an_unstable_mode_is_found_whatever_was_asked_for(self, method):
+        bad = replace(
+            UNSTABLE,
+            switching=CONSTANT.switching
+            if method is Method.PARAMETER_QUADRATIC
+            else UNSTABLE.switching,
+        )
+        assert outcome(bad, method) == ("refuted", "impossible")
+
+    @pytest.mark.parametrize(
+        ("method", "system"),
+        [
+            (Method.PARAMETER_QUADRATIC, STABLE),
+            (Method.MIXTURE, SLOW),
+            (Method.GRADIENT, DISCRETE),
+            (Method.MIXTURE, DISCRETE),
+        ],
+    )
+    def test_rungs_that_do_not_apply_are_refused(self, method, system):
+        with pytest.raises(DesignError, match="does not apply"):
+            certify(system, method)
+
+    def test_highest_degree(self):
+        """a = 10 needs degree 8."""
+        result = settle(dayawansa_martin(10), limits=Limits(max_degree=6))
+        assert (result.verdict, result.common_quadratic) == ("inconclusive", "impossible")
+        assert not any("degree 8" in attempt.step for attempt in result.attempts)
+        assert settle(dayawansa_martin(10), limits=Limits(max_degree=8)).evidence.degree == 4
+
+    def test_no_rung_is_begun_when_the_budget_is_used_up(self):
+        result = settle(dayawansa_martin(10), limits=Limits(budget=0.0))
+        assert result.verdict is Verdict.INCONCLUSIVE
+        assert "budget" in result.attempts[-1].outcome
+        assert len(result.attempts) < 3
+
+    def test_equal_modes_and_blocks_change_nothing(self):
+        """Two copies of each mode, beside a state that decays by itself."""
+        blocks = [
+            [[*row, 0] for row in mode.A.fractions()] + [[0, 0, -1]] for mode in NOT_QUADRATIC.modes
+        ]
+        assert outcome(family(*blocks, *blocks)) == ("proved", "impossible")
+        assert outcome(family(*blocks, *blocks, UNSTABLE_BLOCK)) == ("refuted", "impossible")
+
+    def test_rate_limit_is_never_beaten(self):
+        for system in (STABLE, NOT_QUADRATIC, DISCRETE):
+            result = settle(system)
+            rate = result.evidence.proved_rate(system)
+            better = rate <= result.rate_limit
+            assert better if system.time is Time.CONTINUOUS else rate >= result.rate_limit
 
 
 LIES = {
@@ -244,7 +359,9 @@ LIES = {
 }
 SYSTEMS = {
     "stable": (STABLE, {Verdict.PROVED, Verdict.INCONCLUSIVE}),
-    "not quadratic": (NOT_QUADRATIC, {Verdict.INCONCLUSIVE}),
+    # The lie is about quadratic functions; what follows on the ladder is honest.
+    "not quadratic": (NOT_QUADRATIC, {Verdict.PROVED}),
+    "grows": (dayawansa_martin(12), {Verdict.REFUTED}),
     "marginal": (MARGINAL, {Verdict.REFUTED}),
     "unstable": (UNSTABLE, {Verdict.REFUTED}),
     "antistable": (family([[1, 0], [0, 1]]), {Verdict.REFUTED}),
@@ -265,9 +382,11 @@ class TestLyingSolvers:
     @pytest.fixture(autouse=True)
     def _only_the_lie(self, monkeypatch):
         monkeypatch.setattr(
-            steps, "_seems_stable", lambda family: np.ones(len(family.matrices), bool)
+            rungs, "_seems_stable", lambda family: np.ones(len(family.matrices), bool)
         )
-        monkeypatch.setattr(steps, "iterate_gradient", lambda matrices: GradientResult(None, 0))
+        monkeypatch.setattr(
+            rungs, "iterate_gradient", lambda matrices, **options: GradientResult(None, 0)
+        )
 
     def test_the_solver(self, monkeypatch, lie, name):
         monkeypatch.setattr(lmi, "_solve", lambda matrices, *rest: LIES[lie](matrices.shape[1]))
@@ -277,36 +396,50 @@ class TestLyingSolvers:
         def answer(matrices, *rest):
             return LIES[lie](matrices.shape[1])
 
-        monkeypatch.setattr(steps, "find_common_quadratic", answer)
-        monkeypatch.setattr("nrs_design.certificates.decay.find_common_quadratic", answer)
+        monkeypatch.setattr(rungs, "find_common_quadratic", answer)
+        monkeypatch.setattr("nrs_design.certificates.search.decay.find_common_quadratic", answer)
         self.never_wrong(name)
 
     def test_the_gradient(self, monkeypatch, lie, name):
-        def answer(matrices):
+        def answer(matrices, **options):
             return GradientResult(LIES[lie](matrices.shape[1]), 1)
 
-        monkeypatch.setattr(steps, "iterate_gradient", answer)
-        monkeypatch.setattr(steps, "find_common_quadratic", lambda *arguments: None)
+        monkeypatch.setattr(rungs, "iterate_gradient", answer)
+        monkeypatch.setattr(rungs, "find_common_quadratic", lambda *arguments: None)
         self.never_wrong(name)
+
+    def test_every_semidefinite_program(self, monkeypatch, lie, name):
+        """The same lie wherever the solver is called, and only there."""
+
+        def answer(rows, offset, sizes, equalities=0):
+            length = rows.shape[1]
+            return np.resize(LIES[lie](2).ravel(), length)
+
+        for module in ("lmi", "obstruction", "polynomial", "mode_quadratic"):
+            monkeypatch.setattr(f"nrs_design.certificates.search.{module}.maximize_margin", answer)
+        system, allowed = SYSTEMS[name]
+        for limits in (Limits(), ANY_RATE):
+            assert settle(system, limits=limits).verdict in allowed | {Verdict.INCONCLUSIVE}
 
     def never_wrong(self, name):
         system, allowed = SYSTEMS[name]
-        for optimize_rate in (True, False):
-            assert settle(system, optimize_rate=optimize_rate).verdict in allowed
+        for limits in (Limits(), ANY_RATE):
+            assert settle(system, limits=limits).verdict in allowed
 
 
 def test_slightly_wrong_answers_do_not_pass(monkeypatch):
     """A Q for a = 5.82 is not one for a = 5.9, however near."""
-    below = certify(dayawansa_martin("5.82"), optimize_rate=False).evidence
+    below = certify(dayawansa_martin("5.82"), limits=ANY_RATE).evidence
     Q = np.array(below.Q, dtype=float)
     monkeypatch.setattr(lmi, "_solve", lambda matrices, time, rate: Q)
-    assert settle(dayawansa_martin("5.9")).verdict is Verdict.INCONCLUSIVE
+    assert settle(dayawansa_martin("5.9"), Method.LMI).verdict is Verdict.INCONCLUSIVE
+    assert outcome(dayawansa_martin("5.9")) == ("proved", "impossible")
 
 
-def test_a_wrong_check_is_vetoed(monkeypatch):
+def test_a_wrong_check_is_stopped(monkeypatch):
     """If the trusted check accepted anything, flint would still stop a wrong proof."""
-    monkeypatch.setattr("nrs_design.certificates.rounding.find_fault", lambda *arguments: None)
-    monkeypatch.setattr(steps, "find_common_quadratic", lambda *arguments: np.eye(2))
-    monkeypatch.setattr(steps, "rate_of", lambda *arguments: 0.5)
+    monkeypatch.setattr(CommonQuadratic, "find_fault", lambda self, system: None)
+    monkeypatch.setattr(rungs, "find_common_quadratic", lambda *arguments: np.eye(2))
+    monkeypatch.setattr(rungs, "rate_of", lambda *arguments: 0.5)
     with pytest.raises(InternalError):
-        certify(NOT_QUADRATIC, optimize_rate=False)
+        certify(NOT_QUADRATIC, limits=ANY_RATE)

@@ -94,5 +94,5 @@ def test_the_smallest_form_that_vanishes():
 
 
 def test_forms_of_another_size_are_an_error():
-    with pytest.raises(ValueError, match="shorter|longer"):
+    with pytest.raises(ValueError, match=r"shorter|longer"):
         vanishes([[0, 0], [0, 0]], 2, 2)

@@ -1,6 +1,6 @@
 """Decisions about semidefinite matrices, far from and exactly on the boundary."""
 
-from time import perf_counter
+from time import process_time
 
 import numpy as np
 import pytest
@@ -100,9 +100,9 @@ def test_what_is_not_symmetric_is_an_error(M):
 def test_numbers_stay_small_over_the_whole_elimination():
     n = 24
     M = congruence([[(i * j) % 17 - 8 for j in range(n)] for i in range(n)], identity(n))
-    start = perf_counter()
+    start = process_time()
     assert is_positive_semidefinite(M)
-    assert perf_counter() - start < 2
+    assert process_time() - start < 2
 
 
 def test_only_what_would_take_minutes_is_too_large():

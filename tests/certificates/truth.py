@@ -48,7 +48,7 @@ def combine(*terms: tuple[Fraction | int, Rows]) -> Rows:
 def is_definite(M: Rows, *, strictly: bool = True) -> bool:
     """Gaussian elimination in fractions; singular matrices by all their principal minors."""
     M = [list(row) for row in M]
-    if any(len(row) != len(M) for row in M) or M != transpose(M):
+    if any(len(row) != len(M) for row in M) or transpose(M) != M:
         return False
     if strictly:
         return all(determinant([row[:k] for row in M[:k]]) > 0 for k in range(1, len(M) + 1))
@@ -83,7 +83,7 @@ def decrease(A: Rows, Q: Rows, rate: Fraction, time: Time) -> Rows:
 
 
 def is_rate(rate: Fraction, time: Time) -> bool:
-    return 0 < rate and (time is Time.CONTINUOUS or rate < 1)
+    return rate > 0 and (time is Time.CONTINUOUS or rate < 1)
 
 
 def holds(system: SwitchedSystem, evidence: AbstractEvidence) -> bool:
@@ -317,9 +317,7 @@ def _block_triangular(system: SwitchedSystem, item: BlockTriangular) -> bool:
                 return False
     covered = {k for k, _ in item.parts}
     complete = covered == set(range(len(item.blocks))) or str(item.shows) != "stability"
-    return complete and all(
-        holds(restrict(system, item.blocks[k]), part) for k, part in item.parts
-    )
+    return complete and all(holds(restrict(system, item.blocks[k]), part) for k, part in item.parts)
 
 
 def restrict(system: SwitchedSystem, block: tuple[int, ...]) -> SwitchedSystem:

@@ -12,14 +12,15 @@ from nrs_design.errors import OutputError
 ROOT = Path(__file__).parents[2]
 COMMUTING = str(ROOT / "specs/examples/commuting.nrs.yaml")
 PRINT_ERROR = str(ROOT / "docs/examples/thesis-print-error.nrs.yaml")
+# Geromel and Colaneri (2006), between what is known to be unstable and what can be proved.
 INCONCLUSIVE = """\
 kind: switched-system
-name: no-quadratic
+name: short-dwell
 time: continuous
 modes:
-  - {name: a, A: [[-1, -1], [1, -1]]}
-  - {name: b, A: [[-1, -7], ["1/7", -1]]}
-switching: arbitrary
+  - {name: a, A: [[0, 1], [-10, -1]]}
+  - {name: b, A: [[0, 1], ["-1/10", "-1/2"]]}
+switching: {dwell_time: 2.72 s}
 """
 
 
@@ -61,11 +62,17 @@ def test_refuted_still_gets_its_report(tmp_path):
 
 
 def test_inconclusive_exits_with_three(tmp_path):
-    spec = tmp_path / "no-quadratic.nrs.yaml"
+    spec = tmp_path / "short-dwell.nrs.yaml"
     spec.write_text(INCONCLUSIVE)
     done = run(str(spec), "--out", str(tmp_path / "r.html"), "-q")
     assert done.exit_code == 3
     assert done.stderr == ""
+
+
+def test_times_are_shown_on_demand(tmp_path):
+    for options, shown in ((), False), (("--times",), True):
+        assert run(COMMUTING, "--out", str(tmp_path / "r.html"), *options).exit_code == 0
+        assert ("Time [ms]" in (tmp_path / "r.html").read_text()) is shown
 
 
 def test_unwritable_place_is_an_output_error(tmp_path):

@@ -4,15 +4,17 @@ systems", IEEE Transactions on Automatic Control 43(4), 1998.
 Two Hurwitz modes that are unstable under some switching.
 """
 
-from nrs_design.certificates.check import is_stable
+from nrs_design.certificates.evidence.unstable_mode import is_stable
 
-from .known import known, never_contradict
+from .known import known, settle
 
 
-def test_switching_between_the_two_is_not_called_stable():
-    never_contradict("branicky")
+def test_switching_between_the_two_is_refuted_by_a_periodic_signal():
+    evidence = settle("branicky").evidence
+    assert evidence.kind == "unstable-period"
+    assert {name for name, _ in evidence.steps} == {"m0", "m1"}
 
 
 def test_each_mode_alone_is_hurwitz():
     system = known("branicky").system
-    assert all(is_stable(mode, system.time) for mode in system.modes)
+    assert all(is_stable(mode.A, system.time) for mode in system.modes)

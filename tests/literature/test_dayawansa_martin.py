@@ -7,29 +7,58 @@ a < 3 + 2 sqrt(2) = 5.8284..., and is stable under arbitrary switching iff a < 1
 
 import pytest
 
-from nrs_design.certificates.certify import certify
+from nrs_design.certificates.certify import Limits, Method, certify
 
-from .known import given, never_contradict, settle
+from .known import given, known, settle
+
+
+def pair(a: str):
+    """Return the pair for a fraction."""
+    numerator, _, denominator = a.partition("/")
+    inverse = f"{denominator or 1}/{numerator}"
+    return given("pair", [[["-1", "-1"], ["1", "-1"]], [["-1", f"-{a}"], [inverse, "-1"]]])
 
 
 def test_quadratic_below_the_threshold():
     settle("dayawansa-martin-5")
 
 
-@pytest.mark.parametrize("name", ["dayawansa-martin-6", "dayawansa-martin-12"])
-def test_nothing_wrong_above_the_threshold(name):
-    never_contradict(name)
+def test_stable_without_a_quadratic_function():
+    evidence = settle("dayawansa-martin-6").evidence
+    assert 2 * evidence.degree == known("dayawansa-martin-6").degree
+
+
+def test_unstable_beyond_the_limit():
+    assert settle("dayawansa-martin-12").evidence.kind == "unstable-period"
 
 
 @pytest.mark.parametrize("tenths", range(10, 58, 8))
 def test_proved_over_the_quadratic_range(tenths):
-    matrices = [[["-1", "-1"], ["1", "-1"]], [["-1", f"-{tenths}/10"], [f"10/{tenths}", "-1"]]]
-    assert certify(given("pair", matrices), optimize_rate=False).verdict == "proved"
+    found = certify(pair(f"{tenths}/10"), limits=Limits(optimize_rate=False))
+    assert (found.verdict, found.common_quadratic) == ("proved", "exists")
 
 
-def test_never_quadratic_just_above_the_threshold():
+def test_quadratic_up_to_the_threshold_and_not_beyond():
     # 3 + 2 sqrt(2) lies between 5828/1000 and 5829/1000.
-    matrices = [[["-1", "-1"], ["1", "-1"]], [["-1", "-5829/1000"], ["1000/5829", "-1"]]]
-    found = certify(given("pair", matrices))
-    assert found.common_quadratic != "exists"
-    assert found.verdict != "refuted"
+    below, above = certify(pair("5828/1000")), certify(pair("5829/1000"))
+    assert (below.verdict, below.common_quadratic) == ("proved", "exists")
+    assert (above.verdict, above.common_quadratic) == ("proved", "impossible")
+
+
+@pytest.mark.parametrize(("a", "degree"), [("8", 4), ("9", 4), ("10", 8)])
+def test_higher_degrees_reach_further(a, degree):
+    found = certify(pair(a))
+    assert (found.verdict, found.common_quadratic) == ("proved", "impossible")
+    assert 2 * found.evidence.degree == degree
+
+
+@pytest.mark.parametrize("a", ["11262/1000", "113/10", "50"])
+def test_refuted_beyond_the_limit(a):
+    found = certify(pair(a))
+    assert (found.verdict, found.common_quadratic) == ("refuted", "impossible")
+
+
+@pytest.mark.parametrize("a", ["112/10", "1126/100"])
+def test_never_refuted_below_the_limit(a):
+    """The signal with the largest growth is found by search, and must not grow too early."""
+    assert certify(pair(a), Method.PERIOD).verdict == "inconclusive"

@@ -4,14 +4,14 @@ The block has no common quadratic function, so the whole has none; but no dual c
 strict in the decoupled coordinate.
 """
 
-from .known import known, never_contradict
+from .known import known, settle
 
 
 def test_a_decoupled_state_changes_nothing():
-    assert (
-        never_contradict("degenerate-dual").verdict
-        == never_contradict("dayawansa-martin-6").verdict
-    )
+    whole, block = settle("degenerate-dual"), settle("dayawansa-martin-6")
+    assert whole.evidence.kind == "block-triangular"
+    degrees = [part.degree for _, part in whole.evidence.parts if hasattr(part, "degree")]
+    assert degrees == [block.evidence.degree]
 
 
 def test_the_block_is_that_of_dayawansa_and_martin():

@@ -6,7 +6,7 @@ radius (reached by alternating), and a quadratic norm shows it. Its inverse is 0
 
 from math import sqrt
 
-from .known import never_contradict, settle
+from .known import settle
 
 
 def test_scaled_below_the_inverse_of_the_golden_ratio():
@@ -14,5 +14,7 @@ def test_scaled_below_the_inverse_of_the_golden_ratio():
     assert 0.618 * (1 + sqrt(5)) / 2 <= rate < 1
 
 
-def test_scaled_above_it_is_never_called_stable():
-    never_contradict("golden-0.6181")
+def test_scaled_above_it_grows_by_alternating():
+    steps = settle("golden-0.6181").evidence.steps
+    assert [dwell for _, dwell in steps] == [1] * len(steps)
+    assert all(a != b for (a, _), (b, _) in zip(steps, steps[1:], strict=False))

@@ -7,9 +7,11 @@ shows stability up to kbar = 3.82; the true limit is 6.98513.
 
 from fractions import Fraction
 
-from nrs_design.certificates.certify import certify
+import pytest
 
-from .known import given, never_contradict, settle
+from nrs_design.certificates.certify import Limits, certify
+
+from .known import given, settle
 
 
 def oscillator(kbar):
@@ -21,12 +23,25 @@ def test_quadratic_up_to_the_published_bound():
     settle("oscillator-3.82")
 
 
-def test_nothing_wrong_beyond_the_limit_of_stability():
-    never_contradict("oscillator-7")
+def test_unstable_beyond_the_limit_of_stability():
+    settle("oscillator-7")
 
 
-def test_never_quadratic_just_above_the_circle_criterion():
+def test_not_quadratic_just_above_the_circle_criterion():
     # Re(1/(s^2 + s + 2)) >= -1/(1 + 2 sqrt(2)) on the axis, and 1 + 2 sqrt(2) < 3.829.
     found = certify(oscillator("3.829"))
-    assert found.common_quadratic != "exists"
-    assert found.verdict != "refuted"
+    assert (found.verdict, found.common_quadratic) == ("proved", "impossible")
+
+
+@pytest.mark.parametrize("kbar", ["5", "6"])
+def test_stable_between_the_two_bounds(kbar):
+    found = certify(oscillator(kbar))
+    assert (found.verdict, found.common_quadratic) == ("proved", "impossible")
+
+
+def test_limit_of_stability():
+    """The true limit is 6.98513: refuted just above, and nothing wrong just below."""
+    assert certify(oscillator("6.986")).verdict == "refuted"
+    below = certify(oscillator("6.985"), limits=Limits(max_degree=6))
+    assert below.verdict != "refuted"
+    assert below.common_quadratic == "impossible"

@@ -4,8 +4,15 @@ Hurwitz matrices that are all upper triangular share a quadratic Lyapunov functi
 taken diagonal.
 """
 
-from .known import settle
+from nrs_design.certificates.certify import Method, certify
+
+from .known import known, settle
 
 
 def test_triangular_family_is_proved():
-    settle("triangular")
+    assert settle("triangular").evidence.kind == "block-triangular"
+
+
+def test_a_quadratic_function_shows_it_in_one_piece():
+    found = certify(known("triangular").system, Method.LMI)
+    assert (found.verdict, found.common_quadratic) == ("proved", "exists")

@@ -8,22 +8,101 @@ from pathlib import Path
 import pytest
 
 from nrs_design.pipeline import run_certification, run_evidence
-from nrs_design.reporting import Report, build_report
+from nrs_design.reporting import Report, build_report, render_html
 from nrs_design.spec import read_spec
 
 ROOT = Path(__file__).parents[2]
 HOSTILE = """<script>alert(1)</script> & "it's" {{ 7*7 }} $x_1$ <b>bold</b>"""
 
-# Dayawansa and Martin (1999): above 3 + 2 sqrt 2 no common quadratic function exists.
-INCONCLUSIVE = """\
-kind: switched-system
-name: no-quadratic
+# Geromel and Colaneri (2006): proved from 2.751 s on, unstable up to 2.707 s.
+_DWELL = """\
 time: continuous
 modes:
-  - {name: a, A: [[-1, -1], [1, -1]]}
-  - {name: b, A: [[-1, -7], ["1/7", -1]]}
+  - {{name: a, A: [[0, 1], [-10, -1]]}}
+  - {{name: b, A: [[0, 1], ["-1/10", "-1/2"]]}}
+switching: {{dwell_time: {} s}}
+"""
+# Dayawansa and Martin (1999): no quadratic function above 5.83, unstable from 11.27 on.
+_PAIR = """\
+time: continuous
+modes:
+  - {{name: a, A: [[-1, -1], [1, -1]]}}
+  - {{name: b, A: [[-1, -{0}], ["1/{0}", -1]]}}
 switching: arbitrary
 """
+KINDS = {
+    "inconclusive": _DWELL.format("2.72"),
+    "dwell": _DWELL.format("2.76"),
+    "dwell-refuted": _DWELL.format("2.7"),
+    "polynomial": _PAIR.format(6),
+    "period": _PAIR.format(12),
+    # Two shears, whose mean has the eigenvalue 4.
+    "mixture": """\
+time: continuous
+modes:
+  - {name: a, A: [[-1, 10], [0, -1]]}
+  - {name: b, A: [[-1, 0], [10, -1]]}
+switching: arbitrary
+""",
+    "resets": """\
+time: continuous
+modes:
+  - {name: full, A: [[0, 1], [-3, -1]]}
+  - {name: slow, A: [[-1]]}
+resets:
+  - {from: full, to: slow, map: [["1/2", 0]]}
+  - {from: slow, to: full, map: [["1/2"], [0]]}
+switching: arbitrary
+""",
+    "unequal": """\
+time: continuous
+modes:
+  - {name: slow, A: [[-1]]}
+  - {name: full, A: [[0, 1], [-3, "0.1"]]}
+resets:
+  - {from: full, to: slow, map: [["1/2", 0]]}
+  - {from: slow, to: full, map: [["1/2"], [0]]}
+switching: arbitrary
+""",
+    # An oscillator whose stiffness is unknown, beyond the 6.98 up to which it may change.
+    "parameter": """\
+time: continuous
+parameters:
+  k: {nominal: 5, range: [0, 30], varies: false}
+modes:
+  - {name: m, A: [[0, 1], [-2 - k, -1]]}
+switching: arbitrary
+""",
+    "blocks": """\
+time: continuous
+modes:
+  - {name: a, A: [[-1, -1, 3, 0], [1, -1, 0, 1], [0, 0, -2, 1], [0, 0, 0, -1]]}
+  - {name: b, A: [[-1, -6, 0, 2], ["1/6", -1, 1, 0], [0, 0, -1, 0], [0, 0, 0, -3]]}
+switching: arbitrary
+""",
+    "blocks-refuted": """\
+time: continuous
+modes:
+  - {name: a, A: [[-1, -1, 3], [1, -1, 0], [0, 0, -2]]}
+  - {name: b, A: [[-1, -12, 0], ["1/12", -1, 1], [0, 0, -1]]}
+switching: arbitrary
+""",
+    "steps": """\
+time: discrete
+modes:
+  - {name: a, A: [["0.5", 1], [0, "0.5"]]}
+  - {name: b, A: [["0.5", 0], [1, "0.5"]]}
+switching: {dwell_time: 4 steps, transitions: [[a, b], [b, a]]}
+""",
+    # Above the golden ratio's 0.618 the product of the two grows.
+    "word": """\
+time: discrete
+modes:
+  - {name: a, A: [["0.7", "0.7"], [0, "0.7"]]}
+  - {name: b, A: [["0.7", 0], ["0.7", "0.7"]]}
+switching: arbitrary
+""",
+}
 _TITLE = HOSTILE.replace("'", "''")
 DISCRETE = f"""\
 kind: switched-system
@@ -58,7 +137,9 @@ def report_of(path: Path) -> Report:
 def report(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], Report]:
     """Give the report of a case by its name, each made once."""
     folder = tmp_path_factory.mktemp("specs")
-    texts = {"inconclusive": INCONCLUSIVE, "discrete": DISCRETE, "marginal": MARGINAL}
+    texts = {"discrete": DISCRETE, "marginal": MARGINAL} | {
+        name: f"kind: switched-system\nname: {name}\n{text}" for name, text in KINDS.items()
+    }
     paths = {
         "proved": ROOT / "specs/neuroboscope/soft-tissue.nrs.yaml",
         "force": ROOT / "specs/neuroboscope/force-limit.nrs.yaml",
@@ -72,6 +153,19 @@ def report(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], Report]:
     def get(name: str) -> Report:
         if name not in made:
             made[name] = report_of(paths[name])
+        return made[name]
+
+    return get
+
+
+@pytest.fixture(scope="session")
+def page(report: Callable[[str], Report]) -> Callable[[str], str]:
+    """Give the page of a case by its name, each rendered once."""
+    made: dict[str, str] = {}
+
+    def get(name: str) -> str:
+        if name not in made:
+            made[name] = render_html(report(name))
         return made[name]
 
     return get

@@ -6,8 +6,11 @@ from itertools import pairwise
 
 import pytest
 
-from nrs_design.reporting import render_html
-from tests.reporting.test_render import CASES
+from tests.reporting.conftest import KINDS
+
+CASES = ["proved", "dwell", "blocks"]
+MORE = ["force", "refuted", "discrete", *(name for name in KINDS if name not in CASES)]
+ALL = [*CASES, *(pytest.param(name, marks=pytest.mark.slow) for name in MORE)]
 
 pytestmark = pytest.mark.browser
 
@@ -33,9 +36,9 @@ def browser():
     window.quit()
 
 
-def open_page(browser, page, folder, width):
+def open_page(browser, html, folder, width):
     path = folder / "report.html"
-    path.write_text(page, encoding="utf-8")
+    path.write_text(html, encoding="utf-8")
     browser.execute_cdp_cmd(
         "Emulation.setDeviceMetricsOverride",
         {"width": width, "height": 900, "deviceScaleFactor": 1, "mobile": False},
@@ -44,9 +47,9 @@ def open_page(browser, page, folder, width):
 
 
 @pytest.mark.parametrize("width", [375, 1280])
-@pytest.mark.parametrize("case", CASES)
-def test_page_renders(browser, report, tmp_path, case, width):
-    open_page(browser, render_html(report(case)), tmp_path, width)
+@pytest.mark.parametrize("case", ALL)
+def test_page_renders(browser, report, page, tmp_path, case, width):
+    open_page(browser, page(case), tmp_path, width)
     assert [entry for entry in browser.get_log("browser") if entry["level"] == "SEVERE"] == []
     sizes = browser.execute_script(
         "return [...document.querySelectorAll('figure svg')].map(s => {"
@@ -59,8 +62,8 @@ def test_page_renders(browser, report, tmp_path, case, width):
 
 
 @pytest.mark.parametrize("width", [375, 1280])
-def test_blocks_do_not_overlap(browser, report, tmp_path, width):
-    open_page(browser, render_html(report("proved")), tmp_path, width)
+def test_blocks_do_not_overlap(browser, page, tmp_path, width):
+    open_page(browser, page("proved"), tmp_path, width)
     boxes = browser.execute_script(
         "return [...document.querySelectorAll("
         "'header > *, section > *:not(figure), figure > *')].map(e => {"
@@ -72,9 +75,10 @@ def test_blocks_do_not_overlap(browser, report, tmp_path, width):
     assert overlaps == []
 
 
-def test_letters_within_a_figure_do_not_overlap(browser, report, tmp_path):
+@pytest.mark.parametrize("case", ALL)
+def test_letters_within_a_figure_do_not_overlap(browser, page, tmp_path, case):
     """Text groups of one figure may touch a curve, but not each other."""
-    open_page(browser, render_html(report("proved")), tmp_path, 1280)
+    open_page(browser, page(case), tmp_path, 1280)
     overlaps = browser.execute_script(
         """
         const found = [];

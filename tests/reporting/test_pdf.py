@@ -8,12 +8,14 @@ from pypdf import PdfReader
 from nrs_design.reporting import render_pdf
 
 
-@pytest.mark.parametrize("case", ["proved", "refuted", "inconclusive"])
+@pytest.mark.parametrize("case", ["refuted", "inconclusive", "dwell", "blocks"])
 def test_pdf_has_the_text_of_the_verdict(report, case):
     reader = PdfReader(io.BytesIO(render_pdf(report(case))))
     text = "\n".join(page.extract_text() for page in reader.pages)
     assert report(case).verdict.upper() in text
     assert " ".join(report(case).claim.split()) in " ".join(text.split())
+    for remark in report(case).remarks:
+        assert " ".join(remark.split()) in " ".join(text.split())
     images = sum(len(page.images) for page in reader.pages)
     assert images == len(list(report(case).illustrations))
 

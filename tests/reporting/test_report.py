@@ -3,14 +3,16 @@ from __future__ import annotations
 from dataclasses import replace
 from fractions import Fraction
 
+import numpy as np
 import pytest
 
+from nrs_design.certificates.certify import Method
 from nrs_design.errors import DesignError
 from nrs_design.pipeline import run_certification, run_evidence
 from nrs_design.reporting import build_report
 from nrs_design.reporting.document import Bullets, Paragraph, Table
 from nrs_design.spec import read_spec
-from tests.reporting.conftest import ROOT
+from tests.reporting.conftest import KINDS, ROOT
 
 FIGURES = {
     "proved": [
@@ -33,6 +35,18 @@ FIGURES = {
     ],
     "refuted": ["eigenvalues", "run"],
     "inconclusive": ["eigenvalues", "run", "phase-plane"],
+    "polynomial": ["eigenvalues", "mode-rates", "run", "phase-plane"],
+    "dwell": ["eigenvalues", "quadratics", "run", "phase-plane"],
+    "steps": ["eigenvalues", "quadratics", "run", "phase-plane"],
+    "resets": ["eigenvalues", "quadratics", "run"],
+    "parameter": ["eigenvalues", "quadratics", "parameter-rates", "run", "phase-plane"],
+    "blocks": ["eigenvalues", "blocks", "run"],
+    "blocks-refuted": ["eigenvalues", "blocks", "run", "one-period"],
+    "unequal": ["eigenvalues", "run", "phase-plane"],
+    "period": ["eigenvalues", "run", "one-period", "phase-plane"],
+    "dwell-refuted": ["eigenvalues", "run", "one-period", "phase-plane"],
+    "word": ["eigenvalues", "run", "one-period", "phase-plane"],
+    "mixture": ["eigenvalues", "mixture", "run", "phase-plane"],
     "discrete": ["eigenvalues", "quadratic", "mode-rates", "run", "phase-plane"],
     "marginal": ["eigenvalues", "run", "phase-plane"],
 }
@@ -40,7 +54,7 @@ FIGURES = {
 
 def words(report):
     """All text of a report in one string."""
-    parts = [report.claim]
+    parts = [report.claim, *report.remarks, *(f"{label}: {value}" for label, value in report.facts)]
     for section in report.sections:
         parts.append(section.title)
         for block in section.blocks:
@@ -77,11 +91,14 @@ def test_every_case_has_its_figures_in_order(report, case):
 def test_every_axis_is_labelled_with_its_unit(report, case):
     for item in report(case).illustrations:
         axes = item.figure.axes
-        below = axes[-1].get_xlabel() if item.name == "run" else axes[0].get_xlabel()
+        run = item.name in ("run", "one-period")
+        below = (axes[1] if run or item.name == "quadratics" else axes[0]).get_xlabel()
         labels = [below, axes[0].get_ylabel()]
         assert all(labels), item.name
-        if item.name == "quadratic":
-            labels = [axes[1].get_ylabel()]
+        if item.name == "blocks":
+            labels = []
+        elif item.name in ("quadratic", "quadratics"):
+            labels = [axes[-1].get_ylabel()]
         elif item.name == "mode-rates":
             labels = [below]
         assert all("[" in label and label.endswith("]") for label in labels), (item.name, labels)
@@ -146,22 +163,40 @@ def test_inconclusive_report_says_so_plainly(report):
     assert inconclusive.verdict == "inconclusive"
     assert "Neither a proof nor a refutation was found" in inconclusive.claim
     assert "The 2 modes" in text
-    assert "lmi" in text
-    assert "gradient" in text
+    assert "mode quadratic" in text
+    assert "period" in text
+    assert "Every mode by itself is stable" in text
     assert "proved bound" not in str(list(lines(figure(inconclusive, "run"))))
-    assert "There is no certificate to check" in text
+    assert "says nothing about stability" in text
+    assert "A longer dwell time" in text
 
 
-@pytest.mark.parametrize("case", ["proved", "force", "discrete"])
+@pytest.mark.parametrize(
+    "case",
+    ["proved", "force", "discrete", "polynomial", "dwell", "steps", "resets", "parameter"],
+)
 def test_simulated_run_stays_below_its_bound(report, case):
     curves = lines(figure(report(case), "run"))
     bound = next(line for label, line in curves.items() if label.startswith("proved bound"))
     assert (curves["run"].get_ydata() <= bound.get_ydata() * (1 + 1e-9)).all()
 
 
-def test_times_of_the_search_are_left_out(report):
-    search = next(part for part in report("proved").sections if part.title == "Search")
-    assert [block.columns for block in search.blocks] == [("Step", "Outcome")]
+def test_rungs_are_listed_without_times_unless_asked_for(tmp_path):
+    path = tmp_path / "polynomial.nrs.yaml"
+    path.write_text(f"kind: switched-system\nname: p\n{KINDS['polynomial']}")
+    result = run_certification(read_spec(path))
+    tables = []
+    for times in (False, True):
+        made = build_report(result, times=times)
+        (table,) = next(part.blocks for part in made.sections if part.title == "Rungs tried")
+        tables.append(table)
+    attempts = [(a.step, a.outcome) for a in result.certification.attempts]
+    assert [table.columns for table in tables] == [
+        ("Rung", "Outcome"),
+        ("Rung", "Outcome", "Time [ms]"),
+    ]
+    assert [row[:2] for row in tables[1].rows] == attempts == list(tables[0].rows)
+    assert all(float(row[2]) >= 0 for row in tables[1].rows)
 
 
 def test_without_evidence_only_the_gains_are_shown():
@@ -205,8 +240,8 @@ def test_unstable_force_loop_is_reported_without_margins(tmp_path):
     assert Fraction(unstable.sections[1].blocks[0].rows[1][4]) > 0
 
 
-def test_many_modes_are_shortened(report, tmp_path):
-    modes = "\n".join(f"  - {{name: m{i}, A: [[-{i + 1}, 1], [0, -2]]}}" for i in range(40))
+def test_many_modes_are_shortened(tmp_path):
+    modes = "\n".join(f"  - {{name: m{i}, A: [[-{i + 1}, 1], [-1, -2]]}}" for i in range(40))
     path = tmp_path / "many.nrs.yaml"
     path.write_text(
         f"kind: switched-system\nname: many\ntime: continuous\nmodes:\n{modes}\n"
@@ -221,3 +256,213 @@ def test_titles_and_names_stay_with_the_spec(report):
     discrete = report("discrete")
     assert discrete.name == "sampled"
     assert replace(discrete, title="").title == ""
+
+
+SAID = {
+    # Case: facts of the head, and what the box must say.
+    "polynomial": (
+        ["Switching: arbitrary", "Common quadratic function: impossible"],
+        [
+            "the proof does not need one",
+            "whatever switches happen",
+            "positive definite in the mono",
+        ],
+    ),
+    "proved": (
+        ["No proof can exceed: "],
+        ["Every corner of the declared parameter ranges is a mode", "single-precision numbers"],
+    ),
+    "discrete": (["No proof can go below: "], ["shrinks at least by the factor rho in every"]),
+    "dwell": (
+        ["Switching: dwell time 2.76 s", "up to a constant factor"],
+        [
+            "The dwell time of 2.76 s is part of the claim",
+            "Switching earlier than 2.76 s after the last switch.",
+            "exponentials over the dwell time are enclosed rigorously",
+        ],
+    ),
+    "steps": (
+        ["Switching: dwell time 4 steps, 2 allowed transitions", "per step, up to a constant"],
+        ["Switching earlier than 4 steps", "Switches that the spec does not list."],
+    ),
+    "resets": (
+        ["the state is reset at some switches", "2 modes of at most 2 states"],
+        ["The resets are part of the claim", "other than the declared resets"],
+    ),
+    "parameter": (
+        ["one parameter is unknown but constant"],
+        ["The parameter must be constant", "A parameter that changes while the system moves"],
+    ),
+    "blocks": (
+        ["not attained, up to a constant factor"],
+        ["at any rate slower than that of the slowest block", "the proof does not need one"],
+    ),
+    "blocks-refuted": (
+        ["Settled by: blocks: "],
+        ["so a family with an unstable block is unstable", "It is not said that the robot will"],
+    ),
+    "period": (
+        ["Switching: arbitrary"],
+        [
+            "It is not said that the robot will do this",
+            "no guarantee is possible for all the signals that the spec allows",
+            "a longer dwell time, fewer transitions or narrower ranges",
+        ],
+    ),
+    "dwell-refuted": (
+        ["Switching: dwell time 2.7 s"],
+        ["no stability of any kind can be guaranteed under the declared switching"],
+    ),
+    "mixture": (
+        ["Switching: arbitrary"],
+        ["so would be every average of them", "Nothing is said about slower switching"],
+    ),
+    "refuted": (["Switching: arbitrary"], ["exponential stability under arbitrary switching is"]),
+    "inconclusive": (
+        ["Settled by: nothing"],
+        ["No positive definite Q", "a function of another kind may exist"],
+    ),
+}
+
+
+@pytest.mark.parametrize("case", SAID)
+def test_head_and_box_fit_the_kind_of_evidence(report, case):
+    head, box = SAID[case]
+    facts = "\n".join(f"{label}: {value}" for label, value in report(case).facts)
+    first = report(case).sections[0]
+    assert first.boxed
+    said = "\n".join(
+        "\n".join(block.items) if isinstance(block, Bullets) else block.text
+        for block in first.blocks
+    )
+    assert [text for text in head if text not in facts] == []
+    assert [text for text in box if text not in said] == []
+
+
+def test_dwell_time_excludes_mixtures_and_arbitrary_words(report):
+    text = words(report("dwell"))
+    assert "convex combinations" not in text
+    assert "whatever switches happen" not in text
+    assert "convex combinations" in words(report("polynomial"))
+
+
+def test_every_statement_is_claimed_in_the_head(report):
+    assert "degree 4" in report("polynomial").claim
+    (remark,) = report("polynomial").remarks
+    assert remark.startswith("No positive definite Q satisfies A'Q + QA < 0")
+    assert report("inconclusive").remarks == (remark,)
+    assert report("discrete").remarks == ()
+
+
+def test_polynomial_shows_its_size_and_nested_levels(report):
+    part = next(p for p in report("polynomial").sections if p.title == "Lyapunov evidence")
+    rows = dict(part.blocks[1].rows)
+    assert rows["Degree of V"] == "4"
+    assert rows["Monomials of degree 2 in 2 states"] == "3"
+    curves = figure(report("polynomial"), "phase-plane").figure.axes[0].get_lines()
+    assert sum(line.get_linestyle() in ("--", ":") for line in curves) == 4
+    # Nothing leaves the box around the outer level curve.
+    outer = next(line for line in curves if line.get_label() == "V(x) = V(x(0))")
+    box = abs(outer.get_xydata()).max(axis=0)
+    for line in curves:
+        if line.get_label().startswith("mode"):
+            assert (np.nanmax(abs(line.get_xydata()), axis=0) <= 1.001 * box).all()
+
+
+@pytest.mark.parametrize("case", ["period", "word", "dwell-refuted"])
+def test_witness_grows_from_period_to_period(report, case):
+    curves = lines(figure(report(case), "run"))
+    line = next(curve for label, curve in curves.items() if label.startswith("factor"))
+    assert float(line.get_label().split()[1]) > 1
+    norm, expected = curves["run"].get_ydata(), line.get_ydata()
+    assert norm[-1] == pytest.approx(expected[-1], rel=1e-6)
+    assert norm[-1] > 1
+
+
+def test_factor_of_the_word_is_that_of_the_golden_ratio(report):
+    # 0.49 times the larger eigenvalue of [[2, 1], [1, 1]].
+    text = words(report("word"))
+    assert f"grows by the factor {0.49 * (3 + 5**0.5) / 2:.6g}" in text
+    assert "growth rate" not in text
+    assert "a mean growth rate of" in words(report("period"))
+
+
+def test_mixture_shows_the_eigenvalue_of_the_average_and_grows(report):
+    mixture = report("mixture")
+    text = words(mixture)
+    assert "Eigenvalues of the average: " in text
+    assert "not in the stable region" in lines(figure(mixture, "mixture"))
+    norm = lines(figure(mixture, "run"))["run"].get_ydata()
+    assert norm[-1] > 10
+
+
+def test_dwell_run_keeps_the_dwell_time(report):
+    below = figure(report("dwell"), "run").figure.axes[1]
+    spans = [
+        (path.vertices[:, 0].min(), path.vertices[:, 0].max())
+        for row in below.collections
+        for path in row.get_paths()
+    ]
+    last = max(end for _, end in spans)
+    assert len(spans) > 4
+    assert all(end - begin >= 2.76 - 1e-9 for begin, end in spans if end < last)
+
+
+def test_margin_over_the_parameter_stays_above_the_claim(report):
+    curves = lines(figure(report("parameter"), "parameter-rates"))
+    claimed = next(line for label, line in curves.items() if label.startswith("claimed"))
+    assert curves["m"].get_xdata()[[0, -1]].tolist() == [0.0, 1.0]
+    assert (curves["m"].get_ydata() > claimed.get_ydata()[0]).all()
+
+
+def test_obstruction_weights_sum_to_one(report):
+    title = "No common quadratic function"
+    part = next(p for p in report("polynomial").sections if p.title == title)
+    table = next(block for block in part.blocks if isinstance(block, Table))
+    assert {row[0] for row in table.rows} <= {"a", "b"}
+    assert sum(float(row[1]) for row in table.rows) == pytest.approx(1, abs=1e-3)
+
+
+def test_blocks_are_summarized(report):
+    part = next(p for p in report("blocks").sections if p.title == "Block triangular structure")
+    table = next(block for block in part.blocks if isinstance(block, Table))
+    assert [row[1] for row in table.rows] == ["x1, x2", "x3", "x4"]
+    assert [row[2] for row in table.rows] == [
+        "polynomial of degree 4",
+        "common quadratic function",
+        "common quadratic function",
+    ]
+    assert all(float(row[3]) > 0 for row in table.rows)
+    assert "Block 1 (x1, x2) has none." in words(report("blocks"))
+
+
+def test_unstable_mode_of_its_own_size_is_simulated_alone(report):
+    run = lines(figure(report("unequal"), "run"))["run"].get_ydata()
+    assert run.max() > 50
+    assert "Mode full is not Hurwitz" in report("unequal").claim
+
+
+def test_declared_rules_that_a_proof_does_not_need_are_named(tmp_path):
+    path = tmp_path / "c.nrs.yaml"
+    path.write_text(
+        "kind: switched-system\nname: c\ntime: continuous\nmodes:\n"
+        "  - {name: a, A: [[-1, 1], [-1, -1]]}\n  - {name: b, A: [[-2, 3], [-3, -2]]}\n"
+        "switching: {dwell_time: 1 s}\n"
+    )
+    text = words(build_report(run_certification(read_spec(path))))
+    assert "The proof does not need the declared rules of switching" in text
+    assert "The run switches freely, which is more than the spec allows." in text
+
+
+def test_ranges_under_a_polynomial_in_discrete_time(tmp_path):
+    path = tmp_path / "ranges.nrs.yaml"
+    path.write_text(
+        "kind: switched-system\nname: ranges\ntime: discrete\n"
+        'parameters:\n  k: {nominal: "1/2", range: ["2/5", "3/5"]}\nmodes:\n'
+        '  - {name: a, A: [[k, "3/5"], [0, "3/5"]]}\n  - {name: b, A: [["3/5", 0], [k, "3/5"]]}\n'
+        "switching: arbitrary\n"
+    )
+    for method, constant in ((Method.POLYNOMIAL, True), (Method.LMI, False)):
+        text = words(build_report(run_certification(read_spec(path), method=method)))
+        assert "all values between the corners are covered as well" in text
+        assert ("Between the corners, the bound holds up to a constant factor." in text) is constant

@@ -4,30 +4,25 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 
+from nrs_design.simulation.margins import mode_rates
+from nrs_design.simulation.norms import quadratic_norm
 from nrs_design.simulation.switched import (
+    alone,
     eigenvalues,
     fine_step,
-    mode_rates,
     norms,
+    sampled_direction,
     simulate_switching,
     unstable_run,
     worst_direction,
     worst_switching,
 )
-from nrs_design.switched.matrix import RationalMatrix
-from nrs_design.switched.system import Mode, SwitchedSystem, Time
-
-
-def system(*matrices, time=Time.CONTINUOUS):
-    modes = tuple(Mode(f"m{i}", RationalMatrix.from_rows(A)) for i, A in enumerate(matrices))
-    states = tuple(f"x{i + 1}" for i in range(len(matrices[0])))
-    return SwitchedSystem("test", time, states, modes, ())
-
+from nrs_design.switched.system import Time
+from tests.simulation.systems import system
 
 # Narendra and Balakrishnan (1994), commuting modes.
+EUCLIDEAN = quadratic_norm(np.eye(2))
 COMMUTING = system([[-1, 1], [-1, -1]], [[-2, 3], [-3, -2]])
 
 
@@ -46,21 +41,6 @@ def test_commuting_modes_do_not_depend_on_the_order():
     assert ends[0] == pytest.approx(ends[1])
 
 
-def test_mode_rates_of_rotations_are_their_real_parts():
-    assert mode_rates(COMMUTING, np.eye(2)) == pytest.approx([1.0, 2.0])
-
-
-def test_mode_rates_in_discrete_time_are_singular_values():
-    discrete = system([[0, 2], [0, 0]], [[0, 0], [0, 0]], time=Time.DISCRETE)
-    assert mode_rates(discrete, np.eye(2)) == pytest.approx([2.0, 0.0])
-
-
-@given(st.floats(1e-6, 1e6))
-def test_mode_rates_do_not_depend_on_the_scale_of_Q(factor):
-    Q = np.array([[2.0, 0.5], [0.5, 1.0]])
-    assert mode_rates(COMMUTING, factor * Q) == pytest.approx(mode_rates(COMMUTING, Q))
-
-
 def test_slowest_direction_decays_at_the_smallest_rate():
     Q = np.array([[2.0, 0.5], [0.5, 1.0]])
     x = worst_direction(COMMUTING, Q)
@@ -70,17 +50,17 @@ def test_slowest_direction_decays_at_the_smallest_rate():
 
 
 def test_adversary_is_at_least_as_bad_as_any_single_mode():
-    Q, x = np.diag([1.0, 5.0]), np.array([1.0, 0.0])
+    norm, x = quadratic_norm(np.diag([1.0, 5.0])), np.array([1.0, 0.0])
     dayawansa_martin = system([[-1, -1], [1, -1]], [[-1, -5], [1, -1]])
-    run = worst_switching(dayawansa_martin, Q, x, 0.1, 1)
+    run = worst_switching(dayawansa_martin, norm, x, 0.1, 1)
     for mode in range(2):
-        alone = simulate_switching(dayawansa_martin, np.array([mode]), x, 0.1)
-        assert norms(run, Q)[-1] >= norms(alone, Q)[-1]
+        single = simulate_switching(dayawansa_martin, np.array([mode]), x, 0.1)
+        assert norms(run, norm)[-1] >= norms(single, norm)[-1]
 
 
 def test_norms_start_at_one():
     run = simulate_switching(COMMUTING, np.array([0]), np.array([3.0, 4.0]), 1.0)
-    assert norms(run, np.eye(2)) == pytest.approx([1.0, math.exp(-1)])
+    assert norms(run, EUCLIDEAN) == pytest.approx([1.0, math.exp(-1)])
 
 
 def test_step_resolves_the_fastest_eigenvalue():
@@ -98,10 +78,24 @@ def test_unstable_run_grows_a_hundredfold(time):
     unstable = system([[-3, 0], [0, "3/2"]], [[2, 0], [0, "3/2"]], time=time)
     run = unstable_run(unstable, 1)
     assert set(run.mode.tolist()) == {1}
-    assert norms(run, np.eye(2))[-1] >= 99
+    assert norms(run, EUCLIDEAN)[-1] >= 99
 
 
 def test_marginal_run_keeps_its_size():
     run = unstable_run(system([[0, -1], [1, 0]]), 0)
-    assert norms(run, np.eye(2)) == pytest.approx(1.0)
+    assert norms(run, EUCLIDEAN) == pytest.approx(1.0)
     assert run.time[-1] == pytest.approx(62.8)
+
+
+def test_sampled_direction_is_near_the_slowest_one():
+    norm = quadratic_norm(np.diag([1.0, 9.0]))
+    x = sampled_direction(system([[-1, 0], [0, -5]]), norm, 0.01)
+    assert norm(x) == pytest.approx(1.0)
+    assert abs(x[0]) > 0.99
+
+
+def test_a_mode_alone_keeps_its_own_states():
+    unequal = system([[-1]], [[0, 1], [-2, -1]])
+    assert alone(unequal, 0).states == ("x1",)
+    assert alone(unequal, 1).order == 2
+    assert [len(values) for values in eigenvalues(unequal)] == [1, 2]

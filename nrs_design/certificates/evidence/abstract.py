@@ -14,6 +14,7 @@ from nrs_design.certificates.exact import (
     is_symmetric,
     is_too_large,
 )
+from nrs_design.switched.matrix import RationalMatrix
 from nrs_design.switched.system import SwitchedSystem, Switching
 
 
@@ -86,6 +87,9 @@ class AbstractEvidence(ABC):
             return "the system has no modes"
         if len({mode.name for mode in system.modes}) < len(system.modes):
             return "two modes of the system have the same name"
+        for mode in system.modes:
+            if not _is_well_formed(mode.A):
+                return f"mode {mode.name} is not a square matrix over a positive denominator"
         if not self.fits(system.switching):
             return f"evidence of kind {self.kind} does not cover this kind of switching"
         if not system.is_uniform and not self.allows_unequal_modes:
@@ -98,3 +102,9 @@ class AbstractEvidence(ABC):
             if not is_symmetric(form) or not is_positive_definite(form):
                 return failure
         return None
+
+
+def _is_well_formed(A: RationalMatrix) -> bool:
+    """Tell whether a matrix is square, and its denominator keeps the signs of its numerators."""
+    rows = A.numerators
+    return A.denominator > 0 and len(rows) > 0 and all(len(row) == len(rows) for row in rows)

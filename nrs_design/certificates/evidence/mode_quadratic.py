@@ -34,6 +34,7 @@ from nrs_design.switched.system import Mode, SwitchedSystem, Switching, Time
 PRECISION = 300
 MIDPOINT_BITS = 160
 MAX_DWELL_STEPS = 4096
+MAX_POWER_BITS = 10**6
 # Balls beyond this fail; what is nearer to zero than its inverse counts as zero with that radius.
 RANGE_LOG2 = 32_768
 
@@ -230,7 +231,8 @@ def _power_is_too_large(system: SwitchedSystem, rate: Fraction) -> bool:
     numbers = [v for mode in system.modes for row in mode.A.numerators for v in row]
     numbers += [mode.A.denominator for mode in system.modes]
     bits = max(abs(v).bit_length() for v in (*numbers, rate.denominator))
-    return system.order**3 * int(_dwell(system)) * bits > MAX_WORK
+    power_bits = int(_dwell(system)) * bits
+    return power_bits > MAX_POWER_BITS or system.order**3 * power_bits > MAX_WORK
 
 
 def _power(A: RationalMatrix, exponent: int) -> RationalMatrix:

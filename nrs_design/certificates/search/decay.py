@@ -6,6 +6,8 @@ which no common function can exceed.
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -13,6 +15,9 @@ from nrs_design.certificates.search.lmi import decreases, find_common_quadratic
 from nrs_design.switched.system import Time
 
 TOLERANCE = 1e-4
+# A position is bracketed to this share of itself, or given up below the smallest one.
+RESOLUTION = 2.0**-12
+SMALLEST = 2.0**-40
 
 
 def limit_rate(matrices: NDArray[np.float64], time: Time) -> float:
@@ -52,6 +57,21 @@ def largest_position(matrices: NDArray[np.float64], time: Time, limit: float) ->
             high = middle
         else:
             low = middle
+    return low
+
+
+def bisect_position(is_feasible: Callable[[float], bool]) -> float:
+    """Bisect for the largest feasible position, however near to mere stability it is.
+
+    Returns
+    -------
+    float
+        Zero if nothing above the smallest position is feasible.
+    """
+    low, high = 0.0, 1.0
+    while high > SMALLEST and high - low > RESOLUTION * high:
+        middle = (low + high) / 2
+        low, high = (middle, high) if is_feasible(middle) else (low, middle)
     return low
 
 

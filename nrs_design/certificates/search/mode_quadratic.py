@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from nrs_design.certificates.evidence import ModeQuadratic
 from nrs_design.certificates.search.balance import balance, scale
+from nrs_design.certificates.search.decay import bisect_position
 from nrs_design.certificates.search.lmi import decreases
 from nrs_design.certificates.search.rounding import round_rate
 from nrs_design.certificates.search.sdp import maximize_margin, pack, symmetric_basis
@@ -17,7 +18,6 @@ from nrs_design.switched.system import SwitchedSystem, Time
 Array = NDArray[np.float64]
 
 BITS = (6, 8, 10, 14, 20, 28, 40, 50)
-BISECTIONS = 12
 BACK_OFFS = (0.999, 0.99, 0.9, 0.5, 0.1, 1e-3)
 
 
@@ -39,13 +39,9 @@ def find_mode_quadratic(system: SwitchedSystem, limit: float) -> ModeQuadratic |
     problem = _Problem(system)
     if problem.solve(problem.rate_at(0.0, limit)) is None:
         return None
-    low, high = 0.0, 1.0
-    for _ in range(BISECTIONS):
-        middle = (low + high) / 2
-        feasible = problem.solve(problem.rate_at(middle, limit)) is not None
-        low, high = (middle, high) if feasible else (low, middle)
+    best = bisect_position(lambda s: problem.solve(problem.rate_at(s, limit)) is not None)
     for back_off in BACK_OFFS:
-        rate = problem.rate_at(low * back_off, limit)
+        rate = problem.rate_at(best * back_off, limit)
         functions = problem.solve(rate)
         if functions is not None and (evidence := problem.round(functions, rate)):
             return evidence

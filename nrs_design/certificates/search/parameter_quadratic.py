@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from nrs_design.certificates.evidence import ParameterQuadratic
+from nrs_design.certificates.search.decay import bisect_position
 from nrs_design.certificates.search.lmi import decreases
 from nrs_design.certificates.search.rounding import round_rate, unscale
 from nrs_design.certificates.search.sdp import maximize_margin, pack, symmetric_basis
@@ -14,7 +15,6 @@ from nrs_design.switched.system import SwitchedSystem, Time
 Array = NDArray[np.float64]
 
 BITS = (6, 8, 10, 14, 20, 28, 40, 50)
-BISECTIONS = 12
 BACK_OFFS = (0.999, 0.99, 0.9, 0.5, 0.1, 1e-3)
 
 
@@ -39,12 +39,9 @@ def find_parameter_quadratic(
     pairs = matrices[np.array(ends)]
     if _solve(pairs, 0.0) is None:
         return None
-    low, high = 0.0, 1.0
-    for _ in range(BISECTIONS):
-        middle = (low + high) / 2
-        low, high = (low, middle) if _solve(pairs, middle * limit) is None else (middle, high)
+    best = bisect_position(lambda s: _solve(pairs, s * limit) is not None)
     for back_off in BACK_OFFS:
-        rate = low * back_off * limit
+        rate = best * back_off * limit
         functions = _solve(pairs, rate)
         if functions is None or rate <= 0:
             continue

@@ -89,6 +89,8 @@ def search_by_gradient(family: Family, *, max_updates: int = 20_000) -> Finding:
 def search_raw(family: Family) -> Finding:
     """Search by semidefinite programming in the coordinates of the spec, without balancing."""
     time = family.system.time
+    if not np.isfinite(family.limit):
+        return None, OUT_OF_RANGE
     matrices = scale(family.matrices, -family.exponents)
     Q = find_common_quadratic(matrices, time, rate_at(0.0, family.limit, time))
     if Q is None:
@@ -100,6 +102,8 @@ def search_raw(family: Family) -> Finding:
 def search_preconditioned(family: Family) -> Finding:
     """Search by semidefinite programming after a change to the mean of the modes' own norms."""
     time = family.system.time
+    if not np.isfinite(family.limit):
+        return None, OUT_OF_RANGE
     T = mean_norm_coordinates(family.matrices, time)
     inverse = np.linalg.inv(T)
     Q = find_common_quadratic(inverse @ family.matrices @ T, time, rate_at(0.0, family.limit, time))

@@ -18,6 +18,10 @@ from nrs_design.reporting.sections.no_common_quadratic import obstruction_blocks
 from nrs_design.switched.system import SwitchedSystem, Time
 
 _LISTED = 32
+_STRUCTURE = (
+    "In every mode, the states of a block are driven by their own block and by later ones only. "
+    "So the last block moves by itself, and each of the others follows it."
+)
 _NAMES = {
     "common-quadratic": "common quadratic function",
     "no-common-quadratic": "no common quadratic function exists",
@@ -41,31 +45,33 @@ def blocks_section(
     pattern : bool
         Draw the structure; once is enough in a report.
     """
-    text = (
-        "In every mode, the states of a block are driven by their own block and by later ones "
-        "only. So the last block moves by itself, and each of the others follows it."
-    )
-    blocks: list[Block] = [Paragraph(text)]
+    blocks: list[Block] = [Paragraph(_STRUCTURE)] if pattern else []
     if pattern:
-        blocks.append(_illustration(system, evidence))
-    blocks += [
-        _table(system, evidence),
-        Bullets(
-            "Evidence of the blocks",
-            tuple(
-                f"Block {index + 1}: {part.claim(diagonal_block(system, evidence.blocks[index]))}"
-                for index, part in evidence.parts[:_LISTED]
-            ),
-        ),
-    ]
-    for index, part in evidence.parts:
-        if isinstance(part, NoCommonQuadratic):
-            inner = diagonal_block(system, evidence.blocks[index])
-            blocks += obstruction_blocks(inner, part)
+        blocks += [_illustration(system, evidence), _table(system, evidence)]
     if evidence.shows is Shows.NO_COMMON_QUADRATIC:
-        number = evidence.parts[0][0] + 1
-        return Section(f"No common quadratic function: block {number}", tuple(blocks))
-    return Section("Block triangular structure", tuple(blocks))
+        return _without_function(system, evidence, blocks)
+    claims = tuple(
+        f"Block {index + 1}: {part.claim(diagonal_block(system, evidence.blocks[index]))}"
+        for index, part in evidence.parts[:_LISTED]
+    )
+    return Section(
+        "Block triangular structure", (*blocks, Bullets("Evidence of the blocks", claims))
+    )
+
+
+def _without_function(
+    system: SwitchedSystem, evidence: BlockTriangular, blocks: list[Block]
+) -> Section:
+    """Say which block has no common quadratic function, and why."""
+    index, part = evidence.parts[0]
+    inner = diagonal_block(system, evidence.blocks[index])
+    text = (
+        "A family in block triangular form has a common quadratic function only if every family "
+        f"of diagonal blocks has one. Block {index + 1} ({shortened(inner.states, 6)}) has none."
+    )
+    if isinstance(part, NoCommonQuadratic):
+        blocks = [*blocks, Paragraph(text), *obstruction_blocks(inner, part)]
+    return Section(f"No common quadratic function: block {index + 1}", tuple(blocks))
 
 
 def _illustration(system: SwitchedSystem, evidence: BlockTriangular) -> Illustration:

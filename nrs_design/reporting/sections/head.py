@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from nrs_design import __version__
 from nrs_design.certificates.evidence import AbstractEvidence, ModeQuadratic, Shows
 from nrs_design.certificates.evidence.fields import rate_text
-from nrs_design.reporting.formatting import plural
+from nrs_design.reporting.formatting import number, plural
 from nrs_design.switched.system import SwitchedSystem, Time
 
 if TYPE_CHECKING:
@@ -50,6 +50,7 @@ def facts(result: Result) -> tuple[tuple[str, str], ...]:
         ("Common quadratic function", str(certification.common_quadratic)),
         ("Settled by", certification.method if certification.evidence else "nothing"),
         *_rate(system, certification.evidence),
+        *_limit(certification),
     ]
     if result.coordinates is not None:
         rows.append(("Coordinates", result.coordinates))
@@ -95,3 +96,13 @@ def _rate(system: SwitchedSystem, evidence: AbstractEvidence | None) -> list[tup
     if system.time is Time.CONTINUOUS:
         return [("Proved decay rate alpha", f"{text} 1/s{constant}")]
     return [("Proved contraction rho", f"{text} per step{constant}")]
+
+
+def _limit(certification: Certification) -> list[tuple[str, str]]:
+    """Return the other side of the proved rate: what no proof can exceed."""
+    limit, evidence = certification.rate_limit, certification.evidence
+    if limit is None or evidence is None or evidence.shows is not Shows.STABILITY:
+        return []
+    if certification.system.time is Time.CONTINUOUS:
+        return [("No proof can exceed", f"{number(limit, 6)} 1/s, which one solution attains")]
+    return [("No proof can go below", f"{number(limit, 6)} per step, which one solution attains")]

@@ -115,33 +115,28 @@ def decision_meaning(system: SwitchedSystem, evidence: AbstractEvidence) -> str:
 
 def corners_meaning(system: SwitchedSystem, evidence: AbstractEvidence) -> str:
     """Say whether values between the corners of declared ranges are covered."""
-    if system.time is Time.DISCRETE and not _covers_ranges(evidence):
-        return (
-            "Every corner of the declared parameter ranges is a mode. Only the corners are "
-            "covered: in discrete time, a polynomial need not decrease between them."
-        )
     how = "however fast they change"
     if isinstance(evidence, ParameterQuadratic):
         how = "however fast they change, the constant one excepted"
-    return (
+    text = (
         "Every corner of the declared parameter ranges is a mode. The matrices depend on the "
         f"parameters affinely, so all values between the corners are covered as well, {how}."
     )
+    if system.time is Time.DISCRETE and _is_polynomial(evidence):
+        # The level sets of V need not be convex, but a joint spectral radius is that of the hull.
+        text += " Between the corners, the bound holds up to a constant factor."
+    return text
 
 
-def _covers_ranges(evidence: AbstractEvidence) -> bool:
+def _is_polynomial(evidence: AbstractEvidence) -> bool:
     if isinstance(evidence, BlockTriangular):
-        return all(_covers_ranges(part) for _, part in evidence.parts)
-    return not isinstance(evidence, CommonPolynomial)
+        return any(_is_polynomial(part) for _, part in evidence.parts)
+    return isinstance(evidence, CommonPolynomial)
 
 
-def covers_mixtures(system: SwitchedSystem, evidence: AbstractEvidence) -> bool:
+def covers_mixtures(evidence: AbstractEvidence) -> bool:
     """Tell whether a proof covers all convex combinations of the modes."""
-    if isinstance(evidence, BlockTriangular):
-        return all(covers_mixtures(system, part) for _, part in evidence.parts)
-    if isinstance(evidence, CommonPolynomial):
-        return system.time is Time.CONTINUOUS
-    return isinstance(evidence, CommonQuadratic)
+    return isinstance(evidence, CommonQuadratic | CommonPolynomial | BlockTriangular)
 
 
 def excluded_signals(system: SwitchedSystem, evidence: AbstractEvidence) -> tuple[str, ...]:

@@ -98,7 +98,7 @@ def _not_covered(system: SwitchedSystem, evidence: AbstractEvidence) -> tuple[st
     return (
         "Whether the matrices describe the real system: they are taken from the spec as they are.",
         f"Inputs, disturbances, and {jumps}.",
-        f"Dynamics outside the modes{outside if covers_mixtures(system, evidence) else ''}.",
+        f"Dynamics outside the modes{outside if covers_mixtures(evidence) else ''}.",
         "Sampling, delay, quantization, friction and saturation, unless the matrices contain them.",
         "The size of the states in physical units.",
     )

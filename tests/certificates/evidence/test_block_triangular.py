@@ -2,7 +2,7 @@
 
 from dataclasses import replace
 from fractions import Fraction
-from time import perf_counter
+from time import process_time
 
 import pytest
 
@@ -131,10 +131,10 @@ def test_hostile_fields_are_rejected_at_once(change):
         "kind": "block-triangular",
         **BlockTriangular(((0,), (1,)), ((0, ONE), (1, ONE))).to_fields(),
     }
-    start = perf_counter()
-    with pytest.raises(ValueError, match="."):
+    start = process_time()
+    with pytest.raises(ValueError, match=r"part|nothing"):
         read_evidence({**fields, **change}, CASCADE)
-    assert perf_counter() - start < 0.5
+    assert process_time() - start < 0.5
 
 
 def test_the_diagonal_block_of_a_family():

@@ -4,8 +4,8 @@ import cvxpy as cp
 import numpy as np
 import pytest
 
-from nrs_design.certificates import lmi
-from nrs_design.certificates.lmi import decreases, find_common_quadratic, margins
+from nrs_design.certificates.search import lmi
+from nrs_design.certificates.search.lmi import decreases, find_common_quadratic, margins
 from nrs_design.switched.system import Time
 
 

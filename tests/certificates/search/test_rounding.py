@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from nrs_design.certificates.rounding import (
+from nrs_design.certificates.search.rounding import (
     MAX_ENTRY_BITS,
     RATE_BITS,
     round_rate,

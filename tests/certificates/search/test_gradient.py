@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from nrs_design.certificates.gradient import iterate_gradient
+from nrs_design.certificates.search.gradient import iterate_gradient
 
 PAIR = np.array([[[-1.0, -1.0], [1.0, -1.0]], [[-1.0, -5.0], [0.2, -1.0]]])
 

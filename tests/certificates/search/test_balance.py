@@ -3,7 +3,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from nrs_design.certificates.balance import balance, scale
+from nrs_design.certificates.search.balance import balance, scale
 
 
 def test_published_example():

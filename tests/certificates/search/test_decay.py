@@ -1,7 +1,16 @@
 import numpy as np
 import pytest
 
-from nrs_design.certificates.decay import TOLERANCE, largest_position, limit_rate, rate_at, rate_of
+from nrs_design.certificates.search.decay import (
+    RESOLUTION,
+    SMALLEST,
+    TOLERANCE,
+    bisect_position,
+    largest_position,
+    limit_rate,
+    rate_at,
+    rate_of,
+)
 from nrs_design.switched.system import Time
 
 PAIR = np.array([[[-1.0, -1.0], [1.0, -1.0]], [[-1.0, -5.0], [0.2, -1.0]]])
@@ -46,3 +55,14 @@ def test_still_modes_show_the_best_contraction():
 def test_indefinite_functions_show_nothing():
     with pytest.raises(np.linalg.LinAlgError):
         rate_of(PAIR, np.diag([1.0, -1.0]), Time.CONTINUOUS)
+
+
+@pytest.mark.parametrize("threshold", [0.999, 0.5, 0.3, 1e-6, 2 * SMALLEST])
+def test_position_is_bracketed_relative_to_itself(threshold):
+    position = bisect_position(lambda s: s <= threshold)
+    assert threshold * (1 - 2 * RESOLUTION) <= position <= threshold
+
+
+@pytest.mark.parametrize("threshold", [0.0, SMALLEST / 4])
+def test_nothing_feasible_ends(threshold):
+    assert bisect_position(lambda s: s <= threshold) == 0.0

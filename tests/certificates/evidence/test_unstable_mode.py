@@ -1,0 +1,109 @@
+"""One mode that is not stable: decided exactly, on the border too."""
+
+from dataclasses import replace
+from fractions import Fraction
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from nrs_design.certificates.certify import certify
+from nrs_design.certificates.evidence import Shows, UnstableMode
+from nrs_design.certificates.evidence.unstable_mode import is_stable, worst_eigenvalue
+from nrs_design.switched.system import Reset, Switching, Time
+from tests.support import dayawansa_martin, family, holds, is_stable_by_lyapunov, matrix
+
+
+@pytest.mark.parametrize(
+    ("A", "time", "stable"),
+    [
+        ([["-0.36", "-0.48"], ["-0.48", "-0.64"]], Time.CONTINUOUS, False),
+        ([[0, 1], [-1, 0]], Time.CONTINUOUS, False),
+        ([[-1, 0], [0, -1]], Time.CONTINUOUS, True),
+        ([[-1, 0], [0, -1]], Time.DISCRETE, False),
+        ([["-1/2", 0], [0, "1/2"]], Time.DISCRETE, True),
+        ([["-1/2", 0], [0, "1/2"]], Time.CONTINUOUS, False),
+        ([["0.6", "0.8"], ["-0.8", "0.6"]], Time.DISCRETE, False),
+    ],
+)
+def test_unstable_mode(A, time, stable):
+    system = family([[0, 0], [0, 0]], A, time=time)
+    assert is_stable(system.modes[1].A, time) is stable
+    found = UnstableMode("m1", "never looked at").find_fault(system)
+    assert (found is None) is not stable
+
+
+def test_unknown_and_ambiguous_modes_refute_nothing():
+    system = family([[1, 0], [0, 1]])
+    assert UnstableMode("m0", "1").find_fault(system) is None
+    assert "no single mode" in UnstableMode("m1", "1").find_fault(system)
+    twice = replace(system, modes=system.modes * 2)
+    assert "same name" in UnstableMode("m0", "1").find_fault(twice)
+    assert "no single mode" in UnstableMode("m0", "1").find_misfit(twice)
+
+
+@pytest.mark.parametrize(
+    ("A", "time", "eigenvalue"),
+    [
+        ([[0, 1], [-1, 0]], Time.CONTINUOUS, "0 +- 1j"),
+        ([["-0.36", "-0.48"], ["-0.48", "-0.64"]], Time.CONTINUOUS, "0"),
+        ([[1, 0], [0, -5]], Time.CONTINUOUS, "1"),
+        ([["1/2", 0], [0, -3]], Time.DISCRETE, "-3"),
+        ([["0.6", "0.8"], ["-0.8", "0.6"]], Time.DISCRETE, "0.6 +- 0.8j"),
+    ],
+)
+def test_worst_eigenvalue(A, time, eigenvalue):
+    (mode,) = family(A, time=time).modes
+    assert worst_eigenvalue(mode.A, time) == eigenvalue
+
+
+@settings(deadline=None)
+@given(st.lists(st.integers(-6, 6), min_size=9, max_size=9), st.sampled_from(list(Time)))
+def test_against_the_lyapunov_equation(entries, time):
+    """Another algorithm, without a characteristic polynomial."""
+    rows = [[Fraction(e, 5) for e in entries[i : i + 3]] for i in (0, 3, 6)]
+    system = family(rows, time=time)
+    stable = is_stable_by_lyapunov(rows, discrete=time is Time.DISCRETE)
+    assert is_stable(system.modes[0].A, time) is stable
+    evidence = UnstableMode("m0", "")
+    assert (evidence.find_fault(system) is None) is not stable
+    assert holds(system, evidence) is not stable
+
+
+def test_stable_modes_give_no_evidence():
+    found = certify(dayawansa_martin(5))
+    assert not any(isinstance(statement, UnstableMode) for statement in found.statements)
+
+
+@pytest.mark.parametrize(
+    "switching",
+    [
+        Switching(dwell_time=Fraction(10**6)),
+        Switching(transitions=()),
+        Switching(resets=(Reset("m0", "m1", matrix([[0, 0], [0, 0]])),)),
+        Switching(fixed_ends=(("m0", "m1"),)),
+    ],
+)
+def test_no_rule_of_switching_forces_a_signal_to_leave_its_mode(switching):
+    system = family([[1, 0], [0, 1]], [[-1, 0], [0, -1]])
+    assert UnstableMode("m0", "1").find_fault(replace(system, switching=switching)) is None
+    assert "stable" in UnstableMode("m1", "1").find_fault(replace(system, switching=switching))
+
+
+def test_words_and_fields():
+    evidence, system = UnstableMode("m0", "2"), family([[2]])
+    assert evidence.shows is Shows.INSTABILITY
+    assert evidence.proved_rate(system) is None
+    assert evidence.claim(system) == (
+        "Mode m0 is not Hurwitz (eigenvalue 2): staying in it is an admissible switching signal, "
+        "so x' = A x is not uniformly exponentially stable."
+    )
+    assert evidence.to_fields() == {"mode": "m0", "eigenvalue": "2"}
+    # The eigenvalue of a file is not believed but computed again.
+    assert UnstableMode.from_fields({"mode": "m0", "eigenvalue": "7"}, system) == evidence
+
+
+@pytest.mark.parametrize("fields", [{}, {"mode": None}, {"mode": "m7"}, {"mode": 0}])
+def test_malformed_fields(fields):
+    with pytest.raises((KeyError, TypeError, ValueError)):
+        UnstableMode.from_fields(fields, family([[2]]))

@@ -1,0 +1,16 @@
+"""Builder of small systems."""
+
+from __future__ import annotations
+
+from nrs_design.switched.matrix import RationalMatrix
+from nrs_design.switched.system import ARBITRARY, Mode, Reset, SwitchedSystem, Time
+
+
+def system(*matrices, time=Time.CONTINUOUS, switching=ARBITRARY):
+    modes = tuple(Mode(f"m{i}", RationalMatrix.from_rows(A)) for i, A in enumerate(matrices))
+    states = tuple(f"x{i + 1}" for i in range(max(map(len, matrices))))
+    return SwitchedSystem("test", time, states, modes, (), switching)
+
+
+def reset(source, target, rows):
+    return Reset(source, target, RationalMatrix.from_rows(rows))

@@ -1,0 +1,89 @@
+from __future__ import annotations
+
+from fractions import Fraction
+from itertools import groupby, pairwise
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from nrs_design.simulation.admissible import active_norms, admissible_run, norm_ratio
+from nrs_design.switched.system import Switching, Time
+from tests.simulation.systems import reset, system
+
+# Geromel and Colaneri (2006).
+PAIR = ([[0, 1], [-10, -1]], [[0, 1], ["-1/10", "-1/2"]])
+UNIT = {f"m{i}": np.eye(2) for i in range(3)}
+
+
+def stays(run):
+    """Mode and number of steps of every stay."""
+    return [(mode, len(list(group))) for mode, group in groupby(run.mode.tolist())]
+
+
+@settings(max_examples=20, deadline=None)
+@given(st.fractions(Fraction(1, 10), 4, max_denominator=20))
+def test_dwell_time_is_kept(dwell):
+    run = admissible_run(system(*PAIR, switching=Switching(dwell)), UNIT, 0.05, 300)
+    step = run.time[1]
+    assert len(run.mode) >= 300
+    assert all(count * step >= float(dwell) * (1 - 1e-9) for _, count in stays(run)[:-1])
+
+
+def test_steps_divide_the_dwell_time():
+    run = admissible_run(system(*PAIR, switching=Switching(Fraction(1))), UNIT, 0.3, 200)
+    assert run.time[1] == pytest.approx(0.25)
+
+
+def test_only_allowed_switches_are_made():
+    ring = Switching(transitions=(("m0", "m1"), ("m1", "m2"), ("m2", "m0")))
+    modes = (*PAIR, [[0, 1], [-1, "-1/5"]])
+    run = admissible_run(system(*modes, switching=ring), UNIT, 0.05, 400)
+    order = [mode for mode, _ in stays(run)]
+    assert len(order) > 3
+    assert all((a + 1) % 3 == b for a, b in pairwise(order))
+
+
+def test_without_transitions_it_stays():
+    run = admissible_run(system(*PAIR, switching=Switching(transitions=())), UNIT, 0.05, 50)
+    assert len(stays(run)) == 1
+
+
+def test_dwell_time_in_discrete_time_is_counted_in_steps():
+    shears = ([["1/2", 1], [0, "1/2"]], [["1/2", 0], [1, "1/2"]])
+    rules = Switching(Fraction(3))
+    run = admissible_run(system(*shears, time=Time.DISCRETE, switching=rules), UNIT, 1.0, 60)
+    assert all(count >= 3 for _, count in stays(run)[:-1])
+    assert run.time.tolist() == list(range(len(run.time)))
+
+
+def test_resets_between_states_of_different_size():
+    # The large mode decays faster than its state is mapped into the small one.
+    rules = Switching(
+        transitions=(("m0", "m1"), ("m1", "m0")),
+        resets=(reset("m0", "m1", [[1, 0]]), reset("m1", "m0", [[1], [2]])),
+    )
+    unequal = system([[-9, 0], [0, -9]], [[-1]], switching=rules)
+    functions = {"m0": np.eye(2), "m1": np.eye(1)}
+    run = admissible_run(unequal, functions, 0.01, 100)
+    assert run.state.shape == (len(run.mode) + 1, 2)
+    small = run.state[:-1][run.mode == 1]
+    assert len(small)
+    assert (small[:, 1] == 0).all()
+    large = np.flatnonzero((run.mode[1:] == 0) & (run.mode[:-1] == 1)) + 1
+    assert len(large)
+    assert run.state[large, 1] == pytest.approx(2 * run.state[large, 0])
+    values = active_norms(unequal, run, functions)
+    assert values[0] == 1.0
+    assert values[large[0]] > values[large[0] - 1]
+
+
+def test_adversary_finds_the_growth_of_free_switching():
+    grows = system([[-1, 10], [0, -1]], [[-1, 0], [10, -1]], switching=Switching(Fraction(1, 10)))
+    run = admissible_run(grows, UNIT, 0.05, 200)
+    assert active_norms(grows, run, UNIT)[-1] > 10
+
+
+def test_ratio_of_norms():
+    assert norm_ratio({"a": np.diag([1.0, 4.0]), "b": np.diag([16.0, 2.0])}) == pytest.approx(4.0)

@@ -1,0 +1,77 @@
+from __future__ import annotations
+
+import math
+from fractions import Fraction
+
+import numpy as np
+import pytest
+
+from nrs_design.simulation.periodic import (
+    mixture_matrix,
+    one_period,
+    periodic_run,
+    steps_of_mixture,
+)
+from nrs_design.switched.system import Switching, Time
+from tests.simulation.systems import reset, system
+
+SHEARS = system([[-1, 10], [0, -1]], [[-1, 0], [10, -1]])
+
+
+def test_radius_of_two_scalar_modes():
+    run = periodic_run(system([[-1]], [[3]]), [(0, 1.0), (1, 1.0)])
+    assert run.radius == pytest.approx(math.exp(2))
+    assert run.period == 2.0
+    state = run.response.state[:, 0]
+    assert abs(state[-1] / state[0]) == pytest.approx(
+        math.exp(2 * round(run.response.time[-1] / 2))
+    )
+
+
+def test_word_in_discrete_time_takes_whole_steps():
+    word = system(
+        [["7/10", "7/10"], [0, "7/10"]], [["7/10", 0], ["7/10", "7/10"]], time=Time.DISCRETE
+    )
+    run = periodic_run(word, [(0, 1.0), (1, 1.0)])
+    assert run.radius == pytest.approx(0.49 * (3 + math.sqrt(5)) / 2)
+    assert run.response.time[:3].tolist() == [0.0, 1.0, 2.0]
+    assert run.response.mode[:4].tolist() == [0, 1, 0, 1]
+
+
+def test_resets_act_where_the_signal_switches():
+    double = Switching(resets=(reset("m0", "m1", [[4]]),))
+    plain, jumping = (
+        periodic_run(system([[-1]], [[-1]], switching=rule), [(0, 1.0), (1, 1.0)])
+        for rule in (Switching(), double)
+    )
+    assert jumping.radius == pytest.approx(4 * plain.radius)
+
+
+def test_one_period_ends_with_the_period():
+    run = periodic_run(SHEARS, [(0, 0.3), (1, 0.1)])
+    first = one_period(run)
+    assert first.time[-1] == pytest.approx(0.4)
+    assert set(first.mode.tolist()) == {0, 1}
+    assert len(first.state) == len(first.time) == len(first.mode) + 1
+
+
+def test_slow_growth_ends_after_thirty_periods_and_fast_growth_early():
+    slow = periodic_run(system([["1/1000"]]), [(0, 1.0)])
+    fast = periodic_run(system([[300]]), [(0, 1.0)])
+    assert slow.response.time[-1] == pytest.approx(30)
+    assert fast.response.time[-1] == pytest.approx(1)
+    assert np.isfinite(fast.response.state).all()
+
+
+def test_fast_switching_follows_the_average():
+    weights = (("m0", Fraction(1, 2)), ("m1", Fraction(1, 2)))
+    assert mixture_matrix(SHEARS, weights) == pytest.approx(np.array([[-1, 5], [5, -1]]))
+    run = periodic_run(SHEARS, steps_of_mixture(SHEARS, weights))
+    growth = math.log(run.radius) / run.period
+    assert 0.6 * 4 <= growth <= 4
+
+
+def test_marginal_average_ends_the_search_for_a_period():
+    swing = system([[0, 1], [-1, 0]])
+    steps = steps_of_mixture(swing, (("m0", Fraction(1)),))
+    assert 0 < steps[0][1] <= 0.1

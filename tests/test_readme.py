@@ -1,0 +1,54 @@
+"""What the README shows is what the program prints."""
+
+from __future__ import annotations
+
+import os
+import re
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[1]
+README = (ROOT / "README.md").read_text()
+SESSION = re.compile(r"^\$ nrs-design (.*)\n((?:(?!\$ |```).*\n)*)", re.MULTILINE)
+SESSIONS = SESSION.findall(README)
+
+
+@pytest.fixture(scope="module")
+def checkout(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Copy what the commands read to a place where they may write."""
+    folder = tmp_path_factory.mktemp("checkout")
+    for name in ("specs", "docs", "reports"):
+        shutil.copytree(ROOT / name, folder / name, ignore=shutil.ignore_patterns("*.html", "*.png"))
+    return folder
+
+
+def squeeze(text: str) -> list[str]:
+    return [line.rstrip() for line in text.splitlines() if line.strip()]
+
+
+def test_the_readme_shows_sessions() -> None:
+    assert len(SESSIONS) >= 4
+
+
+@pytest.mark.parametrize(("command", "shown"), SESSIONS)
+def test_output(command: str, shown: str, checkout: Path) -> None:
+    result = subprocess.run(
+        [sys.executable, "-m", "nrs_design", *command.split()],
+        capture_output=True,
+        text=True,
+        cwd=checkout,
+        check=False,
+        env=os.environ | {"PYTHONPATH": str(ROOT), "PYTHONWARNINGS": "default"},
+    )
+    assert squeeze(result.stdout) == squeeze(shown), result.stderr
+
+
+def test_the_two_commands_of_the_readme_are_those_of_ci() -> None:
+    script = (ROOT / ".ci/run").read_text()
+    for command in ("python -m pip install . && nrs-design gate specs/", "python -m pip install nox && nox"):
+        assert f"\n{command}\n" in README
+        assert f"\n{command}\n" in script

@@ -9,14 +9,24 @@ from dataclasses import asdict
 from datetime import UTC, datetime
 from importlib import import_module
 
-from benchmarks.measure import Comparison, machine_facts
+from benchmarks.measure import Comparison, Finding, machine_facts
 
-BENCHMARKS = ("cold_pair", "many_modes", "tight_margins", "impedance_optimum")
+BENCHMARKS = (
+    "cold_pair",
+    "many_modes",
+    "tight_margins",
+    "high_order",
+    "exact_check",
+    "random_families",
+    "beyond_quadratic",
+    "impedance_optimum",
+    "scaling",
+)
 
 
 def main() -> None:
     options = _parse()
-    results: list[Comparison] = []
+    results: list[Comparison | Finding] = []
     facts = machine_facts()
     for name in options.only or BENCHMARKS:
         print(f"running {name}", file=sys.stderr)
@@ -28,7 +38,8 @@ def main() -> None:
         )
         return
     print(f"{date}, {facts}\n")
-    _print_table(results)
+    _print_comparisons([r for r in results if isinstance(r, Comparison)])
+    _print_findings([r for r in results if isinstance(r, Finding)])
 
 
 def _parse() -> argparse.Namespace:
@@ -39,12 +50,17 @@ def _parse() -> argparse.Namespace:
     return parser.parse_args()
 
 
-def _documents(results: list[Comparison]) -> list[dict[str, object]]:
-    return [{**asdict(r), "ratio": r.ratio, "met": r.met} for r in results]
+def _documents(results: list[Comparison | Finding]) -> list[dict[str, object]]:
+    return [
+        {**asdict(r), **({"ratio": r.ratio} if isinstance(r, Comparison) else {}), "met": r.met}
+        for r in results
+    ]
 
 
-def _print_table(results: list[Comparison]) -> None:
-    """Print the results as a Markdown table."""
+def _print_comparisons(results: list[Comparison]) -> None:
+    """Print ratios as a Markdown table."""
+    if not results:
+        return
     print("| work | peer | peer s | ours s | ratio | aim | met | circumstances |")
     print("|---|---|---|---|---|---|---|---|")
     for r in results:
@@ -55,6 +71,17 @@ def _print_table(results: list[Comparison]) -> None:
             f"| {r.work} | {r.peer} | {peer} | {r.our_seconds:.3g} | {ratio} | "
             f"{r.target:.2g} | {'yes' if r.met else 'NO'} | {r.note} |"
         )
+
+
+def _print_findings(results: list[Finding]) -> None:
+    """Print what is not a ratio of two times as a Markdown table."""
+    if not results:
+        return
+    print("\n| work | result | aim | met | s |")
+    print("|---|---|---|---|---|")
+    for r in results:
+        met = "yes" if r.met else "NO"
+        print(f"| {r.work} | {r.result} | {r.aim} | {met} | {r.seconds:.3g} |")
 
 
 main()

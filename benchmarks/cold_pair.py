@@ -35,7 +35,7 @@ def run(quick: bool) -> tuple[Comparison, ...]:
     )
     return (
         Comparison(
-            "one pair, cold process",
+            "one pair, cold process, no rate search",
             "cvxpy script",
             median(p.seconds for p, _ in pairs),
             seconds,

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from fractions import Fraction
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -38,6 +40,22 @@ def crowded_family(n: int, m: int, seed: int, spread: float) -> Matrices:
     rng = np.random.default_rng(seed)
     N = rng.normal(size=(m, n, n)) / np.sqrt(n)
     return np.asarray(np.round(spread * N - np.eye(n), 4))
+
+
+def hurwitz_family(rng: np.random.Generator, n: int, m: int) -> Matrices:
+    """Return m random modes with stability margins from 0.05 to 2, in four decimals."""
+    A = rng.normal(size=(m, n, n))
+    slowest = np.linalg.eigvals(A).real.max(axis=1)
+    shift = slowest + rng.uniform(0.05, 2.0, size=m)
+    return np.asarray(np.round(A - shift[:, None, None] * np.eye(n), 4))
+
+
+def dayawansa_martin(a: Fraction) -> SwitchedSystem:
+    """Return the pair of Dayawansa and Martin (1999): quadratic iff a < 3 + 2 sqrt(2)."""
+    one = RationalMatrix(((-1, -1), (1, -1)))
+    other = RationalMatrix.from_rows([[Fraction(-1), -a], [1 / a, Fraction(-1)]])
+    modes = (Mode("one", one), Mode("other", other))
+    return SwitchedSystem("dayawansa-martin", Time.CONTINUOUS, ("x1", "x2"), modes, ())
 
 
 def to_system(matrices: Matrices, decimals: int) -> SwitchedSystem:

@@ -1,11 +1,20 @@
 import pytest
 
 from nrs_design import __version__
-from nrs_design.certificates.certify import Method, Verdict
+from nrs_design.certificates.certify import Limits, Method, Verdict
 from nrs_design.errors import AssemblyError
 from nrs_design.pipeline import run_certification, run_design, run_evidence
 from nrs_design.spec import read_spec
-from tests.support import COMMUTING, FORCE_LIMIT, PRINT_ERROR, ROBOT, SOFT_TISSUE, holds, write_spec
+from tests.support import (
+    COMMUTING,
+    FORCE_LIMIT,
+    HARD,
+    PRINT_ERROR,
+    ROBOT,
+    SOFT_TISSUE,
+    holds,
+    write_spec,
+)
 
 
 @pytest.mark.parametrize(
@@ -38,17 +47,26 @@ def test_given_matrices_have_no_design():
         run_evidence(loaded, run_design(read_spec(SOFT_TISSUE)))
 
 
-def test_no_certificate_without_a_verdict(tmp_path):
-    spec = write_spec(tmp_path / "six.yaml", [[-1, -1], [1, -1]], [[-1, -6], ["1/6", -1]])
-    result = run_certification(spec)
+def test_no_certificate_without_a_statement(tmp_path):
+    spec = write_spec(tmp_path / "eleven.yaml", *HARD)
+    result = run_certification(spec, limits=Limits(budget=0.0))
     assert result.certification.verdict is Verdict.INCONCLUSIVE
     assert result.certificate is None
 
 
+def test_certificate_of_a_remark_without_a_verdict(tmp_path):
+    """That no quadratic function exists is worth keeping."""
+    spec = write_spec(tmp_path / "eleven.yaml", *HARD)
+    result = run_certification(spec, limits=Limits(max_degree=4))
+    assert result.certification.verdict is Verdict.INCONCLUSIVE
+    assert [item.kind for item in result.certificate.statements] == ["no-common-quadratic"]
+    assert (result.certificate.verdict, result.certificate.evidence) == ("inconclusive", None)
+
+
 def test_coordinates_can_be_overridden():
     loaded = read_spec(SOFT_TISSUE)
-    assert run_certification(loaded, optimize_rate=False).coordinates == "deflection"
-    result = run_certification(loaded, coordinates="force", optimize_rate=False)
+    assert run_certification(loaded, limits=Limits(optimize_rate=False)).coordinates == "deflection"
+    result = run_certification(loaded, coordinates="force", limits=Limits(optimize_rate=False))
     assert result.coordinates == "force"
     assert result.certification.system.states[-1] == "F [N*m]"
     with pytest.raises(AssemblyError, match="coordinates"):

@@ -262,13 +262,14 @@ def _rungs(
         yield "mode quadratic", search_mode_quadratic
     if Method.MIXTURE in wanted:
         yield "mixture", search_mixture
+    polynomial = partial(partial, search_polynomial, optimize_rate=limits.optimize_rate)
     degrees = range(2, limits.max_degree // 2 + 1) if Method.POLYNOMIAL in wanted else ()
     for d in degrees[:2]:
-        yield f"polynomial of degree {2 * d}", partial(search_polynomial, degree=d)
+        yield f"polynomial of degree {2 * d}", polynomial(degree=d)
     if Method.PERIOD in wanted:
         yield "period", search_period
     for d in degrees[2:]:
-        yield f"polynomial of degree {2 * d}", partial(search_polynomial, degree=d)
+        yield f"polynomial of degree {2 * d}", polynomial(degree=d)
 
 
 def _applicable(system: SwitchedSystem) -> set[Method]:

@@ -2,31 +2,36 @@
 
 A certificate is signed by nothing but its own hash, so an attacker can always compute the id anew.
 These re-signed changes are legitimate, because the result is another true statement about the
-same spec, and `verify` says in its answer what it has checked (`LEGITIMATE` below lists them):
+same spec, and `verify` says in its answer what it has checked (`TestLegitimate` below lists them):
 
 - ``package.version``: any text; it says who wrote the file, not what holds;
-- ``Q.denominator_log2``: any integer; Q is scaled by a positive factor, and neither the proof nor
-  the norm in the claim depends on it;
-- ``Q.numerators`` and ``rate``: other numbers, if they prove what the (regenerated) claim says;
+- ``Q.denominator_log2``: any natural number; Q is scaled by a positive factor, and neither the
+  proof nor the norm in the claim depends on it;
+- the numbers of any evidence and its ``rate``: others, if they prove what the (regenerated) claim
+  says;
 - ``gains`` of which the spec fixes only the bounds: other single-precision numbers, or the same
   ones written otherwise, for which the evidence still holds;
-- ``coordinates``: the other ones, with the texts that belong to them, if the evidence holds there;
+- ``statements``: some left out, said twice or in another order, if they carry the same verdict;
 - an unstable mode: any other mode that is unstable, with its own eigenvalue.
 
-Everything else must be rejected, and nothing may crash.
+Everything else must be rejected, and nothing may crash. Other coordinates must be asked for.
 """
 
 import copy
 import json
 from collections.abc import Iterator
 from contextlib import suppress
+from dataclasses import replace
 from fractions import Fraction
+from functools import cache
 from pathlib import Path
 
 import pytest
 
-from nrs_design.certificates.certificate import CommonQuadratic, claim, content_id, dump
-from nrs_design.certificates.second_opinion import unstable_mode
+from nrs_design.certificates.certificate import content_id, dump
+from nrs_design.certificates.certify import Limits, Method
+from nrs_design.certificates.evidence import CommonQuadratic, UnstableMode
+from nrs_design.certificates.evidence.unstable_mode import worst_eigenvalue
 from nrs_design.certificates.verify import (
     Verification,
     read_document,
@@ -41,17 +46,37 @@ from tests.support import (
     COMMUTING,
     FORCE_LIMIT,
     PRINT_ERROR,
+    ROOT,
     SOFT_TISSUE,
     holds,
     write_spec,
 )
 
+EXAMPLES = ROOT / "specs" / "examples"
 SPECS = {
     "given": COMMUTING,
     "impedance": SOFT_TISSUE,
     "force": FORCE_LIMIT,
     "unstable": PRINT_ERROR,
+    "polynomial": EXAMPLES / "dayawansa-martin-6.nrs.yaml",
+    "dwell": EXAMPLES / "geromel-colaneri.nrs.yaml",
+    "discrete": EXAMPLES / "ando-shih.nrs.yaml",
+    "constant": EXAMPLES / "unknown-constant.nrs.yaml",
+    "period": ROOT / "docs" / "examples" / "wide-range.nrs.yaml",
 }
+# For each kind, the fields that may hold other numbers.
+NUMBERS = {
+    "common-quadratic": {"Q"},
+    "common-polynomial": {"Q", "vanishing"},
+    "mode-quadratic": {"functions"},
+    "parameter-quadratic": {"Q_low", "Q_high"},
+    "no-common-quadratic": {"factors"},
+    "unstable-mode": set(),
+    "unstable-period": {"steps", "doublings"},
+}
+ANY_RATE = Limits(optimize_rate=False)
+FIRST = ("statements", 0)
+Q = (*FIRST, "Q")
 DROP = object()
 
 
@@ -75,9 +100,12 @@ def unstable():
     return signed("unstable")
 
 
+@cache
 def signed(name: str) -> tuple[dict, LoadedSpec]:
     loaded = read_spec(SPECS[name])
-    return json.loads(dump(run_certification(loaded, optimize_rate=False).certificate)), loaded
+    return json.loads(
+        dump(run_certification(loaded, limits=ANY_RATE).certificate)
+    ), loaded
 
 
 def resign(document):
@@ -111,6 +139,12 @@ def changed(document, path, value):
     return tampered
 
 
+def restate(document, **fields):
+    """Copy of a document with other fields in its first statement."""
+    first, *rest = document["statements"]
+    return {**document, "statements": [{**first, **fields}, *rest]}
+
+
 def mutations(value) -> list:
     """Ways to spoil one value."""
     common = [DROP, None, True, False, 0, 1, -1, "", "x", [], {}, [value], {"x": value}, "\ud800"]
@@ -131,15 +165,15 @@ def mutations(value) -> list:
 
 def is_true(outcome: Verification) -> bool:
     certificate = outcome.certificate
-    return holds(certificate.system, certificate.evidence)
+    return all(holds(certificate.system, statement) for statement in certificate.statements)
 
 
 def may_change(path, document) -> bool:
     """Tell whether a re-signed change at this place alone can be legitimate."""
-    if path in {("package", "version"), ("Q", "denominator_log2")}:
+    if path == ("package", "version"):
         return True
-    if path[:2] == ("Q", "numerators"):
-        return True
+    if path[0] == "statements":
+        return len(path) <= 2 or path[2] in NUMBERS[at(document, path[:2])["kind"]]
     return path[0] == "gains" and len(path) == 3
 
 
@@ -162,6 +196,11 @@ def test_every_change_is_noticed_by_the_id(pair):
     assert count > 500
 
 
+def test_every_kind_of_verdict_is_among_the_certificates():
+    kinds = {item["kind"] for name in SPECS for item in signed(name)[0]["statements"]}
+    assert kinds == set(NUMBERS)
+
+
 def test_every_re_signed_change_is_rejected_or_true(pair):
     """Accepted only where `may_change`, and then what is said is true in exact arithmetic."""
     document, spec = pair
@@ -178,7 +217,7 @@ def test_every_re_signed_change_is_rejected_or_true(pair):
     assert ("package", "version") in accepted
 
 
-@pytest.mark.parametrize("extra", ["note", "unstable_mode", "", "Q ", "\ud800", "ID"])
+@pytest.mark.parametrize("extra", ["note", "unstable_mode", "", "Q ", "\ud800", "ID", "claim"])
 def test_fields_that_do_not_belong(pair, extra):
     document, spec = pair
     for value in (None, 0, "", {}):
@@ -199,24 +238,24 @@ class TestLegitimate:
         document, spec = pair
         self.accept(changed(document, ("package", "version"), "99.0"), spec)
 
-    @pytest.mark.parametrize("exponent", [0, -7, 10**4000])
+    @pytest.mark.parametrize("exponent", [0, 7, 10**4000])
     def test_scale_in_the_exponent(self, given, exponent):
         document, spec = given
-        self.accept(changed(document, ("Q", "denominator_log2"), exponent), spec)
+        self.accept(changed(document, (*Q, "denominator_log2"), exponent), spec)
 
     @pytest.mark.parametrize("factor", [3, 10**100])
     def test_scale_in_the_numerators(self, impedance, factor):
         document, spec = impedance
-        Q = [[factor * q for q in row] for row in document["Q"]["numerators"]]
-        self.accept(changed(document, ("Q", "numerators"), Q), spec)
+        scaled = [[factor * q for q in row] for row in at(document, Q)["numerators"]]
+        self.accept(changed(document, (*Q, "numerators"), scaled), spec)
 
     def test_slower_rate_with_its_own_claim(self, impedance):
         document, spec = impedance
-        slower = Fraction(document["rate"]) / 2
+        slower = Fraction(at(document, FIRST)["rate"]) / 2
         certificate = verify_document(document, spec).certificate
         evidence = CommonQuadratic(certificate.evidence.Q, 0, slower)
-        words = claim(certificate.system, evidence)
-        restated = {**document, "rate": str(slower), "claim": words}
+        words = evidence.claim(certificate.system)
+        restated = restate(document, rate=str(slower), claim=words)
         assert self.accept(restated, spec).evidence.rate == slower
 
     def test_other_gain_within_the_bounds(self, impedance):
@@ -232,15 +271,35 @@ class TestLegitimate:
 
     def test_other_unstable_mode(self, unstable):
         document, spec = unstable
-        result = run_certification(spec).certificate
-        evidence = unstable_mode(result.system.modes[1], result.system.time)
-        restated = {
-            **document,
-            "unstable_mode": {"name": evidence.mode, "eigenvalue": evidence.eigenvalue},
-            "claim": claim(result.system, evidence),
-        }
-        assert document["unstable_mode"]["name"] == "insertion"
+        system = run_certification(spec).certificate.system
+        other = system.modes[1]
+        evidence = UnstableMode(other.name, worst_eigenvalue(other.A, system.time))
+        restated = restate(document, **evidence.to_fields(), claim=evidence.claim(system))
+        assert at(document, FIRST)["mode"] == "insertion"
         assert self.accept(restated, spec).evidence.mode == "withdrawal"
+
+    def test_statements_in_another_order_and_twice(self):
+        document, spec = signed("polynomial")
+        proof, remark = document["statements"]
+        for statements in ([remark, proof], [proof, proof, remark], [proof]):
+            certificate = self.accept({**document, "statements": statements}, spec)
+            assert certificate.verdict == "proved"
+
+    def test_a_remark_alone_with_the_verdict_that_it_carries(self):
+        document, spec = signed("polynomial")
+        remark = {**document, "statements": document["statements"][1:]}
+        certificate = self.accept({**remark, "verdict": "inconclusive"}, spec)
+        assert (certificate.evidence, certificate.common_quadratic) == (None, "impossible")
+        assert verify_document(resign(remark), spec).fault is not None
+
+    def test_other_coordinates_if_they_are_asked_for(self):
+        spec = read_spec(SOFT_TISSUE)
+        certificate = run_certification(spec, coordinates="force", method=Method.LMI).certificate
+        document = json.loads(dump(certificate))
+        assert verify_document(document, spec, "force").fault is None
+        assert "other coordinates than deflection" in verify_document(document, spec).fault
+        swapped, _ = signed("impedance")
+        assert "other coordinates than force" in verify_document(swapped, spec, "force").fault
 
 
 class TestForgery:
@@ -256,13 +315,14 @@ class TestForgery:
         certificate = verify_document(document, spec).certificate
         for rate in (Fraction(1), Fraction(2), Fraction(10**6)):
             evidence = CommonQuadratic(certificate.evidence.Q, 0, rate)
-            words = claim(certificate.system, evidence)
-            self.reject({**document, "rate": str(rate), "claim": words}, spec, "does not decrease")
+            words = evidence.claim(certificate.system)
+            restated = restate(document, rate=str(rate), claim=words)
+            self.reject(restated, spec, "does not decrease")
 
     @pytest.mark.parametrize("rate", ["0", "0/5"])
     def test_rate_zero(self, given, rate):
         document, spec = given
-        self.reject({**document, "rate": rate}, spec, "")
+        self.reject(restate(document, rate=rate), spec, "")
 
     @pytest.mark.parametrize(
         "rate",
@@ -270,12 +330,12 @@ class TestForgery:
     )
     def test_malformed_rate(self, given, rate):
         document, spec = given
-        self.reject({**document, "rate": rate}, spec, "")
+        self.reject(restate(document, rate=rate), spec, "")
 
     def test_claim_of_more_than_was_proved(self, given):
         document, spec = given
-        words = document["claim"].replace("<=", "<")
-        self.reject({**document, "claim": words}, spec, "'claim'")
+        words = at(document, FIRST)["claim"].replace("<=", "<")
+        self.reject(restate(document, claim=words), spec, "'statements'")
 
     def test_dropped_and_swapped_modes(self, impedance):
         document, spec = impedance
@@ -305,23 +365,71 @@ class TestForgery:
 
     def test_refutation_of_a_stable_system(self, given):
         document, spec = given
-        forged = {k: v for k, v in document.items() if k not in ("Q", "rate")}
-        forged |= {"kind": "unstable-mode", "verdict": "refuted"}
         for name in ("a", "b", "c", "\ud800"):
-            forged["unstable_mode"] = {"name": name, "eigenvalue": "1"}
-            self.reject(forged, spec, "no unstable mode")
+            evidence = UnstableMode(name, "1")
+            words = evidence.claim(run_certification(spec).certificate.system)
+            forged = {"kind": "unstable-mode", "claim": words, "mode": name, "eigenvalue": "1"}
+            refuted = {**document, "verdict": "refuted", "statements": [forged]}
+            fault = verify_document(resign(refuted), spec).fault
+            assert fault is not None
+            assert name in "ab" or "no mode" in fault
+
+    def test_refutation_of_a_stable_mode_with_its_own_eigenvalue(self, given):
+        document, spec = given
+        system = run_certification(spec).certificate.system
+        name = system.modes[0].name
+        evidence = UnstableMode(name, worst_eigenvalue(system.modes[0].A, system.time))
+        forged = {"kind": "unstable-mode", "claim": evidence.claim(system), **evidence.to_fields()}
+        refuted = {**document, "verdict": "refuted", "statements": [forged]}
+        self.reject(refuted, spec, f"mode {name} is stable")
 
     def test_proof_of_an_unstable_system(self, unstable):
         document, spec = unstable
-        forged = {k: v for k, v in document.items() if k != "unstable_mode"}
-        forged |= {"kind": "common-quadratic", "verdict": "proved", "rate": "1/1000"}
-        identity = [[int(i == j) for j in range(4)] for i in range(4)]
-        forged["Q"] = {"numerators": identity, "denominator_log2": 0}
-        self.reject(forged, spec, "'claim'")
-        certificate = run_certification(spec).certificate
-        evidence = CommonQuadratic(tuple(map(tuple, identity)), 0, Fraction(1, 1000))
-        forged["claim"] = claim(certificate.system, evidence)
-        self.reject(forged, spec, "does not decrease")
+        system = run_certification(spec).certificate.system
+        identity = tuple(tuple(int(i == j) for j in range(4)) for i in range(4))
+        evidence = CommonQuadratic(identity, 0, Fraction(1, 1000))
+        forged = {"kind": "common-quadratic", "claim": "", **evidence.to_fields()}
+        proved = {**document, "verdict": "proved", "statements": [forged]}
+        self.reject(proved, spec, "'statements'")
+        forged["claim"] = evidence.claim(system)
+        self.reject(proved, spec, "does not decrease")
+
+    def test_evidence_of_another_system(self, given):
+        """Every statement of every other certificate, restated for this spec."""
+        document, spec = given
+        for name in SPECS:
+            for statement in signed(name)[0]["statements"]:
+                if name != "given":
+                    forged = {**document, "statements": [statement]}
+                    assert verify_document(resign(forged), spec).fault is not None
+
+    def test_a_false_remark_beside_a_true_proof(self, given):
+        document, spec = given
+        remark = signed("polynomial")[0]["statements"][1]
+        renamed = {**remark, "factors": [["a", [[1], [0]]], ["b", [[0], [1]]]]}
+        both = {**document, "statements": [*document["statements"], renamed]}
+        self.reject(both, spec, "not positive definite")
+
+    def test_another_degree(self):
+        document, spec = signed("polynomial")
+        for degree in (2, 6, 0, -4, 10**6):
+            self.reject(changed(document, (*FIRST, "degree"), degree), spec, "")
+
+    def test_shorter_dwell_time_than_declared(self):
+        """The signal must be one of those that the spec allows, and must grow."""
+        document, spec = signed("period")
+        steps = at(document, FIRST)["steps"]
+        for factor in (0, 1000, Fraction(1, 1000)):
+            other = [[name, str(factor * Fraction(dwell))] for name, dwell in steps]
+            evidence = verify_document(document, spec).certificate.evidence
+            changed_ = replace(evidence, steps=tuple((n, Fraction(d)) for n, d in other))
+            words = changed_.claim(run_certification(spec).certificate.system)
+            self.reject(restate(document, steps=other, claim=words), spec, "")
+
+    def test_no_statements(self, pair):
+        document, spec = pair
+        for verdict in ("proved", "refuted", "inconclusive"):
+            self.reject({**document, "verdict": verdict, "statements": []}, spec, "states nothing")
 
     @pytest.mark.parametrize(
         ("controller", "gain", "value"),
@@ -354,7 +462,9 @@ class TestForgery:
         path = tmp_path / "zero.nrs.yaml"
         path.write_text(text)
         spec = read_spec(path)
-        document = json.loads(dump(run_certification(spec, optimize_rate=False).certificate))
+        document = json.loads(
+            dump(run_certification(spec, limits=ANY_RATE).certificate)
+        )
         tampered = changed(document, ("gains", "motion", "Kd"), str(2**127))
         self.reject(tampered, spec, "single precision")
 
@@ -366,7 +476,9 @@ class TestForgery:
     def test_other_coordinates_need_their_own_texts(self, impedance):
         document, spec = impedance
         assert document["coordinates"] == "deflection"
-        self.reject({**document, "coordinates": "force"}, spec, "does not follow")
+        self.reject({**document, "coordinates": "force"}, spec, "other coordinates")
+        fault = verify_document(resign({**document, "coordinates": "force"}), spec, "force").fault
+        assert "does not follow" in fault
 
     @pytest.mark.parametrize("coordinates", ["deflection", "force", ""])
     def test_coordinates_of_given_matrices(self, given, coordinates):
@@ -378,9 +490,10 @@ class TestForgery:
         document, spec = given
         self.reject({**document, "gains": gains}, spec, "")
 
-    def test_other_schema(self, given):
+    @pytest.mark.parametrize("schema", ["nrs-design/certificate/1", "nrs-design/certificate/3", 2])
+    def test_other_schema(self, given, schema):
         document, spec = given
-        self.reject({**document, "schema": "nrs-design/certificate/2"}, spec, "schema")
+        self.reject({**document, "schema": schema}, spec, "schema")
 
     def test_nesting_too_deep_for_the_canonical_form(self, given):
         document, spec = given
@@ -395,7 +508,7 @@ class TestForgery:
 
     def test_integer_too_long_for_text(self, given):
         document, spec = given
-        long = changed(document, ("Q", "denominator_log2"), 10**5000)
+        long = changed(document, (*Q, "denominator_log2"), 10**5000)
         assert "malformed" in verify_document(long, spec).fault
 
 

@@ -81,7 +81,7 @@ def other_gain(document):
 
 
 def raised_rate(document):
-    document["rate"] = "99"
+    document["statements"][0]["rate"] = "99"
 
 
 @pytest.mark.parametrize("edit", [other_gain, raised_rate])
@@ -103,8 +103,8 @@ def test_valid_certificate_of_other_gains(export, tmp_path, capsys):
     design = run_certification(loaded)
     gains = {**design.certificate.gains, "insertion": {"Mt": "0.015625", "Bt": "2.125"}}
     system = assemble(loaded.spec, gains, "deflection")
-    evidence = certify(system).evidence
-    other = replace(design.certificate, gains=gains, system=system, evidence=evidence)
+    statements = certify(system).statements
+    other = replace(design.certificate, gains=gains, system=system, statements=statements)
     Path("mine.json").write_text(dump(other))
     assert verify(Path("mine.json"), loaded).fault is None
     assert export(SPEC, "--certificate", "mine.json") == 1
@@ -116,7 +116,7 @@ def test_certificate_in_other_coordinates(export, capsys):
     other = run_certification(read_spec(SPEC), coordinates="force").certificate
     Path("mine.json").write_text(dump(other))
     assert export(SPEC, "--certificate", "mine.json") == 1
-    assert "force coordinates" in capsys.readouterr().out
+    assert "other coordinates" in capsys.readouterr().out
 
 
 def test_certificate_that_is_none(export):
@@ -144,7 +144,7 @@ def test_inconclusive_design_is_not_exported(export, monkeypatch):
 
     def give_up(system, *arguments, **options):
         unknown = CommonQuadraticStatus.UNKNOWN
-        return Certification(system, Verdict.INCONCLUSIVE, unknown, "auto", None, ())
+        return Certification(system, Verdict.INCONCLUSIVE, unknown, "auto", (), ())
 
     monkeypatch.setattr("nrs_design.certificates.certify.certify", give_up)
     assert export(SPEC) == 3

@@ -98,7 +98,7 @@ def test_inconclusive_is_exit_3_and_refuted_is_worse(gate, monkeypatch):
         if system.name != "stable":
             return certify(system, *arguments, **options)
         unknown = CommonQuadraticStatus.UNKNOWN
-        return Certification(system, Verdict.INCONCLUSIVE, unknown, "auto", None, ())
+        return Certification(system, Verdict.INCONCLUSIVE, unknown, "auto", (), ())
 
     certify = module.certify
     monkeypatch.setattr(module, "certify", give_up_on_stable)

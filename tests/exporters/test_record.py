@@ -117,9 +117,9 @@ def test_certificate_of_other_gains_is_refused(result):
 
 
 def test_certificate_that_refutes_is_refused(result):
-    from nrs_design.certificates.certificate import UnstableMode
+    from nrs_design.certificates.evidence import UnstableMode
 
-    refuting = replace(result.certificate, evidence=UnstableMode("insertion", "1"))
+    refuting = replace(result.certificate, statements=(UnstableMode("insertion", "1"),))
     with pytest.raises(CertificateError, match="refutes"):
         build_record(result.design, refuting)
 

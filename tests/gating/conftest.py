@@ -67,7 +67,7 @@ def inconclusive(monkeypatch: pytest.MonkeyPatch) -> None:
     def give_up(system, *arguments, **options):
         attempts = (Attempt("lmi", "nothing found", 0.25),)
         return Certification(
-            system, Verdict.INCONCLUSIVE, CommonQuadraticStatus.UNKNOWN, "auto", None, attempts
+            system, Verdict.INCONCLUSIVE, CommonQuadraticStatus.UNKNOWN, "auto", (), attempts
         )
 
     monkeypatch.setattr("nrs_design.certificates.certify.certify", give_up)

@@ -75,6 +75,13 @@ def test_the_sample_itself_is_a_lock(tmp_path):
     assert read_lock(tmp_path / "nrs.lock").specs[0].path == "a.nrs.yaml"
 
 
+@pytest.mark.parametrize("certificate", [None, ENTRY["certificate"]])
+def test_an_inconclusive_spec_may_have_the_certificate_of_a_remark(tmp_path, certificate):
+    entry = {**ENTRY, "verdict": "inconclusive", "rate": None, "certificate": certificate}
+    (tmp_path / "nrs.lock").write_text(document(entry))
+    assert read_lock(tmp_path / "nrs.lock").specs[0].verdict == "inconclusive"
+
+
 @pytest.mark.parametrize(
     "text",
     [
@@ -91,6 +98,7 @@ def test_the_sample_itself_is_a_lock(tmp_path):
         document({**ENTRY, "sha256": "0" * 63}),
         document({**ENTRY, "certificate": None}),
         document({**ENTRY, "verdict": "inconclusive"}),
+        document({**ENTRY, "verdict": "refuted"}),
         document({**ENTRY, "path": 1}),
         document({**ENTRY, "unknown": 1}),
         document(ENTRY).replace('"rate"', '"path"'),

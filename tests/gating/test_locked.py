@@ -115,7 +115,7 @@ def test_certificate_of_another_spec(check, project):
 
 def test_valid_certificate_other_than_the_locked_one(check, project):
     def scale(document):
-        document["Q"]["denominator_log2"] += 1
+        document["statements"][0]["Q"]["denominator_log2"] += 1
 
     new = edit_certificate(project, scale)
     outcome = check()
@@ -128,7 +128,7 @@ def test_valid_certificate_other_than_the_locked_one(check, project):
 
 def test_false_certificate_with_a_lock_to_match(check, project):
     def flip(document):
-        numerators = document["Q"]["numerators"]
+        numerators = document["statements"][0]["Q"]["numerators"]
         numerators[0][0] = -numerators[0][0]
 
     new = edit_certificate(project, flip)

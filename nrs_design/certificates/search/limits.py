@@ -44,6 +44,8 @@ def _cycle_growth(matrices: np.ndarray[tuple[int, ...], np.dtype[np.float64]]) -
         products = matrices[words[:, 0]]
         for column in words.T[1:]:
             products = matrices[column] @ products
+        if not np.isfinite(products).all():
+            break
         radius = np.abs(np.linalg.eigvals(products)).max()
         best = max(best, float(radius) ** (1 / length))
     return best

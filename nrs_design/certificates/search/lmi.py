@@ -57,7 +57,8 @@ def find_common_quadratic(
     ndarray, shape (n, n), or None
         A candidate with positive margins in floating point, or None.
     """
-    matrices, rate = _normalize(matrices, time, rate)
+    unit = time_unit(matrices, time)
+    matrices, rate = np.ldexp(matrices, unit), float(np.ldexp(rate, unit))
     m, n = matrices.shape[:2]
     few_rows = m * n * (n + 1) // 2 <= ALL_AT_ONCE_ROWS
     probing = not few_rows or m >= PROBE_BELOW_SHARE * FIRST_MODES
@@ -79,12 +80,11 @@ def find_common_quadratic(
         active = np.sort(np.concatenate([active, worst]))
 
 
-def _normalize(matrices: Matrices, time: Time, rate: float) -> tuple[Matrices, float]:
-    """Choose the unit of time by the largest entry; it does not change the Q that fit."""
+def time_unit(matrices: Matrices, time: Time) -> int:
+    """Choose the unit of time, two to this power, by the largest entry; Q does not depend on it."""
     if time is Time.DISCRETE:
-        return matrices, rate
-    exponent = ENTRY_LOG2 - int(np.frexp(np.abs(matrices).max())[1])
-    return np.ldexp(matrices, exponent), float(np.ldexp(rate, exponent))
+        return 0
+    return ENTRY_LOG2 - int(np.frexp(np.abs(matrices).max())[1])
 
 
 def _solve(matrices: Matrices, time: Time, rate: float) -> NDArray[np.float64] | None:

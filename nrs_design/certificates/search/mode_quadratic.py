@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from nrs_design.certificates.evidence import ModeQuadratic
 from nrs_design.certificates.search.balance import balance, scale
 from nrs_design.certificates.search.decay import bisect_position
-from nrs_design.certificates.search.lmi import decreases
+from nrs_design.certificates.search.lmi import decreases, time_unit
 from nrs_design.certificates.search.rounding import round_rate
 from nrs_design.certificates.search.sdp import maximize_margin, pack, symmetric_basis
 from nrs_design.switched.system import SwitchedSystem, Time
@@ -102,11 +102,15 @@ class _Problem:
             offsets.append(constant * pack(np.eye(n)))
             cones.append(n)
 
+        unit = min(time_unit(A, system.time) for A in self.matrices)
+        scaled_rate = float(np.ldexp(rate, unit))
         for k, (A, n) in enumerate(zip(self.matrices, sizes, strict=True)):
             basis = symmetric_basis(n)
             add_cone(n, [(k, -basis)], 0.0, 1.0)
             add_cone(n, [(k, basis)], 1.0, 0.0)
-            add_cone(n, [(k, decreases(A, basis, system.time, rate))], 1.0, 0.0)
+            add_cone(
+                n, [(k, decreases(np.ldexp(A, unit), basis, system.time, scaled_rate))], 1.0, 0.0
+            )
         for i, j, G in self.switches:
             jump = G @ flows[i] if strict_switches else G
             images = jump.T @ symmetric_basis(sizes[j]) @ jump

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from nrs_design.certificates.evidence import NoCommonQuadratic
+from nrs_design.certificates.search.lmi import time_unit
 from nrs_design.certificates.search.sdp import maximize_margin, pack, symmetric_basis, unpack
 from nrs_design.switched.system import SwitchedSystem, Time
 
@@ -35,6 +36,7 @@ def solve_dual(matrices: Array, time: Time) -> Array | None:
         The X_i if s > 0.
     """
     m, n = matrices.shape[:2]
+    matrices = np.ldexp(matrices, time_unit(matrices, time))
     basis, identity = symmetric_basis(n), pack(np.eye(n))
     size = len(basis)
     if time is Time.CONTINUOUS:

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from nrs_design.certificates.evidence import ParameterQuadratic
 from nrs_design.certificates.search.decay import bisect_position
-from nrs_design.certificates.search.lmi import decreases
+from nrs_design.certificates.search.lmi import decreases, time_unit
 from nrs_design.certificates.search.rounding import round_rate, unscale
 from nrs_design.certificates.search.sdp import maximize_margin, pack, symmetric_basis
 from nrs_design.switched.system import SwitchedSystem, Time
@@ -59,7 +59,8 @@ def find_parameter_quadratic(
 
 def _solve(pairs: Array, rate: float) -> Array | None:
     """Maximize the margin of all conditions; return both ends of Q, shape (2, n, n)."""
-    n = pairs.shape[-1]
+    n, unit = pairs.shape[-1], time_unit(pairs, Time.CONTINUOUS)
+    pairs, rate = np.ldexp(pairs, unit), float(np.ldexp(rate, unit))
     basis, identity = symmetric_basis(n), pack(np.eye(n))
     size = len(basis)
     rows, constants = [], []

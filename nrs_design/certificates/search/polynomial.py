@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from nrs_design.certificates.evidence import CommonPolynomial
 from nrs_design.certificates.lift import derivative_lift, monomials, power_lift
-from nrs_design.certificates.search.lmi import decreases
+from nrs_design.certificates.search.lmi import decreases, time_unit
 from nrs_design.certificates.search.rounding import round_rate
 from nrs_design.certificates.search.sdp import maximize_margin, pack, symmetric_basis
 from nrs_design.switched.matrix import RationalMatrix
@@ -45,12 +45,15 @@ class Lift:
         Basis of the symmetric N with ``z' N z = 0`` for all x, in the same coordinates.
     exponents : ndarray of int, shape (K,)
         The e.
+    unit : int
+        The modes are those in a unit of time of two to this power (discrete time: zero).
     """
 
     degree: int
     matrices: Array
     vanishing: Array
     exponents: Exponents
+    unit: int
 
 
 @dataclass(frozen=True)
@@ -85,7 +88,9 @@ def lift_family(system: SwitchedSystem, exponents: Exponents, degree: int) -> Li
     pairs = [group for group in products(system.order, degree) if len(group) > 1]
     vanishing = [_difference(group[0], other, scaling) for group in pairs for other in group[1:]]
     K = len(basis)
-    return Lift(degree, matrices, np.array(vanishing).reshape(-1, K, K), scaling)
+    unit = time_unit(matrices, system.time)
+    forms = np.array(vanishing).reshape(-1, K, K)
+    return Lift(degree, np.ldexp(matrices, unit), forms, scaling, unit)
 
 
 def count_variables(variables: int, modes: int, degree: int) -> int:
@@ -123,6 +128,7 @@ def find_common_polynomial(lift: Lift, time: Time, rate: float) -> Candidate | N
     Candidate or None
         None if the margin is not positive.
     """
+    rate = float(np.ldexp(rate, lift.unit))
     lifted_rate = rate * lift.degree if time is Time.CONTINUOUS else rate**lift.degree
     m, K = lift.matrices.shape[:2]
     basis, identity = symmetric_basis(K), pack(np.eye(K))
@@ -162,6 +168,8 @@ def round_polynomial(
         Rate of the slowest mode, which no function exceeds.
     """
     best = _own_rate(lift, candidate, system.time)
+    if not np.isfinite(best):
+        return None
     for back_off in BACK_OFFS:
         if system.time is Time.CONTINUOUS:
             rate = round_rate(min(best, limit) * back_off, system.time)
@@ -180,7 +188,7 @@ def _own_rate(lift: Lift, candidate: Candidate, time: Time) -> float:
     inverse = np.linalg.inv(np.linalg.cholesky(candidate.Q))
     smallest = float(np.linalg.eigvalsh(inverse @ forms @ inverse.T).min())
     if time is Time.CONTINUOUS:
-        return smallest / (2 * lift.degree)
+        return float(np.ldexp(smallest / (2 * lift.degree), -lift.unit))
     return float(max(-smallest, 0.0) ** (0.5 / lift.degree))
 
 
@@ -189,13 +197,16 @@ def _integers(
 ) -> CommonPolynomial:
     exponents = lift.exponents - lift.exponents.min()
     normalized = int(np.frexp(np.abs(candidate.Q).max())[1])
-    Q = _round(np.ldexp(candidate.Q, bits - normalized), exponents, 1)
+    Q = _round(np.ldexp(candidate.Q, bits - normalized), exponents)
     groups = products(system.order, lift.degree)
     vanishing = []
     for mode, N in zip(system.modes, candidate.vanishing, strict=True):
         # The integer form of the decrease is this multiple of the floating-point one.
         factor = _form_factor(mode.A, lift.degree, rate, system.time)
-        rounded = _round(np.ldexp(N, bits - normalized), exponents, factor)
+        rounded = [
+            [_shift(factor * entry, -lift.unit) for entry in row]
+            for row in _round(np.ldexp(N, bits - normalized), exponents)
+        ]
         vanishing.append(_make_vanish(rounded, groups))
     return CommonPolynomial(
         degree=lift.degree,
@@ -206,12 +217,16 @@ def _integers(
     )
 
 
-def _round(M: Array, exponents: Exponents, factor: int) -> list[list[int]]:
-    """Round to integers, then undo the scaling: ``factor 2^e M 2^e``."""
+def _round(M: Array, exponents: Exponents) -> list[list[int]]:
+    """Round to integers, then undo the scaling: ``2^e M 2^e``."""
     return [
-        [factor * (round(float(v)) << int(ei + ej)) for v, ej in zip(row, exponents, strict=True)]
+        [round(float(v)) << int(ei + ej) for v, ej in zip(row, exponents, strict=True)]
         for row, ei in zip((M + M.T) / 2, exponents, strict=True)
     ]
+
+
+def _shift(value: int, exponent: int) -> int:
+    return value << exponent if exponent >= 0 else value >> -exponent
 
 
 def _make_vanish(N: list[list[int]], groups: list[list[Pair]]) -> list[list[int]]:

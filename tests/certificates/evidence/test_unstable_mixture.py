@@ -36,7 +36,8 @@ def test_an_average_on_the_border_counts():
     "weights", [(HALF,), (1, 1), (0, 1), (Fraction(3, 2), -HALF), (), (HALF, HALF, 0)]
 )
 def test_weights_are_positive_with_sum_one(weights):
-    assert mixed(*weights).find_fault(shears()) is not None
+    rows = [mode.A.fractions() for mode in shears().modes]
+    assert mixed(*weights).find_fault(family(*rows, rows[0])) is not None
 
 
 def test_names_are_those_of_modes_and_occur_once():

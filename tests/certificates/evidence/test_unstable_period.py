@@ -144,7 +144,10 @@ def test_resets_at_the_switch_back_to_the_first_mode_count():
     assert evidence.find_fault(family(*pair, switching=Switching(resets=grow))) is None
     assert evidence.find_fault(family(*pair)) is not None
     elsewhere = resets_between(("m0", "m0", [[9, 0], [0, 9]]))
-    assert evidence.find_fault(family(*pair, switching=Switching(resets=elsewhere))) is not None
+    staying = family(*pair, switching=Switching(resets=elsewhere))
+    assert evidence.find_fault(staying) is not None
+    # Two steps of one mode are a longer stay, and no switch.
+    assert signal((0, "0.5"), (0, "0.5")).find_fault(staying) is not None
 
 
 def test_dwell_times_transitions_and_constant_parameters_are_obeyed():

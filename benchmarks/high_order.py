@@ -1,0 +1,31 @@
+"""Order 20: an exact proof where a general solver slows down or calls its answer inaccurate."""
+
+from __future__ import annotations
+
+from benchmarks.families import stable_family, to_system
+from benchmarks.measure import Comparison, prove, time_side_by_side
+from benchmarks.peers import Solution, solve_all_at_once
+from nrs_design.certificates.certify import Certification
+
+N, M, DECIMALS = 20, 32, 3
+# Not slower than a script that proves nothing.
+TARGET = 1.0
+
+
+def run(quick: bool) -> tuple[Comparison, ...]:
+    """Measure inside this process, with all imports done."""
+    matrices = stable_family(N, M, seed=N * M)
+    system = to_system(matrices, DECIMALS)
+    prove(to_system(matrices[:1, :4, :4], DECIMALS))
+    (theirs, ours), (solution, found) = time_side_by_side(
+        1 if quick else 3,
+        lambda: solve_all_at_once(matrices),
+        lambda: prove(system),
+    )
+    assert isinstance(solution, Solution)
+    assert isinstance(found, Certification)
+    note = (
+        f"t* = {solution.t:.3g}; peer: {solution.status} in floating point; "
+        f"ours: {found.verdict} by {found.method}, all {M} modes checked exactly"
+    )
+    return (Comparison(f"n = {N}, m = {M}", "cvxpy, all modes", theirs, ours, TARGET, note),)

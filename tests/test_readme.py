@@ -22,9 +22,8 @@ def checkout(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Copy what the commands read to a place where they may write."""
     folder = tmp_path_factory.mktemp("checkout")
     for name in ("specs", "docs", "reports"):
-        shutil.copytree(
-            ROOT / name, folder / name, ignore=shutil.ignore_patterns("*.html", "*.png")
-        )
+        pages = shutil.ignore_patterns("*.html", "*.png")
+        shutil.copytree(ROOT / name, folder / name, ignore=pages)
     return folder
 
 
@@ -53,9 +52,10 @@ def test_output(command: str, shown: str, checkout: Path) -> None:
 
 def test_the_two_commands_of_the_readme_are_those_of_ci() -> None:
     script = (ROOT / ".ci/run").read_text()
-    for command in (
+    commands = (
         "python -m pip install . && nrs-design gate specs/",
         "python -m pip install nox && nox",
-    ):
+    )
+    for command in commands:
         assert f"\n{command}\n" in README
         assert f"\n{command}\n" in script

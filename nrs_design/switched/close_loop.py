@@ -224,8 +224,8 @@ def _assumptions(
     ]
     last = {
         "deflection": "The deflection is continuous at a switch; the force may jump.",
-        "force": "Wherever stiffness or damping changes, at a switch or within its range, the force "
-        "stays and the deflection jumps (the thesis's coordinates; not physical in lasting "
+        "force": "Wherever stiffness or damping changes, at a switch or within its range, the "
+        "force stays and the deflection jumps (the thesis's coordinates; not physical in lasting "
         "contact).",
     }[coordinates]
     return (

@@ -64,7 +64,7 @@ def write_spec(
 
 
 def run(
-    *arguments: str | Path, cwd: Path, environment: dict[str, str] | None = None
+    *arguments: str | Path | int, cwd: Path, environment: dict[str, str] | None = None
 ) -> subprocess.CompletedProcess[str]:
     """Run the command line as a user types it."""
     command = [sys.executable, "-m", "nrs_design", *map(str, arguments)]

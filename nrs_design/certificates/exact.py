@@ -17,6 +17,9 @@ IntegerMatrix = Sequence[Sequence[int]]
 # Elimination takes about rows^3 steps on numbers that grow with rows times bits: seconds at this.
 MAX_WORK = 10**8
 
+# Bits of the smallest diagonal entry in the elimination with rounded numbers.
+CLEAR_BITS = 40
+
 
 def is_symmetric(M: IntegerMatrix) -> bool:
     """Tell whether a matrix is square and equal to its transpose."""
@@ -40,7 +43,8 @@ def add(left: IntegerMatrix, right: IntegerMatrix, weight: int = 1) -> list[list
 def is_positive_definite(M: IntegerMatrix) -> bool:
     """Decide whether a symmetric integer matrix is positive definite.
 
-    Fraction-free elimination (Bareiss 1968): the k-th pivot is the k-th leading principal
+    A matrix that is clearly so is recognized with short numbers; the others are decided by
+    fraction-free elimination (Bareiss 1968): the k-th pivot is the k-th leading principal
     minor, and by Sylvester's criterion all of them are positive iff M is positive definite.
 
     Parameters
@@ -56,16 +60,52 @@ def is_positive_definite(M: IntegerMatrix) -> bool:
     if not M or not is_symmetric(M):
         raise ValueError("a definiteness test needs a symmetric matrix")
     upper = [list(row[i:]) for i, row in enumerate(M)]
+    return _is_clearly_positive_definite(upper) or _has_positive_minors(upper)
+
+
+def _is_clearly_positive_definite(upper: IntegerMatrix) -> bool:
+    """Tell whether elimination with rounded numbers shows that a matrix is positive definite.
+
+    Every Schur complement S of order r is replaced by a smaller matrix of integers: rounding
+    changes S by a symmetric E with entries of size below 1, so ``E <= r I``, and S + E - r I is
+    below S. If all pivots of these are positive, so are those of the matrix. No is no answer.
+
+    Parameters
+    ----------
+    upper : sequence of sequence of int
+        The rows of a symmetric matrix, each from its diagonal on.
+    """
+    bits = min(row[0] for row in upper).bit_length()
+    shift = max(0, CLEAR_BITS - bits)
+    rows = [[entry << shift for entry in row] for row in upper]
+    while rows:
+        pivot, *pivot_row = rows.pop(0)
+        if pivot <= 0:
+            return False
+        order = len(rows)
+        for i, row in enumerate(rows):
+            factor = pivot_row[i]
+            row[:] = [
+                entry - factor * above // pivot
+                for entry, above in zip(row, pivot_row[i:], strict=True)
+            ]
+            row[0] -= order
+    return True
+
+
+def _has_positive_minors(upper: IntegerMatrix) -> bool:
+    """Decide whether all leading principal minors are positive; rows as above."""
+    rows = list(upper)
     previous = 1
-    for k, pivot_row in enumerate(upper):
+    for k, pivot_row in enumerate(rows):
         pivot = pivot_row[0]
         if pivot <= 0:
             return False
-        for i in range(k + 1, len(upper)):
+        for i in range(k + 1, len(rows)):
             factor = pivot_row[i - k]
-            upper[i] = [
+            rows[i] = [
                 (pivot * entry - factor * above) // previous
-                for entry, above in zip(upper[i], pivot_row[i - k :], strict=True)
+                for entry, above in zip(rows[i], pivot_row[i - k :], strict=True)
             ]
         previous = pivot
     return True
@@ -122,7 +162,8 @@ def lyapunov_decrease(
     """
     columns = list(zip(*N, strict=True))
     QN = [[sum(map(mul, row, column)) for column in columns] for row in Q]
-    p, q = 2 * rate.numerator * denominator, rate.denominator
+    ratio = 2 * rate * denominator
+    p, q = ratio.numerator, ratio.denominator
     return [
         [-q * (a + b) - p * entry for a, b, entry in zip(*rows, strict=True)]
         for rows in zip(QN, zip(*QN, strict=True), Q, strict=True)

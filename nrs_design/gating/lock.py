@@ -44,8 +44,8 @@ class LockedSpec(_Frozen):
     def _check_certificate(self) -> LockedSpec:
         if self.certificate is None and self.verdict != "inconclusive":
             raise ValueError("a spec that is proved or refuted has a certificate")
-        if self.rate is not None and self.verdict != "proved":
-            raise ValueError("only a proved spec has a rate")
+        if self.rate is not None and self.verdict == "inconclusive":
+            raise ValueError("a spec without a verdict has no rate")
         return self
 
 

@@ -8,9 +8,14 @@ import sys
 import pytest
 
 from nrs_design.spec import read_spec
-from tests.support import COMMUTING, PRINT_ERROR, ROOT, SOFT_TISSUE, run, write_spec
+from tests.support import COMMUTING, HARD, PRINT_ERROR, ROOT, SOFT_TISSUE, run, write_spec
 
-INCONCLUSIVE = ([[-1, -1], [1, -1]], [[-1, -6], ["1/6", -1]])
+EXAMPLES = ROOT / "specs" / "examples"
+RANGES = EXAMPLES / "oscillator-range.nrs.yaml"
+DWELL = EXAMPLES / "geromel-colaneri.nrs.yaml"
+SIX = EXAMPLES / "dayawansa-martin-6.nrs.yaml"
+CONSTANT = EXAMPLES / "unknown-constant.nrs.yaml"
+WIDE = ROOT / "docs" / "examples" / "wide-range.nrs.yaml"
 
 
 def test_proved(tmp_path):
@@ -32,12 +37,123 @@ def test_refuted(tmp_path):
 
 
 def test_inconclusive_leaves_no_file(tmp_path):
-    write_spec(tmp_path / "six.nrs.yaml", *INCONCLUSIVE)
-    result = run("certify-switching", "six.nrs.yaml", cwd=tmp_path)
+    write_spec(tmp_path / "eleven.nrs.yaml", *HARD)
+    result = run("certify-switching", "eleven.nrs.yaml", "--budget", 0, cwd=tmp_path)
     assert result.returncode == 3
-    assert "INCONCLUSIVE" in result.stdout
+    assert "INCONCLUSIVE (common quadratic function: unknown)" in result.stdout
     assert "not a statement of stability" in result.stdout
+    assert "not begun: the budget of time is used up" in result.stdout
     assert not (tmp_path / "reports").exists()
+
+
+def test_inconclusive_with_a_remark_keeps_it(tmp_path):
+    write_spec(tmp_path / "eleven.nrs.yaml", *HARD)
+    result = run("certify-switching", "eleven.nrs.yaml", cwd=tmp_path)
+    assert result.returncode == 3
+    assert "INCONCLUSIVE (common quadratic function: impossible)" in result.stdout
+    assert "not a statement of stability" in result.stdout
+    document = json.loads((tmp_path / "reports" / "given.cert.json").read_text())
+    assert [item["kind"] for item in document["statements"]] == ["no-common-quadratic"]
+    assert document["verdict"] == "inconclusive"
+
+
+@pytest.mark.parametrize("name", ["hand-range", "wide-range", "thesis-print-error"])
+def test_examples_of_what_must_fail(tmp_path, name):
+    path = ROOT / "docs" / "examples" / f"{name}.nrs.yaml"
+    result = run("certify-switching", path, "--no-optimize-rate", cwd=tmp_path)
+    assert result.returncode == 1
+    assert result.stdout.startswith(f"{name}: REFUTED (common quadratic function: impossible)")
+    assert run("verify", f"reports/{name}.cert.json", path, cwd=tmp_path).returncode == 1
+
+
+@pytest.mark.parametrize(
+    "path", sorted((ROOT / "specs").rglob("*.nrs.yaml")), ids=lambda path: path.stem
+)
+def test_shipped_specs_are_proved(tmp_path, path):
+    result = run("certify-switching", path, "--out", "c.json", cwd=tmp_path)
+    assert result.returncode == 0, result.stdout
+    assert run("verify", "c.json", path, cwd=tmp_path).returncode == 0
+
+
+@pytest.mark.parametrize(
+    ("method", "spec", "code", "verdict"),
+    [
+        ("auto", SIX, 0, "proved/impossible"),
+        ("lmi", COMMUTING, 0, "proved/exists"),
+        ("lmi", SIX, 3, "inconclusive/unknown"),
+        ("gradient", SOFT_TISSUE, 0, "proved/exists"),
+        ("gradient", SIX, 3, "inconclusive/unknown"),
+        ("obstruction", SIX, 3, "inconclusive/impossible"),
+        ("obstruction", COMMUTING, 3, "inconclusive/unknown"),
+        ("mixture", WIDE, 3, "inconclusive/unknown"),
+        ("period", WIDE, 1, "refuted/impossible"),
+        ("period", SIX, 3, "inconclusive/unknown"),
+        ("polynomial", SIX, 0, "proved/unknown"),
+        ("mode-quadratic", DWELL, 0, "proved/unknown"),
+        ("parameter-quadratic", CONSTANT, 0, "proved/unknown"),
+        ("mixture", PRINT_ERROR, 1, "refuted/impossible"),
+    ],
+)
+def test_every_method(tmp_path, method, spec, code, verdict):
+    result = run("certify-switching", spec, "--method", method, "--json", cwd=tmp_path)
+    assert result.returncode == code, result.stderr
+    document = json.loads(result.stdout)
+    assert f"{document['verdict']}/{document['common_quadratic']}" == verdict
+
+
+@pytest.mark.parametrize(
+    ("method", "spec"), [("parameter-quadratic", SIX), ("mixture", DWELL), ("gradient", "discrete")]
+)
+def test_method_that_does_not_apply_is_wrong_usage(tmp_path, method, spec):
+    if spec == "discrete":
+        spec = write_spec(tmp_path / "d.nrs.yaml", [["1/2"]], time="discrete").path
+    result = run("certify-switching", spec, "--method", method, cwd=tmp_path)
+    assert result.returncode == 2
+    assert f"error[NRS002]: the method {method} does not apply" in result.stderr
+    assert "use --method auto" in result.stderr
+    assert result.stdout == ""
+
+
+def test_highest_degree(tmp_path):
+    """a = 10 needs a polynomial of degree 8."""
+    write_spec(tmp_path / "ten.nrs.yaml", [[-1, -1], [1, -1]], [[-1, -10], ["1/10", -1]])
+    for degree, code in ((2, 3), (6, 3), (8, 0)):
+        result = run("certify-switching", "ten.nrs.yaml", "--max-degree", degree, cwd=tmp_path)
+        assert result.returncode == code, degree
+
+
+def test_margin_of_the_oscillator(tmp_path):
+    """Zelentsovsky 1994: stable up to 6.98513, so no larger box can be proved."""
+    result = run("certify-switching", RANGES, "--margin", "--json", cwd=tmp_path)
+    assert result.returncode == 0, result.stderr
+    margin = json.loads(result.stdout)["margin"]
+    assert 1 <= margin["proved_scale"] < margin["refuted_scale"]
+    plain = run("certify-switching", RANGES, "--margin", cwd=tmp_path)
+    assert f"largest box: scaled by {margin['proved_scale']:.6g}" in plain.stdout
+    assert f"scaled by {margin['refuted_scale']:.6g} they are refuted" in plain.stdout
+
+
+def test_margin_needs_a_range(tmp_path):
+    result = run("certify-switching", COMMUTING, "--margin", cwd=tmp_path)
+    assert result.returncode == 2
+    assert "declares no range" in result.stderr
+
+
+def test_shortest_dwell_time(tmp_path):
+    """Geromel and Colaneri 2006: 2.75084 s by this method, refuted up to 2.70775 s."""
+    result = run("certify-switching", DWELL, "--shortest-dwell", "--json", cwd=tmp_path)
+    assert result.returncode == 0, result.stderr
+    dwell = json.loads(result.stdout)["shortest_dwell"]
+    assert 2.75084 <= dwell["proved"] < 2.753
+    assert dwell["refuted"] < 2.70776
+    assert (dwell["unit"], dwell["method"]) == ("s", "mode quadratic")
+
+
+@pytest.mark.parametrize("spec", [RANGES, EXAMPLES / "ando-shih.nrs.yaml"])
+def test_shortest_dwell_time_needs_continuous_time_and_fixed_parameters(tmp_path, spec):
+    result = run("certify-switching", spec, "--shortest-dwell", cwd=tmp_path)
+    assert result.returncode == 2
+    assert "continuous time and fixed parameters" in result.stderr
 
 
 @pytest.mark.parametrize(
@@ -48,6 +164,9 @@ def test_inconclusive_leaves_no_file(tmp_path):
         ([str(COMMUTING), "--method", "guess"], "guess"),
         ([str(COMMUTING), "--coordinates", "force"], "neither gains nor coordinates"),
         ([str(COMMUTING), "--unknown"], "--unknown"),
+        ([str(COMMUTING), "--max-degree", "1"], "--max-degree"),
+        ([str(COMMUTING), "--max-degree", "65"], "--max-degree"),
+        ([str(COMMUTING), "--budget", "-1"], "--budget"),
         (["."], "directory"),
     ],
 )
@@ -58,14 +177,6 @@ def test_wrong_usage(tmp_path, arguments, reason):
     assert result.stdout == ""
     assert "Traceback" not in result.stderr
     assert not list(tmp_path.iterdir())
-
-
-def test_gradient_in_discrete_time_is_wrong_usage(tmp_path):
-    write_spec(tmp_path / "d.nrs.yaml", [["1/2"]], time="discrete")
-    result = run("certify-switching", "d.nrs.yaml", "--method", "gradient", cwd=tmp_path)
-    assert result.returncode == 2
-    assert "error[NRS002]" in result.stderr
-    assert "use --method lmi" in result.stderr
 
 
 def test_json(tmp_path):
@@ -79,11 +190,14 @@ def test_json(tmp_path):
     assert document["method"] == "lmi"
     assert document["decay_rate"] == pytest.approx(3.914, abs=0.01)
     assert document["decay_rate_unit"] == "1/s"
-    assert document["decay_rate_exact"] == certificate["rate"]
+    (statement,) = certificate["statements"]
+    assert document["decay_rate_exact"] == statement["rate"]
+    assert document["decay_rate"] <= document["decay_rate_limit"]
+    assert document["statements"] == [{"kind": "common-quadratic", "claim": statement["claim"]}]
     assert document["modes"] == certificate["modes"]
     assert document["gains"] == certificate["gains"]
     assert document["assumptions"] == certificate["assumptions"]
-    assert document["claim"] == certificate["claim"]
+    assert document["claim"] == statement["claim"]
     assert document["certificate"] == "c.json"
     assert document["certificate_id"] == certificate["id"]
     assert document["spec_sha256"] == read_spec(SOFT_TISSUE).sha256
@@ -93,8 +207,8 @@ def test_json(tmp_path):
     ("spec", "code", "verdict"), [(PRINT_ERROR, 1, "refuted"), (None, 3, "inconclusive")]
 )
 def test_json_without_a_proof(tmp_path, spec, code, verdict):
-    path = spec or write_spec(tmp_path / "six.nrs.yaml", *INCONCLUSIVE).path
-    result = run("certify-switching", path, "--json", cwd=tmp_path)
+    path = spec or write_spec(tmp_path / "eleven.nrs.yaml", *HARD).path
+    result = run("certify-switching", path, "--json", "--budget", 0, cwd=tmp_path)
     assert result.returncode == code
     document = json.loads(result.stdout)
     assert document["verdict"] == verdict

@@ -9,7 +9,7 @@ from time import perf_counter
 import pytest
 
 from nrs_design.certificates.certificate import content_id
-from tests.support import COMMUTING, PRINT_ERROR, ROOT, SOFT_TISSUE, run
+from tests.support import COMMUTING, HARD, PRINT_ERROR, ROOT, SOFT_TISSUE, run, write_spec
 
 HEAVY = ("control", "cvxpy", "scipy", "matplotlib", "clarabel", "numpy", "reportlab", "jinja2")
 
@@ -48,9 +48,32 @@ def test_json(certified):
     assert document["schema"] == "nrs-design/verify/1"
     assert document["verdict"] == "proved"
     assert document["fault"] is None
-    for key in ("claim", "gains", "assumptions"):
+    for key in ("gains", "assumptions"):
         assert document[key] == certificate[key]
+    assert document["claims"] == [item["claim"] for item in certificate["statements"]]
     assert document["certificate_id"] == certificate["id"]
+
+
+def test_remark_that_decides_nothing(tmp_path):
+    """It holds, and says so, but is no verdict: exit code 3."""
+    spec = write_spec(tmp_path / "hard.nrs.yaml", *HARD).path
+    done = run("certify-switching", spec, "--max-degree", 2, "--out", "c.json", cwd=tmp_path)
+    assert done.returncode == 3
+    result = run("verify", "c.json", spec, cwd=tmp_path)
+    assert result.returncode == 3
+    assert result.stdout.startswith("INCONCLUSIVE: the certificate holds, checked exactly.")
+    assert "does not exist. This alone says nothing about stability." in result.stdout
+
+
+def test_other_coordinates_must_be_asked_for(tmp_path):
+    arguments = ["--coordinates", "force", "--out", "c.json"]
+    assert run("certify-switching", SOFT_TISSUE, *arguments, cwd=tmp_path).returncode == 0
+    rejected = run("verify", "c.json", SOFT_TISSUE, cwd=tmp_path)
+    assert rejected.returncode == 1
+    assert "REJECTED: it is about other coordinates than deflection" in rejected.stdout
+    asked = run("verify", "c.json", SOFT_TISSUE, "--coordinates", "force", cwd=tmp_path)
+    assert asked.returncode == 0
+    assert "coordinates: force" in asked.stdout
 
 
 @pytest.mark.parametrize("spec", [COMMUTING, PRINT_ERROR])
@@ -62,7 +85,7 @@ def test_wrong_spec(certified, spec):
 
 def test_altered(certified, tmp_path):
     document = json.loads((certified / "commuting.json").read_text())
-    document["Q"]["numerators"][0][0] += 1
+    document["statements"][0]["Q"]["numerators"][0][0] += 1
     path = tmp_path / "c.json"
     path.write_text(json.dumps(document))
     result = run("verify", "c.json", COMMUTING, "--json", cwd=tmp_path)
@@ -70,7 +93,7 @@ def test_altered(certified, tmp_path):
     content = json.loads(result.stdout)
     assert content["verdict"] == "rejected"
     assert "altered" in content["fault"]
-    assert content["claim"] is content["gains"] is content["certificate_id"] is None
+    assert content["claims"] is content["gains"] is content["certificate_id"] is None
 
 
 @pytest.mark.parametrize("extra", ["\ud800", "\x1b[2J", "\nPROVED: the certificate holds"])

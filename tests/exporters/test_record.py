@@ -120,7 +120,7 @@ def test_certificate_that_refutes_is_refused(result):
     from nrs_design.certificates.evidence import UnstableMode
 
     refuting = replace(result.certificate, statements=(UnstableMode("insertion", "1"),))
-    with pytest.raises(CertificateError, match="refutes"):
+    with pytest.raises(CertificateError, match="does not prove stability"):
         build_record(result.design, refuting)
 
 

@@ -27,6 +27,19 @@ modes:
   - {name: bad, A: [["1/2", 0], [0, 1]]}
 switching: arbitrary
 """
+# Branicky 1998: both modes are Hurwitz.
+GROWING = """\
+kind: switched-system
+name: growing
+time: continuous
+modes:
+  - {name: a, A: [[-1, 10], [-100, -1]]}
+  - {name: b, A: [[-1, 100], [-10, -1]]}
+switching: arbitrary
+"""
+# Dayawansa and Martin 1999 with a = 11.2: stable, but beyond the degrees that are tried.
+HARD = GROWING.replace("growing", "hard").replace("[[-1, 10], [-100, -1]]", "[[-1, -1], [1, -1]]")
+HARD = HARD.replace("[[-1, 100], [-10, -1]]", "[[-1, -11.2], [5/56, -1]]")
 BROKEN = STABLE.replace("time: continuous", "time: sideways")
 SOFT_TISSUE = Path(__file__).parents[2] / "specs/neuroboscope/soft-tissue.nrs.yaml"
 

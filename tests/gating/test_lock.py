@@ -98,7 +98,6 @@ def test_an_inconclusive_spec_may_have_the_certificate_of_a_remark(tmp_path, cer
         document({**ENTRY, "sha256": "0" * 63}),
         document({**ENTRY, "certificate": None}),
         document({**ENTRY, "verdict": "inconclusive"}),
-        document({**ENTRY, "verdict": "refuted"}),
         document({**ENTRY, "path": 1}),
         document({**ENTRY, "unknown": 1}),
         document(ENTRY).replace('"rate"', '"path"'),

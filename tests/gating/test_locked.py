@@ -12,7 +12,7 @@ from nrs_design.gating.locked import run_locked
 from nrs_design.gating.obligations import Status
 from nrs_design.gating.run import Files, run_gate
 
-from .conftest import UNSTABLE
+from .conftest import GROWING, HARD, UNSTABLE
 
 
 @pytest.fixture
@@ -173,8 +173,8 @@ def test_certificate_in_other_coordinates_than_the_spec(check, project):
 
     edit_lock(project, lambda specs: specs[0].update(rate=rate_of(certificate)[0]))
     outcome = check()
-    assert broken(outcome) == [("NRS105", "missed")]
-    assert "force coordinates" in outcome.broken[0].message
+    assert broken(outcome) == [("NRS104", "missed")]
+    assert "other coordinates than deflection" in outcome.broken[0].message
 
 
 def test_refuted_spec_stays_refuted(project):
@@ -184,6 +184,35 @@ def test_refuted_spec_stays_refuted(project):
     outcome = run_locked(specs, read_lock(project / "nrs.lock"), project / "nrs.lock")
     assert broken(outcome) == [("NRS101", "refuted"), ("NRS102", "refuted")]
     assert outcome.severity == 2
+
+
+def test_refutation_by_a_signal_stays_one(project):
+    """All modes are stable; locked and unlocked, the signal is told."""
+    (project / "specs/unstable.nrs.yaml").write_text(GROWING)
+    specs = [project / "specs/unstable.nrs.yaml"]
+    first = run_gate(specs, Files(project / "reports", html=False))
+    write_lock(first, project / "nrs.lock")
+    again = run_locked(specs, read_lock(project / "nrs.lock"), project / "nrs.lock")
+    for outcome in (first, again):
+        assert broken(outcome) == [("NRS102", "refuted")]
+        assert "Repeating the signal" in outcome.broken[0].message
+        assert (outcome.severity, outcome.specs[0].common_quadratic) == (2, "impossible")
+
+
+def test_remark_of_an_inconclusive_spec_is_locked_and_checked(project):
+    """No quadratic function exists, and more was not shown: the gate stays closed."""
+    (project / "specs/hard.nrs.yaml").write_text(HARD)
+    specs = [project / "specs/hard.nrs.yaml"]
+    first = run_gate(specs, Files(project / "reports", html=False))
+    write_lock(first, project / "nrs.lock")
+    again = run_locked(specs, read_lock(project / "nrs.lock"), project / "nrs.lock")
+    for outcome in (first, again):
+        assert broken(outcome) == [("NRS102", str(Status.INCONCLUSIVE))]
+        assert (outcome.severity, outcome.specs[0].common_quadratic) == (1, "impossible")
+    file = project / "reports/hard.cert.json"
+    file.write_text(file.read_text().replace("No positive definite Q", "Every Q"))
+    altered = run_locked(specs, read_lock(project / "nrs.lock"), project / "nrs.lock")
+    assert broken(altered) == [("NRS104", "missed")]
 
 
 @pytest.mark.parametrize("name", ["stable", "soft-tissue"])

@@ -22,6 +22,7 @@ BENCHMARKS = (
     "impedance_optimum",
     "scaling",
 )
+MET = {True: "yes", False: "NO", None: "-"}
 
 
 def main() -> None:
@@ -67,9 +68,10 @@ def _print_comparisons(results: list[Comparison]) -> None:
         stopped = f"> {r.at_least_seconds:.0f}" if r.peer_seconds is None else ""
         peer = stopped or f"{r.peer_seconds:.3g}"
         ratio = f"{'> ' if stopped else ''}{r.ratio:.3g}"
+        aim = "-" if r.target is None else f"{r.target:.3g}"
         print(
             f"| {r.work} | {r.peer} | {peer} | {r.our_seconds:.3g} | {ratio} | "
-            f"{r.target:.2g} | {'yes' if r.met else 'NO'} | {r.note} |"
+            f"{aim} | {MET[r.met]} | {r.note} |"
         )
 
 
@@ -80,8 +82,7 @@ def _print_findings(results: list[Finding]) -> None:
     print("\n| work | result | aim | met | s |")
     print("|---|---|---|---|---|")
     for r in results:
-        met = "yes" if r.met else "NO"
-        print(f"| {r.work} | {r.result} | {r.aim} | {met} | {r.seconds:.3g} |")
+        print(f"| {r.work} | {r.result} | {r.aim} | {MET[r.met]} | {r.seconds:.3g} |")
 
 
 main()

@@ -35,8 +35,8 @@ class Comparison:
         Median; None if it did not end, see `note`.
     our_seconds : float
         Median.
-    target : float
-        Least ratio peer/ours that is aimed for.
+    target : float or None
+        Least ratio peer/ours that is aimed for; None if the ratio is only reported.
     note : str
         Verdicts, memory and other circumstances.
     at_least_seconds : float or None
@@ -47,7 +47,7 @@ class Comparison:
     peer: str
     peer_seconds: float | None
     our_seconds: float
-    target: float
+    target: float | None
     note: str = ""
     at_least_seconds: float | None = None
 
@@ -57,9 +57,9 @@ class Comparison:
         return (self.peer_seconds or self.at_least_seconds or float("nan")) / self.our_seconds
 
     @property
-    def met(self) -> bool:
-        """Whether the target is met."""
-        return self.ratio >= self.target
+    def met(self) -> bool | None:
+        """Whether the target is met; None if there is none."""
+        return None if self.target is None else self.ratio >= self.target
 
 
 @dataclass(frozen=True)

@@ -125,7 +125,7 @@ def _gram(mode, item, N, basis, V, time) -> Rows:
     d, rate = item.degree, item.rate
     if time is Time.CONTINUOUS:
         form = decrease(lifted, item.Q, d * rate, time)
-        factor = mode.denominator * (d * rate).denominator
+        factor = mode.denominator * (2 * d * rate * mode.denominator).denominator
         expected = add(scale(_derivative(V, A), -1), scale(V, -2 * d * rate))
     else:
         form = decrease(lifted, item.Q, rate**d, time)

@@ -139,6 +139,7 @@ def test_margin_needs_a_range(tmp_path):
     assert "declares no range" in result.stderr
 
 
+@pytest.mark.slow
 def test_shortest_dwell_time(tmp_path):
     """Geromel and Colaneri 2006: 2.75084 s by this method, refuted up to 2.70775 s."""
     result = run("certify-switching", DWELL, "--shortest-dwell", "--json", cwd=tmp_path)

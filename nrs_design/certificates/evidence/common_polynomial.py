@@ -46,8 +46,9 @@ class CommonPolynomial(AbstractEvidence):
     denominator_log2 : int
         Q is these numerators over two to this power.
     vanishing : tuple of matrices, each of shape (K, K)
-        One N_i per mode, over the same denominator, times the mode's denominator (discrete time:
-        to the power 2d) and times that of the rate.
+        One N_i per mode, over the same denominator, times the positive integer that clears the
+        denominators of the decrease: that of the mode times that of ``2 d alpha`` times it, or in
+        discrete time that of the mode to the power 2d times that of ``rho^d`` squared.
     rate : Fraction
         alpha in 1/s, or rho per step.
     """

@@ -74,21 +74,23 @@ class ParameterQuadratic(AbstractEvidence):
         yield "Q at the low end is not symmetric and positive definite", self.low
         yield "Q at the high end is not symmetric and positive definite", self.high
         modes = {mode.name: mode.A for mode in system.modes}
+        rate = self.rate
         for low, high in system.switching.fixed_ends:
             A, B = modes[low], modes[high]
-            first = lyapunov_decrease(A.numerators, A.denominator, self.low, self.rate)
-            last = lyapunov_decrease(B.numerators, B.denominator, self.high, self.rate)
-            yield f"V does not decrease in mode {low}", first
-            yield f"V does not decrease in mode {high}", last
+            # Over one denominator, all forms are the same multiple of the true ones.
             common = lcm(A.denominator, B.denominator)
-            mixed = add(
-                _times(
-                    lyapunov_decrease(A.numerators, A.denominator, self.high, self.rate),
-                    common // A.denominator,
-                ),
-                lyapunov_decrease(B.numerators, B.denominator, self.low, self.rate),
-                common // B.denominator,
+            at_low, at_high = (
+                [
+                    lyapunov_decrease(
+                        _times(M.numerators, common // M.denominator), common, Q, rate
+                    )
+                    for Q in (self.low, self.high)
+                ]
+                for M in (A, B)
             )
+            yield f"V does not decrease in mode {low}", at_low[0]
+            yield f"V does not decrease in mode {high}", at_high[1]
+            mixed = add(at_low[1], at_high[0])
             yield f"V does not decrease between {low} and {high}", mixed
 
     def claim(self, system: SwitchedSystem) -> str:

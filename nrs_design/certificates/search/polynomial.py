@@ -243,7 +243,7 @@ def _make_vanish(N: list[list[int]], groups: list[list[Pair]]) -> list[list[int]
 def _form_factor(A: RationalMatrix, degree: int, rate: Fraction, time: Time) -> int:
     """Return the positive integer by which `lifted_decrease` exceeds the true decrease."""
     if time is Time.CONTINUOUS:
-        return A.denominator * (degree * rate).denominator
+        return A.denominator * (2 * degree * rate * A.denominator).denominator
     return int(A.denominator ** (2 * degree) * (rate**degree).denominator ** 2)
 
 

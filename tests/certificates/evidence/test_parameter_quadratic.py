@@ -58,6 +58,21 @@ def test_denominators_of_the_two_ends_do_not_weigh():
         assert (evidence.find_fault(system) is not None) is fault
 
 
+@pytest.mark.parametrize("denominators", [(1, 4), (4, 1), (1, 3), (8, 6)])
+@pytest.mark.parametrize("rate", ["1/8", "1/6", "3/16"])
+def test_the_mixed_condition_weighs_both_ends_alike(denominators, rate):
+    # Scalars -a and -b with Q = 1 and h: a h + b - rate (1 + h) > 0 is the mixed condition.
+    a, b = (1 + Fraction(1, d) - 1 // d for d in denominators)
+    system = family([[-a]], [[-b]], switching=PAIR)
+    for h in (1, 2, 7):
+        evidence = ParameterQuadratic(((1,),), ((h,),), 0, Fraction(rate))
+        forms = dict(evidence.forms(system))
+        mixed = forms["V does not decrease between m0 and m1"][0][0]
+        first = forms["V does not decrease in mode m0"][0][0]
+        ratio = (2 * a * h + 2 * b - 2 * Fraction(rate) * (1 + h)) / (2 * a - 2 * Fraction(rate))
+        assert Fraction(mixed, first) == ratio
+
+
 def test_every_mode_is_one_end_of_one_pair():
     _, evidence = genuine("parameter-quadratic")
     rows = [mode.A.fractions() for mode in oscillator(50).modes]

@@ -1,0 +1,206 @@
+"""The largest box and the shortest dwell time with a proof: brackets that must be true."""
+
+from dataclasses import replace
+from fractions import Fraction
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from nrs_design.certificates.certify import (
+    Certification,
+    CommonQuadraticStatus,
+    Limits,
+    Method,
+    Verdict,
+    certify,
+)
+from nrs_design.certificates.margin import (
+    DWELL_STEPS,
+    LARGEST_SCALE,
+    STEPS,
+    BoxMargin,
+    find_margin,
+    find_shortest_dwell,
+)
+from nrs_design.errors import AssemblyError, DesignError
+from nrs_design.pipeline import run_certification, run_margin, run_shortest_dwell
+from nrs_design.spec import read_spec
+from nrs_design.switched.system import Switching
+from tests.support import COMMUTING, ROOT, SOFT_TISSUE, dayawansa_martin, family, holds
+
+EXAMPLES = ROOT / "specs" / "examples"
+QUICK = Limits(max_degree=6, budget=2.0, optimize_rate=False)
+ANY = family([[-1]])
+
+
+def oscillator(stretch):
+    """x'' + x' + (2 + k) x = 0 with k in [0, 3 stretch]: stable iff 3 stretch < 6.98513."""
+    return family([[0, 1], [-2, -1]], [[0, 1], [-2 - 3 * stretch, -1]])
+
+
+def quick(system):
+    return certify(system, limits=QUICK)
+
+
+def deciding_by(rule):
+    """Make a search and a certifier of which only the verdicts matter."""
+    seen = []
+
+    def assemble(stretch):
+        seen.append(stretch)
+        return replace(ANY, name=str(stretch))
+
+    def decide(system):
+        verdict = rule(Fraction(system.name))
+        return Certification(system, verdict, CommonQuadraticStatus.UNKNOWN, "rule", (), ())
+
+    return assemble, decide, seen
+
+
+def between(proved, refuted):
+    """Verdicts that are monotone, with a gap of ignorance."""
+
+    def rule(stretch):
+        if stretch <= proved:
+            return Verdict.PROVED
+        return Verdict.REFUTED if stretch >= refuted else Verdict.INCONCLUSIVE
+
+    return rule
+
+
+class TestBox:
+    def test_published_limit_of_the_oscillator(self):
+        """Zelentsovsky 1994: 6.98513; by quadratic functions alone 1 + 2 sqrt(2)."""
+        box = find_margin(oscillator, quick)
+        assert 6 < 3 * box.proved < 6.98513 < 3 * box.refuted <= 7.5
+        assert box.proof.verdict is Verdict.PROVED
+        assert box.proof.system == oscillator(box.proved)
+        assert all(holds(box.proof.system, item) for item in box.proof.statements)
+
+    def test_quadratic_functions_alone_reach_the_circle_criterion(self):
+        box = find_margin(oscillator, lambda system: certify(system, Method.LMI, QUICK))
+        assert 3.8 < 3 * box.proved < 1 + 2 * 2**0.5
+        assert box.refuted is None
+
+    @settings(deadline=None)
+    @given(st.fractions("1/64", 60), st.fractions(0, 5))
+    def test_bracket_is_true_and_narrow(self, proved, gap):
+        assemble, decide, seen = deciding_by(between(proved, proved + gap + Fraction(1, 10**9)))
+        box = find_margin(assemble, decide)
+        assert box.proved <= proved
+        assert box.refuted is None or box.refuted > proved + gap
+        assert box.proved in seen
+        # Doubling brackets by a factor of two, each step then halves.
+        assert proved - box.proved <= max(box.proved, 1) * Fraction(1, 2**STEPS)
+        assert len(seen) <= STEPS + 9
+
+    def test_not_even_the_nominal_values(self):
+        for verdict, refuted in ((Verdict.REFUTED, 0), (Verdict.INCONCLUSIVE, None)):
+            assemble, decide, seen = deciding_by(lambda stretch, verdict=verdict: verdict)
+            assert find_margin(assemble, decide) == BoxMargin(None, refuted, None)
+            assert seen == [0]
+
+    def test_no_limit_in_sight(self):
+        assemble, decide, seen = deciding_by(lambda stretch: Verdict.PROVED)
+        box = find_margin(assemble, decide)
+        assert (box.proved, box.refuted) == (LARGEST_SCALE, None)
+        assert max(seen) == LARGEST_SCALE
+
+    def test_never_proved_beyond_what_makes_a_system(self):
+        """Stiffness below zero, say: neither proved nor refuted."""
+        assemble, decide, _ = deciding_by(lambda stretch: Verdict.PROVED)
+
+        def fail_beyond(stretch):
+            if stretch > Fraction(5, 4):
+                raise AssemblyError("the stiffness is not positive")
+            return assemble(stretch)
+
+        box = find_margin(fail_beyond, decide)
+        assert (box.proved, box.refuted) == (Fraction(5, 4), None)
+
+    def test_lying_refutations_below_a_proof_are_not_asked_for(self):
+        """Only scales above the largest proved one are reported as refuted."""
+        assemble, decide, _ = deciding_by(between(Fraction(3, 2), Fraction(3)))
+        box = find_margin(assemble, decide)
+        assert box.proved == Fraction(3, 2)
+        assert box.refuted is None or box.refuted >= 3
+
+
+class TestDwell:
+    def test_published_bounds(self):
+        """Geromel and Colaneri 2006: proofs above 2.75084 s, refuted up to 2.70775 s."""
+        system = family([[0, 1], [-10, -1]], [[0, 1], ["-0.1", "-0.5"]])
+        # The dwell time that it declares itself is left out of account.
+        system = replace(system, switching=Switching(dwell_time=Fraction(100)))
+        dwell = find_shortest_dwell(system, quick, Fraction(1, 10))
+        assert 2.75084 < dwell.proved < 2.7525
+        assert 2.6 < dwell.refuted < 2.70776
+        proof = dwell.proof
+        assert proof.system.switching.dwell_time == dwell.proved
+        assert all(holds(proof.system, item) for item in proof.statements)
+
+    def test_none_is_needed(self):
+        dwell = find_shortest_dwell(dayawansa_martin(5), quick, Fraction(1))
+        assert (dwell.proved, dwell.refuted, dwell.proof.verdict) == (0, None, "proved")
+
+    def test_none_is_long_enough(self):
+        dwell = find_shortest_dwell(family([[1]], [[-1]]), quick, Fraction(1))
+        assert (dwell.proved, dwell.proof) == (None, None)
+        assert dwell.refuted == LARGEST_SCALE
+
+    @settings(deadline=None)
+    @given(st.fractions("1/100", 60), st.fractions(0, 1))
+    def test_bracket_is_true_and_narrow(self, proved, share):
+        refuted, asked = proved * share * Fraction(99, 100), []
+
+        def decide(system):
+            time = system.switching.dwell_time
+            asked.append(time)
+            verdict = Verdict.PROVED if time >= proved else Verdict.INCONCLUSIVE
+            verdict = Verdict.REFUTED if time <= refuted else verdict
+            return Certification(system, verdict, CommonQuadraticStatus.UNKNOWN, "rule", (), ())
+
+        dwell = find_shortest_dwell(ANY, decide, Fraction(1))
+        assert dwell.proved >= proved
+        assert dwell.refuted is None or dwell.refuted <= refuted
+        assert dwell.proved in asked
+        assert dwell.proved - proved <= max(proved, 1) * Fraction(1, 2**DWELL_STEPS)
+
+
+class TestOfSpecs:
+    def test_box_of_the_robot(self):
+        """The design is kept: the box is about the gains that ship."""
+        result = run_certification(read_spec(SOFT_TISSUE), limits=QUICK)
+        told = []
+        box = run_margin(result, Limits(max_degree=2), told.append)
+        assert box.proved >= 1
+        assert told[0] == "box scaled by 0"
+        assert holds(box.proof.system, box.proof.evidence)
+
+    def test_box_that_is_too_large_is_shrunk(self):
+        """Ranges that are refuted as declared still have a smaller box with a proof."""
+        path = ROOT / "docs" / "examples" / "wide-range.nrs.yaml"
+        box = run_margin(run_certification(read_spec(path), limits=QUICK), QUICK)
+        assert 0 < box.proved < box.refuted <= 1
+
+    def test_nothing_to_stretch(self):
+        result = run_certification(read_spec(COMMUTING), limits=QUICK)
+        with pytest.raises(DesignError, match="declares no range") as caught:
+            run_margin(result)
+        assert caught.value.path == COMMUTING
+        assert caught.value.remedy
+
+    @pytest.mark.parametrize("name", ["oscillator-range", "ando-shih"])
+    def test_no_dwell_time_for_ranges_and_discrete_time(self, name):
+        result = run_certification(read_spec(EXAMPLES / f"{name}.nrs.yaml"), limits=QUICK)
+        with pytest.raises(DesignError, match="continuous time and fixed parameters"):
+            run_shortest_dwell(result)
+
+    @pytest.mark.slow
+    def test_dwell_time_of_a_spec(self):
+        result = run_certification(read_spec(EXAMPLES / "geromel-colaneri.nrs.yaml"), limits=QUICK)
+        told = []
+        dwell = run_shortest_dwell(result, QUICK, told.append)
+        assert 2.75084 < dwell.proved < 2.7525
+        assert told[0] == "dwell time 0 s"

@@ -10,6 +10,7 @@ from benchmarks.measure import Finding, run_child
 
 MODES, QUICK_MODES = (16, 64, 256, 1024, 4096, 16384), (16, 64, 256)
 ORDERS, QUICK_ORDERS = (5, 10, 20, 30, 40), (5, 10)
+MEGABYTES = (50, 100, 200, 400, 800)
 FIXED_ORDER, FIXED_MODES = 6, 2
 FIGURE = Path(__file__).parents[1] / "reports" / "scaling.png"
 
@@ -48,6 +49,7 @@ def _report(point: Point) -> Finding:
 
 def _draw(by_modes: list[Point], by_order: list[Point]) -> None:
     from matplotlib.figure import Figure
+    from matplotlib.ticker import NullLocator
 
     figure = Figure(figsize=(9, 6), layout="constrained")
     axes = figure.subplots(2, 2, sharex="col", sharey="row")
@@ -60,9 +62,11 @@ def _draw(by_modes: list[Point], by_order: list[Point]) -> None:
         lower.loglog(sizes, [p.megabytes for p in points], "s-", color="tab:orange")
         lower.set_xlabel(label)
         lower.set_xticks(sizes, [str(size) for size in sizes])
-        lower.minorticks_off()
+        lower.set_yticks(MEGABYTES, [str(megabytes) for megabytes in MEGABYTES])
         for panel in (upper, lower):
+            panel.xaxis.set_minor_locator(NullLocator())
             panel.grid(alpha=0.3)
+        lower.yaxis.set_minor_locator(NullLocator())
     axes[0, 0].set_ylabel("time of the proof (s)")
     axes[1, 0].set_ylabel("peak memory of the process (MB)")
     FIGURE.parent.mkdir(exist_ok=True)

@@ -220,7 +220,7 @@ def _climb(
     remarks: list[AbstractEvidence] = []
     for name, rung in _rungs(system, method, limits, remarks):
         start = perf_counter()
-        if start - begun > limits.budget:
+        if attempts and start - begun > limits.budget:
             attempts.append(Attempt(name, "not begun: the budget of time is used up", 0.0))
             break
         progress(name)

@@ -86,20 +86,29 @@ OUTPUT = Rule(
 MODE_STABLE = Rule(
     "NRS101",
     "Every mode is stable",
-    "Staying in one mode forever is an admissible switching signal, so every mode must be Hurwitz "
-    "(all eigenvalues in the left half plane) or, in discrete time, Schur (inside the unit "
-    "circle). Decided in exact arithmetic from the characteristic polynomial.",
-    "Look at the eigenvalue and at the signs of this mode's matrix; for a controller, lower the "
-    "loop gain: raise Bt, lower Kp, or narrow the range of the environment.",
+    "Staying in one mode forever is an admissible switching signal, whatever the dwell time and "
+    "the transitions that the spec declares, so every mode must be Hurwitz (all eigenvalues in the "
+    "left half plane) or, in discrete time, Schur (inside the unit circle). Decided in exact "
+    "arithmetic from the characteristic polynomial.",
+    "Look at the eigenvalue and at the signs of this mode's matrix; for a controller, add damping "
+    "(raise Bt), lower Kp, or narrow the range of the environment. No rule of switching, such as a "
+    "longer dwell time, mends an unstable mode.",
 )
 SWITCHING_STABLE = Rule(
     "NRS102",
     "The system is stable under the declared switching",
     "Every solution must decay exponentially, whatever the order and the times of the switches "
-    "that the spec allows. Proved by one quadratic Lyapunov function for all modes, checked in "
-    "exact arithmetic; refuted by an unstable mode. Stable modes alone do not suffice.",
-    "If refuted, mend the unstable mode first. If inconclusive, neither was found: bring the modes "
-    "closer together (similar Bt, narrower ranges) and try again. The gate fails until there is "
+    "that the spec allows. Proved by a Lyapunov function: one quadratic function for all modes, or "
+    "where none exists a polynomial of higher degree, or one quadratic function for each mode "
+    "where switching is constrained, or one that depends on a constant parameter. Refuted by an "
+    "unstable mode, by an average of modes that is not stable, or by a periodic switching signal "
+    "that makes a motion grow. Whatever it is, it has passed an exact check. Stable modes alone do "
+    "not suffice, and that no common quadratic function exists refutes nothing.",
+    "If refuted by a mode, mend that mode first (NRS101). If refuted by a signal, take it away: "
+    "declare a longer dwell time or only the transitions that really occur, narrow the ranges, or "
+    "add damping (raise Bt). If inconclusive, neither was found: do the same, or search longer by "
+    "certify-switching with a higher --max-degree or --budget; --margin finds the largest box of "
+    "ranges with a proof, --shortest-dwell the shortest dwell time. The gate fails until there is "
     "a proof.",
 )
 STIFFNESS_RANGE = Rule(
@@ -115,8 +124,8 @@ CERTIFICATE_HOLDS = Rule(
     "NRS104",
     "The certificate holds for its spec",
     "The certificate file is read back and re-checked from the spec alone, in exact arithmetic and "
-    "without any solver: the matrices are assembled from the spec, the gains, the function and "
-    "the rate come from the certificate, and every other field must follow from these.",
+    "without any solver: the matrices are assembled from the spec, the gains and the numbers of "
+    "every statement come from the certificate, and every other field must follow from these.",
     "Make it anew with `nrs-design gate`. If a fresh certificate is rejected, report a defect.",
 )
 LOCKED = Rule(
@@ -168,17 +177,21 @@ WORDS: Mapping[str, Word] = MappingProxyType(
             ),
             Word(
                 "refuted",
-                "The statement is false, and a witness shows it: a mode that is not stable by "
-                "itself, decided exactly.",
-                "Mend the spec or the design: the message names the mode and its eigenvalue. "
-                "Exit code 1.",
+                "The statement is false, and a witness shows it, checked exactly: a mode that is "
+                "not stable by itself, an average of modes that is not, or a periodic switching "
+                "signal along which a motion grows.",
+                "Mend the spec or the design: the message names the witness. A mode needs more "
+                "damping (raise Bt) or a narrower range; a signal is also taken away by a longer "
+                "dwell time or by fewer transitions, if the robot keeps to them. Exit code 1.",
             ),
             Word(
                 "inconclusive",
                 "Neither a proof nor a refutation was found. This is not a statement of "
-                "stability, nor of instability.",
-                "Bring the modes closer together, narrow the ranges, or try another --method of "
-                "certify-switching. A gate fails closed. Exit code 3.",
+                "stability, nor of instability, even where it is shown that no common quadratic "
+                "function exists.",
+                "Search longer: certify-switching with a higher --max-degree or --budget. Or ask "
+                "for less: a longer dwell time, narrower ranges (--margin finds the largest with "
+                "a proof), more damping. A gate fails closed. Exit code 3.",
             ),
             Word(
                 "met",

@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 
 from nrs_design.cli import main
+from nrs_design.gating.rules import RULES
 
 ROOT = Path(__file__).parents[2]
 PRINT_ERROR = ROOT / "docs/examples/thesis-print-error.nrs.yaml"
@@ -49,6 +50,24 @@ def test_the_print_error_of_the_thesis_fails_locked_and_unlocked(gate, capsys):
     assert gate(PRINT_ERROR, "--no-reports") == 1
     assert ":14:5: NRS101 refuted: mode insertion is not Hurwitz" in capsys.readouterr().out
     assert gate(PRINT_ERROR, "--locked") == 1
+
+
+@pytest.mark.parametrize(
+    ("name", "rules", "words"),
+    [
+        ("hand-range", ["NRS101", "NRS102"], "mode withdrawal/hand/k-max is not Hurwitz"),
+        ("wide-range", ["NRS102"], "Repeating the signal"),
+        ("thesis-print-error", ["NRS101", "NRS102"], "mode insertion is not Hurwitz"),
+    ],
+)
+def test_examples_that_must_fail(gate, capsys, name, rules, words):
+    path = ROOT / f"docs/examples/{name}.nrs.yaml"
+    assert gate(path, "--no-reports") == 1
+    out = capsys.readouterr().out
+    assert words in out
+    refuted = {rule for rule in RULES if f"{rule} refuted" in out}
+    assert refuted == set(rules)
+    assert gate(path, "--locked") == 1
 
 
 def test_as_typed(gate, tmp_path):

@@ -7,6 +7,7 @@ from nrs_design.cli import exit_codes
 from nrs_design.cli.gate import OF_SEVERITY
 from nrs_design.gating.obligations import Status
 from nrs_design.gating.rules import RULES, WORDS
+from tests.support import ROOT, run
 
 # Ids are stable: baselines of code scanners and lock files outlive a release.
 PUBLISHED = [
@@ -42,6 +43,41 @@ def test_every_status_is_explained_with_its_exit_code():
 
 def test_a_design_goal_is_not_called_a_proof():
     assert "not a proof" in RULES["NRS103"].explanation
+
+
+@pytest.mark.parametrize(
+    ("name", "advice"),
+    [
+        ("NRS101", ["damping", "narrow the range", "dwell time"]),
+        ("NRS102", ["dwell time", "narrow the ranges", "damping", "--max-degree", "--budget"]),
+        ("refuted", ["dwell time", "narrower range", "damping"]),
+        ("inconclusive", ["dwell time", "narrower ranges", "damping", "--max-degree", "--margin"]),
+    ],
+)
+def test_advice_names_what_can_be_changed(name, advice):
+    remedy = (RULES.get(name) or WORDS[name]).remedy
+    assert all(words in remedy for words in advice)
+
+
+def test_options_that_are_advised_exist():
+    advised = {
+        option
+        for item in (*RULES.values(), *WORDS.values())
+        for option in re.findall("--[a-z-]+", f"{item.explanation} {item.remedy}")
+    }
+    help_ = (
+        run("certify-switching", "--help", cwd=ROOT).stdout + run("gate", "--help", cwd=ROOT).stdout
+    )
+    assert advised - {"--help"} <= set(re.findall("--[a-z-]+", help_))
+
+
+def test_the_ladder_is_explained():
+    """No rung is passed over in silence, and no remark is taken for a verdict."""
+    text = RULES["NRS102"].explanation
+    for words in ("polynomial", "for each mode", "parameter", "average", "periodic"):
+        assert words in text
+    assert "refutes nothing" in text
+    assert "periodic" in WORDS["refuted"].explanation
 
 
 def test_exit_codes_get_worse_with_severity():

@@ -24,7 +24,7 @@ PRINT_ERROR = ROOT / "docs" / "examples" / "thesis-print-error.nrs.yaml"
 
 
 Entry = int | str | Fraction
-# Dayawansa and Martin 1999 with a = 11.2: stable, but only a polynomial of degree 40 or so shows it.
+# Dayawansa and Martin 1999, a = 11.2: stable, but only a polynomial of about degree 40 shows it.
 HARD = ([[-1, -1], [1, -1]], [[-1, "-11.2"], ["5/56", -1]])
 
 

@@ -44,6 +44,7 @@ def test_no_proof_without_flint(monkeypatch):
 
 def test_no_refutation_without_flint(monkeypatch):
     evidence = certify(UNSTABLE).evidence
+
     class Calm:
         def __init__(self, rows):
             pass

@@ -103,9 +103,7 @@ def unstable():
 @cache
 def signed(name: str) -> tuple[dict, LoadedSpec]:
     loaded = read_spec(SPECS[name])
-    return json.loads(
-        dump(run_certification(loaded, limits=ANY_RATE).certificate)
-    ), loaded
+    return json.loads(dump(run_certification(loaded, limits=ANY_RATE).certificate)), loaded
 
 
 def resign(document):
@@ -462,9 +460,7 @@ class TestForgery:
         path = tmp_path / "zero.nrs.yaml"
         path.write_text(text)
         spec = read_spec(path)
-        document = json.loads(
-            dump(run_certification(spec, limits=ANY_RATE).certificate)
-        )
+        document = json.loads(dump(run_certification(spec, limits=ANY_RATE).certificate))
         tampered = changed(document, ("gains", "motion", "Kd"), str(2**127))
         self.reject(tampered, spec, "single precision")
 

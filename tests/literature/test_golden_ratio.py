@@ -4,6 +4,7 @@ The pair [[1, 1], [0, 1]], [[1, 0], [1, 1]] has the golden ratio 1.6180... as it
 radius (reached by alternating), and a quadratic norm shows it. Its inverse is 0.61803....
 """
 
+from itertools import pairwise
 from math import sqrt
 
 from .known import settle
@@ -17,4 +18,4 @@ def test_scaled_below_the_inverse_of_the_golden_ratio():
 def test_scaled_above_it_grows_by_alternating():
     steps = settle("golden-0.6181").evidence.steps
     assert [dwell for _, dwell in steps] == [1] * len(steps)
-    assert all(a != b for (a, _), (b, _) in zip(steps, steps[1:], strict=False))
+    assert all(a != b for (a, _), (b, _) in pairwise(steps))

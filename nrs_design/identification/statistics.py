@@ -87,13 +87,17 @@ class Uncertainty:
 
 
 def uncertainty(
-    sensitivities: Array, residuals: Array, starts: Sequence[int] | None = None
+    sensitivities: Array,
+    residuals: Array,
+    starts: Sequence[int] | None = None,
+    scatter: Array | None = None,
 ) -> Uncertainty:
     """Estimate the covariance of a least-squares fit.
 
     White residuals give the classical ``s^2 (J'J)^-1``. Colored ones, which every real tissue
-    leaves, would make that far too small: then the gradients are summed over long batches, which
-    are nearly independent, and their scatter gives the covariance (a sandwich estimate).
+    leaves, would make that far too small: then the fit is repeated without each of some long
+    batches, which are nearly independent, and the scatter of the results gives the covariance
+    (a jackknife).
 
     Parameters
     ----------
@@ -102,21 +106,21 @@ def uncertainty(
     residuals : ndarray, shape (n,)
         Measurement less model.
     starts : sequence of int, optional
-        Where each record begins, if there are several: records are the batches then, whatever
-        the color of the residuals.
+        Where each record begins, if there are several: records are the batches then.
+    scatter : ndarray, shape (p, p), optional
+        Covariance of ``J'e`` for errors e that the residuals do not show.
     """
     n, p = sensitivities.shape
     whiteness = ljung_box(residuals)
     bread = _inverse(sensitivities)
-    if starts is None and whiteness >= WHITE:
+    hidden = 0.0 if scatter is None else bread @ scatter @ bread
+    if whiteness >= WHITE:
         variance = float(residuals @ residuals) / (n - p)
-        return Uncertainty(variance * bread, n - p, whiteness)
+        return Uncertainty(variance * bread + hidden, n - p, whiteness)
     edges = np.asarray(starts if starts is not None else np.arange(_BATCHES) * n // _BATCHES)
-    sums = np.add.reduceat(sensitivities * residuals[:, None], edges, axis=0)
-    batches = len(edges)
-    degrees = max(batches - p, 1)
-    covariance = bread @ (sums.T @ sums) @ bread * (batches / degrees)
-    return Uncertainty(covariance, degrees, whiteness)
+    covariance = _jackknife(sensitivities, residuals, edges, bread)
+    degrees = max(len(edges) - p, 1)
+    return Uncertainty(covariance + hidden, degrees, whiteness)
 
 
 def ljung_box(residuals: Array, lags: int = _LAGS) -> float:
@@ -147,6 +151,19 @@ def student_quantile(degrees: int) -> float:
     from scipy.special import stdtrit
 
     return float(stdtrit(degrees, 0.5 + CONFIDENCE / 2))
+
+
+def _jackknife(J: Array, residuals: Array, edges: NDArray[np.int64], bread: Array) -> Array:
+    """Return the scatter of the parameters when each batch in turn is left out (first order)."""
+    count, p = len(edges), J.shape[1]
+    shifts = []
+    for first, last in zip(edges, [*edges[1:], len(J)], strict=True):
+        part = J[first:last]
+        # The tiny addition keeps a batch that alone determines a parameter from dividing by zero.
+        without = (1 + 1e-9) * np.eye(p) - part.T @ part @ bread
+        shifts.append(bread @ np.linalg.solve(without, part.T @ residuals[first:last]))
+    moved = np.array(shifts)
+    return np.asarray(moved.T @ moved * (count - 1) / count)
 
 
 def _inverse(J: Array) -> Array:

@@ -44,8 +44,8 @@ ENCODER = 2 * math.pi / 2**14
 _LABEL = "# synthetic record, made by nrs_design.identification.synthetic: not a measurement"
 
 
-def pressing(duration: float, rate: float, depth: float, period: float) -> Motion:
-    """Return presses by hand: in, hold and out, each period a little deeper than the last.
+def pressing(duration: float, rate: float, depth: float, period: float, seed: int) -> Motion:
+    """Return presses by hand: in, hold and out, no two alike.
 
     Parameters
     ----------
@@ -55,14 +55,19 @@ def pressing(duration: float, rate: float, depth: float, period: float) -> Motio
         Samples per s.
     depth : float
         Largest deflection in m (rad).
+    seed : int
+        Of depths and ramps.
     """
+    generator = np.random.default_rng([seed, 1])
     time = np.arange(round(duration * rate) + 1) / rate
-    phase = np.mod(time, period) / period
-    rise = np.interp(phase, [0, 0.08, 0.38, 0.62, 0.92, 1], [0, 0, 1, 1, 0, 0])
-    count = max(int(duration / period), 1)
-    growth = 0.6 + 0.4 * np.minimum(np.floor(time / period) + 1, count) / count
-    # No hand moves with corners: the ramp is eased at both ends.
-    return Motion(time, depth * growth * (3 * rise**2 - 2 * rise**3))
+    deflection = np.zeros_like(time)
+    for start in np.arange(0.0, duration, period).tolist():
+        phase = (time - start) / period
+        corners = np.array([0.08, 0.38, 0.62, 0.92]) + 0.04 * generator.uniform(-1, 1, 4)
+        rise = np.interp(phase, corners, [0, 1, 1, 0], left=0, right=0)
+        # No hand moves with corners: the ramp is eased at both ends.
+        deflection += depth * generator.uniform(0.7, 1) * (3 * rise**2 - 2 * rise**3)
+    return Motion(time, deflection)
 
 
 def tissue_record(
@@ -143,7 +148,12 @@ def _stick_slip(command: Array, step: float, fine: int = 20) -> Array:
             target = GAIN * (value - FRICTION * direction)
             angle += target * h + (velocity - target) * travel
             new = target + (velocity - target) * decay
-            velocity = 0.0 if new * velocity < 0 else new
+            if new * velocity < 0:
+                # What is left of the step, in the other direction or stuck.
+                rest = new / (new - velocity)
+                target = GAIN * (value + FRICTION * direction)
+                new = target * rest * h / TIME_CONSTANT if abs(value) > FRICTION else 0.0
+            velocity = new
     return np.array(angles)
 
 
@@ -151,20 +161,19 @@ def samples() -> Iterator[tuple[str, str]]:
     """Yield name and text of every committed sample."""
     for name, fits in (("soft", SOFT), ("stiff", STIFF)):
         for i, (k, rmse) in enumerate(fits, start=1):
-            depth = 5.3 / k
-            motion = pressing(15.0, 100.0, depth, 5.0)
-            data = tissue_record(Elastic(k), motion, rmse, seed=100 * len(name) + i,
-                                 resolution=COUNT)  # fmt: skip
+            seed = 100 * len(name) + i
+            motion = pressing(15.0, 100.0, 5.5 / k, 5.0, seed)
+            data = tissue_record(Elastic(k), motion, rmse, seed, COUNT)
             yield f"silicone-{name}-{i}.csv", _tissue_text(data, "deflection_m,force_N", (6, 3))
     for name, law, noises in (("nose", NOSE, NOSE_NOISE), ("concha", CONCHA, CONCHA_NOISE)):
         for i, noise in enumerate(noises, start=1):
-            motion = pressing(80.0, 20.0, 0.3, 20.0)
-            data = tissue_record(law, motion, noise, seed=1000 * len(name) + i, resolution=1e-4)
+            seed = 1000 * len(name) + i
+            data = tissue_record(law, pressing(80.0, 20.0, 0.35, 20.0, seed), noise, seed, 1e-4)
             yield f"{name}-{i}.csv", _tissue_text(data, "angle_rad,torque_Nm", (4, 5))
     for i, frequency in enumerate(FREQUENCIES):
         record = actuator_record(frequency, seed=40 + i)
         label = f"{frequency:g}".replace(".", "p")
-        yield f"actuator-{label}hz.csv", _text("time_s,command_rpm,angle_rad", record, (3, 1, 5))
+        yield f"actuator-{label}hz.csv", _text("time_s,command_rpm,angle_rad", record, (3, 1, 6))
     yield "actuator-response.csv", _response_text(seed=7)
 
 

@@ -9,8 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from nrs_design.errors import DataError
+from nrs_design.identification.actuator.friction import friction_shape
 from nrs_design.identification.actuator.model import ActuatorFit, actuator_fit
-from nrs_design.identification.actuator.phasors import Phasors
+from nrs_design.identification.actuator.phasors import Phasors, held_amplitude
 from nrs_design.identification.datasets import FrequencyResponse
 from nrs_design.identification.statistics import Uncertainty, uncertainty
 
@@ -19,16 +20,17 @@ Complex = NDArray[np.complex128]
 
 FEWEST = 3
 _MANY_STEPS = 60
+_FRICTION_STEPS = 5
 _CONVERGED = 1e-12
 
 
 def fit_phasors(phasors: Sequence[Phasors]) -> ActuatorFit:
     """Fit gain, time constant and friction to sinusoid records.
 
-    Friction opposes the velocity: the first harmonic of its square wave has the amplitude
-    ``4/pi friction`` in phase with it. Hence ``U = V (1 + j w tau)/gain + (4/pi) friction V/|V|``,
-    linear in ``1/gain``, ``tau/gain`` and the friction: a complex least-squares problem, each
-    equation relative to its command.
+    ``U = V (1 + j w tau)/gain + friction S``, linear in ``1/gain``, ``tau/gain`` and the friction:
+    a complex least-squares problem. S is the first harmonic of the friction over its largest
+    value: ``4/pi V/|V|`` for a square wave, and then that of the fitted motor, which also sticks.
+    Equations are weighted for angles with white noise.
 
     Raises
     ------
@@ -36,22 +38,41 @@ def fit_phasors(phasors: Sequence[Phasors]) -> ActuatorFit:
         If there are fewer than three different frequencies, or the fit is not a motor.
     """
     check_frequencies(np.array([p.frequency for p in phasors]))
-    U = np.array([p.command for p in phasors])
     V = np.array([p.velocity for p in phasors])
-    jw = 1j * np.array([p.frequency for p in phasors])
-    rows = np.column_stack([V, jw * V, 4 / pi * V / np.abs(V)]) / U[:, None]
-    X, y = _stacked(rows), _stacked(np.ones(len(U), complex))
+    S, tau = 4 / pi * V / np.abs(V), 0.0
+    for _ in range(_FRICTION_STEPS):
+        solution, X, error = _solve(phasors, V, S, tau)
+        gain, tau, friction = 1 / solution[0], solution[1] / solution[0], solution[2]
+        S = np.array([_friction_phasor(p, gain, tau, friction) for p in phasors])
+    known = uncertainty(X * solution, error)
+    # From the logarithms of 1/gain and tau/gain to those of gain and tau.
+    turn = np.array([[-1.0, 0.0, 0.0], [-1.0, 1.0, 0.0], [0.0, 0.0, 1.0]])
+    turned = Uncertainty(turn @ known.covariance @ turn.T, known.degrees, known.whiteness)
+    return actuator_fit("complex response of the records", turn @ np.log(solution), turned)
+
+
+def _solve(
+    phasors: Sequence[Phasors], V: Complex, S: Complex, tau: float
+) -> tuple[Array, Array, Array]:
+    """Solve the weighted equations; return solution, weighted matrix and errors."""
+    U = np.array([p.command for p in phasors])
+    w = np.array([p.frequency for p in phasors])
+    counts = np.array([len(p.record.time) for p in phasors])
+    weights = np.sqrt(counts / counts.mean()) / (w * np.abs(1 + 1j * w * tau))
+    rows = np.column_stack([V, 1j * w * V, S]) * weights[:, None]
+    X, y = _stacked(rows), _stacked(U * weights)
     solution = np.linalg.lstsq(X, y, rcond=None)[0]
     if not (solution > 0).all():
         raise DataError(
             "the responses are not those of a first-order velocity model with friction",
             remedy="check the columns, their units and signs",
         )
-    known = uncertainty(X * solution, y - X @ solution)
-    # From the logarithms of 1/gain and tau/gain to those of gain and tau.
-    turn = np.array([[-1.0, 0.0, 0.0], [-1.0, 1.0, 0.0], [0.0, 0.0, 1.0]])
-    turned = Uncertainty(turn @ known.covariance @ turn.T, known.degrees, known.whiteness)
-    return actuator_fit("complex response of the records", turn @ np.log(solution), turned)
+    return np.asarray(solution, float), X, np.asarray(y - X @ solution, float)
+
+
+def _friction_phasor(phasors: Phasors, gain: float, tau: float, friction: float) -> complex:
+    shape = friction_shape(phasors.record, gain, tau, friction)
+    return held_amplitude(phasors.record, shape, phasors.frequency)
 
 
 def fit_response(data: FrequencyResponse) -> ActuatorFit:

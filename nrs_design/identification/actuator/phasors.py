@@ -28,8 +28,8 @@ class Phasors:
 
     Parameters
     ----------
-    name : str
-        Of the record.
+    record : SinusoidRecord
+        The data.
     frequency : float
         In rad/s.
     command : complex
@@ -38,7 +38,7 @@ class Phasors:
         Amplitude in rad/s.
     """
 
-    name: str
+    record: SinusoidRecord
     frequency: float
     command: complex
     velocity: complex
@@ -72,10 +72,20 @@ def phasors_of(record: SinusoidRecord) -> Phasors:
             remedy="record one frequency at a time",
         )
     (angle, *_), _ = _amplitudes(record.time[late], record.angle[late], frequency, _HARMONICS)
-    # A command that is held between samples acts half a step later.
+    return Phasors(record, frequency, command * _hold(record, frequency), 1j * frequency * angle)
+
+
+def held_amplitude(record: SinusoidRecord, values: Array, frequency: float) -> complex:
+    """Return the amplitude of what is held between the samples of a record, as it acts."""
+    late = record.time >= _TRANSIENT * record.time[-1]
+    (amplitude, *_), _ = _amplitudes(record.time[late], values[late], frequency, _HARMONICS)
+    return amplitude * _hold(record, frequency)
+
+
+def _hold(record: SinusoidRecord, frequency: float) -> complex:
+    """Return the effect of holding a value between samples: it acts half a step later."""
     half = frequency * float(np.median(np.diff(record.time))) / 2
-    held = command * np.sinc(half / np.pi) * np.exp(-1j * half)
-    return Phasors(record.name, frequency, complex(held), 1j * frequency * angle)
+    return complex(np.sinc(half / np.pi) * np.exp(-1j * half))
 
 
 def _frequency(record: SinusoidRecord) -> float:

@@ -11,6 +11,7 @@ from nrs_design.errors import DataError
 from nrs_design.identification.actuator.friction import friction_shape
 from nrs_design.identification.actuator.model import ActuatorFit, actuator_fit
 from nrs_design.identification.datasets import SinusoidRecord
+from nrs_design.identification.rounding import rounding_scatter
 from nrs_design.identification.statistics import uncertainty
 from nrs_design.models.recursion import run_first_order
 
@@ -27,8 +28,8 @@ def fit_angles(records: Sequence[SinusoidRecord], start: ActuatorFit) -> Actuato
 
     The command is held between samples and the velocity is solved exactly. The direction of the
     friction is that of the model's own velocity. Initial angle and velocity of every record are
-    eliminated by linear least squares. The covariance is that of records as batches: the spread
-    between them goes into the intervals.
+    eliminated by linear least squares. If the errors are not white, the spread between records
+    goes into the intervals.
 
     Parameters
     ----------
@@ -58,7 +59,12 @@ def fit_angles(records: Sequence[SinusoidRecord], start: ActuatorFit) -> Actuato
             remedy="check the records, or give a ready frequency response",
         )
     starts = np.cumsum([0, *(len(record.time) for record in records[:-1])]).tolist()
-    return actuator_fit("angles in the time domain", logs, uncertainty(J, error, starts))
+    scatter = sum(
+        (rounding_scatter(r.angle, part, 1.0) for r, (part, _) in zip(records, parts, strict=True)),
+        start=np.zeros((3, 3)),
+    )
+    known = uncertainty(J, error, starts, scatter)
+    return actuator_fit("angles in the time domain", logs, known)
 
 
 def simulate_angle(record: SinusoidRecord, gain: float, tau: float, friction: float) -> Array:
@@ -69,8 +75,7 @@ def simulate_angle(record: SinusoidRecord, gain: float, tau: float, friction: fl
     forced = _angle(record, gain, tau, friction, friction_shape(record, gain, tau, friction))
     free = _free(record, tau)
     start = np.linalg.lstsq(free, record.angle - forced, rcond=None)[0]
-    angle = forced + free @ start
-    return angle
+    return np.asarray(forced + free @ start, float)
 
 
 def _linearize(record: SinusoidRecord, logs: Array) -> tuple[Array, Array]:
@@ -78,7 +83,8 @@ def _linearize(record: SinusoidRecord, logs: Array) -> tuple[Array, Array]:
     shape = friction_shape(record, *np.exp(logs).tolist())
 
     def forced(x: Array) -> Array:
-        return _angle(record, *np.exp(x).tolist(), shape)
+        gain, tau, friction = np.exp(x).tolist()
+        return _angle(record, gain, tau, friction, shape)
 
     steps = _DIFFERENCE * np.eye(3)
     J = np.column_stack([(forced(logs + h) - forced(logs - h)) / (2 * _DIFFERENCE) for h in steps])

@@ -189,7 +189,7 @@ def _missing(
         f"the columns {', '.join(missing) or 'of one group'} are missing: it has {_listed(header)}",
         path=path,
         line=line,
-        remedy=f"expected {expected}; name foreign columns with --map {missing[0] if missing else 'force_N'}=NAME",
+        remedy=f"expected {expected}; name foreign columns with --map force_N=NAME",
     )
 
 

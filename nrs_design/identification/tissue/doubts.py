@@ -8,8 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from nrs_design.identification.datasets import TissueRecord
+from nrs_design.identification.rounding import rounding_of_velocity
 from nrs_design.identification.statistics import Uncertainty
-from nrs_design.models.tissue import AbstractTissueLaw, HuntCrossley, KelvinVoigt, Motion
+from nrs_design.models.tissue import AbstractTissueLaw, HuntCrossley, KelvinVoigt
 
 Array = NDArray[np.float64]
 
@@ -68,7 +69,7 @@ def _times(law: AbstractTissueLaw, record: TissueRecord) -> Iterator[str]:
 def _motion(law: AbstractTissueLaw, record: TissueRecord) -> Iterator[str]:
     motion = record.motion
     if isinstance(law, KelvinVoigt | HuntCrossley):
-        part = rounding_of_velocity(motion)
+        part = rounding_of_velocity(motion.time, motion.deflection)
         if part > _ROUNDING:
             yield (
                 f"{100 * min(part, 1.0):.0f} % of the power of the velocity is rounding of the "
@@ -79,20 +80,3 @@ def _motion(law: AbstractTissueLaw, record: TissueRecord) -> Iterator[str]:
         yield (
             f"the record begins at {100 * start:.0f} % of the deflection, which is taken as relaxed"
         )
-
-
-def rounding_of_velocity(motion: Motion) -> float:
-    """Return the part of the velocity's power that rounding of the deflection accounts for.
-
-    The resolution is taken to be the smallest change that occurs; its rounding error has the
-    variance ``q^2/12``, and a difference over two steps twice that.
-    """
-    changes = np.abs(motion.increments)
-    changes = changes[changes > 1e-9 * changes.max()]
-    resolution = float(changes.min())
-    # A continuous signal has changes of all sizes: only a coarse grid repeats its smallest one.
-    if np.mean(np.abs(changes / resolution - np.round(changes / resolution)) < 0.01) < 0.9:
-        return 0.0
-    step = float(np.median(motion.steps))
-    noise = resolution**2 / 6 / (2 * step) ** 2
-    return noise / float(np.mean(motion.velocity**2))

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from nrs_design.identification.datasets import TissueRecord
+from nrs_design.identification.rounding import rounding_scatter
 from nrs_design.identification.statistics import Estimate, Uncertainty, uncertainty
 from nrs_design.identification.tissue.doubts import doubts
 from nrs_design.identification.tissue.starts import box, scan
@@ -93,7 +94,7 @@ def fit_record(kind: type[AbstractTissueLaw], record: TissueRecord) -> RecordFit
     costs = np.array([rmse(law, record) ** 2 for law in ends])
     best = int(np.argmin(costs))
     law = ends[best]
-    known = uncertainty(law.sensitivities(record.motion), residuals(law, record))
+    known = _uncertainty(law, record)
     return RecordFit(
         record=record,
         law=law,
@@ -115,6 +116,13 @@ def rmse(law: AbstractTissueLaw, record: TissueRecord) -> float:
     return float(np.sqrt(np.mean(residuals(law, record) ** 2)))
 
 
+def _uncertainty(law: AbstractTissueLaw, record: TissueRecord) -> Uncertainty:
+    J = law.sensitivities(record.motion)
+    stiffness = float(np.linalg.norm(record.force) / np.linalg.norm(record.motion.deflection))
+    scatter = rounding_scatter(record.motion.deflection, J, stiffness)
+    return uncertainty(J, residuals(law, record), scatter=scatter)
+
+
 def _search(
     kind: type[AbstractTissueLaw],
     record: TissueRecord,
@@ -132,10 +140,16 @@ def _search(
     def law_at(x: Array) -> AbstractTissueLaw:
         return kind(*np.exp(x).tolist())
 
+    def error(x: Array) -> Array:
+        return -residuals(law_at(x), record) / scale
+
+    def slope(x: Array) -> Array:
+        return law_at(x).sensitivities(record.motion) / scale
+
     found = least_squares(
-        lambda x: -residuals(law_at(x), record) / scale,
+        error,
         x0,
-        jac=lambda x: law_at(x).sensitivities(record.motion) / scale,
+        jac=slope,
         bounds=(low, high),
         xtol=1e-10,
         ftol=1e-12,

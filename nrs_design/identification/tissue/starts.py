@@ -45,7 +45,8 @@ def scan(kind: type[AbstractTissueLaw], record: TissueRecord) -> Iterator[Abstra
     elif kind is HuntCrossley:
         for phi in np.linspace(LEAST_EXPONENT, LARGEST_EXPONENT, _EXPONENTS).tolist():
             power = np.maximum(motion.deflection, 0.0) ** phi
-            yield HuntCrossley(*_linear(force, power, power * motion.velocity), phi)
+            rho, lam = _linear(force, power, power * motion.velocity)
+            yield HuntCrossley(rho, lam, phi)
     else:
         for tau in _time_constants(record):
             y, _ = relax(motion, tau)

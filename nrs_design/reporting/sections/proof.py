@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from nrs_design import __version__
 from nrs_design.certificates.certificate import CommonQuadratic, claim, rate_text
 from nrs_design.reporting.document import Block, Bullets, Paragraph, Section
-from nrs_design.reporting.formatting import plural
+from nrs_design.reporting.formatting import plural, shortened
 from nrs_design.spec import InteractionDesignSpec
 from nrs_design.switched.system import SwitchedSystem, Time
 
@@ -61,11 +62,27 @@ def facts(result: Result) -> tuple[tuple[str, str], ...]:
     if result.coordinates is not None:
         rows.append(("Coordinates", result.coordinates))
     rows += [
+        *_provenance(result),
         ("Package", f"nrs-design {__version__}"),
         ("SHA-256 of the spec", result.loaded.sha256),
         ("Certificate id", result.certificate.id if result.certificate else "none"),
     ]
     return tuple(rows)
+
+
+def _provenance(result: Result) -> Iterator[tuple[str, str]]:
+    """Say which data the values of the spec were identified from."""
+    spec = result.loaded.spec
+    if not isinstance(spec, InteractionDesignSpec):
+        return
+    parts = {"actuator": spec.actuator.provenance}
+    parts |= {name: environment.provenance for name, environment in spec.environments.items()}
+    for name, sources in parts.items():
+        if sources:
+            kinds = " and ".join(sorted({source.data.upper() for source in sources}))
+            count = plural(len(sources), "record")
+            files = shortened([source.file for source in sources], 3)
+            yield (f"Data for {name}", f"{kinds} data, {count}: {files}")
 
 
 def proof_section(result: Result) -> Section:

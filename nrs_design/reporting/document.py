@@ -89,14 +89,16 @@ class Report:
     ----------
     name, title : str
         Of the spec; the title may be empty.
-    verdict : {"proved", "refuted", "inconclusive"}
-        Of the certification.
+    verdict : {"proved", "refuted", "inconclusive", "identified"}
+        Of the certification, or that this is an identification.
     claim : str
         What the certificate states, or that there is none.
     facts : tuple of (str, str)
         Label and value: hashes, versions, rates.
     sections : tuple of Section
         In reading order.
+    footer : str
+        Last line of the page.
     """
 
     name: str
@@ -105,6 +107,10 @@ class Report:
     claim: str
     facts: tuple[tuple[str, str], ...]
     sections: tuple[Section, ...]
+    footer: str = (
+        "Report of nrs-design. Figures are floating-point illustrations; the certificate is the "
+        "proof."
+    )
 
     @property
     def illustrations(self) -> Iterator[Illustration]:

@@ -123,7 +123,7 @@ def _from_records(
     if len(records) >= _FEWEST_RECORDS:
         progress("time domain")
         fits.append(fit_angles(records, fits[0]))
-        reason = "the fit to the angles uses every sample; its intervals hold the spread of records"
+        reason = "the fit to the angles uses every sample."
     chosen = fits[-1]
     friction = chosen.friction.value if chosen.friction else 0.0
     V = np.array([p.velocity for p in phasors])

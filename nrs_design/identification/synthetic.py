@@ -5,7 +5,8 @@ tables suggest, and the resolution of its sensors:
 
 - silicone specimens (6.1): a surface gauge presses by up to about 7 mm; deflection from a 4096
   count encoder at the end of a 100 mm handle (0.153 mm per count), force from a 10 V amplifier;
-- nose and concha (2.5): rotations of up to 0.35 rad, long enough to see the relaxation;
+- nose and concha (2.5): rotations of up to 0.35 rad, long enough to see the relaxation; like the
+  law, the tissue pulls where a real contact would be lost;
 - actuator (4.1): sinusoidal commands to a motor with Coulomb friction that sticks at reversals,
   angle from a 14 bit encoder.
 

@@ -34,10 +34,10 @@ _DRAWN = 6
 _MEANING = (
     "Intervals are 95 % confidence intervals of the pooled parameters; with several records they "
     "hold the spread between records.",
-    "The range to be proved also covers the interval of every single record.",
+    "The range over all records also covers the interval of every single record.",
     "RMSE is that of the pooled parameters in each record. AIC and BIC are sums over the records, "
     "each with parameters of its own.",
-    "The whiteness p-value is small where residuals are not white noise: the law then misses "
+    "The p-value of the whiteness test is small where residuals are not white noise: the law then misses "
     "something, and its intervals come from the scatter between parts of the record.",
 )
 
@@ -79,7 +79,7 @@ def tissue_report(found: TissueIdentification, arm: float | None = None) -> Repo
 def actuator_report(found: ActuatorIdentification) -> Report:
     """Say and draw everything about the identification of an actuator."""
     fit = found.chosen
-    values = [f"gain {_interval(fit.gain)} (rad/s)/rpm", f"τ {_interval(fit.time_constant)} s"]
+    values = [f"Gain {_interval(fit.gain)} (rad/s)/rpm", f"τ {_interval(fit.time_constant)} s"]
     if fit.friction:
         values.append(f"friction {_interval(fit.friction)} rpm")
     figures = found.figures
@@ -115,7 +115,7 @@ def _comparison(found: TissueIdentification) -> Iterator[Block]:
     rows = tuple(
         (
             model.law.name + (" (chosen)" if model is found.chosen else ""),
-            *(number(value) for value in model.rmse),
+            *(number(value, 3) for value in model.rmse),
             number(model.aic - least_aic),
             number(model.bic - least_bic),
             f"{min(fit.uncertainty.whiteness for fit in model.fits):.2g}",
@@ -123,7 +123,7 @@ def _comparison(found: TissueIdentification) -> Iterator[Block]:
         )
         for model in found.models
     )
-    columns = ("Law", *records, "AIC - least", "BIC - least", "Whiteness p", "Doubts")
+    columns = ("Law", *records, "AIC - least", "BIC - least", "White p", "Doubts")
     yield Table(f"RMSE [{unit}] in each record, and criteria", columns, rows)
     doubts = tuple(
         f"{model.law.name}: {shortened(model.doubts, 4)}." for model in found.models if model.doubts
@@ -145,7 +145,7 @@ def _parameters(found: TissueIdentification, arm: float | None) -> Iterator[Bloc
         for fit in model.fits
     ]
     rows.append(("pooled", *map(_interval, model.estimates)))
-    rows.append(("range to be proved", *map(_interval, model.ranges)))
+    rows.append(("range over all records", *map(_interval, model.ranges)))
     if arm is not None:
         turned = [f"{number(value, 6)} {unit}" for value, unit in
                   zip(law.at_pivot(arm).values, units_of(law, True), strict=True)]  # fmt: skip
@@ -222,7 +222,8 @@ def _bode(found: ActuatorIdentification) -> Illustration:
     return Illustration(
         "bode",
         "Velocity over command",
-        f"{_label(found.synthetic)}The first harmonic of the friction is taken off the command.",
+        f"{_label(found.synthetic)}Magnitude relative to 1 (rad/s)/rpm. The first harmonic of the "
+        "friction is taken off the command.",
         draw_bode(found),
     )
 

@@ -30,7 +30,7 @@ Array = NDArray[np.float64]
 
 # More points than these cannot be told apart on a page.
 _POINTS = 1500
-_MEASURED = "#9aa5b1"
+_MEASURED = "#7d8894"
 
 
 @styled
@@ -49,7 +49,7 @@ def draw_fit(time: Array, measured: Array, fitted: Array, label: str) -> Figure:
     pick = _thin(len(time))
     figure = new_figure(4.4)
     above, below = figure.subplots(2, 1, sharex=True, height_ratios=[2.4, 1.0])
-    above.plot(time[pick], measured[pick], ".", color=_MEASURED, markersize=2.5, label="data")
+    above.plot(time[pick], measured[pick], ".", color=_MEASURED, markersize=4.0, label="data")
     above.plot(time[pick], fitted[pick], color=BLUE, label="fitted", linewidth=1.4)
     above.set_ylabel(label)
     error = (measured - fitted)[pick]
@@ -74,7 +74,7 @@ def draw_loop(deflection: Array, measured: Array, fitted: Array, labels: tuple[s
     """
     pick = _thin(len(deflection))
     figure, axes = new_axes(3.9)
-    axes.plot(deflection[pick], measured[pick], ".", color=_MEASURED, markersize=2.5, label="data")
+    axes.plot(deflection[pick], measured[pick], ".", color=_MEASURED, markersize=4.0, label="data")
     axes.plot(deflection[pick], fitted[pick], color=BLUE, label="fitted", linewidth=1.4)
     axes.set_xlabel(labels[0])
     axes.set_ylabel(labels[1])
@@ -90,7 +90,7 @@ def draw_intervals(
     wide: Estimate,
     label: str,
 ) -> Figure:
-    """Draw one parameter: its interval in each record, pooled, and the range to be proved.
+    """Draw one parameter: its interval in each record, pooled, and the range over all records.
 
     Parameters
     ----------
@@ -104,14 +104,14 @@ def draw_intervals(
         Name of the parameter, with the unit.
     """
     figure, axes = new_axes(1.5 + 0.28 * (len(names) + 1))
-    axes.axvspan(wide.low, wide.high, color="#dcebf5", linewidth=0, label="range to be proved")
+    axes.axvspan(wide.low, wide.high, color="#dcebf5", linewidth=0, label="range over all records")
     for row, estimate in enumerate([*single, pooled]):
         tint, shape = (INK, "D") if row == len(single) else (BLUE, "o")
         axes.plot([estimate.low, estimate.high], [row, row], color=tint, linewidth=2.0)
         axes.plot(estimate.value, row, shape, color=tint, markersize=5)
     axes.set_yticks(range(len(names) + 1), [*(short(name) for name in names), "pooled"])
     axes.set_ylim(len(names) + 0.6, -0.6)
-    axes.set_xlabel(f"{label}, 95 % intervals; shaded: range to be proved")
+    axes.set_xlabel(f"{label}, 95 % intervals; shaded: range over all records")
     axes.grid(visible=False, axis="y")
     return figure
 
@@ -140,7 +140,7 @@ def draw_bode(found: ActuatorIdentification) -> Figure:
         fontsize=9,
         color=MUTED,
     )
-    above.set_ylabel("Magnitude [dB re (rad/s)/rpm]")
+    above.set_ylabel("Magnitude [dB]")
     below.set_ylabel("Phase [deg]")
     below.set_xlabel("Frequency [rad/s]")
     legend(figure, above)

@@ -71,8 +71,12 @@ def _peer(kind: type[AbstractTissueLaw], record: TissueRecord) -> AbstractTissue
     start = min(scan(kind, record), key=lambda law: rmse(law, record))
     low, high = box(kind, record)
     x0 = np.clip(np.log(start.values), low + 1e-6, high - 1e-6)
+    # Differences must be larger than the errors of the integration.
     found = least_squares(
-        lambda x: _simulate(kind(*np.exp(x)), record) - record.force, x0, bounds=(low, high)
+        lambda x: _simulate(kind(*np.exp(x)), record) - record.force,
+        x0,
+        bounds=(low, high),
+        diff_step=1e-4,
     )
     return kind(*np.exp(found.x).tolist())
 
@@ -94,5 +98,7 @@ def _simulate(law: AbstractTissueLaw, record: TissueRecord) -> Array:
         return slopes[min(int(t / step), len(slopes) - 1)] - y / tau
 
     span = (0.0, float(motion.time[-1]))
-    run = solve_ivp(derivative, span, [0.0], t_eval=motion.time, rtol=1e-6, atol=1e-9)
+    # Without a largest step, the first rest makes it so long that a press is skipped.
+    options = {"rtol": 1e-6, "atol": 1e-9, "max_step": 20 * step}
+    run = solve_ivp(derivative, span, [0.0], t_eval=motion.time, **options)
     return soft * motion.deflection + stiff * run.y[0]

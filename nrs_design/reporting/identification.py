@@ -37,8 +37,8 @@ _MEANING = (
     "The range over all records also covers the interval of every single record.",
     "RMSE is that of the pooled parameters in each record. AIC and BIC are sums over the records, "
     "each with parameters of its own.",
-    "The p-value of the whiteness test is small where residuals are not white noise: the law then misses "
-    "something, and its intervals come from the scatter between parts of the record.",
+    "The p-value of the whiteness test is small where residuals are not white noise: the law then "
+    "misses something, and its intervals come from the scatter between parts of the record.",
 )
 
 

@@ -83,7 +83,8 @@ def _elements(name: str, experiment: int, eta: tuple[float, float, float]) -> Ro
         "N/m, N/m, N s/m",
         verdict=Verdict.REPRODUCED if exists else Verdict.PRINT_IS_WRONG,
         holds=eta3 < PERIOD and exists == (eta3 < _SHORT),
-        note=f"The relaxation time of {eta3:g} s is below a sampling period of {PERIOD:g} s, {note}",
+        note=f"The relaxation time of {eta3:g} s is below one sampling period ({PERIOD:g} s), "
+        f"{note}",
     )
 
 

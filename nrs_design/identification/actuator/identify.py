@@ -93,6 +93,10 @@ def identify_actuator(
             f"{len(records)} sinusoid records and {len(responses)} frequency responses",
             remedy="give sinusoid records, or one frequency response",
         )
+    if len({(r.source.sha256, r.group) for r in records}) < len(records):
+        raise DataError(
+            "a record is there twice, which would narrow the intervals", remedy="name it once"
+        )
     progress("complex response")
     if responses:
         return _from_response(responses[0], motor)

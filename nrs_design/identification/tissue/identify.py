@@ -85,14 +85,15 @@ def _check(records: Sequence[TissueRecord]) -> None:
         )
     seen: dict[str, TissueRecord] = {}
     for record in records:
-        twin = seen.setdefault(record.source.sha256, record)
-        if twin is not record:
+        if record.source.sha256 in seen:
+            twin = seen[record.source.sha256]
             raise DataError(
                 f"has the same content as {twin.source.path}: a record counted twice would "
                 "narrow the interval",
                 path=record.source.path,
                 remedy="name it once",
             )
+        seen[record.source.sha256] = record
 
 
 def _choose(models: Sequence[ModelFit]) -> tuple[ModelFit, str]:

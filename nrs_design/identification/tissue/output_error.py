@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,11 +12,13 @@ from nrs_design.identification.rounding import rounding_scatter
 from nrs_design.identification.statistics import Estimate, Uncertainty, uncertainty
 from nrs_design.identification.tissue.doubts import doubts
 from nrs_design.identification.tissue.starts import box, scan
-from nrs_design.models.tissue import AbstractTissueLaw
+from nrs_design.models.tissue import AbstractTissueLaw, Motion
 
 Array = NDArray[np.float64]
 
 STARTS = 3
+# Samples that suffice to find the right valley.
+_COARSE = 20_000
 # Starts whose costs end within this factor of the best one have found the same valley.
 _SAME = 1e-6
 
@@ -88,22 +90,31 @@ def fit_record(kind: type[AbstractTissueLaw], record: TissueRecord) -> RecordFit
     record : TissueRecord
         n samples.
     """
-    bounds = box(kind, record)
-    candidates = sorted(scan(kind, record), key=lambda law: rmse(law, record))[:STARTS]
-    ends = [_search(kind, record, law, bounds) for law in candidates]
-    costs = np.array([rmse(law, record) ** 2 for law in ends])
+    bounds, coarse = box(kind, record), _thin(record)
+    candidates = sorted(scan(kind, coarse), key=lambda law: rmse(law, coarse))[:STARTS]
+    ends = [_search(kind, coarse, law, bounds) for law in candidates]
+    costs = np.array([rmse(law, coarse) ** 2 for law in ends])
     best = int(np.argmin(costs))
-    law = ends[best]
+    law = ends[best] if coarse is record else _search(kind, record, ends[best], bounds)
     known = _uncertainty(law, record)
     return RecordFit(
         record=record,
         law=law,
         uncertainty=known,
-        rmse=float(np.sqrt(costs[best])),
+        rmse=rmse(law, record),
         agreeing=int(np.sum(costs <= costs[best] * (1 + _SAME))),
         starts=len(ends),
         doubts=doubts(law, record, known, bounds),
     )
+
+
+def _thin(record: TissueRecord) -> TissueRecord:
+    """Return a shorter record to search in; only the last search needs every sample."""
+    every = -(-len(record.force) // _COARSE)
+    if every == 1:
+        return record
+    motion = Motion(record.motion.time[::every], record.motion.deflection[::every])
+    return replace(record, motion=motion, force=record.force[::every])
 
 
 def residuals(law: AbstractTissueLaw, record: TissueRecord) -> Array:

@@ -16,6 +16,10 @@ from nrs_design.models.tissue import AbstractTissueLaw
 
 Array = NDArray[np.float64]
 
+# Fewer records than these, counted by weight, have no scatter.
+_FEWEST = 1.5
+_SLACK = 1e-9
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class ModelFit:
@@ -94,9 +98,14 @@ def pool(fits: Sequence[RecordFit]) -> tuple[Estimate, ...]:
 def _pool(logs: Array, variances: Array) -> Estimate:
     count = len(logs)
     weights = 1 / (variances + _between(logs, variances))
-    weights /= weights.sum()
+    within = 1 / float(weights.sum())
+    weights *= within
     mean = float(weights @ logs)
-    error = math.sqrt(float(weights @ (logs - mean) ** 2) / (count - 1))
+    variance = float(weights @ (logs - mean) ** 2) / (count - 1)
+    if 1 / float(weights @ weights) < _FEWEST:
+        # One record decides: there is no scatter to tell the error from.
+        variance = max(variance, within)
+    error = math.sqrt(variance)
     return Estimate.from_log(mean, student_quantile(count - 1) * error)
 
 
@@ -106,7 +115,9 @@ def _between(logs: Array, variances: Array) -> float:
     total = float(weights.sum())
     mean = float(weights @ logs) / total
     excess = float(weights @ (logs - mean) ** 2) - (len(logs) - 1)
-    return max(0.0, excess / (total - float(weights @ weights) / total))
+    slack = total - float(weights @ weights) / total
+    # Without slack, one record has all the weight.
+    return max(0.0, excess / slack) if slack > _SLACK * total else 0.0
 
 
 def _hull(pooled: Estimate, single: Sequence[Estimate]) -> Estimate:

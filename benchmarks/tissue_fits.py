@@ -99,6 +99,6 @@ def _simulate(law: AbstractTissueLaw, record: TissueRecord) -> Array:
 
     span = (0.0, float(motion.time[-1]))
     # Without a largest step, the first rest makes it so long that a press is skipped.
-    options = {"rtol": 1e-6, "atol": 1e-9, "max_step": 20 * step}
+    options = {"rtol": 1e-8, "atol": 1e-10, "max_step": 20 * step}
     run = solve_ivp(derivative, span, [0.0], t_eval=motion.time, **options)
     return soft * motion.deflection + stiff * run.y[0]

@@ -20,6 +20,7 @@ BENCHMARKS = (
     "random_families",
     "beyond_quadratic",
     "impedance_optimum",
+    "tissue_fits",
     "scaling",
 )
 MET = {True: "yes", False: "NO", None: "-"}

@@ -81,5 +81,11 @@ class OutputError(NrsDesignError):
     rule = "NRS005"
 
 
+class DataError(NrsDesignError):
+    """Measured data that cannot be used as they are."""
+
+    rule = "NRS006"
+
+
 class InternalError(Exception):
     """Two independent computations disagree: a defect of this program, never a verdict."""

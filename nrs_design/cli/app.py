@@ -16,6 +16,7 @@ from nrs_design.cli.check import check
 from nrs_design.cli.explain import explain
 from nrs_design.cli.export import export
 from nrs_design.cli.gate import gate
+from nrs_design.cli.identify import app as identify
 from nrs_design.cli.init import init
 from nrs_design.cli.optimize import optimize
 from nrs_design.cli.report import report
@@ -38,6 +39,7 @@ app = typer.Typer(
 app.command("init")(init)
 app.command("check")(check)
 app.command("schema")(schema)
+app.add_typer(identify, name="identify")
 app.command("optimize")(optimize)
 app.command("tune")(tune)
 app.command("certify-switching")(certify_switching)

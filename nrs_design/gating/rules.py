@@ -83,6 +83,14 @@ OUTPUT = Rule(
     "Results are written whole or not at all, and never through a symbolic link.",
     "Choose another place with --out or --reports, or make the folder writable.",
 )
+DATA = Rule(
+    "NRS006",
+    "The measured data can be used",
+    "Records for identification are CSV files with named columns in known units, finite numbers, "
+    "time that advances without gaps, and sensors within their range. What is wrong with a record "
+    "is named with its row; nothing is filled in or left out silently.",
+    "Mend or cut the record at the row that is named; --map gives foreign columns our names.",
+)
 MODE_STABLE = Rule(
     "NRS101",
     "Every mode is stable",
@@ -154,6 +162,7 @@ RULES: Mapping[str, Rule] = MappingProxyType(
             ASSEMBLY,
             CERTIFICATE,
             OUTPUT,
+            DATA,
             MODE_STABLE,
             SWITCHING_STABLE,
             STIFFNESS_RANGE,

@@ -89,8 +89,8 @@ class Report:
     ----------
     name, title : str
         Of the spec; the title may be empty.
-    verdict : {"proved", "refuted", "inconclusive"}
-        Of the certification.
+    verdict : {"proved", "refuted", "inconclusive", "identified"}
+        Of the certification, or that this is an identification.
     claim : str
         What the certificate states about stability, or that nothing is known.
     remarks : tuple of str
@@ -99,6 +99,8 @@ class Report:
         Label and value: hashes, versions, rates.
     sections : tuple of Section
         In reading order.
+    footer : str
+        Last line of the page.
     """
 
     name: str
@@ -108,6 +110,10 @@ class Report:
     remarks: tuple[str, ...]
     facts: tuple[tuple[str, str], ...]
     sections: tuple[Section, ...]
+    footer: str = (
+        "Report of nrs-design. Figures are floating-point illustrations; the certificate is the "
+        "proof."
+    )
 
     @property
     def illustrations(self) -> Iterator[Illustration]:

@@ -11,7 +11,12 @@ from nrs_design.reporting.document import Bullets, Illustration, Paragraph, Repo
 from nrs_design.reporting.style import GRID, MUTED
 from nrs_design.reporting.svg import to_png
 
-_BADGE = {"proved": "#00664b", "refuted": "#a63603", "inconclusive": "#6b5b00"}
+_BADGE = {
+    "proved": "#00664b",
+    "refuted": "#a63603",
+    "inconclusive": "#6b5b00",
+    "identified": "#005a8c",
+}
 _WIDTH = 482.0
 _MARGIN = 56.0
 

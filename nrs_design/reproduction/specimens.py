@@ -4,12 +4,49 @@ from __future__ import annotations
 
 from statistics import fmean
 
-from nrs_design.reproduction.row import Row, Tolerance, omitted, reproduced
+from nrs_design.models.tissue import Elastic, KelvinBoltzmann
+from nrs_design.reproduction.row import (
+    Row,
+    Tolerance,
+    Verdict,
+    claim,
+    format_number,
+    hardware_only,
+    omitted,
+    reproduced,
+)
 
+# Elastic fits in N/m with their mean, and RMSE in N of elastic, Kelvin-Voigt, Kelvin-Boltzmann.
 FITS = {
     "soft": (("768.17", "720.56", "752.69"), "747.14"),
     "stiff": (("1055.4", "1076.6", "1079.6"), "1070.5"),
 }
+
+
+RMSE = {
+    "soft": (
+        ("0.0969", "0.1586", "0.1491"),
+        ("0.0969", "0.1582", "0.1491"),
+        ("0.0969", "0.15823", "0.1491"),
+    ),
+    "stiff": (
+        ("0.2135", "0.1764", "0.1519"),
+        ("0.2135", "0.1764", "0.1519"),
+        ("0.2135", "0.1760", "0.1517"),
+    ),
+}
+LAWS = ("elastic", "Kelvin-Voigt", "Kelvin-Boltzmann")
+# Kelvin-Boltzmann coefficients eta1 in N/m, eta2 in N s/m and eta3 in s of each experiment.
+ETA = {
+    "soft": ((768.17, 0.0053, 4.6e-7), (721.33, 0.0067, 7.6e-7), (752.70, 0.0062, 9.9e-7)),
+    "stiff": ((1055.4, 0.0101, 3.3e-7), (1077.9, 0.0044, 5.2e-4), (1080.4, 0.0046, 2.5e-4)),
+}
+# Thesis 6.2: the controllers that the laws are for run at 500 Hz.
+PERIOD = 0.002
+# Experiments with longer relaxation times than this have no elements.
+_SHORT = 1e-5
+# Lever arm of 6.3.1 in m, and the stiffness there and in 6.4.1.
+ARM = 0.24
 
 
 def rows() -> tuple[Row, ...]:
@@ -17,7 +54,50 @@ def rows() -> tuple[Row, ...]:
     return tuple(row for name, (fits, mean) in FITS.items() for row in _specimen(name, fits, mean))
 
 
-def _specimen(name: str, fits: tuple[str, ...], mean: str) -> tuple[Row, Row]:
+def _specimen(name: str, fits: tuple[str, ...], mean: str) -> tuple[Row, ...]:
+    return (*_means(name, fits, mean), *_boltzmann(name), *_measured(name))
+
+
+def _boltzmann(name: str) -> tuple[Row, ...]:
+    """Return the elements behind the printed coefficients, where there are any."""
+    return tuple(
+        _elements(name, experiment, eta) for experiment, eta in enumerate(ETA[name], start=1)
+    )
+
+
+def _elements(name: str, experiment: int, eta: tuple[float, float, float]) -> Row:
+    eta1, eta2, eta3 = eta
+    exists = eta2 / eta3 > eta1
+    if exists:
+        law = KelvinBoltzmann.from_eta(*eta)
+        found = ", ".join(format_number(value) for value in law.values)
+        note = "so the records do not determine it, and the specimen is elastic."
+    else:
+        found = f"none: eta2/eta3 = {eta2 / eta3:.4g} N/m"
+        note = "and below eta1 at high frequency: no springs and dampers behave so."
+    return claim(
+        f"k1, k2, b of the {name} specimen, experiment {experiment}",
+        "6.1",
+        f"eta = {eta1:g}, {eta2:g}, {eta3:g}",
+        found,
+        "N/m, N/m, N s/m",
+        verdict=Verdict.REPRODUCED if exists else Verdict.PRINT_IS_WRONG,
+        holds=eta3 < PERIOD and exists == (eta3 < _SHORT),
+        note=f"The relaxation time of {eta3:g} s is below one sampling period ({PERIOD:g} s), "
+        f"{note}",
+    )
+
+
+def _measured(name: str) -> tuple[Row, ...]:
+    return tuple(
+        hardware_only(
+            f"RMSE of the {law} law, {name} specimen, each experiment", "6.1", ", ".join(v), "N"
+        )
+        for law, v in zip(LAWS, RMSE[name], strict=True)
+    )
+
+
+def _means(name: str, fits: tuple[str, ...], mean: str) -> tuple[Row, ...]:
     return (
         omitted(
             f"elastic fits, {name} specimen",
@@ -34,4 +114,18 @@ def _specimen(name: str, fits: tuple[str, ...], mean: str) -> tuple[Row, Row]:
             "N/m",
             Tolerance(5e-5),
         ),
+        _at_pivot(name, fits),
+    )
+
+
+def _at_pivot(name: str, fits: tuple[str, ...]) -> Row:
+    turned = Elastic(fmean(map(float, fits))).at_pivot(ARM)
+    printed = {"soft": "43.0356", "stiff": "61.6608"}[name]
+    return reproduced(
+        f"mean of the fits at the pivot, {name} specimen",
+        {"soft": "6.3.1.1", "stiff": "6.4.1"}[name],
+        printed,
+        turned.k,
+        "N m/rad",
+        Tolerance(5e-5),
     )

@@ -14,11 +14,13 @@ from nrs_design.reproduction import (
     root_locus,
     specimens,
     switching,
+    tissue,
 )
 from nrs_design.reproduction.row import Row, Verdict
 
 # In the order of the thesis.
 TOPICS = (
+    tissue,
     actuator,
     computed_torque,
     root_locus,

@@ -12,14 +12,22 @@ from nrs_design.spec.environment import ElasticSpec, EnvironmentSpec, KelvinVoig
 from nrs_design.spec.exact import parse_exact
 from nrs_design.spec.interaction import DesignSpec, InteractionDesignSpec
 from nrs_design.spec.load import LoadedSpec, Spec, load_spec, parse_spec, read_spec
-from nrs_design.spec.motion import ActuatorSpec, LimitsSpec, MotionLoopSpec, TransferFunctionSpec
+from nrs_design.spec.motion import (
+    ActuatorIntervals,
+    ActuatorSpec,
+    LimitsSpec,
+    MotionLoopSpec,
+    TransferFunctionSpec,
+)
 from nrs_design.spec.parameters import ParameterSpec
+from nrs_design.spec.provenance import ProvenanceSpec
 from nrs_design.spec.quantity import Quantity
 from nrs_design.spec.quantity_fields import Bounds, RangedQuantity
 from nrs_design.spec.switched_system import ModeSpec, SwitchedSystemSpec
 from nrs_design.spec.switching import DwellTime, ResetSpec, SwitchingSpec
 
 __all__ = [
+    "ActuatorIntervals",
     "ActuatorSpec",
     "Affine",
     "Bounds",
@@ -39,6 +47,7 @@ __all__ = [
     "MotionLoopSpec",
     "ParameterSpec",
     "PositionControllerSpec",
+    "ProvenanceSpec",
     "Quantity",
     "RangedQuantity",
     "ResetSpec",

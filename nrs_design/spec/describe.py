@@ -14,6 +14,7 @@ from nrs_design.spec.interaction import InteractionDesignSpec
 from nrs_design.spec.load import Spec
 from nrs_design.spec.motion import LimitsSpec
 from nrs_design.spec.parameters import ParameterSpec
+from nrs_design.spec.provenance import ProvenanceSpec
 from nrs_design.spec.quantity import Quantity, QuantityKind
 from nrs_design.spec.quantity_fields import Bounds, RangedQuantity
 from nrs_design.spec.switched_system import SwitchedSystemSpec
@@ -87,6 +88,11 @@ def _switching(switching: SwitchingSpec) -> Iterator[Row]:
 def _interaction(spec: InteractionDesignSpec) -> Iterator[Row]:
     yield _row("actuator.gain", spec.actuator.gain, kinds.ACTUATOR_GAIN)
     yield _row("actuator.time_constant", spec.actuator.time_constant, kinds.DURATION)
+    if spec.actuator.intervals is not None:
+        for name in ("gain", "time_constant"):
+            low, high = getattr(spec.actuator.intervals, name)
+            yield Row(f"actuator.intervals.{name}", f"[{low.text}, {high.text}]", "", "")
+    yield from _provenance("actuator", spec.actuator.provenance)
     yield from _motion_loop(spec)
     yield _row("limits.velocity", spec.limits.velocity, kinds.ANGULAR_VELOCITY)
     yield _row("limits.torque", spec.limits.torque, kinds.TORQUE)
@@ -125,6 +131,12 @@ def _environment(name: str, environment: EnvironmentSpec) -> Iterator[Row]:
         )
     if environment.lever_arm is not None:
         yield _row(f"{name}.lever_arm", environment.lever_arm, kinds.LEVER_ARM)
+    yield from _provenance(name, environment.provenance)
+
+
+def _provenance(name: str, sources: tuple[ProvenanceSpec, ...]) -> Iterator[Row]:
+    for index, source in enumerate(sources):
+        yield Row(f"{name}.provenance[{index}]", source.file, source.data, "")
 
 
 def _ranged(name: str, written: RangedQuantity, si: RangedQuantity, unit: str) -> Iterator[Row]:

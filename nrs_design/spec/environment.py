@@ -10,6 +10,7 @@ from pydantic import Discriminator, Field, model_validator
 from nrs_design.spec import kinds
 from nrs_design.spec.faults import fault
 from nrs_design.spec.model import SpecModel
+from nrs_design.spec.provenance import PROVENANCE, Provenance
 from nrs_design.spec.quantity import Quantity
 from nrs_design.spec.quantity_fields import Damping, LeverArm, RangedQuantity, Stiffness
 
@@ -33,6 +34,7 @@ class ElasticSpec(SpecModel):
     model: Literal["elastic"] = Field(description="law of the environment: elastic, F = k delta")
     stiffness: Stiffness = Field(description=_STIFFNESS)
     lever_arm: LeverArm | None = Field(default=None, description=_LEVER_ARM)
+    provenance: Provenance = Field(default=(), description=PROVENANCE)
 
     @model_validator(mode="after")
     def _check_lever_arm(self) -> ElasticSpec:
@@ -59,6 +61,7 @@ class KelvinVoigtSpec(SpecModel):
     stiffness: Stiffness = Field(description=_STIFFNESS)
     damping: Damping = Field(description=_DAMPING)
     lever_arm: LeverArm | None = Field(default=None, description=_LEVER_ARM)
+    provenance: Provenance = Field(default=(), description=PROVENANCE)
 
     @model_validator(mode="after")
     def _check_lever_arm(self) -> KelvinVoigtSpec:

@@ -14,6 +14,7 @@ from nrs_design.spec.faults import as_text, fault, reported
 
 NAME_PATTERN = "^[a-z0-9][a-z0-9._-]{0,63}$"
 LABEL_PATTERN = "^[A-Za-z0-9][A-Za-z0-9._-]{0,63}$"
+HASH_PATTERN = "^[0-9a-f]{64}$"
 MAX_TITLE = 200
 
 NUMBER_SCHEMA: dict[str, Any] = {
@@ -78,6 +79,14 @@ def read_title(value: object) -> str:
     return text
 
 
+def read_hash(value: object) -> str:
+    """Read a SHA-256 in hexadecimal."""
+    text = as_text(value)
+    if not re.fullmatch(HASH_PATTERN, text):
+        raise fault(f"{quoted(text)} is no SHA-256", "write 64 hexadecimal digits, lower case")
+    return text
+
+
 Exact = Annotated[Fraction, PlainValidator(read_exact), WithJsonSchema(NUMBER_SCHEMA)]
 UnitFraction = Annotated[
     Fraction, _number(lambda x: 0 < x < 1, "between 0 and 1"), WithJsonSchema(NUMBER_SCHEMA)
@@ -97,4 +106,9 @@ Name = Annotated[
 Label = Annotated[str, _text(LABEL_PATTERN), WithJsonSchema(_LABEL)]
 Title = Annotated[
     str, PlainValidator(read_title), WithJsonSchema({"type": "string", "maxLength": MAX_TITLE})
+]
+Hash = Annotated[
+    str,
+    PlainValidator(read_hash),
+    WithJsonSchema({"type": "string", "pattern": HASH_PATTERN}),
 ]

@@ -9,6 +9,8 @@ from pydantic import Field, model_validator
 from nrs_design.spec.faults import fault
 from nrs_design.spec.fields import Exact, UnitFraction
 from nrs_design.spec.model import SpecModel
+from nrs_design.spec.provenance import PROVENANCE, Provenance
+from nrs_design.spec.quantity import is_less
 from nrs_design.spec.quantity_fields import (
     ActuatorGain,
     AngularVelocity,
@@ -23,6 +25,20 @@ MAX_COEFFICIENTS = 10
 Coefficients = Annotated[tuple[Exact, ...], Field(min_length=1, max_length=MAX_COEFFICIENTS)]
 
 
+class ActuatorIntervals(SpecModel):
+    """Confidence intervals of an identified actuator, for the record.
+
+    The design and the proof take the nominal values.
+    """
+
+    gain: tuple[ActuatorGain, ActuatorGain] = Field(
+        description="[lowest, highest] gain in rad/s/rpm, 95 % interval"
+    )
+    time_constant: tuple[Duration, Duration] = Field(
+        description="[lowest, highest] time constant in s, 95 % interval"
+    )
+
+
 class ActuatorSpec(SpecModel):
     """Velocity actuator ``theta_m/delta = Km/(s (tau s + 1))`` (thesis 4.1)."""
 
@@ -31,6 +47,27 @@ class ActuatorSpec(SpecModel):
         "Km/(s (tau s + 1))"
     )
     time_constant: Duration = Field(description="tau, mechanical time constant in s")
+    intervals: ActuatorIntervals | None = Field(
+        default=None,
+        description="95 % intervals of gain and time constant, for the record: the proof is for "
+        "the nominal values",
+    )
+    provenance: Provenance = Field(default=(), description=PROVENANCE)
+
+    @model_validator(mode="after")
+    def _check_intervals(self) -> ActuatorSpec:
+        if self.intervals is None:
+            return self
+        for name in ("gain", "time_constant"):
+            value, (low, high) = getattr(self, name), getattr(self.intervals, name)
+            if is_less(value, low) or is_less(high, value):
+                raise fault(
+                    f"the interval [{low.text}, {high.text}] does not hold {value.text!r}",
+                    "correct one of them",
+                    "intervals",
+                    name,
+                )
+        return self
 
 
 class TransferFunctionSpec(SpecModel):

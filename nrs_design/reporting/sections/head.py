@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from nrs_design import __version__
 from nrs_design.certificates.evidence import AbstractEvidence, ModeQuadratic, Shows
 from nrs_design.certificates.evidence.fields import rate_text
-from nrs_design.reporting.formatting import number, plural
+from nrs_design.reporting.formatting import number, plural, shortened
+from nrs_design.spec import InteractionDesignSpec
 from nrs_design.switched.system import SwitchedSystem, Time
 
 if TYPE_CHECKING:
@@ -55,6 +57,7 @@ def facts(result: Result) -> tuple[tuple[str, str], ...]:
     if result.coordinates is not None:
         rows.append(("Coordinates", result.coordinates))
     rows += [
+        *_provenance(result),
         ("Package", f"nrs-design {__version__}"),
         ("SHA-256 of the spec", result.loaded.sha256),
         ("Certificate id", result.certificate.id if result.certificate else "none"),
@@ -106,3 +109,18 @@ def _limit(certification: Certification) -> list[tuple[str, str]]:
     if certification.system.time is Time.CONTINUOUS:
         return [("No proof can exceed", f"{number(limit, 6)} 1/s, which one solution attains")]
     return [("No proof can go below", f"{number(limit, 6)} per step, which one solution attains")]
+
+
+def _provenance(result: Result) -> Iterator[tuple[str, str]]:
+    """Say which data the values of the spec were identified from."""
+    spec = result.loaded.spec
+    if not isinstance(spec, InteractionDesignSpec):
+        return
+    parts = {"actuator": spec.actuator.provenance}
+    parts |= {name: environment.provenance for name, environment in spec.environments.items()}
+    for name, sources in parts.items():
+        if sources:
+            kinds = " and ".join(sorted({source.data.upper() for source in sources}))
+            count = plural(len(sources), "record")
+            files = shortened([source.file for source in sources], 3)
+            yield (f"Data for {name}", f"{kinds} data, {count}: {files}")

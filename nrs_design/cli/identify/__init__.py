@@ -1,0 +1,16 @@
+"""``nrs-design identify``: measured data in, models with intervals out."""
+
+from __future__ import annotations
+
+import typer
+
+from nrs_design.cli.identify.actuator import actuator
+from nrs_design.cli.identify.tissue import tissue
+
+app = typer.Typer(
+    no_args_is_help=True,
+    help="Identify actuator or tissue from measured records, with 95 % intervals.",
+    epilog="Data are CSV files with named columns such as time_s, deflection_m, force_N.",
+)
+app.command("tissue")(tissue)
+app.command("actuator")(actuator)

@@ -1,0 +1,123 @@
+"""``nrs-design identify actuator``: the motor from sinusoid records or a frequency response."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from nrs_design.cli.identify.common import (
+    SYNTHETIC,
+    DataFiles,
+    Mapping,
+    ReportTo,
+    WriteTo,
+    check_report,
+    interval,
+    numbers,
+    read_all,
+    sources,
+    write_report,
+    write_spec,
+)
+from nrs_design.cli.options import Json, Quiet
+from nrs_design.cli.printing import note, print_json, print_table, progress
+
+if TYPE_CHECKING:
+    from nrs_design.identification.actuator import ActuatorFit, ActuatorIdentification
+
+
+def actuator(
+    data: DataFiles,
+    columns: Mapping = None,
+    torque_constant: Annotated[float, typer.Option(min=1e-9, help="K_T in N m/A.")] = 0.0115,
+    back_emf_constant: Annotated[float, typer.Option(min=1e-9, help="K_B in V s/rad.")] = 0.0115,
+    inertia: Annotated[
+        float, typer.Option(min=1e-15, help="At the motor shaft, in kg m^2.")
+    ] = 14.81e-7,
+    reduction: Annotated[float, typer.Option(min=1e-9, help="Gearhead ratio N.")] = 181.0,
+    write: WriteTo = None,
+    report: ReportTo = None,
+    as_json: Json = False,
+    quiet: Quiet = False,
+) -> None:
+    """Fit gain, time constant and Coulomb friction, and derive resistance and speed over torque.
+
+    Columns: time_s, command_rpm, angle_rad, one file (or one group of columns with the suffix _1,
+    _2, ...) per frequency; or frequency_hz, magnitude_db, phase_deg. The data sheet is that of
+    thesis table 4.1 unless given.
+
+    Example: nrs-design identify actuator specs/data/actuator-*hz.csv --report reports/actuator.html
+    """
+    from nrs_design.identification.actuator import identify_actuator
+    from nrs_design.identification.datasets import FrequencyResponse, read_actuator
+    from nrs_design.identification.write_spec import merge_actuator
+    from nrs_design.models.actuator import MotorConstants
+    from nrs_design.spec import read_spec
+
+    check_report(report)
+    loaded = read_spec(write) if write is not None else None
+    motor = MotorConstants(torque_constant, back_emf_constant, inertia, reduction)
+    items = read_all(data, read_actuator, columns or [], quiet=quiet)
+    series = [(item,) if isinstance(item, FrequencyResponse) else item for item in items]
+    with progress("fitting", quiet=quiet) as step:
+        found = identify_actuator([item for group in series for item in group], motor, step)
+        merged = merge_actuator(loaded, found) if loaded else None
+        if report is not None:
+            from nrs_design.reporting.identification import actuator_report
+
+            step("figures")
+            write_report(report, actuator_report(found))
+    if write is not None and merged is not None:
+        write_spec(write, merged, quiet=quiet)
+    if as_json:
+        print_json("identify-actuator", _summary(found))
+    else:
+        _print(found)
+    if report is not None:
+        note(f"page written to {report}", quiet=quiet)
+
+
+def _print(found: ActuatorIdentification) -> None:
+    if found.synthetic:
+        print(SYNTHETIC)
+    rows = [
+        [
+            fit.method,
+            interval(fit.gain),
+            interval(fit.time_constant),
+            interval(fit.friction) if fit.friction else "",
+        ]
+        for fit in found.fits
+    ]
+    columns = ["fit [95 %]", "gain (rad/s)/rpm", "time constant s", "friction rpm"]
+    print_table("", columns, rows)
+    print(f"chosen: {found.chosen.method}. {found.reason}")
+    print(f"R = {interval(found.figures.resistance)} ohm")
+    print(f"speed over torque = {interval(found.figures.gradient)} rpm/(N m)")
+
+
+def _summary(found: ActuatorIdentification) -> dict[str, Any]:
+    return {
+        "synthetic": found.synthetic,
+        "records": sources(found.sources),
+        "chosen": found.chosen.method,
+        "reason": found.reason,
+        "fits": [_fit(fit) for fit in found.fits],
+        "resistance_ohm": numbers(found.figures.resistance),
+        "speed_torque_gradient_rpm_per_Nm": numbers(found.figures.gradient),
+        "response": [
+            {"frequency_rad_s": w, "real": value.real, "imaginary": value.imag}
+            for w, value in zip(found.frequency.tolist(), found.response.tolist(), strict=True)
+        ],
+    }
+
+
+def _fit(fit: ActuatorFit) -> dict[str, Any]:
+    return {
+        "method": fit.method,
+        "gain_rad_s_rpm": numbers(fit.gain),
+        "time_constant_s": numbers(fit.time_constant),
+        "friction_rpm": numbers(fit.friction) if fit.friction else None,
+        "whiteness_p": fit.uncertainty.whiteness,
+    }

@@ -1,0 +1,1 @@
+"""From measured records to models with intervals that a proof can use."""

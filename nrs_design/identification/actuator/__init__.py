@@ -1,0 +1,9 @@
+"""The velocity-controlled motor from sinusoid records or a frequency response."""
+
+from nrs_design.identification.actuator.identify import (
+    ActuatorIdentification,
+    identify_actuator,
+)
+from nrs_design.identification.actuator.model import ActuatorFit, MotorFigures
+
+__all__ = ["ActuatorFit", "ActuatorIdentification", "MotorFigures", "identify_actuator"]

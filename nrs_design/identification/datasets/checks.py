@@ -1,0 +1,119 @@
+"""What makes a record unusable: time that does not advance, gaps, saturation."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from nrs_design.identification.datasets.table import Array, Table
+
+FEWEST_ROWS = 50
+# A step of more than so many usual ones is a gap.
+GAP = 3.0
+# A sensor is saturated when its extreme reading repeats while this part of the motion passes.
+_FLAT_ROWS = 10
+_FLAT_MOTION = 0.05
+# A sinusoid that is cut off at 0.99 of its amplitude rests there so long.
+_CLIPPED = 0.1
+
+
+def check_time(table: Table, time: Array) -> None:
+    """Check that time advances without gaps.
+
+    Raises
+    ------
+    DataError
+        With the row.
+    """
+    if len(time) < FEWEST_ROWS:
+        table.fail(
+            f"the record has {len(time)} rows, at least {FEWEST_ROWS} are needed",
+            max(len(time) - 1, 0),
+            "record longer",
+        )
+    steps = np.diff(time)
+    stuck = np.flatnonzero(steps <= 0)
+    if len(stuck):
+        row = int(stuck[0]) + 1
+        word = "repeats" if steps[row - 1] == 0 else "goes back"
+        table.fail(
+            f"time {word}: {time[row]:.9g} s after {time[row - 1]:.9g} s",
+            row,
+            "sort the rows, or remove the doubled ones",
+        )
+    usual = float(np.median(steps))
+    gaps = np.flatnonzero(steps > GAP * usual)
+    if len(gaps):
+        row = int(gaps[0]) + 1
+        table.fail(
+            f"a gap of {steps[row - 1]:.4g} s, where steps are {usual:.4g} s",
+            row,
+            "cut the record there and give its parts as records of their own",
+        )
+
+
+def check_saturation(table: Table, name: str, values: Array, moving: Array) -> None:
+    """Check that a sensor does not rest at its extreme reading while its input moves on.
+
+    Parameters
+    ----------
+    table : Table
+        For the row in the message.
+    name : str
+        Of the quantity.
+    values : ndarray, shape (n,)
+        Readings.
+    moving : ndarray, shape (n,)
+        What drives them: the deflection, say.
+
+    Raises
+    ------
+    DataError
+        With the first row of the saturated stretch.
+    """
+    span = float(np.ptp(moving))
+    for extreme in {float(values.max()), float(values.min())} - {0.0}:
+        for first, last in _runs(values == extreme):
+            if last - first >= _FLAT_ROWS and np.ptp(moving[first:last]) > _FLAT_MOTION * span:
+                table.fail(
+                    f"the {name} stays at its extreme reading {extreme:.6g} for "
+                    f"{last - first} rows: the sensor is saturated",
+                    first,
+                    "record with a larger measuring range",
+                )
+
+
+def check_clipped(table: Table, name: str, values: Array) -> None:
+    """Check that a sinusoid is not cut off at its extremes.
+
+    Raises
+    ------
+    DataError
+        At the first row that rests at the extreme.
+    """
+    extreme = np.abs(values) >= np.abs(values).max()
+    if float(extreme.mean()) > _CLIPPED:
+        table.fail(
+            f"the {name} rests at its extreme value in {100 * extreme.mean():.0f} % of the rows: "
+            "it is saturated, no sinusoid",
+            int(np.argmax(extreme)),
+            "record with a smaller amplitude",
+        )
+
+
+def check_varies(table: Table, name: str, values: Array) -> None:
+    """Check that a column is not constant.
+
+    Raises
+    ------
+    DataError
+        At the first row.
+    """
+    if np.ptp(values) == 0:
+        table.fail(f"the {name} never changes", 0, "record a motion")
+
+
+def _runs(flags: np.ndarray[tuple[int], np.dtype[np.bool_]]) -> list[tuple[int, int]]:
+    """Return first row and end of every stretch of true flags."""
+    padded = np.concatenate([[False], flags, [False]])
+    edges = np.flatnonzero(padded[1:] != padded[:-1])
+    return [(int(a), int(b)) for a, b in edges.reshape(-1, 2)]

@@ -1,0 +1,190 @@
+"""Records for identification, read and checked."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from nrs_design.errors import DataError
+from nrs_design.identification.datasets.checks import (
+    check_clipped,
+    check_saturation,
+    check_time,
+    check_varies,
+)
+from nrs_design.identification.datasets.table import Array, Progress, Source, Table, read_table
+from nrs_design.models.tissue.motion import Motion
+
+LINEAR = ("time", "deflection", "force")
+ROTATIONAL = ("time", "angle", "torque")
+SINUSOID = ("time", "command", "angle")
+RESPONSE = ("frequency", "magnitude", "phase")
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class TissueRecord:
+    """Reaction of a tissue to a motion.
+
+    Parameters
+    ----------
+    source : Source
+        The file.
+    motion : Motion
+        Time in s and deflection in m (rad).
+    force : ndarray, shape (n,)
+        In N (N m).
+    rotational : bool
+        Whether the motion is a rotation about the pivot.
+    """
+
+    source: Source
+    motion: Motion
+    force: Array
+    rotational: bool
+
+    @property
+    def name(self) -> str:
+        """File name without its ending."""
+        return self.source.path.stem
+
+    @property
+    def duration(self) -> float:
+        """From first to last sample, in s."""
+        return float(self.motion.time[-1] - self.motion.time[0])
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class SinusoidRecord:
+    """Response of the actuator to a sinusoidal command.
+
+    Parameters
+    ----------
+    source : Source
+        The file.
+    group : str
+        Suffix of its columns, empty for none.
+    time, command, angle : ndarray, shape (n,)
+        In s, rpm and rad.
+    """
+
+    source: Source
+    group: str
+    time: Array
+    command: Array
+    angle: Array
+
+    @property
+    def name(self) -> str:
+        """File name without its ending, and the group."""
+        return self.source.path.stem + (f"/{self.group}" if self.group else "")
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class FrequencyResponse:
+    """Velocity over command, at some frequencies.
+
+    Parameters
+    ----------
+    source : Source
+        The file.
+    frequency : ndarray, shape (m,)
+        In rad/s.
+    response : ndarray of complex, shape (m,)
+        In (rad/s)/rpm.
+    """
+
+    source: Source
+    frequency: Array
+    response: np.ndarray[tuple[int], np.dtype[np.complex128]]
+
+
+def read_tissue(
+    path: Path, mapping: Mapping[str, str] | None = None, progress: Progress = lambda done: None
+) -> TissueRecord:
+    """Read a record of ``time_s, deflection_m, force_N`` or ``time_s, angle_rad, torque_Nm``.
+
+    Parameters
+    ----------
+    path : Path
+        CSV file.
+    mapping : mapping of str to str, optional
+        From a name in the file to ours, see `parse_mapping`.
+    progress : callable
+        Told the fraction that has been read.
+
+    Raises
+    ------
+    DataError
+        With the row, if a column is missing, time has gaps or goes back, a value is not finite,
+        or the force sensor is saturated.
+    """
+    table = read_table(path, (LINEAR, ROTATIONAL), mapping or {}, progress)
+    (columns,) = _one_group(table)
+    time, deflection, force = (columns[quantity] for quantity in table.layout)
+    check_time(table, time)
+    check_varies(table, table.layout[1], deflection)
+    check_varies(table, table.layout[2], force)
+    check_saturation(table, table.layout[2], force, deflection)
+    return TissueRecord(
+        table.source, Motion(time - time[0], deflection), force, table.layout == ROTATIONAL
+    )
+
+
+def read_actuator(
+    path: Path, mapping: Mapping[str, str] | None = None, progress: Progress = lambda done: None
+) -> tuple[SinusoidRecord, ...] | FrequencyResponse:
+    """Read sinusoid records, one or several groups of columns, or a ready frequency response.
+
+    Parameters
+    ----------
+    path, mapping, progress
+        As in `read_tissue`; the columns are ``time_s, command_rpm, angle_rad`` (with suffixes
+        ``_1``, ``_2`` for groups), or ``frequency_hz, magnitude_db, phase_deg``.
+
+    Raises
+    ------
+    DataError
+        As in `read_tissue`.
+    """
+    table = read_table(path, (SINUSOID, RESPONSE), mapping or {}, progress)
+    if table.layout == RESPONSE:
+        return _response(table)
+    return tuple(_sinusoid(table, group) for group in table.groups)
+
+
+def _one_group(table: Table) -> Sequence[dict[str, Array]]:
+    if len(table.groups) > 1:
+        raise DataError(
+            f"holds {len(table.groups)} groups of columns",
+            path=table.source.path,
+            remedy="write one record per file",
+        )
+    return list(table.groups.values())
+
+
+def _sinusoid(table: Table, group: str) -> SinusoidRecord:
+    time, command, angle = (table.groups[group][quantity] for quantity in SINUSOID)
+    check_time(table, time)
+    check_varies(table, "command", command)
+    check_varies(table, "angle", angle)
+    check_clipped(table, "command", command)
+    return SinusoidRecord(table.source, group, time - time[0], command, angle)
+
+
+def _response(table: Table) -> FrequencyResponse:
+    (columns,) = _one_group(table)
+    frequency, magnitude, phase = (columns[quantity] for quantity in RESPONSE)
+    if len(frequency) < 3:
+        table.fail(
+            f"{len(frequency)} frequencies are too few",
+            max(len(frequency) - 1, 0),
+            "measure at 3 or more",
+        )
+    bad = np.flatnonzero(frequency <= 0)
+    if len(bad):
+        table.fail("the frequency is not positive", int(bad[0]), "remove the row")
+    response = 10 ** (magnitude / 20) * np.exp(1j * phase)
+    return FrequencyResponse(table.source, 2 * np.pi * frequency, response)

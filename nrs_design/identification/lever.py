@@ -1,0 +1,43 @@
+"""From a linear motion to a rotation about the pivot."""
+
+from __future__ import annotations
+
+from nrs_design.errors import DataError
+from nrs_design.models.tissue import AbstractTissueLaw, HuntCrossley
+from nrs_design.models.tissue.law import DAMPING, STIFFNESS
+from nrs_design.spec.kinds import LEVER_ARM
+from nrs_design.spec.quantity import parse_quantity
+
+_LINEAR = {STIFFNESS: "N/m", DAMPING: "N s/m"}
+_ROTATIONAL = {STIFFNESS: "N m/rad", DAMPING: "N m s/rad"}
+
+
+def parse_arm(text: str | None, *, rotational: bool) -> float | None:
+    """Read a lever arm such as ``0.24 m``; return it in m.
+
+    Raises
+    ------
+    SpecError
+        If it is no length.
+    DataError
+        If it is not positive, or the records are rotational and need none.
+    """
+    if text is None:
+        return None
+    arm = parse_quantity(text, LEVER_ARM).si
+    if rotational:
+        raise DataError(
+            "the records are rotational, and a lever arm is given", remedy="remove --lever-arm"
+        )
+    if arm <= 0:
+        raise DataError(f"the lever arm {text!r} is not positive", remedy="write '0.24 m'")
+    return arm
+
+
+def units_of(law: AbstractTissueLaw, rotational: bool) -> tuple[str, ...]:
+    """Return the units of the parameters of a law."""
+    units = _ROTATIONAL if rotational else _LINEAR
+    if isinstance(law, HuntCrossley):
+        force, length = ("N m", "rad") if rotational else ("N", "m")
+        return f"{force}/{length}^φ", f"{force} s/{length}^(φ+1)", ""
+    return tuple(units[kind] for kind in law.kinds)

@@ -1,0 +1,176 @@
+"""Covariance, confidence intervals and whiteness of residuals."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+CONFIDENCE = 0.95
+# Below this p-value, residuals are taken as colored.
+WHITE = 0.01
+_LAGS = 20
+_BATCHES = 20
+# Beyond these logarithms a number leaves the floats: the interval is then unlimited.
+_HUGE = 690.0
+_SINGULAR = 1e-14
+
+
+@dataclass(frozen=True, slots=True)
+class Estimate:
+    """A positive parameter with its 95 % confidence interval.
+
+    Parameters
+    ----------
+    value : float
+        The estimate.
+    low, high : float
+        Ends of the interval; 0 and infinity where the data say nothing.
+    """
+
+    value: float
+    low: float
+    high: float
+
+    @classmethod
+    def from_log(cls, logarithm: float, half_width: float) -> Estimate:
+        """Return the interval that is symmetric in the logarithm."""
+        if not half_width < _HUGE - abs(logarithm):
+            return cls(math.exp(logarithm), 0.0, math.inf)
+        ends = math.exp(logarithm - half_width), math.exp(logarithm + half_width)
+        return cls(math.exp(logarithm), *ends)
+
+    def covers(self, value: float) -> bool:
+        """Tell whether a value lies in the interval."""
+        return self.low <= value <= self.high
+
+    def scaled(self, factor: float) -> Estimate:
+        """Return the estimate of the parameter times a positive constant."""
+        return Estimate(self.value * factor, self.low * factor, self.high * factor)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Uncertainty:
+    """How well a fit knows its parameters.
+
+    Parameters
+    ----------
+    covariance : ndarray, shape (p, p)
+        Of the logarithms of the parameters.
+    degrees : int
+        Degrees of freedom of the intervals.
+    whiteness : float
+        p-value of the test that the residuals are white.
+    """
+
+    covariance: Array
+    degrees: int
+    whiteness: float
+
+    @property
+    def errors(self) -> Array:
+        """Standard errors of the logarithms, which are relative standard errors, shape (p,)."""
+        return np.sqrt(np.diag(self.covariance))
+
+    def estimates(self, logarithms: Array) -> tuple[Estimate, ...]:
+        """Return the parameters with their intervals."""
+        quantile = student_quantile(self.degrees)
+        return tuple(
+            Estimate.from_log(float(log), quantile * float(error))
+            for log, error in zip(logarithms, self.errors, strict=True)
+        )
+
+
+def uncertainty(
+    sensitivities: Array,
+    residuals: Array,
+    starts: Sequence[int] | None = None,
+    scatter: Array | None = None,
+) -> Uncertainty:
+    """Estimate the covariance of a least-squares fit.
+
+    White residuals give the classical ``s^2 (J'J)^-1``. Colored ones, which every real tissue
+    leaves, would make that far too small: then the fit is repeated without each of some long
+    batches, which are nearly independent, and the scatter of the results gives the covariance
+    (a jackknife).
+
+    Parameters
+    ----------
+    sensitivities : ndarray, shape (n, p)
+        Derivatives of the model by the logarithms of the parameters.
+    residuals : ndarray, shape (n,)
+        Measurement less model.
+    starts : sequence of int, optional
+        Where each record begins, if there are several: records are the batches then.
+    scatter : ndarray, shape (p, p), optional
+        Covariance of ``J'e`` for errors e that the residuals do not show.
+    """
+    n, p = sensitivities.shape
+    whiteness = ljung_box(residuals)
+    bread = _inverse(sensitivities)
+    hidden = 0.0 if scatter is None else bread @ scatter @ bread
+    if whiteness >= WHITE:
+        variance = float(residuals @ residuals) / (n - p)
+        return Uncertainty(variance * bread + hidden, n - p, whiteness)
+    edges = np.asarray(starts if starts is not None else np.arange(_BATCHES) * n // _BATCHES)
+    covariance = _jackknife(sensitivities, residuals, edges, bread)
+    degrees = max(len(edges) - p, 1)
+    return Uncertainty(covariance + hidden, degrees, whiteness)
+
+
+def ljung_box(residuals: Array, lags: int = _LAGS) -> float:
+    """Return the p-value of the Ljung-Box test that residuals are white.
+
+    Parameters
+    ----------
+    residuals : ndarray, shape (n,)
+        Equally spaced; NaN of the test (all residuals zero) counts as white.
+    lags : int
+        Autocorrelations that are looked at.
+    """
+    from scipy.special import chdtrc
+
+    n = len(residuals)
+    lags = min(lags, n // 5)
+    centered = residuals - residuals.mean()
+    power = float(centered @ centered)
+    if power == 0.0 or lags < 1:
+        return 1.0
+    rho = np.array([centered[k:] @ centered[:-k] for k in range(1, lags + 1)]) / power
+    statistic = n * (n + 2) * float(np.sum(rho**2 / (n - np.arange(1, lags + 1))))
+    return float(chdtrc(lags, statistic))
+
+
+def student_quantile(degrees: int) -> float:
+    """Return the factor from standard error to half the 95 % interval."""
+    from scipy.special import stdtrit
+
+    return float(stdtrit(degrees, 0.5 + CONFIDENCE / 2))
+
+
+def _jackknife(J: Array, residuals: Array, edges: NDArray[np.int64], bread: Array) -> Array:
+    """Return the scatter of the parameters when each batch in turn is left out (first order)."""
+    count, p = len(edges), J.shape[1]
+    shifts = []
+    for first, last in zip(edges, [*edges[1:], len(J)], strict=True):
+        part = J[first:last]
+        # The tiny addition keeps a batch that alone determines a parameter from dividing by zero.
+        without = (1 + 1e-9) * np.eye(p) - part.T @ part @ bread
+        shifts.append(bread @ np.linalg.solve(without, part.T @ residuals[first:last]))
+    moved = np.array(shifts)
+    return np.asarray(moved.T @ moved * (count - 1) / count)
+
+
+def _inverse(J: Array) -> Array:
+    """Return ``(J'J)^-1``, large instead of undefined where a parameter has no effect."""
+    size = np.sqrt(np.einsum("ij,ij->j", J, J))
+    size = np.maximum(size, 1e-12 * size.max() + np.finfo(float).tiny)
+    scaled = J / size
+    values, vectors = np.linalg.eigh(scaled.T @ scaled)
+    inverse: Array = (vectors / np.maximum(values, _SINGULAR)) @ vectors.T
+    return inverse / np.outer(size, size)

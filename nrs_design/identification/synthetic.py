@@ -1,0 +1,215 @@
+"""Synthetic records with the thesis's parameters, for tests and examples. None is a measurement.
+
+The thesis shows its records in figures only. These have its parameters, the noise that its RMSE
+tables suggest, and the resolution of its sensors:
+
+- silicone specimens (6.1): a surface gauge presses by up to about 7 mm; deflection from a 4096
+  count encoder at the end of a 100 mm handle (0.153 mm per count), force from a 10 V amplifier;
+- nose and concha (2.5): rotations of up to 0.35 rad, long enough to see the relaxation; like the
+  law, the tissue pulls where a real contact would be lost;
+- actuator (4.1): sinusoidal commands to a motor with Coulomb friction that sticks at reversals,
+  angle from a 14 bit encoder.
+
+``python -m nrs_design.identification.synthetic FOLDER`` writes the samples of ``specs/data``.
+"""
+
+from __future__ import annotations
+
+import argparse
+import math
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from nrs_design.models.tissue import AbstractTissueLaw, Elastic, KelvinBoltzmann, Motion
+from nrs_design.output import write_output
+
+Array = NDArray[np.float64]
+
+# Thesis 6.1: fits of three experiments, N/m, with their RMSE in N.
+SOFT = ((768.17, 0.0969), (720.56, 0.1586), (752.69, 0.1491))
+STIFF = ((1055.4, 0.2135), (1076.6, 0.1764), (1079.6, 0.1519))
+# Thesis tables 2.4 and 2.5: mean coefficients in N m/rad and N m s/rad, RMSE in N m.
+NOSE = KelvinBoltzmann(k1=0.233, k2=0.972, b=23.631)
+CONCHA = KelvinBoltzmann(k1=0.479, k2=3.303, b=30.456)
+NOSE_NOISE = (0.0216, 0.0165, 0.0062, 0.0111)
+CONCHA_NOISE = (0.0157, 0.0085, 0.0128, 0.0055, 0.0080)
+# Thesis 4.1: (rad/s)/rpm, s, rpm.
+GAIN, TIME_CONSTANT, FRICTION = 4.8417e-4, 0.0351, 276.575
+FREQUENCIES = (0.5, 0.8, 1.2, 2.0, 3.0, 4.5, 6.0, 8.0, 11.0, 15.0)
+
+COUNT = 0.1 * 2 * math.pi / 4096
+ENCODER = 2 * math.pi / 2**14
+_LABEL = "# synthetic record, made by nrs_design.identification.synthetic: not a measurement"
+
+
+def pressing(duration: float, rate: float, depth: float, period: float, seed: int) -> Motion:
+    """Return presses by hand: in, hold and out, no two alike.
+
+    Parameters
+    ----------
+    duration, period : float
+        In s.
+    rate : float
+        Samples per s.
+    depth : float
+        Largest deflection in m (rad).
+    seed : int
+        Of depths and ramps.
+    """
+    generator = np.random.default_rng([seed, 1])
+    time = np.arange(round(duration * rate) + 1) / rate
+    deflection = np.zeros_like(time)
+    for start in np.arange(0.0, duration, period).tolist():
+        phase = (time - start) / period
+        corners = np.array([0.08, 0.38, 0.62, 0.92]) + 0.04 * generator.uniform(-1, 1, 4)
+        rise = np.interp(phase, corners, [0, 1, 1, 0], left=0, right=0)
+        # No hand moves with corners: the ramp is eased at both ends.
+        deflection += depth * generator.uniform(0.7, 1) * (3 * rise**2 - 2 * rise**3)
+    return Motion(time, deflection)
+
+
+def tissue_record(
+    law: AbstractTissueLaw, motion: Motion, noise: float, seed: int, resolution: float = 0.0
+) -> tuple[Motion, Array]:
+    """Return what sensors make of a tissue: rounded deflection, and force with noise.
+
+    Parameters
+    ----------
+    law : AbstractTissueLaw
+        The true one.
+    motion : Motion
+        The true deflection.
+    noise : float
+        Standard deviation of white noise on the force, in N (N m).
+    seed : int
+        Of the noise.
+    resolution : float
+        Step of the deflection sensor in m (rad), 0 for none.
+    """
+    generator = np.random.default_rng(seed)
+    force = law.simulate(motion) + noise * generator.standard_normal(len(motion))
+    deflection = motion.deflection
+    if resolution:
+        deflection = resolution * np.round(deflection / resolution)
+    return Motion(motion.time, deflection), force
+
+
+def actuator_record(
+    frequency: float,
+    seed: int,
+    *,
+    amplitude: float = 3000.0,
+    rate: float = 500.0,
+    periods: int = 8,
+    noise: float = 3e-4,
+) -> tuple[Array, Array, Array]:
+    """Return time, command and angle of a sinusoid experiment.
+
+    The motor is simulated in steps of a twentieth of a sample and sticks while the command is
+    below the friction.
+
+    Parameters
+    ----------
+    frequency : float
+        In Hz.
+    seed : int
+        Of the noise on the angle.
+    amplitude : float
+        In rpm.
+    rate : float
+        Samples per s.
+    periods : int
+        Length of the record, at least 1.5 s.
+    noise : float
+        Standard deviation in rad, before rounding to the encoder's step.
+    """
+    generator = np.random.default_rng(seed)
+    count = round(max(periods / frequency, 1.5) * rate) + 1
+    time = np.arange(count) / rate
+    command = np.round(amplitude * np.sin(2 * np.pi * frequency * time), 1)
+    angle = _stick_slip(command, 1 / rate) + noise * generator.standard_normal(count)
+    return time, command, ENCODER * np.round(angle / ENCODER)
+
+
+def _stick_slip(command: Array, step: float, fine: int = 20) -> Array:
+    """Simulate angle over a command that is held between samples, from rest."""
+    decay = math.exp(-step / fine / TIME_CONSTANT)
+    travel = TIME_CONSTANT * (1 - decay)
+    h = step / fine
+    angle, velocity, angles = 0.0, 0.0, []
+    for value in command.tolist():
+        angles.append(angle)
+        for _ in range(fine):
+            if velocity == 0.0 and abs(value) <= FRICTION:
+                continue
+            direction = math.copysign(1.0, velocity or value)
+            target = GAIN * (value - FRICTION * direction)
+            angle += target * h + (velocity - target) * travel
+            new = target + (velocity - target) * decay
+            if new * velocity < 0:
+                # What is left of the step, in the other direction or stuck.
+                rest = new / (new - velocity)
+                target = GAIN * (value + FRICTION * direction)
+                new = target * rest * h / TIME_CONSTANT if abs(value) > FRICTION else 0.0
+            velocity = new
+    return np.array(angles)
+
+
+def samples() -> Iterator[tuple[str, str]]:
+    """Yield name and text of every committed sample."""
+    for name, fits in (("soft", SOFT), ("stiff", STIFF)):
+        for i, (k, rmse) in enumerate(fits, start=1):
+            seed = 100 * len(name) + i
+            motion = pressing(15.0, 100.0, 5.5 / k, 5.0, seed)
+            data = tissue_record(Elastic(k), motion, rmse, seed, COUNT)
+            yield f"silicone-{name}-{i}.csv", _tissue_text(data, "deflection_m,force_N", (6, 3))
+    for name, law, noises in (("nose", NOSE, NOSE_NOISE), ("concha", CONCHA, CONCHA_NOISE)):
+        for i, noise in enumerate(noises, start=1):
+            seed = 1000 * len(name) + i
+            data = tissue_record(law, pressing(80.0, 20.0, 0.35, 20.0, seed), noise, seed, 1e-4)
+            yield f"{name}-{i}.csv", _tissue_text(data, "angle_rad,torque_Nm", (4, 5))
+    for i, frequency in enumerate(FREQUENCIES):
+        record = actuator_record(frequency, seed=40 + i)
+        label = f"{frequency:g}".replace(".", "p")
+        yield f"actuator-{label}hz.csv", _text("time_s,command_rpm,angle_rad", record, (3, 1, 6))
+    yield "actuator-response.csv", _response_text(seed=7)
+
+
+def _tissue_text(data: tuple[Motion, Array], names: str, digits: tuple[int, int]) -> str:
+    motion, force = data
+    return _text(f"time_s,{names}", (motion.time, motion.deflection, force), (2, *digits))
+
+
+def _response_text(seed: int) -> str:
+    """Write a ready response: 1 % noise in magnitude and 0.5 deg in phase."""
+    generator = np.random.default_rng(seed)
+    hertz = np.array([0.1, 0.2, 0.5, 1, 2, 3, 4, 5, 7, 10, 15, 20, 30])
+    G = GAIN / (1 + 2j * np.pi * hertz * TIME_CONSTANT)
+    magnitude = 20 * np.log10(np.abs(G)) + 0.086 * generator.standard_normal(len(hertz))
+    phase = np.degrees(np.angle(G)) + 0.5 * generator.standard_normal(len(hertz))
+    return _text("frequency_hz,magnitude_db,phase_deg", (hertz, magnitude, phase), (1, 3, 2))
+
+
+def _text(header: str, columns: Sequence[Array], digits: Sequence[int]) -> str:
+    lines = [
+        ",".join(f"{value:.{d}f}" for value, d in zip(row, digits, strict=True))
+        for row in zip(*(column.tolist() for column in columns), strict=True)
+    ]
+    # Rounding must not write a negative zero.
+    body = "\n".join(lines).replace("-0.000000,", "0.000000,").replace("-0.0000,", "0.0000,")
+    return f"{_LABEL}\n{header}\n{body}\n"
+
+
+def write_samples(folder: Path) -> None:
+    """Write all samples into a folder."""
+    for name, text in samples():
+        write_output(folder / name, text)
+
+
+if __name__ == "__main__":
+    parser = argparse.ArgumentParser(description="Write the synthetic sample records.")
+    parser.add_argument("folder", type=Path)
+    write_samples(parser.parse_args().folder)

@@ -1,0 +1,82 @@
+"""Reasons to doubt that a record determines the parameters of a law."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+from numpy.typing import NDArray
+
+from nrs_design.identification.datasets import TissueRecord
+from nrs_design.identification.rounding import rounding_of_velocity
+from nrs_design.identification.statistics import Uncertainty
+from nrs_design.models.tissue import AbstractTissueLaw, HuntCrossley, KelvinVoigt
+
+Array = NDArray[np.float64]
+
+LARGEST_ERROR = 0.5
+# Distance from a bound, in the logarithm, that counts as reaching it.
+_NEAR = 1e-3
+# Part of the power of the velocity that may be rounding of the deflection.
+_ROUNDING = 0.1
+_LOADED = 0.1
+
+
+def doubts(
+    law: AbstractTissueLaw,
+    record: TissueRecord,
+    found: Uncertainty,
+    bounds: tuple[Array, Array],
+) -> tuple[str, ...]:
+    """List what makes a fit doubtful, in words; nothing for a sound one."""
+    return (
+        *_bounds(law, bounds),
+        *_errors(law, found),
+        *_times(law, record),
+        *_motion(law, record),
+    )
+
+
+def _bounds(law: AbstractTissueLaw, bounds: tuple[Array, Array]) -> Iterator[str]:
+    logs = np.log(law.values)
+    for name, log, low, high in zip(law.parameters(), logs, *bounds, strict=True):
+        if min(log - low, high - log) < _NEAR:
+            end = "lower" if log - low < high - log else "upper"
+            yield f"{name} is at the {end} end of its box"
+
+
+def _errors(law: AbstractTissueLaw, found: Uncertainty) -> Iterator[str]:
+    for name, error in zip(law.parameters(), found.errors, strict=True):
+        if not error <= LARGEST_ERROR:
+            size = f"{100 * error:.0f} %" if error < 10 else "over 1000 %"
+            yield f"{name} has a relative standard error of {size}"
+
+
+def _times(law: AbstractTissueLaw, record: TissueRecord) -> Iterator[str]:
+    tau = law.relaxation_time
+    if tau is None:
+        return
+    if tau > record.duration:
+        yield (
+            f"the record ({record.duration:.3g} s) is shorter than the relaxation time "
+            f"({tau:.3g} s)"
+        )
+    step = float(np.median(record.motion.steps))
+    if tau < step:
+        yield f"the relaxation time ({tau:.3g} s) is below the step of the record ({step:.3g} s)"
+
+
+def _motion(law: AbstractTissueLaw, record: TissueRecord) -> Iterator[str]:
+    motion = record.motion
+    if isinstance(law, KelvinVoigt | HuntCrossley):
+        part = rounding_of_velocity(motion.time, motion.deflection)
+        if part > _ROUNDING:
+            yield (
+                f"{100 * min(part, 1.0):.0f} % of the power of the velocity is rounding of the "
+                "deflection, so that the damping comes out too small"
+            )
+    start = abs(float(motion.deflection[0])) / float(np.abs(motion.deflection).max())
+    if law.relaxation_time is not None and start > _LOADED:
+        yield (
+            f"the record begins at {100 * start:.0f} % of the deflection, which is taken as relaxed"
+        )

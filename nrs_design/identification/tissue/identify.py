@@ -1,0 +1,118 @@
+"""Compare the laws of soft tissue on records, and choose one."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+from nrs_design.errors import DataError
+from nrs_design.identification.datasets import TissueRecord
+from nrs_design.identification.tissue.pool import ModelFit, fit_model
+from nrs_design.models.tissue import LAWS
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class TissueIdentification:
+    """All laws on the same records, and the choice among them.
+
+    Parameters
+    ----------
+    records : tuple of TissueRecord
+        The data.
+    models : tuple of ModelFit
+        In the order of `LAWS`.
+    chosen : ModelFit
+        One of them.
+    reason : str
+        Why that one.
+    """
+
+    records: tuple[TissueRecord, ...]
+    models: tuple[ModelFit, ...]
+    chosen: ModelFit
+    reason: str
+
+    @property
+    def synthetic(self) -> bool:
+        """Whether any record is synthetic."""
+        return any(record.source.synthetic for record in self.records)
+
+    @property
+    def rotational(self) -> bool:
+        """Whether the parameters are those of a rotation."""
+        return self.records[0].rotational
+
+
+def identify_tissue(
+    records: Sequence[TissueRecord],
+    law: str | None = None,
+    progress: Callable[[str], None] = lambda step: None,
+) -> TissueIdentification:
+    """Fit all laws to all records and choose.
+
+    Parameters
+    ----------
+    records : sequence of TissueRecord
+        Linear ones or rotational ones.
+    law : str, optional
+        Name of the law to choose whatever the comparison says.
+    progress : callable
+        Told the name of each law.
+
+    Raises
+    ------
+    DataError
+        If there is no record, linear and rotational ones are mixed, or one is there twice.
+    """
+    _check(records)
+    models = []
+    for name, kind in LAWS.items():
+        progress(name)
+        models.append(fit_model(kind, records))
+    chosen, reason = _choose(models) if law is None else _told(models, law)
+    return TissueIdentification(tuple(records), tuple(models), chosen, reason)
+
+
+def _check(records: Sequence[TissueRecord]) -> None:
+    if not records:
+        raise DataError("there are no records", remedy="name at least one CSV file")
+    if len({record.rotational for record in records}) > 1:
+        odd = next(r for r in records if r.rotational != records[0].rotational)
+        raise DataError(
+            "linear and rotational records are mixed",
+            path=odd.source.path,
+            remedy="identify them one after the other",
+        )
+    seen: dict[str, TissueRecord] = {}
+    for record in records:
+        if record.source.sha256 in seen:
+            twin = seen[record.source.sha256]
+            raise DataError(
+                f"has the same content as {twin.source.path}: a record counted twice would "
+                "narrow the interval",
+                path=record.source.path,
+                remedy="name it once",
+            )
+        seen[record.source.sha256] = record
+
+
+def _choose(models: Sequence[ModelFit]) -> tuple[ModelFit, str]:
+    best = min(models, key=lambda model: model.bic)
+    sound = [model for model in models if not model.doubts]
+    if not sound:
+        return best, f"{best.law.name} has the least BIC, but no law is free of doubts."
+    chosen = min(sound, key=lambda model: model.bic)
+    if chosen is best:
+        return chosen, f"{chosen.law.name} has the least BIC, and no doubts."
+    doubted = [model.law.name for model in models if model.bic < chosen.bic]
+    return chosen, (
+        f"{chosen.law.name} has the least BIC among the laws that the records determine; "
+        f"{', '.join(doubted)} would have less, but with doubts."
+    )
+
+
+def _told(models: Sequence[ModelFit], law: str) -> tuple[ModelFit, str]:
+    chosen = next(model for model in models if model.law.name == law)
+    own, _ = _choose(models)
+    agrees = "as by the comparison" if own is chosen else f"the comparison prefers {own.law.name}"
+    return chosen, f"{law} was asked for; {agrees}."

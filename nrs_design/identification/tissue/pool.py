@@ -1,0 +1,126 @@
+"""One law fitted to several records: each by itself, and all together."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from nrs_design.identification.datasets import TissueRecord
+from nrs_design.identification.statistics import Estimate, student_quantile
+from nrs_design.identification.tissue.output_error import RecordFit, fit_record, rmse
+from nrs_design.models.tissue import AbstractTissueLaw
+
+Array = NDArray[np.float64]
+
+# Fewer records than these, counted by weight, have no scatter.
+_FEWEST = 1.5
+_SLACK = 1e-9
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class ModelFit:
+    """A law with its parameters over all records.
+
+    Parameters
+    ----------
+    fits : tuple of RecordFit
+        One for each record.
+    law : AbstractTissueLaw
+        With the pooled parameters.
+    estimates : tuple of Estimate
+        Pooled parameters with 95 % intervals that contain the spread between records.
+    ranges : tuple of Estimate
+        The same, widened to the interval of every single record: what a proof should cover.
+    rmse : tuple of float
+        Of the pooled law in each record, as in thesis tables 2.4 and 2.5.
+    """
+
+    fits: tuple[RecordFit, ...]
+    law: AbstractTissueLaw
+    estimates: tuple[Estimate, ...]
+    ranges: tuple[Estimate, ...]
+    rmse: tuple[float, ...]
+
+    @property
+    def aic(self) -> float:
+        """Sum over the records, each with parameters of its own."""
+        return sum(fit.aic for fit in self.fits)
+
+    @property
+    def bic(self) -> float:
+        """Sum over the records, each with parameters of its own."""
+        return sum(fit.bic for fit in self.fits)
+
+    @property
+    def doubts(self) -> tuple[str, ...]:
+        """Doubts with the record that they are about; those of many records only once."""
+        return tuple(f"{fit.record.name}: {text}" for fit in self.fits for text in fit.doubts)
+
+
+def fit_model(kind: type[AbstractTissueLaw], records: Sequence[TissueRecord]) -> ModelFit:
+    """Fit a law to every record, and pool the parameters.
+
+    Parameters
+    ----------
+    kind : type
+        One of `nrs_design.models.tissue.LAWS`.
+    records : sequence of TissueRecord
+        At least one, all linear or all rotational.
+    """
+    fits = tuple(fit_record(kind, record) for record in records)
+    estimates = pool(fits)
+    law = kind(*(estimate.value for estimate in estimates))
+    ranges = tuple(
+        _hull(pooled, [fit.estimates[i] for fit in fits]) for i, pooled in enumerate(estimates)
+    )
+    return ModelFit(fits, law, estimates, ranges, tuple(rmse(law, record) for record in records))
+
+
+def pool(fits: Sequence[RecordFit]) -> tuple[Estimate, ...]:
+    """Pool the parameters of several fits of one law.
+
+    Records of one tissue differ by more than their noise. Each logarithm is a weighted mean, the
+    weight of a record being the inverse of its variance plus the variance between records
+    (DerSimonian and Laird 1986); the interval comes from the scatter about that mean and Student's
+    distribution with one degree of freedom less than there are records (Hartung and Knapp 2001).
+    """
+    if len(fits) == 1:
+        return fits[0].estimates
+    logs = np.log([fit.law.values for fit in fits])
+    variances = np.array([np.diag(fit.uncertainty.covariance) for fit in fits])
+    return tuple(_pool(x, s) for x, s in zip(logs.T, variances.T, strict=True))
+
+
+def _pool(logs: Array, variances: Array) -> Estimate:
+    count = len(logs)
+    weights = 1 / (variances + _between(logs, variances))
+    within = 1 / float(weights.sum())
+    weights *= within
+    mean = float(weights @ logs)
+    variance = float(weights @ (logs - mean) ** 2) / (count - 1)
+    if 1 / float(weights @ weights) < _FEWEST:
+        # One record decides: there is no scatter to tell the error from.
+        variance = max(variance, within)
+    error = math.sqrt(variance)
+    return Estimate.from_log(mean, student_quantile(count - 1) * error)
+
+
+def _between(logs: Array, variances: Array) -> float:
+    """Estimate the variance between records by the method of moments."""
+    weights = 1 / variances
+    total = float(weights.sum())
+    mean = float(weights @ logs) / total
+    excess = float(weights @ (logs - mean) ** 2) - (len(logs) - 1)
+    slack = total - float(weights @ weights) / total
+    # Without slack, one record has all the weight.
+    return max(0.0, excess / slack) if slack > _SLACK * total else 0.0
+
+
+def _hull(pooled: Estimate, single: Sequence[Estimate]) -> Estimate:
+    low = min(pooled.low, *(estimate.low for estimate in single))
+    high = max(pooled.high, *(estimate.high for estimate in single))
+    return Estimate(pooled.value, low, high)

@@ -1,0 +1,248 @@
+"""Merge what was identified into a spec, keeping its comments."""
+
+from __future__ import annotations
+
+import io
+from collections.abc import Iterable, Sequence
+from decimal import ROUND_CEILING, ROUND_FLOOR, ROUND_HALF_EVEN, Context, Decimal
+from math import isfinite
+from pathlib import Path
+from typing import Any
+
+from nrs_design.errors import DataError, SpecError
+from nrs_design.identification.actuator import ActuatorIdentification
+from nrs_design.identification.datasets import Source
+from nrs_design.identification.statistics import Estimate
+from nrs_design.identification.tissue import TissueIdentification
+from nrs_design.models.tissue.law import DAMPING, STIFFNESS
+from nrs_design.spec import InteractionDesignSpec, LoadedSpec, parse_spec
+
+# What a spec can hold; the others are not linear, or not without memory.
+WRITABLE = ("elastic", "kelvin-voigt")
+_DIGITS = 6
+_UNITS = {
+    False: {STIFFNESS: "N/m", DAMPING: "N*s/m"},
+    True: {STIFFNESS: "N*m/rad", DAMPING: "N*m*s/rad"},
+}
+
+
+def merge_tissue(
+    loaded: LoadedSpec, found: TissueIdentification, environment: str | None, arm: str | None
+) -> str:
+    """Return the text of a spec with the chosen law in one of its environments.
+
+    Parameters
+    ----------
+    loaded : LoadedSpec
+        An interaction design.
+    found : TissueIdentification
+        Its range is written, which covers the pooled interval and that of every record.
+    environment : str or None
+        Name of the environment; may be left out if there is one only.
+    arm : str or None
+        Lever arm such as ``0.24 m``, for linear records; by default the one of the spec.
+
+    Raises
+    ------
+    SpecError
+        If the spec has no such environment, or no lever arm.
+    DataError
+        If the chosen law has no place in a spec, or its range is unlimited.
+    """
+    model = found.chosen
+    if model.law.name not in WRITABLE:
+        raise DataError(
+            f"the chosen law, {model.law.name}, has no place in a spec",
+            remedy=f"choose one that has: --model {' or --model '.join(WRITABLE)}",
+        )
+    spec = _interaction(loaded)
+    name = _environment(spec, environment, loaded.path)
+    document = _Document(loaded)
+    node = document.root["environments"][name]
+    document.put(node, "model", model.law.name)
+    units = _UNITS[found.rotational]
+    for kind, estimate in zip(model.law.kinds, model.ranges, strict=True):
+        _put_range(document, node, kind, _ranged(estimate, units[kind], kind))
+    if DAMPING not in model.law.kinds:
+        document.drop(node, DAMPING)
+    if found.rotational:
+        document.drop(node, "lever_arm")
+    elif arm is not None:
+        document.put(node, "lever_arm", arm)
+    elif "lever_arm" not in node:
+        raise SpecError(
+            f"the environment {name} has no lever_arm, and the records are linear",
+            path=loaded.path,
+            remedy="give --lever-arm '0.24 m'",
+        )
+    document.put(node, "provenance", [_provenance(record.source) for record in found.records])
+    return document.text()
+
+
+def merge_actuator(loaded: LoadedSpec, found: ActuatorIdentification) -> str:
+    """Return the text of a spec with the identified actuator and its intervals.
+
+    Raises
+    ------
+    SpecError
+        If the spec is no interaction design.
+    DataError
+        If an interval is unlimited.
+    """
+    _interaction(loaded)
+    document = _Document(loaded)
+    node = document.root["actuator"]
+    intervals = {}
+    for name, estimate, unit in (
+        ("gain", found.chosen.gain, "rad/s/rpm"),
+        ("time_constant", found.chosen.time_constant, "s"),
+    ):
+        written = _ranged(estimate, unit, name)
+        document.put(node, name, written["nominal"])
+        intervals[name] = written["range"]
+    document.put(node, "intervals", intervals)
+    document.put(node, "provenance", [_provenance(source) for source in found.sources])
+    return document.text()
+
+
+def _interaction(loaded: LoadedSpec) -> InteractionDesignSpec:
+    if not isinstance(loaded.spec, InteractionDesignSpec):
+        raise SpecError(
+            "a switched-system spec has no place for identified values",
+            path=loaded.path,
+            remedy="write into a spec of kind interaction-design",
+        )
+    return loaded.spec
+
+
+def _environment(spec: InteractionDesignSpec, name: str | None, path: Path) -> str:
+    names = list(spec.environments)
+    if name is None and len(names) == 1:
+        return names[0]
+    if name not in names:
+        said = "there is no environment to write to" if name is None else f"no environment {name!r}"
+        listed = ", ".join(names) or "none"
+        raise SpecError(
+            said if len(names) == 0 or name else "there are several environments",
+            path=path,
+            remedy=f"name one with --environment; the spec has {listed}",
+        )
+    return name
+
+
+def _put_range(document: _Document, node: Any, key: str, value: dict[str, Any]) -> None:
+    """Replace a quantity with range in place, so that comments within it stay."""
+    old = node.get(key)
+    if not isinstance(old, dict):
+        document.put(node, key, value)
+        return
+    if isinstance(old.get("range"), list):
+        old["range"][:] = value["range"]
+    else:
+        document.put(old, "range", value["range"])
+    old["nominal"] = value["nominal"]
+
+
+def _ranged(estimate: Estimate, unit: str, name: str) -> dict[str, Any]:
+    """Write an estimate with ends rounded outwards, so that nothing is lost."""
+    if not (isfinite(estimate.high) and estimate.low > 0):
+        raise DataError(
+            f"the interval of the {name} is unlimited: the records do not determine it",
+            remedy="choose a simpler law with --model, or record more",
+        )
+    low = _decimal(estimate.low, ROUND_FLOOR)
+    high = _decimal(estimate.high, ROUND_CEILING)
+    nominal = min(max(_decimal(estimate.value, ROUND_HALF_EVEN), low), high)
+    texts = [f"{_plain(number)} {unit}" for number in (nominal, low, high)]
+    return {"nominal": texts[0], "range": texts[1:]}
+
+
+def _decimal(value: float, rounding: str) -> Decimal:
+    return Context(prec=_DIGITS, rounding=rounding).create_decimal(Decimal(value))
+
+
+def _plain(number: Decimal) -> str:
+    return f"{number:f}" if 1e-3 <= number < 10**_DIGITS else f"{number.normalize():e}"
+
+
+def _provenance(source: Source) -> dict[str, str]:
+    data = "synthetic" if source.synthetic else "measured"
+    return {"file": source.path.name, "sha256": source.sha256, "data": data}
+
+
+class _Document:
+    """A YAML text that is changed in few places."""
+
+    def __init__(self, loaded: LoadedSpec) -> None:
+        from ruamel.yaml import YAML
+        from ruamel.yaml.util import load_yaml_guess_indent
+
+        self._loaded = loaded
+        _, indent, offset = load_yaml_guess_indent(loaded.text)
+        self._yaml = YAML(typ="rt")
+        self._yaml.preserve_quotes = True
+        # Lines are never folded anew.
+        self._yaml.width = 1 << 20
+        self._yaml.indent(mapping=2, sequence=indent or 4, offset=2 if offset is None else offset)
+        self.root: Any = self._yaml.load(loaded.text)
+
+    def put(self, node: Any, key: str, value: object) -> None:
+        """Set a key; a new one goes second to last, as the last one carries what comes after."""
+        flow = _flow(value)
+        if key in node or not len(node):
+            node[key] = flow
+        else:
+            node.insert(max(len(node) - 1, 1), key, flow)
+
+    def drop(self, node: Any, key: str) -> None:
+        """Remove a key, but not the comments that follow it."""
+        if key not in node:
+            return
+        comments = node.ca.items.pop(key, None)
+        del node[key]
+        if comments is not None and len(node):
+            node.ca.items.setdefault(list(node)[-1], comments)
+
+    def text(self) -> str:
+        """Return the new text, checked.
+
+        Raises
+        ------
+        SpecError
+            If the result is no valid spec, or a comment would be lost.
+        """
+        stream = io.StringIO()
+        self._yaml.dump(self.root, stream)
+        text = stream.getvalue()
+        if "\r\n" in self._loaded.text:
+            text = text.replace("\n", "\r\n")
+        lost = [line for line in _comments(self._loaded.text) if line not in set(_comments(text))]
+        if lost:
+            raise SpecError(
+                f"the comment {lost[0]!r} would be lost",
+                path=self._loaded.path,
+                remedy="move it out of the value that is replaced",
+            )
+        parse_spec(text, self._loaded.path)
+        return text
+
+
+def _flow(value: object) -> object:
+    """Return a value in flow style, except for a list of mappings."""
+    from ruamel.yaml.comments import CommentedMap, CommentedSeq
+
+    if isinstance(value, dict):
+        mapping = CommentedMap({key: _flow(item) for key, item in value.items()})
+        mapping.fa.set_flow_style()
+        return mapping
+    if isinstance(value, list):
+        sequence = CommentedSeq(_flow(item) for item in value)
+        if not any(isinstance(item, dict) for item in value):
+            sequence.fa.set_flow_style()
+        return sequence
+    return value
+
+
+def _comments(text: str) -> Sequence[str]:
+    lines: Iterable[str] = (line.strip() for line in text.splitlines())
+    return [line for line in lines if line.startswith("#")]

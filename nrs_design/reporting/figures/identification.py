@@ -1,0 +1,155 @@
+"""Figures of an identification: measured against fitted."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from nrs_design.reporting.style import (
+    BLUE,
+    INK,
+    MUTED,
+    VERMILLION,
+    legend,
+    new_axes,
+    new_figure,
+    short,
+    styled,
+)
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+    from nrs_design.identification.actuator import ActuatorIdentification
+    from nrs_design.identification.statistics import Estimate
+
+Array = NDArray[np.float64]
+
+# More points than these cannot be told apart on a page.
+_POINTS = 1500
+_MEASURED = "#7d8894"
+
+
+@styled
+def draw_fit(time: Array, measured: Array, fitted: Array, label: str) -> Figure:
+    """Draw a measured and a fitted output over time, and their difference below.
+
+    Parameters
+    ----------
+    time : ndarray, shape (n,)
+        In s.
+    measured, fitted : ndarray, shape (n,)
+        Outputs.
+    label : str
+        What they are, with the unit.
+    """
+    pick = _thin(len(time))
+    figure = new_figure(4.4)
+    above, below = figure.subplots(2, 1, sharex=True, height_ratios=[2.4, 1.0])
+    above.plot(time[pick], measured[pick], ".", color=_MEASURED, markersize=4.0, label="data")
+    above.plot(time[pick], fitted[pick], color=BLUE, label="fitted", linewidth=1.4)
+    above.set_ylabel(label)
+    error = (measured - fitted)[pick]
+    below.plot(time[pick], error, ".", color=VERMILLION, markersize=2.5)
+    below.axhline(0.0, color=INK, linewidth=0.8)
+    below.set_ylabel("Data - fitted")
+    below.set_xlabel("Time [s]")
+    legend(figure, above)
+    return figure
+
+
+@styled
+def draw_loop(deflection: Array, measured: Array, fitted: Array, labels: tuple[str, str]) -> Figure:
+    """Draw force over deflection, whose area is the energy that the tissue takes.
+
+    Parameters
+    ----------
+    deflection, measured, fitted : ndarray, shape (n,)
+        Samples in the order of time.
+    labels : tuple of str
+        Of the axes, with units.
+    """
+    pick = _thin(len(deflection))
+    figure, axes = new_axes(3.9)
+    axes.plot(deflection[pick], measured[pick], ".", color=_MEASURED, markersize=4.0, label="data")
+    axes.plot(deflection[pick], fitted[pick], color=BLUE, label="fitted", linewidth=1.4)
+    axes.set_xlabel(labels[0])
+    axes.set_ylabel(labels[1])
+    legend(figure, axes)
+    return figure
+
+
+@styled
+def draw_intervals(
+    names: Sequence[str],
+    single: Sequence[Estimate],
+    pooled: Estimate,
+    wide: Estimate,
+    label: str,
+) -> Figure:
+    """Draw one parameter: its interval in each record, pooled, and the range over all records.
+
+    Parameters
+    ----------
+    names : sequence of str
+        Of the records.
+    single : sequence of Estimate
+        One for each record.
+    pooled, wide : Estimate
+        Over all records, and widened to every record.
+    label : str
+        Name of the parameter, with the unit.
+    """
+    figure, axes = new_axes(1.5 + 0.28 * (len(names) + 1))
+    axes.axvspan(wide.low, wide.high, color="#dcebf5", linewidth=0, label="range over all records")
+    for row, estimate in enumerate([*single, pooled]):
+        tint, shape = (INK, "D") if row == len(single) else (BLUE, "o")
+        axes.plot([estimate.low, estimate.high], [row, row], color=tint, linewidth=2.0)
+        axes.plot(estimate.value, row, shape, color=tint, markersize=5)
+    axes.set_yticks(range(len(names) + 1), [*(short(name) for name in names), "pooled"])
+    axes.set_ylim(len(names) + 0.6, -0.6)
+    axes.set_xlabel(f"{label}, 95 % intervals; shaded: range over all records")
+    axes.grid(visible=False, axis="y")
+    return figure
+
+
+@styled
+def draw_bode(found: ActuatorIdentification) -> Figure:
+    """Draw magnitude and phase of velocity over command, data and fit."""
+    figure = new_figure(4.8)
+    above, below = figure.subplots(2, 1, sharex=True)
+    w = found.frequency
+    fine = np.geomspace(w.min() / 1.5, w.max() * 1.5, 200)
+    model = found.chosen.response(fine)
+    above.semilogx(w, _decibel(found.response), "o", color=VERMILLION, label="data", zorder=3)
+    above.semilogx(fine, _decibel(model), color=BLUE, label="fitted")
+    below.semilogx(w, np.degrees(np.angle(found.response)), "o", color=VERMILLION, zorder=3)
+    below.semilogx(fine, np.degrees(np.angle(model)), color=BLUE)
+    corner = 1 / found.chosen.time_constant.value
+    for axes in (above, below):
+        axes.axvline(corner, color=MUTED, linestyle="--", linewidth=1.0)
+    above.annotate(
+        f"1/τ = {corner:.4g} rad/s",
+        (corner, 1.0),
+        xycoords=("data", "axes fraction"),
+        xytext=(5, -12),
+        textcoords="offset points",
+        fontsize=9,
+        color=MUTED,
+    )
+    above.set_ylabel("Magnitude [dB]")
+    below.set_ylabel("Phase [deg]")
+    below.set_xlabel("Frequency [rad/s]")
+    legend(figure, above)
+    return figure
+
+
+def _decibel(values: NDArray[np.complex128]) -> Array:
+    return np.asarray(20 * np.log10(np.abs(values)))
+
+
+def _thin(count: int) -> slice:
+    return slice(None, None, max(1, -(-count // _POINTS)))

@@ -1,0 +1,289 @@
+"""The page of an identification."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Iterable, Iterator
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from nrs_design import __version__
+from nrs_design.identification.actuator.time_fit import simulate_angle
+from nrs_design.identification.lever import units_of
+from nrs_design.reporting.document import Block, Bullets, Illustration, Report, Section, Table
+from nrs_design.reporting.figures.identification import (
+    draw_bode,
+    draw_fit,
+    draw_intervals,
+    draw_loop,
+)
+from nrs_design.reporting.formatting import number, plural, shortened
+
+if TYPE_CHECKING:
+    from nrs_design.identification.actuator import ActuatorIdentification
+    from nrs_design.identification.datasets import SinusoidRecord, Source
+    from nrs_design.identification.statistics import Estimate
+    from nrs_design.identification.tissue import ModelFit, RecordFit, TissueIdentification
+
+IDENTIFIED = "identified"
+_FOOTER = "Page of nrs-design. An identification is an estimate, not a proof."
+_SYNTHETIC = "SYNTHETIC DATA, made by a simulation and not measured. "
+_DRAWN = 6
+_MEANING = (
+    "Intervals are 95 % confidence intervals of the pooled parameters; with several records they "
+    "hold the spread between records.",
+    "The range over all records also covers the interval of every single record.",
+    "RMSE is that of the pooled parameters in each record. AIC and BIC are sums over the records, "
+    "each with parameters of its own.",
+    "The p-value of the whiteness test is small where residuals are not white noise: the law then "
+    "misses something, and its intervals come from the scatter between parts of the record.",
+)
+
+
+def tissue_report(found: TissueIdentification, arm: float | None = None) -> Report:
+    """Say and draw everything about the identification of a tissue.
+
+    Parameters
+    ----------
+    found : TissueIdentification
+        As `identify_tissue` gives it.
+    arm : float, optional
+        Lever arm in m: the chosen law is shown at the pivot, too.
+    """
+    chosen = found.chosen
+    units = units_of(chosen.law, found.rotational)
+    names = chosen.law.parameters()
+    values = ", ".join(
+        f"{name} = {_interval(estimate)} {unit}".rstrip()
+        for name, estimate, unit in zip(names, chosen.ranges, units, strict=True)
+    )
+    return Report(
+        name=f"tissue-{chosen.law.name}",
+        title=f"Tissue law from {plural(len(found.records), 'record')}",
+        verdict=IDENTIFIED,
+        claim=f"{_label(found.synthetic)}{chosen.law.formula} with {values}. {found.reason}",
+        remarks=(),
+        facts=_facts([record.source for record in found.records]),
+        sections=(
+            Section("Comparison of laws", tuple(_comparison(found))),
+            Section("Parameters of the chosen law", tuple(_parameters(found, arm))),
+            Section("Measured against fitted", tuple(_tissue_figures(found))),
+            Section("How to read this", (Bullets("", _MEANING),), boxed=True),
+            _source_section([record.source for record in found.records]),
+        ),
+        footer=_FOOTER,
+    )
+
+
+def actuator_report(found: ActuatorIdentification) -> Report:
+    """Say and draw everything about the identification of an actuator."""
+    fit = found.chosen
+    values = [f"Gain {_interval(fit.gain)} (rad/s)/rpm", f"τ {_interval(fit.time_constant)} s"]
+    if fit.friction:
+        values.append(f"friction {_interval(fit.friction)} rpm")
+    figures = found.figures
+    derived = Table(
+        "Derived with the data sheet",
+        ("Quantity", "Value [95 % interval]", "Unit"),
+        (
+            ("Armature resistance R", _interval(figures.resistance), "ohm"),
+            ("Speed over torque", _interval(figures.gradient), "rpm/(N m)"),
+        ),
+    )
+    return Report(
+        name="actuator",
+        title="First-order velocity model with Coulomb friction",
+        verdict=IDENTIFIED,
+        claim=f"{_label(found.synthetic)}{', '.join(values)}. {found.reason}",
+        remarks=(),
+        facts=_facts(found.sources),
+        sections=(
+            Section("Fits", (_fits(found), derived)),
+            Section("Frequency response", (_bode(found),)),
+            *_actuator_records(found),
+            _source_section(found.sources),
+        ),
+        footer=_FOOTER,
+    )
+
+
+def _comparison(found: TissueIdentification) -> Iterator[Block]:
+    unit = "N m" if found.rotational else "N"
+    records = [record.name for record in found.records]
+    least_aic = min(model.aic for model in found.models)
+    least_bic = min(model.bic for model in found.models)
+    rows = tuple(
+        (
+            model.law.name + (" (chosen)" if model is found.chosen else ""),
+            *(number(value, 3) for value in model.rmse),
+            number(model.aic - least_aic),
+            number(model.bic - least_bic),
+            f"{min(fit.uncertainty.whiteness for fit in model.fits):.2g}",
+            str(len(model.doubts)) if model.doubts else "none",
+        )
+        for model in found.models
+    )
+    columns = ("Law", *records, "AIC - least", "BIC - least", "White p", "Doubts")
+    yield Table(f"RMSE [{unit}] in each record, and criteria", columns, rows)
+    doubts = tuple(
+        f"{model.law.name}: {shortened(model.doubts, 4)}." for model in found.models if model.doubts
+    )
+    if doubts:
+        yield Bullets("Doubts: what the records do not determine", doubts)
+
+
+def _parameters(found: TissueIdentification, arm: float | None) -> Iterator[Block]:
+    model = found.chosen
+    law = model.law
+    units = units_of(law, found.rotational)
+    columns = (
+        "Record",
+        *(f"{n} [{u or '1'}]" for n, u in zip(law.parameters(), units, strict=True)),
+    )
+    rows = [
+        (fit.record.name, *(_interval(estimate) for estimate in fit.estimates))
+        for fit in model.fits
+    ]
+    rows.append(("pooled", *map(_interval, model.estimates)))
+    rows.append(("range over all records", *map(_interval, model.ranges)))
+    if arm is not None:
+        turned = [f"{number(value, 6)} {unit}" for value, unit in
+                  zip(law.at_pivot(arm).values, units_of(law, True), strict=True)]  # fmt: skip
+        rows.append((f"pooled, at the pivot ({number(arm)} m)", *turned))
+    yield Table("Estimates [95 % interval]", columns, tuple(rows))
+    if law.relaxation_time is not None:
+        tau = (f"The force relaxes in {number(law.relaxation_time)} s at rest.",)
+        yield Bullets("", tau)
+    if len(model.fits) > 1:
+        yield from _interval_figures(model, units)
+
+
+def _interval_figures(model: ModelFit, units: tuple[str, ...]) -> Iterator[Illustration]:
+    names = [fit.record.name for fit in model.fits]
+    for i, (name, unit) in enumerate(zip(model.law.parameters(), units, strict=True)):
+        single = [fit.estimates[i] for fit in model.fits]
+        if all(math.isfinite(estimate.high) for estimate in (*single, model.ranges[i])):
+            yield Illustration(
+                f"interval-{name}",
+                f"{name} in each record",
+                "Bars are 95 % intervals; where records differ by more than their bars, the "
+                "tissue itself differs between records.",
+                draw_intervals(
+                    names, single, model.estimates[i], model.ranges[i], f"{name} [{unit or '1'}]"
+                ),
+            )
+
+
+def _tissue_figures(found: TissueIdentification) -> Iterator[Illustration]:
+    force, deflection = (
+        ("Torque [N m]", "Angle [rad]") if found.rotational else ("Force [N]", "Deflection [m]")
+    )
+    note = _label(found.synthetic)
+    for fit in found.chosen.fits[:_DRAWN]:
+        fitted = fit.law.simulate(fit.record.motion)
+        name = _id(fit.record.name)
+        yield Illustration(
+            f"fit-{name}",
+            fit.record.name,
+            f"{note}{_quality(fit)}",
+            draw_fit(fit.record.motion.time, fit.record.force, fitted, force),
+        )
+        yield Illustration(
+            f"loop-{name}",
+            f"{fit.record.name}: hysteresis",
+            f"{note}The area of the loop is the energy that the tissue takes up.",
+            draw_loop(fit.record.motion.deflection, fit.record.force, fitted, (deflection, force)),
+        )
+
+
+def _quality(fit: RecordFit) -> str:
+    return (
+        f"Fit to this record alone: RMSE {number(fit.rmse)}, whiteness p = "
+        f"{fit.uncertainty.whiteness:.2g}; {fit.agreeing} of {plural(fit.starts, 'start')} ended "
+        "at this optimum."
+    )
+
+
+def _fits(found: ActuatorIdentification) -> Table:
+    rows = tuple(
+        (
+            fit.method + (" (chosen)" if fit is found.chosen else ""),
+            _interval(fit.gain),
+            _interval(fit.time_constant),
+            _interval(fit.friction) if fit.friction else "not determined",
+        )
+        for fit in found.fits
+    )
+    columns = ("Fit", "Gain [(rad/s)/rpm]", "Time constant [s]", "Friction [rpm]")
+    return Table("Estimates [95 % interval]", columns, rows)
+
+
+def _bode(found: ActuatorIdentification) -> Illustration:
+    return Illustration(
+        "bode",
+        "Velocity over command",
+        f"{_label(found.synthetic)}Magnitude relative to 1 (rad/s)/rpm. The first harmonic of the "
+        "friction is taken off the command.",
+        draw_bode(found),
+    )
+
+
+def _actuator_records(found: ActuatorIdentification) -> tuple[Section, ...]:
+    if not found.records or found.chosen.friction is None:
+        return ()
+    by_frequency = np.argsort(found.frequency)
+    ends = dict.fromkeys([int(by_frequency[0]), int(by_frequency[-1])])
+    blocks = tuple(_angle_figure(found, found.records[i], found.frequency[i]) for i in ends)
+    return (Section("Slowest and fastest record", blocks),)
+
+
+def _angle_figure(
+    found: ActuatorIdentification, record: SinusoidRecord, frequency: float
+) -> Illustration:
+    fit = found.chosen
+    friction = fit.friction.value if fit.friction else 0.0
+    fitted = simulate_angle(record, fit.gain.value, fit.time_constant.value, friction)
+    hertz = number(frequency / (2 * math.pi), 3)
+    return Illustration(
+        f"angle-{_id(record.name)}",
+        f"{record.name}: {hertz} Hz",
+        f"{_label(found.synthetic)}The chosen fit; only initial angle and velocity are adapted "
+        "to this record.",
+        draw_fit(record.time, record.angle, fitted, "Angle [rad]"),
+    )
+
+
+def _facts(sources: Iterable[Source]) -> tuple[tuple[str, str], ...]:
+    files = list(sources)
+    synthetic = sum(source.synthetic for source in files)
+    kind = "SYNTHETIC" if synthetic == len(files) else "mixed" if synthetic else "measured"
+    return (
+        ("Data", f"{kind}, {plural(len(files), 'file')}"),
+        ("Package", f"nrs-design {__version__}"),
+    )
+
+
+def _source_section(sources: Iterable[Source]) -> Section:
+    rows = tuple(
+        (source.path.name, "SYNTHETIC" if source.synthetic else "measured", source.sha256)
+        for source in sources
+    )
+    return Section("Data files", (Table("Files", ("File", "Data", "SHA-256"), rows),))
+
+
+def _label(synthetic: bool) -> str:
+    return _SYNTHETIC if synthetic else ""
+
+
+def _interval(estimate: Estimate) -> str:
+    return f"{_short(estimate.value)} [{_short(estimate.low)}, {_short(estimate.high)}]"
+
+
+def _short(value: float) -> str:
+    return number(value, 5) if value >= 1e-3 or value == 0 else f"{value:.4e}"
+
+
+def _id(name: str) -> str:
+    return re.sub(r"[^A-Za-z0-9-]+", "-", name)

@@ -1,0 +1,168 @@
+"""Chapter 2.5: laws of nose and concha, and what their parameters imply."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from statistics import fmean
+
+from nrs_design.models.tissue import KelvinBoltzmann, Maxwell
+from nrs_design.reproduction.row import (
+    Row,
+    Tolerance,
+    Verdict,
+    claim,
+    format_number,
+    hardware_only,
+    reproduced,
+)
+
+# Thesis tables 2.4 and 2.5: mean coefficients in N m/rad and N m s/rad, and RMSE in N m.
+BOLTZMANN = {
+    "nose": KelvinBoltzmann(k1=0.233, k2=0.972, b=23.631),
+    "concha": KelvinBoltzmann(k1=0.479, k2=3.303, b=30.456),
+}
+MAXWELL = {"nose": Maxwell(k=1.129, b=120.233), "concha": Maxwell(k=3.476, b=137.860)}
+VOIGT = {"nose": (0.205, 0.341), "concha": (0.574, 0.957)}
+ELASTIC = {"nose": 0.207, "concha": 0.589}
+RMSE: Mapping[str, Mapping[str, tuple[float, ...]]] = {
+    "nose": {
+        "Kelvin-Boltzmann": (0.0216, 0.0165, 0.0062, 0.0111),
+        "Kelvin-Voigt": (0.0235, 0.0156, 0.0062, 0.0108),
+        "elastic": (0.0237, 0.0155, 0.0062, 0.0114),
+        "Maxwell": (0.0217, 0.0135, 0.0068, 0.0099),
+        "Hunt-Crossley": (0.0264, 0.0132, 0.0064, 0.0096),
+    },
+    "concha": {
+        "Kelvin-Boltzmann": (0.0157, 0.0085, 0.0128, 0.0055, 0.0080),
+        "Kelvin-Voigt": (0.0198, 0.0114, 0.0106, 0.0064, 0.0072),
+        "elastic": (0.0206, 0.0110, 0.0104, 0.0066, 0.0068),
+        "Maxwell": (0.0334, 0.0111, 0.0107, 0.0083, 0.0098),
+        "Hunt-Crossley": (0.0237, 0.0050, 0.0117, 0.0068, 0.0048),
+    },
+}
+# Computed once from the printed coefficients, with all their digits.
+ETA = {
+    "nose": ("0.18795", "19.06169", "19.61079"),
+    "concha": ("0.41833", "26.59867", "8.05288"),
+}
+_TABLE = {"nose": "2.4", "concha": "2.5"}
+_RECORD = "The length of the records is not printed."
+
+
+def rows() -> tuple[Row, ...]:
+    """Convert the coefficients, and hold the text against the tables."""
+    return tuple(
+        row
+        for tissue in BOLTZMANN
+        for row in (
+            _eta(tissue),
+            _round_trip(tissue),
+            _memory(tissue),
+            _maxwell(tissue),
+            _voigt(tissue),
+            _worst(tissue),
+            *_measured(tissue),
+        )
+    )
+
+
+def _eta(tissue: str) -> Row:
+    law = BOLTZMANN[tissue]
+    return reproduced(
+        f"eta1, eta2, eta3 of the {tissue}",
+        _TABLE[tissue],
+        f"from k1 = {law.k1:g}, k2 = {law.k2:g}, b = {law.b:g}",
+        law.eta,
+        "N m/rad, N m s/rad, s",
+        Tolerance(3e-5),
+        right=ETA[tissue],
+        note="The thesis prints the elements only; eta3 is the relaxation time.",
+    )
+
+
+def _round_trip(tissue: str) -> Row:
+    law = BOLTZMANN[tissue]
+    back = KelvinBoltzmann.from_eta(*law.eta)
+    printed = (f"{law.k1:g}", f"{law.k2:g}", f"{law.b:g}")
+    return reproduced(
+        f"k1, k2, b of the {tissue}, back from eta",
+        _TABLE[tissue],
+        printed,
+        back.values,
+        "N m/rad, N m/rad, N m s/rad",
+        Tolerance(1e-9),
+    )
+
+
+def _memory(tissue: str) -> Row:
+    """Show what k2 and the elastic fit together imply."""
+    law, elastic = BOLTZMANN[tissue], ELASTIC[tissue]
+    relaxed = law.eta[0]
+    return claim(
+        f"stiffness of the {tissue}: at once, elastic fit, relaxed",
+        _TABLE[tissue],
+        f"k2 = {law.k2:g}, elastic {elastic:g}",
+        ", ".join(format_number(k) for k in (law.k2, elastic, relaxed)),
+        "N m/rad",
+        verdict=Verdict.REPRODUCED,
+        holds=law.k2 > elastic > relaxed,
+        note=f"The elastic fit is near the relaxed end, so the records must be much longer than "
+        f"the relaxation time of {law.relaxation_time:.3g} s, if time is in seconds. {_RECORD}",
+    )
+
+
+def _maxwell(tissue: str) -> Row:
+    law = MAXWELL[tissue]
+    return claim(
+        f"relaxation time b/k of the Maxwell {tissue}",
+        _TABLE[tissue],
+        f"k = {law.k:g}, b = {law.b:g}",
+        format_number(law.relaxation_time),
+        "s",
+        verdict=Verdict.REPRODUCED,
+        holds=law.relaxation_time > BOLTZMANN[tissue].relaxation_time,
+        note=f"Longer than that of the Kelvin-Boltzmann law on the same records. {_RECORD}",
+    )
+
+
+def _voigt(tissue: str) -> Row:
+    k, b = VOIGT[tissue]
+    others = [damping / stiffness for stiffness, damping in VOIGT.values()]
+    return claim(
+        f"b/k of the Kelvin-Voigt {tissue}",
+        _TABLE[tissue],
+        f"k = {k:g}, b = {b:g}",
+        format_number(b / k),
+        "s",
+        verdict=Verdict.REPRODUCED,
+        holds=max(others) - min(others) < 0.005,
+        note="The same for both tissues, which looks like a bound or a start value of the search.",
+    )
+
+
+def _worst(tissue: str) -> Row:
+    means = {law: fmean(values) for law, values in RMSE[tissue].items()}
+    worst, best = max(means, key=means.__getitem__), min(means, key=means.__getitem__)
+    said = {"nose": "Maxwell", "concha": "Kelvin-Voigt"}[tissue]
+    return claim(
+        f"law with the largest mean RMSE, {tissue}",
+        "2.5",
+        said,
+        f"{worst} ({means[worst]:.4f} N m)",
+        verdict=Verdict.PRINT_IS_WRONG,
+        holds=worst != said,
+        note=f"From table {_TABLE[tissue]}; the least mean is that of {best} "
+        f"({means[best]:.4f} N m).",
+    )
+
+
+def _measured(tissue: str) -> tuple[Row, ...]:
+    return tuple(
+        hardware_only(
+            f"RMSE of the {law} {tissue}, each experiment",
+            _TABLE[tissue],
+            ", ".join(f"{value:.4f}" for value in values),
+            "N m",
+        )
+        for law, values in RMSE[tissue].items()
+    )

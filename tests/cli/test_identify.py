@@ -1,0 +1,135 @@
+"""`nrs-design identify`, as a user types it."""
+
+import json
+import shutil
+
+import pytest
+
+from tests.support import COMMUTING, ROOT, SOFT_TISSUE, run
+
+DATA = ROOT / "specs" / "data"
+SOFT = sorted(DATA.glob("silicone-soft-*.csv"))
+NOSE = sorted(DATA.glob("nose-*.csv"))
+SINUSOIDS = sorted(DATA.glob("actuator-*hz.csv"))
+
+
+def test_end_to_end(tmp_path):
+    """Shipped records into a copy of the soft-tissue spec; the gate proves the whole interval."""
+    spec = tmp_path / "soft-tissue.nrs.yaml"
+    shutil.copy(SOFT_TISSUE, spec)
+    result = run("identify", "tissue", *SOFT, "--write", spec, "--json", cwd=tmp_path)
+    assert result.returncode == 0, result.stderr
+    document = json.loads(result.stdout)
+    assert document["schema"] == "nrs-design/identify-tissue/1"
+    assert document["synthetic"] is True
+    assert document["chosen"] == "elastic"
+    k = document["ranges"]["k"]
+    # Thesis 6.1: three fits and their mean, 747.14 N/m.
+    assert all(k["low"] < fit < k["high"] for fit in (768.17, 720.56, 752.69))
+    assert k["value"] == pytest.approx(747.14, rel=5e-3)
+    assert "data: synthetic" in spec.read_text()
+    gate = run("gate", spec, "--json", "--no-reports", cwd=tmp_path)
+    assert gate.returncode == 0, gate.stdout + gate.stderr
+    check = run("check", spec, cwd=tmp_path).stdout
+    assert "silicone-soft-1.csv" in check
+    assert "synthetic" in check
+
+
+def test_tissue_table(tmp_path):
+    result = run("identify", "tissue", *SOFT, "--lever-arm", "0.24 m", cwd=tmp_path)
+    assert result.returncode == 0, result.stderr
+    assert result.stdout.startswith("SYNTHETIC data")
+    for law in ("elastic", "kelvin-voigt", "maxwell", "kelvin-boltzmann", "hunt-crossley"):
+        assert law in result.stdout
+    assert "at the pivot: k = 42.9" in result.stdout
+    assert "least BIC" in result.stdout
+
+
+def test_nose_of_the_thesis(tmp_path):
+    """Thesis table 2.4: k1 0.233, k2 0.972, b 23.631; RMSE 0.0216, 0.0165, 0.0062, 0.0111."""
+    document = json.loads(run("identify", "tissue", *NOSE, "--json", cwd=tmp_path).stdout)
+    assert document["chosen"] == "kelvin-boltzmann"
+    model = next(m for m in document["models"] if m["law"] == "kelvin-boltzmann")
+    for name, value in (("k1", 0.233), ("k2", 0.972), ("b", 23.631)):
+        assert model["parameters"][name]["low"] < value < model["parameters"][name]["high"]
+    rmse = [record["rmse"] for record in model["records"]]
+    assert rmse == pytest.approx([0.0216, 0.0165, 0.0062, 0.0111], rel=0.05)
+    assert model["relaxation_time_s"] == pytest.approx(19.6, rel=0.02)
+
+
+def test_actuator(tmp_path):
+    spec = tmp_path / "copy.nrs.yaml"
+    shutil.copy(SOFT_TISSUE, spec)
+    arguments = ("identify", "actuator", *SINUSOIDS, "--json", "--write", spec)
+    result = run(*arguments, cwd=tmp_path)
+    assert result.returncode == 0, result.stderr
+    document = json.loads(result.stdout)
+    fit = document["fits"][-1]
+    for key, value in (
+        ("gain_rad_s_rpm", 4.8417e-4),
+        ("time_constant_s", 0.0351),
+        ("friction_rpm", 276.575),
+    ):
+        assert fit[key]["low"] < value < fit[key]["high"]
+    assert document["resistance_ohm"]["value"] == pytest.approx(3.7454, rel=1e-3)
+    assert "intervals: {gain: [4.84" in spec.read_text()
+    text = run("identify", "actuator", DATA / "actuator-response.csv", cwd=tmp_path).stdout
+    assert text.startswith("SYNTHETIC data")
+    assert "ready frequency response" in text
+
+
+@pytest.mark.parametrize("ending", ["html", "pdf"])
+def test_report(tmp_path, ending):
+    page = tmp_path / f"page.{ending}"
+    result = run("identify", "tissue", *SOFT[:1], "--report", page, "-q", cwd=tmp_path)
+    assert result.returncode == 0, result.stderr
+    assert page.read_bytes()[:4] in (b"<!DO", b"%PDF")
+
+
+def test_foreign_columns(tmp_path):
+    text = SOFT[0].read_text().replace("deflection_m", "x").replace("force_N", "Fz")
+    (tmp_path / "foreign.csv").write_text(text)
+    missing = run("identify", "tissue", "foreign.csv", cwd=tmp_path)
+    assert missing.returncode == 2
+    assert "foreign.csv:2: the columns deflection_m, force_N are missing" in missing.stderr
+    arguments = ("--map", "deflection_m=x", "--map", "force_N=Fz")
+    assert run("identify", "tissue", "foreign.csv", *arguments, cwd=tmp_path).returncode == 0
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (["tissue", "missing.csv"], "missing.csv: cannot be read"),
+        (["tissue", SOFT[0], SOFT[0]], "has the same content"),
+        (["tissue", SOFT[0], NOSE[0]], "linear and rotational records are mixed"),
+        (["tissue", NOSE[0], "--lever-arm", "0.24 m"], "records are rotational"),
+        (["tissue", SOFT[0], "--lever-arm", "24 N"], "is not a length"),
+        (["tissue", SOFT[0], "--lever-arm", "0 m"], "not positive"),
+        (["tissue", SOFT[0], "--map", "Fz"], "is no pair"),
+        (["tissue", SOFT[0], "--report", "page.docx"], "no type of report"),
+        (["tissue", SOFT[0], "--write", COMMUTING], "has no place for identified values"),
+        (["tissue", SINUSOIDS[0]], "are missing"),
+        (["actuator", SINUSOIDS[0]], "at least 3 are needed"),
+        (["actuator", SOFT[0]], "are missing"),
+    ],
+)
+def test_bad_input_is_one_message(tmp_path, arguments, message):
+    result = run("identify", *arguments, cwd=tmp_path)
+    assert result.returncode == 2
+    assert message in result.stderr
+    assert result.stderr.count("\n") == 1
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_failed_merge_leaves_the_spec(tmp_path):
+    spec = tmp_path / "copy.nrs.yaml"
+    shutil.copy(SOFT_TISSUE, spec)
+    result = run("identify", "tissue", NOSE[0], "--write", spec, cwd=tmp_path)
+    assert result.returncode == 2
+    assert "--model elastic" in result.stderr
+    assert spec.read_text() == SOFT_TISSUE.read_text()
+
+
+def test_help_has_examples(tmp_path):
+    for command in ("tissue", "actuator"):
+        assert "Example: nrs-design identify" in run("identify", command, "-h", cwd=tmp_path).stdout

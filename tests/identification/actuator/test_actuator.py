@@ -1,0 +1,135 @@
+"""The motor of thesis 4.1 from synthetic experiments."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from nrs_design.errors import DataError
+from nrs_design.identification import synthetic
+from nrs_design.identification.actuator import identify_actuator
+from nrs_design.identification.actuator.friction import friction_shape
+from nrs_design.identification.actuator.phasors import phasors_of
+from nrs_design.identification.actuator.time_fit import simulate_angle
+from nrs_design.identification.datasets import FrequencyResponse
+from tests.identification.support import MOTOR, sinusoids, source
+
+FEW = (1.2, 2.0, 3.0, 5.0, 8.0, 14.0)
+
+
+@pytest.fixture(scope="module")
+def found():
+    return identify_actuator(sinusoids(3, FEW), MOTOR)
+
+
+def response(scatter=0.0, seed=0):
+    w = 2 * np.pi * np.geomspace(0.1, 30, 15)
+    noise = np.random.default_rng(seed).normal(size=(2, 15))
+    G = 4.8417e-4 / (1 + 1j * w * 0.0351) * np.exp(scatter * (noise[0] + 1j * noise[1]))
+    return FrequencyResponse(source("response"), w, G)
+
+
+def test_parameters_of_the_thesis(found):
+    for fit in found.fits:
+        assert fit.gain.covers(4.8417e-4)
+        assert fit.time_constant.covers(0.0351)
+        assert fit.friction.covers(276.575)
+        assert fit.gain.value == pytest.approx(4.8417e-4, rel=5e-3)
+        assert fit.time_constant.value == pytest.approx(0.0351, rel=5e-3)
+        assert fit.friction.value == pytest.approx(276.575, rel=0.03)
+
+
+def test_derived_with_the_corrected_formulas(found):
+    """R 3.7454 ohm and 2.7044e5 rpm/(N m), where the thesis prints 3.7754 and 2.7261e5."""
+    assert found.figures.resistance.value == pytest.approx(3.7454, rel=2e-3)
+    assert found.figures.gradient.value == pytest.approx(2.7044e5, rel=2e-3)
+    assert not found.figures.resistance.covers(3.7754)
+
+
+def test_friction_is_off_the_response(found):
+    model = found.chosen.response(found.frequency)
+    assert found.response == pytest.approx(model, rel=0.02)
+
+
+def test_the_angles_are_explained(found):
+    fit = found.chosen
+    for record in found.records:
+        angle = simulate_angle(record, fit.gain.value, fit.time_constant.value, fit.friction.value)
+        assert np.std(record.angle - angle) < 4e-4  # noise 3e-4 and rounding 1.1e-4
+
+
+def test_ready_response():
+    fit = identify_actuator([response(0.01, 5)], MOTOR).chosen
+    assert fit.gain.covers(4.8417e-4)
+    assert fit.time_constant.covers(0.0351)
+    assert fit.friction is None
+    exact = identify_actuator([response()], MOTOR).chosen
+    assert exact.gain.value == pytest.approx(4.8417e-4, rel=1e-9)
+    assert exact.time_constant.value == pytest.approx(0.0351, rel=1e-9)
+
+
+def test_phasor_of_a_pure_sinusoid():
+    (record,) = sinusoids(0, (3.0,))
+    w = 2 * np.pi * 3
+    pure = replace(
+        record,
+        command=np.cos(w * record.time),
+        angle=1 + 0.1 * record.time + np.sin(w * record.time),
+    )
+    phasors = phasors_of(pure)
+    assert phasors.frequency == pytest.approx(w, rel=1e-6)
+    assert phasors.velocity == pytest.approx(w, rel=1e-4)
+    # Held for 2 ms, the command acts 1 ms later.
+    assert np.angle(phasors.command) == pytest.approx(-w * 1e-3, rel=1e-4)
+
+
+def test_a_motor_that_cannot_move_sticks():
+    (record,) = sinusoids(0, (3.0,))
+    weak = replace(record, command=100 * np.sin(20 * record.time))
+    shape = friction_shape(weak, 4.8e-4, 0.035, 276.0)
+    assert shape[:-1] == pytest.approx(weak.command[:-1] / 276.0)
+
+
+def test_friction_opposes_fast_motion():
+    (record,) = sinusoids(0, (3.0,))
+    shape = friction_shape(record, 4.8e-4, 0.035, 276.0)
+    assert np.mean(np.abs(shape) > 0.999) > 0.9
+    assert np.abs(shape).max() <= 1
+
+
+def test_few_records_stay_in_the_frequency_domain():
+    found = identify_actuator(sinusoids(1, (2.0, 4.0, 9.0)), MOTOR)
+    assert len(found.fits) == 1
+    assert "fewer than" in found.reason.lower()
+
+
+def test_bad_input():
+    records = sinusoids(0, (2.0, 4.0, 9.0))
+    with pytest.raises(DataError, match="0 sinusoid records"):
+        identify_actuator([], MOTOR)
+    with pytest.raises(DataError, match="3 sinusoid records and 1"):
+        identify_actuator([*records, response()], MOTOR)
+    with pytest.raises(DataError, match="1 different frequencies"):
+        identify_actuator([replace(records[0], group=g) for g in "abc"], MOTOR)
+    with pytest.raises(DataError, match="there twice"):
+        identify_actuator([*records, records[0]], MOTOR)
+    with pytest.raises(DataError, match="not those of a first-order"):
+        identify_actuator([replace(r, angle=-r.angle) for r in records], MOTOR)
+    short = replace(
+        records[0], time=records[0].time[:300], command=records[0].command[:300],
+        angle=records[0].angle[:300],
+    )  # fmt: skip
+    with pytest.raises(DataError, match="periods of its command"):
+        identify_actuator([short, *records[1:]], MOTOR)
+    mixed = replace(records[0], command=records[0].command + records[0].command[::-1] ** 2 / 3000)
+    with pytest.raises(DataError, match="of the command's power"):
+        identify_actuator([mixed, *records[1:]], MOTOR)
+
+
+def test_thesis_constants_of_the_generator():
+    """Thesis 4.1."""
+    assert (synthetic.GAIN, synthetic.TIME_CONSTANT, synthetic.FRICTION) == (
+        4.8417e-4,
+        0.0351,
+        276.575,
+    )

@@ -1,0 +1,136 @@
+"""Records: what makes them unusable."""
+
+import numpy as np
+import pytest
+
+from nrs_design.errors import DataError
+from nrs_design.identification.datasets import (
+    FrequencyResponse,
+    read_actuator,
+    read_tissue,
+)
+
+TIME = np.arange(200) / 100
+DEFLECTION = 0.005 * (1 - np.cos(3 * TIME))
+
+
+def write(tmp_path, header, *columns):
+    path = tmp_path / "record.csv"
+    rows = (",".join(f"{v:.9g}" for v in row) for row in zip(*columns, strict=True))
+    path.write_text(header + "\n" + "\n".join(rows) + "\n")
+    return path
+
+
+def tissue(tmp_path, time=TIME, deflection=DEFLECTION, force=None):
+    force = 750 * deflection if force is None else force
+    return read_tissue(write(tmp_path, "time_s,deflection_m,force_N", time, deflection, force))
+
+
+def fails(tmp_path, message, line, **columns):
+    with pytest.raises(DataError, match=message) as caught:
+        tissue(tmp_path, **columns)
+    assert caught.value.line == line
+
+
+def test_a_record(tmp_path):
+    record = tissue(tmp_path, time=TIME + 7)
+    assert (record.name, record.rotational) == ("record", False)
+    assert record.motion.time[0] == 0
+    assert record.duration == pytest.approx(1.99)
+
+
+def test_angle_in_degrees(tmp_path):
+    path = write(tmp_path, "time_s,angle_deg,torque_mNm", TIME, 10 * DEFLECTION, DEFLECTION)
+    record = read_tissue(path)
+    assert record.rotational
+    assert record.motion.deflection.max() == pytest.approx(np.radians(10 * DEFLECTION.max()))
+    assert record.force.max() == pytest.approx(1e-3 * DEFLECTION.max())
+
+
+def test_time_repeats(tmp_path):
+    fails(tmp_path, "time repeats", 52, time=np.where(np.arange(200) == 50, TIME[49], TIME))
+
+
+def test_time_goes_back(tmp_path):
+    fails(tmp_path, "time goes back", 52, time=np.where(np.arange(200) == 50, 0.1, TIME))
+
+
+def test_gap(tmp_path):
+    fails(tmp_path, "a gap of 0.06 s, where steps are 0.01 s", 102,
+          time=TIME + 0.05 * (np.arange(200) >= 100))  # fmt: skip
+
+
+def test_jitter_is_no_gap(tmp_path):
+    jitter = np.random.default_rng(0).uniform(-0.004, 0.004, 200)
+    assert len(tissue(tmp_path, time=TIME + jitter).force) == 200
+
+
+def test_saturation(tmp_path):
+    force = np.minimum(750 * DEFLECTION, 5.0)
+    first = int(np.argmax(force == 5.0)) + 2
+    fails(tmp_path, "extreme reading 5 ", first, force=force)
+
+
+def test_a_rest_is_no_saturation(tmp_path):
+    held = np.minimum(DEFLECTION, 0.006)
+    assert len(tissue(tmp_path, deflection=held).force) == 200
+
+
+def test_out_of_contact_is_no_saturation(tmp_path):
+    deflection = DEFLECTION - 0.004
+    force = np.maximum(750 * deflection, 0.0)
+    assert len(tissue(tmp_path, deflection=deflection, force=force).force) == 200
+
+
+def test_nothing_happens(tmp_path):
+    fails(tmp_path, "deflection never changes", 2, deflection=0 * TIME, force=TIME)
+    fails(tmp_path, "force never changes", 2, force=0 * TIME)
+
+
+def test_too_short(tmp_path):
+    fails(tmp_path, "has 20 rows", 21, time=TIME[:20], deflection=DEFLECTION[:20])
+    with pytest.raises(DataError, match="has 0 rows"):
+        read_tissue(write(tmp_path, "time_s,deflection_m,force_N"))
+
+
+def test_groups_of_columns(tmp_path):
+    command = 3000 * np.sin(20 * TIME)
+    header = "time_s,command_rpm_1,angle_rad_1,command_rpm_2,angle_deg_2"
+    path = write(tmp_path, header, TIME, command, TIME, command / 2, TIME)
+    one, two = read_actuator(path)
+    assert (one.name, two.name) == ("record/1", "record/2")
+    assert two.command.max() == pytest.approx(one.command.max() / 2)
+    assert two.angle[-1] == pytest.approx(np.radians(one.angle[-1]))
+
+
+def test_tissue_takes_one_group(tmp_path):
+    header = "time_s,deflection_m_1,force_N_1,deflection_m_2,force_N_2"
+    with pytest.raises(DataError, match="2 groups"):
+        read_tissue(write(tmp_path, header, TIME, *[DEFLECTION] * 4))
+
+
+def test_clipped_command(tmp_path):
+    command = np.clip(3000 * np.sin(20 * TIME), -2800, 2800)
+    path = write(tmp_path, "time_s,command_rpm,angle_rad", TIME, command, TIME)
+    with pytest.raises(DataError, match="is saturated, no sinusoid"):
+        read_actuator(path)
+
+
+def test_ready_response(tmp_path):
+    path = write(tmp_path, "frequency_hz,magnitude_db,phase_deg", [1, 2, 4], [-66, -67, -70],
+                 [-10, -20, -40])  # fmt: skip
+    found = read_actuator(path)
+    assert isinstance(found, FrequencyResponse)
+    assert np.abs(found.response[0]) == pytest.approx(10 ** (-66 / 20))
+    assert found.frequency[1] == pytest.approx(4 * np.pi)
+
+
+@pytest.mark.parametrize(
+    ("frequency", "message", "line"), [([1, 2], "too few", 3), ([1, 0, 2], "not positive", 3)]
+)
+def test_bad_response(tmp_path, frequency, message, line):
+    zeros = [0.0] * len(frequency)
+    path = write(tmp_path, "frequency_hz,magnitude_db,phase_deg", frequency, zeros, zeros)
+    with pytest.raises(DataError, match=message) as caught:
+        read_actuator(path)
+    assert caught.value.line == line

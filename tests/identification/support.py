@@ -1,0 +1,60 @@
+"""Records made in memory."""
+
+import hashlib
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+
+from nrs_design.identification import synthetic
+from nrs_design.identification.datasets import SinusoidRecord, Source, TissueRecord
+from nrs_design.models.actuator import MotorConstants
+from nrs_design.models.tissue import AbstractTissueLaw, Motion
+
+# Thesis table 4.1.
+MOTOR = MotorConstants(
+    torque_constant=0.0115, back_emf_constant=0.0115, inertia=14.81e-7, reduction=181
+)
+
+
+def source(name: str) -> Source:
+    return Source(Path(f"{name}.csv"), hashlib.sha256(name.encode()).hexdigest(), True)
+
+
+def record(
+    law: AbstractTissueLaw,
+    motion: Motion,
+    noise: float = 0.0,
+    seed: int = 0,
+    resolution: float = 0.0,
+    *,
+    rotational: bool = False,
+) -> TissueRecord:
+    measured, force = synthetic.tissue_record(law, motion, noise, seed, resolution)
+    return TissueRecord(source(f"record-{seed}"), measured, force, rotational)
+
+
+def slow(seed: int = 0, depth: float = 0.35) -> Motion:
+    """Presses of 20 s over 80 s, in rad."""
+    return synthetic.pressing(80.0, 20.0, depth, 20.0, seed)
+
+
+def quick(seed: int = 0) -> Motion:
+    """Presses of 5 s over 15 s, up to 7 mm."""
+    return synthetic.pressing(15.0, 100.0, 0.007, 5.0, seed)
+
+
+def sinusoids(
+    seed: int, frequencies: Sequence[float] = synthetic.FREQUENCIES
+) -> list[SinusoidRecord]:
+    return [
+        SinusoidRecord(source(f"{hertz:g}"), "", *synthetic.actuator_record(hertz, 100 * seed + i))
+        for i, hertz in enumerate(frequencies)
+    ]
+
+
+def wobble(seed: int, count: int = 60) -> Motion:
+    """Random motion over uneven steps."""
+    generator = np.random.default_rng(seed)
+    time = np.concatenate([[0.0], np.cumsum(generator.uniform(0.01, 0.3, count - 1))])
+    return Motion(time, np.concatenate([[0.0], np.cumsum(generator.normal(size=count - 1))]))

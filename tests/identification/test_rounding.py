@@ -1,0 +1,37 @@
+"""Coarse sensors."""
+
+import numpy as np
+import pytest
+
+from nrs_design.identification.rounding import (
+    resolution,
+    rounding_of_velocity,
+    rounding_scatter,
+)
+
+TIME = np.arange(2000) / 100
+SMOOTH = 0.005 * (1 - np.cos(TIME))
+
+
+def test_step_of_the_encoder():
+    """Thesis 6.1: 4096 counts per turn on a handle of 100 mm."""
+    count = 0.1 * 2 * np.pi / 4096
+    assert resolution(count * np.round(SMOOTH / count)) == pytest.approx(count)
+
+
+def test_a_smooth_signal_has_no_step():
+    assert resolution(SMOOTH + 1e-5 * np.random.default_rng(0).normal(size=2000)) == 0.0
+    assert resolution(np.zeros(100)) == 0.0
+
+
+def test_rounding_dominates_a_slow_velocity():
+    coarse = 1e-4 * np.round(SMOOTH / 1e-4)
+    true = np.mean(np.gradient(SMOOTH, TIME) ** 2)
+    seen = np.mean(np.gradient(coarse, TIME) ** 2)
+    assert rounding_of_velocity(TIME, coarse) == pytest.approx(1 - true / seen, abs=0.1)
+
+
+def test_a_stretch_of_equal_readings_is_one_error():
+    readings = np.array([0.0, 0.0, 0.0, 1.0, 1.0, 2.0])
+    J = np.ones((6, 1))
+    assert rounding_scatter(readings, J, 3.0)[0, 0] == pytest.approx(9 / 12 * (9 + 4 + 1))

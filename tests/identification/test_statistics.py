@@ -1,0 +1,83 @@
+"""Covariance, intervals and whiteness."""
+
+import math
+
+import numpy as np
+import pytest
+
+from nrs_design.identification.statistics import (
+    Estimate,
+    ljung_box,
+    student_quantile,
+    uncertainty,
+)
+
+
+# Student's table.
+@pytest.mark.parametrize(
+    ("degrees", "quantile"), [(1, 12.706), (2, 4.303), (9, 2.262), (10**6, 1.960)]
+)
+def test_quantile(degrees, quantile):
+    assert student_quantile(degrees) == pytest.approx(quantile, abs=5e-4)
+
+
+def test_interval_is_symmetric_in_the_logarithm():
+    estimate = Estimate.from_log(math.log(2.0), math.log(3.0))
+    assert (estimate.value, estimate.low, estimate.high) == pytest.approx((2.0, 2 / 3, 6.0))
+    assert estimate.covers(6)
+    assert not estimate.covers(6.01)
+    assert estimate.scaled(2).high == pytest.approx(12.0)
+
+
+@pytest.mark.parametrize("half", [math.inf, math.nan, 1e4])
+def test_an_unknown_parameter_has_no_bounds(half):
+    estimate = Estimate.from_log(0.0, half)
+    assert (estimate.low, estimate.high) == (0.0, math.inf)
+
+
+def test_classical_covariance_of_white_residuals():
+    rng = np.random.default_rng(1)
+    J = rng.normal(size=(400, 2))
+    e = rng.normal(size=400)
+    known = uncertainty(J, e)
+    expected = (e @ e) / 398 * np.linalg.inv(J.T @ J)
+    assert known.degrees == 398
+    assert known.covariance == pytest.approx(expected, rel=1e-9)
+
+
+def test_colored_residuals_widen_the_interval():
+    rng = np.random.default_rng(2)
+    noise = np.convolve(rng.normal(size=2100), np.ones(100) / 10, "valid")[:2000]
+    J = np.ones((2000, 1))
+    known = uncertainty(J, noise - noise.mean())
+    assert known.whiteness < 1e-6
+    classical = noise.std() / math.sqrt(2000)
+    # The mean of 2000 samples with a memory of 100 scatters as 20 independent ones would.
+    assert 5 < known.errors[0] / classical < 20
+    assert known.degrees == 19
+
+
+def test_a_parameter_without_effect_is_unknown():
+    rng = np.random.default_rng(3)
+    J = np.column_stack([np.ones(200), np.zeros(200)])
+    known = uncertainty(J, rng.normal(size=200))
+    assert known.errors[0] < 0.1
+    assert known.errors[1] > 1e3
+
+
+def test_whiteness_is_uniform_for_white_noise():
+    p = [ljung_box(np.random.default_rng(seed).normal(size=500)) for seed in range(200)]
+    assert 0.4 < np.mean(p) < 0.6
+    assert np.mean(np.array(p) < 0.05) < 0.1
+
+
+def test_whiteness_sees_a_drift():
+    assert ljung_box(np.linspace(-1, 1, 100)) < 1e-6
+    assert ljung_box(np.zeros(100)) == 1.0
+
+
+def test_hidden_scatter_adds():
+    rng = np.random.default_rng(4)
+    J, e = np.ones((100, 1)), rng.normal(size=100)
+    more = uncertainty(J, e, scatter=np.array([[100.0]]))
+    assert more.covariance[0, 0] == pytest.approx(uncertainty(J, e).covariance[0, 0] + 0.01)

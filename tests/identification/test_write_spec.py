@@ -1,0 +1,154 @@
+"""Merging into a spec: values, comments, refusals."""
+
+from fractions import Fraction
+
+import pytest
+
+from nrs_design.errors import DataError, SpecError
+from nrs_design.identification import synthetic
+from nrs_design.identification.actuator import identify_actuator
+from nrs_design.identification.tissue import identify_tissue
+from nrs_design.identification.write_spec import merge_actuator, merge_tissue
+from nrs_design.models.tissue import Elastic, KelvinVoigt
+from nrs_design.spec import parse_spec, read_spec
+from tests.identification.support import MOTOR, quick, record, sinusoids, slow
+from tests.support import COMMUTING, FORCE_LIMIT, ROBOT, SOFT_TISSUE
+
+
+@pytest.fixture(scope="module")
+def silicone():
+    data = [
+        record(Elastic(k), quick(i), noise, i, synthetic.COUNT)
+        for i, (k, noise) in enumerate(synthetic.SOFT)
+    ]
+    return identify_tissue(data)
+
+
+@pytest.fixture(scope="module")
+def voigt():
+    data = [record(KelvinVoigt(43.0, 1.0), slow(i), 0.1, i, rotational=True) for i in range(3)]
+    return identify_tissue(data)
+
+
+@pytest.fixture(scope="module")
+def motor():
+    return identify_actuator(sinusoids(2, (1.2, 2.0, 4.0, 8.0, 14.0)), MOTOR)
+
+
+def merged(tmp_path, text):
+    path = tmp_path / "copy.nrs.yaml"
+    path.write_text(text, newline="")
+    return read_spec(path)
+
+
+def test_only_the_environment_changes(silicone):
+    loaded = read_spec(SOFT_TISSUE)
+    text = merge_tissue(loaded, silicone, None, None)
+    old, new = loaded.text.splitlines(), text.splitlines()
+    assert [line for line in old if line not in new] == [
+        "    stiffness: {nominal: 747.1461 N/m, range: [720.56 N/m, 768.17 N/m]}"
+    ]
+    assert len(new) == len(old) + 4
+
+
+def test_the_range_is_rounded_outwards(silicone):
+    spec = parse_spec(merge_tissue(read_spec(SOFT_TISSUE), silicone, "soft", None))
+    soft = spec.environments["soft"]
+    low, high = soft.stiffness.range
+    (wide,) = silicone.chosen.ranges
+    assert low.exact <= Fraction(wide.low) < Fraction(wide.high) <= high.exact
+    assert low.exact <= soft.stiffness.nominal.exact <= high.exact
+    assert float(low.exact) == pytest.approx(wide.low, rel=2e-5)
+    assert [(source.file, source.data) for source in soft.provenance] == [
+        (f"record-{i}.csv", "synthetic") for i in range(3)
+    ]
+
+
+def test_again_is_the_same(tmp_path, silicone, motor):
+    once = merge_tissue(read_spec(SOFT_TISSUE), silicone, None, None)
+    twice = merge_tissue(merged(tmp_path, once), silicone, None, None)
+    assert twice == once
+    both = merge_actuator(merged(tmp_path, once), motor)
+    assert merge_actuator(merged(tmp_path, both), motor) == both
+
+
+def test_one_of_several_environments(silicone):
+    loaded = read_spec(ROBOT / "tissue-and-tool.nrs.yaml")
+    spec = parse_spec(merge_tissue(loaded, silicone, "stiff", "0.2 m"))
+    assert spec.environments["soft"] == loaded.spec.environments["soft"]
+    assert spec.environments["stiff"].lever_arm.text == "0.2 m"
+    with pytest.raises(SpecError, match="several environments"):
+        merge_tissue(loaded, silicone, None, None)
+    with pytest.raises(SpecError, match="no environment 'hard'"):
+        merge_tissue(loaded, silicone, "hard", None)
+
+
+def test_to_kelvin_voigt_and_back(tmp_path, silicone, voigt):
+    text = merge_tissue(read_spec(SOFT_TISSUE), voigt, None, None)
+    soft = merged(tmp_path, text).spec.environments["soft"]
+    assert soft.model == "kelvin-voigt"
+    assert soft.lever_arm is None
+    assert soft.damping.nominal.unit == "N*m*s/rad"
+    assert "# Thesis 6.3.2.1 asks for a nonzero inertia" in text
+    with pytest.raises(SpecError, match="no lever_arm"):
+        merge_tissue(merged(tmp_path, text), silicone, None, None)
+    back = merge_tissue(merged(tmp_path, text), silicone, None, "0.24 m")
+    soft = merged(tmp_path, back).spec.environments["soft"]
+    assert (soft.model, soft.lever_arm.text) == ("elastic", "0.24 m")
+    assert "# Thesis 6.3.2.1 asks for a nonzero inertia" in back
+
+
+@pytest.mark.parametrize(
+    "stiffness",
+    [
+        "stiffness: 700 N/m   # from a catalogue",
+        "stiffness:   # from a catalogue\n      nominal: 700 N/m\n      range: [600 N/m, 800 N/m]",
+        "stiffness:\n      nominal: 700 N/m   # from a catalogue",
+    ],
+)
+def test_comments_within_the_value_stay(tmp_path, silicone, stiffness):
+    text = SOFT_TISSUE.read_text().replace(
+        "stiffness: {nominal: 747.1461 N/m, range: [720.56 N/m, 768.17 N/m]}", stiffness
+    )
+    new = merge_tissue(merged(tmp_path, text), silicone, None, None)
+    assert "# from a catalogue" in new
+    assert "700 N/m" not in new
+
+
+def test_line_ends_stay(tmp_path, silicone):
+    loaded = merged(tmp_path, SOFT_TISSUE.read_text().replace("\n", "\r\n"))
+    text = merge_tissue(loaded, silicone, None, None)
+    assert text.count("\r\n") == text.count("\n")
+
+
+def test_actuator(motor):
+    loaded = read_spec(FORCE_LIMIT)
+    spec = parse_spec(merge_actuator(loaded, motor))
+    assert spec.actuator.gain.si == pytest.approx(motor.chosen.gain.value, rel=1e-5)
+    low, high = spec.actuator.intervals.time_constant
+    assert low.si <= motor.chosen.time_constant.low
+    assert high.si >= motor.chosen.time_constant.high
+    assert spec.controllers == loaded.spec.controllers
+    assert len(spec.actuator.provenance) == 5
+
+
+def test_laws_without_a_place_in_a_spec():
+    data = [record(synthetic.NOSE, slow(i), 0.01, i) for i in range(2)]
+    with pytest.raises(DataError, match="kelvin-boltzmann, has no place") as caught:
+        merge_tissue(read_spec(SOFT_TISSUE), identify_tissue(data), None, None)
+    assert "--model elastic" in caught.value.remedy
+
+
+def test_unlimited_ranges_are_not_written():
+    found = identify_tissue([record(Elastic(750.0), quick(), 0.1)], "kelvin-voigt")
+    with pytest.raises(DataError, match="is unlimited"):
+        merge_tissue(read_spec(SOFT_TISSUE), found, None, None)
+
+
+def test_given_matrices_have_no_place(silicone, motor):
+    for merge in (
+        lambda s: merge_tissue(s, silicone, None, None),
+        lambda s: merge_actuator(s, motor),
+    ):
+        with pytest.raises(SpecError, match="no place"):
+            merge(read_spec(COMMUTING))

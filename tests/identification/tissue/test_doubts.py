@@ -1,0 +1,58 @@
+"""When a record does not determine a law, that is said."""
+
+import numpy as np
+
+from nrs_design.identification import synthetic
+from nrs_design.identification.tissue import fit_record
+from nrs_design.models.tissue import (
+    Elastic,
+    HuntCrossley,
+    KelvinBoltzmann,
+    KelvinVoigt,
+    Maxwell,
+    Motion,
+)
+from tests.identification.support import quick, record, slow
+
+
+def doubts(kind, law, motion, noise=0.01, resolution=0.0):
+    return "; ".join(fit_record(kind, record(law, motion, noise, 5, resolution)).doubts)
+
+
+def test_short_record():
+    """Thesis table 2.4: the Maxwell nose relaxes in 106 s."""
+    said = doubts(Maxwell, Maxwell(1.129, 120.233), slow(), 0.001)
+    assert "the record (80 s) is shorter than the relaxation time (1" in said
+
+
+def test_elastic_data_do_not_determine_a_damper():
+    said = doubts(KelvinVoigt, Elastic(750.0), quick(), 0.1)
+    assert "b has a relative standard error of" in said
+    said = doubts(KelvinBoltzmann, Elastic(750.0), quick(), 0.1)
+    assert "relative standard error" in said
+
+
+def test_coarse_encoder():
+    said = doubts(KelvinVoigt, KelvinVoigt(750.0, 30.0), quick(), 0.1, synthetic.COUNT)
+    assert "is rounding of the deflection" in said
+
+
+def test_exponent_at_its_bound():
+    assert "phi is at the lower end" in doubts(HuntCrossley, Elastic(0.5), slow())
+
+
+def test_fast_relaxation():
+    said = doubts(KelvinBoltzmann, KelvinBoltzmann(0.3, 0.9, 0.0012), slow(), 1e-3)
+    assert "below the step of the record" in said or "relative standard error" in said
+
+
+def test_loaded_start():
+    motion = slow()
+    loaded = Motion(motion.time, motion.deflection + 0.2)
+    said = doubts(KelvinBoltzmann, synthetic.CONCHA, loaded)
+    assert "begins at" in said
+
+
+def test_a_sound_fit_has_none():
+    assert doubts(KelvinBoltzmann, synthetic.CONCHA, slow()) == ""
+    assert np.isclose(slow().deflection[0], 0.0)

@@ -1,0 +1,53 @@
+"""The choice among the laws."""
+
+from dataclasses import replace
+
+import pytest
+
+from nrs_design.errors import DataError
+from nrs_design.identification import synthetic
+from nrs_design.identification.tissue import identify_tissue
+from nrs_design.models.tissue import LAWS, Elastic, HuntCrossley, KelvinVoigt, Maxwell
+from tests.identification.support import quick, record, slow
+
+TRUTHS = [
+    (Elastic(750.0), quick, 0.1, synthetic.COUNT),
+    (KelvinVoigt(0.574, 0.957), slow, 0.01, 0.0),
+    (Maxwell(1.129, 20.0), slow, 0.01, 0.0),
+    (synthetic.NOSE, slow, 0.0111, 1e-4),
+    (HuntCrossley(0.28, 15.328, 1.2), slow, 0.0096, 0.0),
+]
+
+
+@pytest.mark.parametrize(("law", "motion", "noise", "q"), TRUTHS)
+def test_the_true_law_is_chosen(law, motion, noise, q):
+    found = identify_tissue([record(law, motion(s), noise, s, q) for s in range(3)])
+    assert found.chosen.law.name == law.name
+    assert "least BIC" in found.reason
+    assert [model.law.name for model in found.models] == list(LAWS)
+    assert found.synthetic
+
+
+def test_a_law_can_be_asked_for():
+    steps = []
+    data = [record(synthetic.NOSE, slow(), 0.01)]
+    found = identify_tissue(data, "elastic", steps.append)
+    assert found.chosen.law.name == "elastic"
+    assert "prefers kelvin-boltzmann" in found.reason
+    assert steps == list(LAWS)
+
+
+def test_a_doubtful_law_is_not_chosen():
+    found = identify_tissue([record(Maxwell(1.129, 120.233), slow(), 0.002)])
+    assert found.chosen.law.name != "maxwell"
+    assert "would have less, but with doubts" in found.reason
+
+
+def test_bad_input():
+    data = record(synthetic.NOSE, slow(), 0.01)
+    with pytest.raises(DataError, match="no records"):
+        identify_tissue([])
+    with pytest.raises(DataError, match="mixed"):
+        identify_tissue([data, replace(data, rotational=True)])
+    with pytest.raises(DataError, match="same content"):
+        identify_tissue([data, data])

@@ -1,0 +1,70 @@
+"""One law, one record: the thesis's parameters come back."""
+
+import numpy as np
+import pytest
+
+from nrs_design.identification import synthetic
+from nrs_design.identification.tissue import fit_record, output_error
+from nrs_design.identification.tissue.output_error import rmse
+from nrs_design.models.tissue import LAWS, Elastic, HuntCrossley, KelvinVoigt, Maxwell
+from tests.identification.support import quick, record, slow
+
+# Thesis 6.1, and tables 2.4 and 2.5 (a Maxwell law that relaxes within the record).
+KNOWN = [
+    (Elastic(768.17), quick(1), 0.0969, synthetic.COUNT),
+    (Elastic(1079.6), quick(2), 0.1519, synthetic.COUNT),
+    (KelvinVoigt(0.574, 0.957), slow(3), 0.0114, 0.0),
+    (Maxwell(1.129, 20.0), slow(4), 0.0135, 0.0),
+    (synthetic.NOSE, slow(5), 0.0062, 1e-4),
+    (synthetic.CONCHA, slow(6), 0.0055, 1e-4),
+    (HuntCrossley(0.28, 15.328, 1.2), slow(7), 0.0096, 0.0),
+]
+
+
+@pytest.mark.parametrize(("law", "motion", "noise", "resolution"), KNOWN)
+def test_parameters_of_the_thesis_are_in_their_intervals(law, motion, noise, resolution):
+    fit = fit_record(type(law), record(law, motion, noise, 11, resolution))
+    assert all(e.covers(v) for e, v in zip(fit.estimates, law.values, strict=True))
+    assert fit.law.values == pytest.approx(law.values, rel=0.12)
+    # Rounding of the deflection adds to the noise: at most k q / sqrt(12).
+    assert noise * 0.9 < fit.rmse < 1.15 * noise + resolution * law.values[0] / 3
+    assert fit.doubts == ()
+
+
+@pytest.mark.parametrize("law", [case[0] for case in KNOWN[1:]])
+def test_exact_without_noise(law):
+    motion = slow(1) if law.values[0] < 100 else quick(1)
+    fit = fit_record(type(law), record(law, motion))
+    assert fit.law.values == pytest.approx(law.values, rel=1e-5)
+
+
+@pytest.mark.parametrize("kind", list(LAWS.values()))
+def test_no_better_parameters_nearby(kind):
+    data = record(synthetic.NOSE, slow(2), 0.01, 2)
+    fit = fit_record(kind, data)
+    for seed in range(20):
+        shift = 1 + 0.01 * np.random.default_rng(seed).normal(size=len(fit.law.values))
+        if kind is HuntCrossley:
+            shift[-1] = 1.0  # the exponent is at its bound
+        other = kind(*(np.array(fit.law.values) * shift))
+        assert rmse(other, data) >= fit.rmse * (1 - 1e-7)
+
+
+def test_criteria():
+    fit = fit_record(KelvinVoigt, record(KelvinVoigt(0.5, 1.0), slow(), 0.01))
+    n = len(fit.record.force)
+    assert fit.aic == pytest.approx(n * np.log(fit.rmse**2) + 6)
+    assert fit.bic == pytest.approx(n * np.log(fit.rmse**2) + 3 * np.log(n))
+
+
+def test_long_records_are_searched_thinned_and_fitted_whole(monkeypatch):
+    data = record(synthetic.NOSE, slow(3), 0.01, 3)
+    whole = fit_record(type(synthetic.NOSE), data)
+    monkeypatch.setattr(output_error, "_COARSE", 300)
+    thin = fit_record(type(synthetic.NOSE), data)
+    assert thin.law.values == pytest.approx(whole.law.values, rel=1e-6)
+
+
+def test_several_starts_agree():
+    fit = fit_record(type(synthetic.CONCHA), record(synthetic.CONCHA, slow(), 0.01))
+    assert fit.starts == fit.agreeing == 3

@@ -1,0 +1,58 @@
+"""Where identified values come from."""
+
+import pytest
+
+from nrs_design.errors import SpecError
+from nrs_design.spec import parse_spec
+from nrs_design.spec.describe import describe
+
+from .samples import IMPEDANCE, spoiled
+
+HASH = "0123456789abcdef" * 4
+ARM = "    lever_arm: 0.24 m\n"
+ENTRY = f"    provenance: [{{file: a.csv, sha256: {HASH}, data: synthetic}}]\n"
+GAIN = "gain: 4.8417e-4 rad/s/rpm"
+INTERVALS = (
+    "intervals: {gain: [4.8e-4 rad/s/rpm, 4.9e-4 rad/s/rpm], time_constant: [35 ms, 0.036 s]}"
+)
+
+
+def test_an_environment_says_where_it_comes_from():
+    spec = parse_spec(spoiled(IMPEDANCE, ARM, ARM + ENTRY))
+    (source,) = spec.environments["soft"].provenance
+    assert (source.file, source.sha256, source.data) == ("a.csv", HASH, "synthetic")
+    assert ("environments.soft.provenance[0]", "a.csv", "synthetic", "") in describe(spec)
+
+
+def test_without_it_nothing_is_said():
+    spec = parse_spec(IMPEDANCE)
+    assert spec.environments["soft"].provenance == ()
+    assert spec.actuator.intervals is None
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        (HASH, HASH[:-1], "is no SHA-256"),
+        (HASH, HASH.upper(), "is no SHA-256"),
+        ("synthetic", "guessed", "data"),
+        ("file: a.csv, ", "", "file"),
+    ],
+)
+def test_wrong_provenance(old, new, message):
+    with pytest.raises(SpecError, match=message) as caught:
+        parse_spec(spoiled(IMPEDANCE, ARM, ARM + ENTRY.replace(old, new)))
+    assert caught.value.line is not None
+
+
+def test_intervals_of_the_actuator():
+    spec = parse_spec(spoiled(IMPEDANCE, GAIN, f"{GAIN}\n  {INTERVALS}"))
+    assert spec.actuator.intervals.time_constant[0].si == pytest.approx(0.035)
+    names = [row.name for row in describe(spec)]
+    assert "actuator.intervals.gain" in names
+
+
+def test_an_interval_must_hold_the_value():
+    wrong = INTERVALS.replace("4.8e-4", "4.85e-4")
+    with pytest.raises(SpecError, match=r"does not hold '4\.8417e-4 rad/s/rpm'"):
+        parse_spec(spoiled(IMPEDANCE, GAIN, f"{GAIN}\n  {wrong}"))

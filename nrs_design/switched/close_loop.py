@@ -213,8 +213,8 @@ def _assumptions(
         "The motion loop is the transfer function G(s) that the spec states, whatever the motion "
         "gains listed here."
         if given
-        else "The motion loop is the linear actuator model of the spec, at its nominal values, under "
-        "the motion gains listed here."
+        else "The motion loop is the linear actuator model of the spec, at its nominal values, "
+        "under the motion gains listed here."
     )
     impedance = any(isinstance(c.law, Admittance) for c in design.controllers)
     contacts = [

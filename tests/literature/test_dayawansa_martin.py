@@ -62,3 +62,10 @@ def test_refuted_beyond_the_limit(a):
 def test_never_refuted_below_the_limit(a):
     """The signal with the largest growth is found by search, and must not grow too early."""
     assert certify(pair(a), Method.PERIOD).verdict == "inconclusive"
+
+
+@pytest.mark.slow
+def test_close_to_the_limit_is_proved_by_a_high_degree():
+    # The limit is 11.2608; a unit of time that follows the lifted entries loses this proof.
+    found = certify(pair("56/5"), Method.POLYNOMIAL, Limits(max_degree=48))
+    assert found.verdict == "proved"

@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from nrs_design.certificates.evidence import CommonPolynomial
 from nrs_design.certificates.lift import derivative_lift, monomials, power_lift
+from nrs_design.certificates.search.balance import scale
 from nrs_design.certificates.search.lmi import decreases, time_unit
 from nrs_design.certificates.search.rounding import round_rate
 from nrs_design.certificates.search.sdp import maximize_margin, pack, symmetric_basis
@@ -88,7 +89,9 @@ def lift_family(system: SwitchedSystem, exponents: Exponents, degree: int) -> Li
     pairs = [group for group in products(system.order, degree) if len(group) > 1]
     vanishing = [_difference(group[0], other, scaling) for group in pairs for other in group[1:]]
     K = len(basis)
-    unit = time_unit(matrices, system.time)
+    # The unit of the modes themselves: lifted entries, and margins with them, grow with degree.
+    given = np.array([mode.A.floats() for mode in system.modes])
+    unit = time_unit(scale(given, exponents), system.time)
     forms = np.array(vanishing).reshape(-1, K, K)
     return Lift(degree, np.ldexp(matrices, unit), forms, scaling, unit)
 

@@ -65,9 +65,8 @@ def test_options_that_are_advised_exist():
         for item in (*RULES.values(), *WORDS.values())
         for option in re.findall("--[a-z-]+", f"{item.explanation} {item.remedy}")
     }
-    help_ = (
-        run("certify-switching", "--help", cwd=ROOT).stdout + run("gate", "--help", cwd=ROOT).stdout
-    )
+    commands = (["certify-switching"], ["gate"], ["identify", "tissue"])
+    help_ = "".join(run(*command, "--help", cwd=ROOT).stdout for command in commands)
     assert advised - {"--help"} <= set(re.findall("--[a-z-]+", help_))
 
 

@@ -11,9 +11,9 @@ from nrs_design import __version__
 from nrs_design.certificates.certificate import Certificate
 from nrs_design.controllers.controller_design import ControllerDesign
 from nrs_design.controllers.gains import gains_of
-from nrs_design.errors import NrsDesignError
+from nrs_design.errors import DesignError, NrsDesignError
 from nrs_design.models.plant import build_plant
-from nrs_design.spec import InteractionDesignSpec, LoadedSpec
+from nrs_design.spec import InteractionDesignSpec, LoadedSpec, RobotSpec
 from nrs_design.switched.assemble import assemble
 
 if TYPE_CHECKING:
@@ -68,8 +68,14 @@ def run_design(loaded: LoadedSpec) -> ControllerDesign | None:
     Raises
     ------
     DesignError
-        If a requirement cannot be met within its bounds.
+        If a requirement cannot be met within its bounds, or the spec describes a robot only.
     """
+    if isinstance(loaded.spec, RobotSpec):
+        raise DesignError(
+            "a robot spec has no controllers that are switched, so there is nothing to certify",
+            path=loaded.path,
+            remedy="use `nrs-design robot check SPEC`, or a spec of kind interaction-design",
+        )
     if not isinstance(loaded.spec, InteractionDesignSpec):
         return None
     from nrs_design.design.design import design_controllers

@@ -83,6 +83,13 @@ OUTPUT = Rule(
     "Results are written whole or not at all, and never through a symbolic link.",
     "Choose another place with --out or --reports, or make the folder writable.",
 )
+POSE = Rule(
+    "NRS006",
+    "The robot can take the pose",
+    "Every leg reaches its coupler's end with its crank and coupler only between folded and "
+    "stretched. The message names the leg and by how much it is overstretched or folded too far.",
+    "Choose a pose inside the workspace; `nrs-design robot kinematics SPEC` maps it.",
+)
 MODE_STABLE = Rule(
     "NRS101",
     "Every mode is stable",
@@ -145,6 +152,7 @@ RULES: Mapping[str, Rule] = MappingProxyType(
             ASSEMBLY,
             CERTIFICATE,
             OUTPUT,
+            POSE,
             MODE_STABLE,
             SWITCHING_STABLE,
             STIFFNESS_RANGE,

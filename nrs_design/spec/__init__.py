@@ -14,20 +14,34 @@ from nrs_design.spec.load import LoadedSpec, Spec, load_spec, parse_spec, read_s
 from nrs_design.spec.motion import ActuatorSpec, LimitsSpec, MotionLoopSpec, TransferFunctionSpec
 from nrs_design.spec.quantity import Quantity
 from nrs_design.spec.quantity_fields import Bounds, RangedQuantity
+from nrs_design.spec.robot import (
+    BalancedLegSpec,
+    BalanceSpec,
+    BodySpec,
+    DriveSpec,
+    LegSpec,
+    RobotControlSpec,
+    RobotSpec,
+)
 from nrs_design.spec.switched_system import ModeSpec, SwitchedSystemSpec
 
 __all__ = [
     "ActuatorSpec",
+    "BalanceSpec",
+    "BalancedLegSpec",
+    "BodySpec",
     "Bounds",
     "ControllerSpec",
     "CostWeights",
     "DesignSpec",
+    "DriveSpec",
     "ElasticSpec",
     "EnvironmentSpec",
     "ForceControllerSpec",
     "ImpedanceControllerSpec",
     "InteractionDesignSpec",
     "KelvinVoigtSpec",
+    "LegSpec",
     "LimitsSpec",
     "LoadedSpec",
     "ModeSpec",
@@ -35,6 +49,8 @@ __all__ = [
     "PositionControllerSpec",
     "Quantity",
     "RangedQuantity",
+    "RobotControlSpec",
+    "RobotSpec",
     "Spec",
     "SwitchedSystemSpec",
     "TransferFunctionSpec",

@@ -11,10 +11,13 @@ from nrs_design.spec.controllers import ControllerSpec, ImpedanceControllerSpec
 from nrs_design.spec.environment import EnvironmentSpec, KelvinVoigtSpec
 from nrs_design.spec.interaction import InteractionDesignSpec
 from nrs_design.spec.load import Spec
+from nrs_design.spec.model import SpecModel
 from nrs_design.spec.motion import LimitsSpec
 from nrs_design.spec.quantity import Quantity, QuantityKind
 from nrs_design.spec.quantity_fields import Bounds, RangedQuantity
+from nrs_design.spec.robot import RobotSpec
 from nrs_design.spec.switched_system import SwitchedSystemSpec
+from nrs_design.spec.units import BASE_UNITS
 
 
 class Row(NamedTuple):
@@ -31,7 +34,7 @@ def describe(spec: Spec) -> tuple[Row, ...]:
 
     Parameters
     ----------
-    spec : InteractionDesignSpec or SwitchedSystemSpec
+    spec : InteractionDesignSpec, SwitchedSystemSpec or RobotSpec
         A validated spec.
 
     Returns
@@ -41,6 +44,8 @@ def describe(spec: Spec) -> tuple[Row, ...]:
     """
     if isinstance(spec, SwitchedSystemSpec):
         return tuple(_modes(spec))
+    if isinstance(spec, RobotSpec):
+        return tuple(describe_model(spec))
     return tuple(_interaction(spec))
 
 
@@ -149,6 +154,35 @@ def _number(name: str, number: Fraction) -> Row:
 def _coefficients(name: str, numbers: tuple[Fraction, ...]) -> Row:
     value = ", ".join(_text(float(number)) for number in numbers)
     return Row(name, f"[{', '.join(map(_decimal, numbers))}]", f"[{value}]", "")
+
+
+def describe_model(value: object, name: str = "") -> Iterator[Row]:
+    """List every value of a model whose quantities need no conversion but that to SI."""
+    if isinstance(value, SpecModel):
+        for field in type(value).model_fields:
+            if name or field not in ("kind", "name", "title"):
+                yield from describe_model(getattr(value, field), f"{name}.{field}".lstrip("."))
+    elif isinstance(value, tuple):
+        for index, item in enumerate(value):
+            yield from describe_model(item, f"{name}[{index}]")
+    elif isinstance(value, Quantity):
+        yield Row(name, value.text, _text(value.si), si_unit(value.dimension))
+    elif isinstance(value, Fraction):
+        yield _number(name, value)
+    elif value is not None:
+        yield Row(name, str(value), "", "")
+
+
+def si_unit(dimension: tuple[int, ...]) -> str:
+    """Write a dimension as a product of SI units."""
+    powers = dict(zip(BASE_UNITS, dimension, strict=True))
+    above = "*".join(_power(unit, power) for unit, power in powers.items() if power > 0)
+    below = "".join(f"/{_power(unit, -power)}" for unit, power in powers.items() if power < 0)
+    return (above or "1") + below
+
+
+def _power(unit: str, power: int) -> str:
+    return unit if power == 1 else f"{unit}^{power}"
 
 
 def _decimal(number: Fraction) -> str:

@@ -11,7 +11,7 @@ from nrs_design.errors import AssemblyError
 from nrs_design.models.actuator import Actuator
 from nrs_design.models.motion_loop import MotionLoop, close_motion_loop
 from nrs_design.models.plant import build_plant
-from nrs_design.spec import InteractionDesignSpec, Spec, SwitchedSystemSpec
+from nrs_design.spec import InteractionDesignSpec, RobotSpec, Spec, SwitchedSystemSpec
 from nrs_design.switched.close_loop import close_loop
 from nrs_design.switched.matrix import RationalMatrix
 from nrs_design.switched.system import Mode, SwitchedSystem, Time
@@ -45,6 +45,8 @@ def assemble(
         if gains or coordinates is not None:
             raise AssemblyError("given matrices have neither gains nor coordinates")
         return from_matrices(spec)
+    if isinstance(spec, RobotSpec):
+        raise AssemblyError("a robot spec has no modes")
     return from_design(spec, design_from_gains(spec, gains), coordinates)
 
 

@@ -8,7 +8,7 @@ from nrs_design import __version__
 from nrs_design.certificates.certificate import CommonQuadratic, claim, rate_text
 from nrs_design.reporting.document import Block, Bullets, Paragraph, Section
 from nrs_design.reporting.formatting import plural
-from nrs_design.spec import InteractionDesignSpec
+from nrs_design.spec import InteractionDesignSpec, RobotSpec
 from nrs_design.switched.system import SwitchedSystem, Time
 
 if TYPE_CHECKING:
@@ -50,10 +50,12 @@ def facts(result: Result) -> tuple[tuple[str, str], ...]:
     """Return hashes, versions and rates for the head of the report."""
     certification = result.certification
     system = certification.system
+    spec = result.loaded.spec
+    assert not isinstance(spec, RobotSpec)
     count = f"{plural(len(system.modes), 'mode')} of {plural(system.order, 'state')}"
     rows = [
         ("Spec", result.loaded.spec.name),
-        ("Switching", f"{result.loaded.spec.switching}, among {count}, {system.time} time"),
+        ("Switching", f"{spec.switching}, among {count}, {system.time} time"),
         ("Common quadratic function", str(certification.common_quadratic)),
         ("Settled by", certification.method if certification.evidence else "nothing"),
         *_rate(certification),

@@ -208,7 +208,7 @@ class DriveSpec(SpecModel):
     gearhead_ratio: Positive = Field(description="motor turns per turn of the gearhead, no unit")
     capstan_ratio: Positive = Field(description="gearhead turns per turn of the joint, no unit")
     speed_torque_gradient: TorqueGradient = Field(
-        description="command that makes up for a torque at the motor shaft, in rpm/(N*m) (thesis 4.10)"
+        description="command per torque at the motor shaft, in rpm/(N*m) (thesis 4.10)"
     )
     coulomb_friction: Command = Field(description="dry friction as a command (thesis 4.1)")
     encoder_counts: Counts = Field(

@@ -7,20 +7,28 @@ W and the depth d of the endoscope, and from there to the joints. No step solves
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from dataclasses import replace
+
 import numpy as np
 from numpy.typing import ArrayLike
 
 from nrs_design.models.robot.body import Body
 from nrs_design.models.robot.geometry import LegPosture, Posture, posture
-from nrs_design.models.robot.link import FIXED, Direction, Plane, PlanePoint, link_forces
+from nrs_design.models.robot.link import (
+    FIXED,
+    Direction,
+    Plane,
+    PlanePoint,
+    first_moment,
+    link_forces,
+)
 from nrs_design.models.robot.motion import LegMotion, Motion, joint_driven
 from nrs_design.models.robot.robot import Robot
 from nrs_design.models.robot.vectors import Array, Scalar, Vector, add, dot, scale, stacked
 
 # Poses that are treated at once: their arrays stay in the processor's cache.
 BATCH = 4096
-_UNITS = np.eye(3)
-_WEIGHTLESS: Vector = (0.0, 0.0, 0.0)
 
 
 def inverse_dynamics(
@@ -56,7 +64,7 @@ def inverse_dynamics(
         part = slice(start, start + BATCH)
         closed = posture(robot, x[part])
         motion = joint_driven(closed, v[part], a[part])
-        torques[part] = _torque(closed, motion, robot.gravity_vector)
+        torques[part] = _torque(closed, motion, robot)
     return torques.reshape(shape)
 
 
@@ -73,11 +81,10 @@ def mass_matrix(robot: Robot, pose: ArrayLike) -> Array:
     PoseError
         If a leg cannot reach one of the poses.
     """
-    closed = posture(robot, pose)
-    columns = [
-        _torque(closed, joint_driven(closed, np.zeros(3), unit), _WEIGHTLESS) for unit in _UNITS
-    ]
-    return np.stack(columns, axis=-1)
+    closed, weightless = posture(robot, pose), replace(robot, gravity=0.0)
+    return _per_unit(
+        lambda unit: _torque(closed, joint_driven(closed, np.zeros(3), unit), weightless), closed
+    )
 
 
 def coriolis_matrix(robot: Robot, pose: ArrayLike, velocity: ArrayLike) -> Array:
@@ -105,25 +112,99 @@ def coriolis_matrix(robot: Robot, pose: ArrayLike, velocity: ArrayLike) -> Array
     PoseError
         If a leg cannot reach one of the poses.
     """
-    closed = posture(robot, pose)
+    closed, weightless = posture(robot, pose), replace(robot, gravity=0.0)
     v = np.asarray(velocity, dtype=np.float64)
 
     def quadratic(rates: Array) -> Array:
-        return _torque(closed, joint_driven(closed, rates, np.zeros(3)), _WEIGHTLESS)
+        return _torque(closed, joint_driven(closed, rates, np.zeros(3)), weightless)
 
-    columns = [(quadratic(v + unit) - quadratic(v - unit)) / 4 for unit in _UNITS]
-    return np.stack(columns, axis=-1)
+    return _per_unit(lambda unit: (quadratic(v + unit) - quadratic(v - unit)) / 4, closed)
 
 
-def _torque(closed: Posture, motion: Motion, gravity: Vector) -> Array:
+def mass_and_bias(robot: Robot, pose: ArrayLike, velocity: ArrayLike) -> tuple[Array, Array]:
+    """Return M and ``C q' + G`` in one pass, for simulations.
+
+    Parameters
+    ----------
+    robot : Robot
+        The robot.
+    pose : array_like
+        (phi, psi, d), shape (..., 3), in rad and m.
+    velocity : array_like
+        Of the joints, of the same shape, in rad/s.
+
+    Returns
+    -------
+    tuple of ndarray
+        M of shape (..., 3, 3) in kg m^2, and the torques of shape (..., 3) in N m.
+
+    Raises
+    ------
+    PoseError
+        If a leg cannot reach one of the poses.
+    """
+    closed, weightless = posture(robot, pose), replace(robot, gravity=0.0)
+    bias = _torque(closed, joint_driven(closed, velocity, np.zeros(3)), robot)
+    M = _per_unit(
+        lambda unit: _torque(closed, joint_driven(closed, np.zeros(3), unit), weightless), closed
+    )
+    return M, bias
+
+
+def potential_energy(robot: Robot, pose: ArrayLike) -> Array:
+    """Return the energy in the field of gravity, zero for all mass in the pivot.
+
+    Parameters
+    ----------
+    robot : Robot
+        The robot.
+    pose : array_like
+        (phi, psi, d), shape (..., 3), in rad and m.
+
+    Returns
+    -------
+    ndarray
+        Shape (...), in J. Its gradient with respect to the joints is G.
+
+    Raises
+    ------
+    PoseError
+        If a leg cannot reach one of the poses.
+    """
+    closed = posture(robot, pose)
+    energy: Scalar = 0.0
+    for leg, loads in zip(closed.legs, robot.loads, strict=True):
+        elbow = (leg.leg.l0 + leg.leg.l1 * leg.cos_beta, leg.leg.l1 * leg.sin_beta)
+        links = (
+            (loads[0], (leg.leg.l0, 0.0), (leg.cos_beta, leg.sin_beta)),
+            (loads[1], elbow, (leg.cos_kappa, leg.sin_kappa)),
+            (loads[2], leg.end, (-leg.sin_gamma, leg.cos_gamma)),
+        )
+        fall = _gravity_in_plane(robot, closed, leg)
+        energy = energy - sum(dot(fall, first_moment(*link)) for link in links)
+    return np.asarray(energy, dtype=np.float64)
+
+
+def _per_unit(torque: Callable[[Array], Array], closed: Posture) -> Array:
+    """Make a matrix of the torques of unit vectors, all in one pass over a leading axis."""
+    units = np.eye(3).reshape(3, *(1 for _ in np.shape(closed.d)), 3)
+    return np.moveaxis(torque(units), 0, -1)
+
+
+def _gravity_in_plane(robot: Robot, closed: Posture, leg: LegPosture) -> Vector:
+    """Gravity in the frame a, b, k of a leg's plane."""
+    gravity = robot.gravity_vector
+    along = dot(gravity, leg.leg.axis)
+    across = (dot(gravity, closed.W) - leg.cos_gamma * along) / leg.sin_gamma
+    return along, across, dot(gravity, leg.normal)
+
+
+def _torque(closed: Posture, motion: Motion, robot: Robot) -> Array:
     """Collect what every leg takes, and hand it on to the joints."""
     on_W: Vector = (0.0, 0.0, 0.0)
     on_d: Scalar = 0.0
-    weight = dot(gravity, closed.W)
-    for leg, rates, loads in zip(closed.legs, motion.legs, closed.robot.loads, strict=True):
-        along = dot(gravity, leg.leg.axis)
-        across = (weight - leg.cos_gamma * along) / leg.sin_gamma
-        fall = (along, across, dot(gravity, leg.normal))
+    for leg, rates, loads in zip(closed.legs, motion.legs, robot.loads, strict=True):
+        fall = _gravity_in_plane(robot, closed, leg)
         on_alpha, on_gamma, on_depth = _leg_forces(motion, leg, rates, loads, fall)
         pull = add(scale(on_alpha, leg.normal), scale(-on_gamma, leg.leg.axis))
         on_W = add(on_W, scale(1.0 / leg.sin_gamma, pull))

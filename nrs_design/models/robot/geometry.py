@@ -64,8 +64,6 @@ class Posture:
 
     Parameters
     ----------
-    robot : Robot
-        The robot.
     W : tuple of array
         Direction of the endoscope in the base frame (thesis 3.3).
     d : array
@@ -76,7 +74,6 @@ class Posture:
         Velocity of W per unit of ``sin(gamma) alpha'`` of the left and the right leg.
     """
 
-    robot: Robot
     W: Vector
     d: Scalar
     legs: tuple[LegPosture, LegPosture, LegPosture]
@@ -137,7 +134,7 @@ def posture(robot: Robot, pose: ArrayLike) -> Posture:
     inverse = 1.0 / dot(W, cross(left.normal, right.normal))
     u1 = scale(inverse, cross(right.normal, W))
     u2 = scale(inverse, cross(W, left.normal))
-    return Posture(robot, W, d, (left, right, middle), u1, u2)
+    return Posture(W, d, (left, right, middle), u1, u2)
 
 
 def _leg_posture(leg: Leg, W: Vector, d: Scalar) -> LegPosture:

@@ -101,3 +101,14 @@ def link_forces(body: Body, link: Direction, origin: PlanePoint, plane: Plane) -
         u=m * push_u - w_2 * hv - square * hu,
         v=m * push_v + w_2 * hu - square * hv - a_2 * hz - turn * lever,
     )
+
+
+def first_moment(
+    body: Body, origin: tuple[Scalar, Scalar], direction: tuple[Scalar, Scalar]
+) -> Vector:
+    """Return ``integral (u, v, z) dm`` of a link in the frame of its plane, in kg m."""
+    hx, hy, hz = body.first
+    cos, sin = direction
+    u = body.mass * origin[0] + hx * cos - hy * sin
+    v = body.mass * origin[1] + hx * sin + hy * cos
+    return u, v, hz

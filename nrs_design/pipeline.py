@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from nrs_design import __version__
@@ -13,12 +14,13 @@ from nrs_design.controllers.controller_design import ControllerDesign
 from nrs_design.controllers.gains import gains_of
 from nrs_design.errors import DesignError, NrsDesignError
 from nrs_design.models.plant import build_plant
-from nrs_design.spec import InteractionDesignSpec, LoadedSpec, RobotSpec
+from nrs_design.spec import InteractionDesignSpec, LoadedSpec, RobotSpec, read_spec
 from nrs_design.switched.assemble import assemble
 
 if TYPE_CHECKING:
     from nrs_design.certificates.certify import Certification, Method
     from nrs_design.design.evidence import DesignEvidence
+    from nrs_design.models.robot import Robot
 
 Progress = Callable[[str], None]
 
@@ -60,6 +62,28 @@ def _placed(loaded: LoadedSpec) -> Iterator[None]:
     except NrsDesignError as error:
         error.path = error.path or loaded.path
         raise
+
+
+def run_robot(path: Path) -> tuple[LoadedSpec, RobotSpec, Robot]:
+    """Read a robot spec and build the robot.
+
+    Raises
+    ------
+    SpecError
+        If the file is wrong.
+    DesignError
+        If it describes something else than a robot.
+    """
+    from nrs_design.models.robot import build_robot
+
+    loaded = read_spec(path)
+    if not isinstance(loaded.spec, RobotSpec):
+        raise DesignError(
+            f"a {loaded.spec.kind} spec describes no robot",
+            path=path,
+            remedy="name a spec of kind robot; `nrs-design init robot` writes one",
+        )
+    return loaded, loaded.spec, build_robot(loaded.spec)
 
 
 def run_design(loaded: LoadedSpec) -> ControllerDesign | None:

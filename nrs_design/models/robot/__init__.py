@@ -4,6 +4,7 @@ from nrs_design.models.robot.balance import (
     Balance,
     balanced_robot,
     design_balance,
+    examine_balance,
     residual_torque,
     spring_torque,
 )
@@ -45,8 +46,10 @@ from nrs_design.models.robot.simplified import (
 )
 from nrs_design.models.robot.workspace import (
     JointPeaks,
+    WorkspaceSurvey,
     joint_peaks,
     pose_grid,
+    survey_workspace,
     thesis_grid,
     workspace_grid,
 )
@@ -65,12 +68,14 @@ __all__ = [
     "TiltTable",
     "TorqueShares",
     "Workspace",
+    "WorkspaceSurvey",
     "balanced_robot",
     "build_robot",
     "coriolis_matrix",
     "correction_coefficients",
     "design_balance",
     "direct_kinematics",
+    "examine_balance",
     "gravity_torque",
     "inverse_dynamics",
     "inverse_jacobian",
@@ -93,6 +98,7 @@ __all__ = [
     "simplified_torque",
     "singularity_margins",
     "spring_torque",
+    "survey_workspace",
     "thesis_grid",
     "thesis_tilts",
     "tilt_table",

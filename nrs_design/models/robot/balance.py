@@ -18,10 +18,11 @@ from numpy.typing import ArrayLike
 from nrs_design.errors import DesignError
 from nrs_design.models.robot.body import point_mass
 from nrs_design.models.robot.dynamics import gravity_torque
-from nrs_design.models.robot.geometry import Posture, posture
+from nrs_design.models.robot.geometry import Posture, is_reachable, posture
 from nrs_design.models.robot.motion import joint_driven
 from nrs_design.models.robot.robot import Leg, Robot
 from nrs_design.models.robot.vectors import Array, Scalar, dot
+from nrs_design.models.robot.workspace import workspace_grid
 from nrs_design.spec import BalancedLegSpec, RobotSpec
 
 
@@ -205,3 +206,25 @@ def residual_torque(robot: Robot, balance: Balance, pose: ArrayLike) -> Array:
     """
     weights = gravity_torque(balanced_robot(robot, balance), pose)
     return weights + spring_torque(robot, balance, pose)
+
+
+@dataclass(frozen=True, slots=True)
+class BalanceTorques:
+    """Static torques over the workspace without and with balance, shape (n, 3), in N m."""
+
+    gravity: Array
+    residual: Array
+
+    @staticmethod
+    def summary(torque: Array) -> dict[str, list[float]]:
+        """Return root mean square and largest magnitude for each joint."""
+        rms = np.sqrt(np.mean(torque**2, axis=0))
+        return {"rms": rms.tolist(), "largest": np.abs(torque).max(axis=0).tolist()}
+
+
+def examine_balance(robot: Robot, balance: Balance) -> BalanceTorques:
+    """Compute the torques over the reachable workspace, on the base that the balance is for."""
+    on_base = robot.tilted(balance.tilt)
+    poses = workspace_grid(robot, 21, 11).reshape(-1, 3)
+    poses = poses[is_reachable(robot, poses)]
+    return BalanceTorques(gravity_torque(on_base, poses), residual_torque(on_base, balance, poses))

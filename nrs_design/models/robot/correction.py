@@ -169,9 +169,19 @@ def tilt_table(
     )
 
 
+def to_csv(table: TiltTable) -> str:
+    """Write a table for the controller: one line for each tilt, coefficients by mean ratio."""
+    lines = ["theta4_deg,K1,K2,K3,K1_least_squares,K2_least_squares,K3_least_squares"]
+    for tilt, ratio, squares in zip(
+        np.degrees(table.tilt), table.mean_ratio, table.least_squares, strict=True
+    ):
+        lines.append(",".join([f"{tilt:.6g}", *(f"{k:.6f}" for k in (*ratio, *squares))]))
+    return "\n".join(lines) + "\n"
+
+
 def thesis_tilts() -> Array:
     """Return the tilts of thesis 3.5, -75 to 0 deg by 1 deg, in rad."""
-    return np.radians(np.arange(-75.0, 1.0))
+    return np.asarray(np.radians(np.arange(-75.0, 1.0)))
 
 
 def _torques(robot: Robot, sine: Sine, samples: int) -> tuple[Array, Array]:
@@ -193,4 +203,4 @@ def _torques(robot: Robot, sine: Sine, samples: int) -> tuple[Array, Array]:
 
 
 def _root_mean_square(error: Array) -> Array:
-    return np.asarray(np.sqrt(np.mean(error**2, axis=0)))
+    return np.asarray(np.sqrt(np.mean(error**2, axis=0)), dtype=np.float64)

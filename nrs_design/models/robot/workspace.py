@@ -8,8 +8,13 @@ from itertools import product
 import numpy as np
 from numpy.typing import ArrayLike
 
-from nrs_design.models.robot.geometry import is_reachable
-from nrs_design.models.robot.kinematics import inverse_jacobian, joint_motion
+from nrs_design.models.robot.geometry import is_reachable, posture
+from nrs_design.models.robot.kinematics import (
+    inverse_jacobian,
+    inverse_kinematics,
+    joint_motion,
+    singularity_margins,
+)
 from nrs_design.models.robot.robot import Robot
 from nrs_design.models.robot.vectors import Array
 
@@ -48,6 +53,78 @@ def thesis_grid(depths: ArrayLike = (0.15, 0.2, 0.24)) -> Array:
     """Return the poses of thesis 3.3, angles within 14 and 19 deg by 1 deg; shape (n, 3)."""
     phi, psi = np.arange(-14, 15) * _DEGREE, np.arange(-19, 20) * _DEGREE
     return pose_grid(phi, psi, depths).reshape(-1, 3)
+
+
+@dataclass(frozen=True, slots=True)
+class WorkspaceSurvey:
+    """What the robot can do of the workspace that its spec names.
+
+    Parameters
+    ----------
+    reachable : float
+        Share of the grid's poses that all legs reach, between 0 and 1.
+    joint_low, joint_high : ndarray
+        Range of each joint over the reachable poses in rad, shape (3,).
+    reach_margin : ndarray
+        Least distance of each leg from stretched or folded in m, shape (3,).
+    coupler_margin : ndarray
+        Least |cosine| between each leg's coupler and the endoscope, shape (3,).
+    deepest : tuple of tuple of float
+        (phi, psi, d) for each corner of the angles: the largest reachable d of the range, None
+        where no depth of the range is reachable.
+    """
+
+    reachable: float
+    joint_low: Array
+    joint_high: Array
+    reach_margin: Array
+    coupler_margin: Array
+    deepest: tuple[tuple[float, float, float | None], ...]
+
+
+def survey_workspace(robot: Robot, angles: int = 31, depths: int = 21) -> WorkspaceSurvey:
+    """Examine the workspace of the spec on a regular grid.
+
+    Parameters
+    ----------
+    robot : Robot
+        The robot.
+    angles, depths : int
+        Values of phi and of psi, and of d.
+
+    Returns
+    -------
+    WorkspaceSurvey
+        Over the reachable poses of the grid.
+
+    Raises
+    ------
+    PoseError
+        If not even the middle of the workspace is reachable.
+    """
+    posture(robot, robot.home)
+    poses = workspace_grid(robot, angles, depths).reshape(-1, 3)
+    inside = is_reachable(robot, poses)
+    joints = inverse_kinematics(robot, poses[inside])
+    margins = singularity_margins(robot, poses[inside])
+    space = robot.workspace
+    corners = product((-space.phi, space.phi), (-space.psi, space.psi))
+    return WorkspaceSurvey(
+        reachable=float(np.mean(inside)),
+        joint_low=joints.min(axis=0),
+        joint_high=joints.max(axis=0),
+        reach_margin=margins.reach.min(axis=0),
+        coupler_margin=margins.coupler.min(axis=0),
+        deepest=tuple((phi, psi, _deepest(robot, phi, psi)) for phi, psi in corners),
+    )
+
+
+def _deepest(robot: Robot, phi: float, psi: float) -> float | None:
+    """Largest reachable depth to a thousandth of the range, or the end of the range."""
+    depths = np.linspace(*robot.workspace.d, 1001)
+    poses = np.stack([np.full_like(depths, phi), np.full_like(depths, psi), depths], axis=-1)
+    inside = depths[is_reachable(robot, poses)]
+    return float(inside[-1]) if len(inside) else None
 
 
 @dataclass(frozen=True, slots=True)

@@ -47,7 +47,9 @@ def correction(
     if figures is not None:
         from nrs_design.reporting.figures.robot import draw_correction
 
-        files += write_figures(figures, {"correction": draw_correction(tilts)}, quiet=quiet)
+        with_angles = tilt_table(robot, thesis_tilts(), TABLE_3_5)
+        drawn = draw_correction(tilts, with_angles)
+        files += write_figures(figures, {"correction": drawn}, quiet=quiet)
     if as_json:
         head = {"spec": loaded.spec.name, "spec_sha256": loaded.sha256}
         print_json("robot-correction", head | _document(rows, tilts) | {"files": files})

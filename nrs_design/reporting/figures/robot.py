@@ -43,10 +43,7 @@ def draw_workspace(robot: Robot) -> Figure:
     White is what some leg cannot reach.
     """
     space = robot.workspace
-    phi, psi = (
-        np.linspace(-space.phi, space.phi, _POINTS),
-        np.linspace(-space.psi, space.psi, _POINTS),
-    )
+    phi, psi = (np.linspace(-end, end, _POINTS) for end in (space.phi, space.psi))
     depths = np.linspace(*space.d, 3)
     margins = 1e3 * reach_margin(robot, pose_grid(phi, psi, depths)).min(axis=-1)
     figure = new_figure(3.1)
@@ -102,32 +99,40 @@ def draw_torque_shares(robot: Robot, depths: Sequence[float] = (0.15, 0.2, 0.24)
 
 
 @styled
-def draw_correction(table: TiltTable) -> Figure:
-    """Draw the correction coefficients against the tilt of the base (thesis fig. 3.12)."""
+def draw_correction(depth: TiltTable, every: TiltTable) -> Figure:
+    """Draw the correction coefficients against the tilt of the base (thesis fig. 3.12).
+
+    Parameters
+    ----------
+    depth : TiltTable
+        Over motions of the depth alone; its mean ratios are drawn.
+    every : TiltTable
+        Over motions of the angles too; its least squares are drawn.
+    """
     figure, axes = new_axes(4.0)
-    tilt = np.degrees(table.tilt)
-    every = max(1, len(tilt) // 8)
+    tilt = np.degrees(depth.tilt)
+    step = max(1, len(tilt) // 8)
     for joint, name in enumerate(JOINTS):
         axes.plot(
             tilt,
-            table.mean_ratio[:, joint],
+            depth.mean_ratio[:, joint],
             color=color(joint),
             marker=marker(joint),
-            markevery=every,
+            markevery=step,
             markersize=5,
-            label=f"{name}, mean ratio",
+            label=f"{name}, depth only, mean ratio",
         )
         axes.plot(
-            tilt,
-            table.least_squares[:, joint],
+            np.degrees(every.tilt),
+            every.least_squares[:, joint],
             color=color(joint),
             linestyle=(0, (3, 3)),
             linewidth=1.2,
-            label=f"{name}, least squares",
+            label=f"{name}, with angles, least squares",
         )
     axes.set_xlabel("Tilt of the base θ4 [deg]")
     axes.set_ylabel("Correction coefficient [-]")
-    legend(figure, axes, 3)
+    legend(figure, axes, 2)
     return figure
 
 

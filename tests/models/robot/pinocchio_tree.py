@@ -22,7 +22,9 @@ class Tree:
         self.model = pin.Model()
         self.model.gravity.linear = np.array(robot.gravity_vector)
         # Joints are added depth-first: Pinocchio numbers the velocities in that order.
-        self.tips = [self._leg(leg, loads) for leg, loads in zip(robot.legs, robot.loads)]
+        self.tips = [
+            self._leg(leg, loads) for leg, loads in zip(robot.legs, robot.loads, strict=True)
+        ]
         self.data = self.model.createData()
         self.actuated = [0, 4, 9]
         self.passive = [i for i in range(self.model.nv) if i not in self.actuated]
@@ -33,7 +35,7 @@ class Tree:
         joint = self._joint(0, pin.JointModelRX(), base)
         rotor = pin.Inertia(0.0, np.zeros(3), np.diag([leg.axis_inertia, 0.0, 0.0]))
         self.model.appendBodyToJoint(joint, rotor, pin.SE3.Identity())
-        for length, body in zip((leg.l0, leg.l1, leg.l2), loads):
+        for length, body in zip((leg.l0, leg.l1, leg.l2), loads, strict=True):
             joint = self._joint(joint, pin.JointModelRZ(), pin.SE3(np.eye(3), length * X))
             inertia = pin.Inertia(body.mass, body.center_of_mass, body.inertia)
             self.model.appendBodyToJoint(joint, inertia, pin.SE3.Identity())

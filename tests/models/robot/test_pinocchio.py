@@ -55,7 +55,7 @@ def test_loops_are_closed(tree):
 def test_closed_loop_inverse_dynamics(tree):
     positions, (velocities, accelerations) = poses(40, 2)
     ours = inverse_dynamics(tree.robot, positions, velocities, accelerations)
-    theirs = [tree.torque(*motion) for motion in zip(positions, velocities, accelerations)]
+    theirs = [tree.torque(*each) for each in zip(positions, velocities, accelerations, strict=True)]
     assert np.abs(ours - theirs).max() < 1e-9
 
 

@@ -99,9 +99,9 @@ def _at_pose(
 
 
 def _shares(robot: Robot) -> dict[str, Any]:
-    from nrs_design.models.robot import thesis_grid, torque_shares
+    from nrs_design.models.robot import reachable_poses, thesis_grid, torque_shares
 
-    shares = torque_shares(robot, thesis_grid())
+    shares = torque_shares(robot, reachable_poses(robot, thesis_grid()))
     parts = {"gravity": shares.gravity, "coriolis": shares.coriolis, "inertia": shares.inertia}
     names = ("gravity", "coriolis", "inertia")
     return {

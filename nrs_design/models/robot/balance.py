@@ -18,11 +18,11 @@ from numpy.typing import ArrayLike
 from nrs_design.errors import DesignError
 from nrs_design.models.robot.body import point_mass
 from nrs_design.models.robot.dynamics import gravity_torque
-from nrs_design.models.robot.geometry import Posture, is_reachable, posture
+from nrs_design.models.robot.geometry import Posture, posture
 from nrs_design.models.robot.motion import joint_driven
 from nrs_design.models.robot.robot import Leg, Robot
 from nrs_design.models.robot.vectors import Array, Scalar, dot
-from nrs_design.models.robot.workspace import workspace_grid
+from nrs_design.models.robot.workspace import reachable_poses, workspace_grid
 from nrs_design.spec import BalancedLegSpec, RobotSpec
 
 
@@ -225,6 +225,5 @@ class BalanceTorques:
 def examine_balance(robot: Robot, balance: Balance) -> BalanceTorques:
     """Compute the torques over the reachable workspace, on the base that the balance is for."""
     on_base = robot.tilted(balance.tilt)
-    poses = workspace_grid(robot, 21, 11).reshape(-1, 3)
-    poses = poses[is_reachable(robot, poses)]
+    poses = reachable_poses(robot, workspace_grid(robot, 21, 11))
     return BalanceTorques(gravity_torque(on_base, poses), residual_torque(on_base, balance, poses))

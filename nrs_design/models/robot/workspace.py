@@ -8,7 +8,7 @@ from itertools import product
 import numpy as np
 from numpy.typing import ArrayLike
 
-from nrs_design.models.robot.geometry import is_reachable, posture
+from nrs_design.models.robot.geometry import is_reachable, posture, unreachable
 from nrs_design.models.robot.kinematics import (
     inverse_jacobian,
     inverse_kinematics,
@@ -47,6 +47,21 @@ def workspace_grid(robot: Robot, angles: int = 31, depths: int = 11) -> Array:
         np.linspace(-space.psi, space.psi, angles),
         np.linspace(*space.d, depths),
     )
+
+
+def reachable_poses(robot: Robot, pose: ArrayLike) -> Array:
+    """Return the poses of a grid that all legs reach, as a list; shape (n, 3).
+
+    Raises
+    ------
+    PoseError
+        If there is none.
+    """
+    poses = np.asarray(pose, dtype=np.float64).reshape(-1, 3)
+    inside = poses[is_reachable(robot, poses)]
+    if not len(inside):
+        raise unreachable(robot, poses)
+    return inside
 
 
 def thesis_grid(depths: ArrayLike = (0.15, 0.2, 0.24)) -> Array:
@@ -163,8 +178,7 @@ def joint_peaks(robot: Robot, pose: ArrayLike) -> JointPeaks:
     JointPeaks
         Of the reachable poses.
     """
-    poses = np.asarray(pose, dtype=np.float64).reshape(-1, 3)
-    poses = poses[is_reachable(robot, poses)]
+    poses = reachable_poses(robot, pose)
     limits = robot.task_limits
     v = np.array([limits.angular_velocity] * 2 + [limits.linear_velocity])
     a = np.array([limits.angular_acceleration] * 2 + [limits.linear_acceleration])

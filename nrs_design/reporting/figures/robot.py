@@ -12,6 +12,7 @@ from nrs_design.models.robot import (
     TiltTable,
     pose_grid,
     reach_margin,
+    reachable_poses,
     thesis_grid,
     torque_shares,
 )
@@ -73,12 +74,16 @@ def draw_torque_shares(robot: Robot, depths: Sequence[float] = (0.15, 0.2, 0.24)
     figure, axes = new_axes(4.0)
     names = ("gravity", "Coriolis and centripetal", "inertia")
     positions = [4 * row + column for row in range(len(depths)) for column in range(3)]
-    parts = [torque_shares(robot, thesis_grid((depth,))) for depth in depths]
+    parts = [
+        torque_shares(robot, reachable_poses(robot, thesis_grid((depth,)))) for depth in depths
+    ]
     bottom = np.zeros(len(positions))
     for index, key in enumerate(("gravity", "coriolis", "inertia")):
         means = np.concatenate([100 * getattr(part, key).mean(axis=0) for part in parts])
         bars = axes.bar(positions, means, bottom=bottom, color=color(index), label=names[index])
-        axes.bar_label(bars, fmt="%.0f", label_type="center", fontsize=8, color="white")
+        # A thin bar has no room for its number.
+        labels = [f"{mean:.0f}" if mean >= 3.5 else "" for mean in means]
+        axes.bar_label(bars, labels, label_type="center", fontsize=8, color="white")
         bottom += means
     axes.set_xticks(positions, [f"θ{column + 1}" for _ in depths for column in range(3)])
     for row, depth in enumerate(depths):

@@ -11,7 +11,7 @@ from importlib import import_module
 
 from benchmarks.measure import Comparison, machine_facts
 
-BENCHMARKS = ("cold_pair", "many_modes", "tight_margins", "impedance_optimum")
+BENCHMARKS = ("cold_pair", "many_modes", "tight_margins", "impedance_optimum", "robot_dynamics")
 
 
 def main() -> None:

@@ -79,7 +79,8 @@ def _angular_velocity(ours: Robot) -> Row:
         "(theta_x', cos(theta_x) theta_y', sin(theta_x) theta_y')",
         verdict=Verdict.PRINT_IS_WRONG,
         holds=1e-4 < worst < 1e-2,
-        note=f"An approximation: it changes Ms by at most {100 * worst:.2g} % of its largest entry.",
+        note=f"An approximation: it changes Ms by at most {100 * worst:.2g} % of its "
+        "largest entry.",
     )
 
 

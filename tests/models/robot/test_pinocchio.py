@@ -6,11 +6,10 @@ import numpy as np
 import pinocchio as pin
 import pytest
 
+from benchmarks.pinocchio_tree import Tree
 from nrs_design.models.robot import inverse_dynamics, mass_matrix, posture
 from nrs_design.models.robot.body import rigid_body
 from nrs_design.models.robot.motion import joint_driven
-
-from .pinocchio_tree import Tree
 
 
 def poses(count, seed):

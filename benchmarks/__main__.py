@@ -21,6 +21,7 @@ BENCHMARKS = (
     "beyond_quadratic",
     "impedance_optimum",
     "tissue_fits",
+    "robot_dynamics",
     "scaling",
 )
 MET = {True: "yes", False: "NO", None: "-"}

@@ -87,5 +87,39 @@ class DataError(NrsDesignError):
     rule = "NRS006"
 
 
+class PoseError(NrsDesignError):
+    """A pose that the robot cannot take.
+
+    Parameters
+    ----------
+    message : str
+        What is wrong.
+    leg : str, optional
+        The leg that cannot reach the pose.
+    excess : float, optional
+        By how much it is overstretched or folded too far, in m.
+    pose : tuple of float, optional
+        (phi, psi, d) in rad and m.
+    remedy : str, optional
+        What to do about it.
+    """
+
+    rule = "NRS007"
+
+    def __init__(
+        self,
+        message: str,
+        *,
+        leg: str | None = None,
+        excess: float | None = None,
+        pose: tuple[float, float, float] | None = None,
+        remedy: str | None = None,
+    ) -> None:
+        super().__init__(message, remedy=remedy)
+        self.leg = leg
+        self.excess = excess
+        self.pose = pose
+
+
 class InternalError(Exception):
     """Two independent computations disagree: a defect of this program, never a verdict."""

@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from fractions import Fraction
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from nrs_design import __version__
@@ -14,7 +15,7 @@ from nrs_design.controllers.controller_design import ControllerDesign
 from nrs_design.controllers.gains import gains_of
 from nrs_design.errors import DesignError, NrsDesignError
 from nrs_design.models.plant import build_plant
-from nrs_design.spec import InteractionDesignSpec, LoadedSpec
+from nrs_design.spec import InteractionDesignSpec, LoadedSpec, RobotSpec, read_spec
 from nrs_design.switched.assemble import assemble, has_ranges
 from nrs_design.switched.system import SwitchedSystem, Time
 
@@ -22,6 +23,7 @@ if TYPE_CHECKING:
     from nrs_design.certificates.certify import Certification, Limits, Method
     from nrs_design.certificates.margin import BoxMargin, DwellMargin
     from nrs_design.design.evidence import DesignEvidence
+    from nrs_design.models.robot import Robot
 
 Progress = Callable[[str], None]
 
@@ -68,14 +70,42 @@ def _placed(loaded: LoadedSpec) -> Iterator[None]:
         raise
 
 
+def run_robot(path: Path) -> tuple[LoadedSpec, RobotSpec, Robot]:
+    """Read a robot spec and build the robot.
+
+    Raises
+    ------
+    SpecError
+        If the file is wrong.
+    DesignError
+        If it describes something else than a robot.
+    """
+    from nrs_design.models.robot import build_robot
+
+    loaded = read_spec(path)
+    if not isinstance(loaded.spec, RobotSpec):
+        raise DesignError(
+            f"a {loaded.spec.kind} spec describes no robot",
+            path=path,
+            remedy="name a spec of kind robot; `nrs-design init robot` writes one",
+        )
+    return loaded, loaded.spec, build_robot(loaded.spec)
+
+
 def run_design(loaded: LoadedSpec) -> ControllerDesign | None:
     """Design the controllers of a spec; None for given matrices.
 
     Raises
     ------
     DesignError
-        If a requirement cannot be met within its bounds.
+        If a requirement cannot be met within its bounds, or the spec describes a robot only.
     """
+    if isinstance(loaded.spec, RobotSpec):
+        raise DesignError(
+            "a robot spec has no controllers that are switched, so there is nothing to certify",
+            path=loaded.path,
+            remedy="use `nrs-design robot check SPEC`, or a spec of kind interaction-design",
+        )
     if not isinstance(loaded.spec, InteractionDesignSpec):
         return None
     from nrs_design.design.design import design_controllers

@@ -21,6 +21,7 @@ from nrs_design.cli.init import init
 from nrs_design.cli.optimize import optimize
 from nrs_design.cli.report import report
 from nrs_design.cli.reproduce import reproduce
+from nrs_design.cli.robot import robot
 from nrs_design.cli.schema import schema
 from nrs_design.cli.tune import tune
 from nrs_design.cli.verify import verify
@@ -49,6 +50,7 @@ app.command("reproduce")(reproduce)
 app.command("export")(export)
 app.command("gate")(gate)
 app.command("explain")(explain)
+app.add_typer(robot)
 
 
 def _show_version(requested: bool) -> None:

@@ -18,6 +18,7 @@ class TemplateOption(StrEnum):
     INTERACTION_DESIGN = "interaction-design"
     HYBRID_FORCE = "hybrid-force"
     SWITCHED_SYSTEM = "switched-system"
+    ROBOT = "robot"
 
 
 def init(
@@ -27,7 +28,7 @@ def init(
     ] = None,
     force: Annotated[bool, typer.Option("--force", help="Overwrite an existing file.")] = False,
 ) -> None:
-    """Write a commented spec (interaction-design, hybrid-force or switched-system).
+    """Write a commented spec (interaction-design, hybrid-force, switched-system or robot).
 
     Example: nrs-design init interaction-design --out my-robot.nrs.yaml
     """

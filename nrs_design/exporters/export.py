@@ -62,9 +62,9 @@ def export_design(
     """
     if not isinstance(loaded.spec, InteractionDesignSpec):
         raise DesignError(
-            "a switched-system spec has no gains to export",
+            f"a {loaded.spec.kind} spec has no gains to export",
             path=loaded.path,
-            remedy="use certify-switching, or a spec of kind interaction-design",
+            remedy="use a spec of kind interaction-design",
         )
     if certificate is None:
         return _certified_afresh(loaded, progress)

@@ -12,11 +12,12 @@ from nrs_design.certificates.evidence import AbstractEvidence, Shows
 from nrs_design.certificates.evidence.fields import rate_text
 from nrs_design.certificates.evidence.unstable_mode import is_stable, worst_eigenvalue
 from nrs_design.errors import DesignError
-from nrs_design.gating.obligations import Obligation, Status
+from nrs_design.gating.obligations import Obligation, SpecOutcome, Status
 from nrs_design.gating.places import Places
 from nrs_design.gating.rules import (
     CERTIFICATE_HOLDS,
     MODE_STABLE,
+    SPEC,
     STIFFNESS_RANGE,
     SWITCHING_STABLE,
     Rule,
@@ -91,6 +92,12 @@ class Examiner:
             eigenvalue = worst_eigenvalue(mode.A, time)
             message = f"mode {mode.name} is not {region} (eigenvalue {eigenvalue})"
         return self.obligation(MODE_STABLE, mode.name, status, message, self.places.mode(mode.name))
+
+    def nothing_to_certify(self) -> SpecOutcome:
+        """Return the outcome of a valid spec that makes no claim about switching."""
+        message = f"a valid {self.loaded.spec.kind} spec; it has nothing to certify"
+        obligation = self.obligation(SPEC, "spec", Status.MET, message, self.places.at("kind"))
+        return SpecOutcome(self.loaded.path, (obligation,), self.loaded.sha256, certifiable=False)
 
     def certificate(self, file: Path, fault: str | None) -> Obligation:
         """Return NRS104 from the outcome of a re-check; None says that the certificate holds."""

@@ -72,8 +72,11 @@ class Lock(_Frozen):
 
 
 def make_lock(specs: Iterable[SpecOutcome], file: Path) -> Lock:
-    """Return the lock of specs that all have a verdict, for a lock file at a place."""
-    entries = [_entry(spec, file) for spec in specs]
+    """Return the lock of specs, for a lock file at a place; those that can be certified have one.
+
+    What makes no claim about switching is left out.
+    """
+    entries = [_entry(spec, file) for spec in specs if spec.certifiable]
     return Lock(specs=sorted(entries, key=lambda entry: entry.path))
 
 
@@ -85,7 +88,7 @@ def write_lock(outcome: GateOutcome, file: Path) -> GateOutcome:
     OutputError
         If it cannot be written.
     """
-    if any(spec.verdict is None for spec in outcome.specs):
+    if any(spec.verdict is None and spec.certifiable for spec in outcome.specs):
         return outcome.with_note(f"{file} not written: not every spec has a verdict")
     write_output(file, dump_lock(make_lock(outcome.specs, file)))
     return outcome.with_note(f"{file} written")

@@ -101,6 +101,9 @@ class SpecOutcome:
         Its file.
     certificate_id : str or None
         Its id.
+    certifiable : bool
+        False for a spec that is valid and makes no claim about switching, such as a robot: there
+        is no verdict, and nothing to lock.
     """
 
     path: Path
@@ -113,6 +116,7 @@ class SpecOutcome:
     modes: int | None = None
     certificate: Path | None = None
     certificate_id: str | None = None
+    certifiable: bool = True
 
 
 @dataclass(frozen=True, slots=True)
@@ -176,10 +180,11 @@ def of_error(path: Path, error: NrsDesignError) -> Obligation:
 
 
 def count_by_verdict(specs: Iterable[SpecOutcome]) -> dict[str, int]:
-    """Count specs by verdict; those without one count as ``without verdict``."""
+    """Count specs by verdict, or by why they have none."""
     counts: dict[str, int] = {}
     for spec in specs:
-        key = spec.verdict or "without verdict"
+        none = "without verdict" if spec.certifiable else "with nothing to certify"
+        key = spec.verdict or none
         counts[key] = counts.get(key, 0) + 1
     return counts
 

@@ -91,6 +91,13 @@ DATA = Rule(
     "is named with its row; nothing is filled in or left out silently.",
     "Mend or cut the record at the row that is named; --map gives foreign columns our names.",
 )
+POSE = Rule(
+    "NRS007",
+    "The robot can take the pose",
+    "Every leg reaches its coupler's end with its crank and coupler only between folded and "
+    "stretched. The message names the leg and by how much it is overstretched or folded too far.",
+    "Choose a pose inside the workspace; `nrs-design robot kinematics SPEC` maps it.",
+)
 MODE_STABLE = Rule(
     "NRS101",
     "Every mode is stable",
@@ -163,6 +170,7 @@ RULES: Mapping[str, Rule] = MappingProxyType(
             CERTIFICATE,
             OUTPUT,
             DATA,
+            POSE,
             MODE_STABLE,
             SWITCHING_STABLE,
             STIFFNESS_RANGE,

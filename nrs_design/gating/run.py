@@ -17,7 +17,7 @@ from nrs_design.gating.paths import is_utf8
 from nrs_design.gating.places import Places
 from nrs_design.output import write_output
 from nrs_design.pipeline import Result, run_certification, run_evidence
-from nrs_design.spec import LoadedSpec, read_spec
+from nrs_design.spec import LoadedSpec, RobotSpec, read_spec
 
 if TYPE_CHECKING:
     from nrs_design.design.evidence import DesignEvidence
@@ -111,6 +111,8 @@ def _shared_name(loaded: LoadedSpec) -> SpecError:
 
 
 def _examine(loaded: LoadedSpec, files: Files, progress: Progress) -> SpecOutcome:
+    if isinstance(loaded.spec, RobotSpec):
+        return Examiner.of(loaded).nothing_to_certify()
     result = run_certification(loaded, progress=progress)
     certification, certificate = result.certification, result.certificate
     examiner = Examiner.of(loaded)

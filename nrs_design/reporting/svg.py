@@ -32,6 +32,11 @@ def to_svg(illustration: Illustration) -> str:
     return svg.replace("url(#", f"url(#{prefix}-")
 
 
+def to_svg_file(figure: Figure) -> str:
+    """Return the text of an SVG file of its own, the same bytes for the same figure."""
+    return _savefig(figure)
+
+
 def to_png(figure: Figure, dpi: int = 200) -> bytes:
     """Return the figure as a PNG image without date or program name."""
     buffer = io.BytesIO()

@@ -6,24 +6,34 @@ from collections.abc import Callable
 
 from nrs_design.reproduction import (
     actuator,
+    balance,
     computed_torque,
+    correction,
     experiments,
     force_loop,
     impedance,
     modes,
+    robot_dynamics,
+    robot_kinematics,
     root_locus,
     specimens,
     switching,
     tissue,
+    tracking,
 )
 from nrs_design.reproduction.row import Row, Verdict
 
 # In the order of the thesis.
 TOPICS = (
     tissue,
+    robot_kinematics,
+    robot_dynamics,
+    correction,
     actuator,
     computed_torque,
     root_locus,
+    tracking,
+    balance,
     specimens,
     impedance,
     modes,

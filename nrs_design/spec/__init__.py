@@ -23,6 +23,15 @@ from nrs_design.spec.parameters import ParameterSpec
 from nrs_design.spec.provenance import ProvenanceSpec
 from nrs_design.spec.quantity import Quantity
 from nrs_design.spec.quantity_fields import Bounds, RangedQuantity
+from nrs_design.spec.robot import (
+    BalancedLegSpec,
+    BalanceSpec,
+    BodySpec,
+    DriveSpec,
+    LegSpec,
+    RobotControlSpec,
+    RobotSpec,
+)
 from nrs_design.spec.switched_system import ModeSpec, SwitchedSystemSpec
 from nrs_design.spec.switching import DwellTime, ResetSpec, SwitchingSpec
 
@@ -30,10 +39,14 @@ __all__ = [
     "ActuatorIntervals",
     "ActuatorSpec",
     "Affine",
+    "BalanceSpec",
+    "BalancedLegSpec",
+    "BodySpec",
     "Bounds",
     "ControllerSpec",
     "CostWeights",
     "DesignSpec",
+    "DriveSpec",
     "DwellTime",
     "ElasticSpec",
     "EnvironmentSpec",
@@ -41,6 +54,7 @@ __all__ = [
     "ImpedanceControllerSpec",
     "InteractionDesignSpec",
     "KelvinVoigtSpec",
+    "LegSpec",
     "LimitsSpec",
     "LoadedSpec",
     "ModeSpec",
@@ -51,6 +65,8 @@ __all__ = [
     "Quantity",
     "RangedQuantity",
     "ResetSpec",
+    "RobotControlSpec",
+    "RobotSpec",
     "Spec",
     "SwitchedSystemSpec",
     "SwitchingSpec",

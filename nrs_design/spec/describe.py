@@ -12,13 +12,16 @@ from nrs_design.spec.environment import EnvironmentSpec, KelvinVoigtSpec
 from nrs_design.spec.exact import exact_text
 from nrs_design.spec.interaction import InteractionDesignSpec
 from nrs_design.spec.load import Spec
+from nrs_design.spec.model import SpecModel
 from nrs_design.spec.motion import LimitsSpec
 from nrs_design.spec.parameters import ParameterSpec
 from nrs_design.spec.provenance import ProvenanceSpec
 from nrs_design.spec.quantity import Quantity, QuantityKind
 from nrs_design.spec.quantity_fields import Bounds, RangedQuantity
+from nrs_design.spec.robot import RobotSpec
 from nrs_design.spec.switched_system import SwitchedSystemSpec
 from nrs_design.spec.switching import SwitchingSpec
+from nrs_design.spec.units import BASE_UNITS
 
 MAX_LISTED = 20
 
@@ -37,7 +40,7 @@ def describe(spec: Spec) -> tuple[Row, ...]:
 
     Parameters
     ----------
-    spec : InteractionDesignSpec or SwitchedSystemSpec
+    spec : InteractionDesignSpec, SwitchedSystemSpec or RobotSpec
         A validated spec.
 
     Returns
@@ -47,6 +50,8 @@ def describe(spec: Spec) -> tuple[Row, ...]:
     """
     if isinstance(spec, SwitchedSystemSpec):
         return tuple(_modes(spec))
+    if isinstance(spec, RobotSpec):
+        return tuple(describe_model(spec))
     return tuple(_interaction(spec))
 
 
@@ -192,6 +197,35 @@ def _number(name: str, number: Fraction) -> Row:
 def _coefficients(name: str, numbers: tuple[Fraction, ...]) -> Row:
     value = ", ".join(_text(float(number)) for number in numbers)
     return Row(name, f"[{', '.join(map(exact_text, numbers))}]", f"[{value}]", "")
+
+
+def describe_model(value: object, name: str = "") -> Iterator[Row]:
+    """List every value of a model whose quantities need no conversion but that to SI."""
+    if isinstance(value, SpecModel):
+        for field in type(value).model_fields:
+            if name or field not in ("kind", "name", "title"):
+                yield from describe_model(getattr(value, field), f"{name}.{field}".lstrip("."))
+    elif isinstance(value, tuple):
+        for index, item in enumerate(value):
+            yield from describe_model(item, f"{name}[{index}]")
+    elif isinstance(value, Quantity):
+        yield Row(name, value.text, _text(value.si), si_unit(value.dimension))
+    elif isinstance(value, Fraction):
+        yield _number(name, value)
+    elif value is not None:
+        yield Row(name, str(value), "", "")
+
+
+def si_unit(dimension: tuple[int, ...]) -> str:
+    """Write a dimension as a product of SI units."""
+    powers = dict(zip(BASE_UNITS, dimension, strict=True))
+    above = "*".join(_power(unit, power) for unit, power in powers.items() if power > 0)
+    below = "".join(f"/{_power(unit, -power)}" for unit, power in powers.items() if power < 0)
+    return (above or "1") + below
+
+
+def _power(unit: str, power: int) -> str:
+    return unit if power == 1 else f"{unit}^{power}"
 
 
 def _text(value: float) -> str:

@@ -100,3 +100,34 @@ FORCE_GAIN = QuantityKind(
 
 LINEAR_STIFFNESS = QuantityKind("a linear stiffness", ("N/m",), "747.1461 N/m")
 LINEAR_DAMPING = QuantityKind("a linear damping", ("N*s/m",), "5 N*s/m")
+
+MASS = QuantityKind(
+    "a mass", ("kg",), "73.3 g", {"N": "that is a weight: divide it by the gravity and write g"}
+)
+LENGTH = QuantityKind("a length", ("m",), "135 mm")
+ANGLE = QuantityKind(
+    "an angle",
+    ("rad",),
+    "45 deg",
+    {"rad/s": "that is an angular velocity: write '{value} deg' or '{value} rad'"},
+)
+LINEAR_VELOCITY = QuantityKind("a velocity", ("m/s",), "18.5 mm/s")
+ACCELERATION = QuantityKind("an acceleration", ("m/s^2",), "9.81 m/s^2")
+ANGULAR_ACCELERATION = QuantityKind(
+    "an angular acceleration",
+    ("rad/s^2",),
+    "3.584 rad/s^2",
+    {"1/s^2": "name the angle: write '{value} rad/s^2'"},
+)
+COMMAND = QuantityKind(
+    "a speed command of the motor driver",
+    ("rpm",),
+    "276.575 rpm",
+    {"rad/s": "the driver's command is in rpm, a unit of its own that is never converted"},
+)
+TORQUE_GRADIENT = QuantityKind(
+    "a speed-torque gradient",
+    ("rpm/(N*m)",),
+    "2.7044e5 rpm/(N*m)",
+    {"rpm*m/N": "rpm/N*m is (rpm/N)*m: write '{value} rpm/(N*m)'"},
+)

@@ -14,13 +14,15 @@ from nrs_design.spec.document import Mapping, Node, Scalar, parse_document, read
 from nrs_design.spec.exact import quoted
 from nrs_design.spec.faults import did_you_mean, spec_error
 from nrs_design.spec.interaction import InteractionDesignSpec
+from nrs_design.spec.robot import RobotSpec
 from nrs_design.spec.switched_system import SwitchedSystemSpec
 
-Spec = InteractionDesignSpec | SwitchedSystemSpec
+Spec = InteractionDesignSpec | SwitchedSystemSpec | RobotSpec
 
-KINDS: dict[str, type[InteractionDesignSpec] | type[SwitchedSystemSpec]] = {
+KINDS: dict[str, type[Spec]] = {
     "interaction-design": InteractionDesignSpec,
     "switched-system": SwitchedSystemSpec,
+    "robot": RobotSpec,
 }
 
 
@@ -36,7 +38,7 @@ class LoadedSpec:
         Hash of the file's bytes, in hexadecimal.
     text : str
         The file's text.
-    spec : InteractionDesignSpec or SwitchedSystemSpec
+    spec : InteractionDesignSpec, SwitchedSystemSpec or RobotSpec
         What it says.
     """
 

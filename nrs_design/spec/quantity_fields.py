@@ -22,15 +22,17 @@ from nrs_design.spec.quantity import (
 )
 
 
-def read_quantity(value: object, kind: QuantityKind, *at: int | str, positive: bool) -> Quantity:
-    """Read a quantity of a kind from text, and check its sign."""
+def read_quantity(
+    value: object, kind: QuantityKind, *at: int | str, positive: bool, signed: bool = False
+) -> Quantity:
+    """Read a quantity of a kind from text, and check its sign unless it is ``signed``."""
 
     def read() -> Quantity:
         if isinstance(value, Quantity):
             quantity = checked_kind(value, kind)
         else:
             quantity = parse_quantity(as_text(value, *at), kind)
-        if quantity.value < 0 or (positive and quantity.value == 0):
+        if not signed and (quantity.value < 0 or (positive and quantity.value == 0)):
             bound = "positive" if positive else "zero or positive"
             raise SpecError(f"{quoted(quantity.text)} must be {bound}", remedy="check the sign")
         return quantity
@@ -43,8 +45,10 @@ def quantity_schema(kind: QuantityKind) -> dict[str, Any]:
     return {"type": "string", "pattern": QUANTITY_PATTERN, "examples": [kind.example]}
 
 
-def _quantity(kind: QuantityKind) -> PlainValidator:
-    return PlainValidator(lambda value: read_quantity(value, kind, positive=True))
+def _quantity(kind: QuantityKind, *, positive: bool = True, signed: bool = False) -> PlainValidator:
+    return PlainValidator(
+        lambda value: read_quantity(value, kind, positive=positive, signed=signed)
+    )
 
 
 def _schema(kind: QuantityKind) -> WithJsonSchema:
@@ -222,3 +226,29 @@ InertiaBounds = Annotated[
 DampingBounds = Annotated[
     Bounds, _bounds(kinds.IMPEDANCE, positive=True), _bounds_schema(kinds.IMPEDANCE)
 ]
+Mass = Annotated[Quantity, _quantity(kinds.MASS, positive=False), _schema(kinds.MASS)]
+Length = Annotated[Quantity, _quantity(kinds.LENGTH), _schema(kinds.LENGTH)]
+Coordinate = Annotated[Quantity, _quantity(kinds.LENGTH, signed=True), _schema(kinds.LENGTH)]
+Angle = Annotated[Quantity, _quantity(kinds.ANGLE), _schema(kinds.ANGLE)]
+SignedAngle = Annotated[Quantity, _quantity(kinds.ANGLE, signed=True), _schema(kinds.ANGLE)]
+MomentOfInertia = Annotated[
+    Quantity, _quantity(kinds.INERTIA, positive=False), _schema(kinds.INERTIA)
+]
+ProductOfInertia = Annotated[
+    Quantity, _quantity(kinds.INERTIA, signed=True), _schema(kinds.INERTIA)
+]
+LinearVelocity = Annotated[
+    Quantity, _quantity(kinds.LINEAR_VELOCITY), _schema(kinds.LINEAR_VELOCITY)
+]
+LinearAcceleration = Annotated[Quantity, _quantity(kinds.ACCELERATION), _schema(kinds.ACCELERATION)]
+Gravity = Annotated[
+    Quantity, _quantity(kinds.ACCELERATION, positive=False), _schema(kinds.ACCELERATION)
+]
+AngularAcceleration = Annotated[
+    Quantity, _quantity(kinds.ANGULAR_ACCELERATION), _schema(kinds.ANGULAR_ACCELERATION)
+]
+Command = Annotated[Quantity, _quantity(kinds.COMMAND, positive=False), _schema(kinds.COMMAND)]
+TorqueGradient = Annotated[
+    Quantity, _quantity(kinds.TORQUE_GRADIENT), _schema(kinds.TORQUE_GRADIENT)
+]
+LengthBounds = Annotated[Bounds, _bounds(kinds.LENGTH, positive=True), _bounds_schema(kinds.LENGTH)]

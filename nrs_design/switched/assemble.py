@@ -16,6 +16,7 @@ from nrs_design.models.plant import build_plant
 from nrs_design.spec import (
     InteractionDesignSpec,
     PositionControllerSpec,
+    RobotSpec,
     Spec,
     SwitchedSystemSpec,
 )
@@ -62,6 +63,8 @@ def assemble(
         if gains or coordinates is not None:
             raise AssemblyError("given matrices have neither gains nor coordinates")
         return from_matrices(spec, scale)
+    if isinstance(spec, RobotSpec):
+        raise AssemblyError("a robot spec has no modes")
     return from_design(spec, design_from_gains(spec, gains), coordinates, scale)
 
 
@@ -69,6 +72,8 @@ def has_ranges(spec: Spec) -> bool:
     """Tell whether a spec declares a range, of a parameter or of an environment that is touched."""
     if isinstance(spec, SwitchedSystemSpec):
         return any(not parameter.fixed for parameter in spec.parameters.values())
+    if isinstance(spec, RobotSpec):
+        return False
     return any(not spec.environments[name].fixed for name in _touched(spec))
 
 

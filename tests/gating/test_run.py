@@ -5,9 +5,12 @@ import pytest
 
 from nrs_design.certificates.verify import verify
 from nrs_design.errors import InternalError
+from nrs_design.gating.lock import read_lock, write_lock
+from nrs_design.gating.locked import run_locked
 from nrs_design.gating.obligations import Status
 from nrs_design.gating.run import Files, run_gate
 from nrs_design.spec import read_spec
+from nrs_design.spec.templates import TEMPLATES
 
 from .conftest import BROKEN, SOFT_TISSUE, STABLE, UNSTABLE
 
@@ -181,3 +184,22 @@ def test_a_design_without_answer_names_file_and_controller(examine, tmp_path):
     (broken,) = [item for item in spec.obligations if item.status is Status.ERROR]
     assert "controller insertion" in broken.message
     assert broken.path == tmp_path / "s0.nrs.yaml"
+
+
+def test_a_robot_has_nothing_to_certify(examine, tmp_path):
+    robot, stable = examine(TEMPLATES["robot"], STABLE).specs
+    assert found(robot) == [("NRS001", "spec", "met")]
+    assert (robot.verdict, robot.certifiable, stable.verdict) == (None, False, "proved")
+    assert not (tmp_path / "reports" / "my-robot.cert.json").exists()
+
+
+def test_a_robot_is_not_locked(examine, tmp_path):
+    outcome = examine(TEMPLATES["robot"], STABLE)
+    file = tmp_path / "nrs.lock"
+    assert outcome.severity == 0
+    write_lock(outcome, file)
+    assert [spec.path for spec in read_lock(file).specs] == ["s1.nrs.yaml"]
+    paths = [spec.path for spec in outcome.specs]
+    again = run_locked(paths, read_lock(file), file)
+    assert again.severity == 0
+    assert found(again.specs[0]) == [("NRS001", "spec", "met")]

@@ -1,10 +1,19 @@
-"""The whole table: what the thesis prints in chapters 4 and 6."""
+"""The whole table: what the thesis prints in chapters 3, 4 and 6."""
 
+from dataclasses import replace
 from types import SimpleNamespace
 
 import pytest
 
-from nrs_design.reproduction import impedance, modes, table, thesis
+from nrs_design.reproduction import (
+    impedance,
+    modes,
+    neuroboscope,
+    robot_dynamics,
+    robot_kinematics,
+    table,
+    thesis,
+)
 from nrs_design.reproduction.row import Verdict
 from nrs_design.reproduction.table import TOPICS, count_verdicts, reproduce
 
@@ -53,6 +62,17 @@ def test_a_value_stands_beside_every_print_that_can_be_recomputed(rows):
 @pytest.mark.parametrize(
     ("name", "section", "printed", "value", "verdict"),
     [
+        ("theta3 at phi 0.1, psi -0.2 rad, d 200 mm", "3.10",
+         "atan2(Lambda, chi) - acos(Upsilon/U)", "0.804771", "print is wrong"),
+        ("least speed of theta3 over d at phi = psi = 0", "3.3", "2.0094", "2.00946", "reproduced"),
+        ("torque shares of gravity, Coriolis and inertia", "3.3", "75.5, 11.5, 13",
+         "75.5117, 11.4544, 13.0339", "reproduced"),
+        ("torque RMSE, full model", "table 3.4", "1.4691, 1.5350, 1.5475", None,
+         "needs data that the thesis omits"),
+        ("K_corr of the controller, mean of table 3.5", "3.39", "1.8246, 1.8226, 2.2051",
+         "1.82727, 1.82386, 2.22041", "print is wrong"),
+        ("spring on the right crank, A0C_A", "4.4", "26.66", "29.6518", "print is wrong"),
+        ("M_b, right leg", "4.4", "1302.4", "1302.4", "reproduced"),
         ("armature resistance R", "4.1", "3.7754", "3.74541", "print is wrong"),
         ("angle of the zero", "4.28", "44.9914", "45.0181", "print is wrong"),
         ("Kp = K z", "4.31", "117359.43", "117359.44", "reproduced"),
@@ -135,3 +155,19 @@ def test_a_topic_is_added_in_one_place(monkeypatch):
     names: list[str] = []
     assert reproduce(names.append) == TOPICS[0].rows()
     assert names == ["new"]
+
+
+def test_measured_tracking_is_never_computed(rows):
+    measured = [row for row in rows if row.name.startswith("tracking RMSE")]
+    assert len(measured) == 9
+    assert {row.verdict for row in measured} == {Verdict.HARDWARE_ONLY}
+
+
+def test_another_robot_drifts(monkeypatch):
+    heavy = replace(neuroboscope.robot(), base_tilt=-0.2)
+    monkeypatch.setattr(robot_dynamics, "robot", lambda: heavy)
+    assert Verdict.DRIFT in {row.verdict for row in robot_dynamics.rows()}
+    longer = replace(heavy, legs=tuple(replace(leg, l0=0.21) for leg in heavy.legs))
+    monkeypatch.setattr(robot_kinematics, "robot", lambda: longer)
+    drifts = [row for row in robot_kinematics.rows() if row.verdict is Verdict.DRIFT]
+    assert len(drifts) >= 3

@@ -63,7 +63,7 @@ def test_templates_and_samples_validate(text: str) -> None:
     ("sample", "old", "new"),
     [
         (SWITCHED, "kind: switched-system\n", ""),
-        (SWITCHED, "kind: switched-system", "kind: robot"),
+        (SWITCHED, "kind: switched-system", "kind: tissue"),
         (SWITCHED, "name: sample", "nane: sample"),
         (SWITCHED, "time: continuous", "time: never"),
         (SWITCHED, '"1/6"', '"1/0"'),

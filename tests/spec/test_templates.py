@@ -1,23 +1,27 @@
 import re
+from pathlib import Path
 
 import pytest
 
-from nrs_design.spec import parse_spec
+from nrs_design.spec import RobotSpec, load_spec, parse_spec
 from nrs_design.spec.interaction import InteractionDesignSpec
 from nrs_design.spec.switched_system import SwitchedSystemSpec
 from nrs_design.spec.switching import parse_dwell_time
 from nrs_design.spec.templates import TEMPLATES
 
+ROOT = Path(__file__).resolve().parents[2]
+
 
 def test_names() -> None:
-    assert set(TEMPLATES) == {"interaction-design", "hybrid-force", "switched-system"}
+    assert set(TEMPLATES) == {"interaction-design", "hybrid-force", "switched-system", "robot"}
 
 
 @pytest.mark.parametrize("name", TEMPLATES)
 def test_templates_load_and_point_to_their_schema(name: str) -> None:
     text = TEMPLATES[name]
     assert text.splitlines()[0] == "# yaml-language-server: $schema=./nrs.schema.json"
-    assert parse_spec(text).switching.is_arbitrary
+    spec = parse_spec(text)
+    assert isinstance(spec, RobotSpec) or spec.switching.is_arbitrary
     assert text.isascii()
     assert max(map(len, text.splitlines())) <= 105
 
@@ -29,6 +33,13 @@ def test_every_key_is_explained(name: str) -> None:
     for number, line in enumerate(lines):
         if line and not line.startswith((" ", "#")):
             assert "#" in line or lines[number - 1].startswith("#"), line
+
+
+def test_robot_template_is_the_shipped_robot() -> None:
+    shipped = load_spec(ROOT / "specs" / "robots" / "neuroboscope.nrs.yaml")
+    template = parse_spec(TEMPLATES["robot"])
+    assert isinstance(template, RobotSpec)
+    assert template.model_copy(update={"name": shipped.name}) == shipped
 
 
 def test_hybrid_template_has_both_modes() -> None:
@@ -62,7 +73,7 @@ def test_rules_between_controllers_are_right(name: str) -> None:
     assert spec.switching.transitions == ((a, b), (b, a))
 
 
-@pytest.mark.parametrize("name", TEMPLATES)
+@pytest.mark.parametrize("name", [name for name in TEMPLATES if name != "robot"])
 def test_dwell_time_of_the_template_is_right(name: str) -> None:
     shown = re.search("^# +dwell_time: (.*?) +#", TEMPLATES[name], re.MULTILINE)
     assert shown

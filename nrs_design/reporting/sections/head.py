@@ -9,7 +9,7 @@ from nrs_design import __version__
 from nrs_design.certificates.evidence import AbstractEvidence, ModeQuadratic, Shows
 from nrs_design.certificates.evidence.fields import rate_text
 from nrs_design.reporting.formatting import number, plural, shortened
-from nrs_design.spec import InteractionDesignSpec
+from nrs_design.spec import InteractionDesignSpec, RobotSpec
 from nrs_design.switched.system import SwitchedSystem, Time
 
 if TYPE_CHECKING:
@@ -68,7 +68,9 @@ def facts(result: Result) -> tuple[tuple[str, str], ...]:
 def switching_words(result: Result) -> str:
     """Say which switching signals the spec declares, in a few words."""
     switching = result.certification.system.switching
-    words = [str(result.loaded.spec.switching)]
+    spec = result.loaded.spec
+    assert not isinstance(spec, RobotSpec)  # It has no modes, hence no certification.
+    words = [str(spec.switching)]
     if switching.resets:
         words.append("the state is reset at some switches")
     if switching.fixed_ends:

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from importlib.resources import files
 from types import MappingProxyType
 
-_NAMES = ("interaction-design", "hybrid-force", "switched-system")
+_NAMES = ("interaction-design", "hybrid-force", "switched-system", "robot")
 
 
 def _read(name: str) -> str:

@@ -1,0 +1,25 @@
+"""``nrs-design robot``: kinematics, dynamics and balance of a robot."""
+
+from __future__ import annotations
+
+import typer
+
+from nrs_design.cli.robot.balance import balance
+from nrs_design.cli.robot.check import check
+from nrs_design.cli.robot.correction import correction
+from nrs_design.cli.robot.dynamics import dynamics
+from nrs_design.cli.robot.kinematics import kinematics
+
+robot = typer.Typer(
+    name="robot",
+    no_args_is_help=True,
+    help="Kinematics, dynamics and gravity balance of a robot (specs of kind robot).",
+)
+# A new capability of the robot adds its command here.
+robot.command("check")(check)
+robot.command("kinematics")(kinematics)
+robot.command("dynamics")(dynamics)
+robot.command("correction")(correction)
+robot.command("balance")(balance)
+
+__all__ = ["robot"]

@@ -1,0 +1,114 @@
+"""``nrs-design robot correction``: from the simplified to the full torque."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from nrs_design.cli.options import Json, Quiet, SpecFile
+from nrs_design.cli.printing import note, print_json, print_table
+from nrs_design.cli.robot.options import Figures, write_figures
+
+if TYPE_CHECKING:
+    from nrs_design.models.robot import Correction, Sine, TiltTable
+
+
+def correction(
+    spec: SpecFile,
+    table: Annotated[
+        Path | None,
+        typer.Option(
+            "--table", metavar="FILE", help="Write the coefficients by tilt, for the controller."
+        ),
+    ] = None,
+    figures: Figures = None,
+    as_json: Json = False,
+    quiet: Quiet = False,
+) -> None:
+    """Compute correction coefficients over trajectories and over the tilt of the base.
+
+    Example: nrs-design robot correction specs/robots/neuroboscope.nrs.yaml --table correction.csv
+    """
+    from nrs_design.models.robot import correction_coefficients, thesis_tilts, tilt_table
+    from nrs_design.models.robot.correction import TABLE_3_5, to_csv
+    from nrs_design.output import write_output
+    from nrs_design.pipeline import run_robot
+
+    loaded, _, robot = run_robot(spec)
+    rows = [(sine, correction_coefficients(robot, sine)) for sine in TABLE_3_5]
+    tilts = tilt_table(robot, thesis_tilts())
+    files: list[str] = []
+    if table is not None:
+        write_output(table, to_csv(tilts))
+        files.append(str(table))
+        note(f"table written to {table}", quiet=quiet)
+    if figures is not None:
+        from nrs_design.reporting.figures.robot import draw_correction
+
+        with_angles = tilt_table(robot, thesis_tilts(), TABLE_3_5)
+        drawn = draw_correction(tilts, with_angles)
+        files += write_figures(figures, {"correction": drawn}, quiet=quiet)
+    if as_json:
+        head = {"spec": loaded.spec.name, "spec_sha256": loaded.sha256}
+        print_json("robot-correction", head | _document(rows, tilts) | {"files": files})
+    else:
+        _print(rows, tilts)
+
+
+def _document(rows: list[tuple[Sine, Correction]], tilts: TiltTable) -> dict[str, Any]:
+    import numpy as np
+
+    return {
+        "trajectories": [
+            {
+                "phi": sine.phi,
+                "psi": sine.psi,
+                "d": list(sine.d),
+                "mean_ratio": found.mean_ratio.tolist(),
+                "least_squares": found.least_squares.tolist(),
+                "mean_ratio_error": found.mean_ratio_error.tolist(),
+                "least_squares_error": found.least_squares_error.tolist(),
+            }
+            for sine, found in rows
+        ],
+        "tilts": [
+            {"theta4_deg": float(tilt), "mean_ratio": ratio, "least_squares": squares}
+            for tilt, ratio, squares in zip(
+                np.degrees(tilts.tilt),
+                tilts.mean_ratio.tolist(),
+                tilts.least_squares.tolist(),
+                strict=True,
+            )
+        ],
+        "units": {"angles": "rad", "d": "m", "error": "N*m"},
+    }
+
+
+def _print(rows: list[tuple[Sine, Correction]], tilts: TiltTable) -> None:
+    import numpy as np
+
+    print_table(
+        "along slow sines, phi and psi in rad",
+        ["phi", "psi", "d [mm]", "K1", "K2", "K3", "K1 ls", "K2 ls", "K3 ls"],
+        [
+            [
+                f"{sine.phi:g}",
+                f"{sine.psi:g}",
+                f"{1e3 * sine.d[0]:.0f} - {1e3 * sine.d[1]:.0f}",
+                *(f"{k:.4f}" for k in (*found.mean_ratio, *found.least_squares)),
+            ]
+            for sine, found in rows
+        ],
+    )
+    print_table(
+        "over the tilt of the base, every 5 deg",
+        ["theta4 [deg]", "K1", "K2", "K3", "K1 ls", "K2 ls", "K3 ls"],
+        [
+            [f"{np.degrees(tilt):.1f}", *(f"{k:.4f}" for k in (*ratio, *squares))]
+            for tilt, ratio, squares in zip(
+                tilts.tilt[::5], tilts.mean_ratio[::5], tilts.least_squares[::5], strict=True
+            )
+        ],
+    )

@@ -1,0 +1,110 @@
+"""``nrs-design robot dynamics``: matrices and torques at a pose, or the shares of the torque."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import typer
+
+from nrs_design.cli.options import Json, Quiet, SpecFile
+from nrs_design.cli.printing import print_json
+from nrs_design.cli.robot.options import (
+    Acceleration,
+    Figures,
+    Pose,
+    Tilt,
+    Velocity,
+    three_numbers,
+    write_figures,
+)
+from nrs_design.cli.robot.printing import print_quantities
+
+if TYPE_CHECKING:
+    from nrs_design.models.robot import Robot
+
+
+def dynamics(
+    spec: SpecFile,
+    pose: Pose = None,
+    velocity: Velocity = None,
+    acceleration: Acceleration = None,
+    tilt: Tilt = None,
+    figures: Figures = None,
+    as_json: Json = False,
+    quiet: Quiet = False,
+) -> None:
+    """Print M, G, Ms and Gs at a pose, and the torques of a motion; or the torque's shares.
+
+    Example: nrs-design robot dynamics specs/robots/neuroboscope.nrs.yaml --pose 0,0,0.2 --json
+    """
+    import math
+
+    from nrs_design.pipeline import run_robot
+
+    loaded, _, robot = run_robot(spec)
+    if tilt is not None:
+        robot = robot.tilted(math.radians(tilt))
+    if pose is None and (velocity or acceleration):
+        raise typer.BadParameter("a motion needs its --pose")
+    content: dict[str, Any] = {"base_tilt": robot.base_tilt}
+    if pose is None:
+        content |= _shares(robot)
+    else:
+        content |= _at_pose(
+            robot,
+            three_numbers(pose, "--pose"),
+            three_numbers(velocity or "0,0,0", "--velocity"),
+            three_numbers(acceleration or "0,0,0", "--acceleration"),
+        )
+    if figures is not None:
+        from nrs_design.reporting.figures.robot import draw_torque_shares
+
+        content["files"] = write_figures(
+            figures, {"torque-shares": draw_torque_shares(robot)}, quiet=quiet
+        )
+    if as_json:
+        head = {"spec": loaded.spec.name, "spec_sha256": loaded.sha256}
+        print_json("robot-dynamics", head | content)
+    else:
+        print_quantities(content)
+
+
+def _at_pose(
+    robot: Robot,
+    pose: tuple[float, float, float],
+    velocity: tuple[float, float, float],
+    acceleration: tuple[float, float, float],
+) -> dict[str, Any]:
+    from nrs_design.models.robot import (
+        coriolis_matrix,
+        gravity_torque,
+        inverse_dynamics,
+        mass_matrix,
+        simplified_dynamics,
+    )
+
+    simplified = simplified_dynamics(robot, pose)
+    return {
+        "pose": list(pose),
+        "velocity": list(velocity),
+        "acceleration": list(acceleration),
+        "M": mass_matrix(robot, pose).tolist(),
+        "C": coriolis_matrix(robot, pose, velocity).tolist(),
+        "G": gravity_torque(robot, pose).tolist(),
+        "Ms": simplified.Ms.tolist(),
+        "Gs": simplified.Gs.tolist(),
+        "torque": inverse_dynamics(robot, pose, velocity, acceleration).tolist(),
+        "units": {"M": "kg*m^2", "C": "N*m*s/rad", "G": "N*m", "torque": "N*m", "pose": "rad, m"},
+    }
+
+
+def _shares(robot: Robot) -> dict[str, Any]:
+    from nrs_design.models.robot import reachable_poses, thesis_grid, torque_shares
+
+    shares = torque_shares(robot, reachable_poses(robot, thesis_grid()))
+    parts = {"gravity": shares.gravity, "coriolis": shares.coriolis, "inertia": shares.inertia}
+    names = ("gravity", "coriolis", "inertia")
+    return {
+        "mean_shares": dict(zip(names, shares.means, strict=True)),
+        "shares_by_joint": {name: part.mean(axis=0).tolist() for name, part in parts.items()},
+    }

@@ -1,0 +1,93 @@
+"""``nrs-design robot kinematics``: joints of a pose, Jacobians, or the whole workspace."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from nrs_design.cli.options import Json, Quiet, SpecFile
+from nrs_design.cli.printing import print_json
+from nrs_design.cli.robot.options import Figures, Pose, three_numbers, write_figures
+from nrs_design.cli.robot.printing import print_quantities
+
+if TYPE_CHECKING:
+    from nrs_design.models.robot import Robot
+
+
+def kinematics(
+    spec: SpecFile,
+    pose: Pose = None,
+    joints: Annotated[
+        str | None,
+        typer.Option("--joints", metavar="T1,T2,T3", help="Joint angles in rad, for their pose."),
+    ] = None,
+    figures: Figures = None,
+    as_json: Json = False,
+    quiet: Quiet = False,
+) -> None:
+    """Solve the kinematics at a pose or joint angles, or survey the workspace.
+
+    Example: nrs-design robot kinematics specs/robots/neuroboscope.nrs.yaml --pose 0.1,-0.2,0.2
+    """
+    from nrs_design.models.robot import direct_kinematics
+    from nrs_design.pipeline import run_robot
+
+    loaded, _, robot = run_robot(spec)
+    if pose is not None and joints is not None:
+        raise typer.BadParameter("give --pose or --joints, not both")
+    if joints is not None:
+        found = direct_kinematics(robot, three_numbers(joints, "--joints"))
+        content = _at_pose(robot, tuple(map(float, found)))
+    elif pose is not None:
+        content = _at_pose(robot, three_numbers(pose, "--pose"))
+    else:
+        content = _workspace(robot)
+    if figures is not None:
+        from nrs_design.reporting.figures.robot import draw_workspace
+
+        content["files"] = write_figures(figures, {"workspace": draw_workspace(robot)}, quiet=quiet)
+    if as_json:
+        head = {"spec": loaded.spec.name, "spec_sha256": loaded.sha256}
+        print_json("robot-kinematics", head | content)
+    else:
+        print_quantities(content)
+
+
+def _at_pose(robot: Robot, pose: tuple[float, ...]) -> dict[str, Any]:
+    from nrs_design.models.robot import (
+        inverse_jacobian,
+        inverse_kinematics,
+        jacobian,
+        orientation,
+        singularity_margins,
+    )
+
+    margins = singularity_margins(robot, pose)
+    return {
+        "pose": list(pose),
+        "joints": inverse_kinematics(robot, pose).tolist(),
+        "theta_xy_d": orientation(pose).tolist(),
+        "jacobian": jacobian(robot, pose).tolist(),
+        "inverse_jacobian": inverse_jacobian(robot, pose).tolist(),
+        "reach_margin": margins.reach.tolist(),
+        "coupler_margin": margins.coupler.tolist(),
+        "units": {"angles": "rad", "lengths": "m", "coupler_margin": "1"},
+    }
+
+
+def _workspace(robot: Robot) -> dict[str, Any]:
+    from nrs_design.models.robot import joint_peaks, survey_workspace, workspace_grid
+
+    survey = survey_workspace(robot)
+    peaks = joint_peaks(robot, workspace_grid(robot))
+    return {
+        "reachable_share": survey.reachable,
+        "joint_low": survey.joint_low.tolist(),
+        "joint_high": survey.joint_high.tolist(),
+        "reach_margin": survey.reach_margin.tolist(),
+        "coupler_margin": survey.coupler_margin.tolist(),
+        "largest_joint_velocity": peaks.velocity.tolist(),
+        "largest_joint_acceleration": peaks.acceleration.tolist(),
+        "units": {"angles": "rad", "lengths": "m", "velocity": "rad/s", "acceleration": "rad/s^2"},
+    }

@@ -1,0 +1,76 @@
+"""Options that several robot commands share, and what they do with them."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from nrs_design.cli.printing import note
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from matplotlib.figure import Figure
+
+Figures = Annotated[
+    Path | None,
+    typer.Option("--figures", metavar="DIR", help="Draw into this folder, as SVG and PNG."),
+]
+Pose = Annotated[
+    str | None,
+    typer.Option("--pose", metavar="PHI,PSI,D", help="Pose in rad, rad and m, as in 0,0,0.2."),
+]
+Velocity = Annotated[
+    str | None,
+    typer.Option("--velocity", metavar="W1,W2,W3", help="Joint velocities in rad/s."),
+]
+Acceleration = Annotated[
+    str | None,
+    typer.Option("--acceleration", metavar="A1,A2,A3", help="Joint accelerations in rad/s^2."),
+]
+Tilt = Annotated[
+    float | None,
+    typer.Option("--tilt", metavar="DEG", help="Tilt of the base in degrees, not the spec's."),
+]
+
+
+def three_numbers(text: str, option: str) -> tuple[float, float, float]:
+    """Read ``1,2,3``.
+
+    Raises
+    ------
+    typer.BadParameter
+        If the text is not three finite numbers.
+    """
+    try:
+        numbers = [float(part) for part in text.split(",")]
+    except ValueError:
+        numbers = []
+    if len(numbers) != 3 or not all(map(math.isfinite, numbers)):
+        raise typer.BadParameter(
+            f"{text!r} is not three numbers with commas between them, such as 0,0,0.2",
+            param_hint=option,
+        )
+    return numbers[0], numbers[1], numbers[2]
+
+
+def write_figures(folder: Path, figures: Mapping[str, Figure], *, quiet: bool) -> list[str]:
+    """Write every figure as SVG and PNG; return the files."""
+    from nrs_design.output import write_output
+    from nrs_design.reporting.svg import to_png, to_svg_file
+
+    files: list[str] = []
+    for name, figure in figures.items():
+        contents: tuple[tuple[str, str | bytes], ...] = (
+            ("svg", to_svg_file(figure)),
+            ("png", to_png(figure)),
+        )
+        for suffix, content in contents:
+            path = folder / f"{name}.{suffix}"
+            write_output(path, content)
+            files.append(str(path))
+    note(f"figures written to {folder}", quiet=quiet)
+    return files

@@ -1,0 +1,267 @@
+"""The spec of a robot of the NeuRoboScope's family: two URRR side legs and one URR middle leg."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+from pydantic import Field, PlainValidator, WithJsonSchema, model_validator
+
+from nrs_design.spec.faults import fault
+from nrs_design.spec.fields import Name, Positive, Title, read_exact
+from nrs_design.spec.model import SpecModel
+from nrs_design.spec.motion import MotionLoopSpec
+from nrs_design.spec.quantity_fields import (
+    ActuatorGain,
+    Angle,
+    AngularAcceleration,
+    AngularVelocity,
+    Command,
+    Coordinate,
+    Duration,
+    Gravity,
+    Length,
+    LengthBounds,
+    LinearAcceleration,
+    LinearVelocity,
+    Mass,
+    MomentOfInertia,
+    ProductOfInertia,
+    SignedAngle,
+    TorqueGradient,
+)
+
+MAX_COUNTS = 1 << 24
+
+
+def _read_elbow_sign(value: object) -> int:
+    number = read_exact(value)
+    if abs(number) != 1:
+        raise fault(f"{value} is neither 1 nor -1", "write 1 or -1")
+    return int(number)
+
+
+def _read_counts(value: object) -> int:
+    number = read_exact(value)
+    if number.denominator != 1 or not 2 <= number <= MAX_COUNTS:
+        raise fault(
+            f"{value} is not an integer from 2 to {MAX_COUNTS}", "write the counts of one turn"
+        )
+    return int(number)
+
+
+ElbowSign = Annotated[
+    int, PlainValidator(_read_elbow_sign), WithJsonSchema({"type": "integer", "enum": [-1, 1]})
+]
+Counts = Annotated[
+    int,
+    PlainValidator(_read_counts),
+    WithJsonSchema({"type": "integer", "minimum": 2, "maximum": MAX_COUNTS}),
+]
+
+
+class TensorSpec(SpecModel):
+    """Inertia tensor about the center of mass; products with the sign they have in the tensor."""
+
+    xx: MomentOfInertia = Field(description="moment about x in kg*m^2")
+    yy: MomentOfInertia = Field(description="moment about y in kg*m^2")
+    zz: MomentOfInertia = Field(description="moment about z in kg*m^2")
+    xy: ProductOfInertia | None = Field(
+        default=None, description="entry (x, y) of the tensor in kg*m^2; default 0"
+    )
+    xz: ProductOfInertia | None = Field(
+        default=None, description="entry (x, z) of the tensor in kg*m^2; default 0"
+    )
+    yz: ProductOfInertia | None = Field(
+        default=None, description="entry (y, z) of the tensor in kg*m^2; default 0"
+    )
+
+    @model_validator(mode="after")
+    def _check_triangle(self) -> TensorSpec:
+        moments = {"xx": self.xx.si, "yy": self.yy.si, "zz": self.zz.si}
+        largest = max(moments, key=lambda name: moments[name])
+        if moments[largest] > sum(moments.values()) - moments[largest]:
+            raise fault(
+                "one moment exceeds the sum of the two others: no body has that inertia",
+                "check the three moments",
+                largest,
+            )
+        return self
+
+
+class BodySpec(SpecModel):
+    """A rigid body: mass, center of mass, and inertia as a tensor or as that of a rod."""
+
+    mass: Mass = Field(description="mass in kg, >= 0")
+    center_of_mass: tuple[Coordinate, Coordinate, Coordinate] = Field(
+        description="center of mass [x, y, z] in m, in the frame of the body"
+    )
+    inertia: Literal["slender-rod", "tensor"] = Field(
+        description="slender-rod: m l^2/12 about both axes across the body's length, 0 along it; "
+        "tensor: as given under `tensor`"
+    )
+    tensor: TensorSpec | None = Field(
+        default=None, description="inertia about the center of mass, with `inertia: tensor`"
+    )
+
+    @model_validator(mode="after")
+    def _check_tensor(self) -> BodySpec:
+        if (self.inertia == "tensor") != (self.tensor is not None):
+            raise fault(
+                "`inertia: tensor` and `tensor` go together",
+                "give both, or `inertia: slender-rod` alone",
+                "inertia",
+            )
+        return self
+
+
+class LegSpec(SpecModel):
+    """One leg: crank and coupler move in a plane that turns about the leg's base axis."""
+
+    azimuth: SignedAngle = Field(
+        description="direction of the base axis through the pivot, in the base's x-y plane, "
+        "from x towards y"
+    )
+    elbow_sign: ElbowSign = Field(
+        description="sign of the elbow's angle in `crank angle = direction of the coupler joint + "
+        "sign * acos(...)`: -1 bends the elbow outwards (thesis 3.10), 1 inwards"
+    )
+    l0: Length = Field(description="pivot to base joint along the base axis, in m")
+    l1: Length = Field(description="length of the crank, in m")
+    l2: Length = Field(description="length of the coupler, in m")
+    l3: Length = Field(description="distance of the coupler's end from the endoscope axis, in m")
+    crank: BodySpec = Field(
+        description="first link; x along it from the base joint, z normal to the leg's plane"
+    )
+    coupler: BodySpec = Field(
+        description="second link; x along it from the elbow, z normal to the leg's plane"
+    )
+    arm: BodySpec = Field(
+        description="third link; x along it from the coupler's end to the endoscope axis, z "
+        "normal to the leg's plane"
+    )
+    axis_inertia: MomentOfInertia = Field(
+        description="inertia about the base axis of what turns with the leg's plane beside its "
+        "links, such as a rotor, in kg*m^2"
+    )
+
+
+class LegsSpec(SpecModel):
+    """The three legs; the middle one carries the platform."""
+
+    left: LegSpec = Field(description="side leg of theta1, the angle of its plane")
+    right: LegSpec = Field(description="side leg of theta2, the angle of its plane")
+    middle: LegSpec = Field(
+        description="leg of theta3, its crank angle; its arm is rigid with the platform"
+    )
+
+    @model_validator(mode="after")
+    def _check_axes(self) -> LegsSpec:
+        from math import sin
+
+        if abs(sin(self.left.azimuth.si - self.right.azimuth.si)) < 1e-6:
+            raise fault(
+                "the base axes of the side legs are parallel: they cannot point the endoscope",
+                "give them different azimuths",
+                "right",
+                "azimuth",
+            )
+        return self
+
+
+class PlatformSpec(BodySpec):
+    """The mobile platform with the endoscope.
+
+    Its frame has its origin at depth d on the endoscope axis: x towards the middle leg, z along
+    the endoscope, y completes a right-handed frame.
+    """
+
+    length: Length = Field(description="length along the endoscope axis, for slender-rod, in m")
+
+
+class RobotWorkspaceSpec(SpecModel):
+    """Poses that the robot is made for."""
+
+    phi: Angle = Field(description="largest |phi| (yaw)")
+    psi: Angle = Field(description="largest |psi| (pitch)")
+    d: LengthBounds = Field(description="depth along the endoscope axis, {min: ..., max: ...}")
+
+
+class TaskLimitsSpec(SpecModel):
+    """Largest motion of the endoscope that the task asks for (thesis 3.3)."""
+
+    angular_velocity: AngularVelocity = Field(description="of phi and psi, in rad/s")
+    linear_velocity: LinearVelocity = Field(description="of d, in m/s")
+    angular_acceleration: AngularAcceleration = Field(description="of phi and psi, in rad/s^2")
+    linear_acceleration: LinearAcceleration = Field(description="of d, in m/s^2")
+
+
+class DriveSpec(SpecModel):
+    """Motor with driver, gearhead, capstan and encoder; the same for all three joints."""
+
+    gain: ActuatorGain = Field(
+        description="Km, speed of the gearhead's output per command, in rad/s/rpm (thesis 4.9)"
+    )
+    time_constant: Duration = Field(description="mechanical time constant in s (thesis 4.9)")
+    rotor_inertia: MomentOfInertia = Field(
+        description="motor and gearhead, at the motor shaft, in kg*m^2"
+    )
+    gearhead_ratio: Positive = Field(description="motor turns per turn of the gearhead, no unit")
+    capstan_ratio: Positive = Field(description="gearhead turns per turn of the joint, no unit")
+    speed_torque_gradient: TorqueGradient = Field(
+        description="command per torque at the motor shaft, in rpm/(N*m) (thesis 4.10)"
+    )
+    coulomb_friction: Command = Field(description="dry friction as a command (thesis 4.1)")
+    encoder_counts: Counts = Field(
+        description="counts of the encoder per turn of the gearhead's output"
+    )
+
+
+class RobotControlSpec(SpecModel):
+    """Motion control of the joints (thesis 4.2 and 4.3)."""
+
+    motion_loop: MotionLoopSpec = Field(description="the position loop around each motor")
+    sample_period: Duration = Field(description="time between two control ticks, in s")
+
+
+class BalancedLegSpec(SpecModel):
+    """Counter-masses and spring of one side leg (thesis 4.4)."""
+
+    arm_center_of_mass: Length = Field(
+        description="G_c, center of mass of the arm from the coupler's end, in m"
+    )
+    coupler_counter_arm: Length = Field(
+        description="B_b, counter-mass of the coupler from the elbow, in m"
+    )
+    arm_counter_arm: Length = Field(
+        description="B_c, counter-mass of the arm from the coupler's end, in m"
+    )
+    spring_on_crank: Length = Field(description="A0C_A, spring on the crank from the base joint")
+    spring_on_base: Length = Field(description="A0D0, spring on the base from the base joint, in m")
+
+
+class BalanceSpec(SpecModel):
+    """Passive balance of the side legs (thesis 4.4)."""
+
+    payload: Mass = Field(description="m_p, share of the platform that each side leg carries")
+    tilt: SignedAngle = Field(description="base tilt for which the springs are anchored")
+    left: BalancedLegSpec = Field(description="left leg")
+    right: BalancedLegSpec = Field(description="right leg")
+
+
+class RobotSpec(SpecModel):
+    """A parallel robot that moves an endoscope about a pivot point (thesis 3 and 4)."""
+
+    kind: Literal["robot"] = Field(description="what this file describes")
+    name: Name = Field(description="short name: lower-case letters, digits, '.', '_', '-'")
+    title: Title = Field(default="", description="one line for people, at most 200 characters")
+    gravity: Gravity = Field(description="gravitational acceleration, m/s^2")
+    base_tilt: SignedAngle = Field(
+        description="theta4, rotation of the base against the vertical (thesis 3.40)"
+    )
+    legs: LegsSpec = Field(description="the three legs")
+    platform: PlatformSpec = Field(description="mobile platform with the endoscope")
+    workspace: RobotWorkspaceSpec = Field(description="poses that the robot is made for")
+    task_limits: TaskLimitsSpec = Field(description="largest motion of the endoscope")
+    drive: DriveSpec = Field(description="what moves each joint")
+    control: RobotControlSpec | None = Field(default=None, description="motion control")
+    balance: BalanceSpec | None = Field(default=None, description="passive gravity balance")

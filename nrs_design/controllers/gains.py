@@ -8,6 +8,7 @@ from fractions import Fraction
 
 from nrs_design.controllers.controller_design import Controller, ControllerDesign
 from nrs_design.controllers.float32 import exact_decimal, is_float32, to_float32
+from nrs_design.controllers.gain_range import faults_of_ranges
 from nrs_design.controllers.laws import (
     Admittance,
     Law,
@@ -96,6 +97,8 @@ def _controller(
         low, high = to_float32(bounds.min.exact), to_float32(bounds.max.exact)
         if not low <= values[gain] <= high:
             raise CertificateError(f"gain {gain} of controller {name} is outside its bounds")
+    for outside in faults_of_ranges(spec, values):
+        raise CertificateError(f"controller {name}: {outside}")
     return Controller(name, Admittance(**values), spec.environment, spec.contacts)
 
 

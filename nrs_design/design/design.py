@@ -6,6 +6,7 @@ from fractions import Fraction
 
 from nrs_design.controllers.controller_design import Controller, ControllerDesign
 from nrs_design.controllers.float32 import round_significant, to_float32
+from nrs_design.controllers.gain_range import faults_of_ranges
 from nrs_design.controllers.laws import (
     Admittance,
     PositionControl,
@@ -20,8 +21,8 @@ from nrs_design.errors import DesignError
 from nrs_design.models.motion_loop import MotionLoop
 from nrs_design.models.plant import Plant
 from nrs_design.spec import (
-    Bounds,
     ForceControllerSpec,
+    GainSpec,
     ImpedanceControllerSpec,
     InteractionDesignSpec,
     PositionControllerSpec,
@@ -125,12 +126,14 @@ def _controller(
     elif controller.Mt.fixed and controller.Bt.fixed:
         # Nothing to choose; whether these gains are stable is for the certificate to say.
         law = Admittance(to_float32(controller.Mt.min.exact), to_float32(controller.Bt.min.exact))
+        _check_ranges(controller, law)
     else:
         optimum = optimize_impedance(impedance_problem(spec, plant, loop, controller))
         law = Admittance(
             Mt=_shipped(optimum.Mt, controller.Mt, digits),
             Bt=_shipped(optimum.Bt, controller.Bt, digits),
         )
+        _check_ranges(controller, law)
     return Controller(name, law, controller.environment, controller.contacts)
 
 
@@ -145,7 +148,12 @@ def _force_gain(
     return to_float32(round_significant(gain, digits))
 
 
-def _shipped(value: float, bounds: Bounds, digits: int) -> Fraction:
+def _check_ranges(controller: ImpedanceControllerSpec, law: Admittance) -> None:
+    for outside in faults_of_ranges(controller, {"Mt": law.Mt, "Bt": law.Bt}):
+        raise DesignError(outside, remedy="move the range, or let min and max lie inside it")
+
+
+def _shipped(value: float, bounds: GainSpec, digits: int) -> Fraction:
     """Round a gain, keep it within its bounds, and round it to single precision."""
     rounded = round_significant(value, digits)
     return to_float32(min(max(rounded, bounds.min.exact), bounds.max.exact))

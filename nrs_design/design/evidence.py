@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import product
 
 from nrs_design.controllers.controller_design import Controller, ControllerDesign
+from nrs_design.controllers.gain_range import gain_interval
 from nrs_design.controllers.laws import Admittance, ProportionalForce
 from nrs_design.design.design import (
     impedance_problem,
@@ -18,7 +20,7 @@ from nrs_design.design.impedance import (
     impedance_cost,
     optimize_impedance,
 )
-from nrs_design.design.margins import LoopMargins, loop_margins
+from nrs_design.design.margins import LoopMargins, loop_margins, stiffness_limit
 from nrs_design.design.root_locus import MotionLoopResponse, PdDesign, motion_loop_response
 from nrs_design.design.transfer import TransferFunction
 from nrs_design.models.motion_loop import MotionLoop
@@ -45,6 +47,9 @@ class ImpedanceEvidence:
         Of the shipped gains.
     margins : LoopMargins
         Of the shipped gains, in nominal contact.
+    lowest_limit : float
+        Smallest stiffness limit in N m/rad, of the shipped gains and of the corners of their
+        declared ranges.
     """
 
     name: str
@@ -54,6 +59,7 @@ class ImpedanceEvidence:
     Bt: float
     cost: float
     margins: LoopMargins
+    lowest_limit: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -128,6 +134,14 @@ def _impedance(
     assert isinstance(requirement, ImpedanceControllerSpec)
     problem = impedance_problem(spec, plant, loop, requirement)
     Mt, Bt = float(law.Mt), float(law.Bt)
+    margins = loop_margins(problem.loop, Mt, Bt)
+    corners = product(
+        gain_interval(requirement.Mt, law.Mt).ends, gain_interval(requirement.Bt, law.Bt).ends
+    )
+    limits = (
+        stiffness_limit(problem.loop, float(mass), float(damping))
+        for (_, mass), (_, damping) in corners
+    )
     return ImpedanceEvidence(
         name=controller.name,
         problem=problem,
@@ -135,7 +149,8 @@ def _impedance(
         Mt=Mt,
         Bt=Bt,
         cost=float(impedance_cost(problem, Mt, Bt)),
-        margins=loop_margins(problem.loop, Mt, Bt),
+        margins=margins,
+        lowest_limit=min(margins.stiffness_limit, *limits),
     )
 
 

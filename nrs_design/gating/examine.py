@@ -126,12 +126,14 @@ class Examiner:
             controller = spec.controllers[item.name]
             assert controller.type == "impedance"
             highest = float(plant.environment(controller.environment).stiffness.high)
-            limit = item.margins.stiffness_limit
+            limit = item.lowest_limit
+            ranged = controller.Mt.ranged or controller.Bt.ranged
+            where = f"{item.name}, in the corners of its gain ranges" if ranged else item.name
             reached = highest < limit
             verb = "stays below" if reached else "reaches"
             message = (
                 f"design goal: the stiffness of {controller.environment}, up to {highest:.6g} "
-                f"N*m/rad, {verb} the limit {limit:.6g} N*m/rad of controller {item.name} "
+                f"N*m/rad, {verb} the limit {limit:.6g} N*m/rad of controller {where} "
                 "(floating point, not a proof)"
             )
             yield self.obligation(

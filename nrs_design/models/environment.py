@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass
 from fractions import Fraction
-from itertools import product
 
 from nrs_design.errors import AssemblyError
 
@@ -83,11 +81,6 @@ class Environment:
         """The environment at its nominal parameters."""
         return Contact(self.name, self.stiffness.nominal, self.damping.nominal)
 
-    @property
-    def middle(self) -> Contact:
-        """The environment halfway between all ends."""
-        return Contact(self.name, self.stiffness.middle, self.damping.middle)
-
     def scaled(self, scale: Fraction) -> Environment:
         """Return the environment with its ranges stretched about the nominal values.
 
@@ -105,9 +98,3 @@ class Environment:
                 remedy="scale the ranges by less",
             )
         return Environment(self.name, stiffness, damping)
-
-    def vertices(self) -> Iterator[Contact]:
-        """Yield the corners of the parameter box."""
-        for (k_end, k), (b_end, b) in product(self.stiffness.ends, self.damping.ends):
-            ends = [f"{symbol}-{end}" for symbol, end in (("k", k_end), ("b", b_end)) if end]
-            yield Contact("/".join([self.name, *ends]), k, b)

@@ -10,6 +10,7 @@ from nrs_design.spec.controllers import (
 )
 from nrs_design.spec.environment import ElasticSpec, EnvironmentSpec, KelvinVoigtSpec
 from nrs_design.spec.exact import parse_exact
+from nrs_design.spec.gain_fields import GainSpec
 from nrs_design.spec.interaction import DesignSpec, InteractionDesignSpec
 from nrs_design.spec.load import LoadedSpec, Spec, load_spec, parse_spec, read_spec
 from nrs_design.spec.motion import (
@@ -51,6 +52,7 @@ __all__ = [
     "ElasticSpec",
     "EnvironmentSpec",
     "ForceControllerSpec",
+    "GainSpec",
     "ImpedanceControllerSpec",
     "InteractionDesignSpec",
     "KelvinVoigtSpec",

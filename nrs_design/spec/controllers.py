@@ -9,11 +9,17 @@ from pydantic import Discriminator, Field, field_validator, model_validator
 
 from nrs_design.spec.faults import fault
 from nrs_design.spec.fields import Label, Positive, UnitFraction, Weight
+from nrs_design.spec.gain_fields import DampingGain, InertiaGain
 from nrs_design.spec.model import SpecModel
-from nrs_design.spec.quantity_fields import DampingBounds, ForceGain, Impedance, InertiaBounds
+from nrs_design.spec.quantity_fields import ForceGain, Impedance
 
 _ENVIRONMENT = "name of the environment that the gains are designed for"
 _CONTACTS = "names of all environments touched while this controller is active; default: its own"
+
+_GAIN_RANGE = (
+    "range: [lowest, highest] beside them is what the proof covers if the gain is retuned while "
+    "the robot runs"
+)
 
 
 def _distinct(contacts: tuple[str, ...]) -> tuple[str, ...]:
@@ -58,11 +64,13 @@ class ImpedanceControllerSpec(SpecModel):
         default=None,
         description="multiplies limits.torque/limits.velocity, no unit; not with desired_impedance",
     )
-    Mt: InertiaBounds = Field(
-        description="admittance inertia in kg*m^2: one quantity, or {min: ..., max: ...}; 0 allowed"
+    Mt: InertiaGain = Field(
+        description="admittance inertia in kg*m^2: one quantity, {min: ..., max: ...} for the "
+        f"design, or {{nominal: ...}}; 0 allowed; {_GAIN_RANGE}"
     )
-    Bt: DampingBounds = Field(
-        description="admittance damping in N*m*s/rad: one quantity, or {min: ..., max: ...}; > 0"
+    Bt: DampingGain = Field(
+        description="admittance damping in N*m*s/rad: one quantity, {min: ..., max: ...} for the "
+        f"design, or {{nominal: ...}}; > 0; {_GAIN_RANGE}"
     )
     weights: CostWeights = Field(
         default_factory=CostWeights, description="weights of the design cost, no unit"

@@ -10,6 +10,7 @@ from nrs_design.spec import kinds
 from nrs_design.spec.controllers import ControllerSpec, ImpedanceControllerSpec
 from nrs_design.spec.environment import EnvironmentSpec, KelvinVoigtSpec
 from nrs_design.spec.exact import exact_text
+from nrs_design.spec.gain_fields import GainSpec
 from nrs_design.spec.interaction import InteractionDesignSpec
 from nrs_design.spec.load import Spec
 from nrs_design.spec.model import SpecModel
@@ -17,7 +18,7 @@ from nrs_design.spec.motion import LimitsSpec
 from nrs_design.spec.parameters import ParameterSpec
 from nrs_design.spec.provenance import ProvenanceSpec
 from nrs_design.spec.quantity import Quantity, QuantityKind
-from nrs_design.spec.quantity_fields import Bounds, RangedQuantity
+from nrs_design.spec.quantity_fields import RangedQuantity
 from nrs_design.spec.robot import RobotSpec
 from nrs_design.spec.switched_system import SwitchedSystemSpec
 from nrs_design.spec.switching import SwitchingSpec
@@ -160,8 +161,8 @@ def _controller(name: str, controller: ControllerSpec, limits: LimitsSpec) -> It
     yield Row(f"{name}.contacts", ", ".join(controller.contacts), "", "")
     if controller.type == "impedance":
         yield _desired_impedance(f"{name}.desired_impedance", controller, limits)
-        yield _bounds(f"{name}.Mt", controller.Mt, kinds.INERTIA)
-        yield _bounds(f"{name}.Bt", controller.Bt, kinds.IMPEDANCE)
+        yield from _gain(f"{name}.Mt", controller.Mt, kinds.INERTIA)
+        yield from _gain(f"{name}.Bt", controller.Bt, kinds.IMPEDANCE)
         yield _number(f"{name}.weights.displayed", controller.weights.displayed)
         yield _number(f"{name}.weights.sensitivity", controller.weights.sensitivity)
     elif controller.proportional_gain is not None:
@@ -179,11 +180,18 @@ def _desired_impedance(name: str, controller: ImpedanceControllerSpec, limits: L
     return Row(name, written, _text(value), kinds.IMPEDANCE.si_unit)
 
 
-def _bounds(name: str, bounds: Bounds, kind: QuantityKind) -> Row:
-    if bounds.fixed:
-        return _row(name, bounds.min, kind)
-    value = f"[{_text(bounds.min.si)}, {_text(bounds.max.si)}]"
-    return Row(name, f"[{bounds.min.text}, {bounds.max.text}]", value, kind.si_unit)
+def _gain(name: str, gain: GainSpec, kind: QuantityKind) -> Iterator[Row]:
+    if gain.fixed:
+        yield _row(name, gain.min, kind)
+    else:
+        yield _interval(name, gain.min, gain.max, kind)
+    if gain.range is not None:
+        yield _interval(f"{name}.range", *gain.range, kind)
+
+
+def _interval(name: str, low: Quantity, high: Quantity, kind: QuantityKind) -> Row:
+    value = f"[{_text(low.si)}, {_text(high.si)}]"
+    return Row(name, f"[{low.text}, {high.text}]", value, kind.si_unit)
 
 
 def _row(name: str, quantity: Quantity, kind: QuantityKind) -> Row:

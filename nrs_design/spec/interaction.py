@@ -116,6 +116,8 @@ def _check_dwell_time(dwell: DwellTime, spec: InteractionDesignSpec) -> None:
                 "leave dwell_time out, or write a spec for each environment",
                 *at,
             )
+        if isinstance(controller, ImpedanceControllerSpec):
+            _check_constant_gains(name, controller, at)
         for contact in contacts:
             if not spec.environments[contact].fixed:
                 raise fault(
@@ -124,3 +126,16 @@ def _check_dwell_time(dwell: DwellTime, spec: InteractionDesignSpec) -> None:
                     "leave dwell_time out, or give the environment its nominal values only",
                     *at,
                 )
+
+
+def _check_constant_gains(
+    name: str, controller: ImpedanceControllerSpec, at: tuple[str, ...]
+) -> None:
+    for gain in ("Mt", "Bt"):
+        if getattr(controller, gain).ranged:
+            raise fault(
+                f"a dwell time and the range of {gain} of {name!r} exclude each other: the gain "
+                "may move during the dwell time, and the proof would not hold",
+                "leave dwell_time out, or give the gain one value only",
+                *at,
+            )

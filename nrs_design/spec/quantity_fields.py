@@ -70,7 +70,7 @@ AnyQuantity = Annotated[
 
 
 class Bounds(SpecModel):
-    """Closed interval for a gain; a fixed gain has ``min == max``."""
+    """Closed interval."""
 
     min: AnyQuantity = Field(description="smallest admissible value")
     max: AnyQuantity = Field(description="largest admissible value")
@@ -134,7 +134,7 @@ def _bounds(kind: QuantityKind, *, positive: bool) -> BeforeValidator:
         if isinstance(value, str | Quantity):
             quantity = read_quantity(value, kind, positive=positive)
             return {"min": quantity, "max": quantity}
-        return _read_entries(value, ("min", "max"), reader)
+        return read_entries(value, ("min", "max"), reader)
 
     def reader(value: object, *at: int | str) -> Quantity:
         return read_quantity(value, kind, *at, positive=positive)
@@ -146,9 +146,9 @@ def _ranged(kind: QuantityKind, *, positive: bool) -> BeforeValidator:
     def read(value: object) -> object:
         if isinstance(value, str | Quantity):
             return {"nominal": read_quantity(value, kind, positive=positive)}
-        entries = _read_entries(value, ("nominal",), reader)
+        entries = read_entries(value, ("nominal",), reader)
         if isinstance(entries, dict) and "range" in entries:
-            entries["range"] = _read_range(entries["range"], reader)
+            entries["range"] = read_range(entries["range"], reader)
         return entries
 
     def reader(value: object, *at: int | str) -> Quantity:
@@ -157,7 +157,7 @@ def _ranged(kind: QuantityKind, *, positive: bool) -> BeforeValidator:
     return BeforeValidator(read)
 
 
-def _read_entries(value: object, keys: tuple[str, ...], reader: Callable[..., Quantity]) -> object:
+def read_entries(value: object, keys: tuple[str, ...], reader: Callable[..., Quantity]) -> object:
     """Read the entries that are quantities; what else is wrong is left to the model."""
     if not isinstance(value, dict):
         return value
@@ -165,7 +165,8 @@ def _read_entries(value: object, keys: tuple[str, ...], reader: Callable[..., Qu
     return value | read
 
 
-def _read_range(value: object, reader: Callable[..., Quantity]) -> tuple[Quantity, ...]:
+def read_range(value: object, reader: Callable[..., Quantity]) -> tuple[Quantity, ...]:
+    """Read both ends of a range."""
     if not isinstance(value, tuple | list) or len(value) != 2:
         raise fault("expected two quantities", "write [lowest, highest]", "range")
     return tuple(reader(end, "range", index) for index, end in enumerate(value))
@@ -219,12 +220,6 @@ Stiffness = Annotated[
 ]
 Damping = Annotated[
     RangedQuantity, _ranged(kinds.DAMPING, positive=False), _ranged_schema(kinds.DAMPING)
-]
-InertiaBounds = Annotated[
-    Bounds, _bounds(kinds.INERTIA, positive=False), _bounds_schema(kinds.INERTIA)
-]
-DampingBounds = Annotated[
-    Bounds, _bounds(kinds.IMPEDANCE, positive=True), _bounds_schema(kinds.IMPEDANCE)
 ]
 Mass = Annotated[Quantity, _quantity(kinds.MASS, positive=False), _schema(kinds.MASS)]
 Length = Annotated[Quantity, _quantity(kinds.LENGTH), _schema(kinds.LENGTH)]

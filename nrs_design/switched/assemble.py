@@ -14,6 +14,7 @@ from nrs_design.models.actuator import Actuator
 from nrs_design.models.motion_loop import MotionLoop, close_motion_loop
 from nrs_design.models.plant import build_plant
 from nrs_design.spec import (
+    ImpedanceControllerSpec,
     InteractionDesignSpec,
     PositionControllerSpec,
     RobotSpec,
@@ -23,6 +24,7 @@ from nrs_design.spec import (
 from nrs_design.switched.assumptions import GIVEN_MATRICES, assume_matrices, scale_texts
 from nrs_design.switched.close_loop import close_loop
 from nrs_design.switched.constraints import assemble_switching
+from nrs_design.switched.gain_box import gain_boxes
 from nrs_design.switched.parameters import corner_modes, read_parameters
 from nrs_design.switched.system import Mode, SwitchedSystem, Time
 
@@ -54,8 +56,8 @@ def assemble(
     Raises
     ------
     AssemblyError, CertificateError
-        If gains or coordinates do not fit the spec, if a stiffness does not stay positive, or if
-        the rules of switching make too many switches.
+        If gains or coordinates do not fit the spec, if a stiffness or a gain does not stay
+        positive, or if the rules of switching make too many switches.
     """
     if scale < 0:
         raise AssemblyError(f"ranges cannot be scaled by {scale}", remedy="give a scale >= 0")
@@ -69,12 +71,16 @@ def assemble(
 
 
 def has_ranges(spec: Spec) -> bool:
-    """Tell whether a spec declares a range, of a parameter or of an environment that is touched."""
+    """Tell whether a spec declares a range: of a parameter, a touched environment or a gain."""
     if isinstance(spec, SwitchedSystemSpec):
         return any(not parameter.fixed for parameter in spec.parameters.values())
     if isinstance(spec, RobotSpec):
         return False
-    return any(not spec.environments[name].fixed for name in _touched(spec))
+    return any(not spec.environments[name].fixed for name in _touched(spec)) or any(
+        controller.Mt.ranged or controller.Bt.ranged
+        for controller in spec.controllers.values()
+        if isinstance(controller, ImpedanceControllerSpec)
+    )
 
 
 def _touched(spec: InteractionDesignSpec) -> set[str]:
@@ -116,7 +122,8 @@ def from_design(
         raise AssemblyError(f"unknown coordinates {coordinates!r}: deflection or force")
     loop = motion_loop(spec, design.motion)
     plant = build_plant(spec).scaled(scale, _touched(spec))
-    system = close_loop(spec.name, plant, loop, design, coordinates, spec.switching)
+    boxes = gain_boxes(spec, design, scale)
+    system = close_loop(spec.name, plant, loop, design, coordinates, spec.switching, boxes)
     return replace(system, assumptions=(*system.assumptions, *scale_texts(scale)))
 
 

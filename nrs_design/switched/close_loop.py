@@ -6,9 +6,10 @@ with zero virtual inertia) and the deflection. State of a position or force mode
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
+from functools import partial
 from itertools import chain
 
 from nrs_design.controllers.controller_design import Controller, ControllerDesign
@@ -20,8 +21,10 @@ from nrs_design.models.plant import Plant
 from nrs_design.spec import SwitchingSpec
 from nrs_design.switched.assumptions import CONTINUOUS, rule_texts
 from nrs_design.switched.constraints import assemble_switching
+from nrs_design.switched.gain_box import GainBox
 from nrs_design.switched.matrix import RationalMatrix, multiply
-from nrs_design.switched.parameters import Corner, check_affine
+from nrs_design.switched.parameter_box import Axis, box_corners
+from nrs_design.switched.parameters import Corner
 from nrs_design.switched.system import Mode, SwitchedSystem, Time
 
 Row = list[Fraction]
@@ -70,12 +73,15 @@ def close_loop(
     design: ControllerDesign,
     coordinates: str,
     rules: SwitchingSpec | None = None,
+    boxes: Mapping[str, GainBox] | None = None,
 ) -> SwitchedSystem:
     """Assemble every mode of an interaction design.
 
-    One mode for each controller and each corner of the parameter box of each environment that
-    it may touch. Every entry of A is affine in stiffness and damping, so a quadratic function
-    that decreases in the corners decreases in the whole box, however fast the parameters move.
+    One mode for each controller and each corner of the box of its gains and of the parameters of
+    each environment that it may touch. Every entry of A is affine in stiffness, in damping, in Bt
+    and in 1/Mt (without inertia: in 1/Bt), each for itself, so A is a convex combination of the
+    corners in the whole box, and what decreases in the corners decreases there, however fast the
+    parameters move.
 
     Parameters
     ----------
@@ -92,6 +98,8 @@ def close_loop(
         in contact, so the physical choice) or the force (the thesis's choice).
     rules : SwitchingSpec, optional
         Rules for the change of controllers; by default any may follow any other at any time.
+    boxes : mapping, optional
+        Where the gains of impedance controllers may be, by name; by default, at what ships.
 
     Raises
     ------
@@ -100,8 +108,11 @@ def close_loop(
     """
     motion = realize(loop)
     rules = rules or SwitchingSpec()
+    boxes = boxes or {}
     parts = {
-        controller.name: tuple(_controller_modes(controller, plant, motion, coordinates))
+        controller.name: tuple(
+            _controller_modes(controller, plant, motion, coordinates, boxes.get(controller.name))
+        )
         for controller in design.controllers
     }
     modes = tuple(chain.from_iterable(parts.values()))
@@ -112,35 +123,47 @@ def close_loop(
             remedy="give all impedance controllers a virtual inertia Mt > 0, or none of them",
         )
     states = _state_names(motion.order, sizes[0], coordinates)
-    assumptions = _assumptions(design, coordinates, rules, given=loop.given)
+    assumptions = _assumptions(design, coordinates, rules, boxes, given=loop.given)
     groups = {key: tuple(Corner(mode.name) for mode in part) for key, part in parts.items()}
     switching = assemble_switching(rules, groups)
     return SwitchedSystem(name, Time.CONTINUOUS, states, modes, assumptions, switching)
 
 
 def _controller_modes(
-    controller: Controller, plant: Plant, motion: Realization, coordinates: str
+    controller: Controller,
+    plant: Plant,
+    motion: Realization,
+    coordinates: str,
+    box: GainBox | None,
 ) -> Iterator[Mode]:
     law = controller.law
     if isinstance(law, PositionControl):
         yield Mode(controller.name, RationalMatrix.from_rows(motion.A))
         return
+    gains: tuple[Axis, ...] = ()
+    if isinstance(law, Admittance):
+        gains = (box or GainBox.point(law)).axes
     for environment in map(plant.environment, controller.contacts):
-        corners = []
-        for contact in environment.vertices():
-            label = f"{controller.name}/{contact.label}"
-            corners.append(_contact_rows(law, contact, motion, coordinates))
-            yield Mode(label, RationalMatrix.from_rows(corners[-1]))
-        middle = _contact_rows(law, environment.middle, motion, coordinates)
-        check_affine(middle, corners, f"{controller.name}/{environment.name}")
+        name = f"{controller.name}/{environment.name}"
+        axes = (Axis("k", environment.stiffness), Axis("b", environment.damping), *gains)
+        rows_at = partial(_rows_at, law, environment.name, motion, coordinates)
+        for corner in box_corners(axes, rows_at, name):
+            label = f"{name}/{corner.label}" if corner.label else name
+            yield Mode(label, RationalMatrix.from_rows(corner.rows))
 
 
-def _contact_rows(
-    law: Admittance | ProportionalForce, contact: Contact, motion: Realization, coordinates: str
+def _rows_at(
+    law: Admittance | ProportionalForce,
+    environment: str,
+    motion: Realization,
+    coordinates: str,
+    values: Mapping[str, Fraction],
 ) -> list[Row]:
+    """Return A at the given parameters of the contact and, in impedance control, gains."""
+    contact = Contact(environment, values["k"], values["b"])
     if isinstance(law, ProportionalForce):
         return force_mode(motion, law, contact)
-    rows = impedance_mode(motion, law, contact)
+    rows = impedance_mode(motion, Admittance(values["Mt"], values["Bt"]), contact)
     return to_force_coordinates(rows, motion, contact) if coordinates == "force" else rows
 
 
@@ -207,7 +230,12 @@ def _state_names(motion_order: int, size: int, coordinates: str) -> tuple[str, .
 
 
 def _assumptions(
-    design: ControllerDesign, coordinates: str, rules: SwitchingSpec, *, given: bool
+    design: ControllerDesign,
+    coordinates: str,
+    rules: SwitchingSpec,
+    boxes: Mapping[str, GainBox],
+    *,
+    given: bool,
 ) -> tuple[str, ...]:
     motion = (
         "The motion loop is the transfer function G(s) that the spec states, whatever the motion "
@@ -222,6 +250,9 @@ def _assumptions(
         for c in design.controllers
         if c.contacts
     ]
+    ranged = {name: box for name, box in boxes.items() if not box.fixed}
+    ranges = [text for name, box in ranged.items() for text in box.range_texts(name)]
+    shipped = "The gains are the single-precision numbers listed here"
     last = {
         "deflection": "The deflection is continuous at a switch; the force may jump.",
         "force": "Wherever stiffness or damping changes, at a switch or within its range, the "
@@ -237,7 +268,9 @@ def _assumptions(
         *((last, "Contact is not lost: free motion is not one of the modes.") if impedance else ()),
         *_switch_texts(rules),
         "Continuous time: sampling, delay, quantization, friction and saturation are not modelled.",
-        "The gains are the single-precision numbers listed here.",
+        f"{shipped}, or anywhere in their ranges." if ranged else f"{shipped}.",
+        *ranges,
+        *dict.fromkeys(box.memory_text for box in ranged.values()),
     )
 
 

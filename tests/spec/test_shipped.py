@@ -39,6 +39,7 @@ def test_all_are_found() -> None:
         "thesis-print-error",
         "tissue-x-withdrawal",
         "hand-range-no-mass",
+        "retuned-gains",
         "hand-range",
         "wide-range",
         "geromel-colaneri",
@@ -206,6 +207,17 @@ def test_range_of_hands(folder: str, name: str, Mt: str) -> None:
     low, high = hand.rotational_stiffness.range
     assert (low.exact, high.exact) == (Fraction("24.9984"), Fraction("90.432"))
     assert gains(spec) == [(Mt, "2.15"), (Mt, "1.04")]
+
+
+def test_retuned_gains_are_those_of_the_thesis_within_a_fifth() -> None:
+    # Thesis 6.3.2.1: Mt = 0.01 with Bt = 2.15 and 1.04.
+    spec = design("retuned-gains")
+    for name, Bt in (("insertion", "2.15"), ("withdrawal", "1.04")):
+        controller = spec.controllers[name]
+        assert isinstance(controller, ImpedanceControllerSpec)
+        for gain, value in ((controller.Mt, Fraction("0.01")), (controller.Bt, Fraction(Bt))):
+            assert gain.range is not None
+            assert [end.exact for end in gain.range] == [value * 4 / 5, value * 6 / 5]
 
 
 def test_wide_range() -> None:

@@ -16,7 +16,7 @@ from nrs_design.reporting.document import Block, Illustration, Paragraph, Sectio
 from nrs_design.reporting.figures.complex_plane import draw_root_locus
 from nrs_design.reporting.figures.impedance import draw_displayed_impedance, draw_sensitivity
 from nrs_design.reporting.formatting import number, polynomial, root, roots
-from nrs_design.spec import InteractionDesignSpec
+from nrs_design.spec import ImpedanceControllerSpec, InteractionDesignSpec
 
 if TYPE_CHECKING:
     from nrs_design.design.evidence import DesignEvidence, ForceEvidence, ImpedanceEvidence
@@ -60,7 +60,7 @@ def design_sections(
     spec: InteractionDesignSpec, design: ControllerDesign, evidence: DesignEvidence | None
 ) -> tuple[Section, ...]:
     """Describe a design; without evidence only its gains."""
-    gains = Section("Designed gains", (_gain_table(design),))
+    gains = Section("Designed gains", (_gain_table(design), *_ranges(spec, design)))
     if evidence is None:
         text = (
             "What the gains achieve is not shown: poles and margins exist only where the nominal "
@@ -87,6 +87,27 @@ def _gain_table(design: ControllerDesign) -> Table:
             rows.append((name, "none: the motion loop alone", "", "", ""))
     columns = ("Controller", "Gain", "Value", "Unit", "Exact value that ships (float32)")
     return Table("Gains of one axis", columns, tuple(rows))
+
+
+def _ranges(spec: InteractionDesignSpec, design: ControllerDesign) -> tuple[Block, ...]:
+    """List the ranges of gains that the spec declares, if any."""
+    rows = []
+    for controller in design.controllers:
+        given = spec.controllers[controller.name]
+        if not isinstance(given, ImpedanceControllerSpec):
+            continue
+        for gain, declared in (("Mt", given.Mt), ("Bt", given.Bt)):
+            if declared.range is not None and declared.ranged:
+                low, high = (end.text for end in declared.range)
+                rows.append((controller.name, gain, low, high))
+    if not rows:
+        return ()
+    text = (
+        "These gains may be retuned while the robot runs; the statement about stability is for "
+        "the whole ranges, widened to the single-precision numbers that their ends round to."
+    )
+    columns = ("Controller", "Gain", "Lowest", "Highest")
+    return Paragraph(text), Table("Declared ranges of gains", columns, tuple(rows))
 
 
 def _kind(law: Law) -> str:

@@ -119,8 +119,9 @@ def corners_meaning(system: SwitchedSystem, evidence: AbstractEvidence) -> str:
     if isinstance(evidence, ParameterQuadratic):
         how = "however fast they change, the constant one excepted"
     text = (
-        "Every corner of the declared parameter ranges is a mode. The matrices depend on the "
-        f"parameters affinely, so all values between the corners are covered as well, {how}."
+        "Every corner of the declared parameter ranges is a mode. The matrices are affine in each "
+        "parameter alone, or in its inverse, so all values between the corners are covered as "
+        f"well, {how}."
     )
     if system.time is Time.DISCRETE and _is_polynomial(evidence):
         # The level sets of V need not be convex, but a joint spectral radius is that of the hull.

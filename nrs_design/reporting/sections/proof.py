@@ -74,7 +74,7 @@ def _proved(result: Result, evidence: AbstractEvidence) -> tuple[Block, ...]:
     if design:
         proved.append(
             "The gains in the proof are the single-precision numbers listed below, not their "
-            "rounded display."
+            "rounded display; where a range of a gain is declared, all values in it."
         )
     common = _NOT_COVERED_BY_A_DESIGN if design else _not_covered(system, evidence)
     blocks: list[Block] = [

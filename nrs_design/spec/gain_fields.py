@@ -1,0 +1,166 @@
+"""Field types for gains: how the design may choose them, and where the proof must cover them."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any
+
+from pydantic import BeforeValidator, Field, WithJsonSchema, model_validator
+
+from nrs_design.spec import kinds
+from nrs_design.spec.exact import quoted
+from nrs_design.spec.faults import fault
+from nrs_design.spec.model import SpecModel
+from nrs_design.spec.quantity import Quantity, QuantityKind, is_less
+from nrs_design.spec.quantity_fields import (
+    AnyQuantity,
+    quantity_schema,
+    read_entries,
+    read_quantity,
+    read_range,
+)
+
+_KEYS = {
+    "nominal": "the gain; not with min and max",
+    "min": "smallest value that the design may choose",
+    "max": "largest value that the design may choose",
+}
+_RANGE = (
+    "[lowest, highest] value that the proof covers, however fast the gain changes in between while "
+    "the robot runs; both positive; default: the designed value only"
+)
+
+
+class GainSpec(SpecModel):
+    """A gain: fixed or to be designed within bounds, and perhaps retuned while the robot runs.
+
+    A fixed gain has ``min == max``.
+    """
+
+    nominal: AnyQuantity | None = Field(default=None, description=_KEYS["nominal"])
+    min: AnyQuantity = Field(
+        default_factory=lambda data: data.get("nominal"), description=_KEYS["min"]
+    )
+    max: AnyQuantity = Field(
+        default_factory=lambda data: data.get("nominal"), description=_KEYS["max"]
+    )
+    range: tuple[AnyQuantity, AnyQuantity] | None = Field(default=None, description=_RANGE)
+
+    @model_validator(mode="after")
+    def _check(self) -> GainSpec:
+        if is_less(self.max, self.min):
+            raise fault(
+                f"max {quoted(self.max.text)} is below min {quoted(self.min.text)}",
+                "swap them",
+                "max",
+            )
+        if self.range is not None:
+            _check_range(self, *self.range)
+        return self
+
+    @property
+    def fixed(self) -> bool:
+        """Whether the design may choose only one value."""
+        return self.min.rational_part == self.max.rational_part
+
+    @property
+    def ranged(self) -> bool:
+        """Whether the proof must cover more than the designed value."""
+        return self.range is not None and is_less(*self.range)
+
+
+def _check_range(gain: GainSpec, low: Quantity, high: Quantity) -> None:
+    if is_less(high, low):
+        raise fault(
+            f"the range ends at {quoted(high.text)}, below its start {quoted(low.text)}",
+            "write [lowest, highest]",
+            "range",
+        )
+    written = f"the range [{low.text}, {high.text}]"
+    if gain.fixed and (is_less(gain.min, low) or is_less(high, gain.min)):
+        raise fault(
+            f"{quoted(gain.min.text)} is outside {written}",
+            "widen the range or correct the gain",
+            "range",
+        )
+    if is_less(gain.max, low) or is_less(high, gain.min):
+        raise fault(
+            f"{written} and the bounds [{gain.min.text}, {gain.max.text}] have no value in common",
+            "min and max are for the design, the range is for the proof: let them overlap",
+            "range",
+        )
+
+
+def _gain(kind: QuantityKind, *, positive: bool) -> BeforeValidator:
+    def read(value: object) -> object:
+        if isinstance(value, str | Quantity):
+            return {"nominal": read_quantity(value, kind, positive=positive)}
+        entries = read_entries(value, tuple(_KEYS), reader)
+        if isinstance(entries, dict):
+            _check_keys(entries)
+            if "range" in entries:
+                entries["range"] = read_range(entries["range"], end)
+        return entries
+
+    def reader(value: object, *at: int | str) -> Quantity:
+        return read_quantity(value, kind, *at, positive=positive)
+
+    def end(value: object, *at: int | str) -> Quantity:
+        quantity = read_quantity(value, kind, *at, positive=False)
+        if quantity.value == 0:
+            raise fault(
+                f"a range cannot reach {quoted(quantity.text)}: {_AT_ZERO[kind.name]}",
+                "give positive ends, or one value instead of a range",
+                *at,
+            )
+        return quantity
+
+    return BeforeValidator(read)
+
+
+# Why the ends of a range are positive, by the name of the kind.
+_AT_ZERO = {
+    kinds.INERTIA.name: "without inertia the loop has one state less, so no state is shared",
+    kinds.IMPEDANCE.name: "without damping the admittance does not follow from the force",
+}
+
+
+def _check_keys(entries: dict[str, object]) -> None:
+    """Say what is missing or too much; unknown keys are left to the model."""
+    if not entries.keys() <= {*_KEYS, "range"}:
+        return
+    if "nominal" in entries:
+        for key in ("min", "max"):
+            if key in entries:
+                raise fault(
+                    f"nominal and {key} exclude each other",
+                    "write nominal for a gain that is given, min and max for one to be designed",
+                    key,
+                )
+        return
+    for key in ("min", "max"):
+        if key not in entries:
+            raise fault(
+                f"`{key}` is missing",
+                f"add {key}: {_KEYS[key]}; or write nominal for a gain that is given",
+            )
+
+
+def _schema(kind: QuantityKind) -> WithJsonSchema:
+    single = quantity_schema(kind)
+    known = {key: single | {"description": text} for key, text in _KEYS.items()}
+    ends: dict[str, Any] = {"type": "array", "items": single, "minItems": 2, "maxItems": 2}
+    known["range"] = ends | {"description": _RANGE}
+
+    def mapping(*required: str) -> dict[str, Any]:
+        return {
+            "type": "object",
+            "properties": {key: known[key] for key in (*required, "range")},
+            "required": list(required),
+            "additionalProperties": False,
+        }
+
+    return WithJsonSchema({"anyOf": [single, mapping("min", "max"), mapping("nominal")]})
+
+
+InertiaGain = Annotated[GainSpec, _gain(kinds.INERTIA, positive=False), _schema(kinds.INERTIA)]
+DampingGain = Annotated[GainSpec, _gain(kinds.IMPEDANCE, positive=True), _schema(kinds.IMPEDANCE)]

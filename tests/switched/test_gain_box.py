@@ -1,0 +1,216 @@
+"""Ranges of virtual inertia and damping, from the spec to the modes and their proof."""
+
+from fractions import Fraction
+from itertools import product
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from nrs_design.certificates.certify import Limits, Verdict, certify
+from nrs_design.certificates.evidence import CommonQuadratic, UnstableMode
+from nrs_design.controllers.gains import gains_of
+from nrs_design.controllers.laws import Admittance
+from nrs_design.errors import AssemblyError
+from nrs_design.models.environment import Contact, Interval
+from nrs_design.pipeline import run_design
+from nrs_design.spec import LoadedSpec, parse_spec, read_spec
+from nrs_design.switched.assemble import DECLARED, assemble, has_ranges, motion_loop
+from nrs_design.switched.close_loop import impedance_mode, realize, to_force_coordinates
+from nrs_design.switched.gain_box import GainBox
+from tests.certificates.truth import combine, decrease, is_definite
+from tests.support import ROOT
+
+F = Fraction
+TEXT = """\
+kind: interaction-design
+name: hand
+actuator: {gain: 4.8417e-4 rad/s/rpm, time_constant: 0.0351 s}
+motion_loop: {damping_ratio: 0.707, settling_time: 0.1404 s, derivative_gain: 2060 rpm*s/rad,
+              zero: 56.9706 1/s}
+limits: {velocity: 8 deg/s, torque: 0.3 N*m, bandwidth: 2 Hz}
+environments: {soft: {model: kelvin-voigt, stiffness: STIFF, damping: DAMP}}
+controllers:
+  insertion: {type: impedance, environment: soft, Mt: MASS, Bt: BT}
+switching: arbitrary
+"""
+TISSUE = "{nominal: 43 N*m/rad, range: [41 N*m/rad, 45 N*m/rad]}"
+JELLY = "{nominal: 0.1 N*m*s/rad, range: [0 N*m*s/rad, 0.2 N*m*s/rad]}"
+MASS = "{nominal: 0.0125 kg*m^2, range: [0.01 kg*m^2, 0.02 kg*m^2]}"
+BT = "{nominal: 2 N*m*s/rad, range: [1.75 N*m*s/rad, 2.5 N*m*s/rad]}"
+FIXED = {"STIFF": "43.0356 N*m/rad", "DAMP": "0 N*m*s/rad", "MASS": "0.01 kg*m^2"}
+shares = st.fractions(0, 1, max_denominator=12)
+
+
+def loaded(**fields):
+    text = TEXT
+    for key, value in (FIXED | fields).items():
+        text = text.replace(f" {key}", f" {value}", 1)
+    return LoadedSpec("hand", "", text, parse_spec(text))
+
+
+def assembled(spec, coordinates="deflection", scale=DECLARED):
+    return assemble(spec.spec, gains_of(run_design(spec)), coordinates, scale)
+
+
+class TestPublished:
+    def test_ends_are_the_modes_of_the_thesis(self):
+        """Thesis 6.3.2.1: Mt = 0.01 with Bt = 1.04 and 2.15, of which a common quadratic exists."""
+        damping = "{nominal: 1.04 N*m*s/rad, range: [1.04 N*m*s/rad, 2.15 N*m*s/rad]}"
+        system = assembled(loaded(BT=damping))
+        assert [mode.name for mode in system.modes] == [
+            "insertion/soft/Bt-min",
+            "insertion/soft/Bt-max",
+        ]
+        low, high = (mode.A.fractions() for mode in system.modes)
+        # -Bt/Mt, with both in single precision: -104 and -215 in the print.
+        assert float(low[2][2]) == pytest.approx(-104, rel=1e-6)
+        assert float(high[2][2]) == pytest.approx(-215, rel=1e-6)
+        found = certify(system, limits=Limits(optimize_rate=False))
+        assert found.verdict is Verdict.PROVED
+        assert isinstance(found.evidence, CommonQuadratic)
+
+    def test_too_soft_a_corner_is_refuted(self):
+        """With Mt = 0.01 and Bt = 1.04 the loop is unstable from 75.9 N m/rad on."""
+        damping = "{nominal: 2.15 N*m*s/rad, range: [1.04 N*m*s/rad, 2.15 N*m*s/rad]}"
+        for stiffness, verdict in (("76.5", Verdict.REFUTED), ("60", Verdict.PROVED)):
+            system = assembled(loaded(STIFF=f"{stiffness} N*m/rad", BT=damping))
+            found = certify(system, limits=Limits(optimize_rate=False))
+            assert found.verdict is verdict
+            if verdict is Verdict.REFUTED:
+                assert isinstance(found.evidence, UnstableMode)
+                assert found.evidence.mode == "insertion/soft/Bt-min"
+
+
+class TestCorners:
+    def test_one_mode_for_each(self):
+        system = assembled(loaded(STIFF=TISSUE, DAMP=JELLY, MASS=MASS, BT=BT))
+        ends = product(*([f"{symbol}-min", f"{symbol}-max"] for symbol in ("k", "b", "Mt", "Bt")))
+        assert [m.name for m in system.modes] == [f"insertion/soft/{'/'.join(e)}" for e in ends]
+
+    @given(
+        st.lists(shares, min_size=4, max_size=4),
+        st.sampled_from(["deflection", "force"]),
+        st.booleans(),
+    )
+    def test_every_loop_of_the_box_is_an_average_of_corners(self, at, coordinates, massless):
+        """Recomputed from the loop itself: shares along k, b, 1/Mt and Bt (massless: 1/Bt)."""
+        (k, b), d = (between(s, *ends) for s, ends in zip(at, BOX[:2], strict=False)), BOX[3]
+        if massless:
+            law, at = Admittance(F(0), inverse_between(at[3], *d)), [*at[:2], at[3]]
+        else:
+            law = Admittance(inverse_between(at[2], *BOX[2]), between(at[3], *d))
+        rows = loop_rows(massless, law, Contact("soft", k, b), coordinates)
+        weights = [F(1)]
+        for share in at:
+            weights = [w * part for w in weights for part in (1 - share, share)]
+        corners = [mode.A.fractions() for mode in SYSTEMS[massless, coordinates].modes]
+        mean = combine(*zip(weights, corners, strict=True))
+        assert mean == rows
+
+    def test_a_proof_for_the_corners_holds_inside(self):
+        system = SYSTEMS[False, "deflection"]
+        evidence = certify(system, limits=Limits(optimize_rate=False)).evidence
+        assert isinstance(evidence, CommonQuadratic)
+        for at in product((F(0), F(1, 3), F(1, 2), F(1)), repeat=4):
+            k, b, m, d = (between(s, *ends) for s, ends in zip(at, BOX, strict=True))
+            rows = loop_rows(False, Admittance(m, d), Contact("soft", k, b), "deflection")
+            assert is_definite(decrease(rows, evidence.Q, evidence.rate, system.time))
+
+
+def between(share, low, high):
+    return (1 - share) * low + share * high
+
+
+def inverse_between(share, low, high):
+    return 1 / between(share, 1 / low, 1 / high)
+
+
+# Ends that are single-precision numbers, so that the box is as written: k, b, Mt, Bt.
+BOX = [(F(41), F(45)), (F(0), F("0.2")), (F(1, 128), F(1, 32)), (F("1.75"), F("2.5"))]
+EXACT_MASS = "{nominal: 0.015625 kg*m^2, range: [0.0078125 kg*m^2, 0.03125 kg*m^2]}"
+CASES = {
+    massless: loaded(STIFF=TISSUE, DAMP=JELLY, MASS="0 kg*m^2" if massless else EXACT_MASS, BT=BT)
+    for massless in (False, True)
+}
+SYSTEMS = {
+    (massless, coordinates): assembled(spec, coordinates)
+    for massless, spec in CASES.items()
+    for coordinates in ("deflection", "force")
+}
+MOTIONS = {
+    massless: realize(motion_loop(spec.spec, run_design(spec).motion))
+    for massless, spec in CASES.items()
+}
+
+
+def loop_rows(massless, law, contact, coordinates):
+    rows = impedance_mode(MOTIONS[massless], law, contact)
+    if coordinates == "force":
+        return to_force_coordinates(rows, MOTIONS[massless], contact)
+    return rows
+
+
+class TestStatements:
+    def test_assumptions_say_where_gains_are_and_what_is_kept(self):
+        texts = assembled(loaded(MASS=MASS, BT=BT)).assumptions
+        assert texts[-4:] == (
+            "The gains are the single-precision numbers listed here, or anywhere in their ranges.",
+            # 0.01 and 0.02 in single precision are below: the lower end moves with it.
+            "Mt of insertion stays in [0.00999999977648258209228515625, 0.02] kg*m^2 and may "
+            "change arbitrarily fast.",
+            "Bt of insertion stays in [1.75, 2.5] N*m*s/rad and may change arbitrarily fast.",
+            "While a gain changes, the admittance keeps its velocity vm: the controller "
+            "integrates vm' = (F - Bt vm)/Mt with the gains of the moment. One that keeps Mt vm, "
+            "or another memory of a filter, is not covered.",
+        )
+
+    def test_without_inertia_nothing_is_kept(self):
+        texts = assembled(loaded(MASS="0 kg*m^2", BT=BT)).assumptions
+        assert texts[-1].startswith("With Mt = 0 the admittance has no memory")
+        assert not any("keeps its velocity" in text for text in texts)
+
+    def test_without_ranges_nothing_is_added(self):
+        texts = assembled(loaded(BT="2 N*m*s/rad")).assumptions
+        assert texts[-1] == "The gains are the single-precision numbers listed here."
+
+    def test_has_ranges(self):
+        assert has_ranges(loaded(BT=BT).spec)
+        assert has_ranges(loaded(MASS=MASS, BT="2 N*m*s/rad").spec)
+        assert not has_ranges(loaded(BT="2 N*m*s/rad").spec)
+        assert not has_ranges(loaded(BT="{min: 1 N*m*s/rad, max: 9 N*m*s/rad}").spec)
+
+
+class TestScale:
+    def test_gains_are_stretched_about_what_ships(self):
+        spec = loaded(MASS=MASS, BT=BT)
+        nominal = assembled(spec, scale=F(0))
+        assert [mode.name for mode in nominal.modes] == ["insertion/soft"]
+        assert nominal.assumptions[-2] == "The gains are the single-precision numbers listed here."
+        double = assembled(spec, scale=F(2))
+        assert "Bt of insertion stays in [1.5, 3] N*m*s/rad and may change arbitrarily fast." in (
+            double.assumptions
+        )
+
+    @pytest.mark.parametrize(("gain", "scale"), [("MASS", 5), ("BT", 8)])
+    def test_gains_stay_positive(self, gain, scale):
+        fields = {"BT": "2 N*m*s/rad"} | {gain: {"MASS": MASS, "BT": BT}[gain]}
+        spec = loaded(**fields)
+        assembled(spec, scale=F(scale) - F(1, 10))
+        name = {"MASS": "Mt", "BT": "Bt"}[gain]
+        with pytest.raises(AssemblyError, match=f"gain {name} of controller insertion does not"):
+            assembled(spec, scale=F(scale))
+
+    def test_a_point_may_be_zero(self):
+        box = GainBox(Interval.point(F(0)), Interval(F(2), F(1), F(3)))
+        assert box.scaled(F(1, 2), "in").Bt == Interval(F(2), F(3, 2), F(5, 2))
+        assert not box.fixed
+        assert GainBox.point(Admittance(F(0), F(2))).fixed
+
+
+def test_shipped_example_needs_a_polynomial():
+    spec = read_spec(ROOT / "specs" / "neuroboscope" / "retuned-gains.nrs.yaml")
+    system = assembled(spec)
+    assert len(system.modes) == 16
+    found = certify(system, limits=Limits(max_degree=4, optimize_rate=False))
+    assert (found.verdict, str(found.common_quadratic)) == (Verdict.PROVED, "impossible")

@@ -41,6 +41,8 @@ from nrs_design.certificates.search.rungs import (
     search_polynomial,
     search_preconditioned,
     search_raw,
+    search_switching_at_values,
+    search_value,
 )
 from nrs_design.certificates.search.structure import merge_equal_modes, triangular_blocks
 from nrs_design.certificates.second_opinion import confirm
@@ -66,6 +68,7 @@ class Method(StrEnum):
     PARAMETER_QUADRATIC = "parameter-quadratic"
     PERIOD = "period"
     POLYNOMIAL = "polynomial"
+    VALUE = "value"
 
 
 @dataclass(frozen=True, slots=True)
@@ -256,6 +259,8 @@ def _rungs(
     if Method.GRADIENT in wanted and not remarks:
         yield "gradient", search_by_gradient
     yield "every mode", examine_every_mode
+    if Method.VALUE in wanted:
+        yield "constant values", search_value
     if Method.PARAMETER_QUADRATIC in wanted:
         yield "parameter quadratic", search_parameter_quadratic
     if Method.MODE_QUADRATIC in wanted:
@@ -268,6 +273,8 @@ def _rungs(
         yield f"polynomial of degree {2 * d}", polynomial(degree=d)
     if Method.PERIOD in wanted:
         yield "period", search_period
+    if Method.VALUE in wanted:
+        yield "switching at constant values", search_switching_at_values
     for d in degrees[2:]:
         yield f"polynomial of degree {2 * d}", polynomial(degree=d)
 
@@ -288,6 +295,7 @@ def _applicable(system: SwitchedSystem) -> set[Method]:
     if switching.fixed_ends:
         wanted -= {Method.MODE_QUADRATIC}
         wanted |= {Method.PARAMETER_QUADRATIC}
+        wanted |= {Method.VALUE} if system.is_uniform else set()
     return wanted
 
 

@@ -14,10 +14,12 @@ from nrs_design.certificates.evidence import (
     BlockTriangular,
     UnstableMixture,
     UnstableMode,
+    UnstableValue,
 )
 from nrs_design.certificates.evidence.block_triangular import diagonal_block
 from nrs_design.certificates.evidence.unstable_mixture import mixture
 from nrs_design.errors import InternalError
+from nrs_design.switched.constant import system_at
 from nrs_design.switched.matrix import RationalMatrix
 from nrs_design.switched.system import SwitchedSystem, Time
 
@@ -40,6 +42,8 @@ def _agrees(system: SwitchedSystem, evidence: AbstractEvidence) -> bool:
         return not _is_surely_stable(matrix, system.time)
     if isinstance(evidence, UnstableMixture):
         return not _is_surely_stable(mixture(system, evidence.weights), system.time)
+    if isinstance(evidence, UnstableValue):
+        return _agrees(system_at(system, evidence.share), evidence.part)
     if isinstance(evidence, BlockTriangular):
         blocks = evidence.blocks
         return all(_agrees(diagonal_block(system, blocks[k]), part) for k, part in evidence.parts)

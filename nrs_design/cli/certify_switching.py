@@ -29,6 +29,7 @@ class MethodOption(StrEnum):
     PARAMETER_QUADRATIC = "parameter-quadratic"
     PERIOD = "period"
     POLYNOMIAL = "polynomial"
+    VALUE = "value"
 
 
 def certify_switching(

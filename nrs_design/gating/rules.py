@@ -117,8 +117,9 @@ SWITCHING_STABLE = Rule(
     "where none exists a polynomial of higher degree, or one quadratic function for each mode "
     "where switching is constrained, or one that depends on a constant parameter. Refuted by an "
     "unstable mode, by an average of modes that is not stable, or by a periodic switching signal "
-    "that makes a motion grow. Whatever it is, it has passed an exact check. Stable modes alone do "
-    "not suffice, and that no common quadratic function exists refutes nothing.",
+    "that makes a motion grow, also at one value of a constant parameter. Whatever it is, it has "
+    "passed an exact check. Stable modes alone do not suffice, and that no common quadratic "
+    "function exists refutes nothing.",
     "If refuted by a mode, mend that mode first (NRS101). If refuted by a signal, take it away: "
     "declare a longer dwell time or only the transitions that really occur, narrow the ranges, or "
     "add damping (raise Bt). If inconclusive, neither was found: do the same, or search longer by "
@@ -196,8 +197,9 @@ WORDS: Mapping[str, Word] = MappingProxyType(
             Word(
                 "refuted",
                 "The statement is false, and a witness shows it, checked exactly: a mode that is "
-                "not stable by itself, an average of modes that is not, or a periodic switching "
-                "signal along which a motion grows.",
+                "not stable by itself, an average of modes that is not, a periodic switching "
+                "signal along which a motion grows, or a value of a constant parameter with one of "
+                "these.",
                 "Mend the spec or the design: the message names the witness. A mode needs more "
                 "damping (raise Bt) or a narrower range; a signal is also taken away by a longer "
                 "dwell time or by fewer transitions, if the robot keeps to them. Exit code 1.",

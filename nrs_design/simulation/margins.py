@@ -13,8 +13,8 @@ from nrs_design.simulation.norms import (
     Array,
     diagonal_exponents,
     function_at,
+    modes_at,
     scaled_form,
-    system_at,
 )
 from nrs_design.switched.system import Mode, SwitchedSystem, Time
 
@@ -82,9 +82,9 @@ def parameter_rates(
     list of str, ndarray of shape (k, m)
         Names of the modes, and decay rates in 1/s.
     """
-    names = [mode.name for mode in system_at(system, Fraction(0)).modes]
+    names = [mode.name for mode in modes_at(system, Fraction(0)).modes]
     rates = [
-        mode_rates(system_at(system, Fraction(float(p))), function_at(evidence, float(p)))
+        mode_rates(modes_at(system, Fraction(float(p))), function_at(evidence, float(p)))
         for p in values
     ]
     return names, np.array(rates)

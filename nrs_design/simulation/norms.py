@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 from nrs_design.certificates.evidence import CommonPolynomial, ModeQuadratic, ParameterQuadratic
 from nrs_design.certificates.exact import IntegerMatrix
 from nrs_design.certificates.lift import monomials
-from nrs_design.switched.matrix import RationalMatrix
-from nrs_design.switched.system import Mode, SwitchedSystem, Switching
+from nrs_design.switched.constant import system_at
+from nrs_design.switched.system import SwitchedSystem, Switching
 
 Array = NDArray[np.float64]
 
@@ -101,7 +101,7 @@ def function_at(evidence: ParameterQuadratic, p: float) -> Array:
     return (1 - p) * low + p * high
 
 
-def system_at(system: SwitchedSystem, p: Fraction) -> SwitchedSystem:
+def modes_at(system: SwitchedSystem, p: Fraction) -> SwitchedSystem:
     """Return the modes at one value of a constant parameter, switched arbitrarily.
 
     Parameters
@@ -111,21 +111,7 @@ def system_at(system: SwitchedSystem, p: Fraction) -> SwitchedSystem:
     p : Fraction
         From 0 (low end) to 1 (high end).
     """
-    matrices = {mode.name: mode.A.fractions() for mode in system.modes}
-    modes = []
-    for low, high in system.switching.fixed_ends:
-        rows = [
-            [(1 - p) * a + p * b for a, b in zip(*pair, strict=True)]
-            for pair in zip(matrices[low], matrices[high], strict=True)
-        ]
-        modes.append(Mode(name_between(low, high), RationalMatrix.from_rows(rows)))
-    return replace(system, modes=tuple(modes), switching=Switching())
-
-
-def name_between(low: str, high: str) -> str:
-    """Name what two ends have in common, such as ``a`` for ``a/m-min`` and ``a/m-max``."""
-    same = [a for a, b in zip(low.split("/"), high.split("/"), strict=False) if a == b]
-    return "/".join(same) or f"{low} to {high}"
+    return replace(system_at(system, p), switching=Switching())
 
 
 def level_curve(norm: Norm, level: float) -> tuple[Array, Array]:

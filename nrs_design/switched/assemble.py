@@ -25,7 +25,7 @@ from nrs_design.switched.assumptions import GIVEN_MATRICES, assume_matrices, sca
 from nrs_design.switched.close_loop import close_loop
 from nrs_design.switched.constraints import assemble_switching
 from nrs_design.switched.gain_box import gain_boxes
-from nrs_design.switched.parameters import corner_modes, read_parameters
+from nrs_design.switched.parameters import corner_modes, fixed_parameter, read_parameters
 from nrs_design.switched.system import Mode, SwitchedSystem, Time
 
 __all__ = ["GIVEN_MATRICES", "assemble", "from_design", "from_matrices", "has_ranges"]
@@ -107,7 +107,10 @@ def from_matrices(spec: SwitchedSystemSpec, scale: Fraction = DECLARED) -> Switc
         tuple(f"x{i + 1}" for i in range(spec.dimension)),
         tuple(modes),
         assume_matrices(spec, parameters, scale),
-        assemble_switching(spec.switching, groups, spec.resets),
+        replace(
+            assemble_switching(spec.switching, groups, spec.resets),
+            fixed_parameter=fixed_parameter(parameters),
+        ),
     )
 
 

@@ -15,7 +15,7 @@ from nrs_design.errors import InternalError
 from nrs_design.models.environment import Interval
 from nrs_design.spec import ModeSpec, SwitchedSystemSpec
 from nrs_design.switched.matrix import RationalMatrix
-from nrs_design.switched.system import Mode
+from nrs_design.switched.system import FixedParameter, Mode
 
 Rows = Sequence[Sequence[Fraction]]
 Values = Mapping[str, Fraction]
@@ -62,6 +62,14 @@ def read_parameters(spec: SwitchedSystemSpec, scale: Fraction) -> tuple[Paramete
         Parameter(name, Interval(p.nominal, *p.range).scaled(scale), p.varies)
         for name, p in spec.parameters.items()
     )
+
+
+def fixed_parameter(parameters: Sequence[Parameter]) -> FixedParameter | None:
+    """Return the parameter that is unknown but constant, if there is one."""
+    for name, interval, varies in ((p.name, p.interval, p.varies) for p in parameters):
+        if not varies and interval.low != interval.high:
+            return FixedParameter(name, interval.low, interval.high)
+    return None
 
 
 def corner_modes(

@@ -42,6 +42,15 @@ class Reset:
 
 
 @dataclass(frozen=True, slots=True)
+class FixedParameter:
+    """A parameter that is unknown but constant: its name and the ends of its range."""
+
+    name: str
+    low: Fraction
+    high: Fraction
+
+
+@dataclass(frozen=True, slots=True)
 class Switching:
     """Which switching signals there are.
 
@@ -59,13 +68,16 @@ class Switching:
         the mode in force is ``(1 - p) low + p high`` with one p for all pairs and all times. Every
         mode is in one pair, or there are none. Transitions take no notice of it: they lead from
         any end to any end, as if the parameter moved. What holds for all these signals holds for
-        the fewer ones of a constant parameter; a signal that grows must keep to one end.
+        the fewer ones of a constant parameter; a signal that grows must keep to one value.
+    fixed_parameter : FixedParameter or None
+        What that parameter is, if known; for words only.
     """
 
     dwell_time: Fraction = Fraction(0)
     transitions: tuple[tuple[str, str], ...] | None = None
     resets: tuple[Reset, ...] = ()
     fixed_ends: tuple[tuple[str, str], ...] = ()
+    fixed_parameter: FixedParameter | None = None
 
     @property
     def is_arbitrary(self) -> bool:

@@ -112,6 +112,34 @@ def slow_switching_in_steps() -> SwitchedSystem:
     return family(*pair, time=Time.DISCRETE, switching=Switching(Fraction(6)))
 
 
+PAIR = Switching(fixed_ends=(("m0", "m1"),))
+PAIRS = Switching(fixed_ends=(("m0", "m1"), ("m2", "m3")))
+
+
+def hidden_value(strength: Entry, time: Time = Time.CONTINUOUS) -> SwitchedSystem:
+    """``A(s) = [[-1, c s], [c (1 - s), -1]]``, s unknown but constant in [0, 1].
+
+    Its eigenvalues are ``-1 +- c sqrt(s (1 - s))``: Hurwitz at both ends, and for all s iff c < 2.
+    In discrete time without the diagonal: Schur at both ends, and for all s iff c < 2.
+    """
+    diagonal = -1 if time is Time.CONTINUOUS else 0
+    ends = [[diagonal, 0], [strength, diagonal]], [[diagonal, strength], [0, diagonal]]
+    return family(*ends, time=time, switching=PAIR)
+
+
+def hidden_shears(time: Time = Time.CONTINUOUS) -> SwitchedSystem:
+    """Two shears, one growing with the parameter and one shrinking.
+
+    Every mode is stable at every value. At both ends one shear is gone, so that switching is
+    stable; in between the average has the eigenvalue ``-1 + 5 sqrt(s (1 - s))``. In discrete time
+    the product of the two has a radius above one.
+    """
+    diagonal = "-1" if time is Time.CONTINUOUS else "1/2"
+    rest = [[diagonal, 0], [0, diagonal]]
+    up, down = [[diagonal, 10], [0, diagonal]], [[diagonal, 0], [10, diagonal]]
+    return family(rest, up, down, rest, time=time, switching=PAIRS)
+
+
 SYSTEMS = {
     "common-quadratic": lambda: dayawansa_martin(5),
     "common-polynomial": lambda: dayawansa_martin(6),
@@ -128,7 +156,11 @@ SYSTEMS = {
     "mode-quadratic, rectangular": rectangular,
     "mode-quadratic, discrete": lambda: ando_shih("0.99"),
     "mode-quadratic, steps": slow_switching_in_steps,
-    "parameter-quadratic": lambda: oscillator(50, Switching(fixed_ends=(("m0", "m1"),))),
+    "parameter-quadratic": lambda: oscillator(50, PAIR),
+    "unstable-value": lambda: hidden_value(3),
+    "unstable-value, discrete": lambda: hidden_value(3, Time.DISCRETE),
+    "unstable-value, average": hidden_shears,
+    "unstable-value, period": lambda: hidden_shears(Time.DISCRETE),
 }
 METHODS = {
     "common-polynomial, discrete": Method.POLYNOMIAL,

@@ -62,6 +62,7 @@ SPECS = {
     "dwell": EXAMPLES / "geromel-colaneri.nrs.yaml",
     "discrete": EXAMPLES / "ando-shih.nrs.yaml",
     "constant": EXAMPLES / "unknown-constant.nrs.yaml",
+    "value": ROOT / "docs" / "examples" / "flutter.nrs.yaml",
     "period": ROOT / "docs" / "examples" / "wide-range.nrs.yaml",
 }
 # For each kind, the fields that may hold other numbers.
@@ -73,6 +74,7 @@ NUMBERS = {
     "no-common-quadratic": {"factors"},
     "unstable-mode": set(),
     "unstable-period": {"steps", "doublings"},
+    "unstable-value": {"share"},
 }
 ANY_RATE = Limits(optimize_rate=False)
 FIRST = ("statements", 0)

@@ -43,6 +43,14 @@ SPECS = {
             {"from": "m1", "to": "m0", "map": [["1/9", "0"], ["0", "1/9"]]},
         ],
     },
+    "unstable-value": {
+        "A": ([["-1", "3*k"], ["3 - 3*k", "-1"]],),
+        "parameters": {"k": {"nominal": "0", "range": ["0", "1"], "varies": "false"}},
+    },
+    "unstable-value, average": {
+        "A": ([["-1", "10*k"], ["0", "-1"]], [["-1", "0"], ["10 - 10*k", "-1"]]),
+        "parameters": {"k": {"nominal": "0", "range": ["0", "1"], "varies": "false"}},
+    },
     "parameter-quadratic": {
         "A": ([["0", "1"], ["-2 - k", "-1"]],),
         "parameters": {"k": {"nominal": "1", "range": ["0", "50"], "varies": "false"}},
@@ -147,6 +155,9 @@ def test_statements_of_one_spec_prove_nothing_about_another(issue, example, othe
         [{"kind": "common-polynomial", "degree": 4, "Q": {}, "vanishing": [], "rate": "1"}],
         [{"kind": "common-polynomial", "degree": 4, "vanishing": [[]], "rate": "1", "claim": "",
           "Q": {"numerators": [], "denominator_log2": 0}}],
+        [{"kind": "unstable-value", "share": "1/2", "claim": ""}],
+        [{"kind": "unstable-value", "share": "1/2", "part": [], "claim": ""}],
+        [{"kind": "unstable-value", "share": "1/0", "part": {"kind": "unstable-mode"}}],
         [{"kind": "parameter-quadratic", "rate": "1", "claim": "",
           "Q_low": {"numerators": [], "denominator_log2": 0},
           "Q_high": {"numerators": [], "denominator_log2": 0}}],

@@ -21,6 +21,7 @@ from nrs_design.certificates.evidence import (
     UnstableMixture,
     UnstableMode,
     UnstablePeriod,
+    UnstableValue,
 )
 from nrs_design.switched.matrix import RationalMatrix
 from nrs_design.switched.system import Mode, SwitchedSystem, Time
@@ -306,6 +307,40 @@ def _unstable_period(system: SwitchedSystem, item: UnstablePeriod) -> bool:
     return bool(np.abs(np.linalg.eigvals(product_)).max() > 1 - 1e-9)
 
 
+def _unstable_value(system: SwitchedSystem, item: UnstableValue) -> bool:
+    """The part must hold for the averages of the ends, under the rules that both ends share."""
+    modes = {mode.name: mode.A.fractions() for mode in system.modes}
+    names = {}
+    for low, high in system.switching.fixed_ends:
+        same = [a for a, b in zip(low.split("/"), high.split("/"), strict=True) if a == b]
+        names["/".join(same) or f"{low} to {high}"] = (low, high)
+    averages = tuple(
+        Mode(
+            name,
+            RationalMatrix.from_rows(
+                combine((1 - item.share, modes[low]), (item.share, modes[high]))
+            ),
+        )
+        for name, (low, high) in names.items()
+    )
+    if isinstance(item.part, UnstablePeriod) and not _obeys(system, item.part, names):
+        return False
+    return 0 <= item.share <= 1 and holds(replace(system, modes=averages), item.part)
+
+
+def _obeys(system: SwitchedSystem, part: UnstablePeriod, names: Mapping[str, tuple]) -> bool:
+    allowed = system.switching.transitions
+    steps = [names[name] for name, _ in part.steps]
+    switches = [
+        pair
+        for a, b in zip(steps, steps[1:] + steps[:1], strict=True)
+        if a != b
+        for pair in zip(a, b, strict=True)
+    ]
+    long_enough = all(dwell >= system.switching.dwell_time for _, dwell in part.steps)
+    return long_enough and (allowed is None or set(switches) <= set(allowed))
+
+
 def _block_triangular(system: SwitchedSystem, item: BlockTriangular) -> bool:
     order = [state for block in item.blocks for state in block]
     if sorted(order) != list(range(system.order)):
@@ -341,5 +376,6 @@ _ORACLES = {
     UnstableMode: _unstable_mode,
     UnstableMixture: _unstable_mixture,
     UnstablePeriod: _unstable_period,
+    UnstableValue: _unstable_value,
     BlockTriangular: _block_triangular,
 }

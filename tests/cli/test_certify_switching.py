@@ -58,7 +58,7 @@ def test_inconclusive_with_a_remark_keeps_it(tmp_path):
     assert document["verdict"] == "inconclusive"
 
 
-@pytest.mark.parametrize("name", ["hand-range", "wide-range", "thesis-print-error"])
+@pytest.mark.parametrize("name", ["hand-range", "wide-range", "thesis-print-error", "flutter"])
 def test_examples_of_what_must_fail(tmp_path, name):
     path = ROOT / "docs" / "examples" / f"{name}.nrs.yaml"
     result = run("certify-switching", path, "--no-optimize-rate", cwd=tmp_path)

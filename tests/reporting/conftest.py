@@ -73,6 +73,15 @@ modes:
   - {name: m, A: [[0, 1], [-2 - k, -1]]}
 switching: arbitrary
 """,
+    # Hurwitz at both ends of k, with the eigenvalue 0.5 halfway.
+    "value": """\
+time: continuous
+parameters:
+  k: {nominal: 0, range: [0, 4], varies: false}
+modes:
+  - {name: m, A: [[-1, "3/4*k"], ["3 - 3/4*k", -1]]}
+switching: arbitrary
+""",
     "blocks": """\
 time: continuous
 modes:

@@ -40,6 +40,7 @@ FIGURES = {
     "steps": ["eigenvalues", "quadratics", "run", "phase-plane"],
     "resets": ["eigenvalues", "quadratics", "run"],
     "parameter": ["eigenvalues", "quadratics", "parameter-rates", "run", "phase-plane"],
+    "value": ["eigenvalues", "run", "phase-plane"],
     "blocks": ["eigenvalues", "blocks", "run"],
     "blocks-refuted": ["eigenvalues", "blocks", "run", "one-period"],
     "unequal": ["eigenvalues", "run", "phase-plane"],
@@ -316,6 +317,14 @@ SAID = {
     "mixture": (
         ["Switching: arbitrary"],
         ["so would be every average of them", "Nothing is said about slower switching"],
+    ),
+    "value": (
+        ["one parameter is unknown but constant"],
+        [
+            "At k = 2, which the range allows and which does not change: Mode m is not Hurwitz",
+            "it may have this one value all the time",
+            "Nothing is said about other values of the parameter",
+        ],
     ),
     "refuted": (["Switching: arbitrary"], ["exponential stability under arbitrary switching is"]),
     "inconclusive": (

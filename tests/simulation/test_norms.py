@@ -12,12 +12,11 @@ from nrs_design.simulation.norms import (
     diagonal_exponents,
     function_at,
     level_curve,
-    name_between,
+    modes_at,
     polynomial_norm,
     quadratic_norm,
     scaled_form,
     scaled_matrices,
-    system_at,
 )
 from nrs_design.switched.system import Switching
 from tests.simulation.systems import system
@@ -75,13 +74,8 @@ def test_level_curve_of_a_thin_ellipse():
 def test_function_and_modes_at_a_value_of_the_parameter():
     ends = Switching(fixed_ends=(("m0", "m1"),))
     family = system([[-1]], [[-3]], switching=ends)
-    middle = system_at(family, Fraction(1, 4))
+    middle = modes_at(family, Fraction(1, 4))
     assert middle.modes[0].A.fractions() == [[Fraction(-3, 2)]]
     assert middle.switching.is_arbitrary
     evidence = ParameterQuadratic(((1,),), ((4,),), 0, Fraction(1))
     assert function_at(evidence, 0.5) == pytest.approx(np.array([[0.625]]))
-
-
-def test_name_of_a_pair_is_what_its_ends_share():
-    assert name_between("a/k-min/m-min", "a/k-min/m-max") == "a/k-min"
-    assert name_between("low", "high") == "low to high"

@@ -42,6 +42,7 @@ def test_all_are_found() -> None:
         "retuned-gains",
         "hand-range",
         "wide-range",
+        "flutter",
         "geromel-colaneri",
         "dayawansa-martin-6",
         "ando-shih",
@@ -183,6 +184,22 @@ def test_constant_parameter_has_a_function_that_depends_on_it() -> None:
     for m11, m12, m22 in (decrease(low, low), decrease(high, high), [x + y for x, y in mixed]):
         assert m11 < 0
         assert m11 * m22 > m12**2
+
+
+def test_flutter_is_stable_at_both_ends_only() -> None:
+    # With K = [[10, 2], [-2, k]] and damping d, stable iff |Im mu| < d sqrt(Re mu) for mu of K.
+    spec = system("docs/examples/flutter.nrs.yaml")
+    low, high = spec.parameters["k"].range
+    for k, stable in ((low, True), (Fraction(10), False), (high, True)):
+        rows = spec.modes[0].matrix({"k": k})
+        (a, b), (c, d) = ((-rows[i][0], -rows[i][2]) for i in (1, 3))
+        half, square = (a + d) / 2, ((a - d) / 2) ** 2 + b * c
+        assert (a, d, b * c) == (10, k, -4)
+        # Real and positive, or a pair half +- i sqrt(-square).
+        assert half > 0
+        assert (square >= 0 and half**2 > square) is stable
+        if not stable:
+            assert -square > rows[1][1] ** 2 * half
 
 
 def test_tissue_x_withdrawal_covers_tissue_and_tool() -> None:

@@ -15,6 +15,7 @@ from nrs_design.certificates.evidence.parameter_quadratic import ParameterQuadra
 from nrs_design.certificates.evidence.unstable_mixture import UnstableMixture
 from nrs_design.certificates.evidence.unstable_mode import UnstableMode
 from nrs_design.certificates.evidence.unstable_period import UnstablePeriod
+from nrs_design.certificates.evidence.unstable_value import UnstableValue
 from nrs_design.switched.system import SwitchedSystem
 
 KINDS: tuple[type[AbstractEvidence], ...] = (
@@ -26,6 +27,7 @@ KINDS: tuple[type[AbstractEvidence], ...] = (
     UnstableMode,
     UnstableMixture,
     UnstablePeriod,
+    UnstableValue,
     BlockTriangular,
 )
 
@@ -57,5 +59,6 @@ __all__ = [
     "UnstableMixture",
     "UnstableMode",
     "UnstablePeriod",
+    "UnstableValue",
     "read_evidence",
 ]

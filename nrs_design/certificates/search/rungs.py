@@ -31,6 +31,10 @@ from nrs_design.certificates.search.polynomial import (
     round_polynomial,
 )
 from nrs_design.certificates.search.rounding import round_rate, round_to_evidence
+from nrs_design.certificates.search.unstable_value import (
+    find_unstable_switching,
+    find_unstable_value,
+)
 from nrs_design.switched.system import Mode, Time
 
 # How far below the best rate found the claimed one may lie: a wider gap needs fewer digits.
@@ -174,6 +178,20 @@ def search_parameter_quadratic(family: Family) -> Finding:
         family.system, family.matrices, family.exponents, family.limit
     )
     return evidence, "found" if evidence else "no candidate passes the exact check"
+
+
+def search_value(family: Family) -> Finding:
+    """Search for a value of a constant parameter at which a mode is not stable."""
+    if not np.isfinite(family.matrices).all():
+        return None, OUT_OF_RANGE
+    evidence = find_unstable_value(family.system, family.matrices)
+    return evidence, "found" if evidence else "every mode is stable at every value tried"
+
+
+def search_switching_at_values(family: Family) -> Finding:
+    """Search for an unstable average or a growing period at some values of the parameter."""
+    evidence = find_unstable_switching(family.system)
+    return evidence, "found" if evidence else "nothing grows at the values tried"
 
 
 def search_mixture(family: Family) -> Finding:

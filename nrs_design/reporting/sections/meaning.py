@@ -12,7 +12,9 @@ from nrs_design.certificates.evidence import (
     UnstableMixture,
     UnstableMode,
     UnstablePeriod,
+    UnstableValue,
 )
+from nrs_design.switched.constant import system_at
 from nrs_design.switched.system import SwitchedSystem, Time
 
 # How a proof was decided, by the kind of evidence.
@@ -164,6 +166,13 @@ def refutation_meaning(system: SwitchedSystem, evidence: AbstractEvidence) -> tu
             "family with an unstable block is unstable.",
             *inner,
         )
+    if isinstance(evidence, UnstableValue):
+        inner = refutation_meaning(system_at(system, evidence.share), evidence.part)
+        return (
+            "The parameter is unknown and constant, so it may have this one value all the time. "
+            "The matrices at this value are computed exactly.",
+            *inner,
+        )
     if isinstance(evidence, UnstableMode):
         return (
             f"The mode has an eigenvalue outside the open {region}. Staying in this mode forever "
@@ -190,6 +199,12 @@ def refutation_limits(evidence: AbstractEvidence) -> tuple[str, ...]:
     """Say what a refutation does not say."""
     if isinstance(evidence, BlockTriangular):
         return refutation_limits(evidence.parts[0][1])
+    if isinstance(evidence, UnstableValue):
+        inner = refutation_limits(evidence.part)
+        return (
+            *inner,
+            "Nothing is said about other values of the parameter: a narrower range may be stable.",
+        )
     general = (
         "It is not said that the robot will do this: that depends on whether such a signal ever "
         "occurs. It is said that no guarantee is possible for all the signals that the spec "

@@ -24,10 +24,10 @@ from nrs_design.simulation.margins import parameter_rates
 from nrs_design.simulation.norms import (
     function_at,
     mode_functions,
+    modes_at,
     polynomial_norm,
     quadratic_norm,
     scaled_matrices,
-    system_at,
 )
 from nrs_design.simulation.switched import (
     TimeResponse,
@@ -120,7 +120,7 @@ def _at_parameter(system: SwitchedSystem, evidence: ParameterQuadratic) -> tuple
     values = np.linspace(0.0, 1.0, 21)
     _, rates = parameter_rates(system, evidence, values)
     p = float(values[rates.min(axis=1).argmin()])
-    Q, fixed = function_at(evidence, p), system_at(system, Fraction(p))
+    Q, fixed = function_at(evidence, p), modes_at(system, Fraction(p))
     hardest = hardest_modes(fixed, Q, _affordable(fixed))
     caption = (
         f"{_GREEDY} The parameter stays at {p:.3g} of its range (0 low end, 1 high end), where "

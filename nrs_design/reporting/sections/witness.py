@@ -1,4 +1,4 @@
-"""Simulated witnesses of instability: a mode, a period, an average of modes."""
+"""Simulated witnesses of instability: a mode, a period, an average, a value of a parameter."""
 
 from __future__ import annotations
 
@@ -13,8 +13,10 @@ from nrs_design.certificates.evidence import (
     UnstableMixture,
     UnstableMode,
     UnstablePeriod,
+    UnstableValue,
 )
 from nrs_design.certificates.evidence.unstable_mode import worst_eigenvalue
+from nrs_design.certificates.evidence.unstable_value import value_text
 from nrs_design.reporting.document import Block, Illustration, Paragraph, Section, Table
 from nrs_design.reporting.figures.complex_plane import draw_eigenvalues
 from nrs_design.reporting.figures.run import draw_phase_plane, draw_run
@@ -28,6 +30,7 @@ from nrs_design.simulation.periodic import (
     steps_of_mixture,
 )
 from nrs_design.simulation.switched import TimeResponse, alone, eigenvalues, unstable_run
+from nrs_design.switched.constant import system_at
 from nrs_design.switched.system import SwitchedSystem, Time
 
 _EUCLIDEAN = "|x(t)| / |x(0)|, Euclidean norm [1]"
@@ -41,6 +44,10 @@ def witness_section(system: SwitchedSystem, evidence: AbstractEvidence) -> Secti
     """
     if isinstance(evidence, BlockTriangular):
         evidence = evidence.parts[0][1]
+    if isinstance(evidence, UnstableValue):
+        text = f"{value_text(system, evidence.share)}, where all of the following is:"
+        inner = witness_section(system_at(system, evidence.share), evidence.part)
+        return Section(inner.title, (Paragraph(text), *inner.blocks))
     blocks: tuple[Block, ...] = ()
     if isinstance(evidence, UnstableMode):
         blocks = _mode(system, evidence)

@@ -107,7 +107,7 @@ def rectangular() -> SwitchedSystem:
 
 
 def slow_switching_in_steps() -> SwitchedSystem:
-    """Discrete time: alternating every step grows, staying four steps does not."""
+    """Discrete time: alternating grows with up to four steps in each mode, from five on not."""
     pair = [["1/2", 2], [0, "1/2"]], [["1/2", 0], [2, "1/2"]]
     return family(*pair, time=Time.DISCRETE, switching=Switching(Fraction(6)))
 

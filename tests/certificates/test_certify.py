@@ -290,6 +290,7 @@ class TestMethods:
             (Method.MIXTURE, SHEARS, ("refuted", "impossible")),
             (Method.MODE_QUADRATIC, SLOW, ("proved", "unknown")),
             (Method.PARAMETER_QUADRATIC, CONSTANT, ("proved", "unknown")),
+            (Method.VALUE, CONSTANT, ("inconclusive", "unknown")),
             (Method.AUTO, SLOW, ("proved", "impossible")),
             (Method.AUTO, CONSTANT, ("proved", "impossible")),
         ],
@@ -302,7 +303,7 @@ class TestMethods:
         bad = replace(
             UNSTABLE,
             switching=CONSTANT.switching
-            if method is Method.PARAMETER_QUADRATIC
+            if method in (Method.PARAMETER_QUADRATIC, Method.VALUE)
             else UNSTABLE.switching,
         )
         assert outcome(bad, method) == ("refuted", "impossible")
@@ -311,6 +312,7 @@ class TestMethods:
         ("method", "system"),
         [
             (Method.PARAMETER_QUADRATIC, STABLE),
+            (Method.VALUE, STABLE),
             (Method.MIXTURE, SLOW),
             (Method.GRADIENT, DISCRETE),
             (Method.MIXTURE, DISCRETE),

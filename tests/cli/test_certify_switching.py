@@ -341,3 +341,19 @@ def test_closed_streams(tmp_path, command, closed):
     )
     assert result.returncode == 0
     assert "internal error" not in result.stderr
+
+
+def test_dwell_time_in_steps_is_proved_or_refuted(tmp_path):
+    """Powers of two shears: up to four steps in each mode they grow, from five on they do not."""
+    for steps, code, said in ((4, 1, "m1 for 4 steps"), (5, 0, "at least 5 steps in each mode")):
+        path = tmp_path / "steps.nrs.yaml"
+        path.write_text(
+            "kind: switched-system\nname: steps\ntime: discrete\nmodes:\n"
+            '  - {name: m0, A: [["1/2", 2], [0, "1/2"]]}\n'
+            '  - {name: m1, A: [["1/2", 0], [2, "1/2"]]}\n'
+            f"switching: {{dwell_time: {steps} steps}}\n"
+        )
+        result = run("certify-switching", path.name, cwd=tmp_path)
+        assert result.returncode == code, result.stdout
+        assert said in result.stdout
+        assert run("verify", "reports/steps.cert.json", path.name, cwd=tmp_path).returncode == code

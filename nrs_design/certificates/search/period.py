@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from itertools import chain, groupby, product
+from itertools import chain, groupby
 from math import ceil, log, log2
 
 import numpy as np
@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from nrs_design.certificates.evidence import UnstablePeriod
 from nrs_design.certificates.search.balance import mean_norm_coordinates
+from nrs_design.certificates.search.cycle import growing_walks, growing_words
 from nrs_design.switched.system import SwitchedSystem, Time
 
 Array = NDArray[np.float64]
@@ -21,8 +22,6 @@ ComplexArray = NDArray[np.complex128]
 DWELLS = 48
 MAX_PAIRS = 60
 STARTS = 4
-MAX_WORDS = 20_000
-MAX_WORD_LENGTH = 16
 GREEDY_STEPS = 3000
 GREEDY_PERIODS = (2, 3, 4, 6, 8)
 DWELL_BITS = (8, 12, 16, 24, 40)
@@ -39,7 +38,7 @@ def find_growing_period(system: SwitchedSystem, matrices: Array) -> UnstablePeri
         The same in floating point, perhaps scaled.
     """
     if system.time is Time.DISCRETE:
-        return _first_word(system, matrices)
+        return _find_cycle(system, matrices)
     flows = _Flows.of(matrices)
     shortest = float(system.switching.dwell_time)
     candidates = _candidates(flows, _allowed_pairs(system), _grid(matrices), shortest)
@@ -53,6 +52,25 @@ def find_growing_period(system: SwitchedSystem, matrices: Array) -> UnstablePeri
             )
             if evidence := _enclose(system, steps, _period_radius(flows, order, steps)):
                 return evidence
+    return None
+
+
+def _find_cycle(system: SwitchedSystem, matrices: Array) -> UnstablePeriod | None:
+    """Search in discrete time: all short words, or walks that keep the rules if there are any."""
+    if system.switching.is_arbitrary:
+        for word, radius in growing_words(matrices):
+            steps = tuple((system.modes[i].name, Fraction(1)) for i in word)
+            if evidence := _enclose(system, steps, radius):
+                return evidence
+        return None
+    if system.switching.resets:
+        # The scaled modes of a search do not fit the resets.
+        matrices = np.array([mode.A.floats() for mode in system.modes])
+    for order, counts, radius in growing_walks(system, matrices):
+        names = [system.modes[i].name for i in order]
+        steps = tuple(zip(names, map(Fraction, counts), strict=True))
+        if evidence := _enclose(system, steps, radius):
+            return evidence
     return None
 
 
@@ -199,20 +217,3 @@ def _refine(flows: _Flows, order: Sequence[int], dwells: Array, shortest: float)
         options={"maxiter": 400, "xatol": 1e-6, "fatol": 1e-12},
     )
     return np.asarray(shortest + np.exp(best.x))
-
-
-def _first_word(system: SwitchedSystem, matrices: Array) -> UnstablePeriod | None:
-    """Try products of modes, short ones first."""
-    m, length = len(matrices), 1
-    while length < MAX_WORD_LENGTH and m ** (length + 1) <= MAX_WORDS:
-        length += 1
-        words = np.array(list(product(range(m), repeat=length)))
-        monodromy = matrices[words[:, 0]]
-        for column in words.T[1:]:
-            monodromy = matrices[column] @ monodromy
-        radius = np.abs(np.linalg.eigvals(monodromy)).max(axis=1)
-        best = int(radius.argmax())
-        steps = tuple((system.modes[i].name, Fraction(1)) for i in words[best])
-        if evidence := _enclose(system, steps, float(radius[best])):
-            return evidence
-    return None

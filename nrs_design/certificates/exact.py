@@ -149,7 +149,7 @@ def congruence(L: IntegerMatrix, Q: IntegerMatrix) -> list[list[int]]:
 def lyapunov_decrease(
     N: IntegerMatrix, denominator: int, Q: IntegerMatrix, rate: Fraction
 ) -> list[list[int]]:
-    """Form a positive multiple of ``-(A'Q + QA + 2 rate Q)`` for ``A = N / denominator``.
+    """Form ``-(A'Q + QA + 2 rate Q)`` for ``A = N / denominator``, times `lyapunov_factor`.
 
     Parameters
     ----------
@@ -170,10 +170,18 @@ def lyapunov_decrease(
     ]
 
 
+def lyapunov_factor(denominator: int, rate: Fraction) -> int:
+    """Return the positive integer that `lyapunov_decrease` multiplies with.
+
+    It depends on denominator and rate only, so forms that share these may be added up.
+    """
+    return denominator * (2 * rate * denominator).denominator
+
+
 def stein_decrease(
     N: IntegerMatrix, denominator: int, Q: IntegerMatrix, factor: Fraction
 ) -> list[list[int]]:
-    """Form a positive multiple of ``factor^2 Q - A'QA`` for ``A = N / denominator``.
+    """Form ``factor^2 Q - A'QA`` for ``A = N / denominator``, times `stein_factor`.
 
     Parameters
     ----------
@@ -193,6 +201,11 @@ def stein_decrease(
         [p * a - q * sum(map(mul, column, image)) for a, image in zip(row, images, strict=True)]
         for row, column in zip(Q, columns, strict=True)
     ]
+
+
+def stein_factor(denominator: int, factor: Fraction) -> int:
+    """Return the positive integer that `stein_decrease` multiplies with."""
+    return (denominator * factor.denominator) ** 2
 
 
 def characteristic_polynomial(N: IntegerMatrix) -> list[int]:

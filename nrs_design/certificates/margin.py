@@ -17,9 +17,13 @@ if TYPE_CHECKING:
 LARGEST_SCALE = 64
 STEPS = 8
 DWELL_STEPS = 12
+# A box that is not decided is slow to try: fewer steps for the smallest one that is refuted.
+REFUTED_STEPS = 6
+DOUBLINGS = 3
 
 Assemble = Callable[[Fraction], SwitchedSystem]
 Certify = Callable[[SwitchedSystem], "Certification"]
+Outcome = tuple[Verdict | None, "Certification | None"]
 
 
 @dataclass(frozen=True)
@@ -32,7 +36,8 @@ class BoxMargin:
         Largest scale that was proved, 1 being the declared ranges; None if not even the nominal
         values (scale 0) were.
     refuted : Fraction or None
-        Smallest larger scale that was refuted; None if the search ended without a refutation.
+        Smallest scale that was refuted; None if the search ended without a refutation. What lies
+        between the two is undecided.
     proof : Certification or None
         At the scale `proved`.
     """
@@ -43,10 +48,11 @@ class BoxMargin:
 
 
 def find_margin(assemble: Assemble, certify: Certify) -> BoxMargin:
-    """Bracket the largest provable scale, then bisect.
+    """Bracket the largest provable scale and the smallest refutable one, then bisect both.
 
-    A proof for a box is a proof for every smaller one, so the search needs no more than a
-    bracket. Every scale that counts as proved has evidence that passed the exact check.
+    A proof for a box is a proof for every smaller one, and a refutation is one for every larger
+    one, so the search needs no more than brackets. Every scale that counts as proved or refuted
+    has evidence that passed the exact check.
 
     Parameters
     ----------
@@ -55,32 +61,82 @@ def find_margin(assemble: Assemble, certify: Certify) -> BoxMargin:
     certify : callable
         Decides a system.
     """
-    proved, proof = _try(Fraction(0), assemble, certify)
-    if proved is not Verdict.PROVED:
-        return BoxMargin(None, Fraction(0) if proved is Verdict.REFUTED else None, None)
-    low, high, refuted = Fraction(0), Fraction(1), None
-    while high <= LARGEST_SCALE:
-        verdict, found = _try(high, assemble, certify)
-        if verdict is not Verdict.PROVED:
-            refuted = high if verdict is Verdict.REFUTED else refuted
+    tried = _Tried(lambda scale: _try(scale, assemble, certify))
+    if not tried.is_proved(Fraction(0)):
+        return BoxMargin(None, Fraction(0) if tried.is_refuted(Fraction(0)) else None, None)
+    high = Fraction(1)
+    while high <= LARGEST_SCALE and tried.is_proved(high):
+        high *= 2
+    if high > LARGEST_SCALE:
+        low = high / 2
+        return BoxMargin(low, None, tried.certification(low))
+    low = _sharpen(max(tried.that_are(Verdict.PROVED)), high, STEPS, tried.is_proved)
+    return BoxMargin(low, _smallest_refuted(tried), tried.certification(low))
+
+
+def _smallest_refuted(tried: _Tried) -> Fraction | None:
+    """Return the smallest scale found to be refuted: from what was tried, or beyond it."""
+    high = tried.largest()
+    for _ in range(DOUBLINGS):
+        if tried.that_are(Verdict.REFUTED) or tried.makes_no_system(high):
             break
-        low, proof, high = high, found, 2 * high
-    else:
-        return BoxMargin(low, None, proof)
-    for _ in range(STEPS):
-        middle = (low + high) / 2
-        verdict, found = _try(middle, assemble, certify)
-        if verdict is Verdict.PROVED:
-            low, proof = middle, found
+        high *= 2
+        tried.is_refuted(high)
+    refuted = min(tried.that_are(Verdict.REFUTED), default=None)
+    if refuted is None:
+        return None
+    below = max(scale for scale in tried.all() if scale < refuted)
+    return _sharpen(refuted, below, REFUTED_STEPS, tried.is_refuted)
+
+
+def _sharpen(
+    accepted: Fraction, other: Fraction, steps: int, accepts: Callable[[Fraction], bool]
+) -> Fraction:
+    """Bisect between a number that is accepted and one that is not; return the last accepted."""
+    for _ in range(steps):
+        middle = (accepted + other) / 2
+        if accepts(middle):
+            accepted = middle
         else:
-            high = middle
-            refuted = middle if verdict is Verdict.REFUTED else refuted
-    return BoxMargin(low, refuted, proof)
+            other = middle
+    return accepted
 
 
-def _try(
-    scale: Fraction, assemble: Assemble, certify: Certify
-) -> tuple[Verdict | None, Certification | None]:
+class _Tried:
+    """What has been tried so far: nothing is tried twice."""
+
+    def __init__(self, decide: Callable[[Fraction], Outcome]) -> None:
+        self._decide = decide
+        self._outcomes: dict[Fraction, Outcome] = {}
+
+    def __call__(self, number: Fraction) -> Outcome:
+        if number not in self._outcomes:
+            self._outcomes[number] = self._decide(number)
+        return self._outcomes[number]
+
+    def is_proved(self, number: Fraction) -> bool:
+        return self(number)[0] is Verdict.PROVED
+
+    def is_refuted(self, number: Fraction) -> bool:
+        return self(number)[0] is Verdict.REFUTED
+
+    def makes_no_system(self, number: Fraction) -> bool:
+        return self(number)[0] is None
+
+    def certification(self, number: Fraction) -> Certification | None:
+        return self(number)[1]
+
+    def all(self) -> list[Fraction]:
+        return list(self._outcomes)
+
+    def largest(self) -> Fraction:
+        return max(self._outcomes)
+
+    def that_are(self, verdict: Verdict) -> list[Fraction]:
+        return [number for number, found in self._outcomes.items() if found[0] is verdict]
+
+
+def _try(scale: Fraction, assemble: Assemble, certify: Certify) -> Outcome:
     """Return the verdict at a scale; None if the scale makes no system."""
     try:
         system = assemble(scale)
@@ -125,30 +181,30 @@ def find_shortest_dwell(system: SwitchedSystem, certify: Certify, start: Fractio
     Notes
     -----
     The bracket is found by doubling, then bisected. A proof for a dwell time is one for every
-    longer one.
+    longer one, and a refutation one for every shorter one.
     """
 
-    def attempt(dwell: Fraction) -> Certification:
-        return certify(replace(system, switching=replace(system.switching, dwell_time=dwell)))
+    def decide(dwell: Fraction) -> Outcome:
+        found = certify(replace(system, switching=replace(system.switching, dwell_time=dwell)))
+        return found.verdict, found
 
-    free = attempt(Fraction(0))
-    if free.verdict is Verdict.PROVED:
-        return DwellMargin(Fraction(0), None, free)
-    low, high = Fraction(0), start
-    refuted = low if free.verdict is Verdict.REFUTED else None
-    proof = attempt(high)
-    while proof.verdict is not Verdict.PROVED:
-        refuted = high if proof.verdict is Verdict.REFUTED else refuted
-        low, high = high, 2 * high
-        if high > LARGEST_SCALE * start:
-            return DwellMargin(None, refuted, None)
-        proof = attempt(high)
-    for _ in range(DWELL_STEPS):
-        middle = (low + high) / 2
-        found = attempt(middle)
-        if found.verdict is Verdict.PROVED:
-            high, proof = middle, found
-        else:
-            low = middle
-            refuted = middle if found.verdict is Verdict.REFUTED else refuted
-    return DwellMargin(high, refuted, proof)
+    tried = _Tried(decide)
+    if tried.is_proved(Fraction(0)):
+        return DwellMargin(Fraction(0), None, tried.certification(Fraction(0)))
+    high = start
+    while high <= LARGEST_SCALE * start and not tried.is_proved(high):
+        high *= 2
+    if high > LARGEST_SCALE * start:
+        refuted = max(tried.that_are(Verdict.REFUTED), default=None)
+        return DwellMargin(None, refuted, None)
+    low = max(dwell for dwell in tried.all() if dwell < high)
+    high = _sharpen(high, low, DWELL_STEPS, tried.is_proved)
+    return DwellMargin(high, _longest_refuted(tried), tried.certification(high))
+
+
+def _longest_refuted(tried: _Tried) -> Fraction | None:
+    refuted = max(tried.that_are(Verdict.REFUTED), default=None)
+    if refuted is None:
+        return None
+    above = min(dwell for dwell in tried.all() if dwell > refuted)
+    return _sharpen(refuted, above, REFUTED_STEPS, tried.is_refuted)

@@ -17,7 +17,9 @@ from nrs_design.certificates.exact import (
     is_schur,
     is_symmetric,
     lyapunov_decrease,
+    lyapunov_factor,
     stein_decrease,
+    stein_factor,
 )
 from tests.support import exact, is_definite_by_ldl, is_stable_by_lyapunov, matrix
 
@@ -163,13 +165,13 @@ class TestForms:
 
     @pytest.mark.parametrize("rate", ["0", "1/7", "2"])
     def test_lyapunov_is_a_positive_multiple(self, rate):
-        self.same_ray(lyapunov_decrease, rate, self.lyapunov)
+        self.same_ray(lyapunov_decrease, rate, self.lyapunov, lyapunov_factor)
 
     @pytest.mark.parametrize("rate", ["0", "1/7", "2"])
     def test_stein_is_a_positive_multiple(self, rate):
-        self.same_ray(stein_decrease, rate, self.stein)
+        self.same_ray(stein_decrease, rate, self.stein, stein_factor)
 
-    def same_ray(self, form, rate, formula):
+    def same_ray(self, form, rate, formula, multiple):
         A, factor = matrix(self.A), Fraction(rate)
         found = form(A.numerators, A.denominator, self.Q, factor)
         wanted = formula(exact(self.A), factor)
@@ -178,7 +180,7 @@ class TestForms:
             for fs, ws in zip(found, wanted, strict=False)
             for f, w in zip(fs, ws, strict=True)
         }
-        assert len(ratios) == 1
+        assert ratios == {multiple(A.denominator, factor)}
         assert ratios.pop() > 0
 
     def lyapunov(self, A, rate):

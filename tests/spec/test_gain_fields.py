@@ -3,8 +3,11 @@
 from fractions import Fraction
 
 import pytest
+from jsonschema import Draft7Validator
+from ruamel.yaml import YAML
 
 from nrs_design.spec import GainSpec, ImpedanceControllerSpec, describe
+from nrs_design.spec.schema import json_schema
 
 from .samples import IMPEDANCE, interaction, place_of, refusal, spoiled
 
@@ -114,3 +117,26 @@ def test_dwell_time_excludes_gains_that_move() -> None:
     error = refusal(spoiled(text, MT, f"Mt: {HEAVY}"))
     assert "the range of Mt of 'insertion' exclude each other" in error.message
     assert (error.line, error.column) == place_of(text, "1 s}")
+
+
+RANGED_GAINS = [
+    ("2 N*m*s/rad", True),
+    ("{nominal: 2 N*m*s/rad}", True),
+    (f"{{nominal: 2 N*m*s/rad, range: {RANGE}}}", True),
+    (f"{{min: 1 N*m*s/rad, max: 9 N*m*s/rad, range: {RANGE}}}", True),
+    (f"{{range: {RANGE}}}", False),
+    (f"{{min: 1 N*m*s/rad, range: {RANGE}}}", False),
+    ("{nominal: 2 N*m*s/rad, max: 3 N*m*s/rad}", False),
+    ("{nominal: 2 N*m*s/rad, range: [2 N*m*s/rad]}", False),
+]
+
+
+@pytest.mark.parametrize(("gain", "fits"), RANGED_GAINS)
+def test_schema_and_reader_agree(gain: str, fits: bool) -> None:
+    text = spoiled(IMPEDANCE, BT, gain)
+    data = YAML(typ="safe", pure=True).load(text)
+    assert Draft7Validator(json_schema()).is_valid(data) is fits
+    if fits:
+        interaction(text)
+    else:
+        refusal(text)

@@ -22,7 +22,14 @@ from nrs_design.certificates.evidence.fields import (
     read_matrix,
     read_ratio,
 )
-from nrs_design.certificates.exact import IntegerMatrix, add, lyapunov_decrease, stein_decrease
+from nrs_design.certificates.exact import (
+    IntegerMatrix,
+    add,
+    lyapunov_decrease,
+    lyapunov_factor,
+    stein_decrease,
+    stein_factor,
+)
 from nrs_design.certificates.lift import derivative_lift, power_lift, vanishes
 from nrs_design.switched.system import Mode, SwitchedSystem, Time
 
@@ -123,8 +130,19 @@ class CommonPolynomial(AbstractEvidence):
 def lifted_decrease(
     mode: Mode, degree: int, Q: IntegerMatrix, rate: Fraction, time: Time
 ) -> list[list[int]]:
-    """Return a positive multiple of ``-(L'Q + QL + 2 d alpha Q)`` (or ``rho^2d Q - L'QL``)."""
+    """Return ``-(L'Q + QL + 2 d alpha Q)`` (or ``rho^2d Q - L'QL``), times `lifted_factor`."""
     N, denominator = mode.A.numerators, mode.A.denominator
     if time is Time.CONTINUOUS:
         return lyapunov_decrease(derivative_lift(N, degree), denominator, Q, degree * rate)
     return stein_decrease(power_lift(N, degree), denominator**degree, Q, rate**degree)
+
+
+def lifted_factor(mode: Mode, degree: int, rate: Fraction, time: Time) -> int:
+    """Return the positive integer that `lifted_decrease` multiplies with.
+
+    The vanishing forms of a certificate are added to the multiplied decrease. Whatever they are
+    multiplied with, they vanish, so no proof depends on it; only a search does.
+    """
+    if time is Time.CONTINUOUS:
+        return lyapunov_factor(mode.A.denominator, degree * rate)
+    return stein_factor(mode.A.denominator**degree, rate**degree)

@@ -77,7 +77,8 @@ class ParameterQuadratic(AbstractEvidence):
         rate = self.rate
         for low, high in system.switching.fixed_ends:
             A, B = modes[low], modes[high]
-            # Over one denominator, all forms are the same multiple of the true ones.
+            # Over one denominator and at one rate, all forms have the same `lyapunov_factor`, so
+            # the sum of two is that multiple of the sum of the true ones.
             common = lcm(A.denominator, B.denominator)
             at_low, at_high = (
                 [

@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from nrs_design.certificates.evidence import CommonPolynomial
+from nrs_design.certificates.evidence.common_polynomial import lifted_factor
 from nrs_design.certificates.lift import derivative_lift, monomials, power_lift
 from nrs_design.certificates.search.balance import scale
 from nrs_design.certificates.search.lmi import decreases, time_unit
@@ -205,7 +206,7 @@ def _integers(
     vanishing = []
     for mode, N in zip(system.modes, candidate.vanishing, strict=True):
         # The integer form of the decrease is this multiple of the floating-point one.
-        factor = _form_factor(mode.A, lift.degree, rate, system.time)
+        factor = lifted_factor(mode, lift.degree, rate, system.time)
         rounded = [
             [_shift(factor * entry, -lift.unit) for entry in row]
             for row in _round(np.ldexp(N, bits - normalized), exponents)
@@ -241,13 +242,6 @@ def _make_vanish(N: list[list[int]], groups: list[list[Pair]]) -> list[list[int]
         N[i][j] -= total if i == j else total // 2
         N[j][i] = N[i][j]
     return N
-
-
-def _form_factor(A: RationalMatrix, degree: int, rate: Fraction, time: Time) -> int:
-    """Return the positive integer by which `lifted_decrease` exceeds the true decrease."""
-    if time is Time.CONTINUOUS:
-        return A.denominator * (2 * degree * rate * A.denominator).denominator
-    return int(A.denominator ** (2 * degree) * (rate**degree).denominator ** 2)
 
 
 def _lift_mode(A: RationalMatrix, degree: int, time: Time) -> RationalMatrix:

@@ -20,6 +20,7 @@ from nrs_design.reporting.sections.meaning import (
 )
 from nrs_design.spec import InteractionDesignSpec
 from nrs_design.switched.assemble import has_ranges
+from nrs_design.switched.gain_box import KEPT_VELOCITY
 from nrs_design.switched.system import SwitchedSystem, Time
 
 if TYPE_CHECKING:
@@ -79,7 +80,7 @@ def _proved(result: Result, evidence: AbstractEvidence) -> tuple[Block, ...]:
     common = _NOT_COVERED_BY_A_DESIGN if design else _not_covered(system, evidence)
     blocks: list[Block] = [
         Bullets("Proved", tuple(proved)),
-        Bullets("Not proved", (*excluded_signals(system, evidence), *common)),
+        Bullets("Not proved", (*excluded_signals(system, evidence), *_memory(system), *common)),
     ]
     if result.certification.common_quadratic is CommonQuadraticStatus.IMPOSSIBLE:
         blocks.append(
@@ -88,6 +89,13 @@ def _proved(result: Result, evidence: AbstractEvidence) -> tuple[Block, ...]:
             )
         )
     return (*blocks, Paragraph(_ILLUSTRATIONS))
+
+
+def _memory(system: SwitchedSystem) -> tuple[str, ...]:
+    """Say which controllers a proof for ranges of gains with inertia does not cover."""
+    if KEPT_VELOCITY not in system.assumptions:
+        return ()
+    return ("Controllers that do not keep their velocity when a gain is retuned.",)
 
 
 def _not_covered(system: SwitchedSystem, evidence: AbstractEvidence) -> tuple[str, ...]:

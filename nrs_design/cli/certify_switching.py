@@ -54,7 +54,10 @@ def certify_switching(
         float, typer.Option(min=0.0, help="Begin no new rung after so many seconds.")
     ] = 60.0,
     margin: Annotated[
-        bool, typer.Option("--margin", help="Find the largest box of ranges that has a proof.")
+        bool,
+        typer.Option(
+            "--margin", help="Find the largest box of ranges with a proof, the smallest refuted."
+        ),
     ] = False,
     shortest_dwell: Annotated[
         bool, typer.Option("--shortest-dwell", help="Find the shortest dwell time with a proof.")

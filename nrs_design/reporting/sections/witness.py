@@ -45,7 +45,10 @@ def witness_section(system: SwitchedSystem, evidence: AbstractEvidence) -> Secti
     if isinstance(evidence, BlockTriangular):
         evidence = evidence.parts[0][1]
     if isinstance(evidence, UnstableValue):
-        text = f"{value_text(system, evidence.share)}, where all of the following is:"
+        text = (
+            f"{value_text(system, evidence.share)}: what follows is simulated at this value of the "
+            "parameter, between the modes that are listed."
+        )
         inner = witness_section(system_at(system, evidence.share), evidence.part)
         return Section(inner.title, (Paragraph(text), *inner.blocks))
     blocks: tuple[Block, ...] = ()

@@ -1,0 +1,31 @@
+"""Simulation of motion control against the full dynamics of the robot (thesis 4.2 to 4.4)."""
+
+from nrs_design.simulation.tracking.encoder import Encoder
+from nrs_design.simulation.tracking.experiment import MOTIONS, Experiment, thesis_experiments
+from nrs_design.simulation.tracking.friction import slide_or_stick
+from nrs_design.simulation.tracking.plant import DriveArrays, JointState, Mechanism, Stepper
+from nrs_design.simulation.tracking.simulate import Record, simulate
+from nrs_design.simulation.tracking.track import (
+    CONTROLLERS,
+    Track,
+    build_track,
+    experiment_tilt,
+)
+
+__all__ = [
+    "CONTROLLERS",
+    "MOTIONS",
+    "DriveArrays",
+    "Encoder",
+    "Experiment",
+    "JointState",
+    "Mechanism",
+    "Record",
+    "Stepper",
+    "Track",
+    "build_track",
+    "experiment_tilt",
+    "simulate",
+    "slide_or_stick",
+    "thesis_experiments",
+]

@@ -64,9 +64,7 @@ class LoadModel:
         """
         pose = direct_kinematics(self.robot, angle / self.encoder_ratio)
         if self.correction is None:
-            return LoadTerms(
-                angle, mass_matrix(self.robot, pose), gravity_torque(self.robot, pose)
-            )
+            return LoadTerms(angle, mass_matrix(self.robot, pose), gravity_torque(self.robot, pose))
         K = np.array(self.correction)
         simplified = simplified_dynamics(self.robot, pose)
         return LoadTerms(angle, K[:, None] * simplified.Ms, K * simplified.Gs)

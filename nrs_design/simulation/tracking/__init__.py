@@ -1,9 +1,11 @@
 """Simulation of motion control against the full dynamics of the robot (thesis 4.2 to 4.4)."""
 
+from nrs_design.simulation.tracking.ablation import ablation_tracks
 from nrs_design.simulation.tracking.encoder import Encoder
 from nrs_design.simulation.tracking.experiment import MOTIONS, Experiment, thesis_experiments
 from nrs_design.simulation.tracking.friction import slide_or_stick
 from nrs_design.simulation.tracking.plant import DriveArrays, JointState, Mechanism, Stepper
+from nrs_design.simulation.tracking.scope import LEFT_OUT
 from nrs_design.simulation.tracking.simulate import Record, simulate
 from nrs_design.simulation.tracking.track import (
     CONTROLLERS,
@@ -14,6 +16,7 @@ from nrs_design.simulation.tracking.track import (
 
 __all__ = [
     "CONTROLLERS",
+    "LEFT_OUT",
     "MOTIONS",
     "DriveArrays",
     "Encoder",
@@ -23,6 +26,7 @@ __all__ = [
     "Record",
     "Stepper",
     "Track",
+    "ablation_tracks",
     "build_track",
     "experiment_tilt",
     "simulate",

@@ -46,10 +46,10 @@ def slide_or_stick(inertia: Array, impulse: Array, limit: Array, start: Array) -
     """
     metric = np.abs(inertia).sum(axis=-1)
     slack = np.eye(3) * metric[:, :, None] - inertia
-    v = start
+    v = np.asarray(start, dtype=np.float64)
     for _ in range(LIMIT):
         push = impulse + (slack @ v[..., None])[..., 0]
-        new = (push - np.clip(push, -limit, limit)) / metric
+        new: Array = (push - np.minimum(np.maximum(push, -limit), limit)) / metric
         change = np.abs(new - v).max()
         v = new
         if change <= ACCURACY:

@@ -124,25 +124,35 @@ class Stepper:
         M and the rotors, shape (n, 3, 3).
     bias : ndarray
         Shape (n, 3), in N m.
+    inertia, inverse : ndarray
+        What takes an impulse to the velocity at the end of the step, and its inverse.
     """
 
     drives: DriveArrays
     h: float
     mass: Array
     bias: Array
+    inertia: Array
+    inverse: Array
 
     @staticmethod
     def at(drives: DriveArrays, h: float, mass: Array, bias: Array) -> Stepper:
         """Return the stepper for mass matrices and bias of the mechanism."""
-        return Stepper(drives, h, mass + np.eye(3) * drives.inertia[..., None], bias)
+        total = mass + np.eye(3) * drives.inertia[..., None]
+        inertia = total + np.eye(3) * (h / 2 * drives.damping)[..., None]
+        return Stepper(drives, h, total, bias, inertia, np.asarray(np.linalg.inv(inertia)))
 
     def step(self, state: JointState, command: Array) -> JointState:
         """Return the state one step later, under commands of shape (n, 3), in rpm."""
         drives, h, v = self.drives, self.h, state.velocity
-        lag = h / 2 * drives.damping
         push = h * (drives.torque_per_command * command - self.bias)
-        impulse = (self.mass @ v[..., None])[..., 0] - lag * v + push
-        inertia = self.mass + np.eye(3) * lag[..., None]
-        new = slide_or_stick(inertia, impulse, h * drives.friction, v)
-        friction = (impulse - (inertia @ new[..., None])[..., 0]) / h
+        impulse = _times(self.mass, v) - h / 2 * drives.damping * v + push
+        # The friction of the last step is a good guess, and right while a joint keeps sliding.
+        guess = _times(self.inverse, impulse - h * state.friction)
+        new = slide_or_stick(self.inertia, impulse, h * drives.friction, guess)
+        friction = (impulse - _times(self.inertia, new)) / h
         return JointState(state.position + h / 2 * (v + new), new, friction)
+
+
+def _times(matrix: Array, vector: Array) -> Array:
+    return np.asarray((matrix @ vector[..., None])[..., 0])

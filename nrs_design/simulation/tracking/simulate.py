@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from itertools import groupby
+from math import pi
+from typing import Any
 
 import numpy as np
 
@@ -15,11 +17,13 @@ from nrs_design.simulation.tracking.experiment import Experiment
 from nrs_design.simulation.tracking.plant import DriveArrays, JointState, Stepper
 from nrs_design.simulation.tracking.track import Track
 
-# Steps between two ticks; twice as many change no error by more than 0.2 %.
+# Steps of the mechanism between two ticks: more do not change the fourth digit of any error.
 STEPS_PER_TICK = 1
-# Phase of the sine in rad for which mass matrix and bias are held, at least one tick: 16 ticks
-# at 0.0571 rad/s, 1 tick at 0.1 Hz.
+# Phase of the sine in rad for which mass matrix and bias are held, at least one step: 2 ms at
+# 0.1 Hz, 34 ms at 0.0571 rad/s. A quarter of it does not change the fourth digit either.
 HELD_PHASE = 2e-3
+# From rad and m to what the thesis prints of (phi, psi, d).
+DISPLAY = np.array([180 / pi, 180 / pi, 1e3])
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,6 +64,18 @@ class Record:
     def actual_rmse(self) -> Array:
         """Root mean square of wanted less actual, shape (3,), in rad and m."""
         return root_mean_square(self.wanted - self.actual)
+
+    def summary(self) -> dict[str, Any]:
+        """Return what to print: angles in deg, lengths in mm, commands in rpm, times in s."""
+        return {
+            "controller": self.controller,
+            "moved": self.experiment.moved,
+            "period": 2 * pi / self.experiment.rate,
+            "duration": self.experiment.duration,
+            "rmse": (self.rmse * DISPLAY).tolist(),
+            "actual_rmse": (self.actual_rmse * DISPLAY).tolist(),
+            "largest_command": np.abs(self.command).max(axis=0).tolist(),
+        }
 
 
 def root_mean_square(error: Array) -> Array:
@@ -107,14 +123,15 @@ def simulate(
         batch = [single[index] for index in indices]
         rate = batch[0].experiments[0].rate
         tell(f"{len(batch)} experiments of {batch[0].experiments[0].duration:.0f} s")
-        held = max(1, int(held_phase / (rate * batch[0].law.period)))
+        held = max(1, int(held_phase / rate * steps / batch[0].law.period))
         records |= zip(indices, _lockstep(batch, steps, held), strict=True)
     return [records[index] for index in range(len(single))]
 
 
 def _lockstep(batch: Sequence[Track], steps: int, held: int) -> list[Record]:
     period = batch[0].law.period
-    time = period * np.arange(round(batch[0].experiments[0].duration / period) + 1)
+    ticks = round(batch[0].experiments[0].duration / period) + 1
+    time = np.asarray(period * np.arange(ticks), dtype=np.float64)
     wanted = _stacked([one.experiments[0].reference(one.mechanism.robot, time) for one in batch])
     drives = DriveArrays.of([one.drive for one in batch])
     state = JointState(wanted.position[0], *np.zeros((2, len(batch), 3)))
@@ -124,9 +141,6 @@ def _lockstep(batch: Sequence[Track], steps: int, held: int) -> list[Record]:
     angles, positions, commands = np.empty((3, len(time), len(batch), 3))
     seen: JointState | None = None
     for tick in range(len(time)):
-        if seen is None or (tick % held == 0 and not state.is_like(seen)):
-            seen = state
-            stepper = Stepper.at(drives, period / steps, *_mass_and_bias(plants, state))
         positions[tick] = state.position
         reference = wanted.at(tick)
         for index, (track, rows) in enumerate(benches):
@@ -134,7 +148,10 @@ def _lockstep(batch: Sequence[Track], steps: int, held: int) -> list[Record]:
             commands[tick, rows], memory[index] = track.law.step(
                 memory[index], reference.of(rows), angles[tick, rows]
             )
-        for _ in range(steps):
+        for step in range(tick * steps, (tick + 1) * steps):
+            if seen is None or (step % held == 0 and not state.is_like(seen)):
+                seen = state
+                stepper = Stepper.at(drives, period / steps, *_mass_and_bias(plants, state))
             state = stepper.step(state, commands[tick])
     return [
         _record(one, time, angles[:, row], positions[:, row], commands[:, row])
@@ -152,9 +169,7 @@ def _shared(
     return [(batch[rows[0]], rows) for rows in groups.values()]
 
 
-def _mass_and_bias(
-    plants: list[tuple[Track, list[int]]], state: JointState
-) -> tuple[Array, Array]:
+def _mass_and_bias(plants: list[tuple[Track, list[int]]], state: JointState) -> tuple[Array, Array]:
     mass, bias = np.empty((*state.position.shape, 3)), np.empty(state.position.shape)
     for track, rows in plants:
         found = track.mechanism.mass_and_bias(state.position[rows], state.velocity[rows])

@@ -47,6 +47,11 @@ class Track:
     encoder: Encoder
     experiments: tuple[Experiment, ...]
 
+    def only(self, moved: str | None) -> Track:
+        """Return the track with the experiment that moves one coordinate; None keeps all."""
+        kept = tuple(one for one in self.experiments if moved in (None, one.moved))
+        return replace(self, experiments=kept)
+
     def split(self) -> tuple[Track, ...]:
         """Return one track for each experiment."""
         return tuple(replace(self, experiments=(one,)) for one in self.experiments)

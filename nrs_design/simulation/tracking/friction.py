@@ -12,7 +12,7 @@ from nrs_design.models.robot.vectors import Array
 
 # Change of the velocities at which the iteration ends, in rad/s.
 ACCURACY = 1e-10
-LIMIT = 1000
+LIMIT = 20_000
 
 
 def slide_or_stick(inertia: Array, impulse: Array, limit: Array, start: Array) -> Array:

@@ -1,0 +1,110 @@
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from nrs_design.simulation.tracking import CONTROLLERS, build_track, simulate
+
+# Fast, after a short hold, so that little simulated time shows everything.
+PERIOD, HOLD = 2.0, 0.5
+
+
+@pytest.fixture(scope="module")
+def tracks(spec, robot):
+    return [shortened(build_track(spec, robot, name, PERIOD)) for name in CONTROLLERS]
+
+
+def shortened(track):
+    return replace(track, experiments=tuple(replace(e, hold=HOLD) for e in track.experiments))
+
+
+@pytest.fixture(scope="module")
+def records(tracks):
+    return simulate(tracks)
+
+
+def test_one_record_for_each_experiment(records):
+    found = [(record.controller, record.experiment.moved) for record in records]
+    assert found == [(name, moved) for name in CONTROLLERS for moved in ("d", "phi", "psi")]
+    for record in records:
+        assert record.time[[0, -1]] == pytest.approx([0, 2.5])
+        assert record.wanted.shape == record.measured.shape == record.command.shape == (1251, 3)
+
+
+def test_the_pose_is_held_before_the_sine(records):
+    for record in records:
+        if record.controller == "independent-joint":
+            start = record.actual[record.time <= HOLD]
+            assert np.ptp(start, axis=0) == pytest.approx(np.zeros(3), abs=1e-12)
+
+
+def test_measured_is_actual_to_the_count(records):
+    # Half a count is 3.8e-4 rad at the encoder, 7.7e-5 rad at the joint.
+    for record in records:
+        assert np.abs(record.measured - record.actual)[:, :2].max() < 2e-4
+        assert np.abs(record.measured - record.actual)[:, 2].max() < 5e-5
+
+
+def test_lockstep_changes_nothing(tracks, records):
+    (alone,) = simulate([tracks[1].only("phi")])
+    assert alone.rmse == pytest.approx(records[4].rmse, rel=1e-9)
+
+
+def test_more_steps_change_nothing(tracks, records):
+    # Two steps for each tick, and mass and bias anew at every one of them.
+    again = simulate([track.only("psi") for track in tracks], steps=2, held_phase=0.0)
+    for fine, coarse in zip(again, records[2::3], strict=True):
+        moved = fine.rmse[1]
+        assert coarse.rmse == pytest.approx(fine.rmse, rel=2e-3, abs=2e-3 * moved)
+
+
+def test_independent_joints_beat_computed_torque(records):
+    # The ranking of thesis 4.3.4, on the same motions.
+    for torque, joint, place in zip(records[:3], records[3:6], (2, 0, 1), strict=True):
+        assert joint.rmse[place] < torque.rmse[place] / 5
+
+
+def test_complete_computed_torque_follows_almost_perfectly(spec, robot):
+    # The law's model is the plant's: full dynamics, rotors and motors, no friction, no counts.
+    # What remains is the sampling.
+    track = shortened(build_track(spec, robot, "computed-torque", PERIOD)).only("psi")
+    law = replace(
+        track.law,
+        load=replace(track.law.load, correction=None),
+        rotor_inertia=track.drive.inertia,
+        motor_damping=track.drive.damping,
+    )
+    drive = replace(track.drive, coulomb_friction=0.0)
+    encoder = replace(track.encoder, counts=None)
+    (record,) = simulate([replace(track, law=law, drive=drive, encoder=encoder)])
+    moving = record.time > HOLD + 0.5
+    error = np.degrees((record.wanted - record.actual)[moving, 1])
+    assert np.sqrt(np.mean(error**2)) < 0.05
+    assert np.degrees(np.ptp(record.actual[:, 1])) == pytest.approx(40, abs=0.2)
+
+
+def test_summary_in_the_units_of_the_print(records):
+    summary = records[0].summary()
+    assert (summary["controller"], summary["moved"]) == ("computed-torque", "d")
+    assert summary["period"] == pytest.approx(PERIOD)
+    assert summary["rmse"][2] == pytest.approx(1e3 * records[0].rmse[2])
+    assert summary["rmse"][1] == pytest.approx(np.degrees(records[0].rmse[1]))
+    error = records[0].wanted - records[0].actual
+    assert summary["actual_rmse"][2] == pytest.approx(1e3 * np.linalg.norm(error[:, 2]) / 1251**0.5)
+
+
+def test_tells_what_it_does(tracks):
+    told = []
+    simulate([tracks[2].only("d")], tell=told.append)
+    assert told == ["1 of 2.5 s"]
+
+
+@pytest.mark.slow
+def test_full_experiments_of_the_thesis(spec, robot):
+    # Regression of what docs/motion-control.md states, deg and mm of what moves.
+    found = simulate([build_track(spec, robot, name) for name in CONTROLLERS])
+    place = {"phi": 0, "psi": 1, "d": 2}
+    moved = [r.summary()["rmse"][place[r.experiment.moved]] for r in found]
+    assert moved == pytest.approx(
+        [3.903, 2.562, 8.407, 0.1039, 0.1075, 0.1348, 0.1116, 0.0451, 0.0514], rel=1e-2
+    )

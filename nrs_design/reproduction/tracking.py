@@ -42,6 +42,7 @@ def rows() -> tuple[Row, ...]:
             f"table {table}",
             printed,
             "deg, deg, mm",
+            "`nrs-design robot track` shows simulated errors beside it.",
         )
         for controller, tables, prints in MEASURED
         for moved, table, printed in zip(MOTIONS, tables, prints, strict=True)

@@ -86,13 +86,11 @@ def test_a_robot_of_ones_own(tmp_path):
 @pytest.mark.slow
 def test_ablation(tmp_path):
     options = ("--controller", "independent-joint", "--experiment", "psi", *QUICK, "--ablation")
-    result = run("robot", "track", ROBOT, *options, "--json", cwd=tmp_path)
+    result = run("robot", "track", ROBOT, *options, "-q", cwd=tmp_path)
     assert result.returncode == 0, result.stderr
-    rows = json.loads(result.stdout)["ablation"]
-    assert [row["change"] for row in rows].count("as designed") == 2
-    assert all(list(row["rmse"]) == ["psi"] for row in rows)
-    table = run("robot", "track", ROBOT, *options, "-q", cwd=tmp_path).stdout
-    assert "rotor inertia and motor damping in the law" in table
+    assert result.stdout.count("as designed") == 2
+    assert "rotor inertia and motor damping in the law" in result.stdout
+    assert "psi [deg]" in result.stdout
 
 
 @pytest.mark.parametrize(

@@ -1,3 +1,4 @@
+import numpy as np
 import pytest
 
 from nrs_design.controllers.float32 import is_float32
@@ -7,7 +8,8 @@ from nrs_design.design.motion_control import (
     design_load_model,
 )
 from nrs_design.errors import DesignError
-from nrs_design.models.robot import build_robot
+from nrs_design.models.robot import build_robot, inverse_kinematics, mass_matrix
+from nrs_design.models.robot.drive import build_drive
 from nrs_design.spec import parse_spec
 from nrs_design.spec.templates import TEMPLATES
 
@@ -53,6 +55,25 @@ def test_correction_for_the_tilt_of_the_experiments(spec, robot):
     load = design_load_model(spec, robot)
     assert load.correction == pytest.approx([1.845, 1.842, 2.188], rel=1e-3)
     assert load.encoder_ratio == 5
+
+
+def test_why_independent_joints_are_stiffer(spec, robot):
+    # What docs/robot/motion-control.md states: stiffness of both at d = 200 mm in N m/rad, and the
+    # slowest pole of computed torque on the rotors, which its law does not know.
+    load, drive = design_load_model(spec, robot), build_drive(spec.drive)
+    torque, joint = design_computed_torque(spec, load), design_independent_joint(spec, None)
+    known = load.terms(5 * inverse_kinematics(robot, robot.home)[None]).inertia[0]
+    stiffness = np.sort(np.linalg.eigvals(torque.Kp * known))
+    assert stiffness == pytest.approx([21.4, 117.7, 436.8], rel=3e-3)
+    stiff = float(joint.motion.Kp) * drive.encoder_ratio * drive.torque_per_command
+    assert stiff == pytest.approx(1964, rel=1e-3)
+    M = mass_matrix(robot, robot.home)
+    assert drive.inertia / np.linalg.eigvalsh(M) == pytest.approx([76, 15, 5], rel=2e-2)
+    total = M + drive.inertia * np.eye(3)
+    damping = torque.Kd * known + drive.damping * np.eye(3)
+    parts = np.linalg.solve(total, np.hstack([torque.Kp * known, damping]))
+    poles = np.linalg.eigvals(np.vstack([np.eye(6)[3:], -parts]))
+    assert poles.real.max() == pytest.approx(-0.62, abs=0.01)
 
 
 def test_no_control():

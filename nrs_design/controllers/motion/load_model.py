@@ -9,8 +9,7 @@ import numpy as np
 from nrs_design.models.robot import (
     Robot,
     direct_kinematics,
-    gravity_torque,
-    mass_matrix,
+    mass_and_bias,
     simplified_dynamics,
 )
 from nrs_design.models.robot.vectors import Array
@@ -64,7 +63,7 @@ class LoadModel:
         """
         pose = direct_kinematics(self.robot, angle / self.encoder_ratio)
         if self.correction is None:
-            return LoadTerms(angle, mass_matrix(self.robot, pose), gravity_torque(self.robot, pose))
+            return LoadTerms(angle, *mass_and_bias(self.robot, pose, np.zeros_like(pose)))
         K = np.array(self.correction)
         simplified = simplified_dynamics(self.robot, pose)
         return LoadTerms(angle, K[:, None] * simplified.Ms, K * simplified.Gs)

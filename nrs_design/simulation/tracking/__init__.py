@@ -3,7 +3,7 @@
 from nrs_design.simulation.tracking.ablation import ablation_tracks
 from nrs_design.simulation.tracking.encoder import Encoder
 from nrs_design.simulation.tracking.experiment import MOTIONS, Experiment, thesis_experiments
-from nrs_design.simulation.tracking.friction import slide_or_stick
+from nrs_design.simulation.tracking.friction import DryFriction
 from nrs_design.simulation.tracking.plant import DriveArrays, JointState, Mechanism, Stepper
 from nrs_design.simulation.tracking.scope import LEFT_OUT
 from nrs_design.simulation.tracking.simulate import Record, simulate
@@ -19,6 +19,7 @@ __all__ = [
     "LEFT_OUT",
     "MOTIONS",
     "DriveArrays",
+    "DryFriction",
     "Encoder",
     "Experiment",
     "JointState",
@@ -30,6 +31,5 @@ __all__ = [
     "build_track",
     "experiment_tilt",
     "simulate",
-    "slide_or_stick",
     "thesis_experiments",
 ]

@@ -21,7 +21,7 @@ from nrs_design.models.robot import (
 )
 from nrs_design.models.robot.drive import JointDrive
 from nrs_design.models.robot.vectors import Array
-from nrs_design.simulation.tracking.friction import slide_or_stick
+from nrs_design.simulation.tracking.friction import DryFriction
 
 
 @dataclass(frozen=True, slots=True)
@@ -124,15 +124,17 @@ class Stepper:
         M and the rotors, shape (n, 3, 3).
     bias : ndarray
         Shape (n, 3), in N m.
-    inertia, inverse : ndarray
-        What takes an impulse to the velocity at the end of the step, and its inverse.
+    contact : DryFriction
+        What the velocity at the end of the step follows from.
+    inverse : ndarray
+        Inverse of its inertia, shape (n, 3, 3).
     """
 
     drives: DriveArrays
     h: float
     mass: Array
     bias: Array
-    inertia: Array
+    contact: DryFriction
     inverse: Array
 
     @staticmethod
@@ -140,17 +142,19 @@ class Stepper:
         """Return the stepper for mass matrices and bias of the mechanism."""
         total = mass + np.eye(3) * drives.inertia[..., None]
         inertia = total + np.eye(3) * (h / 2 * drives.damping)[..., None]
-        return Stepper(drives, h, total, bias, inertia, np.asarray(np.linalg.inv(inertia)))
+        return Stepper(
+            drives, h, total, bias, DryFriction.of(inertia), np.asarray(np.linalg.inv(inertia))
+        )
 
     def step(self, state: JointState, command: Array) -> JointState:
         """Return the state one step later, under commands of shape (n, 3), in rpm."""
         drives, h, v = self.drives, self.h, state.velocity
         push = h * (drives.torque_per_command * command - self.bias)
         impulse = _times(self.mass, v) - h / 2 * drives.damping * v + push
-        # The friction of the last step is a good guess, and right while a joint keeps sliding.
-        guess = _times(self.inverse, impulse - h * state.friction)
-        new = slide_or_stick(self.inertia, impulse, h * drives.friction, guess)
-        friction = (impulse - _times(self.inertia, new)) / h
+        # The friction of the last step is right while a joint keeps sliding.
+        guess = np.where(v == 0.0, 0.0, _times(self.inverse, impulse - h * state.friction))
+        new = self.contact.slide_or_stick(impulse, h * drives.friction, guess)
+        friction = (impulse - _times(self.contact.inertia, new)) / h
         return JointState(state.position + h / 2 * (v + new), new, friction)
 
 

@@ -122,7 +122,8 @@ def simulate(
         indices = list(group)
         batch = [single[index] for index in indices]
         rate = batch[0].experiments[0].rate
-        tell(f"{len(batch)} of {batch[0].experiments[0].duration:.1f} s")
+        many = "experiment" if len(batch) == 1 else "experiments together"
+        tell(f"{len(batch)} {many}, {batch[0].experiments[0].duration:.4g} s")
         held = max(1, int(held_phase / rate * steps / batch[0].law.period))
         records |= zip(indices, _lockstep(batch, steps, held), strict=True)
     return [records[index] for index in range(len(single))]

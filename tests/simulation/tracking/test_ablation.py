@@ -1,4 +1,5 @@
 from dataclasses import replace
+from pathlib import Path
 
 import pytest
 
@@ -32,6 +33,20 @@ def test_one_thing_at_a_time(changed, drive):
     assert by_name["independent-joint", "encoder without counts"].encoder.counts is None
     full = by_name["computed-torque", "rotor inertia and motor damping in the law"].law
     assert (full.rotor_inertia, full.motor_damping) == (drive.inertia, drive.damping)
+
+
+@pytest.mark.slow
+def test_the_page_states_what_the_changes_do(changed):
+    page = (Path(__file__).parents[3] / "docs/robot/motion-control.md").read_text()
+    names = (
+        "as designed",
+        "rotor inertia in the law",
+        "rotor inertia and motor damping in the law",
+    )
+    chosen = [(name, track.only("phi")) for name, track in changed if name in names]
+    for (name, track), record in zip(chosen, simulate(t for _, t in chosen), strict=True):
+        (row,) = [line for line in page.splitlines() if f"{track.controller} | {name} |" in line]
+        assert record.summary()["rmse"][0] == pytest.approx(float(row.split(" | ")[3]), rel=1e-2)
 
 
 def test_the_missing_rotor_inertia_is_what_costs_most(changed):

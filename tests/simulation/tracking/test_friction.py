@@ -4,13 +4,14 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from nrs_design.simulation.tracking import slide_or_stick
+from nrs_design.simulation.tracking import DryFriction
 
 ZERO = np.zeros((1, 3))
 
 
 def solve(inertia, impulse, limit, start=ZERO):
-    return slide_or_stick(np.array([inertia]), np.array([impulse]), np.array([limit]), start)[0]
+    problem = DryFriction.of(np.array([inertia]))
+    return problem.slide_or_stick(np.array([impulse]), np.array([limit]), start)[0]
 
 
 def test_uncoupled_joints_slide_or_stick():

@@ -9,7 +9,7 @@ import numpy as np
 
 from nrs_design.reporting.style import CYCLE, INK, color, marker, new_figure, styled
 from nrs_design.simulation.tracking import MOTIONS, Record
-from nrs_design.simulation.tracking.simulate import DISPLAY
+from nrs_design.simulation.tracking.record import DISPLAY
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

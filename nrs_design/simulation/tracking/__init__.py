@@ -5,8 +5,9 @@ from nrs_design.simulation.tracking.encoder import Encoder
 from nrs_design.simulation.tracking.experiment import MOTIONS, Experiment, thesis_experiments
 from nrs_design.simulation.tracking.friction import DryFriction
 from nrs_design.simulation.tracking.plant import DriveArrays, JointState, Mechanism, Stepper
+from nrs_design.simulation.tracking.record import Record
 from nrs_design.simulation.tracking.scope import LEFT_OUT
-from nrs_design.simulation.tracking.simulate import Record, simulate
+from nrs_design.simulation.tracking.simulate import simulate
 from nrs_design.simulation.tracking.track import (
     CONTROLLERS,
     Track,

@@ -3,18 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass
 from itertools import groupby
-from math import pi
-from typing import Any
 
 import numpy as np
 
 from nrs_design.controllers.motion import JointReference, LawState
+from nrs_design.errors import DesignError, PoseError
 from nrs_design.models.robot import direct_kinematics
 from nrs_design.models.robot.vectors import Array
-from nrs_design.simulation.tracking.experiment import Experiment
 from nrs_design.simulation.tracking.plant import DriveArrays, JointState, Stepper
+from nrs_design.simulation.tracking.record import Record
 from nrs_design.simulation.tracking.track import Track
 
 # Steps of the mechanism between two ticks: more do not change the fourth digit of any error.
@@ -22,65 +20,8 @@ STEPS_PER_TICK = 1
 # Phase of the sine in rad for which mass matrix and bias are held, at least one step: 2 ms at
 # 0.1 Hz, 34 ms at 0.0571 rad/s. A quarter of it does not change the fourth digit either.
 HELD_PHASE = 2e-3
-# From rad and m to what the thesis prints of (phi, psi, d).
-DISPLAY = np.array([180 / pi, 180 / pi, 1e3])
-
-
-@dataclass(frozen=True, slots=True)
-class Record:
-    """What one experiment gave.
-
-    Parameters
-    ----------
-    controller : str
-        Which one.
-    experiment : Experiment
-        What was asked for.
-    time : ndarray
-        Ticks in s, shape (n,).
-    wanted, measured, actual : ndarray
-        Poses (phi, psi, d), shape (n, 3), in rad and m; measured through the encoders.
-    command : ndarray
-        Shape (n, 3), in rpm.
-    """
-
-    controller: str
-    experiment: Experiment
-    time: Array
-    wanted: Array
-    measured: Array
-    actual: Array
-    command: Array
-
-    @property
-    def rmse(self) -> Array:
-        """Root mean square of wanted less measured, shape (3,), in rad and m.
-
-        Over the whole record, with the time that the pose is held.
-        """
-        return root_mean_square(self.wanted - self.measured)
-
-    @property
-    def actual_rmse(self) -> Array:
-        """Root mean square of wanted less actual, shape (3,), in rad and m."""
-        return root_mean_square(self.wanted - self.actual)
-
-    def summary(self) -> dict[str, Any]:
-        """Return what to print: angles in deg, lengths in mm, commands in rpm, times in s."""
-        return {
-            "controller": self.controller,
-            "moved": self.experiment.moved,
-            "period": 2 * pi / self.experiment.rate,
-            "duration": self.experiment.duration,
-            "rmse": (self.rmse * DISPLAY).tolist(),
-            "actual_rmse": (self.actual_rmse * DISPLAY).tolist(),
-            "largest_command": np.abs(self.command).max(axis=0).tolist(),
-        }
-
-
-def root_mean_square(error: Array) -> Array:
-    """Return the root mean square over the first axis."""
-    return np.asarray(np.sqrt(np.mean(error**2, axis=0)), dtype=np.float64)
+# Arrays of so many ticks still fit into memory.
+MOST_TICKS = 2_000_000
 
 
 def simulate(
@@ -113,30 +54,46 @@ def simulate(
     Raises
     ------
     PoseError
-        If an experiment leaves what the robot can reach.
+        If an experiment asks for what the robot cannot reach.
+    DesignError
+        If a simulated motion leaves what the robot can reach, or there are too many ticks.
     """
     single = [one for track in tracks for one in track.split()]
-    order = sorted(range(len(single)), key=lambda index: single[index].experiments[0].duration)
+    order = sorted(range(len(single)), key=lambda index: _clock(single[index]))
     records: dict[int, Record] = {}
-    for _, group in groupby(order, key=lambda index: single[index].experiments[0].duration):
+    for (duration, rate, period), group in groupby(order, key=lambda i: _clock(single[i])):
         indices = list(group)
-        batch = [single[index] for index in indices]
-        rate = batch[0].experiments[0].rate
-        many = "experiment" if len(batch) == 1 else "experiments together"
-        tell(f"{len(batch)} {many}, {batch[0].experiments[0].duration:.4g} s")
-        held = max(1, int(held_phase / rate * steps / batch[0].law.period))
-        records |= zip(indices, _lockstep(batch, steps, held), strict=True)
+        many = "experiment" if len(indices) == 1 else "experiments together"
+        tell(f"{len(indices)} {many}, {duration:.4g} s")
+        held = max(1, int(held_phase / rate * steps / period))
+        found = _lockstep([single[index] for index in indices], steps, held)
+        records |= zip(indices, found, strict=True)
     return [records[index] for index in range(len(single))]
 
 
+def _clock(track: Track) -> tuple[float, float, float]:
+    """Return what tracks must have in common to run in lockstep."""
+    (experiment,) = track.experiments
+    return experiment.duration, experiment.rate, track.law.period
+
+
+def _ticks(batch: Sequence[Track]) -> Array:
+    duration, _, period = _clock(batch[0])
+    if duration > MOST_TICKS * period:
+        raise DesignError(
+            f"{duration:.4g} s at a sample period of {period:.4g} s are more than {MOST_TICKS} "
+            "ticks",
+            remedy="choose a shorter --period, or a longer sample_period in the spec",
+        )
+    return np.asarray(period * np.arange(round(duration / period) + 1), dtype=np.float64)
+
+
 def _lockstep(batch: Sequence[Track], steps: int, held: int) -> list[Record]:
-    period = batch[0].law.period
-    ticks = round(batch[0].experiments[0].duration / period) + 1
-    time = np.asarray(period * np.arange(ticks), dtype=np.float64)
+    time, period = _ticks(batch), batch[0].law.period
     wanted = _stacked([one.experiments[0].reference(one.mechanism.robot, time) for one in batch])
     drives = DriveArrays.of([one.drive for one in batch])
     state = JointState(wanted.position[0], *np.zeros((2, len(batch), 3)))
-    benches = _shared(batch, lambda one: (one.law,))
+    benches = _shared(batch, lambda one: (one.law, one.encoder))
     plants = _shared(batch, lambda one: one.mechanism.parts)
     memory = [LawState() for _ in benches]
     angles, positions, commands = np.empty((3, len(time), len(batch), 3))
@@ -144,20 +101,31 @@ def _lockstep(batch: Sequence[Track], steps: int, held: int) -> list[Record]:
     for tick in range(len(time)):
         positions[tick] = state.position
         reference = wanted.at(tick)
-        for index, (track, rows) in enumerate(benches):
-            angles[tick, rows] = track.encoder.read(state.position[rows])
-            commands[tick, rows], memory[index] = track.law.step(
-                memory[index], reference.of(rows), angles[tick, rows]
-            )
-        for step in range(tick * steps, (tick + 1) * steps):
-            if seen is None or (step % held == 0 and not state.is_like(seen)):
-                seen = state
-                stepper = Stepper.at(drives, period / steps, *_mass_and_bias(plants, state))
-            state = stepper.step(state, commands[tick])
+        try:
+            for index, (track, rows) in enumerate(benches):
+                angles[tick, rows] = track.encoder.read(state.position[rows])
+                commands[tick, rows], memory[index] = track.law.step(
+                    memory[index], reference.of(rows), angles[tick, rows]
+                )
+            for step in range(tick * steps, (tick + 1) * steps):
+                if seen is None or (step % held == 0 and not state.is_like(seen)):
+                    seen = state
+                    stepper = Stepper.at(drives, period / steps, *_mass_and_bias(plants, state))
+                state = stepper.step(state, commands[tick])
+        except PoseError as error:
+            raise _out_of_reach(batch, time[tick]) from error
     return [
         _record(one, time, angles[:, row], positions[:, row], commands[:, row])
         for row, one in enumerate(batch)
     ]
+
+
+def _out_of_reach(batch: Sequence[Track], time: float) -> DesignError:
+    names = ", ".join(dict.fromkeys(one.controller for one in batch))
+    return DesignError(
+        f"a simulated motion ({names}) leaves what the robot can reach at {time:.4g} s",
+        remedy="check the gains and the sample period: the loop may be unstable",
+    )
 
 
 def _shared(

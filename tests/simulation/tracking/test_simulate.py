@@ -1,9 +1,12 @@
 from dataclasses import replace
+from fractions import Fraction
 from pathlib import Path
 
 import numpy as np
 import pytest
 
+from nrs_design.controllers.laws import ProportionalDerivative
+from nrs_design.errors import DesignError
 from nrs_design.simulation.tracking import CONTROLLERS, build_track, simulate
 
 # Fast, after a short hold, so that little simulated time shows everything.
@@ -84,14 +87,32 @@ def test_complete_computed_torque_follows_almost_perfectly(spec, robot):
     assert np.degrees(np.ptp(record.actual[:, 1])) == pytest.approx(40, abs=0.2)
 
 
-def test_summary_in_the_units_of_the_print(records):
-    summary = records[0].summary()
-    assert (summary["controller"], summary["moved"]) == ("computed-torque", "d")
-    assert summary["period"] == pytest.approx(PERIOD)
-    assert summary["rmse"][2] == pytest.approx(1e3 * records[0].rmse[2])
-    assert summary["rmse"][1] == pytest.approx(np.degrees(records[0].rmse[1]))
-    error = records[0].wanted - records[0].actual
-    assert summary["actual_rmse"][2] == pytest.approx(1e3 * np.linalg.norm(error[:, 2]) / 1251**0.5)
+def test_tracks_that_differ_in_one_part_are_told_apart(tracks, records):
+    # The same law and mechanism, another encoder and another drive.
+    track = tracks[1].only("phi")
+    ideal = replace(track, encoder=replace(track.encoder, counts=None))
+    smooth = replace(track, drive=replace(track.drive, coulomb_friction=0.0))
+    rounded, exact, without_friction = simulate([track, ideal, smooth])
+    assert np.array_equal(rounded.measured, records[4].measured)
+    assert exact.measured == pytest.approx(exact.actual, abs=1e-12)
+    assert np.abs(rounded.measured - rounded.actual).max() > 1e-5
+    assert without_friction.rmse[0] < rounded.rmse[0]
+
+
+def test_an_unstable_loop_is_said_to_be_one(tracks):
+    track = tracks[1].only("phi")
+    wild = replace(
+        track,
+        law=replace(track.law, motion=ProportionalDerivative(Fraction(10**7), Fraction(10**6))),
+    )
+    with pytest.raises(DesignError, match=r"independent-joint.*leaves what the robot can reach"):
+        simulate([wild])
+
+
+def test_too_many_ticks(tracks):
+    fine = replace(tracks[1], law=replace(tracks[1].law, period=1e-9))
+    with pytest.raises(DesignError, match="more than 2000000 ticks"):
+        simulate([fine])
 
 
 def test_tells_what_it_does(tracks):

@@ -48,7 +48,7 @@ def test_the_page_states_what_the_changes_do(changed):
 def test_the_missing_rotor_inertia_is_what_costs_most(changed):
     chosen = {
         name: replace(
-            track, experiments=(replace(track.only("phi").experiments[0], hold=0.2, rate=3.0),)
+            track, experiments=(replace(track.only("phi").experiments[0], hold=0.1, rate=4.0),)
         )
         for name, track in changed
         if track.controller == "computed-torque"

@@ -2,6 +2,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from scipy.integrate import solve_ivp
 
 from nrs_design.controllers.motion import JointReference, LawState, LoadModel
 from nrs_design.design.motion_control import design_independent_joint
@@ -124,6 +125,37 @@ def test_a_joint_that_stops_stays_without_chatter(drive):
     assert moving * h == pytest.approx(stop, abs=1.5 * h)
     assert min(speeds) == 0.0
     assert not np.any(speeds[moving:])
+
+
+def test_agrees_with_an_independent_integrator(robot, smooth):
+    # DOP853 on the same equation, without friction; the weight is held by half of its command.
+    mechanism, start = Mechanism(robot), at_rest(robot)
+    command = gravity_torque(robot, HOME) / smooth.torque_per_command / 2 + [[400.0, 0.0, -300.0]]
+
+    def slope(time, y):
+        mass, bias = mechanism.mass_and_bias(y[None, :3], y[None, 3:])
+        torque = smooth.torque_per_command * command - bias - smooth.damping * y[3:]
+        total = mass[0] + smooth.inertia * np.eye(3)
+        return np.concatenate([y[3:], np.linalg.solve(total, torque[0])])
+
+    exact = solve_ivp(
+        slope,
+        (0, 0.1),
+        np.concatenate([start.position[0], np.zeros(3)]),
+        method="DOP853",
+        rtol=1e-10,
+        atol=1e-12,
+    ).y[:3, -1]
+    moved = np.abs(exact - start.position[0]).max()
+    errors = []
+    for h in (2e-3, 1e-3):
+        state = start
+        for _ in range(round(0.1 / h)):
+            matrices = mechanism.mass_and_bias(state.position, state.velocity)
+            state = Stepper.at(DriveArrays.of([smooth]), h, *matrices).step(state, command)
+        errors.append(np.abs(state.position[0] - exact).max())
+    assert errors[0] < 1e-3 * moved
+    assert errors[1] < 0.6 * errors[0]
 
 
 def energy_error(robot, drive, h):

@@ -56,8 +56,8 @@ def test_lockstep_changes_nothing(tracks, records):
 
 def test_more_steps_change_nothing(tracks, records):
     # Two steps for each tick, and mass and bias anew at every one of them.
-    again = simulate([track.only("psi") for track in tracks], steps=2, held_phase=0.0)
-    for fine, coarse in zip(again, records[2::3], strict=True):
+    again = simulate([track.only("psi") for track in tracks[:2]], steps=2, held_phase=0.0)
+    for fine, coarse in zip(again, (records[2], records[5]), strict=True):
         moved = fine.rmse[1]
         assert coarse.rmse == pytest.approx(fine.rmse, rel=2e-3, abs=2e-3 * moved)
 
@@ -106,19 +106,14 @@ def test_an_unstable_loop_is_said_to_be_one(tracks):
         law=replace(track.law, motion=ProportionalDerivative(Fraction(10**7), Fraction(10**6))),
     )
     with pytest.raises(DesignError, match=r"independent-joint.*leaves what the robot can reach"):
-        simulate([wild])
+        simulate([wild], tell=(told := []).append)
+    assert told == ["1 experiment, 2.5 s"]
 
 
 def test_too_many_ticks(tracks):
     fine = replace(tracks[1], law=replace(tracks[1].law, period=1e-9))
     with pytest.raises(DesignError, match="more than 2000000 ticks"):
         simulate([fine])
-
-
-def test_tells_what_it_does(tracks):
-    told = []
-    simulate([tracks[2].only("d")], tell=told.append)
-    assert told == ["1 experiment, 2.5 s"]
 
 
 @pytest.mark.slow

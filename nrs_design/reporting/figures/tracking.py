@@ -49,6 +49,9 @@ def draw_tracking(records: Sequence[Record], measured: Sequence[Measured]) -> Fi
         _draw_motion(panels[0, column], [record for record, _ in chosen], controllers)
         _draw_errors(panels[1, column], chosen, controllers)
     panels[1, 0].set_ylabel("RMSE [deg, mm]")
+    highest = max(axes.get_ylim()[1] for axes in panels[1])
+    for axes in panels[1]:
+        axes.set_ylim(_FLOOR, highest)
     _legend(figure, controllers, any(measured))
     return figure
 
@@ -83,7 +86,6 @@ def _draw_errors(
         if on_robot is not None:
             axes.plot(where, on_robot, marker(3), color=INK, markersize=4.5)
     axes.set_yscale("log")
-    axes.set_ylim(_FLOOR, 40)
     axes.set_xticks(np.arange(3), _NAMES)
     axes.grid(visible=False, axis="x")
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -13,6 +14,7 @@ from nrs_design.cli.printing import print_json
 
 if TYPE_CHECKING:
     from nrs_design.certificates.certificate import Certificate
+    from nrs_design.spec import Spec
 
 
 def verify(
@@ -35,9 +37,8 @@ def verify(
     from nrs_design.certificates.verify import verify as verify_file
     from nrs_design.spec import read_spec
 
-    outcome = verify_file(
-        certificate, read_spec(spec), None if coordinates is None else str(coordinates)
-    )
+    loaded = read_spec(spec)
+    outcome = verify_file(certificate, loaded, None if coordinates is None else str(coordinates))
     checked = outcome.certificate if outcome.fault is None else None
     verdict = checked.verdict if checked else "rejected"
     claims = [item.claim(checked.system) for item in checked.statements] if checked else None
@@ -58,11 +59,11 @@ def verify(
     elif checked is None:
         print(f"REJECTED: {outcome.fault}")
     else:
-        _print(checked, quiet=quiet)
+        _print(checked, loaded.spec, quiet=quiet)
     raise typer.Exit(exit_codes.OF_VERDICT.get(verdict, exit_codes.REFUTED))
 
 
-def _print(certificate: Certificate, *, quiet: bool) -> None:
+def _print(certificate: Certificate, spec: Spec, *, quiet: bool) -> None:
     print(f"{certificate.verdict.upper()}: the certificate holds, checked exactly.")
     if quiet:
         return
@@ -73,3 +74,15 @@ def _print(certificate: Certificate, *, quiet: bool) -> None:
     for name, gains in certificate.gains.items():
         if gains:
             print(f"  {name}: " + ", ".join(f"{k} = {v}" for k, v in gains.items()))
+            for gain, low, high in _ranges(spec, name):
+                print(f"  {name}: {gain} anywhere in [{low}, {high}]")
+
+
+def _ranges(spec: Spec, name: str) -> Iterator[tuple[str, str, str]]:
+    """Yield the gains of a controller that have a range, with its ends as written."""
+    controller = getattr(spec, "controllers", {}).get(name)
+    for gain in ("Mt", "Bt"):
+        declared = getattr(controller, gain, None)
+        if declared is not None and declared.ranged:
+            low, high = declared.range
+            yield gain, low.text, high.text

@@ -65,6 +65,15 @@ def test_remark_that_decides_nothing(tmp_path):
     assert "does not exist. This alone says nothing about stability." in result.stdout
 
 
+def test_ranges_of_gains_are_said(tmp_path):
+    spec = ROOT / "specs" / "neuroboscope" / "retuned-gains.nrs.yaml"
+    result = run("verify", ROOT / "reports" / "retuned-gains.cert.json", spec, cwd=tmp_path)
+    assert result.returncode == 0
+    lines = result.stdout.splitlines()
+    assert "  insertion: Mt anywhere in [0.008 kg*m^2, 0.012 kg*m^2]" in lines
+    assert "  withdrawal: Bt anywhere in [0.832 N*m*s/rad, 1.248 N*m*s/rad]" in lines
+
+
 def test_other_coordinates_must_be_asked_for(tmp_path):
     arguments = ["--coordinates", "force", "--out", "c.json"]
     assert run("certify-switching", SOFT_TISSUE, *arguments, cwd=tmp_path).returncode == 0

@@ -16,7 +16,7 @@ from nrs_design.certificates.search.balance import mean_norm_coordinates, scale
 from nrs_design.certificates.search.decay import largest_position, rate_at, rate_of
 from nrs_design.certificates.search.family import Family
 from nrs_design.certificates.search.gradient import iterate_gradient
-from nrs_design.certificates.search.lmi import find_common_quadratic, margins
+from nrs_design.certificates.search.lmi import find_common_quadratic, margins, solve_by_clarabel
 from nrs_design.certificates.search.mixture import find_unstable_mixture
 from nrs_design.certificates.search.mode_quadratic import find_mode_quadratic
 from nrs_design.certificates.search.obstruction import round_obstruction, solve_dual
@@ -79,11 +79,11 @@ def search_by_lmi(family: Family, *, optimize_rate: bool) -> Finding:
     return _round_at_own_rate(family, Q)
 
 
-def search_by_gradient(family: Family, *, max_updates: int = 20_000) -> Finding:
+def search_by_gradient(family: Family) -> Finding:
     """Search by the Liberzon-Tempo iteration."""
     if not np.isfinite(family.limit):
         return None, OUT_OF_RANGE
-    result = iterate_gradient(family.matrices, max_updates=max_updates)
+    result = iterate_gradient(family.matrices)
     if result.Q is None:
         return None, f"not converged after {result.updates} updates"
     evidence, outcome = _round_at_own_rate(family, result.Q)
@@ -91,12 +91,13 @@ def search_by_gradient(family: Family, *, max_updates: int = 20_000) -> Finding:
 
 
 def search_raw(family: Family) -> Finding:
-    """Search by semidefinite programming in the coordinates of the spec, without balancing."""
+    """Search by a general solver in the coordinates of the spec, without balancing."""
     time = family.system.time
     if not np.isfinite(family.limit):
         return None, OUT_OF_RANGE
     matrices = scale(family.matrices, -family.exponents)
-    Q = find_common_quadratic(matrices, time, rate_at(0.0, family.limit, time))
+    least = rate_at(0.0, family.limit, time)
+    Q = find_common_quadratic(matrices, time, least, solve_by_clarabel)
     if Q is None:
         return None, "the solver found no candidate with positive margins"
     shifts = family.exponents[:, None] + family.exponents[None, :]
@@ -104,13 +105,14 @@ def search_raw(family: Family) -> Finding:
 
 
 def search_preconditioned(family: Family) -> Finding:
-    """Search by semidefinite programming after a change to the mean of the modes' own norms."""
+    """Search by a general solver after a change to the mean of the modes' own norms."""
     time = family.system.time
     if not np.isfinite(family.limit):
         return None, OUT_OF_RANGE
     T = mean_norm_coordinates(family.matrices, time)
     inverse = np.linalg.inv(T)
-    Q = find_common_quadratic(inverse @ family.matrices @ T, time, rate_at(0.0, family.limit, time))
+    least = rate_at(0.0, family.limit, time)
+    Q = find_common_quadratic(inverse @ family.matrices @ T, time, least, solve_by_clarabel)
     if Q is None:
         return None, "the solver found no candidate with positive margins"
     return _round_at_own_rate(family, inverse.T @ Q @ inverse)

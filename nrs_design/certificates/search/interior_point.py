@@ -35,7 +35,7 @@ class Cones:
     ----------
     constant : ndarray, shape (cones, n, n)
         Symmetric.
-    images : ndarray, shape (cones, variables, n, n)
+    images : ndarray, shape (variables, cones, n, n)
         Symmetric.
     """
 
@@ -78,7 +78,7 @@ def maximize_last(cones: Cones, start: Array) -> Array:
     y, X = start, cones.at(start)
     inverse = np.linalg.inv(X)
     # With this unit, Z = inverse satisfies the equation of the last variable at the start.
-    Z = -inverse / (cones.images[:, -1] * inverse).sum()
+    Z = -inverse / (cones.images[-1] * inverse).sum()
     for _ in range(MAX_STEPS):
         try:
             dy, dZ = _step(cones, X, Z)
@@ -98,12 +98,13 @@ def _step(cones: Cones, X: Array, Z: Array) -> tuple[Array, Array]:
     """Return the changes of y and Z."""
     scaled = _scale(cones, X, Z)
     d, n = scaled.d, X.shape[-1]
-    residual = np.tensordot(cones.images, Z, axes=((0, 2, 3), (0, 1, 2)))
+    residual = cones.images.reshape(len(cones.images), -1) @ Z.ravel()
     residual[-1] += 1.0
     gram = scaled.rows @ scaled.rows.T
 
     def direction(target: Array) -> tuple[Array, Array, Array]:
-        dy = np.linalg.solve(gram, scaled.rows @ pack(target).ravel() + residual)
+        force = scaled.rows @ pack(target).ravel() + residual
+        dy = np.asarray(np.linalg.solve(gram, force), dtype=np.float64)
         dX = _combine(scaled.images, dy)
         return dy, dX, target - dX
 
@@ -124,9 +125,8 @@ def _scale(cones: Cones, X: Array, Z: Array) -> _Scaled:
     R = np.linalg.cholesky((Z + np.swapaxes(Z, -1, -2)) / 2)
     _, d, Vt = np.linalg.svd(np.swapaxes(R, -1, -2) @ L)
     W = np.sqrt(d)[..., None] * Vt @ np.linalg.inv(L)
-    images = W[:, None] @ cones.images @ np.swapaxes(W, -1, -2)[:, None]
-    rows = np.swapaxes(pack(images), 0, 1).reshape(images.shape[1], -1)
-    return _Scaled(W, d, images, rows)
+    images = W @ cones.images @ np.swapaxes(W, -1, -2)
+    return _Scaled(W, d, images, pack(images).reshape(len(images), -1))
 
 
 def _reach(d: Array, change: Array, share: float) -> float:
@@ -138,4 +138,4 @@ def _reach(d: Array, change: Array, share: float) -> float:
 
 
 def _combine(images: Array, y: Array) -> Array:
-    return np.asarray(np.tensordot(y, images, axes=(0, 1)))
+    return np.asarray(y @ images.reshape(len(y), -1)).reshape(images.shape[1:])

@@ -28,7 +28,7 @@ MARGIN_FLOOR = 1e-10
 START_FLOOR = 1e-3
 
 
-def decreases(matrices: Matrices, Q: NDArray[np.float64], time: Time, rate: float) -> Matrices:
+def decreases(matrices: Matrices, Q: Matrices, time: Time, rate: float) -> Matrices:
     """Return, for every mode, the matrix that must be positive definite; shape (m, n, n)."""
     if time is Time.CONTINUOUS:
         half = Q @ matrices
@@ -36,14 +36,14 @@ def decreases(matrices: Matrices, Q: NDArray[np.float64], time: Time, rate: floa
     return rate**2 * Q - np.swapaxes(matrices, -1, -2) @ Q @ matrices
 
 
-def margins(matrices: Matrices, Q: NDArray[np.float64], time: Time, rate: float) -> Matrices:
+def margins(matrices: Matrices, Q: Matrices, time: Time, rate: float) -> Matrices:
     """Return the smallest eigenvalue of every mode's decrease; shape (m,)."""
     return np.asarray(np.linalg.eigvalsh(decreases(matrices, Q, time, rate))[:, 0], dtype=float)
 
 
 def find_common_quadratic(
     matrices: Matrices, time: Time, rate: float, solve: Solve | None = None
-) -> NDArray[np.float64] | None:
+) -> Matrices | None:
     """Look for Q with ``A'Q + QA + 2 rate Q < 0`` (or ``A'QA < rate^2 Q``) for all modes.
 
     Parameters
@@ -68,9 +68,9 @@ def find_common_quadratic(
     matrices, rate = np.ldexp(matrices, unit), float(np.ldexp(rate, unit))
     m, n = matrices.shape[:2]
     active = np.unique(np.linspace(0, m - 1, FIRST_MODES).astype(int))
-    Q: NDArray[np.float64] | None = np.eye(n) / 2
+    start: Matrices = np.eye(n) / 2
     while True:
-        Q = solve(matrices[active], time, rate, Q)
+        Q = solve(matrices[active], time, rate, start)
         if Q is None or not np.isfinite(decreases(matrices, Q, time, rate)).all():
             return None
         margin = margins(matrices, Q, time, rate)
@@ -80,7 +80,7 @@ def find_common_quadratic(
             return None
         violated = np.setdiff1d(np.flatnonzero(margin <= 0), active)
         worst = violated[np.argsort(margin[violated])][: len(active)]
-        active = np.sort(np.concatenate([active, worst]))
+        active, start = np.sort(np.concatenate([active, worst])), Q
 
 
 def time_unit(matrices: Matrices, time: Time) -> int:
@@ -91,16 +91,16 @@ def time_unit(matrices: Matrices, time: Time) -> int:
 
 
 def _solve(
-    matrices: Matrices, time: Time, rate: float, Q: NDArray[np.float64]
-) -> NDArray[np.float64] | None:
+    matrices: Matrices, time: Time, rate: float, Q: Matrices
+) -> Matrices | None:
     """Improve on Q in the margin form for the given modes, with the method of our own."""
     m, n = matrices.shape[:2]
     basis, identity = symmetric_basis(n), np.eye(n)
-    constant, images = np.zeros((m + 2, n, n)), np.zeros((m + 2, len(basis) + 1, n, n))
+    constant, images = np.zeros((m + 2, n, n)), np.zeros((len(basis) + 1, m + 2, n, n))
     constant[1] = identity
-    images[0, :-1], images[1, :-1] = basis, -basis
-    images[2:, :-1] = np.stack([decreases(matrices, E, time, rate) for E in basis], axis=1)
-    images[2:, -1] = -identity
+    images[:-1, 0], images[:-1, 1] = basis, -basis
+    images[:-1, 2:] = decreases(matrices, basis[:, None], time, rate)
+    images[-1, 2:] = -identity
     here = decreases(matrices, Q, time, rate)
     below = np.linalg.eigvalsh(here).min() - max(0.1 * np.abs(here).max(), START_FLOOR)
     y = maximize_last(Cones(constant, images), np.append(pack(Q), below))
@@ -108,14 +108,14 @@ def _solve(
 
 
 def solve_by_clarabel(
-    matrices: Matrices, time: Time, rate: float, Q: NDArray[np.float64]
-) -> NDArray[np.float64] | None:
+    matrices: Matrices, time: Time, rate: float, Q: Matrices
+) -> Matrices | None:
     """Solve the margin form for the given modes; None if the result is not finite."""
     m, n = matrices.shape[:2]
     basis, identity = symmetric_basis(n), pack(np.eye(n))
     size = len(basis)
-    images = np.stack([decreases(matrices, E, time, rate) for E in basis], axis=1)
-    rows = -np.swapaxes(pack(images), 1, 2).reshape(m * size, size)
+    images = decreases(matrices, basis[:, None], time, rate)
+    rows = -np.moveaxis(pack(images), 0, 2).reshape(m * size, size)
     columns = np.vstack([np.eye(size), -np.eye(size), rows])
     margin = np.concatenate([np.zeros(2 * size), np.tile(identity, m)])
     offset = np.concatenate([identity, np.zeros(size * (m + 1))])

@@ -6,10 +6,10 @@ import sys
 import pytest
 
 from nrs_design import __version__
-from nrs_design.cli.app import app
+from nrs_design.cli.app import make_app
 from tests.support import COMMUTING, ROOT, run
 
-COMMANDS = [command.name for command in app.registered_commands]
+COMMANDS = [command.name for command in make_app().registered_commands]
 
 
 def test_version(tmp_path):

@@ -67,7 +67,7 @@ def find_common_quadratic(
     unit = time_unit(matrices, time)
     matrices, rate = np.ldexp(matrices, unit), float(np.ldexp(rate, unit))
     m, n = matrices.shape[:2]
-    active = np.unique(np.linspace(0, m - 1, FIRST_MODES).astype(int))
+    active = sorted({k * (m - 1) // (FIRST_MODES - 1) for k in range(FIRST_MODES)})
     start: Matrices = np.eye(n) / 2
     while True:
         Q = solve(matrices[active], time, rate, start)
@@ -78,9 +78,8 @@ def find_common_quadratic(
             return Q
         if margin[active].min() <= MARGIN_FLOOR * np.abs(Q).max():
             return None
-        violated = np.setdiff1d(np.flatnonzero(margin <= 0), active)
-        worst = violated[np.argsort(margin[violated])][: len(active)]
-        active, start = np.sort(np.concatenate([active, worst])), Q
+        violated = [k for k in np.argsort(margin) if margin[k] <= 0 and k not in active]
+        active, start = sorted([*active, *violated[: len(active)]]), Q
 
 
 def time_unit(matrices: Matrices, time: Time) -> int:
@@ -90,9 +89,7 @@ def time_unit(matrices: Matrices, time: Time) -> int:
     return ENTRY_LOG2 - int(np.frexp(np.abs(matrices).max())[1])
 
 
-def _solve(
-    matrices: Matrices, time: Time, rate: float, Q: Matrices
-) -> Matrices | None:
+def _solve(matrices: Matrices, time: Time, rate: float, Q: Matrices) -> Matrices | None:
     """Improve on Q in the margin form for the given modes, with the method of our own."""
     m, n = matrices.shape[:2]
     basis, identity = symmetric_basis(n), np.eye(n)
@@ -107,9 +104,7 @@ def _solve(
     return np.asarray(np.tensordot(y[:-1], basis, axes=1))
 
 
-def solve_by_clarabel(
-    matrices: Matrices, time: Time, rate: float, Q: Matrices
-) -> Matrices | None:
+def solve_by_clarabel(matrices: Matrices, time: Time, rate: float, Q: Matrices) -> Matrices | None:
     """Solve the margin form for the given modes; None if the result is not finite."""
     m, n = matrices.shape[:2]
     basis, identity = symmetric_basis(n), pack(np.eye(n))

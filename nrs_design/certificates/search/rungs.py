@@ -217,9 +217,12 @@ def _round(family: Family, Q: NDArray[np.float64], rate: float) -> CommonQuadrat
 def _seems_stable(family: Family) -> NDArray[np.bool_]:
     if not np.isfinite(family.matrices).all():
         return np.zeros(len(family.matrices), dtype=bool)
-    eigenvalues = np.linalg.eigvals(family.matrices)
     size = np.abs(family.matrices).max(axis=(1, 2))
-    if family.system.time is Time.CONTINUOUS:
+    continuous = family.system.time is Time.CONTINUOUS
+    if SUSPICION * size.max() < family.limit if continuous else family.limit < 1 - SUSPICION:
+        return np.ones(len(family.matrices), dtype=bool)
+    eigenvalues = np.linalg.eigvals(family.matrices)
+    if continuous:
         return np.asarray(eigenvalues.real.max(axis=1) < -SUSPICION * size)
     return np.asarray(np.abs(eigenvalues).max(axis=1) < 1 - SUSPICION)
 

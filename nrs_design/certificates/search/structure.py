@@ -37,7 +37,7 @@ def triangular_blocks(system: SwitchedSystem) -> tuple[tuple[int, ...], ...]:
     reaches = _reach(pattern)
     # States that reach each other are one block; its first state stands for it.
     first = np.argmax(reaches & reaches.T, axis=1)
-    blocks = [tuple(int(i) for i in np.flatnonzero(first == k)) for k in np.unique(first)]
+    blocks = [tuple(int(i) for i in np.flatnonzero(first == k)) for k in sorted({*first})]
     drives = [[pattern[np.ix_(a, b)].any() for b in blocks] for a in blocks]
     return tuple(blocks[k] for k in _sources_first(np.array(drives)))
 

@@ -85,7 +85,7 @@ def run_robot(path: Path) -> tuple[LoadedSpec, RobotSpec, Robot]:
     loaded = read_spec(path)
     if not isinstance(loaded.spec, RobotSpec):
         raise DesignError(
-            f"a {loaded.spec.kind} spec describes no robot",
+            f"a spec of kind {loaded.spec.kind} describes no robot",
             path=path,
             remedy="name a spec of kind robot; `nrs-design init robot` writes one",
         )

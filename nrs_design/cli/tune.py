@@ -14,6 +14,25 @@ if TYPE_CHECKING:
     from nrs_design.controllers.controller_design import ControllerDesign
     from nrs_design.design.evidence import DesignEvidence
 
+MOTION_COLUMNS = (
+    "motion PD",
+    "Kd\nrpm s/rad",
+    "zero\n1/s",
+    "Kp\nrpm/rad",
+    "poles\n1/s",
+    "damping\nratio",
+    "overshoot",
+)
+FORCE_COLUMNS = (
+    "controller",
+    "k\nN m/rad",
+    "Kp\nrad/(N m)",
+    "poles\n1/s",
+    "damping\nratio",
+    "natural\nfrequency",
+    "steady-state\nerror ratio",
+)
+
 
 def tune(spec: SpecFile, as_json: Json = False, quiet: Quiet = False) -> None:
     """Tune the motion PD by root locus and the force gain, and print the poles that result.
@@ -72,8 +91,16 @@ def _summary(design: ControllerDesign, evidence: DesignEvidence) -> dict[str, An
 
 
 def _print(name: str, design: ControllerDesign, evidence: DesignEvidence) -> None:
+    print_table(f"{name}: motion loop", MOTION_COLUMNS, _motion_rows(design, evidence))
+    if evidence.motion_source == "given":
+        print("The spec states G itself: the poles are those of that G, not of the PD gains.")
+    if evidence.force:
+        print_table(f"{name}: force loop", FORCE_COLUMNS, _force_rows(evidence))
+
+
+def _motion_rows(design: ControllerDesign, evidence: DesignEvidence) -> list[list[str]]:
     wanted, reached = evidence.wanted, evidence.reached
-    rows = [
+    return [
         [
             "root locus",
             f"{wanted.derivative_gain:.6g}",
@@ -93,43 +120,21 @@ def _print(name: str, design: ControllerDesign, evidence: DesignEvidence) -> Non
             f"{100 * reached.overshoot:.2f} %",
         ],
     ]
-    columns = [
-        "motion PD",
-        "Kd\nrpm s/rad",
-        "zero\n1/s",
-        "Kp\nrpm/rad",
-        "poles\n1/s",
-        "damping\nratio",
-        "overshoot",
+
+
+def _force_rows(evidence: DesignEvidence) -> list[list[str]]:
+    return [
+        [
+            item.name,
+            f"{item.stiffness:.6g}",
+            f"{item.loop.gain:.6g}",
+            _poles(item.loop.poles),
+            f"{item.loop.damping_ratio:.4f}",
+            f"{item.loop.natural_frequency:.2f} rad/s",
+            f"{item.loop.steady_state_ratio:.3f}",
+        ]
+        for item in evidence.force
     ]
-    print_table(f"{name}: motion loop", columns, rows)
-    if evidence.motion_source == "given":
-        print("The spec states G itself: the poles are those of that G, not of the PD gains.")
-    if evidence.force:
-        print_table(
-            f"{name}: force loop",
-            [
-                "controller",
-                "k\nN m/rad",
-                "Kp\nrad/(N m)",
-                "poles\n1/s",
-                "damping\nratio",
-                "natural\nfrequency",
-                "steady-state\nerror ratio",
-            ],
-            [
-                [
-                    item.name,
-                    f"{item.stiffness:.6g}",
-                    f"{item.loop.gain:.6g}",
-                    _poles(item.loop.poles),
-                    f"{item.loop.damping_ratio:.4f}",
-                    f"{item.loop.natural_frequency:.2f} rad/s",
-                    f"{item.loop.steady_state_ratio:.3f}",
-                ]
-                for item in evidence.force
-            ],
-        )
 
 
 def _pairs(poles: tuple[complex, ...]) -> list[list[float]]:

@@ -62,7 +62,7 @@ def export_design(
     """
     if not isinstance(loaded.spec, InteractionDesignSpec):
         raise DesignError(
-            f"a {loaded.spec.kind} spec has no gains to export",
+            f"a spec of kind {loaded.spec.kind} has no gains to export",
             path=loaded.path,
             remedy="use a spec of kind interaction-design",
         )

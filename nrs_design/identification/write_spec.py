@@ -108,7 +108,7 @@ def merge_actuator(loaded: LoadedSpec, found: ActuatorIdentification) -> str:
 def _interaction(loaded: LoadedSpec) -> InteractionDesignSpec:
     if not isinstance(loaded.spec, InteractionDesignSpec):
         raise SpecError(
-            "a switched-system spec has no place for identified values",
+            f"a spec of kind {loaded.spec.kind} has no place for identified values",
             path=loaded.path,
             remedy="write into a spec of kind interaction-design",
         )

@@ -64,7 +64,7 @@ def tissue_report(found: TissueIdentification, arm: float | None = None) -> Repo
         title=f"Tissue law from {plural(len(found.records), 'record')}",
         verdict=IDENTIFIED,
         claim=f"{_label(found.synthetic)}{chosen.law.formula} with {values}. {found.reason}",
-        remarks=(),
+        remarks=found.caveats,
         facts=_facts([record.source for record in found.records]),
         sections=(
             Section("Comparison of laws", tuple(_comparison(found))),

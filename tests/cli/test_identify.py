@@ -130,6 +130,16 @@ def test_a_failed_merge_leaves_the_spec(tmp_path):
     assert spec.read_text() == SOFT_TISSUE.read_text()
 
 
+def test_writing_a_law_that_fits_worse_warns(tmp_path):
+    spec = tmp_path / "copy.nrs.yaml"
+    shutil.copy(SOFT_TISSUE, spec)
+    arguments = ("identify", "tissue", NOSE[0], "--model", "elastic", "--write", spec, "-q")
+    result = run(*arguments, cwd=tmp_path)
+    assert result.returncode == 0
+    (line,) = result.stderr.splitlines()
+    assert line.startswith("warning: kelvin-boltzmann describes the records better than elastic")
+
+
 def test_help_has_examples(tmp_path):
     for command in ("tissue", "actuator"):
         assert "Example: nrs-design identify" in run("identify", command, "-h", cwd=tmp_path).stdout

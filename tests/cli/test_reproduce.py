@@ -11,6 +11,7 @@ from typer.testing import CliRunner
 from nrs_design.cli.app import make_app
 from nrs_design.reproduction import specimens, table
 from nrs_design.reproduction.row import Verdict
+from tests.support import ROOT
 
 
 @pytest.fixture
@@ -45,6 +46,17 @@ def test_the_command_as_typed():
     assert {row["verdict"] for row in document["rows"]} == {
         "reproduced", "print is wrong", "hardware only", "needs data that the thesis omits",
     }  # fmt: skip
+    readme = (ROOT / "README.md").read_text()
+    counts = ", ".join(f"{count} {verdict}" for verdict, count in document["counts"].items())
+    assert f"\nAll in all: {counts}.\n" in readme
+    rows = {
+        (row["section"], row["name"], row["printed"], row["verdict"]) for row in document["rows"]
+    }
+    shown = readme.partition("| section | quantity |")[2].partition("\n\n")[0].splitlines()[2:]
+    assert len(shown) > 20
+    for line in shown:
+        section, name, printed, _, _, verdict = (cell.strip() for cell in line.split("|")[1:-1])
+        assert (section, name, printed, verdict) in rows
 
 
 @pytest.mark.usefixtures("short")

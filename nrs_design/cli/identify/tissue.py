@@ -85,6 +85,9 @@ def tissue(
             write_report(report, tissue_report(found, arm))
     if write is not None and merged is not None:
         write_spec(write, merged, quiet=quiet)
+        # A proof will rest on these values: no option silences this.
+        for caveat in found.caveats:
+            note(f"warning: {caveat}")
     if as_json:
         print_json("identify-tissue", _summary(found, arm))
     else:
@@ -138,6 +141,7 @@ def _summary(found: TissueIdentification, arm: float | None) -> dict[str, Any]:
         "records": sources(record.source for record in found.records),
         "chosen": law.name,
         "reason": found.reason,
+        "caveats": list(found.caveats),
         "ranges": {
             name: numbers(estimate) | {"unit": unit}
             for name, estimate, unit in zip(

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import difflib
 from collections.abc import Mapping, Sequence
+from collections.abc import Set as AbstractSet
 from dataclasses import dataclass
 from math import pi
 from pathlib import Path
@@ -109,6 +110,17 @@ def find_columns(
     DataError
         If a column is missing, is there twice, or has a wrong unit.
     """
+    _check_mapped(mapping, header, path, line)
+    wanted = {quantity for layout in layouts for quantity in layout}
+    found = _grouped(header, wanted, mapping, path, line)
+    for layout in layouts:
+        groups = _complete(found, layout)
+        if groups:
+            return layout, groups
+    raise _missing(found, header, layouts, path, line)
+
+
+def _check_mapped(mapping: Mapping[str, str], header: Sequence[str], path: Path, line: int) -> None:
     for theirs in mapping:
         if theirs not in header:
             near = difflib.get_close_matches(theirs, header, n=1)
@@ -116,7 +128,16 @@ def find_columns(
             raise DataError(
                 f"there is no column {theirs!r} to map", path=path, line=line, remedy=hint
             )
-    wanted = {quantity for layout in layouts for quantity in layout}
+
+
+def _grouped(
+    header: Sequence[str],
+    wanted: AbstractSet[str],
+    mapping: Mapping[str, str],
+    path: Path,
+    line: int,
+) -> dict[str, dict[str, Column]]:
+    """Sort the columns of the wanted quantities by group and quantity."""
     found: dict[str, dict[str, Column]] = {}
     for index, name in enumerate(header):
         ours = mapping.get(name, name)
@@ -131,11 +152,7 @@ def find_columns(
                 remedy="rename one of them, or tell groups apart by a suffix such as _1",
             )
         found[group][quantity] = Column(index, name, UNITS[quantity][unit])
-    for layout in layouts:
-        groups = _complete(found, layout)
-        if groups:
-            return layout, groups
-    raise _missing(found, header, layouts, path, line)
+    return found
 
 
 def _complete(

@@ -38,6 +38,18 @@ class TissueIdentification:
         return any(record.source.synthetic for record in self.records)
 
     @property
+    def caveats(self) -> tuple[str, ...]:
+        """What to know before a proof rests on the chosen law: a better law, and doubts."""
+        best = min(self.models, key=lambda model: model.bic)
+        if best is self.chosen:
+            return self.chosen.doubts
+        better = (
+            f"{best.law.name} describes the records better than {self.chosen.law.name} "
+            f"(BIC {self.chosen.bic - best.bic:.4g} less)"
+        )
+        return (better, *self.chosen.doubts)
+
+    @property
     def rotational(self) -> bool:
         """Whether the parameters are those of a rotation."""
         return self.records[0].rotational

@@ -1,0 +1,65 @@
+"""Which way friction acts, against a simulation in fine steps."""
+
+import numpy as np
+import pytest
+
+from nrs_design.identification.actuator.friction import friction_shape
+from nrs_design.identification.datasets import SinusoidRecord
+from nrs_design.identification.synthetic import FRICTION, GAIN, TIME_CONSTANT
+from tests.identification.support import source
+
+
+def held(command, step=2e-3):
+    time = step * np.arange(len(command))
+    return SinusoidRecord(
+        source("made"), "", time, np.array(command, float), np.zeros(len(command))
+    )
+
+
+def shape(command):
+    return friction_shape(held(command), GAIN, TIME_CONSTANT, FRICTION)
+
+
+def test_a_command_below_the_friction_is_just_balanced():
+    command = [0.0, 100.0, -200.0, 50.0]
+    # Nothing is known about the time after the last sample.
+    assert shape(command)[:-1] == pytest.approx(np.array(command[:-1]) / FRICTION)
+
+
+def test_motion_one_way_has_full_friction():
+    assert shape([3000.0] * 5) == pytest.approx(np.ones(5))
+    assert shape([-3000.0] * 5) == pytest.approx(-np.ones(5))
+
+
+def test_after_the_command_ends_the_motor_coasts_and_sticks():
+    found = shape([3000.0] * 20 + [0.0] * 60)
+    assert (found[:20] == 1.0).all()
+    assert found[20] == 1.0
+    assert found[-2] == 0.0
+    # It stops within one step, in which the friction acts for a part of the time.
+    (part,) = found[(found > 0.0) & (found < 1.0)]
+    # v = -c + (v0 + c) exp(-t/tau) with c = gain friction reaches zero at tau log(1 + v0/c).
+    v0 = GAIN * (3000.0 - FRICTION) * (1 - np.exp(-20 * 2e-3 / TIME_CONSTANT))
+    stop = TIME_CONSTANT * np.log(1 + v0 / (GAIN * FRICTION)) / 2e-3
+    assert (found[20:] == 1.0).sum() == int(stop)
+    assert part == pytest.approx(stop % 1)
+
+
+@pytest.mark.parametrize("amplitude", [300.0, 800.0, 3000.0])
+def test_sinusoid_against_fine_steps(amplitude):
+    time = 2e-3 * np.arange(600)
+    command = amplitude * np.sin(2 * np.pi * 2.0 * time)
+    velocity, wanted, fine = 0.0, [], 400
+    h = 2e-3 / fine
+    for value in command:
+        forces = []
+        for _ in range(fine):
+            if velocity == 0.0 and abs(value) <= FRICTION:
+                forces.append(value)
+                continue
+            force = FRICTION * np.sign(velocity or value)
+            new = velocity + h / TIME_CONSTANT * (GAIN * (value - force) - velocity)
+            velocity = new if new * velocity >= 0.0 else 0.0
+            forces.append(force)
+        wanted.append(np.mean(forces) / FRICTION)
+    assert shape(command)[:-1] == pytest.approx(np.array(wanted)[:-1], abs=0.02)

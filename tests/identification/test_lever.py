@@ -1,0 +1,44 @@
+"""From a linear motion to a rotation about the pivot."""
+
+import pytest
+
+from nrs_design.errors import DataError, SpecError
+from nrs_design.identification.lever import parse_arm, units_of
+from nrs_design.models.tissue import LAWS, Elastic, HuntCrossley, KelvinVoigt
+
+
+def test_thesis_arm():
+    # Thesis 6.3.1.1: 747.1461 N/m at 0.24 m are 43.0356 N m/rad.
+    arm = parse_arm("240 mm", rotational=False)
+    assert Elastic(747.1461).at_pivot(arm).k == pytest.approx(43.0356, abs=5e-5)
+
+
+def test_no_arm():
+    assert parse_arm(None, rotational=True) is None
+
+
+@pytest.mark.parametrize(
+    ("text", "rotational", "error", "reason"),
+    [
+        ("0.24 m", True, DataError, "are rotational"),
+        ("0 m", False, DataError, "not positive"),
+        ("-0.24 m", False, DataError, "not positive"),
+        ("0.24", False, SpecError, "unit"),
+        ("0.24 N", False, SpecError, "not a length"),
+    ],
+)
+def test_bad_arm(text, rotational, error, reason):
+    with pytest.raises(error, match=reason):
+        parse_arm(text, rotational=rotational)
+
+
+def test_units():
+    assert units_of(KelvinVoigt(1.0, 1.0), False) == ("N/m", "N s/m")
+    assert units_of(KelvinVoigt(1.0, 1.0), True) == ("N m/rad", "N m s/rad")
+    assert units_of(HuntCrossley(1.0, 1.0, 1.2), False) == ("N/m^φ", "N s/m^(φ+1)", "")
+
+
+@pytest.mark.parametrize("law", LAWS.values())
+def test_every_parameter_has_a_unit(law):
+    found = law(*[1.2] * len(law.parameters()))
+    assert len(units_of(found, False)) == len(units_of(found, True)) == len(law.parameters())

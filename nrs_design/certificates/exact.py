@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from fractions import Fraction
 from math import gcd
-from operator import mul
+from operator import mul, sub
 
 IntegerMatrix = Sequence[Sequence[int]]
 
@@ -92,12 +92,9 @@ def _is_clearly_positive_definite(upper: IntegerMatrix) -> bool:
         if pivot <= 0:
             return False
         for i, factor in enumerate(pivot_row):
-            row = [
-                entry - factor * above // pivot
-                for entry, above in zip(rows[i], pivot_row[i:], strict=True)
-            ]
-            row[0] -= len(rows)
-            rows[i] = row
+            changes = [factor * above // pivot for above in pivot_row[i:]]
+            rows[i] = list(map(sub, rows[i], changes))
+            rows[i][0] -= len(rows)
     return True
 
 

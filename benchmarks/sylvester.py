@@ -1,7 +1,7 @@
 """SABBATH's exact check: all leading principal minors, in SymPy.
 
-As ``python -m benchmarks.sylvester n`` it prints, of two modes of order n, whether SymPy accepts the
-certificate and the seconds that this takes. SymPy computes with python-flint where that is
+As ``python -m benchmarks.sylvester n`` it prints, of two modes of order n, whether SymPy accepts
+the certificate and the seconds that this takes. SymPy computes with python-flint where that is
 installed, as it always is beside this package, unless ``SYMPY_GROUND_TYPES=python`` is set.
 """
 

@@ -1,4 +1,4 @@
-"""The interior-point method: known optima, a general solver, and what it does when it cannot go on."""
+"""The interior-point method: known optima, a general solver, and how it ends without an answer."""
 
 import cvxpy as cp
 import numpy as np

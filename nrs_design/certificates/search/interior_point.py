@@ -14,7 +14,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from nrs_design.certificates.search.sdp import pack
+from nrs_design.certificates.search.sdp import pack, unpack
 
 Array = NDArray[np.float64]
 
@@ -44,11 +44,8 @@ class Cones:
 
     def at(self, y: Array) -> Array:
         """Return all X_j, shape (cones, n, n)."""
-        return self.constant + self.along(y)
-
-    def along(self, dy: Array) -> Array:
-        """Return the change of all X_j with y."""
-        return _combine(self.images, dy)
+        change = y @ self.images.reshape(len(y), -1)
+        return self.constant + change.reshape(self.constant.shape)
 
 
 class _Scaled(NamedTuple):
@@ -56,7 +53,6 @@ class _Scaled(NamedTuple):
 
     W: Array
     d: Array
-    images: Array
     rows: Array
 
 
@@ -105,7 +101,7 @@ def _step(cones: Cones, X: Array, Z: Array) -> tuple[Array, Array]:
     def direction(target: Array) -> tuple[Array, Array, Array]:
         force = scaled.rows @ pack(target).ravel() + residual
         dy = np.asarray(np.linalg.solve(gram, force), dtype=np.float64)
-        dX = _combine(scaled.images, dy)
+        dX = unpack((dy @ scaled.rows).reshape(len(X), -1), n)
         return dy, dX, target - dX
 
     D = d[..., None] * np.eye(n)
@@ -126,7 +122,7 @@ def _scale(cones: Cones, X: Array, Z: Array) -> _Scaled:
     _, d, Vt = np.linalg.svd(np.swapaxes(R, -1, -2) @ L)
     W = np.sqrt(d)[..., None] * Vt @ np.linalg.inv(L)
     images = W @ cones.images @ np.swapaxes(W, -1, -2)
-    return _Scaled(W, d, images, pack(images).reshape(len(images), -1))
+    return _Scaled(W, d, pack(images).reshape(len(images), -1))
 
 
 def _reach(d: Array, change: Array, share: float) -> float:
@@ -135,7 +131,3 @@ def _reach(d: Array, change: Array, share: float) -> float:
     relative = change / (root[..., None] * root[..., None, :])
     steepest = float(-np.linalg.eigvalsh(relative)[..., 0].min())
     return 1.0 if steepest <= share else share / steepest
-
-
-def _combine(images: Array, y: Array) -> Array:
-    return np.asarray(y @ images.reshape(len(y), -1)).reshape(images.shape[1:])

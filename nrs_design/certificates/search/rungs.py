@@ -31,7 +31,7 @@ from nrs_design.certificates.search.polynomial import (
     round_polynomial,
 )
 from nrs_design.certificates.search.rounding import round_rate, round_to_evidence
-from nrs_design.switched.system import Mode, Time
+from nrs_design.switched.system import Mode, SwitchedSystem, Time
 
 # How far below the best rate found the claimed one may lie: a wider gap needs fewer digits.
 BACK_OFFS = (0.9995, 0.998, 0.99, 0.9, 0.5, 0.1, 1e-3)
@@ -53,12 +53,12 @@ def examine_suspicious_modes(family: Family) -> Finding:
     suspicious = [
         mode for mode, ok in zip(family.system.modes, _seems_stable(family), strict=True) if not ok
     ]
-    return _first_unstable(suspicious, family.system.time)
+    return _first_unstable(suspicious, family.system)
 
 
 def examine_every_mode(family: Family) -> Finding:
     """Test every mode exactly."""
-    return _first_unstable(family.system.modes, family.system.time)
+    return _first_unstable(family.system.modes, family.system)
 
 
 def search_by_lmi(family: Family, *, optimize_rate: bool) -> Finding:
@@ -227,11 +227,14 @@ def _seems_stable(family: Family) -> NDArray[np.bool_]:
     return np.asarray(np.abs(eigenvalues).max(axis=1) < 1 - SUSPICION)
 
 
-def _first_unstable(modes: Iterable[Mode], time: Time) -> Finding:
+def _first_unstable(modes: Iterable[Mode], system: SwitchedSystem) -> Finding:
     count = 0
     for mode in modes:
         count += 1
-        if not is_stable(mode.A, time):
-            evidence = UnstableMode(mode.name, worst_eigenvalue(mode.A, time))
-            return evidence, f"mode {mode.name} is not stable"
+        if is_stable(mode.A, system.time):
+            continue
+        evidence = UnstableMode(mode.name, worst_eigenvalue(mode.A, system.time))
+        if fault := evidence.find_fault(system):
+            return None, f"mode {mode.name} is not stable, but {fault}"
+        return evidence, f"mode {mode.name} is not stable"
     return None, f"{count} modes tested exactly, all stable" if count else "none"

@@ -7,8 +7,9 @@ neither definiteness nor the Hurwitz property, so all tests run on integers.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from fractions import Fraction
+from itertools import accumulate, combinations_with_replacement
 from math import gcd
 from operator import mul, sub
 
@@ -23,7 +24,7 @@ CLEAR_BITS = 28
 
 def is_symmetric(M: IntegerMatrix) -> bool:
     """Tell whether a matrix is square and equal to its transpose."""
-    return [list(row) for row in M] == [list(column) for column in zip(*M, strict=True)]
+    return list(map(tuple, M)) == transpose(M)
 
 
 def is_too_large(M: IntegerMatrix) -> bool:
@@ -63,11 +64,11 @@ def is_positive_definite(M: IntegerMatrix) -> bool:
     """
     if not M or not is_symmetric(M):
         raise ValueError("a definiteness test needs a symmetric matrix")
-    upper = [list(row[i:]) for i, row in enumerate(M)]
-    return _is_clearly_positive_definite(upper) or _has_positive_minors(upper)
+    upper = [entry for i, row in enumerate(M) for entry in row[i:]]
+    return _is_clearly_positive_definite(upper, len(M)) or _has_positive_minors(upper, len(M))
 
 
-def _is_clearly_positive_definite(upper: IntegerMatrix) -> bool:
+def _is_clearly_positive_definite(upper: Sequence[int], order: int) -> bool:
     """Tell whether elimination with rounded numbers shows that a matrix is positive definite.
 
     Rounding down to multiples of 2^s changes a symmetric matrix of order r by an E with entries of
@@ -77,42 +78,43 @@ def _is_clearly_positive_definite(upper: IntegerMatrix) -> bool:
 
     Parameters
     ----------
-    upper : sequence of sequence of int
-        The rows of a symmetric matrix, each from its diagonal on.
+    upper : sequence of int
+        The rows of a symmetric matrix one after the other, each from its diagonal on.
+    order : int
+        Number of its rows.
     """
-    shift = CLEAR_BITS - min(row[0] for row in upper).bit_length()
-    if shift >= 0:
-        rows = [[entry << shift for entry in row] for row in upper]
-    else:
-        rows = [[entry >> -shift for entry in row] for row in upper]
-    for row in rows:
-        row[0] -= len(rows)
-    while rows:
-        pivot, *pivot_row = rows.pop(0)
+    shift = CLEAR_BITS - min(upper[k] for k in _diagonal(order)).bit_length()
+    entries = [entry << shift if shift >= 0 else entry >> -shift for entry in upper]
+    while order:
+        for k in _diagonal(order):
+            entries[k] -= order
+        pivot, row, rest = entries[0], entries[1:order], entries[order:]
         if pivot <= 0:
             return False
-        for i, factor in enumerate(pivot_row):
-            changes = [factor * above // pivot for above in pivot_row[i:]]
-            rows[i] = list(map(sub, rows[i], changes))
-            rows[i][0] -= len(rows)
+        # In the order of the entries: the pairs of every entry of the row with all from it on.
+        pairs = combinations_with_replacement(row, 2)
+        entries = list(map(sub, rest, [a * b // pivot for a, b in pairs]))
+        order -= 1
     return True
 
 
-def _has_positive_minors(upper: IntegerMatrix) -> bool:
-    """Decide whether all leading principal minors are positive; rows as above."""
-    rows = list(upper)
-    previous = 1
-    for k, pivot_row in enumerate(rows):
-        pivot = pivot_row[0]
+def _diagonal(order: int) -> Iterator[int]:
+    """Return where the diagonal is in an upper triangle that is written row after row."""
+    return accumulate(range(order, 1, -1), initial=0)
+
+
+def _has_positive_minors(upper: Sequence[int], order: int) -> bool:
+    """Decide whether all leading principal minors are positive; parameters as above."""
+    entries, previous = list(upper), 1
+    while order:
+        pivot, row, rest = entries[0], entries[1:order], entries[order:]
         if pivot <= 0:
             return False
-        for i in range(k + 1, len(rows)):
-            factor = pivot_row[i - k]
-            rows[i] = [
-                (pivot * entry - factor * above) // previous
-                for entry, above in zip(rows[i], pivot_row[i - k :], strict=True)
-            ]
-        previous = pivot
+        pairs = combinations_with_replacement(row, 2)
+        entries = [
+            (pivot * entry - a * b) // previous for entry, (a, b) in zip(rest, pairs, strict=True)
+        ]
+        previous, order = pivot, order - 1
     return True
 
 

@@ -2,7 +2,17 @@
 
 from __future__ import annotations
 
+from nrs_design.models.robot import Robot
+from nrs_design.reproduction.neuroboscope import robot, robot_spec
 from nrs_design.reproduction.row import Row, hardware_only
+from nrs_design.simulation.tracking import (
+    CONTROLLERS,
+    MOTIONS,
+    Experiment,
+    experiment_tilt,
+    thesis_experiments,
+)
+from nrs_design.spec import RobotSpec
 
 # Controller, tables, and RMSE of phi, psi (deg) and d (mm) where d, phi or psi moves.
 MEASURED = (
@@ -32,7 +42,42 @@ def rows() -> tuple[Row, ...]:
             f"table {table}",
             printed,
             "deg, deg, mm",
+            "`nrs-design robot track` shows simulated errors beside it.",
         )
         for controller, tables, prints in MEASURED
-        for moved, table, printed in zip(("d", "phi", "psi"), tables, prints, strict=True)
+        for moved, table, printed in zip(MOTIONS, tables, prints, strict=True)
     )
+
+
+def measured_rmse(
+    spec: RobotSpec, base: Robot, controller: str, experiment: Experiment
+) -> tuple[float, float, float] | None:
+    """Return what was measured on the robot in an experiment of the thesis.
+
+    Parameters
+    ----------
+    spec : RobotSpec
+        Which robot; all but its name must be that of the thesis.
+    base : Robot
+        Built from it, on the base of the experiment.
+    controller : str
+        One of `nrs_design.simulation.tracking.CONTROLLERS`.
+    experiment : Experiment
+        What was asked for.
+
+    Returns
+    -------
+    tuple of float or None
+        Root mean square errors of phi and psi in deg and of d in mm; None for another robot,
+        another tilt of the base or another motion.
+    """
+    ours = robot_spec()
+    same = {"name": ours.name, "title": ours.title, "base_tilt": ours.base_tilt}
+    if spec.model_copy(update=same) != ours or base.base_tilt != experiment_tilt(ours):
+        return None
+    wanted = dict(zip(MOTIONS, thesis_experiments(robot(), controller), strict=True))
+    if experiment != wanted[experiment.moved]:
+        return None
+    prints = MEASURED[CONTROLLERS.index(controller)][2]
+    phi, psi, d = map(float, prints[MOTIONS.index(experiment.moved)].split(", "))
+    return phi, psi, d

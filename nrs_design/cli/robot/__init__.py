@@ -1,4 +1,4 @@
-"""``nrs-design robot``: kinematics, dynamics and balance of a robot."""
+"""``nrs-design robot``: kinematics, dynamics, balance and motion control of a robot."""
 
 from __future__ import annotations
 
@@ -9,11 +9,12 @@ from nrs_design.cli.robot.check import check
 from nrs_design.cli.robot.correction import correction
 from nrs_design.cli.robot.dynamics import dynamics
 from nrs_design.cli.robot.kinematics import kinematics
+from nrs_design.cli.robot.track import track
 
 robot = typer.Typer(
     name="robot",
     no_args_is_help=True,
-    help="Kinematics, dynamics and gravity balance of a robot (specs of kind robot).",
+    help="Kinematics, dynamics, balance and motion control of a robot (specs of kind robot).",
 )
 # A new capability of the robot adds its command here.
 robot.command("check")(check)
@@ -21,5 +22,6 @@ robot.command("kinematics")(kinematics)
 robot.command("dynamics")(dynamics)
 robot.command("correction")(correction)
 robot.command("balance")(balance)
+robot.command("track")(track)
 
 __all__ = ["robot"]

@@ -143,12 +143,14 @@ def mass_and_bias(robot: Robot, pose: ArrayLike, velocity: ArrayLike) -> tuple[A
     PoseError
         If a leg cannot reach one of the poses.
     """
-    closed, weightless = posture(robot, pose), replace(robot, gravity=0.0)
-    bias = _torque(closed, joint_driven(closed, velocity, np.zeros(3)), robot)
-    M = _per_unit(
-        lambda unit: _torque(closed, joint_driven(closed, np.zeros(3), unit), weightless), closed
-    )
-    return M, bias
+    closed = posture(robot, pose)
+    # One pass: the motion as it is, then unit accelerations without velocity and weight.
+    lead = (4, *(1 for _ in np.shape(closed.d)))
+    real = np.eye(1, 4).reshape(lead)
+    velocities = real[..., None] * np.asarray(velocity, dtype=np.float64)
+    motion = joint_driven(closed, velocities, np.eye(4, 3, k=-1).reshape(*lead, 3))
+    torques = _torque(closed, motion, robot, weight=real)
+    return np.moveaxis(torques[1:], 0, -1), torques[0]
 
 
 def potential_energy(robot: Robot, pose: ArrayLike) -> Array:
@@ -199,12 +201,12 @@ def _gravity_in_plane(robot: Robot, closed: Posture, leg: LegPosture) -> Vector:
     return along, across, dot(gravity, leg.normal)
 
 
-def _torque(closed: Posture, motion: Motion, robot: Robot) -> Array:
-    """Collect what every leg takes, and hand it on to the joints."""
+def _torque(closed: Posture, motion: Motion, robot: Robot, weight: Scalar = 1.0) -> Array:
+    """Collect what every leg takes, and hand it on to the joints; gravity times `weight`."""
     on_W: Vector = (0.0, 0.0, 0.0)
     on_d: Scalar = 0.0
     for leg, rates, loads in zip(closed.legs, motion.legs, robot.loads, strict=True):
-        fall = _gravity_in_plane(robot, closed, leg)
+        fall = scale(weight, _gravity_in_plane(robot, closed, leg))
         on_alpha, on_gamma, on_depth = _leg_forces(motion, leg, rates, loads, fall)
         pull = add(scale(on_alpha, leg.normal), scale(-on_gamma, leg.leg.axis))
         on_W = add(on_W, scale(1.0 / leg.sin_gamma, pull))

@@ -18,8 +18,6 @@ from nrs_design.models.robot.motion import joint_driven
 from nrs_design.models.robot.robot import Robot
 from nrs_design.models.robot.vectors import Array, cross, scale, stacked
 
-_UNITS = np.eye(3)
-
 
 @dataclass(frozen=True, slots=True)
 class SimplifiedDynamics:
@@ -82,12 +80,11 @@ def simplified_torque(robot: Robot, pose: ArrayLike, acceleration: ArrayLike) ->
 
 def _rates(closed: Posture) -> Array:
     """Jacobian of (theta_x, theta_y, d) of the platform; shape (..., 3, 3)."""
-    columns = []
-    for unit in _UNITS:
-        motion = joint_driven(closed, unit, np.zeros(3))
-        middle = motion.legs[2]
-        columns.append(stacked((middle.alpha_1, -middle.gamma_1, motion.d_1)))
-    return np.stack(columns, axis=-1)
+    units = np.eye(3).reshape(3, *(1 for _ in np.shape(closed.d)), 3)
+    motion = joint_driven(closed, units, np.zeros(3))
+    middle = motion.legs[2]
+    columns = stacked((middle.alpha_1, -middle.gamma_1, motion.d_1))
+    return np.asarray(np.moveaxis(columns, 0, -1), dtype=np.float64)
 
 
 def _platform_frame(closed: Posture) -> Array:

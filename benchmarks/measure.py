@@ -119,14 +119,26 @@ def prove(system: SwitchedSystem) -> Certification:
     return certify(system, Method.AUTO, Limits(optimize_rate=False))
 
 
-def run_child(command: Sequence[str]) -> Child:
+def run_child(command: Sequence[str], bytecode: str | None = None) -> Child:
     """Run a command in a cold process of its own.
 
     A small launcher waits for it: the peak memory that Linux reports for a child is never less
     than that of the process which started it.
+
+    Parameters
+    ----------
+    command : sequence of str
+        Program and arguments.
+    bytecode : str, optional
+        Folder where Python finds and keeps compiled modules, ours and those of the peer alike, as
+        an installation would have compiled them.
     """
+    environment = dict(os.environ)
+    if bytecode is not None:
+        environment.pop("PYTHONDONTWRITEBYTECODE", None)
+        environment["PYTHONPYCACHEPREFIX"] = bytecode
     launcher = [sys.executable, "-I", "-S", str(LAUNCHER), *command]
-    done = subprocess.run(launcher, capture_output=True, text=True, check=True)
+    done = subprocess.run(launcher, capture_output=True, text=True, check=True, env=environment)
     return Child(**json.loads(done.stdout))
 
 

@@ -7,29 +7,34 @@ neither definiteness nor the Hurwitz property, so all tests run on integers.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from fractions import Fraction
+from itertools import accumulate, combinations_with_replacement
 from math import gcd
-from operator import mul
+from operator import mul, sub
 
 IntegerMatrix = Sequence[Sequence[int]]
 
 # Elimination takes about rows^3 steps on numbers that grow with rows times bits: seconds at this.
 MAX_WORK = 10**8
 
-# Bits of the smallest diagonal entry in the elimination with rounded numbers.
-CLEAR_BITS = 40
+# Bits of the smallest diagonal entry in the elimination with rounded numbers: one digit of Python.
+CLEAR_BITS = 28
 
 
 def is_symmetric(M: IntegerMatrix) -> bool:
     """Tell whether a matrix is square and equal to its transpose."""
-    return [list(row) for row in M] == [list(column) for column in zip(*M, strict=True)]
+    return list(map(tuple, M)) == transpose(M)
 
 
 def is_too_large(M: IntegerMatrix) -> bool:
     """Tell whether deciding anything about a matrix would take more than some seconds."""
-    bits = max((abs(entry).bit_length() for row in M for entry in row), default=0)
-    return len(M) ** 3 * bits > MAX_WORK
+    return len(M) ** 3 * _bits(M) > MAX_WORK
+
+
+def _bits(M: IntegerMatrix) -> int:
+    """Return b such that all entries are smaller in size than ``2^b``."""
+    return max((max(map(int.bit_length, row)) for row in M if row), default=0)
 
 
 def add(left: IntegerMatrix, right: IntegerMatrix, weight: int = 1) -> list[list[int]]:
@@ -59,55 +64,57 @@ def is_positive_definite(M: IntegerMatrix) -> bool:
     """
     if not M or not is_symmetric(M):
         raise ValueError("a definiteness test needs a symmetric matrix")
-    upper = [list(row[i:]) for i, row in enumerate(M)]
-    return _is_clearly_positive_definite(upper) or _has_positive_minors(upper)
+    upper = [entry for i, row in enumerate(M) for entry in row[i:]]
+    return _is_clearly_positive_definite(upper, len(M)) or _has_positive_minors(upper, len(M))
 
 
-def _is_clearly_positive_definite(upper: IntegerMatrix) -> bool:
+def _is_clearly_positive_definite(upper: Sequence[int], order: int) -> bool:
     """Tell whether elimination with rounded numbers shows that a matrix is positive definite.
 
-    Every Schur complement S of order r is replaced by a smaller matrix of integers: rounding
-    changes S by a symmetric E with entries of size below 1, so ``E <= r I``, and S + E - r I is
-    below S. If all pivots of these are positive, so are those of the matrix. No is no answer.
+    Rounding down to multiples of 2^s changes a symmetric matrix of order r by an E with entries of
+    size below 2^s, so ``E <= r 2^s I``: what is left after ``r 2^s I`` is subtracted, too, is below
+    the matrix. The matrix itself and every Schur complement is replaced by such a smaller one. If
+    all pivots of these are positive, so are those of the matrix. No is no answer.
 
     Parameters
     ----------
-    upper : sequence of sequence of int
-        The rows of a symmetric matrix, each from its diagonal on.
+    upper : sequence of int
+        The rows of a symmetric matrix one after the other, each from its diagonal on.
+    order : int
+        Number of its rows.
     """
-    bits = min(row[0] for row in upper).bit_length()
-    shift = max(0, CLEAR_BITS - bits)
-    rows = [[entry << shift for entry in row] for row in upper]
-    while rows:
-        pivot, *pivot_row = rows.pop(0)
+    shift = CLEAR_BITS - min(upper[k] for k in _diagonal(order)).bit_length()
+    entries = [entry << shift if shift >= 0 else entry >> -shift for entry in upper]
+    while order:
+        for k in _diagonal(order):
+            entries[k] -= order
+        pivot, row, rest = entries[0], entries[1:order], entries[order:]
         if pivot <= 0:
             return False
-        order = len(rows)
-        for i, row in enumerate(rows):
-            factor = pivot_row[i]
-            row[:] = [
-                entry - factor * above // pivot
-                for entry, above in zip(row, pivot_row[i:], strict=True)
-            ]
-            row[0] -= order
+        # In the order of the entries: the pairs of every entry of the row with all from it on.
+        pairs = combinations_with_replacement(row, 2)
+        entries = list(map(sub, rest, [a * b // pivot for a, b in pairs]))
+        order -= 1
     return True
 
 
-def _has_positive_minors(upper: IntegerMatrix) -> bool:
-    """Decide whether all leading principal minors are positive; rows as above."""
-    rows = list(upper)
-    previous = 1
-    for k, pivot_row in enumerate(rows):
-        pivot = pivot_row[0]
+def _diagonal(order: int) -> Iterator[int]:
+    """Return where the diagonal is in an upper triangle that is written row after row."""
+    return accumulate(range(order, 1, -1), initial=0)
+
+
+def _has_positive_minors(upper: Sequence[int], order: int) -> bool:
+    """Decide whether all leading principal minors are positive; parameters as above."""
+    entries, previous = list(upper), 1
+    while order:
+        pivot, row, rest = entries[0], entries[1:order], entries[order:]
         if pivot <= 0:
             return False
-        for i in range(k + 1, len(rows)):
-            factor = pivot_row[i - k]
-            rows[i] = [
-                (pivot * entry - factor * above) // previous
-                for entry, above in zip(rows[i], pivot_row[i - k :], strict=True)
-            ]
-        previous = pivot
+        pairs = combinations_with_replacement(row, 2)
+        entries = [
+            (pivot * entry - a * b) // previous for entry, (a, b) in zip(rest, pairs, strict=True)
+        ]
+        previous, order = pivot, order - 1
     return True
 
 
@@ -138,12 +145,37 @@ def is_positive_semidefinite(M: IntegerMatrix) -> bool:
     return True
 
 
+def multiply(left: IntegerMatrix, right: IntegerMatrix) -> list[list[int]]:
+    """Return the matrix product.
+
+    Every row of the right factor is written as one long integer, with its entries as digits of a
+    base that no entry of the product can overflow. A row of the product is then a sum of as many
+    long products as it has factors; half of the base makes its digits positive.
+
+    Raises
+    ------
+    ValueError
+        If the factors do not fit, or the rows of one are not of one length.
+    """
+    if any(len(row) != len(right) for row in left):
+        raise ValueError("a product needs as many columns on the left as rows on the right")
+    width = _bits(left) + _bits(right) + len(right).bit_length() + 1
+    half, mask = 1 << (width - 1), (1 << width) - 1
+    shifts = range(0, width * len(right[0]), width)
+    long_rows = [sum([a << shift for a, shift in zip(row, shifts, strict=True)]) for row in right]
+    halves = sum(half << shift for shift in shifts)
+    sums = [sum(map(mul, row, long_rows), halves) for row in left]
+    return [[(total >> shift & mask) - half for shift in shifts] for total in sums]
+
+
+def transpose(M: IntegerMatrix) -> list[tuple[int, ...]]:
+    """Return the columns as rows."""
+    return list(zip(*M, strict=True))
+
+
 def congruence(L: IntegerMatrix, Q: IntegerMatrix) -> list[list[int]]:
     """Return ``L' Q L``."""
-    columns = list(zip(*L, strict=True))
-    QL = [[sum(map(mul, row, column)) for column in columns] for row in Q]
-    images = list(zip(*QL, strict=True))
-    return [[sum(map(mul, column, image)) for image in images] for column in columns]
+    return multiply(transpose(L), multiply(Q, L))
 
 
 def lyapunov_decrease(
@@ -160,13 +192,13 @@ def lyapunov_decrease(
     rate : Fraction
         The claimed decay rate alpha, in 1/s.
     """
-    columns = list(zip(*N, strict=True))
-    QN = [[sum(map(mul, row, column)) for column in columns] for row in Q]
-    ratio = 2 * rate * denominator
-    p, q = ratio.numerator, ratio.denominator
+    QN = multiply(Q, N)
+    p, q = 2 * rate.numerator * denominator, rate.denominator
+    common = gcd(p, q)
+    p, q = p // common, q // common
     return [
         [-q * (a + b) - p * entry for a, b, entry in zip(*rows, strict=True)]
-        for rows in zip(QN, zip(*QN, strict=True), Q, strict=True)
+        for rows in zip(QN, transpose(QN), Q, strict=True)
     ]
 
 
@@ -192,14 +224,11 @@ def stein_decrease(
     factor : Fraction
         The claimed contraction rho per step.
     """
-    columns = list(zip(*N, strict=True))
-    QN = [[sum(map(mul, row, column)) for column in columns] for row in Q]
-    images = list(zip(*QN, strict=True))
     p = factor.numerator**2 * denominator**2
     q = factor.denominator**2
     return [
-        [p * a - q * sum(map(mul, column, image)) for a, image in zip(row, images, strict=True)]
-        for row, column in zip(Q, columns, strict=True)
+        [p * before - q * after for before, after in zip(*rows, strict=True)]
+        for rows in zip(Q, congruence(N, Q), strict=True)
     ]
 
 
@@ -219,8 +248,7 @@ def characteristic_polynomial(N: IntegerMatrix) -> list[int]:
     for k in range(1, n + 1):
         for i in range(n):
             M[i][i] += coefficients[-1]
-        columns = list(zip(*M, strict=True))
-        M = [[sum(map(mul, row, column)) for column in columns] for row in N]
+        M = multiply(N, M)
         coefficients.append(-sum(M[i][i] for i in range(n)) // k)
     return coefficients
 

@@ -12,6 +12,7 @@ from typing import Any
 from nrs_design.certificates.evidence import (
     AbstractEvidence,
     BlockTriangular,
+    CommonQuadratic,
     UnstableMixture,
     UnstableMode,
     UnstableValue,
@@ -47,26 +48,45 @@ def _agrees(system: SwitchedSystem, evidence: AbstractEvidence) -> bool:
     if isinstance(evidence, BlockTriangular):
         blocks = evidence.blocks
         return all(_agrees(diagonal_block(system, blocks[k]), part) for k, part in evidence.parts)
-    return all(_has_positive_spectrum(form) for _, form in evidence.forms(system))
+    if isinstance(evidence, CommonQuadratic):
+        return _decreases_everywhere(system, evidence)
+    return all(_has_positive_spectrum(_matrix(form)) for _, form in evidence.forms(system))
 
 
-def _has_positive_spectrum(M: Sequence[Sequence[int]]) -> bool:
-    """Tell whether the characteristic polynomial of a symmetric matrix alternates in sign.
+def _decreases_everywhere(system: SwitchedSystem, evidence: CommonQuadratic) -> bool:
+    """Form Q and the decrease in every mode anew, in flint's arithmetic."""
+    Q, p, q = _matrix(evidence.Q), evidence.rate.numerator, evidence.rate.denominator
+
+    def decrease(A: RationalMatrix) -> Any:
+        N, d = _matrix(A.numerators), A.denominator
+        if system.time is Time.DISCRETE:
+            return Q * (p * p * d * d) - N.transpose() * Q * N * (q * q)
+        half = Q * (N * q)
+        return -half - half.transpose() - Q * (2 * p * d)
+
+    modes = (decrease(mode.A) for mode in system.modes)
+    return _has_positive_spectrum(Q) and all(map(_has_positive_spectrum, modes))
+
+
+def _matrix(rows: Sequence[Sequence[int]]) -> Any:
+    from flint import fmpz_mat
+
+    return fmpz_mat([list(row) for row in rows])
+
+
+def _has_positive_spectrum(M: Any) -> bool:
+    """Tell whether the characteristic polynomial of a symmetric flint matrix alternates in sign.
 
     All roots are real, so by Descartes' rule they are all positive iff it does.
     """
-    from flint import fmpz_mat
-
-    coefficients = fmpz_mat([list(row) for row in M]).charpoly().coeffs()
+    coefficients = M.charpoly().coeffs()
     n = len(coefficients) - 1
     return all((c > 0) == ((n - k) % 2 == 0) and c != 0 for k, c in enumerate(coefficients))
 
 
 def _is_surely_stable(A: RationalMatrix, time: Time) -> bool:
     """Tell whether rigorous enclosures of all eigenvalues lie in the stable region."""
-    from flint import fmpz_mat
-
-    roots: list[Any] = fmpz_mat([list(row) for row in A.numerators]).charpoly().complex_roots()
+    roots: list[Any] = _matrix(A.numerators).charpoly().complex_roots()
     if time is Time.CONTINUOUS:
         return all(root.real < 0 for root, _ in roots)
     return all(abs(root / A.denominator) < 1 for root, _ in roots)

@@ -2,8 +2,12 @@
 
 from __future__ import annotations
 
+import atexit
+import gc
 import os
 import sys
+from collections.abc import Iterable
+from importlib import import_module
 from pathlib import Path
 from typing import Annotated
 
@@ -11,46 +15,65 @@ import typer
 
 from nrs_design import __version__
 from nrs_design.cli import exit_codes
-from nrs_design.cli.certify_switching import certify_switching
-from nrs_design.cli.check import check
-from nrs_design.cli.explain import explain
-from nrs_design.cli.export import export
-from nrs_design.cli.gate import gate
-from nrs_design.cli.identify import app as identify
-from nrs_design.cli.init import init
-from nrs_design.cli.optimize import optimize
-from nrs_design.cli.report import report
-from nrs_design.cli.reproduce import reproduce
-from nrs_design.cli.robot import robot
-from nrs_design.cli.schema import schema
-from nrs_design.cli.tune import tune
-from nrs_design.cli.verify import verify
 from nrs_design.errors import NrsDesignError
 
-app = typer.Typer(
-    name="nrs-design",
-    no_args_is_help=True,
-    pretty_exceptions_enable=False,
-    context_settings={"help_option_names": ["-h", "--help"]},
-    help="Design compliant controllers for surgical co-worker robots, and prove that switching "
-    "between them is stable.",
-    epilog="Exit codes: 0 proved or goal met, 1 refuted or goal missed, 2 wrong usage, spec or "
-    "file, 3 inconclusive, 4 internal error.",
+# Each is in the module of its name; the help lists them in this order.
+COMMANDS = (
+    "init",
+    "check",
+    "schema",
+    "identify",
+    "optimize",
+    "tune",
+    "certify-switching",
+    "verify",
+    "report",
+    "reproduce",
+    "export",
+    "gate",
+    "explain",
+    "robot",
 )
-app.command("init")(init)
-app.command("check")(check)
-app.command("schema")(schema)
-app.add_typer(identify, name="identify")
-app.command("optimize")(optimize)
-app.command("tune")(tune)
-app.command("certify-switching")(certify_switching)
-app.command("verify")(verify)
-app.command("report")(report)
-app.command("reproduce")(reproduce)
-app.command("export")(export)
-app.command("gate")(gate)
-app.command("explain")(explain)
-app.add_typer(robot)
+
+# Settings of libraries that count from the moment they are loaded; the user's own come first.
+SETTINGS = {
+    # Small matrices: waiting for a second thread takes longer than the work.
+    "OPENBLAS_NUM_THREADS": "1",
+    # No other package takes part in reading specs, and none is searched for.
+    "PYDANTIC_DISABLE_PLUGINS": "__all__",
+}
+
+# Objects made before the collector looks for garbage: what imports make stays until the end.
+COLLECT_AFTER = 50_000
+
+
+def make_app(names: Iterable[str] = COMMANDS) -> typer.Typer:
+    """Build the application with some of its commands; only these are imported.
+
+    Parameters
+    ----------
+    names : iterable of str
+        Out of `COMMANDS`.
+    """
+    app = typer.Typer(
+        name="nrs-design",
+        no_args_is_help=True,
+        pretty_exceptions_enable=False,
+        context_settings={"help_option_names": ["-h", "--help"]},
+        help="Design compliant controllers for surgical co-worker robots, and prove that switching "
+        "between them is stable.",
+        epilog="Exit codes: 0 proved or goal met, 1 refuted or goal missed, 2 wrong usage, spec or "
+        "file, 3 inconclusive, 4 internal error.",
+    )
+    app.callback()(_root)
+    for name in names:
+        attribute = name.replace("-", "_")
+        command = getattr(import_module(f"nrs_design.cli.{attribute}"), attribute)
+        if isinstance(command, typer.Typer):
+            app.add_typer(command, name=name)
+        else:
+            app.command(name)(command)
+    return app
 
 
 def _show_version(requested: bool) -> None:
@@ -59,7 +82,6 @@ def _show_version(requested: bool) -> None:
         raise typer.Exit
 
 
-@app.callback()
 def _root(
     version: Annotated[
         bool,
@@ -81,6 +103,8 @@ def _run() -> None:
 
     Click ends with exit code 1 when the reader of the output has gone: not our "refuted".
     """
+    named = sys.argv[1:2]
+    app = make_app(named if set(named) & set(COMMANDS) else COMMANDS)
     try:
         app()
     except SystemExit as end:
@@ -92,6 +116,11 @@ def _run() -> None:
 
 def main() -> None:
     """Run the program; an error that the user can mend is one message and exit code 2."""
+    for name, value in SETTINGS.items():
+        os.environ.setdefault(name, value)
+    gc.set_threshold(COLLECT_AFTER)
+    # Nor is what is left at the end worth a search for garbage.
+    atexit.register(gc.freeze)
     _open_closed_streams()
     try:
         _run()

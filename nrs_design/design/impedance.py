@@ -348,6 +348,8 @@ def _stable_cost(
     """Evaluate the cost at points of the unit square, infinite where the loop is not Hurwitz."""
     Mt, Bt = _admittance(problem, u, v)
     stable = hurwitz(_characteristics(basis, Mt, Bt))
+    if stable.all():
+        return samples.cost(Mt, Bt)
     costs = np.full(len(Mt), np.inf)
     costs[stable] = samples.cost(Mt[stable], Bt[stable])
     return costs

@@ -66,8 +66,8 @@ def refine(objective: Objective, start: Points, tolerance: float) -> Points:
             break
         moves = scale[rows, None, None] * offsets
         across = moves[..., 1] + start.slope[rows, None] * moves[..., 0]
-        tried_u = np.clip(u[rows, None] + moves[..., 0], 0.0, 1.0)
-        tried_v = np.clip(v[rows, None] + across, 0.0, 1.0)
+        tried_u = _onto_square(u[rows, None] + moves[..., 0])
+        tried_v = _onto_square(v[rows, None] + across)
         costs = objective(tried_u.ravel(), tried_v.ravel()).reshape(tried_u.shape)
         costs[:, 0] -= _LEAST_PROGRESS  # rounding noise must not count as progress
         best = np.argmin(costs, axis=1)
@@ -75,6 +75,11 @@ def refine(objective: Objective, start: Points, tolerance: float) -> Points:
         scale[rows] = np.where(best == 0, scale[rows] / 4, np.minimum(1, 2 * scale[rows]))
         count += costs.size
     return replace(start, u=u, v=v, evaluations=count)
+
+
+def _onto_square(w: FloatArray) -> FloatArray:
+    """Clip to 0 to 1; for few numbers this takes half the time of `numpy.clip`."""
+    return np.minimum(np.maximum(w, 0.0), 1.0)
 
 
 def _pattern(free: BoolArray) -> FloatArray:
@@ -96,11 +101,12 @@ def snap(
         The points and the objective there.
     """
     edge_u, edge_v = (np.where(np.abs(w - np.round(w)) < 0.01, np.round(w), w) for w in (u, v))
-    costs = objective(u, v)
-    for edges in ((edge_u, v), (u, edge_v), (edge_u, edge_v)):
-        trial = objective(*edges)
+    edges = ((edge_u, v), (u, edge_v), (edge_u, edge_v))
+    tried_u, tried_v = (np.concatenate(tried) for tried in zip((u, v), *edges, strict=True))
+    costs, *trials = objective(tried_u, tried_v).reshape(4, len(u))
+    for (to_u, to_v), trial in zip(edges, trials, strict=True):
         gain = trial <= costs * (1 + 1e-12)
-        u, v = np.where(gain, edges[0], u), np.where(gain, edges[1], v)
+        u, v = np.where(gain, to_u, u), np.where(gain, to_v, v)
         costs = np.where(gain, trial, costs)
     return u, v, costs
 

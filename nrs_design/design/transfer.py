@@ -121,10 +121,12 @@ def hurwitz(coefficients: ArrayLike) -> BoolArray:
     """
     table = np.asarray(coefficients, dtype=np.float64)
     rows = table.reshape(-1, table.shape[-1])
-    stable = np.zeros(len(rows), dtype=np.bool_)
     lower = rows[:, 0] == 0
+    if not lower.any():
+        return _routh(rows).reshape(table.shape[:-1])
+    stable = np.zeros(len(rows), dtype=np.bool_)
     stable[~lower] = _routh(rows[~lower])
-    if rows.shape[1] > 1 and lower.any():
+    if rows.shape[1] > 1:
         stable[lower] = hurwitz(rows[lower, 1:])
     return stable.reshape(table.shape[:-1])
 

@@ -123,7 +123,8 @@ class SwitchedSystem:
     @property
     def is_uniform(self) -> bool:
         """Whether all modes have the same number of states."""
-        return all(mode.A.shape[0] == self.order for mode in self.modes)
+        order = self.order
+        return all(len(mode.A.numerators) == order for mode in self.modes)
 
     def transitions(self) -> list[tuple[Mode, Mode]]:
         """Return the allowed switches from one mode to another."""

@@ -10,7 +10,13 @@ from functools import cache
 import numpy as np
 import pytest
 
-from nrs_design.certificates.certify import CommonQuadraticStatus, Limits, Verdict, certify
+from nrs_design.certificates.certify import (
+    CommonQuadraticStatus,
+    Limits,
+    Method,
+    Verdict,
+    certify,
+)
 from nrs_design.certificates.evidence import NoCommonQuadratic
 from nrs_design.switched.system import Time
 from tests.support import family, holds
@@ -90,6 +96,20 @@ def test_both_answers_are_common():
     for modes, time in ((draw, Time.CONTINUOUS), (in_discrete_time, Time.DISCRETE)):
         answers = [decide(modes(seed), time) for seed in range(12)]
         assert set(answers) == DECIDED
+
+
+def test_a_pair_of_order_30():
+    """A'Q + QA = -S with Q random: far beyond what the families above reach."""
+    rng = np.random.default_rng(30)
+    n, identity = 30, np.eye(30)
+    R, K, G = rng.standard_normal((3, 2, n, n))
+    Q = R[0] @ R[0].T / n + 0.3 * identity
+    S = G @ G.swapaxes(1, 2) / n + 0.3 * identity
+    modes = np.linalg.solve(Q, K - K.swapaxes(1, 2) - S / 2)
+    exact = [[[Fraction(round(1000 * a), 1000) for a in row] for row in A] for A in modes.tolist()]
+    result = certify(family(*exact), Method.LMI, Limits(optimize_rate=False))
+    assert result.common_quadratic is CommonQuadraticStatus.EXISTS
+    assert all(holds(result.system, statement) for statement in result.statements)
 
 
 @pytest.mark.parametrize("factor", ["100000", "1/100000"])

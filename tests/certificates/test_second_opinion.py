@@ -26,7 +26,7 @@ def test_descartes_agrees_with_bareiss(entries):
         [entries[i * n + j] + entries[j * n + i] + 12 * (i == j) for j in range(n)]
         for i in range(n)
     ]
-    assert _has_positive_spectrum(M) == is_positive_definite(M)
+    assert _has_positive_spectrum(flint.fmpz_mat(M)) == is_positive_definite(M)
 
 
 def test_no_proof_without_flint(monkeypatch):

@@ -1,15 +1,15 @@
 """The program itself: help, version, and how errors end."""
 
+import json
+import os
 import subprocess
 import sys
 
 import pytest
 
 from nrs_design import __version__
-from nrs_design.cli.app import app
+from nrs_design.cli.app import COMMANDS, make_app
 from tests.support import COMMUTING, ROOT, run
-
-COMMANDS = [command.name for command in app.registered_commands]
 
 
 def test_version(tmp_path):
@@ -24,7 +24,7 @@ def test_help_lists_every_command_and_exit_code(tmp_path):
     assert "0 proved or goal met" in " ".join(text.split())
 
 
-@pytest.mark.parametrize("command", COMMANDS)
+@pytest.mark.parametrize("command", [c.name for c in make_app().registered_commands])
 def test_every_command_has_an_example(tmp_path, command):
     result = run(command, "--help", cwd=tmp_path)
     assert result.returncode == 0
@@ -34,6 +34,53 @@ def test_every_command_has_an_example(tmp_path, command):
 @pytest.mark.parametrize("arguments", [["nonsense"], ["--nonsense"], ["verify"]])
 def test_wrong_usage(tmp_path, arguments):
     assert run(*arguments, cwd=tmp_path).returncode == 2
+
+
+def loaded_by(tmp_path, *arguments, **environment):
+    """Run a command; return its process and what it has imported and set."""
+    program = (
+        "import json, os, sys\n"
+        "from nrs_design.cli import main\n"
+        "try: main()\n"
+        "finally:\n"
+        "    names = ('OPENBLAS_NUM_THREADS', 'PYDANTIC_DISABLE_PLUGINS')\n"
+        "    facts = {'modules': sorted(sys.modules), **{n: os.environ[n] for n in names}}\n"
+        "    print(json.dumps(facts), file=sys.stderr)"
+    )
+    result = subprocess.run(
+        [sys.executable, "-c", program, *map(str, arguments)],
+        capture_output=True,
+        text=True,
+        cwd=tmp_path,
+        check=False,
+        env={k: v for k, v in os.environ.items() if k != "OPENBLAS_NUM_THREADS"} | environment,
+    )
+    return result, json.loads(result.stderr.splitlines()[-1])
+
+
+def test_only_the_command_asked_for_is_imported(tmp_path):
+    result, facts = loaded_by(tmp_path, "verify", "--help")
+    assert result.returncode == 0
+    commands = {f"nrs_design.cli.{name.replace('-', '_')}" for name in COMMANDS}
+    assert commands & set(facts["modules"]) == {"nrs_design.cli.verify"}
+
+
+def test_help_before_a_command_lists_all(tmp_path):
+    text = run("--help", "verify", cwd=tmp_path).stdout
+    assert all(command in text for command in COMMANDS)
+
+
+def test_an_easy_proof_loads_no_solver(tmp_path):
+    result, facts = loaded_by(tmp_path, "certify-switching", COMMUTING)
+    assert result.returncode == 0, result.stderr
+    assert not {"scipy", "clarabel", "control", "matplotlib"} & set(facts["modules"])
+
+
+def test_settings_of_libraries_are_defaults_only(tmp_path):
+    _, facts = loaded_by(tmp_path, "--version")
+    assert (facts["OPENBLAS_NUM_THREADS"], facts["PYDANTIC_DISABLE_PLUGINS"]) == ("1", "__all__")
+    _, facts = loaded_by(tmp_path, "--version", OPENBLAS_NUM_THREADS="3")
+    assert facts["OPENBLAS_NUM_THREADS"] == "3"
 
 
 def crash(tmp_path, *options):

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 from typer.testing import CliRunner
 
-from nrs_design.cli.app import app
+from nrs_design.cli.app import make_app
 from nrs_design.errors import OutputError
 
 ROOT = Path(__file__).parents[2]
@@ -25,7 +25,7 @@ switching: {dwell_time: 2.72 s}
 
 
 def run(*arguments: str):
-    return CliRunner().invoke(app, ["report", *arguments])
+    return CliRunner().invoke(make_app(), ["report", *arguments])
 
 
 def test_default_is_a_page_in_reports(tmp_path, monkeypatch):

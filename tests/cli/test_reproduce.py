@@ -8,7 +8,7 @@ from dataclasses import replace
 import pytest
 from typer.testing import CliRunner
 
-from nrs_design.cli.app import app
+from nrs_design.cli.app import make_app
 from nrs_design.reproduction import specimens, table
 from nrs_design.reproduction.row import Verdict
 from tests.support import ROOT
@@ -28,7 +28,7 @@ def drifting(short, monkeypatch):
 
 
 def run(*arguments):
-    return CliRunner().invoke(app, ["reproduce", *arguments])
+    return CliRunner().invoke(make_app(), ["reproduce", *arguments])
 
 
 def test_the_command_as_typed():
@@ -119,8 +119,8 @@ def test_unwritable_page_is_a_usage_error(tmp_path):
 
 def test_help_has_an_example_and_stays_lean():
     code = (
-        "import sys; from nrs_design.cli.app import app\n"
-        "try: app(['reproduce', '--help'])\n"
+        "import sys; from nrs_design.cli.app import make_app\n"
+        "try: make_app()(['reproduce', '--help'])\n"
         "except SystemExit: pass\n"
         "heavy = {'numpy', 'scipy', 'control', 'cvxpy', 'matplotlib', 'jinja2', 'clarabel'}\n"
         "sys.exit(len(heavy & set(sys.modules)))"

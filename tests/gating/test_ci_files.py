@@ -7,7 +7,7 @@ import pytest
 from ruamel.yaml import YAML
 from typer.main import get_command
 
-from nrs_design.cli.app import app
+from nrs_design.cli.app import make_app
 
 ROOT = Path(__file__).parents[2]
 
@@ -19,7 +19,7 @@ def commands_in(path):
 
 @pytest.mark.parametrize("name", [".pre-commit-hooks.yaml", "docs/ci/github-actions.yml"])
 def test_commands_and_options_exist(name):
-    known = get_command(app).commands
+    known = get_command(make_app()).commands
     found = commands_in(ROOT / name)
     assert found
     for words in map(str.split, found):

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 
@@ -40,12 +40,12 @@ class Family:
     @classmethod
     def of(cls, system: SwitchedSystem) -> Family:
         """Convert and balance the modes of a system; modes of unequal size only give the limit."""
-        floats = [_to_floats(mode.A) for mode in system.modes]
-        limits = [limit_rate(A[None], system.time) for A in floats]
-        limit = min(limits) if system.time is Time.CONTINUOUS else max(limits)
         if not system.is_uniform:
+            limits = [limit_rate(to_floats([mode.A]), system.time) for mode in system.modes]
+            limit = min(limits) if system.time is Time.CONTINUOUS else max(limits)
             return cls(system, np.zeros((0, 0, 0)), np.zeros(0, dtype=np.int64), limit)
-        matrices = np.array(floats)
+        matrices = to_floats([mode.A for mode in system.modes])
+        limit = limit_rate(matrices, system.time)
         exponents = balance(matrices)
         scaled = scale(matrices, exponents)
         if not np.isfinite(scaled).all():
@@ -53,12 +53,17 @@ class Family:
         return cls(system, scaled, exponents, limit)
 
 
-def _to_floats(A: RationalMatrix) -> NDArray[np.float64]:
-    """Convert in one go where the integers allow; a search needs no correct rounding."""
+def to_floats(matrices: Sequence[RationalMatrix]) -> NDArray[np.float64]:
+    """Convert matrices of one size, in one go where the integers allow; shape (m, n, n).
+
+    A search needs no correct rounding.
+    """
     try:
-        return np.array(A.numerators, dtype=np.int64) / float(A.denominator)
+        numerators = np.array([A.numerators for A in matrices], dtype=np.int64)
+        denominators = np.array([A.denominator for A in matrices], dtype=np.float64)
     except OverflowError:
-        return np.array(A.floats())
+        return np.array([A.floats() for A in matrices])
+    return np.asarray(numerators / denominators[:, None, None])
 
 
 @contextmanager

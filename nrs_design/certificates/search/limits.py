@@ -7,6 +7,8 @@ from math import isfinite
 
 import numpy as np
 
+from nrs_design.certificates.search.decay import limit_rate
+from nrs_design.certificates.search.family import to_floats
 from nrs_design.switched.system import SwitchedSystem, Time
 
 MAX_WORDS = 3000
@@ -24,15 +26,18 @@ def rate_limit(system: SwitchedSystem) -> float | None:
     system : SwitchedSystem
         The modes.
     """
-    floats = [np.array(mode.A.floats()) for mode in system.modes]
-    if not all(np.isfinite(A).all() for A in floats):
+    if system.is_uniform:
+        families = [to_floats([mode.A for mode in system.modes])]
+    else:
+        families = [to_floats([mode.A]) for mode in system.modes]
+    limits = [limit_rate(matrices, system.time) for matrices in families]
+    if not all(map(isfinite, limits)):
         return None
     if system.time is Time.CONTINUOUS:
-        limit = min(float(-np.linalg.eigvals(A).real.max()) for A in floats)
-    else:
-        limit = max(float(np.abs(np.linalg.eigvals(A)).max()) for A in floats)
-        if system.switching.is_arbitrary:
-            limit = max(limit, _cycle_growth(np.array(floats)))
+        return min(limits)
+    if system.switching.is_arbitrary:
+        limits.append(_cycle_growth(families[0]))
+    limit = max(limits)
     return limit if isfinite(limit) else None
 
 

@@ -7,25 +7,28 @@ evidence: whatever it returns goes through the exact check.
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 from numpy.typing import NDArray
 
+from nrs_design.certificates.search.interior_point import Cones, maximize_last
 from nrs_design.certificates.search.sdp import maximize_margin, pack, symmetric_basis
 from nrs_design.switched.system import Time
 
 Matrices = NDArray[np.float64]
+Solve = Callable[[Matrices, Time, float, Matrices], Matrices | None]
 
-# Below so many cone rows one solve with all modes is faster than adding modes lazily.
-ALL_AT_ONCE_ROWS = 6000
 FIRST_MODES = 8
-# A probe with the first modes alone is worth its time where it is a small share of all of them.
-PROBE_BELOW_SHARE = 8
-MARGIN_FLOOR = 1e-10
 # In continuous time, the unit of time is chosen so that the largest entry is just below 2^3.
 ENTRY_LOG2 = 3
+# A smaller margin is none, relative to Q, for the modes that the solver knew.
+MARGIN_FLOOR = 1e-10
+# The start lies below the margin of its Q by at least this.
+START_FLOOR = 1e-3
 
 
-def decreases(matrices: Matrices, Q: NDArray[np.float64], time: Time, rate: float) -> Matrices:
+def decreases(matrices: Matrices, Q: Matrices, time: Time, rate: float) -> Matrices:
     """Return, for every mode, the matrix that must be positive definite; shape (m, n, n)."""
     if time is Time.CONTINUOUS:
         half = Q @ matrices
@@ -33,14 +36,14 @@ def decreases(matrices: Matrices, Q: NDArray[np.float64], time: Time, rate: floa
     return rate**2 * Q - np.swapaxes(matrices, -1, -2) @ Q @ matrices
 
 
-def margins(matrices: Matrices, Q: NDArray[np.float64], time: Time, rate: float) -> Matrices:
+def margins(matrices: Matrices, Q: Matrices, time: Time, rate: float) -> Matrices:
     """Return the smallest eigenvalue of every mode's decrease; shape (m,)."""
     return np.asarray(np.linalg.eigvalsh(decreases(matrices, Q, time, rate))[:, 0], dtype=float)
 
 
 def find_common_quadratic(
-    matrices: Matrices, time: Time, rate: float
-) -> NDArray[np.float64] | None:
+    matrices: Matrices, time: Time, rate: float, solve: Solve | None = None
+) -> Matrices | None:
     """Look for Q with ``A'Q + QA + 2 rate Q < 0`` (or ``A'QA < rate^2 Q``) for all modes.
 
     Parameters
@@ -51,33 +54,32 @@ def find_common_quadratic(
         Continuous or discrete.
     rate : float
         Decay rate in 1/s, or contraction per step.
+    solve : callable, optional
+        Solves the margin form for some of the modes, beginning at a Q between 0 and I; a method
+        of our own by default.
 
     Returns
     -------
     ndarray, shape (n, n), or None
         A candidate with positive margins in floating point, or None.
     """
+    solve = solve or _solve
     unit = time_unit(matrices, time)
     matrices, rate = np.ldexp(matrices, unit), float(np.ldexp(rate, unit))
     m, n = matrices.shape[:2]
-    few_rows = m * n * (n + 1) // 2 <= ALL_AT_ONCE_ROWS
-    probing = not few_rows or m >= PROBE_BELOW_SHARE * FIRST_MODES
-    active = np.linspace(0, m - 1, FIRST_MODES).astype(int) if probing else np.arange(m)
+    active = sorted({k * (m - 1) // (FIRST_MODES - 1) for k in range(FIRST_MODES)})
+    start: Matrices = np.eye(n) / 2
     while True:
-        Q = _solve(matrices[active], time, rate)
+        Q = solve(matrices[active], time, rate, start)
         if Q is None or not np.isfinite(decreases(matrices, Q, time, rate)).all():
             return None
         margin = margins(matrices, Q, time, rate)
         if margin.min() > 0:
             return Q
-        if margin[active].min() <= MARGIN_FLOOR:
+        if margin[active].min() <= MARGIN_FLOOR * np.abs(Q).max():
             return None
-        if few_rows:
-            active = np.arange(m)
-            continue
-        violated = np.setdiff1d(np.flatnonzero(margin <= 0), active)
-        worst = violated[np.argsort(margin[violated])][: len(active)]
-        active = np.sort(np.concatenate([active, worst]))
+        violated = [k for k in np.argsort(margin) if margin[k] <= 0 and k not in active]
+        active, start = sorted([*active, *violated[: len(active)]]), Q
 
 
 def time_unit(matrices: Matrices, time: Time) -> int:
@@ -87,13 +89,28 @@ def time_unit(matrices: Matrices, time: Time) -> int:
     return ENTRY_LOG2 - int(np.frexp(np.abs(matrices).max())[1])
 
 
-def _solve(matrices: Matrices, time: Time, rate: float) -> NDArray[np.float64] | None:
+def _solve(matrices: Matrices, time: Time, rate: float, Q: Matrices) -> Matrices | None:
+    """Improve on Q in the margin form for the given modes, with the method of our own."""
+    m, n = matrices.shape[:2]
+    basis, identity = symmetric_basis(n), np.eye(n)
+    constant, images = np.zeros((m + 2, n, n)), np.zeros((len(basis) + 1, m + 2, n, n))
+    constant[1] = identity
+    images[:-1, 0], images[:-1, 1] = basis, -basis
+    images[:-1, 2:] = decreases(matrices, basis[:, None], time, rate)
+    images[-1, 2:] = -identity
+    here = decreases(matrices, Q, time, rate)
+    below = np.linalg.eigvalsh(here).min() - max(0.1 * np.abs(here).max(), START_FLOOR)
+    y = maximize_last(Cones(constant, images), np.append(pack(Q), below))
+    return np.asarray(np.tensordot(y[:-1], basis, axes=1))
+
+
+def solve_by_clarabel(matrices: Matrices, time: Time, rate: float, Q: Matrices) -> Matrices | None:
     """Solve the margin form for the given modes; None if the result is not finite."""
     m, n = matrices.shape[:2]
     basis, identity = symmetric_basis(n), pack(np.eye(n))
     size = len(basis)
-    images = np.stack([decreases(matrices, E, time, rate) for E in basis], axis=1)
-    rows = -np.swapaxes(pack(images), 1, 2).reshape(m * size, size)
+    images = decreases(matrices, basis[:, None], time, rate)
+    rows = -np.moveaxis(pack(images), 0, 2).reshape(m * size, size)
     columns = np.vstack([np.eye(size), -np.eye(size), rows])
     margin = np.concatenate([np.zeros(2 * size), np.tile(identity, m)])
     offset = np.concatenate([identity, np.zeros(size * (m + 1))])

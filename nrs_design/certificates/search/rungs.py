@@ -16,7 +16,7 @@ from nrs_design.certificates.search.balance import mean_norm_coordinates, scale
 from nrs_design.certificates.search.decay import largest_position, rate_at, rate_of
 from nrs_design.certificates.search.family import Family
 from nrs_design.certificates.search.gradient import iterate_gradient
-from nrs_design.certificates.search.lmi import find_common_quadratic, margins
+from nrs_design.certificates.search.lmi import find_common_quadratic, margins, solve_by_clarabel
 from nrs_design.certificates.search.mixture import find_unstable_mixture
 from nrs_design.certificates.search.mode_quadratic import find_mode_quadratic
 from nrs_design.certificates.search.obstruction import round_obstruction, solve_dual
@@ -35,7 +35,7 @@ from nrs_design.certificates.search.unstable_value import (
     find_unstable_switching,
     find_unstable_value,
 )
-from nrs_design.switched.system import Mode, Time
+from nrs_design.switched.system import Mode, SwitchedSystem, Time
 
 # How far below the best rate found the claimed one may lie: a wider gap needs fewer digits.
 BACK_OFFS = (0.9995, 0.998, 0.99, 0.9, 0.5, 0.1, 1e-3)
@@ -57,12 +57,12 @@ def examine_suspicious_modes(family: Family) -> Finding:
     suspicious = [
         mode for mode, ok in zip(family.system.modes, _seems_stable(family), strict=True) if not ok
     ]
-    return _first_unstable(suspicious, family.system.time)
+    return _first_unstable(suspicious, family.system)
 
 
 def examine_every_mode(family: Family) -> Finding:
     """Test every mode exactly."""
-    return _first_unstable(family.system.modes, family.system.time)
+    return _first_unstable(family.system.modes, family.system)
 
 
 def search_by_lmi(family: Family, *, optimize_rate: bool) -> Finding:
@@ -83,11 +83,11 @@ def search_by_lmi(family: Family, *, optimize_rate: bool) -> Finding:
     return _round_at_own_rate(family, Q)
 
 
-def search_by_gradient(family: Family, *, max_updates: int = 20_000) -> Finding:
+def search_by_gradient(family: Family) -> Finding:
     """Search by the Liberzon-Tempo iteration."""
     if not np.isfinite(family.limit):
         return None, OUT_OF_RANGE
-    result = iterate_gradient(family.matrices, max_updates=max_updates)
+    result = iterate_gradient(family.matrices)
     if result.Q is None:
         return None, f"not converged after {result.updates} updates"
     evidence, outcome = _round_at_own_rate(family, result.Q)
@@ -95,12 +95,13 @@ def search_by_gradient(family: Family, *, max_updates: int = 20_000) -> Finding:
 
 
 def search_raw(family: Family) -> Finding:
-    """Search by semidefinite programming in the coordinates of the spec, without balancing."""
+    """Search by a general solver in the coordinates of the spec, without balancing."""
     time = family.system.time
     if not np.isfinite(family.limit):
         return None, OUT_OF_RANGE
     matrices = scale(family.matrices, -family.exponents)
-    Q = find_common_quadratic(matrices, time, rate_at(0.0, family.limit, time))
+    least = rate_at(0.0, family.limit, time)
+    Q = find_common_quadratic(matrices, time, least, solve_by_clarabel)
     if Q is None:
         return None, "the solver found no candidate with positive margins"
     shifts = family.exponents[:, None] + family.exponents[None, :]
@@ -108,13 +109,14 @@ def search_raw(family: Family) -> Finding:
 
 
 def search_preconditioned(family: Family) -> Finding:
-    """Search by semidefinite programming after a change to the mean of the modes' own norms."""
+    """Search by a general solver after a change to the mean of the modes' own norms."""
     time = family.system.time
     if not np.isfinite(family.limit):
         return None, OUT_OF_RANGE
     T = mean_norm_coordinates(family.matrices, time)
     inverse = np.linalg.inv(T)
-    Q = find_common_quadratic(inverse @ family.matrices @ T, time, rate_at(0.0, family.limit, time))
+    least = rate_at(0.0, family.limit, time)
+    Q = find_common_quadratic(inverse @ family.matrices @ T, time, least, solve_by_clarabel)
     if Q is None:
         return None, "the solver found no candidate with positive margins"
     return _round_at_own_rate(family, inverse.T @ Q @ inverse)
@@ -233,18 +235,24 @@ def _round(family: Family, Q: NDArray[np.float64], rate: float) -> CommonQuadrat
 def _seems_stable(family: Family) -> NDArray[np.bool_]:
     if not np.isfinite(family.matrices).all():
         return np.zeros(len(family.matrices), dtype=bool)
-    eigenvalues = np.linalg.eigvals(family.matrices)
     size = np.abs(family.matrices).max(axis=(1, 2))
-    if family.system.time is Time.CONTINUOUS:
+    continuous = family.system.time is Time.CONTINUOUS
+    if SUSPICION * size.max() < family.limit if continuous else family.limit < 1 - SUSPICION:
+        return np.ones(len(family.matrices), dtype=bool)
+    eigenvalues = np.linalg.eigvals(family.matrices)
+    if continuous:
         return np.asarray(eigenvalues.real.max(axis=1) < -SUSPICION * size)
     return np.asarray(np.abs(eigenvalues).max(axis=1) < 1 - SUSPICION)
 
 
-def _first_unstable(modes: Iterable[Mode], time: Time) -> Finding:
+def _first_unstable(modes: Iterable[Mode], system: SwitchedSystem) -> Finding:
     count = 0
     for mode in modes:
         count += 1
-        if not is_stable(mode.A, time):
-            evidence = UnstableMode(mode.name, worst_eigenvalue(mode.A, time))
-            return evidence, f"mode {mode.name} is not stable"
+        if is_stable(mode.A, system.time):
+            continue
+        evidence = UnstableMode(mode.name, worst_eigenvalue(mode.A, system.time))
+        if fault := evidence.find_fault(system):
+            return None, f"mode {mode.name} is not stable, but {fault}"
+        return evidence, f"mode {mode.name} is not stable"
     return None, f"{count} modes tested exactly, all stable" if count else "none"

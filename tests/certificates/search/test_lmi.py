@@ -5,7 +5,12 @@ import numpy as np
 import pytest
 
 from nrs_design.certificates.search import lmi
-from nrs_design.certificates.search.lmi import decreases, find_common_quadratic, margins
+from nrs_design.certificates.search.lmi import (
+    decreases,
+    find_common_quadratic,
+    margins,
+    solve_by_clarabel,
+)
 from nrs_design.switched.system import Time
 
 
@@ -20,14 +25,15 @@ def exists_by_cvxpy(matrices):
     return float(t.value)
 
 
+@pytest.mark.parametrize("solve", [None, solve_by_clarabel])
 @pytest.mark.parametrize("seed", range(30))
-def test_existence_agrees_with_cvxpy(seed):
+def test_existence_agrees_with_cvxpy(seed, solve):
     generator = np.random.default_rng(seed)
     n, m = generator.integers(2, 7), generator.integers(2, 6)
     shift = generator.uniform(0.5, 2.5) * np.sqrt(n)
     matrices = generator.standard_normal((m, n, n)) - shift * np.eye(n)
     margin = exists_by_cvxpy(matrices)
-    found = find_common_quadratic(matrices, Time.CONTINUOUS, 0.0)
+    found = find_common_quadratic(matrices, Time.CONTINUOUS, 0.0, solve)
     if margin > 1e-4:
         assert found is not None
         assert margins(matrices, found, Time.CONTINUOUS, 0.0).min() > 0
@@ -48,12 +54,11 @@ def test_both_answers_occur():
 
 
 @pytest.mark.parametrize("time", list(Time))
-def test_few_modes_at_a_time_find_the_same(monkeypatch, time):
+def test_few_modes_at_a_time_find_the_same(time):
     generator = np.random.default_rng(7)
     noise = generator.uniform(-0.2, 0.2, (60, 3, 3))
     matrices = noise - np.eye(3) if time is Time.CONTINUOUS else noise
     rate = 0.0 if time is Time.CONTINUOUS else 1.0
-    monkeypatch.setattr(lmi, "ALL_AT_ONCE_ROWS", 0)
     Q = find_common_quadratic(matrices, time, rate)
     assert Q is not None
     assert margins(matrices, Q, time, rate).min() > 0

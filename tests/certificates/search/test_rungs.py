@@ -1,5 +1,7 @@
 """Rungs return only what has passed the exact check, whatever the searches below them say."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -59,6 +61,16 @@ def test_modes_on_the_border_are_tested_exactly():
     assert "m0" in words
     nothing, _ = rungs.examine_every_mode(Family.of(shears()))
     assert nothing is None
+
+
+def test_what_does_not_pass_the_whole_check_is_no_evidence():
+    """Which of two modes of one name is meant, a certificate could not say."""
+    system = family([[0, 1], [-1, 0]], [[-1, 0], [0, -1]])
+    twins = replace(system, modes=tuple(replace(mode, name="twin") for mode in system.modes))
+    found, words = rungs.examine_every_mode(Family.of(twins))
+    assert found is None
+    assert words == "mode twin is not stable, but two modes of the system have the same name"
+    assert certify(twins, limits=Limits(max_degree=4)).verdict is Verdict.INCONCLUSIVE
 
 
 def test_every_rung_says_how_it_ended():

@@ -17,6 +17,7 @@ from nrs_design.certificates.certificate import (
     deciding,
     verdict_of,
 )
+from nrs_design.certificates.checker import Checker
 from nrs_design.certificates.evidence import (
     AbstractEvidence,
     BlockTriangular,
@@ -178,17 +179,16 @@ def certify(
     simple = system.switching.is_arbitrary and system.is_uniform
     merged = merge_equal_modes(system) if simple else system
     blocks = triangular_blocks(merged) if simple else (tuple(range(system.order)),)
+    checker = Checker(system)
     if len(blocks) == 1:
-        result = _climb(merged, method, limits, progress)
+        result = _climb(checker if merged is system else Checker(merged), method, limits, progress)
     else:
         parts = [_certify_block(merged, block, method, limits, progress) for block in blocks]
         result = _combine(merged, blocks, parts)
     statements = tuple(spread(statement, merged, system) for statement in result.statements)
-    # A rung has checked what it returns, for the modes that it was given; flint checks all of it.
-    as_checked = merged is system and len(blocks) == 1
     for statement in statements:
-        if not as_checked and (fault := statement.find_fault(system)):
-            raise InternalError(f"evidence was lost between two forms of one system: {fault}")
+        if fault := checker.find_fault(statement):
+            raise InternalError(f"the search returned evidence that does not hold: {fault}")
         confirm(system, statement)
     with floats_in_silence():
         limit = rate_limit(system)
@@ -205,7 +205,7 @@ def _certify_block(
     """Certify the family of one diagonal block."""
     full = diagonal_block(system, block)
     merged = merge_equal_modes(full)
-    result = _climb(merged, method, limits, progress)
+    result = _climb(Checker(merged), method, limits, progress)
     return replace(
         result,
         system=full,
@@ -213,12 +213,11 @@ def _certify_block(
     )
 
 
-def _climb(
-    system: SwitchedSystem, method: Method, limits: Limits, progress: Progress
-) -> Certification:
+def _climb(checker: Checker, method: Method, limits: Limits, progress: Progress) -> Certification:
     """Try one rung after the other until one decides, or the budget is used up."""
+    system = checker.system
     with floats_in_silence():
-        family = Family.of(system)
+        family = Family.checked_by(checker)
     begun = perf_counter()
     attempts: list[Attempt] = []
     remarks: list[AbstractEvidence] = []

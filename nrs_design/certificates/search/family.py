@@ -10,6 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from nrs_design.certificates.checker import Checker
 from nrs_design.certificates.search.balance import balance, scale
 from nrs_design.certificates.search.decay import limit_rate
 from nrs_design.switched.matrix import RationalMatrix
@@ -22,8 +23,8 @@ class Family:
 
     Parameters
     ----------
-    system : SwitchedSystem
-        The exact modes.
+    checker : Checker
+        Of evidence for the exact modes.
     matrices : ndarray, shape (m, n, n)
         ``2^-d A 2^d``.
     exponents : ndarray of int, shape (n,)
@@ -32,25 +33,36 @@ class Family:
         Rate of the slowest mode.
     """
 
-    system: SwitchedSystem
+    checker: Checker
     matrices: NDArray[np.float64]
     exponents: NDArray[np.int64]
     limit: float
 
+    @property
+    def system(self) -> SwitchedSystem:
+        """The exact modes."""
+        return self.checker.system
+
     @classmethod
     def of(cls, system: SwitchedSystem) -> Family:
         """Convert and balance the modes of a system; modes of unequal size only give the limit."""
+        return cls.checked_by(Checker(system))
+
+    @classmethod
+    def checked_by(cls, checker: Checker) -> Family:
+        """Convert and balance the modes that a checker speaks about."""
+        system = checker.system
         if not system.is_uniform:
             limits = [limit_rate(to_floats([mode.A]), system.time) for mode in system.modes]
             limit = min(limits) if system.time is Time.CONTINUOUS else max(limits)
-            return cls(system, np.zeros((0, 0, 0)), np.zeros(0, dtype=np.int64), limit)
+            return cls(checker, np.zeros((0, 0, 0)), np.zeros(0, dtype=np.int64), limit)
         matrices = to_floats([mode.A for mode in system.modes])
         limit = limit_rate(matrices, system.time)
         exponents = balance(matrices)
         scaled = scale(matrices, exponents)
         if not np.isfinite(scaled).all():
             scaled, exponents = matrices, np.zeros_like(exponents)
-        return cls(system, scaled, exponents, limit)
+        return cls(checker, scaled, exponents, limit)
 
 
 def to_floats(matrices: Sequence[RationalMatrix]) -> NDArray[np.float64]:

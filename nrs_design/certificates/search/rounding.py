@@ -9,8 +9,9 @@ from math import floor, frexp, gcd
 import numpy as np
 from numpy.typing import NDArray
 
+from nrs_design.certificates.checker import Checker
 from nrs_design.certificates.evidence import CommonQuadratic
-from nrs_design.switched.system import SwitchedSystem, Time
+from nrs_design.switched.system import Time
 
 BITS = (4, 6, 8, 10, 12, 16, 20, 24, 32, 40, 50, 60)
 RATE_BITS = 16
@@ -21,7 +22,7 @@ Screen = Callable[[NDArray[np.float64]], bool]
 
 
 def round_to_evidence(
-    system: SwitchedSystem,
+    checker: Checker,
     Q: NDArray[np.float64],
     exponents: NDArray[np.int64],
     rate: Fraction,
@@ -31,8 +32,8 @@ def round_to_evidence(
 
     Parameters
     ----------
-    system : SwitchedSystem
-        Exact modes; the check runs on these, in their own coordinates.
+    checker : Checker
+        Of the exact modes, in their own coordinates.
     Q : ndarray, shape (n, n)
         Candidate in the coordinates scaled by ``2^d``.
     exponents : ndarray of int, shape (n,)
@@ -51,7 +52,7 @@ def round_to_evidence(
         if bits < BITS[-1] and not passes(rounded):
             continue
         evidence = _evidence(unit, exponents, bits, rate)
-        if _is_printable(evidence) and evidence.find_fault(system) is None:
+        if _is_printable(evidence) and checker.find_fault(evidence) is None:
             return evidence
     return None
 

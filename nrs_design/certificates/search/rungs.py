@@ -229,7 +229,7 @@ def _round(family: Family, Q: NDArray[np.float64], rate: float) -> CommonQuadrat
     def passes(rounded: NDArray[np.float64]) -> bool:
         return bool(margins(family.matrices, rounded, time, float(claimed)).min() > 0)
 
-    return round_to_evidence(family.system, Q, family.exponents, claimed, passes)
+    return round_to_evidence(family.checker, Q, family.exponents, claimed, passes)
 
 
 def _seems_stable(family: Family) -> NDArray[np.bool_]:

@@ -5,6 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from nrs_design.certificates.checker import Checker
 from nrs_design.certificates.search.rounding import (
     MAX_ENTRY_BITS,
     RATE_BITS,
@@ -33,13 +34,13 @@ def test_rates_in_discrete_time_only_get_slower(rate):
 
 
 def test_few_bits_are_enough_for_a_good_candidate():
-    evidence = round_to_evidence(SYSTEM, GOOD, LEVEL, Fraction(1, 1000))
+    evidence = round_to_evidence(Checker(SYSTEM), GOOD, LEVEL, Fraction(1, 1000))
     assert evidence.Q == ((3, 0), (0, 10)) or evidence.Q[0][0] < 16
     assert holds(SYSTEM, evidence)
 
 
 def test_denominator_gives_back_the_candidate():
-    evidence = round_to_evidence(SYSTEM, GOOD * 1e200, LEVEL, Fraction(1, 1000))
+    evidence = round_to_evidence(Checker(SYSTEM), GOOD * 1e200, LEVEL, Fraction(1, 1000))
     Q = np.array(evidence.Q, dtype=float)
     np.testing.assert_allclose(Q[0, 0] / Q[1, 1], 0.2, rtol=0.2)
     assert evidence.denominator_log2 >= 0
@@ -59,7 +60,7 @@ def test_scaling_is_undone_exactly(exponents):
             for m in SYSTEM.modes
         )
     )
-    evidence = round_to_evidence(stretched, GOOD, d, Fraction(1, 1000))
+    evidence = round_to_evidence(Checker(stretched), GOOD, d, Fraction(1, 1000))
     assert evidence is not None
     assert holds(stretched, evidence)
 
@@ -77,12 +78,14 @@ def test_scaling_is_undone_exactly(exponents):
 )
 def test_bad_candidates_are_not_evidence(Q):
     with np.errstate(all="ignore"):
-        assert round_to_evidence(SYSTEM, Q, LEVEL, Fraction(1, 1000)) is None
+        assert round_to_evidence(Checker(SYSTEM), Q, LEVEL, Fraction(1, 1000)) is None
 
 
 @pytest.mark.parametrize("factor", [1.5e308 / 5, 5e-324])
 def test_candidates_at_the_ends_of_the_range(factor):
-    evidence = round_to_evidence(SYSTEM, np.diag([1.0, 5.0]) * factor, LEVEL, Fraction(1, 1000))
+    evidence = round_to_evidence(
+        Checker(SYSTEM), np.diag([1.0, 5.0]) * factor, LEVEL, Fraction(1, 1000)
+    )
     assert evidence is not None
     assert holds(SYSTEM, evidence)
 
@@ -91,6 +94,6 @@ def test_integers_too_long_for_a_file_are_not_evidence():
     """A certificate is JSON, of which Python reads integers of at most 4300 digits."""
     still = family([[-1, 0], [0, -1]])
     near, far = np.array([0, MAX_ENTRY_BITS // 2 - 100]), np.array([0, MAX_ENTRY_BITS])
-    assert round_to_evidence(still, np.eye(2), near, Fraction(1, 2)) is not None
-    assert round_to_evidence(still, np.eye(2), far, Fraction(1, 2)) is None
+    assert round_to_evidence(Checker(still), np.eye(2), near, Fraction(1, 2)) is not None
+    assert round_to_evidence(Checker(still), np.eye(2), far, Fraction(1, 2)) is None
     assert len(str(2**MAX_ENTRY_BITS)) < 4300

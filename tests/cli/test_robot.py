@@ -2,6 +2,7 @@
 
 import csv
 import json
+import re
 
 import pytest
 
@@ -66,6 +67,15 @@ def test_check(tmp_path):
     assert found["valid"] is True
     assert min(found["mass_matrix_eigenvalues_at_home"]) > 0
     assert len(found["corners"]) == 4
+
+
+def test_check_refuses_a_robot_without_mass(tmp_path):
+    text = re.sub(r"mass: [0-9.]+ g", "mass: 0 g", TEMPLATES["robot"])
+    (tmp_path / "light.nrs.yaml").write_text(text.replace("14.81e-7 kg*m^2", "0 kg*m^2", 1))
+    result = run("robot", "check", "light.nrs.yaml", cwd=tmp_path)
+    assert result.returncode == 2
+    assert result.stdout == ""
+    assert "some motion of the robot moves no mass" in result.stderr
 
 
 def test_balance(tmp_path):

@@ -11,17 +11,16 @@ def check(spec: SpecFile, as_json: Json = False, quiet: Quiet = False) -> None:
 
     Example: nrs-design robot check specs/robots/neuroboscope.nrs.yaml
     """
-    import numpy as np
+    import math
 
-    from nrs_design.models.robot import mass_matrix, survey_workspace
+    from nrs_design.models.robot import examine_inertia, survey_workspace
     from nrs_design.pipeline import run_robot
 
     loaded, _, robot = run_robot(spec)
     survey = survey_workspace(robot)
-    inertia = np.linalg.eigvalsh(mass_matrix(robot, robot.home))
-    mass = sum(body.mass for loads in robot.loads for body in loads)
+    inertia = examine_inertia(robot).tolist()
     corners = [
-        {"phi_deg": float(np.degrees(phi)), "psi_deg": float(np.degrees(psi)), "deepest_m": depth}
+        {"phi_deg": math.degrees(phi), "psi_deg": math.degrees(psi), "deepest_m": depth}
         for phi, psi, depth in survey.deepest
     ]
     if as_json:
@@ -31,18 +30,19 @@ def check(spec: SpecFile, as_json: Json = False, quiet: Quiet = False) -> None:
                 "spec": loaded.spec.name,
                 "spec_sha256": loaded.sha256,
                 "valid": True,
-                "moving_mass_kg": mass,
-                "home": list(map(float, robot.home)),
+                "moving_mass_kg": robot.moving_mass,
+                "home": robot.home.tolist(),
                 "reachable_share": survey.reachable,
                 "corners": corners,
-                "mass_matrix_eigenvalues_at_home": list(map(float, inertia)),
+                "mass_matrix_eigenvalues_at_home": inertia,
             },
         )
         return
     print(f"{spec}: valid robot {loaded.spec.name!r}")
     if quiet:
         return
-    print(f"moving mass {mass:.4f} kg; eigenvalues of M at home {_list(inertia)} kg m^2")
+    eigenvalues = ", ".join(f"{value:.4g}" for value in inertia)
+    print(f"moving mass {robot.moving_mass:.4f} kg; eigenvalues of M at home {eigenvalues} kg m^2")
     print(f"{100 * survey.reachable:.2f} % of the workspace grid is reachable by all legs")
     print_table(
         "",
@@ -56,9 +56,3 @@ def check(spec: SpecFile, as_json: Json = False, quiet: Quiet = False) -> None:
             for corner in corners
         ],
     )
-
-
-def _list(numbers: object) -> str:
-    import numpy as np
-
-    return ", ".join(f"{number:.4g}" for number in np.ravel(np.asarray(numbers, dtype=float)))

@@ -186,7 +186,8 @@ def _print_runs(runs: list[dict[str, Any]]) -> None:
 
 def _print_ablation(changes: list[dict[str, Any]]) -> None:
     """Print the errors of what moves, d in mm and angles in deg."""
-    place = {"phi": 0, "psi": 1, "d": 2}
+    from nrs_design.simulation.tracking import COORDINATE
+
     moved = list(changes[0]["rmse"])
     units = ["mm" if name == "d" else "deg" for name in moved]
     print_table(
@@ -194,7 +195,7 @@ def _print_ablation(changes: list[dict[str, Any]]) -> None:
         ["controller", "change", *(f"{m} [{u}]" for m, u in zip(moved, units, strict=True))],
         [
             [row["controller"], row["change"]]
-            + [f"{row['rmse'][name][place[name]]:.4f}" for name in moved]
+            + [f"{row['rmse'][name][COORDINATE[name]]:.4f}" for name in moved]
             for row in changes
         ],
     )

@@ -44,6 +44,7 @@ from nrs_design.models.robot.simplified import (
     simplified_dynamics,
     simplified_torque,
 )
+from nrs_design.models.robot.soundness import examine_inertia
 from nrs_design.models.robot.workspace import (
     JointPeaks,
     WorkspaceSurvey,
@@ -77,6 +78,7 @@ __all__ = [
     "design_balance",
     "direct_kinematics",
     "examine_balance",
+    "examine_inertia",
     "gravity_torque",
     "inverse_dynamics",
     "inverse_jacobian",

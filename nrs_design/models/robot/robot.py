@@ -137,6 +137,11 @@ class Robot:
         return left, right, (middle[0], middle[1], middle[2].plus(carried))
 
     @property
+    def moving_mass(self) -> float:
+        """Mass of all links and the platform, in kg."""
+        return sum(body.mass for loads in self.loads for body in loads)
+
+    @property
     def home(self) -> Array:
         """The pose in the middle of the workspace, (0, 0, d)."""
         return np.array([0.0, 0.0, sum(self.workspace.d) / 2])

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from nrs_design.reporting.style import CYCLE, INK, color, marker, new_figure, styled
-from nrs_design.simulation.tracking import MOTIONS, Record
+from nrs_design.simulation.tracking import COORDINATE, MOTIONS, Record
 from nrs_design.simulation.tracking.record import DISPLAY
 
 if TYPE_CHECKING:
@@ -17,7 +17,6 @@ if TYPE_CHECKING:
 
 _NAMES = ("φ", "ψ", "d")
 _UNITS = ("deg", "deg", "mm")
-_COORDINATE = {"phi": 0, "psi": 1, "d": 2}
 _POINTS = 1500
 # An error of zero has no place on a logarithmic axis: a thousandth of a degree or millimeter.
 _FLOOR = 1e-3
@@ -57,7 +56,7 @@ def draw_tracking(records: Sequence[Record], measured: Sequence[Measured]) -> Fi
 
 
 def _draw_motion(axes: Axes, records: Sequence[Record], controllers: list[str]) -> None:
-    index = _COORDINATE[records[0].experiment.moved]
+    index = COORDINATE[records[0].experiment.moved]
     for record in records:
         experiment = record.experiment
         phase = (record.time - experiment.hold) * experiment.rate / (2 * np.pi)

@@ -2,7 +2,12 @@
 
 from nrs_design.simulation.tracking.ablation import ablation_tracks
 from nrs_design.simulation.tracking.encoder import Encoder
-from nrs_design.simulation.tracking.experiment import MOTIONS, Experiment, thesis_experiments
+from nrs_design.simulation.tracking.experiment import (
+    COORDINATE,
+    MOTIONS,
+    Experiment,
+    thesis_experiments,
+)
 from nrs_design.simulation.tracking.friction import DryFriction
 from nrs_design.simulation.tracking.plant import DriveArrays, JointState, Mechanism, Stepper
 from nrs_design.simulation.tracking.record import Record
@@ -17,6 +22,7 @@ from nrs_design.simulation.tracking.track import (
 
 __all__ = [
     "CONTROLLERS",
+    "COORDINATE",
     "LEFT_OUT",
     "MOTIONS",
     "DriveArrays",

@@ -16,7 +16,8 @@ HOLD = 10.0
 # 4.37 to 4.39, taken literally. It makes a period of 110 s.
 FAST, SLOW = 2 * pi * 0.1, 0.0571
 MOTIONS = ("d", "phi", "psi")
-_COORDINATE = {"phi": 0, "psi": 1, "d": 2}
+# Where each is in a pose.
+COORDINATE = {"phi": 0, "psi": 1, "d": 2}
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,7 +53,7 @@ class Experiment:
         """Return pose, velocity and acceleration at times of shape (n,); shapes (n, 3)."""
         phase = self.rate * np.maximum(time - self.hold, 0.0)
         swing = np.zeros(3)
-        swing[_COORDINATE[self.moved]] = self.amplitude
+        swing[COORDINATE[self.moved]] = self.amplitude
         moving = np.where(time < self.hold, 0.0, 1.0)[:, None]
         sine, cosine = np.sin(phase)[:, None], np.cos(phase)[:, None]
         return (

@@ -71,6 +71,10 @@ class TestText:
         assert "specs/c.nrs.yaml: NRS900 error: RuntimeError: unforeseen and long" in lines
         assert "1 refuted, 1 proved, 1 without verdict; 7 obligations, 5 not" in to_text(mixed)
 
+    def test_one_of_a_kind(self):
+        assert "1 spec: " in to_text(outcome_of(obligation()))
+        assert "; 1 obligation, " in to_text(outcome_of(obligation()))
+
     def test_hostile_text_steers_no_terminal(self):
         text = to_text(outcome_of(obligation(path=f"specs/{HOSTILE}", message=HOSTILE)))
         assert all(line.isprintable() for line in text.split("\n"))

@@ -57,4 +57,5 @@ def _summary(outcome: GateOutcome) -> str:
     ending = "all fulfilled" if not broken else f"{broken} not fulfilled (nrs-design explain RULE)"
     count = len(outcome.specs)
     specs = "1 spec" if count == 1 else f"{count} specs"
-    return f"{specs}: {counts}; {total} obligations, {ending}"
+    obligations = "1 obligation" if total == 1 else f"{total} obligations"
+    return f"{specs}: {counts}; {obligations}, {ending}"

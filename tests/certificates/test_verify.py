@@ -488,7 +488,7 @@ class TestForgery:
         document, spec = given
         self.reject({**document, "gains": gains}, spec, "")
 
-    @pytest.mark.parametrize("schema", ["nrs-design/certificate/1", "nrs-design/certificate/3", 2])
+    @pytest.mark.parametrize("schema", ["nrs-design/certificate/2", "nrs-design/certificate/4", 2])
     def test_other_schema(self, given, schema):
         document, spec = given
         self.reject({**document, "schema": schema}, spec, "schema")

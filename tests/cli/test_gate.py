@@ -106,8 +106,10 @@ def test_broken_spec_is_worse_than_a_refuted_one(gate, capsys):
     out, err = capsys.readouterr()
     assert "specs/broken.nrs.yaml:5:18: NRS001 error" in out
     assert "thesis-print-error" in out
-    assert "nrs.lock not written" in err
-    assert not Path("nrs.lock").exists()
+    assert "not in nrs.lock, for want of a verdict: specs/broken.nrs.yaml" in err
+    locked = [spec["path"] for spec in json.loads(Path("nrs.lock").read_text())["specs"]]
+    assert "specs/stable.nrs.yaml" in locked
+    assert "specs/broken.nrs.yaml" not in locked
 
 
 def test_inconclusive_is_exit_3_and_refuted_is_worse(gate, monkeypatch):
@@ -193,9 +195,11 @@ def test_locked_without_a_lock(gate, capsys):
 
 
 def test_locked_with_other_folders(gate):
-    assert gate("specs", "--no-reports", "--reports", "certs", "--lock", "ci/a.lock") == 0
+    assert gate("specs", "--no-reports", "--reports", "certs", "--lock", "ci/a.lock") == 2
+    assert not Path("certs").exists()
+    assert gate("specs", "--no-reports", "--reports", "ci/certs", "--lock", "ci/a.lock") == 0
     assert gate("specs", "--locked", "--lock", "ci/a.lock") == 0
-    Path("certs/stable.cert.json").unlink()
+    Path("ci/certs/stable.cert.json").unlink()
     assert gate("specs", "--locked", "--lock", "ci/a.lock") == 2
 
 

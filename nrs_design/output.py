@@ -38,7 +38,7 @@ def write_output(path: Path, content: str | bytes, *, replaces: bytes = b"") -> 
     data = content.encode() if isinstance(content, str) else content
     try:
         _refuse_links(path)
-        _refuse_foreign(path, replaces)
+        check_replaceable(path, replaces)
         path.parent.mkdir(parents=True, exist_ok=True)
         handle, temporary = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.")
         try:
@@ -72,7 +72,14 @@ def _refuse_links(path: Path) -> None:
             )
 
 
-def _refuse_foreign(path: Path, beginning: bytes) -> None:
+def check_replaceable(path: Path, beginning: bytes) -> None:
+    """Refuse a place that holds something else than a file that begins so.
+
+    Raises
+    ------
+    OutputError
+        If it does. Nothing there is fine.
+    """
     if not path.exists():
         return
     if not path.is_file():

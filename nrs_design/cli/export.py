@@ -45,6 +45,7 @@ def export(
     Example: nrs-design export specs/neuroboscope/soft-tissue.nrs.yaml --format json
     """
     from nrs_design.exporters.export import export_design
+    from nrs_design.output import EXPORT, check_replaceable
     from nrs_design.ownership import check_certificate
     from nrs_design.spec import read_spec
 
@@ -54,6 +55,7 @@ def export(
     proof = certificate or file.parent / f"{name}.cert.json"
     if file.resolve() == proof.resolve():
         raise OutputError("is the certificate file", path=file, remedy="choose another --out")
+    check_replaceable(file, EXPORT)
     check_certificate(spec, file.parent / f"{name}.cert.json")
     with progress(f"exporting {name}", quiet=quiet) as step:
         result = export_design(loaded, certificate, step)

@@ -61,7 +61,8 @@ class LockedGoal(_Frozen):
 
     rule: str
     subject: str
-    status: Literal["proved", "met", "inconclusive", "missed", "refuted", "error"]
+    # What no exact check decides is never proved or refuted; see `Status`.
+    status: Literal["met", "inconclusive", "missed", "error"]
     message: str
 
     @model_validator(mode="after")

@@ -184,7 +184,6 @@ def _inconclusive(examiner: Examiner, entry: LockedSpec, file: Path) -> SpecOutc
         sha256=examiner.loaded.sha256,
         verdict="inconclusive",
         common_quadratic="unknown",
-        gains=entry.gains,
     )
 
 

@@ -83,6 +83,7 @@ def test_an_inconclusive_spec_may_have_the_certificate_of_a_remark(tmp_path, cer
         document({**ENTRY, "goals": [{**GOAL, "rule": "NRS102"}]}),
         document({**ENTRY, "goals": [{**GOAL, "rule": "NRS999"}]}),
         document({**ENTRY, "goals": [{**GOAL, "status": "fine"}]}),
+        document({**ENTRY, "goals": [{**GOAL, "status": "proved"}]}),
         document({**ENTRY, "gains": {"tissue": {"Mt": 0.25}}}),
         document({**ENTRY, "unknown": 1}),
         document(ENTRY).replace('"rate"', '"path"'),

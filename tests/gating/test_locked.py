@@ -222,6 +222,19 @@ def test_gains_are_shown_and_are_those_of_the_certificate(check, project):
     assert "other gains" in outcome.broken[0].message
 
 
+def test_gains_without_a_certificate_are_not_shown(check, project):
+    """Nothing but the lock file says that they were designed, and it may say anything."""
+
+    def forge(specs):
+        forged = {"insertion": {"Bt": "1e999999999"}}
+        specs[0].update(verdict="inconclusive", rate=None, certificate=None, gains=forged)
+
+    edit_lock(project, forge)
+    outcome = check()
+    assert broken(outcome) == [("NRS102", "inconclusive")]
+    assert outcome.specs[0].gains == {}
+
+
 def test_gains_that_another_version_designed(check, project):
     """Given matrices are not designed, so no version can change them."""
     edit_lock(project, lambda specs: [spec.update(version="0.0.1") for spec in specs])

@@ -58,7 +58,10 @@ def gate(
         bool, typer.Option("--prune", help="Drop what is locked for specs that no longer exist.")
     ] = False,
     reports: Annotated[
-        Path, typer.Option("--reports", help="Folder for certificates and HTML reports.")
+        Path,
+        typer.Option(
+            "--reports", help="Folder for certificates and HTML reports, below that of --lock."
+        ),
     ] = Path("reports"),
     no_reports: Annotated[
         bool, typer.Option("--no-reports", help="Write certificates, but no HTML reports.")

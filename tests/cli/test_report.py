@@ -52,7 +52,7 @@ def test_a_date_is_written_only_if_given(tmp_path, name):
         assert run(COMMUTING, "--out", str(out), *kind, *dates).exit_code == 0
         pages.append(out.read_bytes())
     assert pages[0] != pages[1] == pages[2]
-    assert b"2026" not in pages[0]
+    assert b"2026-03-01" not in pages[0]
 
 
 def test_a_wrong_date_is_refused():

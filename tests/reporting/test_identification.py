@@ -67,8 +67,8 @@ def test_names_of_records_are_text(tmp_path):
     """Not formulas, not markup, not marks that turn the direction of writing."""
     names = ["a$\\frac{$", 'b<i>&"$x$', "c\u202efdp", "a%\\frac{%", "שלום 中"]
     paths = [tmp_path / f"{name}.csv" for name in names]
-    for i, path in enumerate(paths):
-        shutil.copy(DATA / f"silicone-soft-{1 + i % 3}.csv", path)
+    for i, path in enumerate(paths, 1):
+        shutil.copy(DATA / f"concha-{i}.csv", path)
     report = tissue_report(identify_tissue([read_tissue(path) for path in paths]))
     ids = [item.name for item in report.illustrations]
     assert len(set(ids)) == len(ids)

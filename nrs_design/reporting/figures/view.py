@@ -72,9 +72,7 @@ class View:
         axes.axhline(0.0, color=MUTED, linewidth=0.8, zorder=1)
         if self.shade:
             axes.axvspan(0.0, self.real.high, color="#f6e3da", zorder=0, linewidth=0)
-        if self.square and self.real.bend is None:
-            axes.set_aspect("equal", adjustable="datalim")
-        elif self.square:
+        if self.square:
             axes.set_box_aspect(1)
 
 

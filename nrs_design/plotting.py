@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import sys
+from importlib import import_module
 from importlib.util import find_spec
 from pathlib import Path
 
@@ -21,4 +22,4 @@ def load_matplotlib() -> None:
     assert spec is not None
     assert spec.origin is not None
     with contextlib.chdir(Path(spec.origin).with_name("mpl-data")):
-        import matplotlib  # noqa: F401
+        import_module("matplotlib")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from datetime import datetime
 from enum import StrEnum
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -44,6 +45,14 @@ def report(
         bool,
         typer.Option("--times", help="Add the time of every rung; pages then differ each time."),
     ] = False,
+    date: Annotated[
+        datetime | None,
+        typer.Option(
+            formats=["%Y-%m-%d"],
+            metavar="YYYY-MM-DD",
+            help="Write this date on the page or document; without it there is none.",
+        ),
+    ] = None,
     as_json: Json = False,
     quiet: Quiet = False,
 ) -> None:
@@ -62,7 +71,8 @@ def report(
     with progress(f"reporting {loaded.spec.name}", quiet=quiet) as step:
         result = run_certification(loaded, progress=step)
         step("figures")
-        page = build_report(result, _evidence(result, quiet=quiet), times=times)
+        day = date.date() if date else None
+        page = build_report(result, _evidence(result, quiet=quiet), times=times, date=day)
         files = _write(page, file_format, out, spec)
     verdict = str(result.certification.verdict)
     if as_json:

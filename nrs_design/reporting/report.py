@@ -15,12 +15,18 @@ from nrs_design.reporting.sections.search import assumptions_section, rungs_sect
 from nrs_design.spec import InteractionDesignSpec
 
 if TYPE_CHECKING:
+    import datetime
+
     from nrs_design.design.evidence import DesignEvidence
     from nrs_design.pipeline import Result
 
 
 def build_report(
-    result: Result, evidence: DesignEvidence | None = None, *, times: bool = False
+    result: Result,
+    evidence: DesignEvidence | None = None,
+    *,
+    times: bool = False,
+    date: datetime.date | None = None,
 ) -> Report:
     """Say and draw everything about one spec.
 
@@ -34,6 +40,8 @@ def build_report(
     times : bool
         Add how long every rung of the search took. The same spec then gives another page each
         time.
+    date : datetime.date, optional
+        To write on it.
 
     Returns
     -------
@@ -58,6 +66,7 @@ def build_report(
             rungs_section(certification, times=times),
             recheck_section(result),
         ),
+        date=date,
     )
 
 

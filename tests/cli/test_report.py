@@ -67,6 +67,24 @@ def test_pdf_and_its_default_name(tmp_path, monkeypatch):
     assert (tmp_path / "reports/commuting.pdf").read_bytes().startswith(b"%PDF-")
 
 
+@pytest.mark.parametrize("name", ["c.html", "c.pdf"])
+def test_a_date_is_written_only_if_given(tmp_path, name):
+    out = tmp_path / name
+    pages = []
+    for dates in ([], ["--date", "2026-03-01"], ["--date", "2026-03-01"]):
+        kind = ["--format", out.suffix[1:]]
+        assert run(COMMUTING, "--out", str(out), *kind, *dates).exit_code == 0
+        pages.append(out.read_bytes())
+    assert pages[0] != pages[1] == pages[2]
+    assert b"2026-03-01" not in pages[0]
+
+
+def test_a_wrong_date_is_refused():
+    done = run(COMMUTING, "--date", "1.3.2026")
+    assert done.exit_code == 2
+    assert "%Y-%m-%d" in done.stderr
+
+
 def test_png_writes_one_file_per_figure(tmp_path):
     done = run(COMMUTING, "--format", "png", "--out", str(tmp_path / "figures"), "--json")
     written = json.loads(done.stdout)["files"]

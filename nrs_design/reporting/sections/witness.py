@@ -21,6 +21,7 @@ from nrs_design.reporting.document import Block, Illustration, Paragraph, Sectio
 from nrs_design.reporting.figures.complex_plane import draw_eigenvalues
 from nrs_design.reporting.figures.run import draw_phase_plane, draw_run
 from nrs_design.reporting.formatting import number, plural, roots
+from nrs_design.reporting.sections.run import PATH, plane_axes
 from nrs_design.simulation.norms import Array
 from nrs_design.simulation.periodic import (
     PeriodicRun,
@@ -199,7 +200,7 @@ def _phase_plane(system: SwitchedSystem, response: TimeResponse) -> tuple[Illust
         Illustration(
             "phase-plane",
             "The same run in the plane of the two states",
-            "Path of the state, one color for each active mode.",
+            f"{PATH} {plane_axes(system)}",
             draw_phase_plane(response, system),
         ),
     )

@@ -89,6 +89,8 @@ def gate(
         sys.stdout.write(document)
     if out is not None or chosen is not FormatOption.TEXT:
         note(FORMATS["text"](outcome), quiet=quiet)
+    for item in (caution for spec in outcome.specs for caution in spec.cautions):
+        note(f"warning: {item.path}:{item.line}:{item.column}: {item.message}", quiet=quiet)
     for text in outcome.notes:
         note(f"note: {text}", quiet=quiet)
     note(f"{perf_counter() - start:.1f} s", quiet=quiet)

@@ -101,6 +101,7 @@ def _confirmed(
         modes=len(certificate.system.modes),
         certificate=place,
         certificate_id=certificate.id,
+        cautions=tuple(examiner.cautions(None)),
     )
 
 

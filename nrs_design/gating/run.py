@@ -12,7 +12,13 @@ from nrs_design.certificates.certificate import dump
 from nrs_design.certificates.verify import verify
 from nrs_design.errors import DesignError, SpecError
 from nrs_design.gating.examine import Examiner, rate_of
-from nrs_design.gating.obligations import GateOutcome, Obligation, SpecOutcome, failed
+from nrs_design.gating.obligations import (
+    Caution,
+    GateOutcome,
+    Obligation,
+    SpecOutcome,
+    failed,
+)
 from nrs_design.gating.paths import is_utf8
 from nrs_design.gating.places import Places
 from nrs_design.output import write_output
@@ -124,11 +130,11 @@ def _examine(loaded: LoadedSpec, files: Files, progress: Progress) -> SpecOutcom
         write_output(file, dump(certificate))
         progress("re-check")
         obligations += (examiner.certificate(file, verify(file, loaded).fault),)
-    obligations += _goals_and_report(result, examiner, files, progress)
+    goals, cautions = _goals_and_report(result, examiner, files, progress)
     rate, rate_name = rate_of(certificate)
     return SpecOutcome(
         path=loaded.path,
-        obligations=obligations,
+        obligations=obligations + goals,
         sha256=loaded.sha256,
         verdict=str(certification.verdict),
         common_quadratic=str(certification.common_quadratic),
@@ -137,12 +143,13 @@ def _examine(loaded: LoadedSpec, files: Files, progress: Progress) -> SpecOutcom
         modes=len(certification.system.modes),
         certificate=file,
         certificate_id=None if certificate is None else certificate.id,
+        cautions=cautions,
     )
 
 
 def _goals_and_report(
     result: Result, examiner: Examiner, files: Files, progress: Progress
-) -> tuple[Obligation, ...]:
+) -> tuple[tuple[Obligation, ...], tuple[Caution, ...]]:
     evidence: DesignEvidence | None = None
     missed: tuple[Obligation, ...] = ()
     if result.design is not None:
@@ -158,4 +165,7 @@ def _goals_and_report(
 
         html = render_html(build_report(result, evidence))
         write_output(files.report(result.loaded.spec.name), html)
-    return missed if evidence is None else tuple(examiner.stiffness_ranges(evidence))
+    cautions = tuple(examiner.cautions(evidence))
+    if evidence is None:
+        return missed, cautions
+    return (*examiner.stiffness_ranges(evidence), *examiner.goals(evidence)), cautions

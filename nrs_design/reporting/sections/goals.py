@@ -26,6 +26,17 @@ def goals_section(spec: InteractionDesignSpec, evidence: DesignEvidence) -> Sect
     return Section("Design goals", tuple(blocks))
 
 
+def goal_facts(evidence: DesignEvidence | None) -> tuple[tuple[str, str], ...]:
+    """Return for the head of the report how many goals are missed."""
+    if evidence is None or not evidence.measured:
+        return ()
+    goals = [f for item in evidence.measured for f in item.achieved if f.goal is not None]
+    missed = sum(not found.met for found in goals)
+    if not goals:
+        return (("Design goals", "none set"),)
+    return (("Design goals", f"{missed} of {len(goals)} MISSED" if missed else "all met"),)
+
+
 def _row(name: str, found: Achieved) -> tuple[str, ...]:
     measure = found.measure
     goal, result = "–", "no goal"

@@ -69,6 +69,7 @@ def gate(
     Example: nrs-design gate --locked --format github specs
     """
     from nrs_design.gating.formats import FORMATS
+    from nrs_design.gating.paths import printable
     from nrs_design.output import write_output
 
     if as_json and format_ not in (FormatOption.TEXT, FormatOption.JSON):
@@ -90,7 +91,8 @@ def gate(
     if out is not None or chosen is not FormatOption.TEXT:
         note(FORMATS["text"](outcome), quiet=quiet)
     for item in (caution for spec in outcome.specs for caution in spec.cautions):
-        note(f"warning: {item.path}:{item.line}:{item.column}: {item.message}", quiet=quiet)
+        place = f"{printable(item.path)}:{item.line}:{item.column}"
+        note(f"warning: {place}: {item.message}", quiet=quiet)
     for text in outcome.notes:
         note(f"note: {text}", quiet=quiet)
     note(f"{perf_counter() - start:.1f} s", quiet=quiet)

@@ -38,12 +38,12 @@ class Measure:
 
     def text(self, value: float) -> str:
         """Write a value with four digits, rounded to its unfavorable side."""
+        if not math.isfinite(value):
+            return "unbounded" if self.upper else "unlimited"
         rounding = ROUND_CEILING if self.upper else ROUND_FLOOR
-        return self._write(value, rounding)
-
-    def favorable_text(self, value: float) -> str:
-        """Write a value with four digits, rounded to its favorable side."""
-        return self._write(value, ROUND_FLOOR if self.upper else ROUND_CEILING)
+        context = Context(prec=_DIGITS, rounding=rounding)
+        rounded = context.create_decimal(Decimal(value * self.scale))
+        return f"{rounded.normalize():f} {self.unit}".rstrip()
 
     def goal_text(self, value: float) -> str:
         """Write a goal, such as ``at most 2``."""
@@ -54,14 +54,6 @@ class Measure:
         """Return by which part a value misses a goal; not positive where it is met."""
         better, worse = (goal, value) if self.upper else (value, goal)
         return worse / better - 1 if better else math.inf
-
-    def _write(self, value: float, rounding: str) -> str:
-        if not math.isfinite(value):
-            return "unbounded" if self.upper else "unlimited"
-        rounded = Context(prec=_DIGITS, rounding=rounding).create_decimal(
-            Decimal(value * self.scale)
-        )
-        return f"{rounded.normalize():f} {self.unit}".rstrip()
 
 
 # Limits: stability margin 0.5 to 0.8 (1/Ms), gain margin 2 to 5 and phase margin 30 to 60 degrees

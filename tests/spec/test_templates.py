@@ -51,7 +51,8 @@ def test_hybrid_template_has_both_modes() -> None:
 def uncommented(name: str) -> str:
     """Text of a template with the rules that it shows in comments instead of `arbitrary`."""
     lines = [line for line in TEMPLATES[name].splitlines() if not line.startswith("switching:")]
-    shown = [re.sub("^# (?=  |parameters:$|goals:$|switching:$|resets:$)", "", line) for line in lines]
+    rules = "^# (?=  |parameters:$|goals:$|switching:$|resets:$)"
+    shown = [re.sub(rules, "", line) for line in lines]
     # A dwell time goes with neither ranges nor several contacts.
     return "\n".join(line for line in shown if "dwell_time:" not in line)
 

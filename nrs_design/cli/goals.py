@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 def print_goals(name: str, items: Iterable[Item]) -> None:
     """Print what the spec asks for beside what is achieved at worst; nothing without goals."""
-    from nrs_design.design.goals import NO_PROOF
+    from nrs_design.design.goals import MEANING
 
     rows = [
         [
@@ -37,7 +37,7 @@ def print_goals(name: str, items: Iterable[Item]) -> None:
     if rows:
         columns = ["controller", "goal", "wanted", "worst", "at", ""]
         print_table(f"{name}: goals", columns, rows)
-        print(NO_PROOF)
+        print(*MEANING, sep="\n")
 
 
 def print_warnings(warnings: Iterable[str], *, quiet: bool) -> None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from nrs_design.design.goals import NO_PROOF, WHERE_ERRORS, WHERE_MARGINS, Achieved
+from nrs_design.design.goals import MEANING, Achieved
 from nrs_design.reporting.document import Block, Bullets, Paragraph, Section, Table
 from nrs_design.spec import InteractionDesignSpec, doubt_spec
 
@@ -17,9 +17,8 @@ _COLUMNS = ("Controller", "Measure", "Goal", "Worst", "At", "Result")
 def goals_section(spec: InteractionDesignSpec, evidence: DesignEvidence) -> Section:
     """Set what is reached beside the goals, and list the warnings."""
     rows = tuple(_row(item.name, found) for item in evidence.measured for found in item.achieved)
-    text = f"Worst values over the contacts. {_sentence(WHERE_MARGINS)} {_sentence(WHERE_ERRORS)}"
-    blocks: list[Block] = [Paragraph(f"{text} {NO_PROOF}")]
-    blocks.append(Table("Goals and worst values", _COLUMNS, rows))
+    table = Table("Goals and worst values", _COLUMNS, rows)
+    blocks: list[Block] = [Paragraph(" ".join(MEANING)), table]
     doubts = tuple(map(str, (*doubt_spec(spec), *evidence.warnings)))
     if doubts:
         blocks.append(Bullets("Warnings", doubts))
@@ -44,10 +43,6 @@ def _row(name: str, found: Achieved) -> tuple[str, ...]:
         goal = measure.goal_text(found.goal)
         result = "met" if found.met else "MISSED"
     return (name, measure.title, goal, measure.text(found.value), _pretty(found.where), result)
-
-
-def _sentence(text: str) -> str:
-    return f"{text[0].upper()}{text[1:]}."
 
 
 def _pretty(text: str) -> str:

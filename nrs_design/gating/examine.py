@@ -12,17 +12,18 @@ from nrs_design.certificates.evidence import AbstractEvidence, Shows
 from nrs_design.certificates.evidence.fields import rate_text
 from nrs_design.certificates.evidence.unstable_mode import is_stable, worst_eigenvalue
 from nrs_design.errors import DesignError
-from nrs_design.gating.obligations import Obligation, SpecOutcome, Status
+from nrs_design.gating.obligations import Caution, Obligation, SpecOutcome, Status
 from nrs_design.gating.places import Places
 from nrs_design.gating.rules import (
     CERTIFICATE_HOLDS,
+    GOAL,
     MODE_STABLE,
     SPEC,
     STIFFNESS_RANGE,
     SWITCHING_STABLE,
     Rule,
 )
-from nrs_design.spec import InteractionDesignSpec, LoadedSpec
+from nrs_design.spec import InteractionDesignSpec, LoadedSpec, doubt_spec
 from nrs_design.spec.document import Position
 from nrs_design.switched.system import Mode, SwitchedSystem, Time
 
@@ -143,6 +144,28 @@ class Examiner:
                 message,
                 self.places.at("controllers", item.name),
             )
+
+    def goals(self, evidence: DesignEvidence) -> Iterator[Obligation]:
+        """Yield NRS106 for every goal of every controller."""
+        for item in evidence.measured:
+            for found in item.achieved:
+                if found.goal is None:
+                    continue
+                measure = found.measure
+                message = (
+                    f"design goal: {measure.title} of controller {item.name} is "
+                    f"{measure.text(found.value)} at worst, in {found.where}; "
+                    f"{measure.goal_text(found.goal)} is wanted (floating point, not a proof)"
+                )
+                status = Status.MET if found.met else Status.MISSED
+                place = self.places.goal(item.name, measure.goal)
+                yield self.obligation(GOAL, f"{item.name}: {measure.goal}", status, message, place)
+
+    def cautions(self, evidence: DesignEvidence | None) -> Iterator[Caution]:
+        """Yield what is doubtful about the spec and its design."""
+        for doubt in (*doubt_spec(self.loaded.spec), *(evidence.warnings if evidence else ())):
+            place = self.places.at(*doubt.at)
+            yield Caution(self.loaded.path, str(doubt), place.line, place.column)
 
 
 def rate_of(certificate: Certificate | None) -> tuple[str | None, str | None]:

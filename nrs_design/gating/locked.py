@@ -141,6 +141,7 @@ def _confirmed(
         certificate=place,
         certificate_id=certificate.id,
         gains=certificate.gains,
+        cautions=tuple(examiner.cautions(None)),
     )
 
 

@@ -67,6 +67,26 @@ class Obligation:
         return _SEVERITY[self.status]
 
 
+@dataclass(frozen=True, slots=True)
+class Caution:
+    """Something doubtful that does not keep the gate from passing.
+
+    Parameters
+    ----------
+    path : Path
+        The spec, as it was named.
+    message : str
+        What is doubtful; one line.
+    line, column : int
+        Place in the spec, counted from 1.
+    """
+
+    path: Path
+    message: str
+    line: int
+    column: int
+
+
 _SEVERITY = {
     Status.PROVED: 0,
     Status.MET: 0,
@@ -107,6 +127,8 @@ class SpecOutcome:
     certifiable : bool
         False for a spec that is valid and makes no claim about switching, such as a robot: there
         is no verdict, and nothing to lock.
+    cautions : tuple of Caution
+        What is doubtful, and breaks no obligation.
     """
 
     path: Path
@@ -121,6 +143,7 @@ class SpecOutcome:
     certificate_id: str | None = None
     gains: Mapping[str, Mapping[str, str]] = field(default_factory=dict)
     certifiable: bool = True
+    cautions: tuple[Caution, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)

@@ -139,6 +139,17 @@ STIFFNESS_RANGE = Rule(
     "NRS102, at every corner of the parameter box and so inside it.",
     "Raise Bt or its upper bound, or narrow the stiffness range to what really occurs.",
 )
+GOAL = Rule(
+    "NRS106",
+    "The design meets its goal",
+    "Every goal that the spec sets for a controller is met by the gains that ship: a margin at the "
+    "nominal values and at every corner of the ranges of all contacts and gains; the error of the "
+    "displayed impedance or of the steady force at the nominal values and at every corner of the "
+    "ranges of the environment that it is designed for. Values between corners are not looked at. "
+    "Computed in floating point: not a proof. docs/design/goals.md defines every goal.",
+    "Let `nrs-design optimize` choose gains that are given, widen their bounds, narrow the ranges, "
+    "or relax the goal.",
+)
 CERTIFICATE_HOLDS = Rule(
     "NRS104",
     "The certificate holds for its spec",
@@ -183,6 +194,7 @@ RULES: Mapping[str, Rule] = MappingProxyType(
             STIFFNESS_RANGE,
             CERTIFICATE_HOLDS,
             LOCKED,
+            GOAL,
             INTERNAL,
         )
     }

@@ -14,7 +14,13 @@ from nrs_design.certificates.verify import verify
 from nrs_design.controllers.gains import gains_of
 from nrs_design.errors import DesignError, OutputError, SpecError
 from nrs_design.gating.examine import Examiner, rate_of
-from nrs_design.gating.obligations import GateOutcome, Obligation, SpecOutcome, failed
+from nrs_design.gating.obligations import (
+    Caution,
+    GateOutcome,
+    Obligation,
+    SpecOutcome,
+    failed,
+)
 from nrs_design.gating.paths import is_utf8
 from nrs_design.gating.places import Places
 from nrs_design.output import CERTIFICATE, PAGE, write_output
@@ -155,11 +161,11 @@ def _examine(loaded: LoadedSpec, files: Files, progress: Progress) -> SpecOutcom
         write_output(file, text, replaces=CERTIFICATE)
         progress("re-check")
         obligations += (examiner.certificate(file, verify(file, loaded).fault),)
-    obligations += _goals_and_report(result, examiner, files, progress)
+    goals, cautions = _goals_and_report(result, examiner, files, progress)
     rate, rate_name = rate_of(certificate)
     return SpecOutcome(
         path=loaded.path,
-        obligations=obligations,
+        obligations=obligations + goals,
         sha256=loaded.sha256,
         verdict=str(certification.verdict),
         common_quadratic=str(certification.common_quadratic),
@@ -169,12 +175,13 @@ def _examine(loaded: LoadedSpec, files: Files, progress: Progress) -> SpecOutcom
         certificate=file,
         certificate_id=None if certificate is None else certificate.id,
         gains=gains_of(result.design) if result.design else {},
+        cautions=cautions,
     )
 
 
 def _goals_and_report(
     result: Result, examiner: Examiner, files: Files, progress: Progress
-) -> tuple[Obligation, ...]:
+) -> tuple[tuple[Obligation, ...], tuple[Caution, ...]]:
     evidence: DesignEvidence | None = None
     missed: tuple[Obligation, ...] = ()
     if result.design is not None:
@@ -192,4 +199,7 @@ def _goals_and_report(
         origin = origin_of(result.loaded.path, page)
         html = render_html(build_report(result, evidence), origin)
         write_output(page, html, replaces=PAGE)
-    return missed if evidence is None else tuple(examiner.stiffness_ranges(evidence))
+    cautions = tuple(examiner.cautions(evidence))
+    if evidence is None:
+        return missed, cautions
+    return (*examiner.stiffness_ranges(evidence), *examiner.goals(evidence)), cautions

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 from nrs_design.reporting.document import Report, Section
 from nrs_design.reporting.sections.design import design_sections
 from nrs_design.reporting.sections.evidence import evidence_sections
+from nrs_design.reporting.sections.goals import goal_facts
 from nrs_design.reporting.sections.head import claim_of, facts, proved_rate, remarks_of
 from nrs_design.reporting.sections.modes import modes_section
 from nrs_design.reporting.sections.proof import proof_section
@@ -56,7 +57,7 @@ def build_report(
         verdict=str(certification.verdict),
         claim=claim_of(certification),
         remarks=remarks_of(certification),
-        facts=facts(result),
+        facts=(*facts(result), *goal_facts(evidence)),
         sections=(
             proof_section(result),
             *_design(result, evidence),

@@ -15,6 +15,7 @@ from nrs_design.spec.controllers import (
 from nrs_design.spec.environment import EnvironmentSpec
 from nrs_design.spec.faults import did_you_mean, fault
 from nrs_design.spec.fields import Digits, Label, Name, Title
+from nrs_design.spec.goals import GoalsSpec, check_applicable
 from nrs_design.spec.model import SpecModel
 from nrs_design.spec.motion import ActuatorSpec, LimitsSpec, MotionLoopSpec
 from nrs_design.spec.switching import DwellTime, Switching, check_names
@@ -46,6 +47,10 @@ class InteractionDesignSpec(SpecModel):
     controllers: Annotated[
         dict[Label, ControllerSpec], Field(min_length=1, max_length=MAX_ENTRIES)
     ] = Field(description="what the robot switches between: name -> controller")
+    goals: GoalsSpec | None = Field(
+        default=None,
+        description="what every impedance and force controller must achieve; the gate enforces it",
+    )
     design: DesignSpec = Field(default_factory=DesignSpec, description="how gains are written down")
     coordinates: Literal["deflection", "force"] = Field(
         default="deflection",
@@ -63,6 +68,8 @@ class InteractionDesignSpec(SpecModel):
         for name, controller in self.controllers.items():
             if not isinstance(controller, PositionControllerSpec):
                 _check_references(name, controller, self.environments)
+                check_applicable(controller.goals, {controller.type}, "controllers", name, "goals")
+        check_applicable(self.goals, {c.type for c in self.controllers.values()}, "goals")
         check_names(self.switching, self.controllers, "controller")
         if self.switching.dwell_time is not None:
             _check_dwell_time(self.switching.dwell_time, self)
@@ -100,6 +107,15 @@ def _check_references(
                 name,
                 *at,
             )
+    if controller.environment not in controller.contacts:
+        raise fault(
+            f"{name!r} is designed for {controller.environment!r}, but that is not among its "
+            "contacts: nothing would be proved about it there",
+            f"add {controller.environment} to contacts, or design it for one of them",
+            "controllers",
+            name,
+            "contacts",
+        )
 
 
 def _check_dwell_time(dwell: DwellTime, spec: InteractionDesignSpec) -> None:

@@ -9,7 +9,14 @@ from hypothesis import strategies as st
 
 from nrs_design.gating.formats import FORMATS, to_github, to_json, to_junit, to_sarif, to_text
 from nrs_design.gating.formats.sarif import fingerprint
-from nrs_design.gating.obligations import GateOutcome, Obligation, SpecOutcome, Status, failed
+from nrs_design.gating.obligations import (
+    Caution,
+    GateOutcome,
+    Obligation,
+    SpecOutcome,
+    Status,
+    failed,
+)
 from nrs_design.gating.rules import RULES, SWITCHING_STABLE
 
 GAINS = {
@@ -92,6 +99,12 @@ class TestText:
         assert text.count("\n") == to_text(outcome_of(obligation())).count("\n")
 
 
+def test_json_has_the_warnings_of_each_spec():
+    caution = Caution(Path("specs/a.nrs.yaml"), "Mt is on its bound", 3, 5)
+    (spec,) = json.loads(to_json(outcome_of(obligation(), cautions=(caution,))))["specs"]
+    assert spec["warnings"] == [{"message": "Mt is on its bound", "line": 3, "column": 5}]
+
+
 class TestGitHub:
     def test_annotation(self):
         assert to_github(outcome_of(obligation())) == (
@@ -115,6 +128,15 @@ class TestGitHub:
 
     def test_ten_need_no_notice(self):
         assert "notice" not in to_github(outcome_of(*[obligation()] * 10))
+
+    def test_warnings_come_after_errors(self):
+        caution = Caution(Path("specs/a,b.nrs.yaml"), "Mt is on its bound, 50%", 3, 5)
+        document = to_github(outcome_of(obligation(), cautions=(caution,)))
+        assert document.splitlines()[1] == (
+            "::warning file=specs/a%2Cb.nrs.yaml,line=3,col=5,title=nrs-design::"
+            "Mt is on its bound, 50%25"
+        )
+        assert to_github(outcome_of(cautions=(caution,) * 12)).count("::warning") == 10
 
     def test_place_that_is_not_known(self):
         line = to_github(outcome_of(obligation(line=None, column=None)))

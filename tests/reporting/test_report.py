@@ -126,6 +126,28 @@ def test_published_values(report, case, section, label, published, tolerance):
     assert [float(cell) for cell in row[1:]] == pytest.approx(published, abs=tolerance)
 
 
+def test_worst_values_stand_beside_the_goals(tmp_path):
+    text = (ROOT / "specs/neuroboscope/soft-tissue.nrs.yaml").read_text()
+    goals = "goals: {max_sensitivity_peak: 2, min_delay_margin: 5 ms}\nswitching:"
+    text = text.replace("Bt: {min: 0.1 N*m*s/rad, max: 20 N*m*s/rad}", "Bt: 1.04 N*m*s/rad")
+    text = text.replace("Mt: {min: 0.01 kg*m^2, max: 1 kg*m^2}", "Mt: 0.01 kg*m^2")
+    path = tmp_path / "goals.nrs.yaml"
+    path.write_text(text.replace("switching:", goals))
+    result = run_certification(read_spec(path), method=Method.LMI)
+    found = build_report(result, run_evidence(result.loaded, result.design))
+    section = next(part for part in found.sections if part.title == "Design goals")
+    table = next(block for block in section.blocks if isinstance(block, Table))
+    rows = {row[:2]: row[2:] for row in table.rows}
+    where = "soft, k = 44.2466 N·m/rad"
+    assert rows["insertion", "sensitivity peak Ms"] == ("at most 2", "3.753", where, "MISSED")
+    assert rows["insertion", "delay margin"] == ("at least 5 ms", "9.89 ms", where, "met")
+    assert rows["insertion", "disk margin"][0] == "–"
+    assert ("Design goals", "2 of 4 MISSED") in found.facts
+    text = words(found)
+    assert "not a proof; values between corners are not looked at" in text
+    assert "insertion: factor off the desired impedance 2.066 (usual: at most 2)" in text
+
+
 def test_source_of_the_motion_loop_is_named(report):
     text = words(report("proved"))
     assert "G(s) = (0.99739 s + 56.82" in text

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
+from dataclasses import fields, is_dataclass
 from decimal import ROUND_DOWN, ROUND_UP, Context, Decimal
 from fractions import Fraction
 from typing import Any
@@ -13,6 +14,10 @@ from nrs_design.spec.exact import quoted
 from nrs_design.switched.system import Time
 
 Matrix = tuple[tuple[int, ...], ...]
+
+# Python reads and writes integers of at most 4300 decimal digits, `read_ratio` of at most 2000.
+MAX_INTEGER_BITS = 14_000
+MAX_RATIO_BITS = 6_640
 
 
 def matrix_fields(Q: Matrix, denominator_log2: int) -> dict[str, Any]:
@@ -56,6 +61,33 @@ def read_ratio(value: object) -> Fraction:
     if not re.fullmatch(r"[0-9]{1,2000}(/[0-9]{1,2000})?", text):
         raise ValueError(f"{quoted(text)} is not a ratio of integers")
     return Fraction(text)
+
+
+def find_unreadable(value: object) -> str | None:
+    """TRUSTED: say why a certificate file could not hold the numbers of evidence, or None.
+
+    An integer of NumPy overflows without a word, so it is refused as floats are.
+    """
+    if value is None or isinstance(value, str):
+        return None
+    if isinstance(value, Fraction):
+        return _find_long((value.numerator, value.denominator), MAX_RATIO_BITS)
+    if isinstance(value, tuple | list):
+        parts = tuple(value)
+    elif is_dataclass(value):
+        parts = tuple(getattr(value, field.name) for field in fields(value))
+    else:
+        return _find_long((value,), MAX_INTEGER_BITS)
+    return next((fault for part in parts if (fault := find_unreadable(part)) is not None), None)
+
+
+def _find_long(numbers: tuple[object, ...], bits: int) -> str | None:
+    for number in numbers:
+        if type(number) is not int:
+            return f"a number is of type {type(number).__name__}, not an exact integer"
+        if number.bit_length() > bits:
+            return f"a number has {number.bit_length()} bits, more than {bits} are not read"
+    return None
 
 
 def rate_text(rate: Fraction, time: Time) -> str:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Any, ClassVar, Self
 
@@ -157,6 +157,11 @@ class ModeQuadratic(AbstractEvidence):
             f"|x(t)| <= c {bound} |x(0)| with {rate} and some constant c that is the same for all "
             "signals."
         )
+
+    def spread(self, merged: SwitchedSystem, system: SwitchedSystem) -> Self:
+        """Repeat the function of every mode for its equals, between which nothing changes."""
+        forms = {mode.A: Q for mode, (_, Q) in zip(merged.modes, self.functions, strict=True)}
+        return replace(self, functions=tuple((mode.name, forms[mode.A]) for mode in system.modes))
 
     def to_fields(self) -> dict[str, Any]:
         """Return the functions and the rate."""

@@ -24,6 +24,7 @@ _STRUCTURE = (
 )
 _NAMES = {
     "common-quadratic": "common quadratic function",
+    "mode-quadratic": "quadratic function of each mode",
     "no-common-quadratic": "no common quadratic function exists",
     "unstable-mode": "a mode that is not stable",
     "unstable-mixture": "an average that is not stable",

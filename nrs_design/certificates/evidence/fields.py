@@ -5,11 +5,11 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping
 from dataclasses import fields, is_dataclass
-from decimal import ROUND_DOWN, ROUND_UP, Context, Decimal
 from fractions import Fraction
 from typing import Any
 
 from nrs_design.certificates.exact import is_too_large
+from nrs_design.spec.bounds import at_least, at_most, lower, upper
 from nrs_design.spec.exact import quoted
 from nrs_design.switched.system import Time
 
@@ -91,7 +91,12 @@ def _find_long(numbers: tuple[object, ...], bits: int) -> str | None:
 
 
 def rate_text(rate: Fraction, time: Time) -> str:
-    """Write a rate with six digits, rounded to its safe side (slower decay)."""
-    rounding = ROUND_DOWN if time is Time.CONTINUOUS else ROUND_UP
-    context = Context(prec=6, rounding=rounding)
-    return str(context.divide(Decimal(rate.numerator), Decimal(rate.denominator)))
+    """Write a rate: exactly if that is short, else rounded to its safe side (slower decay)."""
+    return lower(rate) if time is Time.CONTINUOUS else upper(rate)
+
+
+def rate_words(rate: Fraction, time: Time) -> str:
+    """Write which rate is shown, such as ``alpha = 0.5 1/s``, ``>=`` and ``<=`` where rounded."""
+    if time is Time.CONTINUOUS:
+        return f"alpha {at_least(rate, '1/s')}"
+    return f"rho {at_most(rate)}"

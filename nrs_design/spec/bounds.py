@@ -12,9 +12,8 @@ from math import inf, isfinite, nextafter
 
 from nrs_design.spec.exact import exact_text
 
-# Longer exact texts, of decimals and of ratios, are rounded to so many digits.
+# Decimals that are longer, or have no end, are rounded to so many digits.
 LONGEST = 14
-LONGEST_RATIO = 7
 DIGITS = 6
 
 
@@ -29,7 +28,7 @@ def upper(number: Fraction, digits: int = DIGITS) -> str:
     One that is a little below 1 stays below it, as in ``1 - 2.5e-22``.
     """
     rounded = _exact(number) or _round(number, digits, ROUND_CEILING)
-    if number < 1 and rounded.startswith("1."):
+    if number < 1 <= Decimal(rounded):
         return f"1 - {lower(1 - number, digits)}"
     return rounded
 
@@ -76,7 +75,7 @@ def upper_float(number: Fraction) -> float:
 
 def _exact(number: Fraction) -> str | None:
     text = exact_text(number)
-    return text if len(text) <= (LONGEST_RATIO if "/" in text else LONGEST) else None
+    return text if len(text) <= LONGEST and "/" not in text else None
 
 
 def _round(number: Fraction, digits: int, rounding: str) -> str:

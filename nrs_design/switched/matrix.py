@@ -53,7 +53,7 @@ class RationalMatrix:
 
         Raises
         ------
-        TypeError, ValueError
+        TypeError, ValueError, OverflowError
             If an entry is none of these, or not finite.
         """
         fractions = [[exact_fraction(entry) for entry in row] for row in rows]

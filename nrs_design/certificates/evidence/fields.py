@@ -18,6 +18,7 @@ Matrix = tuple[tuple[int, ...], ...]
 # Python reads and writes integers of at most 4300 decimal digits, `read_ratio` of at most 2000.
 MAX_INTEGER_BITS = 14_000
 MAX_RATIO_BITS = 6_640
+MAX_ENTRIES = 100_000
 
 
 def matrix_fields(Q: Matrix, denominator_log2: int) -> dict[str, Any]:
@@ -74,6 +75,8 @@ def find_unreadable(value: object) -> str | None:
         return _find_long((value.numerator, value.denominator), MAX_RATIO_BITS)
     if isinstance(value, tuple | list):
         parts = tuple(value)
+        if len(parts) > MAX_ENTRIES:
+            return f"a list has {len(parts)} entries, more than {MAX_ENTRIES} are not read"
     elif is_dataclass(value):
         parts = tuple(getattr(value, field.name) for field in fields(value))
     else:

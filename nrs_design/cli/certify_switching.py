@@ -74,11 +74,14 @@ def certify_switching(
     """
     from nrs_design.certificates.certificate import dump
     from nrs_design.certificates.certify import Limits, Method
-    from nrs_design.output import write_output
+    from nrs_design.output import CERTIFICATE, write_output
+    from nrs_design.ownership import check_certificate, origin_of
     from nrs_design.pipeline import run_certification, run_margin, run_shortest_dwell
     from nrs_design.spec import read_spec
 
     loaded = read_spec(spec)
+    path = out or Path("reports") / f"{loaded.spec.name}.cert.json"
+    check_certificate(spec, path)
     limits = Limits(max_degree, budget, optimize_rate)
     with progress(f"certifying {loaded.spec.name}", quiet=quiet) as step:
         result = run_certification(
@@ -90,14 +93,13 @@ def certify_switching(
         )
         box = run_margin(result, limits, step) if margin else None
         dwell = run_shortest_dwell(result, limits, step) if shortest_dwell else None
-    path = None
     if result.certificate is not None:
-        path = out or Path("reports") / f"{loaded.spec.name}.cert.json"
-        write_output(path, dump(result.certificate))
+        write_output(path, dump(result.certificate, origin_of(spec, path)), replaces=CERTIFICATE)
+    written = None if result.certificate is None else path
     if as_json:
-        print_json("certify-switching", summary(result, path) | margins_summary(box, dwell))
+        print_json("certify-switching", summary(result, written) | margins_summary(box, dwell))
     else:
-        _print(result, path, quiet=quiet, verbose=verbose)
+        _print(result, written, quiet=quiet, verbose=verbose)
         _print_margin(box)
         _print_dwell(dwell)
     raise typer.Exit(exit_codes.OF_VERDICT[str(result.certification.verdict)])

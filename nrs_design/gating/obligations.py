@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from dataclasses import dataclass, replace
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field, replace
 from enum import StrEnum
 from pathlib import Path
 
@@ -101,6 +101,9 @@ class SpecOutcome:
         Its file.
     certificate_id : str or None
         Its id.
+    gains : mapping
+        What the obligations are about: designed gains (float32, as exact decimals) by controller;
+        empty for given matrices.
     certifiable : bool
         False for a spec that is valid and makes no claim about switching, such as a robot: there
         is no verdict, and nothing to lock.
@@ -116,6 +119,7 @@ class SpecOutcome:
     modes: int | None = None
     certificate: Path | None = None
     certificate_id: str | None = None
+    gains: Mapping[str, Mapping[str, str]] = field(default_factory=dict)
     certifiable: bool = True
 
 

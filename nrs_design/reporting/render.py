@@ -8,8 +8,16 @@ from nrs_design.reporting.document import Bullets, Illustration, Paragraph, Repo
 from nrs_design.reporting.svg import to_svg
 
 
-def render_html(report: Report) -> str:
-    """Return the page; the same report gives the same bytes."""
+def render_html(report: Report, origin: str | None = None) -> str:
+    """Return the page; the same report gives the same bytes.
+
+    Parameters
+    ----------
+    report : Report
+        What is written.
+    origin : str, optional
+        Where its spec is, seen from the file; see `nrs_design.ownership`.
+    """
     from jinja2 import Environment, PackageLoader, StrictUndefined
 
     environment = Environment(
@@ -21,7 +29,9 @@ def render_html(report: Report) -> str:
         keep_trailing_newline=True,
     )
     sections = [_section(section) for section in report.sections]
-    return environment.get_template("report.html.j2").render(report=report, sections=sections)
+    return environment.get_template("report.html.j2").render(
+        report=report, sections=sections, origin=origin
+    )
 
 
 def _section(section: Section) -> dict[str, Any]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+import json
 import os
 from dataclasses import dataclass
 from pathlib import Path
@@ -35,7 +36,7 @@ class LoadedSpec:
     path : Path
         The file, as it was named.
     sha256 : str
-        Hash of the file's bytes, in hexadecimal.
+        Hash of what the file says, in hexadecimal; see `hash_meaning`.
     text : str
         The file's text.
     spec : InteractionDesignSpec, SwitchedSystemSpec or RobotSpec
@@ -59,7 +60,7 @@ def read_spec(path: str | os.PathLike[str]) -> LoadedSpec:
     Returns
     -------
     LoadedSpec
-        The spec, its text and the hash of its bytes.
+        The spec, its text and the hash of what it says.
 
     Raises
     ------
@@ -67,8 +68,9 @@ def read_spec(path: str | os.PathLike[str]) -> LoadedSpec:
         With path, line, column, message and remedy, if anything about the file is wrong.
     """
     file = Path(path)
-    content, text = read_text(file)
-    return LoadedSpec(file, hashlib.sha256(content).hexdigest(), text, parse_spec(text, file))
+    _, text = read_text(file)
+    root = parse_document(text, file)
+    return LoadedSpec(file, hash_meaning(root), text, _validate(root, file))
 
 
 def load_spec(path: str | os.PathLike[str]) -> Spec:
@@ -91,7 +93,21 @@ def parse_spec(text: str, path: Path | None = None) -> Spec:
     SpecError
         With line, column, message and remedy.
     """
-    root = parse_document(text, path)
+    return _validate(parse_document(text, path), path)
+
+
+def hash_meaning(root: Node) -> str:
+    """Return the SHA-256 of what a document says, in hexadecimal.
+
+    Two documents share it exactly if they have the same keys in the same order and the same
+    texts: comments, line ends, quotes and layout do not count. A spec is read from these texts and
+    from nothing else. Order counts because modes are numbered in the order of the controllers.
+    """
+    canonical = json.dumps(to_data(root), separators=(",", ":"), ensure_ascii=True)
+    return hashlib.sha256(canonical.encode()).hexdigest()
+
+
+def _validate(root: Node, path: Path | None) -> Spec:
     model = KINDS[_kind_of(root, path)]
     try:
         return model.model_validate(to_data(root))

@@ -32,6 +32,28 @@ def test_proved(tmp_path):
     assert document["verdict"] == "proved"
 
 
+def test_an_edited_spec_renews_its_certificate_and_a_copy_does_not(tmp_path):
+    text = COMMUTING.read_text()
+    (tmp_path / "a.nrs.yaml").write_text(text)
+    (tmp_path / "b.nrs.yaml").write_text(text)
+    file = tmp_path / "reports/commuting.cert.json"
+    assert run("certify-switching", "a.nrs.yaml", cwd=tmp_path).returncode == 0
+    first = file.read_bytes()
+    (tmp_path / "a.nrs.yaml").write_text(text.replace("[[-1,", "[[-3,"))
+    assert run("certify-switching", "a.nrs.yaml", cwd=tmp_path).returncode == 0
+    second = file.read_bytes()
+    assert second != first
+    copied = run("certify-switching", "b.nrs.yaml", cwd=tmp_path)
+    assert copied.returncode == 2
+    assert "reports/commuting.cert.json: belongs to a.nrs.yaml" in copied.stderr
+    spec = run("certify-switching", "b.nrs.yaml", "--out", "a.nrs.yaml", cwd=tmp_path)
+    assert spec.returncode == 2
+    assert "exists already" in spec.stderr
+    assert file.read_bytes() == second
+    free = run("certify-switching", "b.nrs.yaml", "--out", "reports/b.cert.json", cwd=tmp_path)
+    assert free.returncode == 0
+
+
 def test_refuted(tmp_path):
     result = run("certify-switching", PRINT_ERROR, cwd=tmp_path)
     assert result.returncode == 1

@@ -37,6 +37,30 @@ def test_default_is_a_page_in_reports(tmp_path, monkeypatch):
     assert page.startswith("<!DOCTYPE html>")
 
 
+@pytest.mark.parametrize("format_", ["html", "pdf", "png"])
+def test_the_page_of_another_spec_is_not_overwritten(tmp_path, monkeypatch, format_):
+    monkeypatch.chdir(tmp_path)
+    for name in ("a.nrs.yaml", "b.nrs.yaml"):
+        Path(name).write_text(Path(COMMUTING).read_text())
+    assert run("a.nrs.yaml").exit_code == 0
+    page = Path("reports/commuting.html").read_bytes()
+    refused = run("b.nrs.yaml", "--format", format_)
+    assert isinstance(refused.exception, OutputError)
+    assert "belongs to a.nrs.yaml" in str(refused.exception)
+    assert [path.name for path in Path("reports").iterdir()] == ["commuting.html"]
+    assert run("a.nrs.yaml").exit_code == 0
+    assert Path("reports/commuting.html").read_bytes() == page
+
+
+@pytest.mark.parametrize("format_", ["html", "pdf"])
+def test_a_file_that_is_no_report_is_not_overwritten(tmp_path, monkeypatch, format_):
+    monkeypatch.chdir(tmp_path)
+    Path("notes").write_text("precious")
+    refused = run(COMMUTING, "--format", format_, "--out", "notes")
+    assert "not overwritten" in str(refused.exception)
+    assert Path("notes").read_text() == "precious"
+
+
 def test_pdf_and_its_default_name(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     assert run(COMMUTING, "--format", "pdf").exit_code == 0

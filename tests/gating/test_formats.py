@@ -12,6 +12,11 @@ from nrs_design.gating.formats.sarif import fingerprint
 from nrs_design.gating.obligations import GateOutcome, Obligation, SpecOutcome, Status, failed
 from nrs_design.gating.rules import RULES, SWITCHING_STABLE
 
+GAINS = {
+    "motion": {"Kp": "117359.4375", "Kd": "2060"},
+    "hand": {},
+    "tissue": {"Mt": "0.00999999977648258209228515625"},
+}
 STATUSES = [Status.INCONCLUSIVE, Status.ERROR, Status.REFUTED, Status.PROVED, Status.MISSED]
 HOSTILE = "a: 100%,\r\nb\x1b[31m\x00<&>\"'::error::"
 
@@ -70,6 +75,12 @@ class TestText:
         assert "specs/a.nrs.yaml:7:3: NRS102 refuted: it grows" in lines
         assert "specs/c.nrs.yaml: NRS900 error: RuntimeError: unforeseen and long" in lines
         assert "1 refuted, 1 proved, 1 without verdict; 7 obligations, 5 not" in to_text(mixed)
+
+    def test_gains_are_shown_by_their_shortest_single_precision_decimals(self):
+        text = to_text(outcome_of(obligation(), gains=GAINS))
+        assert "specs/a.nrs.yaml: motion Kp 117359.44, Kd 2060; tissue Mt 0.01\n" in text
+        assert "single-precision" in text
+        assert "gains" not in to_text(outcome_of(obligation()))
 
     def test_one_of_a_kind(self):
         assert "1 spec: " in to_text(outcome_of(obligation()))
@@ -304,6 +315,7 @@ class TestJson:
         assert document["notes"] == ["a note"]
         assert [spec["verdict"] for spec in document["specs"]] == ["refuted", "proved", None]
         assert document["specs"][1]["certificate"] == "reports/good.cert.json"
+        assert document["specs"][0]["gains"] == {}
         assert document["specs"][0]["obligations"][2] == {
             "rule": "NRS102",
             "subject": "system",
@@ -312,3 +324,7 @@ class TestJson:
             "line": 7,
             "column": 3,
         }
+
+    def test_gains_are_exact(self):
+        (spec,) = json.loads(to_json(outcome_of(obligation(), gains=GAINS)))["specs"]
+        assert spec["gains"] == GAINS

@@ -5,9 +5,10 @@ import pytest
 
 from nrs_design.certificates.verify import verify
 from nrs_design.errors import InternalError
-from nrs_design.gating.lock import read_lock, write_lock
+from nrs_design.gating.lock import read_lock
 from nrs_design.gating.locked import run_locked
 from nrs_design.gating.obligations import Status
+from nrs_design.gating.renew import write_lock
 from nrs_design.gating.run import Files, run_gate
 from nrs_design.spec import read_spec
 from nrs_design.spec.templates import TEMPLATES
@@ -116,7 +117,7 @@ def test_a_certificate_that_does_not_hold_when_read_back_is_reported(examine, mo
     from nrs_design.certificates.certificate import dump
     from nrs_design.gating import run
 
-    monkeypatch.setattr(run, "dump", lambda certificate: dump(certificate).replace("Every", "No"))
+    monkeypatch.setattr(run, "dump", lambda *given: dump(*given).replace("Every", "No"))
     outcome = examine(STABLE)
     (broken,) = outcome.broken
     assert (broken.rule.id, broken.status) == ("NRS104", Status.MISSED)

@@ -91,7 +91,7 @@ class Examiner:
         else:
             status = Status.REFUTED
             eigenvalue = worst_eigenvalue(mode.A, time)
-            message = f"mode {mode.name} is not {region} (eigenvalue {eigenvalue})"
+            message = f"mode {mode.name} is not {region} (eigenvalue about {eigenvalue})"
         return self.obligation(MODE_STABLE, mode.name, status, message, self.places.mode(mode.name))
 
     def nothing_to_certify(self) -> SpecOutcome:

@@ -12,6 +12,7 @@ from nrs_design.spec.controllers import (
     ImpedanceControllerSpec,
     PositionControllerSpec,
 )
+from nrs_design.spec.dwell import DwellObstacle, find_changing_contact
 from nrs_design.spec.environment import EnvironmentSpec
 from nrs_design.spec.faults import did_you_mean, fault
 from nrs_design.spec.fields import Digits, Label, Name, Title
@@ -72,8 +73,12 @@ class InteractionDesignSpec(SpecModel):
         check_applicable(self.goals, {c.type for c in self.controllers.values()}, "goals")
         check_names(self.switching, self.controllers, "controller")
         if self.switching.dwell_time is not None:
-            _check_dwell_time(self.switching.dwell_time, self)
+            _check_dwell_time(self.switching.dwell_time, self.find_dwell_obstacle())
         return self
+
+    def find_dwell_obstacle(self) -> DwellObstacle | None:
+        """Say why no dwell time can be claimed for this spec, or None."""
+        return find_changing_contact(self.controllers, self.environments)
 
 
 def _check_mixture(controllers: dict[str, ControllerSpec]) -> None:
@@ -118,40 +123,10 @@ def _check_references(
         )
 
 
-def _check_dwell_time(dwell: DwellTime, spec: InteractionDesignSpec) -> None:
-    """Check that nothing changes during a dwell time: the environment obeys no rule of ours."""
+def _check_dwell_time(dwell: DwellTime, obstacle: DwellObstacle | None) -> None:
+    """Check that nothing changes during a dwell time."""
     at = ("switching", "dwell_time")
     if dwell.unit != "s":
         raise fault(f"{dwell.text!r} is not a time", "write seconds, such as '2.76 s'", *at)
-    for name, controller in spec.controllers.items():
-        contacts = () if isinstance(controller, PositionControllerSpec) else controller.contacts
-        if len(contacts) > 1:
-            raise fault(
-                f"a dwell time and several contacts of {name!r} exclude each other: the contact "
-                "may change at any time, whatever the controller",
-                "leave dwell_time out, or write a spec for each environment",
-                *at,
-            )
-        if isinstance(controller, ImpedanceControllerSpec):
-            _check_constant_gains(name, controller, at)
-        for contact in contacts:
-            if not spec.environments[contact].fixed:
-                raise fault(
-                    f"a dwell time and the range of environment {contact!r} exclude each other: "
-                    "its parameters may move during the dwell time, and the proof would not hold",
-                    "leave dwell_time out, or give the environment its nominal values only",
-                    *at,
-                )
-
-
-def _check_constant_gains(
-    name: str, controller: ImpedanceControllerSpec, at: tuple[str, ...]
-) -> None:
-    for gain in ("Mt", "Bt"):
-        if getattr(controller, gain).ranged:
-            raise fault(
-                f"a dwell time and the range of {gain} of {name!r} exclude each other: the gain "
-                "may move during the dwell time, and the proof would not hold",
-                "leave dwell_time out, or give the gain one value only",
-                *at,
-            )
+    if obstacle is not None:
+        raise fault(obstacle.message, f"leave dwell_time out, or {obstacle.remedy}", *at)

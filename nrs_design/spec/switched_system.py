@@ -8,6 +8,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field, model_validator
 
+from nrs_design.spec.dwell import DwellObstacle, find_changing_parameter
 from nrs_design.spec.faults import did_you_mean, fault
 from nrs_design.spec.fields import Label, Name, Title
 from nrs_design.spec.model import SpecModel
@@ -101,6 +102,10 @@ class SwitchedSystemSpec(SpecModel):
         """Number of states n of the largest mode."""
         return max(mode.dimension for mode in self.modes)
 
+    def find_dwell_obstacle(self) -> DwellObstacle | None:
+        """Say why no dwell time can be claimed for this spec, or None."""
+        return find_changing_parameter(self.parameters)
+
     @model_validator(mode="after")
     def _check(self) -> SwitchedSystemSpec:
         modes = _modes_by_name(self.modes)
@@ -174,12 +179,11 @@ def _check_dwell_time(spec: SwitchedSystemSpec) -> None:
             f"such as {example!r}",
             *("switching", "dwell_time"),
         )
-    ranged = next((name for name, p in spec.parameters.items() if not p.fixed), None)
-    if ranged is not None:
+    obstacle = spec.find_dwell_obstacle()
+    if obstacle is not None:
         raise fault(
-            f"a dwell time and the range of parameter {ranged!r} exclude each other: the proof "
-            "with a dwell time holds for constant matrices only",
-            "leave dwell_time out, or give the parameter its nominal value only",
+            obstacle.message,
+            f"leave dwell_time out, or {obstacle.remedy}",
             *("switching", "dwell_time"),
         )
 

@@ -77,7 +77,7 @@ class TestText:
         (good,) = (line for line in lines if line.startswith("specs/good"))
         assert good.split() == [
             "specs/good.nrs.yaml",
-            *["proved", "exists", "alpha", "=", "1.5", "1/s", "2", "abcdef012345"],
+            *["proved", "exists", "alpha", ">=", "1.5", "1/s", "2", "abcdef012345"],
         ]
         assert "specs/a.nrs.yaml:7:3: NRS102 refuted: it grows" in lines
         assert "specs/c.nrs.yaml: NRS900 error: RuntimeError: unforeseen and long" in lines

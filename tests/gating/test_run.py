@@ -61,7 +61,7 @@ def test_refuted_spec_names_the_unstable_modes_with_their_place(examine):
     assert outcome.severity == 2
     bad = outcome.broken[0]
     assert UNSTABLE.split("\n")[bad.line - 1][bad.column - 1 :].startswith("{name: bad")
-    assert "not Schur (eigenvalue 1)" in bad.message
+    assert "not Schur (eigenvalue about 1)" in bad.message
 
 
 def test_inconclusive_fails(examine, inconclusive):

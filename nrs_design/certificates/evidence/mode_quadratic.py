@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Any, ClassVar, Self
 
@@ -12,7 +12,7 @@ from nrs_design.certificates.evidence.common_quadratic import find_rate_misfit, 
 from nrs_design.certificates.evidence.fields import (
     Matrix,
     matrix_fields,
-    rate_text,
+    rate_words,
     read_matrix,
     read_ratio,
     read_text,
@@ -28,6 +28,7 @@ from nrs_design.certificates.exact import (
     lyapunov_decrease,
     stein_decrease,
 )
+from nrs_design.spec.bounds import rounded_up
 from nrs_design.switched.matrix import RationalMatrix, multiply
 from nrs_design.switched.system import Mode, SwitchedSystem, Switching, Time
 
@@ -150,13 +151,16 @@ class ModeQuadratic(AbstractEvidence):
         """State the bound on every solution."""
         continuous = system.time is Time.CONTINUOUS
         law, bound = ("x' = A x", "exp(-alpha t)") if continuous else ("x+ = A x", "rho^t")
-        value = rate_text(self.rate, system.time)
-        rate = f"alpha = {value} 1/s" if continuous else f"rho = {value}"
         return (
             f"Every solution of {law} under the declared switching ({describe(system)}) satisfies "
-            f"|x(t)| <= c {bound} |x(0)| with {rate} and some constant c that is the same for all "
-            "signals."
+            f"|x(t)| <= c {bound} |x(0)| with {rate_words(self.rate, system.time)} and some "
+            "constant c that is the same for all signals."
         )
+
+    def spread(self, merged: SwitchedSystem, system: SwitchedSystem) -> Self:
+        """Repeat the function of every mode for its equals, between which nothing changes."""
+        forms = {mode.A: Q for mode, (_, Q) in zip(merged.modes, self.functions, strict=True)}
+        return replace(self, functions=tuple((mode.name, forms[mode.A]) for mode in system.modes))
 
     def to_fields(self) -> dict[str, Any]:
         """Return the functions and the rate."""
@@ -187,7 +191,7 @@ def describe(system: SwitchedSystem) -> str:
     unit = "s" if system.time is Time.CONTINUOUS else "steps"
     parts = []
     if switching.dwell_time > 0:
-        parts.append(f"at least {float(switching.dwell_time):.10g} {unit} in each mode")
+        parts.append(f"at least {rounded_up(switching.dwell_time, unit)} in each mode")
     if switching.transitions is not None:
         parts.append(f"{len(switching.transitions)} allowed transitions")
     if switching.resets:

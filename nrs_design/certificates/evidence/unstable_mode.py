@@ -57,7 +57,7 @@ class UnstableMode(AbstractEvidence):
         region = "Hurwitz" if continuous else "Schur"
         law = "x' = A x" if continuous else "x+ = A x"
         return (
-            f"Mode {self.mode} is not {region} (eigenvalue {self.eigenvalue}): staying in "
+            f"Mode {self.mode} is not {region} (eigenvalue about {self.eigenvalue}): staying in "
             f"it is an admissible switching signal, so {law} is not uniformly exponentially stable."
         )
 

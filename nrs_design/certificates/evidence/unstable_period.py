@@ -10,6 +10,7 @@ from typing import Any, ClassVar, Self
 from nrs_design.certificates.evidence.abstract import AbstractEvidence, Shows
 from nrs_design.certificates.evidence.fields import read_integer, read_ratio, read_text
 from nrs_design.certificates.exact import IntegerMatrix
+from nrs_design.spec.bounds import nearly
 from nrs_design.switched.matrix import RationalMatrix
 from nrs_design.switched.system import SwitchedSystem, Switching, Time
 
@@ -82,8 +83,13 @@ class UnstablePeriod(AbstractEvidence):
     def claim(self, system: SwitchedSystem) -> str:
         """State the signal and what follows."""
         continuous = system.time is Time.CONTINUOUS
-        law, unit = ("x' = A x", " s") if continuous else ("x+ = A x", " steps")
-        signal = ", ".join(f"{name} for {float(dwell):.6g}{unit}" for name, dwell in self.steps)
+        law, unit = ("x' = A x", "s") if continuous else ("x+ = A x", "steps")
+        times = [nearly(dwell, unit) for _, dwell in self.steps]
+        signal = ", ".join(
+            f"{name} for {time}" for (name, _), time in zip(self.steps, times, strict=True)
+        )
+        if any(time.startswith("about") for time in times):
+            signal += "; the certificate holds the exact times"
         return (
             f"Repeating the signal ({signal}) makes some solution grow without bound: the spectral "
             f"radius over one period is above 1, so {law} is unstable under this switching."

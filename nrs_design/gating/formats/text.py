@@ -31,12 +31,13 @@ def to_text(outcome: GateOutcome) -> str:
 
 
 def _row(spec: SpecOutcome) -> Sequence[str]:
-    unit = " 1/s" if spec.rate_name == "alpha" else ""
+    # What is proved holds for slower decay too, so the relation is true of a rounded rate as well.
+    sign, unit = (">=", " 1/s") if spec.rate_name == "alpha" else ("<=", "")
     return (
         printable(spec.path),
         spec.verdict or "-",
         spec.common_quadratic or "-",
-        f"{spec.rate_name} = {spec.rate}{unit}" if spec.rate else "-",
+        f"{spec.rate_name} {sign} {spec.rate}{unit}" if spec.rate else "-",
         "-" if spec.modes is None else str(spec.modes),
         (spec.certificate_id or "-")[:SHORT_ID],
     )

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from nrs_design.certificates.evidence.fields import rate_words
 from nrs_design.design.root_locus import locus_gains, root_locus
 from nrs_design.design.transfer import TransferFunction, poles
 from nrs_design.reporting.figures.view import View, disk, half_plane
@@ -72,7 +74,7 @@ def draw_eigenvalues(
     names: Sequence[str],
     values: Sequence[NDArray[np.complex128]],
     time: Time,
-    rate: float | None,
+    rate: Fraction | None,
 ) -> Figure:
     """Draw the eigenvalues of all modes with the border of stability.
 
@@ -84,7 +86,7 @@ def draw_eigenvalues(
         Eigenvalues of each mode, in 1/s in continuous time.
     time : Time
         Decides the border: imaginary axis or unit circle.
-    rate : float or None
+    rate : Fraction or None
         The proved rate, drawn as a second border.
     """
     figure, axes = new_axes(4.2)
@@ -116,18 +118,21 @@ def _outside(values: NDArray[np.complex128], time: Time) -> NDArray[np.bool_]:
     return np.asarray(np.abs(values) >= 1 - 1e-9)
 
 
-def _border(axes: Axes, values: NDArray[np.complex128], time: Time, rate: float | None) -> View:
+def _border(
+    axes: Axes, values: NDArray[np.complex128], time: Time, rate: Fraction | None
+) -> View:
     if time is Time.CONTINUOUS:
         axes.axvline(0.0, color=INK, linewidth=1.0)
         if rate is not None:
-            label = f"-alpha = {-rate:.4g} 1/s"
-            axes.axvline(-rate, color=MUTED, linewidth=1.2, linestyle="--", label=label)
+            label = f"-alpha, {rate_words(rate, time)}"
+            axes.axvline(-float(rate), color=MUTED, linewidth=1.2, linestyle="--", label=label)
         return half_plane(values, shade=True)
     angle = np.linspace(0, 2 * math.pi, 361)
     axes.plot(np.cos(angle), np.sin(angle), color=INK, linewidth=1.0, label="unit circle")
     if rate is not None:
-        x, y = rate * np.cos(angle), rate * np.sin(angle)
-        axes.plot(x, y, color=MUTED, linewidth=1.2, linestyle="--", label=f"rho = {rate:.6g}")
+        x, y = float(rate) * np.cos(angle), float(rate) * np.sin(angle)
+        label = rate_words(rate, time)
+        axes.plot(x, y, color=MUTED, linewidth=1.2, linestyle="--", label=label)
     return disk(values)
 
 

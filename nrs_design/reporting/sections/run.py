@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from fractions import Fraction
+from sys import float_info
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -259,6 +260,8 @@ def _until_small(response: TimeResponse, values: Array) -> TimeResponse:
 def _horizon(system: SwitchedSystem, claimed: float) -> tuple[float, int]:
     """Return step and number of steps in which the bound falls by three decades, if few enough."""
     rate = claimed if system.time is Time.CONTINUOUS else -math.log(claimed)
+    # A contraction of 1 - 1e-21 is 1 in floating point.
+    rate = max(rate, float_info.min)
     step = fine_step(system)
     steps = math.ceil(min(_DECAY / (rate * step), float(_STEPS)))
     if system.time is Time.CONTINUOUS and steps < _FEWEST:

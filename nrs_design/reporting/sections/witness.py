@@ -31,6 +31,7 @@ from nrs_design.simulation.periodic import (
     steps_of_mixture,
 )
 from nrs_design.simulation.switched import TimeResponse, alone, eigenvalues, unstable_run
+from nrs_design.spec.bounds import nearly
 from nrs_design.switched.constant import system_at
 from nrs_design.switched.system import SwitchedSystem, Time
 
@@ -70,8 +71,8 @@ def _mode(system: SwitchedSystem, evidence: UnstableMode) -> tuple[Block, ...]:
     run = Illustration(
         "run",
         f"Staying in mode {evidence.mode}",
-        f"Simulated from the eigenvector of the eigenvalue {eigenvalue}: the state does not decay. "
-        "No other mode is used, which the switching allows.",
+        f"Simulated from the eigenvector of the eigenvalue (about {eigenvalue}): the state does "
+        "not decay. No other mode is used, which the switching allows.",
         draw_run(response, _norms(response), _growth(single, response), single, _EUCLIDEAN),
     )
     return (run, *_phase_plane(single, response))
@@ -134,8 +135,7 @@ def _rate(run: PeriodicRun, time: Time) -> str:
 
 def _steps_table(evidence: UnstablePeriod, unit: str) -> Table:
     rows = tuple(
-        (str(k + 1), name, f"{float(time):.6g}")
-        for k, (name, time) in enumerate(evidence.steps[:_LISTED])
+        (str(k + 1), name, nearly(time)) for k, (name, time) in enumerate(evidence.steps[:_LISTED])
     )
     more = len(evidence.steps) - len(rows)
     title = "One period" + (f", its first {_LISTED} steps" if more else "")

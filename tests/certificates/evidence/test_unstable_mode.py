@@ -95,8 +95,8 @@ def test_words_and_fields():
     assert evidence.shows is Shows.INSTABILITY
     assert evidence.proved_rate(system) is None
     assert evidence.claim(system) == (
-        "Mode m0 is not Hurwitz (eigenvalue 2): staying in it is an admissible switching signal, "
-        "so x' = A x is not uniformly exponentially stable."
+        "Mode m0 is not Hurwitz (eigenvalue about 2): staying in it is an admissible switching "
+        "signal, so x' = A x is not uniformly exponentially stable."
     )
     assert evidence.to_fields() == {"mode": "m0", "eigenvalue": "2"}
     # The eigenvalue of a file is not believed but computed again.

@@ -10,7 +10,7 @@ import numpy as np
 
 from nrs_design.reporting.document import Illustration, Paragraph, Section, Table
 from nrs_design.reporting.figures.complex_plane import draw_eigenvalues
-from nrs_design.reporting.formatting import number, roots, shortened
+from nrs_design.reporting.formatting import number, plural, roots, shortened
 from nrs_design.simulation.margins import mode_rates
 from nrs_design.simulation.switched import eigenvalues
 from nrs_design.switched.system import SwitchedSystem, Time
@@ -99,8 +99,11 @@ def _caption(system: SwitchedSystem, drawn: int, rate: float | None) -> str:
     some = "" if drawn == len(system.modes) else f" The {drawn} slowest modes are drawn."
     if system.time is Time.CONTINUOUS:
         text = "A mode is stable if all its eigenvalues lie left of the imaginary axis"
-        border = "; all lie left of the dashed line, the proved rate." if rate is not None else "."
+        border = "; all lie left of the dashed line, the proved rate" if rate is not None else ""
     else:
         text = "A mode is stable if all its eigenvalues lie inside the unit circle"
-        border = "; all lie inside the dashed circle, the proved contraction." if rate else "."
-    return f"{text}{border} Stable modes alone do not make switching stable.{some}"
+        border = "; all lie inside the dashed circle, the proved contraction" if rate else ""
+    left = len(system.modes) - len(system.lasting_modes())
+    if left:
+        border += f"; {plural(left, 'mode')} must be left and need not be stable"
+    return f"{text}{border}. Stable modes alone do not make switching stable.{some}"

@@ -238,7 +238,7 @@ def describe(system: SwitchedSystem) -> str:
     parts = []
     if switching.dwell_time > 0:
         others = "each other mode" if switching.stays else "each mode"
-        parts.append(f"at least {exact_text(switching.dwell_time)} {unit} in {others}")
+        parts.append(f"{_time_words(Stay(switching.dwell_time), unit)} in {others}")
     parts += [f"{_time_words(stay, unit)} in {name}" for name, stay in switching.stays[:MAX_NAMED]]
     if len(switching.stays) > MAX_NAMED:
         parts.append(f"{len(switching.stays)} modes with dwell times of their own")
@@ -250,11 +250,11 @@ def describe(system: SwitchedSystem) -> str:
 
 
 def _time_words(stay: Stay, unit: str) -> str:
-    shortest = exact_text(stay.shortest)
+    last = stay.shortest if stay.longest is None else stay.longest
+    end = f"{exact_text(last)} {'step' if unit == 'steps' and last == 1 else unit}"
     if stay.longest is None:
-        return f"at least {shortest} {unit}"
-    longest = exact_text(stay.longest)
-    return f"{shortest} to {longest} {unit}" if stay.shortest > 0 else f"at most {longest} {unit}"
+        return f"at least {end}"
+    return f"{exact_text(stay.shortest)} to {end}" if stay.shortest > 0 else f"at most {end}"
 
 
 def _words(edge: Edge) -> str:

@@ -33,9 +33,13 @@ def mode_quadratic_section(system: SwitchedSystem, evidence: ModeQuadratic) -> S
         "over, the value of its function is below what the bound allows since the last switch. "
         "The matrices are written "
         f"with denominator 2^{evidence.denominator_log2}; here all are divided by the largest "
-        "entry of any. In the Euclidean norm of the states, in their units, the bound is c "
-        f"{decay} with c = {number(norm_ratio(functions), 3)}."
+        "entry of any."
     )
+    if not evidence.leaving:
+        text += (
+            " In the Euclidean norm of the states, in their units, the bound is c "
+            f"{decay} with c = {number(norm_ratio(functions), 3)}."
+        )
     blocks: list[Block] = [Paragraph(text)]
     for name, Q in list(functions.items())[:_TABLES]:
         blocks += matrix_table(f"Q of mode {name}", Q, system.states)

@@ -98,9 +98,8 @@ class ModeQuadratic(AbstractEvidence):
             if not is_square(Q, mode.A.shape[0]):
                 return f"Q of mode {mode.name} has the wrong size"
         for edge in system.edges():
-            if edge.map is None and edge.source.A.shape != edge.target.A.shape:
-                return f"the switch {_words(edge)} has no reset"
-            if edge.map is not None and edge.map.shape != _shape(edge):
+            given = edge.source.A.shape if edge.map is None else edge.map.shape
+            if given != (edge.target.A.shape[0], edge.source.A.shape[0]):
                 return f"the switch {_words(edge)} has no fitting reset"
         if misfit := find_rate_misfit(self.rate, system.time) or self._find_odd_stay(system):
             return misfit
@@ -259,11 +258,6 @@ def _time_words(stay: Stay, unit: str) -> str:
 
 def _words(edge: Edge) -> str:
     return f"from {edge.source.name} to {edge.target.name}"
-
-
-def _shape(edge: Edge) -> tuple[int, int]:
-    """Return the shape that the map of an edge must have."""
-    return edge.target.A.shape[0], edge.source.A.shape[0]
 
 
 def _jump(edge: Edge, Q: Mapping[str, Matrix]) -> IntegerMatrix:

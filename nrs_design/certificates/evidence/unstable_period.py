@@ -52,6 +52,8 @@ class UnstablePeriod(AbstractEvidence):
 
     def fits(self, switching: Switching) -> bool:
         """Tell whether every dwell time is long and short enough, and every switch allowed."""
+        if len(self.steps) > MAX_STEPS:
+            return False
         names = [name for name, _ in self.steps]
         following = _switches(names)
         switches = {(a, b) for a, b in following if a != b}

@@ -247,7 +247,8 @@ def run_shortest_dwell(
     Raises
     ------
     DesignError
-        In discrete time, or if something may change between two switches.
+        In discrete time, or if something may change between two switches, or if the spec declares
+        longest dwell times, which would bound the shortest one.
     """
     from dataclasses import replace
 
@@ -258,6 +259,12 @@ def run_shortest_dwell(
     known = result.certification
     system = known.system
     _refuse_dwell(result.loaded, system.time)
+    if len(system.lasting_modes()) < len(system.modes):
+        raise DesignError(
+            "a shortest dwell time is not searched beside longest ones",
+            path=result.loaded.path,
+            remedy="leave longest_dwell_time out, or declare the dwell_time and certify that",
+        )
     limits = limits or DefaultLimits()
     quick = replace(limits, optimize_rate=False, budget=min(limits.budget, MARGIN_BUDGET))
 

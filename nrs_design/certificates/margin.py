@@ -190,7 +190,7 @@ def find_shortest_dwell(
     Parameters
     ----------
     system : SwitchedSystem
-        With its own dwell time, perhaps zero.
+        With its own dwell time, perhaps zero; it has no longest ones.
     certify : callable
         Decides a system.
     known : Certification, optional
@@ -205,7 +205,8 @@ def find_shortest_dwell(
     """
 
     def decide(dwell: Fraction) -> Outcome:
-        found = certify(replace(system, switching=replace(system.switching, dwell_time=dwell)))
+        switching = replace(system.switching, dwell_time=dwell, stays=())
+        found = certify(replace(system, switching=switching))
         return found.verdict, found
 
     tried, longest = _Tried(decide), Fraction(LONGEST_DWELL)

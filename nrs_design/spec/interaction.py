@@ -72,8 +72,8 @@ class InteractionDesignSpec(SpecModel):
                 check_applicable(controller.goals, {controller.type}, "controllers", name, "goals")
         check_applicable(self.goals, {c.type for c in self.controllers.values()}, "goals")
         check_names(self.switching, self.controllers, "controller")
-        if self.switching.dwell_time is not None:
-            _check_dwell_time(self.switching.dwell_time, self.find_dwell_obstacle())
+        for at, dwell in self.switching.dwell_times():
+            _check_dwell_time(dwell, self.find_dwell_obstacle(), ("switching", *at))
         return self
 
     def find_dwell_obstacle(self) -> DwellObstacle | None:
@@ -123,10 +123,11 @@ def _check_references(
         )
 
 
-def _check_dwell_time(dwell: DwellTime, obstacle: DwellObstacle | None) -> None:
+def _check_dwell_time(
+    dwell: DwellTime, obstacle: DwellObstacle | None, at: tuple[str, ...]
+) -> None:
     """Check that nothing changes during a dwell time."""
-    at = ("switching", "dwell_time")
     if dwell.unit != "s":
         raise fault(f"{dwell.text!r} is not a time", "write seconds, such as '2.76 s'", *at)
     if obstacle is not None:
-        raise fault(obstacle.message, f"leave dwell_time out, or {obstacle.remedy}", *at)
+        raise fault(obstacle.message, f"leave {at[1]} out, or {obstacle.remedy}", *at)

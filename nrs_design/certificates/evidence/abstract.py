@@ -108,6 +108,8 @@ class AbstractEvidence(ABC):
                 return f"mode {mode.name} is not a square matrix over a positive denominator"
         if (unreadable := find_unreadable(self)) is not None:
             return unreadable
+        if (contradiction := system.find_contradiction()) is not None:
+            return contradiction
         if not self.fits(system.switching):
             return f"evidence of kind {self.kind} does not cover this kind of switching"
         if not system.is_uniform and not self.allows_unequal_modes:

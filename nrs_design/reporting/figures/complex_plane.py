@@ -118,9 +118,7 @@ def _outside(values: NDArray[np.complex128], time: Time) -> NDArray[np.bool_]:
     return np.asarray(np.abs(values) >= 1 - 1e-9)
 
 
-def _border(
-    axes: Axes, values: NDArray[np.complex128], time: Time, rate: Fraction | None
-) -> View:
+def _border(axes: Axes, values: NDArray[np.complex128], time: Time, rate: Fraction | None) -> View:
     if time is Time.CONTINUOUS:
         axes.axvline(0.0, color=INK, linewidth=1.0)
         if rate is not None:

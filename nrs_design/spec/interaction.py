@@ -2,18 +2,18 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import Annotated, Literal
 
 from pydantic import Field, model_validator
 
 from nrs_design.spec.controllers import (
     ControllerSpec,
-    ForceControllerSpec,
     ImpedanceControllerSpec,
     PositionControllerSpec,
 )
 from nrs_design.spec.environment import EnvironmentSpec
-from nrs_design.spec.faults import did_you_mean, fault
+from nrs_design.spec.faults import all_of, did_you_mean, fault
 from nrs_design.spec.fields import Digits, Label, Name, Title
 from nrs_design.spec.model import SpecModel
 from nrs_design.spec.motion import ActuatorSpec, LimitsSpec, MotionLoopSpec
@@ -59,11 +59,14 @@ class InteractionDesignSpec(SpecModel):
 
     @model_validator(mode="after")
     def _check_controllers(self) -> InteractionDesignSpec:
-        _check_mixture(self.controllers)
-        for name, controller in self.controllers.items():
-            if not isinstance(controller, PositionControllerSpec):
-                _check_references(name, controller, self.environments)
-        check_names(self.switching, self.controllers, "controller")
+        all_of(
+            lambda: _check_mixture(self.controllers),
+            *(
+                partial(_check_references, *item, self.environments)
+                for item in self.controllers.items()
+            ),
+            lambda: check_names(self.switching, self.controllers, "controller"),
+        )
         if self.switching.dwell_time is not None:
             _check_dwell_time(self.switching.dwell_time, self)
         return self
@@ -86,12 +89,13 @@ def _check_mixture(controllers: dict[str, ControllerSpec]) -> None:
 
 def _check_references(
     name: str,
-    controller: ImpedanceControllerSpec | ForceControllerSpec,
+    controller: ControllerSpec,
     environments: dict[str, EnvironmentSpec],
 ) -> None:
-    places: list[tuple[str, tuple[str | int, ...]]] = [(controller.environment, ("environment",))]
-    places += [(contact, ("contacts", i)) for i, contact in enumerate(controller.contacts)]
-    for environment, at in places:
+    if isinstance(controller, PositionControllerSpec):
+        return
+
+    def check(environment: str, *at: int | str) -> None:
         if environment not in environments:
             raise fault(
                 f"there is no environment {environment!r}",
@@ -100,6 +104,16 @@ def _check_references(
                 name,
                 *at,
             )
+
+    all_of(
+        partial(check, controller.environment, "environment"),
+        # By default the contact is the environment itself.
+        *(
+            partial(check, contact, "contacts", index)
+            for index, contact in enumerate(controller.contacts)
+            if "contacts" in controller.model_fields_set
+        ),
+    )
 
 
 def _check_dwell_time(dwell: DwellTime, spec: InteractionDesignSpec) -> None:

@@ -178,10 +178,12 @@ def _without_unit(text: str, kind: QuantityKind) -> SpecError:
             remedy=f"write '{glued[1]} {glued[2]}'",
         )
     parse_exact(text)
-    return SpecError(
-        f"{quoted(text)} has no unit, expected {' or '.join(kind.units)}",
-        remedy=f"write '{text} {kind.example.partition(' ')[2]}' if that is the unit meant",
-    )
+    unit = kind.example.partition(" ")[2]
+    remedy = f"write '{text} {unit}' if that is the unit meant"
+    if kind.units == ("m",):
+        remedy = f"write '{text} mm' or '{text} m', whichever is meant"
+    expected = " or ".join(kind.units)
+    return SpecError(f"{quoted(text)} has no unit, expected {expected}", remedy=remedy)
 
 
 def is_less(a: Quantity, b: Quantity) -> bool:

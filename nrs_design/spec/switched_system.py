@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from fractions import Fraction
+from functools import partial
 from typing import Annotated, Literal
 
 from pydantic import Field, model_validator
 
-from nrs_design.spec.faults import did_you_mean, fault
+from nrs_design.spec.faults import all_of, did_you_mean, fault
 from nrs_design.spec.fields import Label, Name, Title
 from nrs_design.spec.model import SpecModel
 from nrs_design.spec.parameters import MAX_PARAMETERS, Entry, ParameterName, ParameterSpec
@@ -104,9 +105,11 @@ class SwitchedSystemSpec(SpecModel):
     @model_validator(mode="after")
     def _check(self) -> SwitchedSystemSpec:
         modes = _modes_by_name(self.modes)
-        _check_parameters(self)
-        check_names(self.switching, modes, "mode")
-        _check_dwell_time(self)
+        all_of(
+            lambda: _check_parameters(self),
+            lambda: check_names(self.switching, modes, "mode"),
+            lambda: _check_dwell_time(self),
+        )
         resets = _resets_by_transition(self, modes)
         _check_sizes(self, modes, resets)
         return self
@@ -122,11 +125,8 @@ def _modes_by_name(modes: tuple[ModeSpec, ...]) -> dict[str, ModeSpec]:
 
 
 def _check_parameters(spec: SwitchedSystemSpec) -> None:
-    used: set[str] = set()
-    for index, mode in enumerate(spec.modes):
-        used |= mode.parameters
-        if not mode.parameters <= spec.parameters.keys():
-            _report_unknown(spec, index)
+    all_of(*(partial(_check_known, spec, index) for index in range(len(spec.modes))))
+    used = frozenset[str]().union(*(mode.parameters for mode in spec.modes))
     constant = [name for name, parameter in spec.parameters.items() if not parameter.varies]
     if len(constant) > 1:
         raise fault(
@@ -150,17 +150,27 @@ def _check_parameters(spec: SwitchedSystemSpec) -> None:
         )
 
 
-def _report_unknown(spec: SwitchedSystemSpec, index: int) -> None:
-    for i, row in enumerate(spec.modes[index].A):
-        for j, entry in enumerate(row):
-            for name in entry.names:
-                if name not in spec.parameters:
-                    known = did_you_mean(name, spec.parameters, "parameters here are")
-                    raise fault(
-                        f"{name!r} is not a number, and there is no parameter of that name",
-                        known if spec.parameters else "write a number, or declare parameters",
-                        *("modes", index, "A", i, j),
-                    )
+def _check_known(spec: SwitchedSystemSpec, index: int) -> None:
+    if spec.modes[index].parameters <= spec.parameters.keys():
+        return
+
+    def check(name: str, *at: int) -> None:
+        if name not in spec.parameters:
+            known = did_you_mean(name, spec.parameters, "parameters here are")
+            raise fault(
+                f"{name!r} is not a number, and there is no parameter of that name",
+                known if spec.parameters else "write a number, or declare parameters",
+                *("modes", index, "A", *at),
+            )
+
+    all_of(
+        *(
+            partial(check, name, i, j)
+            for i, row in enumerate(spec.modes[index].A)
+            for j, entry in enumerate(row)
+            for name in sorted(entry.names)
+        )
+    )
 
 
 def _check_dwell_time(spec: SwitchedSystemSpec) -> None:

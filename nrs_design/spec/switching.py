@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection
 from dataclasses import dataclass
 from fractions import Fraction
+from functools import partial
 from typing import Annotated, Any
 
 from pydantic import BeforeValidator, Field, PlainValidator, WithJsonSchema, model_validator
@@ -12,7 +13,7 @@ from pydantic import BeforeValidator, Field, PlainValidator, WithJsonSchema, mod
 from nrs_design.errors import SpecError
 from nrs_design.spec import kinds
 from nrs_design.spec.exact import parse_exact, quoted
-from nrs_design.spec.faults import as_text, did_you_mean, fault, reported
+from nrs_design.spec.faults import all_of, as_text, did_you_mean, fault, reported
 from nrs_design.spec.fields import Exact, Label
 from nrs_design.spec.model import SpecModel
 from nrs_design.spec.quantity import QUANTITY_PATTERN, parse_quantity
@@ -209,14 +210,16 @@ def check_rows(rows: Collection[Collection[object]], *at: int | str) -> None:
 
 def check_names(switching: SwitchingSpec, names: Collection[str], noun: str) -> None:
     """Report a fault if a transition names something that does not exist."""
-    for index, transition in enumerate(switching.transitions or ()):
-        for side, name in enumerate(transition):
-            if name not in names:
-                raise fault(
-                    f"there is no {noun} {quoted(name)}",
-                    did_you_mean(name, names),
-                    "switching",
-                    "transitions",
-                    index,
-                    side,
-                )
+
+    def check(name: str, *at: int) -> None:
+        if name not in names:
+            message = f"there is no {noun} {quoted(name)}"
+            raise fault(message, did_you_mean(name, names), "switching", "transitions", *at)
+
+    all_of(
+        *(
+            partial(check, name, index, side)
+            for index, transition in enumerate(switching.transitions or ())
+            for side, name in enumerate(transition)
+        )
+    )

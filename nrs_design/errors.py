@@ -41,6 +41,9 @@ class NrsDesignError(Exception):
         Position in that file, counted from 1.
     remedy : str, optional
         What to do about it.
+    at : tuple of str or int
+        What is to blame in a spec, such as ``("controllers", "insertion")``; where the file is
+        known, line and column are found by it.
     """
 
     rule = "NRS000"
@@ -53,6 +56,7 @@ class NrsDesignError(Exception):
         line: int | None = None,
         column: int | None = None,
         remedy: str | None = None,
+        at: tuple[str | int, ...] = (),
     ) -> None:
         super().__init__(message)
         self.message = message
@@ -60,6 +64,7 @@ class NrsDesignError(Exception):
         self.line = line
         self.column = column
         self.remedy = remedy
+        self.at = at
 
     @property
     def location(self) -> str:

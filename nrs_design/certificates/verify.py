@@ -107,6 +107,12 @@ def read_document(path: Path) -> dict[str, Any]:
     except OSError as error:
         raise CertificateError(f"cannot be read ({error.strerror})", path=path) from error
     except (ValueError, RecursionError) as error:
+        if path.name.endswith((".yaml", ".yml")):
+            raise CertificateError(
+                "this is a spec, not a certificate",
+                path=path,
+                remedy="name the certificate first: nrs-design verify CERT SPEC",
+            ) from error
         raise CertificateError(
             f"not a certificate: {error}", path=path, remedy="make it with certify-switching --out"
         ) from error

@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING, Any
 
 from nrs_design.cli.options import Json, Quiet, SpecFile
 from nrs_design.cli.printing import note, print_json, print_table, progress
-from nrs_design.errors import DesignError
 
 if TYPE_CHECKING:
     from nrs_design.design.evidence import DesignEvidence, ImpedanceEvidence
@@ -18,7 +17,7 @@ def optimize(spec: SpecFile, as_json: Json = False, quiet: Quiet = False) -> Non
 
     Example: nrs-design optimize specs/neuroboscope/soft-tissue.nrs.yaml
     """
-    from nrs_design.pipeline import run_design, run_evidence
+    from nrs_design.pipeline import run_design, run_evidence, wrong_kind
     from nrs_design.spec import read_spec
 
     loaded = read_spec(spec)
@@ -26,10 +25,10 @@ def optimize(spec: SpecFile, as_json: Json = False, quiet: Quiet = False) -> Non
         step("cost")
         design = run_design(loaded)
         if design is None:
-            raise DesignError(
+            raise wrong_kind(
+                loaded,
                 "a switched-system spec has nothing to design",
-                path=spec,
-                remedy="use certify-switching, or a spec of kind interaction-design",
+                "use certify-switching, or a spec of kind interaction-design",
             )
         step("margins")
         evidence = run_evidence(loaded, design)

@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, Any
 from nrs_design.cli.optimize import motion_summary
 from nrs_design.cli.options import Json, Quiet, SpecFile
 from nrs_design.cli.printing import print_json, print_table, progress
-from nrs_design.errors import DesignError
 
 if TYPE_CHECKING:
     from nrs_design.controllers.controller_design import ControllerDesign
@@ -39,17 +38,17 @@ def tune(spec: SpecFile, as_json: Json = False, quiet: Quiet = False) -> None:
 
     Example: nrs-design tune specs/neuroboscope/force-limit.nrs.yaml
     """
-    from nrs_design.pipeline import run_design, run_evidence
+    from nrs_design.pipeline import run_design, run_evidence, wrong_kind
     from nrs_design.spec import read_spec
 
     loaded = read_spec(spec)
     with progress(f"tuning {loaded.spec.name}", quiet=quiet):
         design = run_design(loaded)
         if design is None:
-            raise DesignError(
+            raise wrong_kind(
+                loaded,
                 "a switched-system spec has nothing to tune",
-                path=spec,
-                remedy="use certify-switching, or a spec of kind interaction-design",
+                "use certify-switching, or a spec of kind interaction-design",
             )
         evidence = run_evidence(loaded, design)
     if as_json:

@@ -10,6 +10,7 @@ from nrs_design.controllers.gain_range import gain_interval
 from nrs_design.controllers.laws import Admittance, ProportionalForce
 from nrs_design.design.design import (
     impedance_problem,
+    naming,
     root_locus_design,
     to_transfer_function,
 )
@@ -134,7 +135,8 @@ def _impedance(
     assert isinstance(requirement, ImpedanceControllerSpec)
     problem = impedance_problem(spec, plant, loop, requirement)
     Mt, Bt = float(law.Mt), float(law.Bt)
-    margins = loop_margins(problem.loop, Mt, Bt)
+    with naming(controller.name):
+        margins = loop_margins(problem.loop, Mt, Bt)
     corners = product(
         gain_interval(requirement.Mt, law.Mt).ends, gain_interval(requirement.Bt, law.Bt).ends
     )
@@ -158,5 +160,6 @@ def _force(
     plant: Plant, motion: TransferFunction, controller: Controller, law: ProportionalForce
 ) -> ForceEvidence:
     stiffness = float(plant.environment(controller.environment or "").nominal.stiffness)
-    loop = force_loop_response(motion, stiffness, float(law.Kp))
+    with naming(controller.name):
+        loop = force_loop_response(motion, stiffness, float(law.Kp))
     return ForceEvidence(controller.name, stiffness, loop)

@@ -137,7 +137,10 @@ def _resolve_one(
     location = _without_tag(details["loc"])
     at_key = kind == "extra_forbidden" or (bool(location) and location[-1] == "[key]")
     location += tuple(context.get("at", ()))
-    place = _place(root, tuple(p for p in location if p != "[key]"), at_key)
+    if kind == "union_tag_invalid":
+        place = place_of(root, (*location, _CHOICES[str(location[0])]), at_key=False)
+        return place.line, place.column, *_words(details, location, model)
+    place = place_of(root, tuple(p for p in location if p != "[key]"), at_key)
     message, remedy = _words(details, location, model)
     return place.line, place.column, message, remedy
 
@@ -148,7 +151,7 @@ def _without_tag(location: Location) -> Location:
     return location
 
 
-def _place(root: Node, location: Location, at_key: bool) -> Position:
+def place_of(root: Node, location: Location, at_key: bool) -> Position:
     """Position of the node, or of the nearest one above it that the file holds."""
     node, place = root, root.position
     for depth, part in enumerate(location):

@@ -10,9 +10,18 @@ from pathlib import Path
 from pydantic import ValidationError
 
 from nrs_design.errors import Fault, SpecError
-from nrs_design.spec.document import Mapping, Node, Scalar, read_document, read_text, to_data
+from nrs_design.spec.document import (
+    Mapping,
+    Node,
+    Position,
+    Scalar,
+    parse_document,
+    read_document,
+    read_text,
+    to_data,
+)
 from nrs_design.spec.exact import quoted
-from nrs_design.spec.faults import did_you_mean, file_faults
+from nrs_design.spec.faults import did_you_mean, file_faults, place_of
 from nrs_design.spec.interaction import InteractionDesignSpec
 from nrs_design.spec.robot import RobotSpec
 from nrs_design.spec.switched_system import SwitchedSystemSpec
@@ -46,6 +55,10 @@ class LoadedSpec:
     sha256: str
     text: str
     spec: Spec
+
+    def place(self, *at: str | int) -> Position:
+        """Line and column of a key or an item, or of what holds it if it is not written out."""
+        return place_of(parse_document(self.text, self.path), at, at_key=True)
 
 
 def read_spec(path: str | os.PathLike[str]) -> LoadedSpec:

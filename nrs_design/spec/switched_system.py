@@ -160,7 +160,10 @@ def _check_known(spec: SwitchedSystemSpec, index: int) -> None:
             raise fault(
                 f"{name!r} is not a number, and there is no parameter of that name",
                 known if spec.parameters else "write a number, or declare parameters",
-                *("modes", index, "A", *at),
+                "modes",
+                index,
+                "A",
+                *at,
             )
 
     all_of(

@@ -10,9 +10,11 @@ from nrs_design.cli.robot.correction import correction
 from nrs_design.cli.robot.dynamics import dynamics
 from nrs_design.cli.robot.kinematics import kinematics
 from nrs_design.cli.robot.track import track
+from nrs_design.cli.suggestions import SuggestingGroup
 
 robot = typer.Typer(
     name="robot",
+    cls=SuggestingGroup,
     no_args_is_help=True,
     help="Kinematics, dynamics, balance and motion control of a robot (specs of kind robot).",
 )

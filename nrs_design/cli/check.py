@@ -10,7 +10,8 @@ import typer
 from nrs_design.cli import exit_codes
 from nrs_design.cli.errors import print_error, summary
 from nrs_design.cli.options import Json, Quiet
-from nrs_design.cli.printing import print_json, print_table
+from nrs_design.cli.printing import print_json
+from nrs_design.cli.tables import print_table
 from nrs_design.errors import NrsDesignError
 
 

@@ -6,7 +6,8 @@ import math
 from typing import TYPE_CHECKING, Any
 
 from nrs_design.cli.options import Json, Quiet, SpecFile
-from nrs_design.cli.printing import note, print_json, print_table, progress
+from nrs_design.cli.printing import note, print_json, progress
+from nrs_design.cli.tables import print_table
 
 if TYPE_CHECKING:
     from nrs_design.design.evidence import DesignEvidence, ImpedanceEvidence

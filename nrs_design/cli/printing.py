@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import json
+import shutil
 import sys
-from collections.abc import Callable, Iterator, Sequence
+import textwrap
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from typing import Any
-
-# Output into a file or a pipe: wide enough that no table is folded.
-WIDE = 160
+from typing import Any, TextIO
 
 
 def print_json(command: str, content: dict[str, Any]) -> None:
@@ -18,25 +17,34 @@ def print_json(command: str, content: dict[str, Any]) -> None:
     print(json.dumps(envelope, indent=2, ensure_ascii=True, allow_nan=False))
 
 
-def print_table(title: str, columns: Sequence[str], rows: Sequence[Sequence[str]]) -> None:
-    """Print a plain table; a cell is never cut, only folded where the terminal is narrow."""
-    from rich.box import SIMPLE_HEAD
-    from rich.console import Console
-    from rich.table import Table
+def wrapped(text: str, stream: TextIO, hanging: int = 2) -> str:
+    """Break the lines of a text between words, as wide as the terminal; a pipe gets them whole."""
+    if not stream.isatty():
+        return text
+    return "\n".join(_wrapped_line(line, hanging) for line in text.split("\n"))
 
-    table = Table(title=title or None, title_justify="left", box=SIMPLE_HEAD, pad_edge=False)
-    for column in columns:
-        table.add_column(column, overflow="fold")
-    for row in rows:
-        table.add_row(*row)
-    width = None if sys.stdout.isatty() else WIDE
-    Console(width=width, markup=False, highlight=False).print(table)
+
+def _wrapped_line(line: str, hanging: int) -> str:
+    indent = " " * (len(line) - len(line.lstrip(" ")))
+    return textwrap.fill(
+        line.strip(),
+        shutil.get_terminal_size().columns,
+        initial_indent=indent,
+        subsequent_indent=indent + " " * hanging,
+        break_long_words=False,
+        break_on_hyphens=False,
+    )
+
+
+def say(text: str) -> None:
+    """Print a sentence of the result."""
+    print(wrapped(text, sys.stdout))
 
 
 def note(text: str, *, quiet: bool = False) -> None:
     """Print a note on stderr."""
     if not quiet:
-        print(text, file=sys.stderr)
+        print(wrapped(text, sys.stderr), file=sys.stderr)
 
 
 @contextmanager

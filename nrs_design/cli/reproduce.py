@@ -9,7 +9,8 @@ import typer
 
 from nrs_design.cli import exit_codes
 from nrs_design.cli.options import Json, Quiet
-from nrs_design.cli.printing import note, print_json, print_table, progress
+from nrs_design.cli.printing import note, print_json, progress
+from nrs_design.cli.tables import print_table
 
 if TYPE_CHECKING:
     from nrs_design.reproduction.row import Row

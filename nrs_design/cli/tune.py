@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 from nrs_design.cli.optimize import motion_summary
 from nrs_design.cli.options import Json, Quiet, SpecFile
-from nrs_design.cli.printing import print_json, print_table, progress
+from nrs_design.cli.printing import print_json, progress
+from nrs_design.cli.tables import print_table
 
 if TYPE_CHECKING:
     from nrs_design.controllers.controller_design import ControllerDesign

@@ -135,7 +135,11 @@ def _kind_of(root: Node, path: Path | None, syntax: tuple[Fault, ...]) -> str:
     kind = root.entries.get("kind")
     if kind is None:
         if {"schema", "verdict"} <= root.entries.keys():
-            raise refuse("this is a certificate, not a spec", "name the spec that it is for", root)
+            raise SpecError(
+                "this is a certificate, not a spec",
+                path=path,
+                remedy="name the spec that it is for",
+            )
         raise refuse("`kind` is missing", f"add `kind: ` with one of {', '.join(KINDS)}", root)
     if not isinstance(kind, Scalar):
         raise refuse("kind: expected a single text", "write one value", kind)

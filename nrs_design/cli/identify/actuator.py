@@ -21,7 +21,8 @@ from nrs_design.cli.identify.common import (
     write_spec,
 )
 from nrs_design.cli.options import Json, Quiet
-from nrs_design.cli.printing import note, print_json, print_table, progress
+from nrs_design.cli.printing import note, print_json, progress
+from nrs_design.cli.tables import print_table
 
 if TYPE_CHECKING:
     from nrs_design.identification.actuator import ActuatorFit, ActuatorIdentification

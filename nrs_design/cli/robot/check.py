@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from nrs_design.cli.options import Json, Quiet, SpecFile
-from nrs_design.cli.printing import print_json, print_table
+from nrs_design.cli.printing import print_json
+from nrs_design.cli.tables import print_table
 
 
 def check(spec: SpecFile, as_json: Json = False, quiet: Quiet = False) -> None:

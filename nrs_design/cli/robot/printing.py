@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from nrs_design.cli.printing import print_table
+from nrs_design.cli.tables import print_table
 
 _UNPRINTED = ("units", "files")
 

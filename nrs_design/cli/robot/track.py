@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from nrs_design.cli.options import Json, Quiet, SpecFile
-from nrs_design.cli.printing import print_json, print_table, progress
+from nrs_design.cli.printing import print_json, progress
 from nrs_design.cli.robot.options import Figures, Tilt, write_figures
+from nrs_design.cli.tables import print_table
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -9,8 +9,9 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from nrs_design.cli import exit_codes
+from nrs_design.cli.colour import painted_verdict
 from nrs_design.cli.options import CoordinatesOption, Json, Quiet, SpecFile, Verbose
-from nrs_design.cli.printing import note, print_json, progress
+from nrs_design.cli.printing import note, print_json, progress, say
 
 if TYPE_CHECKING:
     from nrs_design.certificates.margin import BoxMargin, DwellMargin
@@ -94,8 +95,8 @@ def certify_switching(
         write_output(path, dump(result.certificate))
     if as_json:
         print_json("certify-switching", summary(result, path) | margins_summary(box, dwell))
-    else:
-        _print(result, path, quiet=quiet, verbose=verbose)
+    elif not quiet:
+        _print(result, path, verbose=verbose)
         _print_margin(box)
         _print_dwell(dwell)
     raise typer.Exit(exit_codes.OF_VERDICT[str(result.certification.verdict)])
@@ -181,26 +182,24 @@ def _print_dwell(dwell: DwellMargin | None) -> None:
     print(f"  shortest dwell time: {proved}{below}")
 
 
-def _print(result: Result, path: Path | None, *, quiet: bool, verbose: bool) -> None:
+def _print(result: Result, path: Path | None, *, verbose: bool) -> None:
     certification = result.certification
     name = result.loaded.spec.name
-    print(
-        f"{name}: {str(certification.verdict).upper()} "
+    say(
+        f"{name}: {painted_verdict(str(certification.verdict))} "
         f"(common quadratic function: {certification.common_quadratic})"
     )
-    if quiet:
-        return
     for statement in certification.statements:
-        print(f"  {statement.claim(certification.system)}")
+        say(f"  {statement.claim(certification.system)}")
     if certification.evidence is None:
-        print("  Neither a proof nor a refutation was found; this is not a statement of stability.")
+        say("  Neither a proof nor a refutation was found; this is not a statement of stability.")
     if verbose or certification.evidence is None:
         for attempt in certification.attempts:
-            print(f"  {attempt.step}: {attempt.outcome} ({attempt.seconds * 1e3:.1f} ms)")
-    print("  modes: " + ", ".join(_shortened([m.name for m in certification.system.modes])))
-    print("  taken for granted:")
+            say(f"  {attempt.step}: {attempt.outcome} ({attempt.seconds * 1e3:.1f} ms)")
+    say("  modes: " + ", ".join(_shortened([m.name for m in certification.system.modes])))
+    say("  taken for granted:")
     for assumption in certification.system.assumptions:
-        print(f"    - {assumption}")
+        say(f"    - {assumption}")
     if path is not None:
         note(f"certificate written to {path}")
 

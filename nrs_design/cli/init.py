@@ -8,6 +8,7 @@ from typing import Annotated
 
 import typer
 
+from nrs_design.cli.options import Quiet
 from nrs_design.cli.printing import note
 from nrs_design.errors import OutputError
 
@@ -27,6 +28,7 @@ def init(
         Path | None, typer.Option(help="File to write; default TEMPLATE.nrs.yaml.")
     ] = None,
     force: Annotated[bool, typer.Option("--force", help="Overwrite an existing file.")] = False,
+    quiet: Quiet = False,
 ) -> None:
     """Write a commented spec (interaction-design, hybrid-force, switched-system or robot).
 

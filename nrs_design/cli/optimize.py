@@ -6,7 +6,7 @@ import math
 from typing import TYPE_CHECKING, Any
 
 from nrs_design.cli.options import Json, Quiet, SpecFile
-from nrs_design.cli.printing import note, print_json, progress
+from nrs_design.cli.printing import note, print_json, progress, say
 from nrs_design.cli.tables import print_table
 
 if TYPE_CHECKING:
@@ -43,6 +43,7 @@ def optimize(spec: SpecFile, as_json: Json = False, quiet: Quiet = False) -> Non
                 "controllers": [_summary(item) for item in evidence.impedance],
             },
         )
+    if as_json or quiet:
         return
     if not evidence.impedance:
         note("no impedance controllers in this spec; see nrs-design tune for the others")
@@ -93,7 +94,7 @@ def _print(name: str, evidence: DesignEvidence) -> None:
     source = (
         "designed by root locus" if evidence.motion_source == "designed" else "given in the spec"
     )
-    print(f"{name}: G(s) = ({_polynomial(G.numerator)}) / ({_polynomial(G.denominator)}), {source}")
+    say(f"{name}: G(s) = ({_polynomial(G.numerator)}) / ({_polynomial(G.denominator)}), {source}")
     columns = [
         "controller",
         "Zdes\nN m s/rad",

@@ -8,11 +8,13 @@ from typing import Annotated
 
 import typer
 
+from nrs_design.cli.options import Quiet
 from nrs_design.cli.printing import note
 
 
 def schema(
     out: Annotated[Path | None, typer.Option(help="Write to a file instead of stdout.")] = None,
+    quiet: Quiet = False,
 ) -> None:
     """Print the JSON Schema (draft-07) of spec files.
 
@@ -26,4 +28,4 @@ def schema(
         print(text, end="")
         return
     write_output(out, text)
-    note(f"schema written to {out}")
+    note(f"schema written to {out}", quiet=quiet)

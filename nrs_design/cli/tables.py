@@ -10,8 +10,8 @@ Row = Sequence[str]
 
 # Longer cells are sentences, which may go over several lines; shorter ones are never broken.
 SENTENCE = 40
-# Around each cell.
-_PADDING = 2
+# Between two columns; at both edges together there is one less.
+_GAP = 3
 
 
 def print_table(title: str, columns: Row, rows: Sequence[Row]) -> None:
@@ -54,7 +54,7 @@ def _transpose(rows: Sequence[Row]) -> list[Row]:
 
 
 def _least_width(rows: Sequence[Row]) -> int:
-    return sum(_least_widths(rows)) + _PADDING * len(rows[0])
+    return sum(_least_widths(rows)) + _GAP * len(rows[0]) - 1
 
 
 def _least_widths(rows: Sequence[Row]) -> list[int]:
@@ -77,7 +77,7 @@ def _print(title: str, columns: Row, rows: Sequence[Row], width: int | None) -> 
 
     table = Table(title=title or None, title_justify="left", box=SIMPLE_HEAD, pad_edge=False)
     least = _least_widths([columns, *rows])
-    fits = width is None or sum(least) + _PADDING * len(least) <= width
+    fits = width is None or sum(least) + _GAP * len(least) - 1 <= width
     for column, narrowest in zip(columns, least, strict=True):
         table.add_column(column, overflow="fold", min_width=narrowest if fits else None)
     for row in rows:

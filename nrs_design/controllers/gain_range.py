@@ -54,7 +54,5 @@ def faults_of_ranges(
         low, high = (end.exact for end in gain.range)
         if not min(low, to_float32(low)) <= shipped <= max(high, to_float32(high)):
             ends = ", ".join(end.text for end in gain.range)
-            yield (
-                name,
-                f"the designed {name}, {exact_decimal(shipped)}, is outside its range [{ends}]",
-            )
+            designed = f"the designed {name}, {exact_decimal(shipped)}"
+            yield name, f"{designed}, is outside its range [{ends}]"

@@ -50,6 +50,7 @@ def balance(
     if as_json:
         head = {"spec": loaded.spec.name, "spec_sha256": loaded.sha256}
         print_json("robot-balance", head | content)
+    if as_json or quiet:
         return
     print_table(
         "",

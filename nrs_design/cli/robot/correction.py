@@ -54,7 +54,7 @@ def correction(
     if as_json:
         head = {"spec": loaded.spec.name, "spec_sha256": loaded.sha256}
         print_json("robot-correction", head | _document(rows, tilts) | {"files": files})
-    else:
+    elif not quiet:
         _print(rows, tilts)
 
 

@@ -65,7 +65,7 @@ def dynamics(
     if as_json:
         head = {"spec": loaded.spec.name, "spec_sha256": loaded.sha256}
         print_json("robot-dynamics", head | content)
-    else:
+    elif not quiet:
         print_quantities(content)
 
 

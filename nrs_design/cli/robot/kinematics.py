@@ -50,7 +50,7 @@ def kinematics(
     if as_json:
         head = {"spec": loaded.spec.name, "spec_sha256": loaded.sha256}
         print_json("robot-kinematics", head | content)
-    else:
+    elif not quiet:
         print_quantities(content)
 
 

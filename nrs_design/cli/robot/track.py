@@ -93,12 +93,12 @@ def track(
     if as_json:
         head = {"spec": loaded.spec.name, "spec_sha256": loaded.sha256}
         print_json("robot-track", head | _document(robot, runs, changes) | {"files": files})
+    if as_json or quiet:
         return
     _print_runs(runs)
     if ablation:
         _print_ablation(changes)
-    if not quiet:
-        _print_left_out()
+    _print_left_out()
 
 
 def _on_base(spec: RobotSpec, robot: Robot, tilt: float | None) -> Robot:

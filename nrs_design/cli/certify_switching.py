@@ -10,7 +10,7 @@ import typer
 
 from nrs_design.cli import exit_codes
 from nrs_design.cli.options import CoordinatesOption, Json, Quiet, SpecFile, Verbose
-from nrs_design.cli.printing import note, print_json, progress
+from nrs_design.cli.printing import note, print_json, progress, say
 
 if TYPE_CHECKING:
     from nrs_design.certificates.margin import BoxMargin, DwellMargin
@@ -159,12 +159,12 @@ def _print_margin(box: BoxMargin | None) -> None:
     if box is None:
         return
     if box.proved is None or box.proof is None:
-        print("  largest box: not even the nominal values are proved")
+        say("  largest box: not even the nominal values are proved")
         return
     beyond = (
         f"; scaled by {float(box.refuted):.6g} they are refuted" if box.refuted is not None else ""
     )
-    print(
+    say(
         f"  largest box: scaled by {float(box.proved):.6g} about their nominal values, all ranges "
         f"are proved ({box.proof.method}){beyond}"
     )
@@ -174,33 +174,33 @@ def _print_dwell(dwell: DwellMargin | None) -> None:
     if dwell is None:
         return
     if dwell.proved is None or dwell.proof is None:
-        print("  shortest dwell time: none was proved")
+        say("  shortest dwell time: none was proved")
         return
     below = f"; {float(dwell.refuted):.6g} s is refuted" if dwell.refuted is not None else ""
     proved = f"{float(dwell.proved):.6g} s is proved ({dwell.proof.method})"
-    print(f"  shortest dwell time: {proved}{below}")
+    say(f"  shortest dwell time: {proved}{below}")
 
 
 def _print(result: Result, path: Path | None, *, quiet: bool, verbose: bool) -> None:
     certification = result.certification
     name = result.loaded.spec.name
-    print(
+    say(
         f"{name}: {str(certification.verdict).upper()} "
         f"(common quadratic function: {certification.common_quadratic})"
     )
     if quiet:
         return
     for statement in certification.statements:
-        print(f"  {statement.claim(certification.system)}")
+        say(f"  {statement.claim(certification.system)}")
     if certification.evidence is None:
-        print("  Neither a proof nor a refutation was found; this is not a statement of stability.")
+        say("  Neither a proof nor a refutation was found; this is not a statement of stability.")
     if verbose or certification.evidence is None:
         for attempt in certification.attempts:
-            print(f"  {attempt.step}: {attempt.outcome} ({attempt.seconds * 1e3:.1f} ms)")
-    print("  modes: " + ", ".join(_shortened([m.name for m in certification.system.modes])))
-    print("  taken for granted:")
+            say(f"  {attempt.step}: {attempt.outcome} ({attempt.seconds * 1e3:.1f} ms)")
+    say("  modes: " + ", ".join(_shortened([m.name for m in certification.system.modes])))
+    say("  taken for granted:")
     for assumption in certification.system.assumptions:
-        print(f"    - {assumption}")
+        say(f"    - {assumption}")
     if path is not None:
         note(f"certificate written to {path}")
 

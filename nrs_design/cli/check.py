@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -10,7 +9,7 @@ import typer
 
 from nrs_design.cli import exit_codes
 from nrs_design.cli.options import Json, Quiet
-from nrs_design.cli.printing import print_json, print_table
+from nrs_design.cli.printing import note, print_json, print_table
 from nrs_design.errors import NrsDesignError
 
 
@@ -30,7 +29,7 @@ def check(
         except NrsDesignError as error:
             results.append(_fault(path, error))
             if not as_json:
-                print(f"error[{error.rule}]: {error}", file=sys.stderr)
+                note(f"error[{error.rule}]: {error}")
             continue
         if not as_json and not quiet:
             _print(results[-1])

@@ -6,7 +6,7 @@ import math
 from typing import TYPE_CHECKING, Any
 
 from nrs_design.cli.options import Json, Quiet, SpecFile
-from nrs_design.cli.printing import note, print_json, print_table, progress
+from nrs_design.cli.printing import note, print_json, print_table, progress, say
 from nrs_design.errors import DesignError
 
 if TYPE_CHECKING:
@@ -93,7 +93,7 @@ def _print(name: str, evidence: DesignEvidence) -> None:
     source = (
         "designed by root locus" if evidence.motion_source == "designed" else "given in the spec"
     )
-    print(f"{name}: G(s) = ({_polynomial(G.numerator)}) / ({_polynomial(G.denominator)}), {source}")
+    say(f"{name}: G(s) = ({_polynomial(G.numerator)}) / ({_polynomial(G.denominator)}), {source}")
     columns = [
         "controller",
         "Zdes\nN m s/rad",

@@ -10,7 +10,7 @@ import typer
 
 from nrs_design.cli import exit_codes
 from nrs_design.cli.options import Json, Quiet, SpecFile
-from nrs_design.cli.printing import note, print_json, progress
+from nrs_design.cli.printing import note, print_json, progress, say
 from nrs_design.errors import DesignError
 
 if TYPE_CHECKING:
@@ -72,7 +72,7 @@ def report(
             },
         )
     else:
-        print(f"{loaded.spec.name}: {verdict.upper()}")
+        say(f"{loaded.spec.name}: {verdict.upper()}")
         for path in files:
             note(f"written to {path}", quiet=quiet)
     raise typer.Exit(exit_codes.OF_VERDICT[verdict])

@@ -9,7 +9,7 @@ import typer
 
 from nrs_design.cli import exit_codes
 from nrs_design.cli.options import Json, Quiet
-from nrs_design.cli.printing import note, print_json, print_table, progress
+from nrs_design.cli.printing import note, print_json, print_table, progress, say
 
 if TYPE_CHECKING:
     from nrs_design.reproduction.row import Row
@@ -82,7 +82,7 @@ def _print(table: tuple[Row, ...], *, quiet: bool) -> None:
         print_table("", columns, cells)
         for row in table:
             if row.note:
-                print(f"{row.section} {row.name}: {row.note}")
-        print()
+                say(f"{row.section} {row.name}: {row.note}")
+        say()
     counts = count_verdicts(table)
-    print(", ".join(f"{count} {verdict}" for verdict, count in counts.items()))
+    say(", ".join(f"{count} {verdict}" for verdict, count in counts.items()))

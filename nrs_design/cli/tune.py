@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from nrs_design.cli.optimize import motion_summary
 from nrs_design.cli.options import Json, Quiet, SpecFile
-from nrs_design.cli.printing import print_json, print_table, progress
+from nrs_design.cli.printing import print_json, print_table, progress, say
 from nrs_design.errors import DesignError
 
 if TYPE_CHECKING:
@@ -93,7 +93,7 @@ def _summary(design: ControllerDesign, evidence: DesignEvidence) -> dict[str, An
 def _print(name: str, design: ControllerDesign, evidence: DesignEvidence) -> None:
     print_table(f"{name}: motion loop", MOTION_COLUMNS, _motion_rows(design, evidence))
     if evidence.motion_source == "given":
-        print("The spec states G itself: the poles are those of that G, not of the PD gains.")
+        say("The spec states G itself: the poles are those of that G, not of the PD gains.")
     if evidence.force:
         print_table(f"{name}: force loop", FORCE_COLUMNS, _force_rows(evidence))
 

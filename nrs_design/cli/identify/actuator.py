@@ -21,7 +21,7 @@ from nrs_design.cli.identify.common import (
     write_spec,
 )
 from nrs_design.cli.options import Json, Quiet
-from nrs_design.cli.printing import note, print_json, print_table, progress
+from nrs_design.cli.printing import note, print_json, print_table, progress, say
 
 if TYPE_CHECKING:
     from nrs_design.identification.actuator import ActuatorFit, ActuatorIdentification
@@ -80,7 +80,7 @@ def actuator(
 
 def _print(found: ActuatorIdentification) -> None:
     if found.synthetic:
-        print(SYNTHETIC)
+        say(SYNTHETIC)
     rows = [
         [
             fit.method,
@@ -92,9 +92,9 @@ def _print(found: ActuatorIdentification) -> None:
     ]
     columns = ["fit [95 %]", "gain (rad/s)/rpm", "time constant s", "friction rpm"]
     print_table("", columns, rows)
-    print(f"chosen: {found.chosen.method}. {found.reason}")
-    print(f"R = {interval(found.figures.resistance)} ohm")
-    print(f"speed over torque = {interval(found.figures.gradient)} rpm/(N m)")
+    say(f"chosen: {found.chosen.method}. {found.reason}")
+    say(f"R = {interval(found.figures.resistance)} ohm")
+    say(f"speed over torque = {interval(found.figures.gradient)} rpm/(N m)")
 
 
 def _summary(found: ActuatorIdentification) -> dict[str, Any]:

@@ -15,9 +15,9 @@ import typer
 from nrs_design import __version__
 from nrs_design.cli import exit_codes
 from nrs_design.cli.errors import print_error, summary
-from nrs_design.cli.printing import print_json
+from nrs_design.cli.groups import CommandGroup
+from nrs_design.cli.printing import note, print_json
 from nrs_design.cli.streams import lasting
-from nrs_design.cli.suggestions import SuggestingGroup
 from nrs_design.errors import NrsDesignError
 
 # Each is in the module of its name; the help lists them in this order.
@@ -60,7 +60,7 @@ def make_app(names: Iterable[str] = COMMANDS) -> typer.Typer:
     """
     app = typer.Typer(
         name="nrs-design",
-        cls=SuggestingGroup,
+        cls=CommandGroup,
         no_args_is_help=True,
         pretty_exceptions_enable=False,
         context_settings={"help_option_names": ["-h", "--help"]},
@@ -123,16 +123,16 @@ def main() -> None:
     except OSError as error:
         # What could not be written must not be tried again at exit.
         os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
-        print(f"error: the output cannot be written ({error.strerror})", file=sys.stderr)
+        note(f"error: the output cannot be written ({error.strerror})")
         sys.exit(exit_codes.USAGE)
     except Exception as error:
         if "-v" in sys.argv or "--verbose" in sys.argv:
             import traceback
 
-            traceback.print_exc()
-        print(
+            for line in traceback.format_exc().split("\n"):
+                note(line)
+        note(
             f"internal error: {type(error).__name__}: {error} (a defect of nrs-design, not a "
-            "verdict; run again with -v and report what it prints)",
-            file=sys.stderr,
+            "verdict; run again with -v and report what it prints)"
         )
         sys.exit(exit_codes.INTERNAL)

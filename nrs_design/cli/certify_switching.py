@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from nrs_design.cli import exit_codes
-from nrs_design.cli.colour import painted_verdict
 from nrs_design.cli.options import CoordinatesOption, Json, Quiet, SpecFile, Verbose
 from nrs_design.cli.printing import note, print_json, progress, say
 
@@ -160,12 +159,12 @@ def _print_margin(box: BoxMargin | None) -> None:
     if box is None:
         return
     if box.proved is None or box.proof is None:
-        print("  largest box: not even the nominal values are proved")
+        say("  largest box: not even the nominal values are proved")
         return
     beyond = (
         f"; scaled by {float(box.refuted):.6g} they are refuted" if box.refuted is not None else ""
     )
-    print(
+    say(
         f"  largest box: scaled by {float(box.proved):.6g} about their nominal values, all ranges "
         f"are proved ({box.proof.method}){beyond}"
     )
@@ -175,20 +174,19 @@ def _print_dwell(dwell: DwellMargin | None) -> None:
     if dwell is None:
         return
     if dwell.proved is None or dwell.proof is None:
-        print("  shortest dwell time: none was proved")
+        say("  shortest dwell time: none was proved")
         return
     below = f"; {float(dwell.refuted):.6g} s is refuted" if dwell.refuted is not None else ""
     proved = f"{float(dwell.proved):.6g} s is proved ({dwell.proof.method})"
-    print(f"  shortest dwell time: {proved}{below}")
+    say(f"  shortest dwell time: {proved}{below}")
 
 
 def _print(result: Result, path: Path | None, *, verbose: bool) -> None:
     certification = result.certification
     name = result.loaded.spec.name
-    say(
-        f"{name}: {painted_verdict(str(certification.verdict))} "
-        f"(common quadratic function: {certification.common_quadratic})"
-    )
+    verdict = str(certification.verdict)
+    exists = f"(common quadratic function: {certification.common_quadratic})"
+    say(f"{name}: {verdict.upper()} {exists}", verdict=verdict)
     for statement in certification.statements:
         say(f"  {statement.claim(certification.system)}")
     if certification.evidence is None:

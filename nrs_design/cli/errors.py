@@ -9,8 +9,9 @@ from pathlib import Path
 from typing import Any
 
 from nrs_design.cli.colour import painted
+from nrs_design.cli.printing import wrapped
 from nrs_design.errors import Fault, NrsDesignError
-from nrs_design.gating.paths import printable
+from nrs_design.printable import printable
 
 # More than a user mends at once.
 MAX_SHOWN = 20
@@ -21,17 +22,17 @@ LARGEST_FILE = 16 * 1024 * 1024
 
 
 def print_error(error: NrsDesignError) -> None:
-    """Print every fault on stderr, each with its place and its remedy."""
+    """Write every fault to stderr, each with its place and its remedy."""
     faults = error.faults
-    for fault in faults[:MAX_SHOWN]:
-        shown = _block(error.rule, fault, error.path) if fault.line else _line(error)
-        print(shown, file=sys.stderr)
-        if len(faults) > 1:
-            print(file=sys.stderr)
-    more = f", and {len(faults) - MAX_SHOWN} more" if len(faults) > MAX_SHOWN else ""
+    blocks = [
+        _block(error.rule, fault, error.path) if fault.line else _line(error)
+        for fault in faults[:MAX_SHOWN]
+    ]
     if len(faults) > 1:
-        where = "" if error.path is None else f" in {printable(error.path)}"
-        print(f"{min(len(faults), MAX_SHOWN)} faults{where}{more}", file=sys.stderr)
+        more = f" and {len(faults) - MAX_SHOWN} more" if len(faults) > MAX_SHOWN else ""
+        where = f" in {printable(error.path)}" if error.path else ""
+        blocks = [f"{block}\n" for block in blocks] + [f"{len(blocks)} faults{more}{where}"]
+    sys.stderr.write("\n".join(blocks) + "\n")
 
 
 def summary(error: NrsDesignError) -> dict[str, Any]:
@@ -52,18 +53,20 @@ def summary(error: NrsDesignError) -> dict[str, Any]:
 
 
 def _line(error: NrsDesignError) -> str:
-    return f"{_label(error.rule)}: {printable(str(error))}"
+    return _headed(error.rule, str(error))
 
 
-def _label(rule: str) -> str:
-    return painted(f"error[{rule}]", "red", sys.stderr)
+def _headed(rule: str, message: str) -> str:
+    head = f"error[{rule}]"
+    text = wrapped(f"{head}: {printable(message)}", sys.stderr)
+    return painted(head, "red", sys.stderr) + text.removeprefix(head)
 
 
 def _block(rule: str, fault: Fault, path: Path | None) -> str:
     gutter = " " * len(str(fault.line))
     arrow, bar, equals = (painted(mark, "blue", sys.stderr) for mark in ("-->", "|", "="))
     place = ":".join(str(part) for part in (path or "spec", fault.line, fault.column) if part)
-    lines = [f"{_label(rule)}: {printable(fault.message)}", f"{gutter}{arrow} {printable(place)}"]
+    lines = [_headed(rule, fault.message), f"{gutter}{arrow} {printable(place)}"]
     source = None if path is None else _source(path, fault.line or 1)
     if source is not None:
         shown, before = excerpt(source, fault.column or 1, max(_width() - len(gutter) - 3, 20))
@@ -72,7 +75,8 @@ def _block(rule: str, fault: Fault, path: Path | None) -> str:
         if fault.column:
             lines.append(f"{gutter} {bar} {' ' * before}{painted('^', 'red', sys.stderr)}")
     if fault.remedy:
-        lines.append(f"{gutter} {equals} help: {printable(fault.remedy)}")
+        helped = wrapped(f"{gutter} = help: {printable(fault.remedy)}", sys.stderr, hanging=8)
+        lines.append(helped.replace("=", equals, 1))
     return "\n".join(lines)
 
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from nrs_design.cli.options import Json, Quiet
-from nrs_design.cli.printing import print_json
+from nrs_design.cli.printing import print_json, say
 from nrs_design.errors import NrsDesignError
 
 if TYPE_CHECKING:
@@ -53,9 +53,10 @@ def _list(rules: list[Rule], words: list[Word], *, as_json: bool) -> None:
         print_json("explain", {"rules": [*map(asdict, rules)], "verdicts": [*map(asdict, words)]})
         return
     for rule in rules:
-        print(f"{rule.id}  {rule.title}")
-    print("\nVerdicts: " + ", ".join(word.word for word in words))
-    print("nrs-design explain RULE says what one of them means, and what to do.")
+        say(f"{rule.id}  {rule.title}")
+    say()
+    say("Verdicts: " + ", ".join(word.word for word in words))
+    say("nrs-design explain RULE says what one of them means, and what to do.")
 
 
 def _explain(title: str, entry: Rule | Word, *, as_json: bool) -> None:
@@ -64,7 +65,9 @@ def _explain(title: str, entry: Rule | Word, *, as_json: bool) -> None:
     if as_json:
         print_json("explain", asdict(entry))
         return
-    print(title)
+    say(title)
     for heading, text in (("Meaning", entry.explanation), ("What to do", entry.remedy)):
-        print(f"\n{heading}")
-        print(textwrap.fill(text, WIDTH, initial_indent="  ", subsequent_indent="  "))
+        say()
+        say(heading)
+        for line in textwrap.wrap(text, WIDTH, initial_indent="  ", subsequent_indent="  "):
+            say(line)

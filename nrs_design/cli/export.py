@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from nrs_design.cli import exit_codes
-from nrs_design.cli.colour import painted_verdict
 from nrs_design.cli.options import Json, Quiet, SpecFile
 from nrs_design.cli.printing import note, print_json, progress, say
 from nrs_design.errors import OutputError
@@ -63,7 +62,7 @@ def export(
         # Nothing was written, which is an error of its own.
         note(f"{name}: not exported: {result.reason}")
     elif not quiet:
-        say(f"{name}: {painted_verdict('proved')}, exported to {file}")
+        say(f"{name}: PROVED, exported to {file}", verdict="proved")
         note(f"certificate: {proof}")
     raise typer.Exit(exit_codes.OF_VERDICT.get(result.verdict, exit_codes.REFUTED))
 

@@ -88,7 +88,8 @@ def gate(
     else:
         sys.stdout.write(document)
     if out is not None or chosen is not FormatOption.TEXT:
-        note(FORMATS["text"](outcome), quiet=quiet)
+        for line in FORMATS["text"](outcome).split("\n"):
+            note(line, quiet=quiet)
     for text in outcome.notes:
         note(f"note: {text}", quiet=quiet)
     note(f"{perf_counter() - start:.1f} s", quiet=quiet)

@@ -1,8 +1,11 @@
-"""Printing: results on stdout, progress and notes on stderr."""
+"""Printing: results on stdout, progress and notes on stderr.
+
+Here text leaves the program, and nowhere else in the command line: names and messages may come
+from files that strangers wrote, so every line and every cell is made `printable`.
+"""
 
 from __future__ import annotations
 
-import json
 import shutil
 import sys
 import textwrap
@@ -10,21 +13,33 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import Any, TextIO
 
+from nrs_design.cli.colour import OF_VERDICT, painted
+from nrs_design.printable import json_text, printable
+
 
 def print_json(command: str, content: dict[str, Any]) -> None:
     """Print the versioned envelope of a command."""
     envelope = {"schema": f"nrs-design/{command}/1", **content}
-    print(json.dumps(envelope, indent=2, ensure_ascii=True, allow_nan=False))
+    print(json_text(envelope, allow_nan=False))
 
 
-def wrapped(text: str, stream: TextIO, hanging: int = 2) -> str:
-    """Break the lines of a text between words, as wide as the terminal; a pipe gets them whole."""
+def say(line: str = "", *, verdict: str = "") -> None:
+    """Print one line of the result; the verdict in it, in capitals, is coloured on a terminal."""
+    text = wrapped(printable(line), sys.stdout)
+    word = verdict.upper()
+    print(text.replace(word, painted(word, OF_VERDICT[verdict], sys.stdout), 1) if word else text)
+
+
+def note(line: str, *, quiet: bool = False) -> None:
+    """Print one line on stderr."""
+    if not quiet:
+        print(wrapped(printable(line), sys.stderr), file=sys.stderr)
+
+
+def wrapped(line: str, stream: TextIO, hanging: int = 2) -> str:
+    """Break a line between words, as wide as the terminal is; a pipe gets it whole."""
     if not stream.isatty():
-        return text
-    return "\n".join(_wrapped_line(line, hanging) for line in text.split("\n"))
-
-
-def _wrapped_line(line: str, hanging: int) -> str:
+        return line
     indent = " " * (len(line) - len(line.lstrip(" ")))
     return textwrap.fill(
         line.strip(),
@@ -34,17 +49,6 @@ def _wrapped_line(line: str, hanging: int) -> str:
         break_long_words=False,
         break_on_hyphens=False,
     )
-
-
-def say(text: str) -> None:
-    """Print a sentence of the result."""
-    print(wrapped(text, sys.stdout))
-
-
-def note(text: str, *, quiet: bool = False) -> None:
-    """Print a note on stderr."""
-    if not quiet:
-        print(wrapped(text, sys.stderr), file=sys.stderr)
 
 
 @contextmanager
@@ -60,6 +64,7 @@ def progress(title: str, *, quiet: bool = False) -> Iterator[Callable[[str], Non
         yield lambda step: None
         return
     from rich.console import Console
+    from rich.markup import escape
 
     with Console(stderr=True).status(title) as status:
-        yield lambda step: status.update(f"{title}: {step}")
+        yield lambda step: status.update(f"{title}: {escape(printable(step))}")

@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from nrs_design.cli import exit_codes
-from nrs_design.cli.colour import painted_verdict
 from nrs_design.cli.options import Json, Quiet, SpecFile
 from nrs_design.cli.printing import note, print_json, progress, say
 from nrs_design.errors import DesignError
@@ -73,7 +72,7 @@ def report(
             },
         )
     elif not quiet:
-        say(f"{loaded.spec.name}: {painted_verdict(verdict)}")
+        say(f"{loaded.spec.name}: {verdict.upper()}", verdict=verdict)
         for path in files:
             note(f"written to {path}")
     raise typer.Exit(exit_codes.OF_VERDICT[verdict])

@@ -83,6 +83,6 @@ def _print(table: tuple[Row, ...]) -> None:
     for row in table:
         if row.note:
             say(f"{row.section} {row.name}: {row.note}")
-    print()
+    say()
     counts = count_verdicts(table)
     say(", ".join(f"{count} {verdict}" for verdict, count in counts.items()))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import json
+import sys
 from pathlib import Path
 from typing import Annotated
 
@@ -21,11 +21,12 @@ def schema(
     Example: nrs-design schema --out nrs.schema.json
     """
     from nrs_design.output import write_output
+    from nrs_design.printable import json_text
     from nrs_design.spec.schema import json_schema
 
-    text = json.dumps(json_schema(), indent=2) + "\n"
+    text = json_text(json_schema()) + "\n"
     if out is None:
-        print(text, end="")
+        sys.stdout.write(text)
         return
     write_output(out, text)
     note(f"schema written to {out}", quiet=quiet)

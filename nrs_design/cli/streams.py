@@ -26,7 +26,9 @@ class _Unheard(io.FileIO):
 
 
 def lasting(stream: TextIO | None) -> TextIO:
-    """Return a stream in place of stdout or stderr that no absent reader can break.
+    """Return a stream in place of stdout or stderr that takes every text, heard or not.
+
+    Characters that its encoding does not have are written as escapes.
 
     Parameters
     ----------
@@ -44,7 +46,7 @@ def lasting(stream: TextIO | None) -> TextIO:
     return io.TextIOWrapper(
         io.BufferedWriter(raw),
         encoding=stream.encoding,
-        errors=stream.errors,
+        errors="backslashreplace",
         line_buffering=stream.isatty() or stream.fileno() == 2,
         write_through=getattr(stream, "write_through", False),
     )

@@ -6,8 +6,12 @@ import shutil
 import sys
 from collections.abc import Iterator, Sequence
 
+from nrs_design.printable import printable
+
 Row = Sequence[str]
 
+# In a pipe no table is folded.
+ENDLESS = 10_000
 # Longer cells are sentences, which may go over several lines; shorter ones are never broken.
 SENTENCE = 40
 # Between two columns; at both edges together there is one less.
@@ -29,6 +33,7 @@ def print_table(title: str, columns: Row, rows: Sequence[Row]) -> None:
     rows : sequence of sequence of str
         Cells, as many in each row as there are headings.
     """
+    rows = [["\n".join(map(printable, cell.split("\n"))) for cell in row] for row in rows]
     width = shutil.get_terminal_size().columns if sys.stdout.isatty() else None
     if width is None or _least_width([columns, *rows]) <= width:
         _print(title, columns, rows, width)
@@ -75,12 +80,12 @@ def _print(title: str, columns: Row, rows: Sequence[Row], width: int | None) -> 
     from rich.console import Console
     from rich.table import Table
 
-    table = Table(title=title or None, title_justify="left", box=SIMPLE_HEAD, pad_edge=False)
+    table = Table(title_justify="left", box=SIMPLE_HEAD, pad_edge=False)
+    table.title = printable(title) or None
     least = _least_widths([columns, *rows])
     fits = width is None or sum(least) + _GAP * len(least) - 1 <= width
     for column, narrowest in zip(columns, least, strict=True):
         table.add_column(column, overflow="fold", min_width=narrowest if fits else None)
     for row in rows:
         table.add_row(*row)
-    console = Console(width=width or 10_000, markup=False, highlight=False)
-    console.print(table)
+    Console(width=width or ENDLESS, markup=False, emoji=False, highlight=False).print(table)

@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from nrs_design.cli import exit_codes
-from nrs_design.cli.colour import painted_verdict
 from nrs_design.cli.options import CoordinatesOption, Json, Quiet, SpecFile
 from nrs_design.cli.printing import print_json, say
 
@@ -58,14 +57,15 @@ def verify(
             },
         )
     elif checked is None:
-        say(f"{painted_verdict('rejected')}: {outcome.fault}")
+        say(f"REJECTED: {outcome.fault}", verdict="rejected")
     elif not quiet:
         _print(checked, loaded.spec)
     raise typer.Exit(exit_codes.OF_VERDICT.get(verdict, exit_codes.REFUTED))
 
 
 def _print(certificate: Certificate, spec: Spec) -> None:
-    say(f"{painted_verdict(certificate.verdict)}: the certificate holds, checked exactly.")
+    verdict = certificate.verdict
+    say(f"{verdict.upper()}: the certificate holds, checked exactly.", verdict=verdict)
     for statement in certificate.statements:
         say(f"  {statement.claim(certificate.system)}")
     if certificate.coordinates:

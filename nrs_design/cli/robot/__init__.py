@@ -4,17 +4,17 @@ from __future__ import annotations
 
 import typer
 
+from nrs_design.cli.groups import CommandGroup
 from nrs_design.cli.robot.balance import balance
 from nrs_design.cli.robot.check import check
 from nrs_design.cli.robot.correction import correction
 from nrs_design.cli.robot.dynamics import dynamics
 from nrs_design.cli.robot.kinematics import kinematics
 from nrs_design.cli.robot.track import track
-from nrs_design.cli.suggestions import SuggestingGroup
 
 robot = typer.Typer(
     name="robot",
-    cls=SuggestingGroup,
+    cls=CommandGroup,
     no_args_is_help=True,
     help="Kinematics, dynamics, balance and motion control of a robot (specs of kind robot).",
 )

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from nrs_design.cli.options import Json, Quiet, SpecFile
-from nrs_design.cli.printing import print_json
+from nrs_design.cli.printing import print_json, say
 from nrs_design.cli.tables import print_table
 
 
@@ -39,12 +39,12 @@ def check(spec: SpecFile, as_json: Json = False, quiet: Quiet = False) -> None:
             },
         )
         return
-    print(f"{spec}: valid robot {loaded.spec.name!r}")
+    say(f"{spec}: valid robot {loaded.spec.name!r}")
     if quiet:
         return
     eigenvalues = ", ".join(f"{value:.4g}" for value in inertia)
-    print(f"moving mass {robot.moving_mass:.4f} kg; eigenvalues of M at home {eigenvalues} kg m^2")
-    print(f"{100 * survey.reachable:.2f} % of the workspace grid is reachable by all legs")
+    say(f"moving mass {robot.moving_mass:.4f} kg; eigenvalues of M at home {eigenvalues} kg m^2")
+    say(f"{100 * survey.reachable:.2f} % of the workspace grid is reachable by all legs")
     print_table(
         "",
         ["phi", "psi", "deepest reachable"],

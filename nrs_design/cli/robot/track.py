@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from nrs_design.cli.options import Json, Quiet, SpecFile
-from nrs_design.cli.printing import print_json, progress
+from nrs_design.cli.printing import print_json, progress, say
 from nrs_design.cli.robot.options import Figures, Tilt, write_figures
 from nrs_design.cli.tables import print_table
 
@@ -205,6 +205,6 @@ def _print_ablation(changes: list[dict[str, Any]]) -> None:
 def _print_left_out() -> None:
     from nrs_design.simulation.tracking import LEFT_OUT
 
-    print("not modelled:")
+    say("not modelled:")
     for line in LEFT_OUT:
-        print(f"  - {line}")
+        say(f"  - {line}")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from nrs_design.gating.obligations import GateOutcome, Obligation
 from nrs_design.gating.paths import from_here
+from nrs_design.printable import printable
 
 # GitHub shows no more than ten annotations of each type per step, whichever come first.
 MAX_ANNOTATIONS = 10
@@ -30,8 +31,7 @@ def _annotation(item: Obligation) -> str:
 
 
 def _data(text: str) -> str:
-    encodable = text.encode(errors="backslashreplace").decode()
-    return encodable.replace("%", "%25").replace("\r", "%0D").replace("\n", "%0A")
+    return printable(text).replace("%", "%25")
 
 
 def _property(text: str) -> str:

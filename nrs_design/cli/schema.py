@@ -21,10 +21,9 @@ def schema(
     Example: nrs-design schema --out nrs.schema.json
     """
     from nrs_design.output import write_output
-    from nrs_design.printable import json_text
-    from nrs_design.spec.schema import json_schema
+    from nrs_design.spec.schema import schema_text
 
-    text = json_text(json_schema()) + "\n"
+    text = schema_text()
     if out is None:
         sys.stdout.write(text)
         return

@@ -16,9 +16,8 @@ def run_on_terminal(
     process, screen = pty.fork()
     if process == 0:
         os.chdir(cwd)
-        for name in ("COLUMNS", "NO_COLOR"):
-            os.environ.pop(name, None)
-        os.environ |= {"TERM": "xterm", **environment}
+        os.environ.pop("NO_COLOR", None)
+        os.environ |= {"TERM": "xterm", "COLUMNS": str(columns), **environment}
         fcntl.ioctl(1, termios.TIOCSWINSZ, struct.pack("HHHH", 50, columns, 0, 0))
         os.execv(sys.executable, [sys.executable, "-m", "nrs_design", *map(str, arguments)])
     shown = b""

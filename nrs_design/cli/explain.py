@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shutil
 import textwrap
 from typing import TYPE_CHECKING, Annotated
 
@@ -69,5 +70,6 @@ def _explain(title: str, entry: Rule | Word, *, as_json: bool) -> None:
     for heading, text in (("Meaning", entry.explanation), ("What to do", entry.remedy)):
         say()
         say(heading)
-        for line in textwrap.wrap(text, WIDTH, initial_indent="  ", subsequent_indent="  "):
+        width = min(WIDTH, shutil.get_terminal_size((WIDTH, 24)).columns)
+        for line in textwrap.wrap(text, width, initial_indent="  ", subsequent_indent="  "):
             say(line)

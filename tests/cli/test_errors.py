@@ -50,7 +50,7 @@ def test_json_lists_them_all(faulty):
         (5, 18),
         (7, 3),
         (17, 26),
-        (17, 50),
+        (17, 49),
     ]
     assert all(fault["message"] and fault["remedy"] for fault in spec["faults"])
     error = json.loads(run("tune", "--json", "a.nrs.yaml", cwd=faulty).stdout)

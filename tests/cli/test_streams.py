@@ -23,7 +23,8 @@ COMMUTING, PRINT_ERROR, SOFT_TISSUE = map(str, (COMMUTING, PRINT_ERROR, SOFT_TIS
     ],
 )
 def test_head_does_not_change_the_exit_code(tmp_path, arguments, code):
-    command = f'"{sys.executable}" -m nrs_design "$@" 2>&1 | head -n 1 >/dev/null; echo ${{PIPESTATUS[0]}}'
+    program = f'"{sys.executable}" -m nrs_design "$@" 2>&1'
+    command = program + " | head -n 1 >/dev/null; echo ${PIPESTATUS[0]}"
     done = subprocess.run(
         ["bash", "-c", command, "bash", *arguments],
         capture_output=True,

@@ -131,6 +131,10 @@ class AssemblyError(NrsDesignError):
     rule = "NRS003"
 
 
+class TooLargeError(AssemblyError):
+    """Numbers with so many digits that no exact decision about them ends in reasonable time."""
+
+
 class CertificateError(NrsDesignError):
     """A certificate that is malformed, or does not belong to the spec it is held against."""
 

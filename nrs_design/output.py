@@ -7,6 +7,7 @@ import tempfile
 from pathlib import Path
 
 from nrs_design.errors import OutputError
+from nrs_design.files import is_device_name
 
 
 def write_output(path: Path, content: str | bytes) -> None:
@@ -22,8 +23,10 @@ def write_output(path: Path, content: str | bytes) -> None:
     Raises
     ------
     OutputError
-        If the place cannot be written to, or is a link, a folder or a device.
+        If the place cannot be written to, or is a link, a folder or a device, here or on Windows.
     """
+    if is_device_name(path.name):
+        raise OutputError("names a device on Windows", path=path, remedy="name another file")
     if path.is_symlink() or (path.exists() and not path.is_file()):
         kind = "a symbolic link" if path.is_symlink() else "a folder or a device"
         raise OutputError(f"is {kind}, not a file", path=path, remedy="name another file")

@@ -10,7 +10,11 @@ from typing import TYPE_CHECKING
 from nrs_design.certificates.certificate import Certificate
 from nrs_design.certificates.evidence import AbstractEvidence, Shows
 from nrs_design.certificates.evidence.fields import rate_text
-from nrs_design.certificates.evidence.unstable_mode import is_stable, worst_eigenvalue
+from nrs_design.certificates.evidence.unstable_mode import (
+    affordable,
+    is_stable,
+    worst_eigenvalue,
+)
 from nrs_design.errors import DesignError
 from nrs_design.gating.obligations import Obligation, SpecOutcome, Status
 from nrs_design.gating.places import Places
@@ -72,7 +76,10 @@ class Examiner:
             What was tried, for the message of an inconclusive verdict.
         """
         proved = evidence is not None and evidence.shows is Shows.STABILITY
-        modes = tuple(self._mode(mode, system.time, proved=proved) for mode in system.modes)
+        modes = tuple(
+            self._mode(mode, system.time, proved=proved, affordable=fits)
+            for mode, fits in affordable(system.modes)
+        )
         if evidence is None:
             status = Status.INCONCLUSIVE
             message = f"neither a proof nor a refutation was found ({searched})"
@@ -82,10 +89,13 @@ class Examiner:
         place = self.places.at("switching")
         return (*modes, self.obligation(SWITCHING_STABLE, "system", status, message, place))
 
-    def _mode(self, mode: Mode, time: Time, *, proved: bool) -> Obligation:
+    def _mode(self, mode: Mode, time: Time, *, proved: bool, affordable: bool) -> Obligation:
         region = "Hurwitz" if time is Time.CONTINUOUS else "Schur"
         # Staying in a mode is a switching signal: a proof covers it, no need to decide again.
-        if proved or is_stable(mode.A, time):
+        if not (proved or affordable):
+            status = Status.INCONCLUSIVE
+            message = f"the numbers of mode {mode.name} are too large to decide"
+        elif proved or is_stable(mode.A, time):
             status, message = Status.PROVED, f"mode {mode.name} is {region}"
         else:
             status = Status.REFUTED

@@ -12,6 +12,7 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_valida
 
 from nrs_design import __version__
 from nrs_design.errors import CertificateError
+from nrs_design.files import open_regular
 from nrs_design.gating.obligations import GateOutcome, SpecOutcome
 from nrs_design.output import write_output
 
@@ -130,7 +131,7 @@ def _read_bytes(file: Path) -> bytes:
     """Read a whole file, but never an endless one."""
     if file.exists() and not file.is_file():
         raise CertificateError("is not a regular file", path=file)
-    with file.open("rb") as stream:
+    with open_regular(file) as stream:
         content = stream.read(MAX_BYTES + 1)
     if len(content) > MAX_BYTES:
         raise CertificateError("larger than any lock file", path=file)

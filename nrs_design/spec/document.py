@@ -27,6 +27,7 @@ from ruamel.yaml.events import (
 )
 
 from nrs_design.errors import Fault, SpecError
+from nrs_design.files import open_regular
 from nrs_design.spec.exact import quoted
 from nrs_design.spec.syntax import explain_syntax, fault_mark
 
@@ -34,15 +35,20 @@ MAX_BYTES = 1024 * 1024
 MAX_DEPTH = 20
 # So many faults of syntax are enough to mend: a hostile file is not read further.
 MAX_FAULTS = 100
+# Keys and values; the parser takes some ten microseconds for each.
+MAX_NODES = 150_000
+# Longer texts are no names, numbers or titles; what follows need not fear them.
+MAX_SCALAR = 1000
 
 # Escapes such as "\ud800" can produce them; they cannot be printed or encoded.
 _SURROGATE = re.compile("[\ud800-\udfff]")
+_WORD = re.compile(r"[^\s,\[\]{}]+")
 _NULL = re.compile(r"|~|null|Null|NULL")
 # What YAML 1.2 reads as a truth value or a number, when it is not quoted.
 _NOT_TEXT = re.compile(
     r"true|True|TRUE|false|False|FALSE"
     r"|[+-]?[0-9]+|0o[0-7]+|0x[0-9a-fA-F]+"
-    r"|[+-]?(?:\.[0-9]+|[0-9]+\.?[0-9]*)(?:[eE][+-]?[0-9]+)?"
+    r"|[+-]?(?:\.[0-9]+|[0-9]+(?:\.[0-9]*)?)(?:[eE][+-]?[0-9]+)?"
     r"|[+-]?\.(?:inf|Inf|INF)|\.(?:nan|NaN|NAN)"
 )
 
@@ -125,7 +131,7 @@ def _read_bytes(path: Path) -> bytes:
             raise SpecError(
                 "this is not a regular file", path=path, remedy="name a *.nrs.yaml file"
             )
-        with path.open("rb") as file:
+        with open_regular(path) as file:
             return file.read(MAX_BYTES + 1)
     except FileNotFoundError:
         raise SpecError("there is no such file", path=path, remedy="check the path") from None
@@ -154,8 +160,9 @@ def parse_document(text: str, path: Path | None = None) -> Node:
     Raises
     ------
     SpecError
-        With line and column, for syntax errors, nesting deeper than 20, anchors, aliases, tags,
-        merge keys, duplicate keys, keys that are not text, missing values and several documents.
+        With line and column, for syntax errors, nesting deeper than 20, more than 150,000 keys
+        and values, one longer than 1000 characters, anchors, aliases, tags, merge keys, duplicate
+        keys, keys that are not text, missing values and several documents.
     """
     root, faults = read_document(text, path)
     if faults:
@@ -259,10 +266,13 @@ class _Builder:
             self._fail("this is not valid YAML", index, "check escapes and directives")
 
     def _checked_events(self) -> Iterator[Event]:
-        depth = 0
-        documents = 0
+        self._check_size()
+        depth = documents = nodes = 0
         for event in self._raw_events():
             index = event.start_mark.index
+            nodes += isinstance(event, NodeEvent)
+            if nodes > MAX_NODES:
+                self._fail_large(index)
             if isinstance(event, DocumentStartEvent):
                 documents += 1
                 if documents > 1:
@@ -275,7 +285,32 @@ class _Builder:
                 self._fail(f"nested deeper than {MAX_DEPTH} levels", index, "flatten the spec")
             yield event
 
+    def _check_size(self) -> None:
+        """Refuse, before the parser sees it, what would keep it busy for long.
+
+        Its time grows with the square of the length of a tag; every comma and every line may be
+        followed by one more node.
+        """
+        for word in _WORD.finditer(self._text):
+            if word.end() - word.start() > MAX_SCALAR:
+                self._fail_long(word.end() - word.start(), word.start())
+        if self._text.count(",") + self._text.count("\n") > MAX_NODES:
+            self._fail_large(0)
+
+    def _fail_large(self, index: int) -> NoReturn:
+        remedy = "split it into several specs"
+        self._fail(f"the file holds more than {MAX_NODES} keys, values or lines", index, remedy)
+
+    def _fail_long(self, length: int, index: int) -> NoReturn:
+        self._fail(
+            f"a text of {length} characters stands here, at most {MAX_SCALAR} are read",
+            index,
+            "shorten it",
+        )
+
     def _check_node(self, event: NodeEvent, index: int) -> None:
+        if isinstance(event, ScalarEvent) and len(event.value) > MAX_SCALAR:
+            self._fail_long(len(event.value), index)
         if isinstance(event, AliasEvent):
             self._note("aliases (*name) are not read", index, "write the value out")
         if event.anchor is not None:

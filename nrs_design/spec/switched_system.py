@@ -19,11 +19,13 @@ from nrs_design.spec.switching import (
     ResetSpec,
     Switching,
     Transition,
+    check_denominators,
     check_names,
     check_rows,
 )
 
 MAX_MODES = 20_000
+MAX_ENTRIES = 1_000_000
 
 _Row = Annotated[tuple[Entry, ...], Field(min_length=1, max_length=MAX_DIMENSION)]
 _Matrix = Annotated[tuple[_Row, ...], Field(min_length=1, max_length=MAX_DIMENSION)]
@@ -62,6 +64,7 @@ class ModeSpec(SpecModel):
     @model_validator(mode="after")
     def _check_square(self) -> ModeSpec:
         check_rows(self.A, "A")
+        check_denominators((number for row in self.A for e in row for number in e.numbers), "A")
         n = len(self.A[0])
         if len(self.A) != n:
             raise fault(
@@ -141,7 +144,17 @@ def _check_parameters(spec: SwitchedSystemSpec) -> None:
             raise fault(
                 "no matrix depends on this parameter", "remove it or use it", "parameters", name
             )
+    values = (v for p in spec.parameters.values() for v in (p.nominal, *p.range))
+    check_denominators(values, "parameters")
     corners = sum(2 ** len(mode.parameters) for mode in spec.modes)
+    entries = sum(2 ** len(mode.parameters) * mode.dimension**2 for mode in spec.modes)
+    if entries > MAX_ENTRIES:
+        raise fault(
+            f"the corners of the modes have {entries} entries in all, at most {MAX_ENTRIES} are "
+            "read",
+            "declare fewer parameters",
+            "parameters",
+        )
     if corners > MAX_MODES:
         raise fault(
             f"the modes have {corners} corners in all, at most {MAX_MODES} are read",

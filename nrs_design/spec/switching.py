@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Collection, Iterable
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import partial
+from math import lcm
 from typing import Annotated, Any
 
 from pydantic import BeforeValidator, Field, PlainValidator, WithJsonSchema, model_validator
@@ -20,6 +21,8 @@ from nrs_design.spec.quantity import QUANTITY_PATTERN, parse_quantity
 
 MAX_TRANSITIONS = 20_000
 MAX_DIMENSION = 64
+# Of a matrix, or of the parameters; decimals and common ratios stay far below.
+MAX_DENOMINATOR_BITS = 1024
 # Seconds or steps; a system with slower modes is better written in another unit of time.
 LONGEST_DWELL = 4096
 
@@ -192,6 +195,7 @@ class ResetSpec(SpecModel):
     @model_validator(mode="after")
     def _check_rows(self) -> ResetSpec:
         check_rows(self.map, "map")
+        check_denominators((entry for row in self.map for entry in row), "map")
         return self
 
 
@@ -205,6 +209,22 @@ def check_rows(rows: Collection[Collection[object]], *at: int | str) -> None:
                 "give all rows the same length",
                 *at,
                 index,
+            )
+
+
+def check_denominators(numbers: Iterable[Fraction], *at: int | str) -> None:
+    """Report a fault if numbers that are to be written over one denominator have a long one.
+
+    A hundred coprime denominators of a hundred digits make one of ten thousand, in every entry.
+    """
+    common = 1
+    for number in numbers:
+        common = lcm(common, number.denominator)
+        if common.bit_length() > MAX_DENOMINATOR_BITS:
+            raise fault(
+                f"the least common denominator has more than {MAX_DENOMINATOR_BITS} binary digits",
+                "write the numbers as decimals, or with fewer different denominators",
+                *at,
             )
 
 

@@ -95,7 +95,7 @@ def test_unicode_separators_are_not_lines() -> None:
         ('a: "\\ud800"\n', (1, 4), "surrogate"),
         ('a: "\\UFFFFFFFF"\n', (1, 1), "not valid YAML"),
         ("%YAML 9.1\n---\na: 1\n", (1, 1), "another YAML version"),
-        ("%YAML " + "1" * 5000 + ".1\n---\na: 1\n", (1, 1), "not valid YAML"),
+        ("%YAML " + "1" * 5000 + ".1\n---\na: 1\n", (1, 7), "5002 characters"),
         ("# nothing\n", (1, 1), "no document"),
     ],
 )

@@ -7,6 +7,7 @@ import tempfile
 from pathlib import Path
 
 from nrs_design.errors import OutputError
+from nrs_design.files import is_device_name
 
 # How the files begin that are replaced by new ones of their kind.
 CERTIFICATE = b'{\n  "schema": "nrs-design/certificate/'
@@ -32,9 +33,11 @@ def write_output(path: Path, content: str | bytes, *, replaces: bytes = b"") -> 
     Raises
     ------
     OutputError
-        If the place cannot be written to, is a link, a folder or a device, lies behind a link to
-        a folder, or holds a file of another kind.
+        If the place cannot be written to, is a link, a folder or a device (here or on Windows),
+        lies behind a link to a folder, or holds a file of another kind.
     """
+    if is_device_name(path.name):
+        raise OutputError("names a device on Windows", path=path, remedy="name another file")
     data = content.encode() if isinstance(content, str) else content
     try:
         _refuse_links(path)

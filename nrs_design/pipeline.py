@@ -62,11 +62,14 @@ class Result:
 
 
 @contextmanager
-def _placed(loaded: LoadedSpec) -> Iterator[None]:
-    """Add the spec's path to errors from stages that know the spec but not its file."""
+def placed(loaded: LoadedSpec) -> Iterator[None]:
+    """Add path, line and column to errors from stages that know the spec but not its file."""
     try:
         yield
     except NrsDesignError as error:
+        if error.path is None and error.at:
+            place = loaded.place(*error.at)
+            error.line, error.column = place.line, place.column
         error.path = error.path or loaded.path
         raise
 
@@ -85,12 +88,21 @@ def run_robot(path: Path) -> tuple[LoadedSpec, RobotSpec, Robot]:
 
     loaded = read_spec(path)
     if not isinstance(loaded.spec, RobotSpec):
-        raise DesignError(
+        raise wrong_kind(
+            loaded,
             f"a spec of kind {loaded.spec.kind} describes no robot",
-            path=path,
-            remedy="name a spec of kind robot; `nrs-design init robot` writes one",
+            "name a spec of kind robot; `nrs-design init robot` writes one",
         )
-    return loaded, loaded.spec, build_robot(loaded.spec)
+    with placed(loaded):
+        return loaded, loaded.spec, build_robot(loaded.spec)
+
+
+def wrong_kind(loaded: LoadedSpec, message: str, remedy: str) -> DesignError:
+    """Return the error that a command raises about a kind of spec that it is not for."""
+    place = loaded.place("kind")
+    return DesignError(
+        message, path=loaded.path, line=place.line, column=place.column, remedy=remedy
+    )
 
 
 def run_design(loaded: LoadedSpec) -> ControllerDesign | None:
@@ -102,16 +114,16 @@ def run_design(loaded: LoadedSpec) -> ControllerDesign | None:
         If a requirement cannot be met within its bounds, or the spec describes a robot only.
     """
     if isinstance(loaded.spec, RobotSpec):
-        raise DesignError(
+        raise wrong_kind(
+            loaded,
             "a robot spec has no controllers that are switched, so there is nothing to certify",
-            path=loaded.path,
-            remedy="use `nrs-design robot check SPEC`, or a spec of kind interaction-design",
+            "use `nrs-design robot check SPEC`, or a spec of kind interaction-design",
         )
     if not isinstance(loaded.spec, InteractionDesignSpec):
         return None
     from nrs_design.design.design import design_controllers
 
-    with _placed(loaded):
+    with placed(loaded):
         return design_controllers(loaded.spec, build_plant(loaded.spec))
 
 
@@ -127,7 +139,8 @@ def run_evidence(loaded: LoadedSpec, design: ControllerDesign) -> DesignEvidence
 
     if not isinstance(loaded.spec, InteractionDesignSpec):
         raise TypeError("given matrices have no design")
-    return examine_design(loaded.spec, build_plant(loaded.spec), design)
+    with placed(loaded):
+        return examine_design(loaded.spec, build_plant(loaded.spec), design)
 
 
 def run_certification(
@@ -166,7 +179,7 @@ def run_certification(
     if isinstance(loaded.spec, InteractionDesignSpec):
         coordinates = coordinates or loaded.spec.coordinates
     gains = gains_of(design) if design else {}
-    with _placed(loaded):
+    with placed(loaded):
         system = assemble(loaded.spec, gains, coordinates)
     certification = certify(system, method or Methods.AUTO, limits, progress)
     certificate = (
@@ -212,11 +225,13 @@ def run_margin(
 
     spec = result.loaded.spec
     if not has_ranges(spec):
-        raise DesignError(
-            "the spec declares no range, so there is no box to stretch",
-            path=result.loaded.path,
-            remedy="give an environment or a parameter a range",
-        )
+        given = "modes" if result.design is None else "environments"
+        with placed(result.loaded):
+            raise DesignError(
+                "the spec declares no range, so there is no box to stretch",
+                remedy="give an environment or a parameter a range",
+                at=(given,),
+            )
     gains = gains_of(result.design) if result.design else {}
     limits = limits or DefaultLimits()
     quick = replace(limits, optimize_rate=False, budget=min(limits.budget, MARGIN_BUDGET))
@@ -260,11 +275,12 @@ def run_shortest_dwell(
     system = known.system
     _refuse_dwell(result.loaded, system.time)
     if len(system.lasting_modes()) < len(system.modes):
-        raise DesignError(
-            "a shortest dwell time is not searched beside longest ones",
-            path=result.loaded.path,
-            remedy="leave longest_dwell_time out, or declare the dwell_time and certify that",
-        )
+        with placed(result.loaded):
+            raise DesignError(
+                "a shortest dwell time is not searched beside longest ones",
+                remedy="leave longest_dwell_time out, or declare the dwell_time and certify that",
+                at=("switching", "longest_dwell_time"),
+            )
     limits = limits or DefaultLimits()
     quick = replace(limits, optimize_rate=False, budget=min(limits.budget, MARGIN_BUDGET))
 

@@ -48,7 +48,7 @@ from nrs_design.certificates.search.rungs import (
 )
 from nrs_design.certificates.search.structure import merge_equal_modes, triangular_blocks
 from nrs_design.certificates.second_opinion import confirm
-from nrs_design.errors import DesignError, InternalError
+from nrs_design.errors import DesignError, InternalError, TooLargeError
 from nrs_design.switched.system import Mode, SwitchedSystem, Time
 
 Progress = Callable[[str], None]
@@ -313,6 +313,8 @@ def _take(rung: Rung, family: Family) -> Finding:
     try:
         with floats_in_silence():
             return rung(family)
+    except TooLargeError as error:
+        return None, f"not tried: {error.message}"
     except (LinAlgError, OverflowError) as error:
         return None, f"floating point failed ({error})"
 

@@ -23,6 +23,7 @@ from nrs_design.certificates.evidence import AbstractEvidence, read_evidence
 from nrs_design.certificates.evidence.fields import read_text
 from nrs_design.certificates.second_opinion import confirm
 from nrs_design.errors import CertificateError, NrsDesignError
+from nrs_design.files import open_regular
 from nrs_design.spec import LoadedSpec
 from nrs_design.spec.exact import quoted
 from nrs_design.switched.assemble import assemble
@@ -108,6 +109,12 @@ def read_document(path: Path) -> dict[str, Any]:
     except OSError as error:
         raise CertificateError(f"cannot be read ({error.strerror})", path=path) from error
     except (ValueError, RecursionError) as error:
+        if path.name.endswith((".yaml", ".yml")):
+            raise CertificateError(
+                "this is a spec, not a certificate",
+                path=path,
+                remedy="name the certificate first: nrs-design verify CERT SPEC",
+            ) from error
         raise CertificateError(
             f"not a certificate: {error}", path=path, remedy="make it with certify-switching --out"
         ) from error
@@ -120,7 +127,7 @@ def _read_bytes(path: Path) -> bytes:
     """Read a whole file, but never an endless one."""
     if path.exists() and not (path.is_file() or path.is_dir()):
         raise CertificateError("is not a regular file", path=path)
-    with path.open("rb") as file:
+    with open_regular(path) as file:
         content = file.read(MAX_BYTES + 1)
     if len(content) > MAX_BYTES:
         raise CertificateError("larger than any certificate", path=path)
@@ -161,6 +168,8 @@ def _rebuild(document: Mapping[str, Any], spec: LoadedSpec) -> Certificate:
 def _statements(
     document: Mapping[str, Any], system: SwitchedSystem
 ) -> tuple[AbstractEvidence, ...]:
+    if len(document["statements"]) > 1 + system.order:
+        raise ValueError("it states more than a verdict, and a remark on every block")
     statements = tuple(read_evidence(fields, system) for fields in document["statements"])
     if not statements:
         raise ValueError("it states nothing")

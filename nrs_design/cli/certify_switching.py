@@ -10,7 +10,7 @@ import typer
 
 from nrs_design.cli import exit_codes
 from nrs_design.cli.options import CoordinatesOption, Json, Quiet, SpecFile, Verbose
-from nrs_design.cli.printing import note, print_json, progress
+from nrs_design.cli.printing import note, print_json, progress, say
 
 if TYPE_CHECKING:
     from fractions import Fraction
@@ -98,8 +98,8 @@ def certify_switching(
     written = None if result.certificate is None else path
     if as_json:
         print_json("certify-switching", summary(result, written) | margins_summary(box, dwell))
-    else:
-        _print(result, written, quiet=quiet, verbose=verbose)
+    elif not quiet:
+        _print(result, written, verbose=verbose)
         _print_margin(box)
         _print_dwell(dwell)
     raise typer.Exit(exit_codes.OF_VERDICT[str(result.certification.verdict)])
@@ -182,12 +182,12 @@ def _print_margin(box: BoxMargin | None) -> None:
     if box is None:
         return
     if box.proved is None or box.proof is None:
-        print("  largest box: not even the nominal values are proved")
+        say("  largest box: not even the nominal values are proved")
         return
     beyond = ""
     if box.refuted is not None:
         beyond = f"; scaled by {rounded_up(box.refuted)} they are refuted"
-    print(
+    say(
         f"  largest box: scaled by {rounded_down(box.proved)} about their nominal values, all "
         f"ranges are proved ({box.proof.method}){beyond}"
     )
@@ -204,29 +204,26 @@ def _print_dwell(dwell: DwellMargin | None) -> None:
     refuted = "" if dwell.proved == 0 else "; none was refuted"
     if dwell.refuted is not None:
         refuted = f"; {rounded_down(dwell.refuted, 's')} and all shorter ones are refuted"
-    print(f"  shortest dwell time: {proved}{refuted}")
+    say(f"  shortest dwell time: {proved}{refuted}")
 
 
-def _print(result: Result, path: Path | None, *, quiet: bool, verbose: bool) -> None:
+def _print(result: Result, path: Path | None, *, verbose: bool) -> None:
     certification = result.certification
     name = result.loaded.spec.name
-    print(
-        f"{name}: {str(certification.verdict).upper()} "
-        f"(common quadratic function: {certification.common_quadratic})"
-    )
-    if quiet:
-        return
+    verdict = str(certification.verdict)
+    exists = f"(common quadratic function: {certification.common_quadratic})"
+    say(f"{name}: {verdict.upper()} {exists}", verdict=verdict)
     for statement in certification.statements:
-        print(f"  {statement.claim(certification.system)}")
+        say(f"  {statement.claim(certification.system)}")
     if certification.evidence is None:
-        print("  Neither a proof nor a refutation was found; this is not a statement of stability.")
+        say("  Neither a proof nor a refutation was found; this is not a statement of stability.")
     if verbose or certification.evidence is None:
         for attempt in certification.attempts:
-            print(f"  {attempt.step}: {attempt.outcome} ({attempt.seconds * 1e3:.1f} ms)")
-    print("  modes: " + ", ".join(_shortened([m.name for m in certification.system.modes])))
-    print("  taken for granted:")
+            say(f"  {attempt.step}: {attempt.outcome} ({attempt.seconds * 1e3:.1f} ms)")
+    say("  modes: " + ", ".join(_shortened([m.name for m in certification.system.modes])))
+    say("  taken for granted:")
     for assumption in certification.system.assumptions:
-        print(f"    - {assumption}")
+        say(f"    - {assumption}")
     if path is not None:
         note(f"certificate written to {path}")
 

@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-import sys
 from pathlib import Path
 from typing import Annotated, Any
 
 import typer
 
 from nrs_design.cli import exit_codes
+from nrs_design.cli.errors import print_error, summary
 from nrs_design.cli.options import Json, Quiet
-from nrs_design.cli.printing import note, print_json, print_table
+from nrs_design.cli.printing import note, print_json
+from nrs_design.cli.tables import print_table
 from nrs_design.errors import NrsDesignError
 
 
@@ -28,9 +29,9 @@ def check(
         try:
             results.append(_understood(path))
         except NrsDesignError as error:
-            results.append(_fault(path, error))
+            results.append({"valid": False, **summary(error), "path": str(path)})
             if not as_json:
-                print(f"error[{error.rule}]: {error}", file=sys.stderr)
+                print_error(error)
             continue
         if not as_json and not quiet:
             _print(results[-1])
@@ -65,18 +66,6 @@ def _understood(path: Path) -> dict[str, Any]:
             for doubt in doubt_spec(loaded.spec)
             for place in [places.at(*doubt.at)]
         ],
-    }
-
-
-def _fault(path: Path, error: NrsDesignError) -> dict[str, Any]:
-    return {
-        "path": str(path),
-        "valid": False,
-        "rule": error.rule,
-        "message": error.message,
-        "line": error.line,
-        "column": error.column,
-        "remedy": error.remedy,
     }
 
 

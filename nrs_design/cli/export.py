@@ -10,7 +10,7 @@ import typer
 
 from nrs_design.cli import exit_codes
 from nrs_design.cli.options import Json, Quiet, SpecFile
-from nrs_design.cli.printing import note, print_json, progress
+from nrs_design.cli.printing import note, print_json, progress, say
 from nrs_design.errors import OutputError
 
 if TYPE_CHECKING:
@@ -62,11 +62,12 @@ def export(
     _write(result, file, None if certificate else proof, spec)
     if as_json:
         print_json("export", _summary(name, result, file, proof))
-    elif result.record is not None:
-        print(f"{name}: PROVED, exported to {file}")
-        note(f"certificate: {proof}", quiet=quiet)
-    else:
-        print(f"{name}: not exported: {result.reason}")
+    elif result.record is None:
+        # Nothing was written, which is an error of its own.
+        note(f"{name}: not exported: {result.reason}")
+    elif not quiet:
+        say(f"{name}: PROVED, exported to {file}", verdict="proved")
+        note(f"certificate: {proof}")
     raise typer.Exit(exit_codes.OF_VERDICT.get(result.verdict, exit_codes.REFUTED))
 
 

@@ -81,7 +81,6 @@ def gate(
     """
     from nrs_design.gating.find_specs import SUFFIXES
     from nrs_design.gating.formats import FORMATS
-    from nrs_design.gating.paths import printable
     from nrs_design.output import write_output
 
     if as_json and format_ not in (FormatOption.TEXT, FormatOption.JSON):
@@ -108,10 +107,10 @@ def gate(
     else:
         sys.stdout.write(document)
     if out is not None or chosen is not FormatOption.TEXT:
-        note(FORMATS["text"](outcome), quiet=quiet)
+        for line in FORMATS["text"](outcome).split("\n"):
+            note(line, quiet=quiet)
     for item in (caution for spec in outcome.specs for caution in spec.cautions):
-        place = f"{printable(item.path)}:{item.line}:{item.column}"
-        note(f"warning: {place}: {item.message}", quiet=quiet)
+        note(f"warning: {item.path}:{item.line}:{item.column}: {item.message}", quiet=quiet)
     for text in outcome.notes:
         note(f"note: {text}", quiet=quiet)
     note(f"{perf_counter() - start:.1f} s", quiet=quiet)

@@ -7,7 +7,8 @@ from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any
 
 from nrs_design.cli import exit_codes
-from nrs_design.cli.printing import note, print_table
+from nrs_design.cli.printing import note, say
+from nrs_design.cli.tables import print_table
 
 if TYPE_CHECKING:
     from nrs_design.design.evidence import DesignEvidence, ForceEvidence, ImpedanceEvidence
@@ -37,7 +38,8 @@ def print_goals(name: str, items: Iterable[Item]) -> None:
     if rows:
         columns = ["controller", "goal", "wanted", "worst", "at", ""]
         print_table(f"{name}: goals", columns, rows)
-        print(*MEANING, sep="\n")
+        for line in MEANING:
+            say(line)
 
 
 def print_warnings(warnings: Iterable[str], *, quiet: bool) -> None:

@@ -9,8 +9,8 @@ import typer
 
 from nrs_design.cli.goals import exit_code, goals_summary, print_goals, print_warnings, warnings_of
 from nrs_design.cli.options import Json, Quiet, SpecFile
-from nrs_design.cli.printing import note, print_json, print_table, progress
-from nrs_design.errors import DesignError
+from nrs_design.cli.printing import note, print_json, progress, say
+from nrs_design.cli.tables import print_table
 
 if TYPE_CHECKING:
     from nrs_design.design.evidence import DesignEvidence, ImpedanceEvidence
@@ -23,7 +23,7 @@ def optimize(spec: SpecFile, as_json: Json = False, quiet: Quiet = False) -> Non
 
     Example: nrs-design optimize specs/neuroboscope/soft-tissue.nrs.yaml
     """
-    from nrs_design.pipeline import run_design, run_evidence
+    from nrs_design.pipeline import run_design, run_evidence, wrong_kind
     from nrs_design.spec import read_spec
 
     loaded = read_spec(spec)
@@ -31,10 +31,10 @@ def optimize(spec: SpecFile, as_json: Json = False, quiet: Quiet = False) -> Non
         step("cost")
         design = run_design(loaded)
         if design is None:
-            raise DesignError(
+            raise wrong_kind(
+                loaded,
                 "a switched-system spec has nothing to design",
-                path=spec,
-                remedy="use certify-switching, or a spec of kind interaction-design",
+                "use certify-switching, or a spec of kind interaction-design",
             )
         step("margins")
         evidence = run_evidence(loaded, design)
@@ -50,7 +50,7 @@ def optimize(spec: SpecFile, as_json: Json = False, quiet: Quiet = False) -> Non
                 "warnings": warnings,
             },
         )
-    else:
+    elif not quiet:
         if not evidence.impedance:
             note("no impedance controllers in this spec; see nrs-design tune for the others")
         _print(loaded.spec.name, evidence)
@@ -104,7 +104,7 @@ def _print(name: str, evidence: DesignEvidence) -> None:
     source = (
         "designed by root locus" if evidence.motion_source == "designed" else "given in the spec"
     )
-    print(f"{name}: G(s) = ({_polynomial(G.numerator)}) / ({_polynomial(G.denominator)}), {source}")
+    say(f"{name}: G(s) = ({_polynomial(G.numerator)}) / ({_polynomial(G.denominator)}), {source}")
     columns = [
         "controller",
         "Zdes\nN m s/rad",

@@ -11,7 +11,7 @@ import typer
 
 from nrs_design.cli import exit_codes
 from nrs_design.cli.options import Json, Quiet, SpecFile
-from nrs_design.cli.printing import note, print_json, progress
+from nrs_design.cli.printing import note, print_json, progress, say
 from nrs_design.errors import DesignError
 
 if TYPE_CHECKING:
@@ -86,10 +86,10 @@ def report(
                 "files": [str(path) for path in files],
             },
         )
-    else:
-        print(f"{loaded.spec.name}: {verdict.upper()}")
+    elif not quiet:
+        say(f"{loaded.spec.name}: {verdict.upper()}", verdict=verdict)
         for path in files:
-            note(f"written to {path}", quiet=quiet)
+            note(f"written to {path}")
     raise typer.Exit(exit_codes.OF_VERDICT[verdict])
 
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from fractions import Fraction
 
 from nrs_design.controllers.controller_design import Controller, ControllerDesign
@@ -52,12 +54,20 @@ def design_controllers(spec: InteractionDesignSpec, plant: Plant) -> ControllerD
     loop = motion_loop(spec, motion)
     controllers = []
     for name, controller in spec.controllers.items():
-        try:
+        with naming(name):
             controllers.append(_controller(spec, plant, loop, name, controller))
-        except DesignError as error:
-            message = f"controller {name}: {error.message}"
-            raise DesignError(message, remedy=error.remedy) from error
     return ControllerDesign(motion, tuple(controllers))
+
+
+@contextmanager
+def naming(controller: str) -> Iterator[None]:
+    """Say in an error which controller it is about."""
+    try:
+        yield
+    except DesignError as error:
+        message = f"controller {controller}: {error.message}"
+        at = ("controllers", controller, *error.at)
+        raise DesignError(message, remedy=error.remedy, at=at) from error
 
 
 def root_locus_design(spec: InteractionDesignSpec) -> PdDesign:
@@ -177,8 +187,9 @@ def _force_gain(
 
 
 def _check_ranges(controller: ImpedanceControllerSpec, law: Admittance) -> None:
-    for outside in faults_of_ranges(controller, {"Mt": law.Mt, "Bt": law.Bt}):
-        raise DesignError(outside, remedy="move the range, or let min and max lie inside it")
+    for gain, outside in faults_of_ranges(controller, {"Mt": law.Mt, "Bt": law.Bt}):
+        remedy = "move the range, or let min and max lie inside it"
+        raise DesignError(outside, remedy=remedy, at=(gain, "range"))
 
 
 def _shipped(value: float, bounds: GainSpec, digits: int) -> Fraction:

@@ -12,6 +12,7 @@ from nrs_design.controllers.laws import Admittance, ProportionalForce
 from nrs_design.design.constrained import optimize_with_goals
 from nrs_design.design.design import (
     impedance_problem,
+    naming,
     root_locus_design,
     to_transfer_function,
 )
@@ -190,7 +191,8 @@ def _impedance(
     problem = impedance_problem(spec, plant, loop, given)
     requirement = requirement_of(spec, plant, problem.loop.motion, given)
     Mt, Bt = float(law.Mt), float(law.Bt)
-    margins = loop_margins(problem.loop, Mt, Bt)
+    with naming(controller.name):
+        margins = loop_margins(problem.loop, Mt, Bt)
     corners = product(gain_interval(given.Mt, law.Mt).ends, gain_interval(given.Bt, law.Bt).ends)
     limits = (
         stiffness_limit(problem.loop, float(mass), float(damping))
@@ -226,6 +228,7 @@ def _force(
     assert isinstance(given, ForceControllerSpec)
     requirement = requirement_of(spec, plant, motion, given)
     stiffness = float(plant.environment(controller.environment or "").nominal.stiffness)
-    loop = force_loop_response(motion, stiffness, float(law.Kp))
+    with naming(controller.name):
+        loop = force_loop_response(motion, stiffness, float(law.Kp))
     achieved = achieve_force(requirement, FORCE_MEASURES, float(law.Kp))
     return ForceEvidence(controller.name, stiffness, loop, achieved)

@@ -374,6 +374,7 @@ def _scan(problem: ImpedanceProblem) -> Points:
             f"{list(problem.damping_bounds)} N m s/rad keeps the loop stable at "
             f"{problem.loop.stiffness:.6g} N m/rad",
             remedy="raise the upper bound of Bt or lower the lower bound of Mt",
+            at=("Bt",),
         )
     spacing = [1 / (count - 1) if count > 1 else 0.0 for count in shape]
     valley = _sharpen(problem, u[rows, 0], v[0, np.argmin(costs[rows], axis=1)], spacing[1])

@@ -92,6 +92,7 @@ def loop_margins(loop: ImpedanceLoop, Mt: float, Bt: float) -> LoopMargins:
             f"the loop with Mt = {Mt:.6g} kg m^2 and Bt = {Bt:.6g} N m s/rad is unstable at "
             f"{loop.stiffness:.6g} N m/rad",
             remedy=f"it is stable below {limit:.6g} N m/rad; raise Bt or lower Mt",
+            at=("Bt",),
         )
     peak, frequency = _sensitivity_peak(tf)
     low, high, phase, delay = _crossover_margins(tf)

@@ -115,6 +115,7 @@ def design_pd(
         raise DesignError(
             f"no positive gain reaches a settling time of {settling_time:.6g} s",
             remedy=f"ask for less than 8 time constants, {8 * time_constant:.6g} s",
+            at=("motion_loop", "settling_time"),
         )
     zero = pole.imag / math.tan(angle) - pole.real
     magnitude = abs(gain * (pole + zero) / (pole * (time_constant * pole + 1)))

@@ -10,7 +10,11 @@ from typing import TYPE_CHECKING
 from nrs_design.certificates.certificate import Certificate
 from nrs_design.certificates.evidence import AbstractEvidence, Shows
 from nrs_design.certificates.evidence.fields import rate_text
-from nrs_design.certificates.evidence.unstable_mode import is_stable, worst_eigenvalue
+from nrs_design.certificates.evidence.unstable_mode import (
+    affordable,
+    is_stable,
+    worst_eigenvalue,
+)
 from nrs_design.errors import DesignError
 from nrs_design.gating.obligations import Caution, Obligation, SpecOutcome, Status
 from nrs_design.gating.places import Places
@@ -75,10 +79,10 @@ class Examiner:
         proved = evidence is not None and evidence.shows is Shows.STABILITY
         lasting = {mode.name for mode in system.lasting_modes()}
         modes = tuple(
-            self._mode(mode, system.time, proved=proved)
+            self._mode(mode, system.time, proved=proved, affordable=fits)
             if mode.name in lasting
-            else self._left_mode(mode, system.time)
-            for mode in system.modes
+            else self._left_mode(mode, system.time, affordable=fits)
+            for mode, fits in affordable(system.modes)
         )
         if evidence is None:
             status = Status.INCONCLUSIVE
@@ -89,10 +93,13 @@ class Examiner:
         place = self.places.at("switching")
         return (*modes, self.obligation(SWITCHING_STABLE, "system", status, message, place))
 
-    def _mode(self, mode: Mode, time: Time, *, proved: bool) -> Obligation:
+    def _mode(self, mode: Mode, time: Time, *, proved: bool, affordable: bool) -> Obligation:
         region = "Hurwitz" if time is Time.CONTINUOUS else "Schur"
         # Staying in a mode is a switching signal: a proof covers it, no need to decide again.
-        if proved or is_stable(mode.A, time):
+        if not (proved or affordable):
+            status = Status.INCONCLUSIVE
+            message = f"the numbers of mode {mode.name} are too large to decide"
+        elif proved or is_stable(mode.A, time):
             status, message = Status.PROVED, f"mode {mode.name} is {region}"
         else:
             status = Status.REFUTED
@@ -100,13 +107,15 @@ class Examiner:
             message = f"mode {mode.name} is not {region} (eigenvalue about {eigenvalue})"
         return self.obligation(MODE_STABLE, mode.name, status, message, self.places.mode(mode.name))
 
-    def _left_mode(self, mode: Mode, time: Time) -> Obligation:
+    def _left_mode(self, mode: Mode, time: Time, *, affordable: bool) -> Obligation:
         """Say of a mode with a longest dwell time whether it is stable, which it need not be."""
         region = "Hurwitz" if time is Time.CONTINUOUS else "Schur"
-        status, message = Status.PROVED, f"mode {mode.name} is {region}"
-        if not is_stable(mode.A, time):
-            status = Status.MET
-            message = f"mode {mode.name} is not {region}, but it must be left in time"
+        status, message = Status.MET, f"mode {mode.name} must be left in time, stable or not"
+        if affordable:
+            status, message = Status.PROVED, f"mode {mode.name} is {region}"
+            if not is_stable(mode.A, time):
+                status = Status.MET
+                message = f"mode {mode.name} is not {region}, but it must be left in time"
         return self.obligation(MODE_STABLE, mode.name, status, message, self.places.mode(mode.name))
 
     def nothing_to_certify(self) -> SpecOutcome:

@@ -11,6 +11,7 @@ from typing import Annotated, Any, Literal
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationError, model_validator
 
 from nrs_design.errors import CertificateError
+from nrs_design.files import open_regular
 from nrs_design.gating.rules import (
     CERTIFICATE_HOLDS,
     LOCKED,
@@ -176,7 +177,7 @@ def _read_bytes(file: Path) -> bytes:
     """Read a whole file, but never an endless one."""
     if file.exists() and not file.is_file():
         raise CertificateError("is not a regular file", path=file)
-    with file.open("rb") as stream:
+    with open_regular(file) as stream:
         content = stream.read(MAX_BYTES + 1)
     if len(content) > MAX_BYTES:
         raise CertificateError(

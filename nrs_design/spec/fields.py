@@ -9,6 +9,7 @@ from typing import Annotated, Any
 
 from pydantic import PlainValidator, WithJsonSchema
 
+from nrs_design.files import is_device_name
 from nrs_design.spec.exact import DECIMAL_PATTERN, RATIO_PATTERN, parse_exact, quoted
 from nrs_design.spec.faults import as_text, fault, reported
 
@@ -55,6 +56,11 @@ def _text(pattern: str) -> PlainValidator:
             raise fault(
                 f"{quoted(text)} is not a name",
                 f"use 1 to 64 letters, digits, '.', '_' and '-', as in {pattern}",
+            )
+        if is_device_name(text):
+            raise fault(
+                f"{quoted(text)} names a device on Windows, and files are named by it",
+                "choose another name",
             )
         return text
 

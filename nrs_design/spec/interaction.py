@@ -2,19 +2,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from functools import partial
 from typing import Annotated, Literal
 
 from pydantic import Field, model_validator
 
 from nrs_design.spec.controllers import (
     ControllerSpec,
-    ForceControllerSpec,
-    ImpedanceControllerSpec,
     PositionControllerSpec,
 )
 from nrs_design.spec.dwell import DwellObstacle, find_changing_contact
 from nrs_design.spec.environment import EnvironmentSpec
-from nrs_design.spec.faults import did_you_mean, fault
+from nrs_design.spec.faults import all_of, did_you_mean, fault
 from nrs_design.spec.fields import Digits, Label, Name, Title
 from nrs_design.spec.goals import GoalsSpec, check_applicable
 from nrs_design.spec.model import SpecModel
@@ -65,15 +65,27 @@ class InteractionDesignSpec(SpecModel):
 
     @model_validator(mode="after")
     def _check_controllers(self) -> InteractionDesignSpec:
-        _check_mixture(self.controllers)
-        for name, controller in self.controllers.items():
-            if not isinstance(controller, PositionControllerSpec):
-                _check_references(name, controller, self.environments)
-                check_applicable(controller.goals, {controller.type}, "controllers", name, "goals")
-        check_applicable(self.goals, {c.type for c in self.controllers.values()}, "goals")
-        check_names(self.switching, self.controllers, "controller")
-        for at, dwell in self.switching.dwell_times():
-            _check_dwell_time(dwell, self.find_dwell_obstacle(), ("switching", *at))
+        dwell_times = self.switching.dwell_times()
+        all_of(
+            lambda: _check_mixture(self.controllers),
+            *(
+                partial(_check_references, *item, self.environments)
+                for item in self.controllers.items()
+            ),
+            *(
+                partial(check_applicable, c.goals, {c.type}, "controllers", name, "goals")
+                for name, c in self.controllers.items()
+                if not isinstance(c, PositionControllerSpec)
+            ),
+            lambda: check_applicable(
+                self.goals, {c.type for c in self.controllers.values()}, "goals"
+            ),
+            lambda: check_names(self.switching, self.controllers, "controller"),
+            *(
+                partial(_check_dwell_time, dwell, self.find_dwell_obstacle, ("switching", *at))
+                for at, dwell in dwell_times
+            ),
+        )
         return self
 
     def find_dwell_obstacle(self) -> DwellObstacle | None:
@@ -98,12 +110,13 @@ def _check_mixture(controllers: dict[str, ControllerSpec]) -> None:
 
 def _check_references(
     name: str,
-    controller: ImpedanceControllerSpec | ForceControllerSpec,
+    controller: ControllerSpec,
     environments: dict[str, EnvironmentSpec],
 ) -> None:
-    places: list[tuple[str, tuple[str | int, ...]]] = [(controller.environment, ("environment",))]
-    places += [(contact, ("contacts", i)) for i, contact in enumerate(controller.contacts)]
-    for environment, at in places:
+    if isinstance(controller, PositionControllerSpec):
+        return
+
+    def check(environment: str, *at: int | str) -> None:
         if environment not in environments:
             raise fault(
                 f"there is no environment {environment!r}",
@@ -112,6 +125,16 @@ def _check_references(
                 name,
                 *at,
             )
+
+    all_of(
+        partial(check, controller.environment, "environment"),
+        # By default the contact is the environment itself.
+        *(
+            partial(check, contact, "contacts", index)
+            for index, contact in enumerate(controller.contacts)
+            if "contacts" in controller.model_fields_set
+        ),
+    )
     if controller.environment not in controller.contacts:
         raise fault(
             f"{name!r} is designed for {controller.environment!r}, but that is not among its "
@@ -124,10 +147,11 @@ def _check_references(
 
 
 def _check_dwell_time(
-    dwell: DwellTime, obstacle: DwellObstacle | None, at: tuple[str, ...]
+    dwell: DwellTime, find_obstacle: Callable[[], DwellObstacle | None], at: tuple[str, ...]
 ) -> None:
     """Check that nothing changes during a dwell time."""
     if dwell.unit != "s":
         raise fault(f"{dwell.text!r} is not a time", "write seconds, such as '2.76 s'", *at)
+    obstacle = find_obstacle()
     if obstacle is not None:
         raise fault(obstacle.message, f"leave {at[1]} out, or {obstacle.remedy}", *at)

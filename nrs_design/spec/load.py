@@ -10,10 +10,19 @@ from pathlib import Path
 
 from pydantic import ValidationError
 
-from nrs_design.errors import SpecError
-from nrs_design.spec.document import Mapping, Node, Scalar, parse_document, read_text, to_data
+from nrs_design.errors import Fault, SpecError
+from nrs_design.spec.document import (
+    Mapping,
+    Node,
+    Position,
+    Scalar,
+    parse_document,
+    read_document,
+    read_text,
+    to_data,
+)
 from nrs_design.spec.exact import quoted
-from nrs_design.spec.faults import did_you_mean, spec_error
+from nrs_design.spec.faults import did_you_mean, file_faults, place_of
 from nrs_design.spec.interaction import InteractionDesignSpec
 from nrs_design.spec.robot import RobotSpec
 from nrs_design.spec.switched_system import SwitchedSystemSpec
@@ -48,6 +57,10 @@ class LoadedSpec:
     text: str
     spec: Spec
 
+    def place(self, *at: str | int) -> Position:
+        """Line and column of a key or an item, or of what holds it if it is not written out."""
+        return place_of(parse_document(self.text, self.path), at, at_key=True)
+
 
 def read_spec(path: str | os.PathLike[str]) -> LoadedSpec:
     """Read and validate a spec file.
@@ -69,8 +82,9 @@ def read_spec(path: str | os.PathLike[str]) -> LoadedSpec:
     """
     file = Path(path)
     _, text = read_text(file)
-    root = parse_document(text, file)
-    return LoadedSpec(file, hash_meaning(root), text, _validate(root, file))
+    root, syntax = read_document(text, file)
+    spec = _validate(root, syntax, file)
+    return LoadedSpec(file, hash_meaning(root), text, spec)
 
 
 def load_spec(path: str | os.PathLike[str]) -> Spec:
@@ -93,7 +107,7 @@ def parse_spec(text: str, path: Path | None = None) -> Spec:
     SpecError
         With line, column, message and remedy.
     """
-    return _validate(parse_document(text, path), path)
+    return _validate(*read_document(text, path), path)
 
 
 def hash_meaning(root: Node) -> str:
@@ -107,29 +121,46 @@ def hash_meaning(root: Node) -> str:
     return hashlib.sha256(canonical.encode()).hexdigest()
 
 
-def _validate(root: Node, path: Path | None) -> Spec:
-    model = KINDS[_kind_of(root, path)]
+def _validate(root: Node, syntax: tuple[Fault, ...], path: Path | None) -> Spec:
+    found: tuple[Fault, ...] = ()
+    model = KINDS[_kind_of(root, path, syntax)]
     try:
-        return model.model_validate(to_data(root))
+        spec = model.model_validate(to_data(root))
     except ValidationError as error:
-        raise spec_error(error, model, root, path) from None
+        found = file_faults(error, model, root)
+    if syntax or found:
+        raise _refusal(syntax, found, path)
+    return spec
 
 
-def _kind_of(root: Node, path: Path | None) -> str:
+def _refusal(syntax: tuple[Fault, ...], found: tuple[Fault, ...], path: Path | None) -> SpecError:
+    """Join the faults; what cannot be read as YAML is wrong in itself, and reported once."""
+    known = {(fault.line, fault.column) for fault in syntax}
+    others = (fault for fault in found if (fault.line, fault.column) not in known)
+    return SpecError.of((*syntax, *others), path)
+
+
+def _kind_of(root: Node, path: Path | None, syntax: tuple[Fault, ...]) -> str:
+    """Return the kind of a spec, without which nothing else in the file can be judged."""
+
+    def refuse(message: str, remedy: str, node: Node) -> SpecError:
+        place = node.position
+        return _refusal(syntax, (Fault(message, place.line, place.column, remedy),), path)
+
     if not isinstance(root, Mapping):
-        raise _kind_error("a spec is a mapping of keys", "start with `kind: ...`", root, path)
+        raise refuse("a spec is a mapping of keys", "start with `kind: ...`", root)
     kind = root.entries.get("kind")
     if kind is None:
-        remedy = f"add `kind: ` with one of {', '.join(KINDS)}"
-        raise _kind_error("`kind` is missing", remedy, root, path)
+        if {"schema", "verdict"} <= root.entries.keys():
+            raise SpecError(
+                "this is a certificate, not a spec",
+                path=path,
+                remedy="name the spec that it is for",
+            )
+        raise refuse("`kind` is missing", f"add `kind: ` with one of {', '.join(KINDS)}", root)
     if not isinstance(kind, Scalar):
-        raise _kind_error("kind: expected a single text", "write one value", kind, path)
+        raise refuse("kind: expected a single text", "write one value", kind)
     if kind.text not in KINDS:
         message = f"kind: {quoted(kind.text)} is not known"
-        raise _kind_error(message, did_you_mean(kind.text, KINDS), kind, path)
+        raise refuse(message, did_you_mean(kind.text, KINDS), kind)
     return kind.text
-
-
-def _kind_error(message: str, remedy: str, node: Node, path: Path | None) -> SpecError:
-    place = node.position
-    return SpecError(message, path=path, line=place.line, column=place.column, remedy=remedy)

@@ -26,7 +26,7 @@ def test_optimum_of_the_thesis(tmp_path):
 
 
 def test_table(tmp_path):
-    result = run("optimize", SOFT_TISSUE, "-q", cwd=tmp_path)
+    result = run("optimize", SOFT_TISSUE, cwd=tmp_path)
     assert result.returncode == 0
     lines = result.stdout.splitlines()
     assert lines[0].startswith("soft-tissue: G(s) = (0.99739 s + 56.822)")

@@ -37,7 +37,7 @@ def test_force_loop_of_the_thesis(tmp_path):
 
 
 def test_tables(tmp_path):
-    result = run("tune", FORCE_LIMIT, "-q", cwd=tmp_path)
+    result = run("tune", FORCE_LIMIT, cwd=tmp_path)
     assert result.returncode == 0
     assert "force-limit: motion loop" in result.stdout
     assert "force-limit: force loop" in result.stdout

@@ -38,7 +38,7 @@ def test_refutation_holds(certified):
 
 def test_quiet(certified):
     result = run("verify", "-q", "commuting.json", COMMUTING, cwd=certified)
-    assert result.stdout == "PROVED: the certificate holds, checked exactly.\n"
+    assert (result.returncode, result.stdout, result.stderr) == (0, "", "")
 
 
 def test_json(certified):

@@ -115,9 +115,9 @@ class TestGitHub:
     def test_escapes(self):
         line = to_github(outcome_of(obligation(path="a: 100%,\r\nb.yaml", message="50%\r\n::x")))
         assert line.startswith(
-            "::error file=a%3A 100%25%2C%0D%0Ab.yaml,line=7,col=3,title=NRS102::"
+            "::error file=a%3A 100%25%2C\\r\\nb.yaml,line=7,col=3,title=NRS102::"
         )
-        assert line.endswith("50%25%0D%0A::x\n")
+        assert line.endswith("50%25\\r\\n::x\n")
 
     def test_at_most_ten_and_a_notice(self):
         items = [obligation(Status.INCONCLUSIVE)] * 9 + [obligation()] * 3

@@ -15,6 +15,7 @@ from nrs_design.certificates.exact import (
     is_symmetric,
     is_too_large,
 )
+from nrs_design.errors import TooLargeError
 from nrs_design.switched.matrix import RationalMatrix
 from nrs_design.switched.system import SwitchedSystem, Switching
 
@@ -114,7 +115,11 @@ class AbstractEvidence(ABC):
             return f"evidence of kind {self.kind} does not cover this kind of switching"
         if not system.is_uniform and not self.allows_unequal_modes:
             return f"evidence of kind {self.kind} needs modes of equal size"
-        if (misfit := self.find_misfit(system)) is not None:
+        try:
+            misfit = self.find_misfit(system)
+        except TooLargeError as error:
+            return error.message
+        if misfit is not None:
             return misfit
         for failure, form in self.forms(system):
             if is_too_large(form):

@@ -13,6 +13,7 @@ import typer
 
 from nrs_design.cli.printing import note
 from nrs_design.errors import OutputError
+from nrs_design.printable import printable
 
 if TYPE_CHECKING:
     from nrs_design.identification.datasets import Source
@@ -58,12 +59,13 @@ def _bar(*, quiet: bool) -> Iterator[Callable[[str], Callable[[float], None]]]:
         yield lambda name: lambda fraction: None
         return
     from rich.console import Console
+    from rich.markup import escape
     from rich.progress import Progress
 
     with Progress(console=Console(stderr=True), transient=True) as bars:
 
         def begin(name: str) -> Callable[[float], None]:
-            task = bars.add_task(f"reading {name}", total=1.0)
+            task = bars.add_task(f"reading {escape(printable(name))}", total=1.0)
             return lambda fraction: bars.update(task, completed=fraction)
 
         yield begin

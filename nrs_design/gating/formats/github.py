@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from nrs_design.gating.obligations import Caution, GateOutcome, Obligation
 from nrs_design.gating.paths import from_here
+from nrs_design.printable import printable
 
 # GitHub shows no more than ten annotations of each type per step, whichever come first.
 MAX_ANNOTATIONS = 10
@@ -37,8 +38,7 @@ def _warning(item: Caution) -> str:
 
 
 def _data(text: str) -> str:
-    encodable = text.encode(errors="backslashreplace").decode()
-    return encodable.replace("%", "%25").replace("\r", "%0D").replace("\n", "%0A")
+    return printable(text).replace("%", "%25")
 
 
 def _property(text: str) -> str:

@@ -13,7 +13,7 @@ from nrs_design.gating.obligations import (
     SpecOutcome,
     count_by_verdict,
 )
-from nrs_design.gating.paths import printable
+from nrs_design.printable import printable
 
 COLUMNS = ("spec", "verdict", "common quadratic", "decay rate", "modes", "certificate")
 SHORT_ID = 12
@@ -34,7 +34,7 @@ def _row(spec: SpecOutcome) -> Sequence[str]:
     # What is proved holds for slower decay too, so the relation is true of a rounded rate as well.
     sign, unit = (">=", " 1/s") if spec.rate_name == "alpha" else ("<=", "")
     return (
-        printable(spec.path),
+        printable(spec.path.as_posix()),
         spec.verdict or "-",
         spec.common_quadratic or "-",
         f"{spec.rate_name} {sign} {spec.rate}{unit}" if spec.rate else "-",
@@ -70,8 +70,8 @@ def _shortest(text: str) -> str:
 
 
 def _line(item: Obligation) -> str:
-    place = [printable(item.path), *(str(n) for n in (item.line, item.column) if n is not None)]
-    return f"{':'.join(place)}: {item.rule.id} {item.status}: {printable(item.message)}"
+    place = [item.path.as_posix(), *(str(n) for n in (item.line, item.column) if n is not None)]
+    return printable(f"{':'.join(place)}: {item.rule.id} {item.status}: {item.message}")
 
 
 def _summary(outcome: GateOutcome) -> str:

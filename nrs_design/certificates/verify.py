@@ -19,7 +19,7 @@ from nrs_design.certificates.certificate import (
     content_id,
     to_document,
 )
-from nrs_design.certificates.evidence import AbstractEvidence, read_evidence
+from nrs_design.certificates.evidence import AbstractEvidence, Shows, read_evidence
 from nrs_design.certificates.evidence.fields import read_text
 from nrs_design.certificates.second_opinion import confirm
 from nrs_design.errors import CertificateError, NrsDesignError
@@ -30,6 +30,7 @@ from nrs_design.switched.assemble import assemble
 from nrs_design.switched.system import SwitchedSystem
 
 MAX_BYTES = 256 * 2**20
+MAX_VERDICTS = 2
 # What a hostile document can raise before the exact check: all of it means rejection.
 _MALFORMED = (
     LookupError,
@@ -168,9 +169,12 @@ def _rebuild(document: Mapping[str, Any], spec: LoadedSpec) -> Certificate:
 def _statements(
     document: Mapping[str, Any], system: SwitchedSystem
 ) -> tuple[AbstractEvidence, ...]:
-    if len(document["statements"]) > 1 + system.order:
-        raise ValueError("it states more than a verdict, and a remark on every block")
+    # Each may take seconds: a verdict and a remark on every block, said twice, are enough.
+    if len(document["statements"]) > 2 * (1 + system.order):
+        raise ValueError("it makes too many statements")
     statements = tuple(read_evidence(fields, system) for fields in document["statements"])
+    if sum(item.shows is not Shows.NO_COMMON_QUADRATIC for item in statements) > MAX_VERDICTS:
+        raise ValueError("it states its verdict too often")
     if not statements:
         raise ValueError("it states nothing")
     return statements

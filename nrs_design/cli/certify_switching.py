@@ -77,7 +77,7 @@ def certify_switching(
     from nrs_design.spec import read_spec
 
     loaded = read_spec(spec)
-    limits = Limits(max_degree, budget, optimize_rate)
+    limits = Limits(max_degree, budget, optimize_rate=optimize_rate)
     with progress(f"certifying {loaded.spec.name}", quiet=quiet) as step:
         result = run_certification(
             loaded,

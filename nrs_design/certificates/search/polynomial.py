@@ -16,12 +16,22 @@ import numpy as np
 from numpy.typing import NDArray
 
 from nrs_design.certificates.evidence import CommonPolynomial
-from nrs_design.certificates.evidence.common_polynomial import lifted_factor
+from nrs_design.certificates.evidence.common_polynomial import (
+    MAX_DEGREE,
+    MAX_MONOMIALS,
+    lifted_factor,
+)
 from nrs_design.certificates.lift import derivative_lift, monomials, power_lift
+from nrs_design.certificates.search.allowance import Allowance, Cost
 from nrs_design.certificates.search.balance import scale
 from nrs_design.certificates.search.lmi import decreases, time_unit
 from nrs_design.certificates.search.rounding import round_rate
-from nrs_design.certificates.search.sdp import maximize_margin, pack, symmetric_basis
+from nrs_design.certificates.search.sdp import (
+    maximize_margin,
+    pack,
+    program_cost,
+    symmetric_basis,
+)
 from nrs_design.switched.matrix import RationalMatrix
 from nrs_design.switched.system import SwitchedSystem, Time
 
@@ -39,6 +49,8 @@ class Lift:
 
     Parameters
     ----------
+    variables : int
+        The number of states n.
     degree : int
         The d.
     matrices : ndarray, shape (m, K, K)
@@ -51,6 +63,7 @@ class Lift:
         The modes are those in a unit of time of two to this power (discrete time: zero).
     """
 
+    variables: int
     degree: int
     matrices: Array
     vanishing: Array
@@ -94,14 +107,7 @@ def lift_family(system: SwitchedSystem, exponents: Exponents, degree: int) -> Li
     given = np.array([mode.A.floats() for mode in system.modes])
     unit = time_unit(scale(given, exponents), system.time)
     forms = np.array(vanishing).reshape(-1, K, K)
-    return Lift(degree, np.ldexp(matrices, unit), forms, scaling, unit)
-
-
-def count_variables(variables: int, modes: int, degree: int) -> int:
-    """Return the size of the semidefinite program before anything is lifted."""
-    size = comb(variables + degree - 1, degree)
-    symmetric = size * (size + 1) // 2
-    return symmetric + modes * (symmetric - comb(variables + 2 * degree - 1, 2 * degree)) + 1
+    return Lift(system.order, degree, np.ldexp(matrices, unit), forms, scaling, unit)
 
 
 def products(variables: int, degree: int) -> list[list[Pair]]:
@@ -115,7 +121,25 @@ def products(variables: int, degree: int) -> list[list[Pair]]:
     return [sorted(group, key=lambda pair: pair[0] != pair[1]) for group in groups.values()]
 
 
-def find_common_polynomial(lift: Lift, time: Time, rate: float) -> Candidate | None:
+def highest_degree(variables: int) -> int:
+    """Return the largest d whose monomials a certificate can hold."""
+    degrees = range(1, MAX_DEGREE // 2 + 1)
+    fitting = (d for d in degrees if comb(variables + d - 1, d) <= MAX_MONOMIALS)
+    return max(fitting, default=1)
+
+
+def polynomial_cost(variables: int, modes: int, degree: int) -> tuple[Cost, str]:
+    """Predict what `find_common_polynomial` takes before anything is lifted; say for what."""
+    order = comb(variables + degree - 1, degree)
+    shared = order * (order + 1) // 2 + 1
+    forms = shared - 1 - comb(variables + 2 * degree - 1, 2 * degree)
+    cones = [(order, shared)] * 2 + [(order, shared + forms)] * modes
+    return program_cost(shared + modes * forms, shared, cones), f"a program in {order} monomials"
+
+
+def find_common_polynomial(
+    lift: Lift, time: Time, rate: float, allowance: Allowance | None = None
+) -> Candidate | None:
     """Maximize the margin by semidefinite programming.
 
     Parameters
@@ -126,12 +150,21 @@ def find_common_polynomial(lift: Lift, time: Time, rate: float) -> Candidate | N
         Continuous or discrete.
     rate : float
         alpha in 1/s, or rho per step.
+    allowance : Allowance, optional
+        Time and memory; unlimited by default.
 
     Returns
     -------
     Candidate or None
         None if the margin is not positive.
+
+    Raises
+    ------
+    NotAffordableError
+        If time or memory do not suffice.
     """
+    allowance = allowance or Allowance()
+    allowance.take(*polynomial_cost(lift.variables, len(lift.matrices), lift.degree))
     rate = float(np.ldexp(rate, lift.unit))
     lifted_rate = rate * lift.degree if time is Time.CONTINUOUS else rate**lift.degree
     m, K = lift.matrices.shape[:2]
@@ -147,7 +180,7 @@ def find_common_polynomial(lift: Lift, time: Time, rate: float) -> Candidate | N
         block[:, size + k * forms : size + (k + 1) * forms] = -directions.T
         block[:, -1] = identity
     offset = np.concatenate([identity, np.zeros(size * (m + 1))])
-    x = maximize_margin(np.vstack(blocks), offset, [K] * (m + 2))
+    x = maximize_margin(np.vstack(blocks), offset, [K] * (m + 2), time_limit=allowance.left)
     if x is None or x[-1] <= 0:
         return None
     weights = x[size:-1].reshape(m, forms)

@@ -12,7 +12,8 @@ from numpy.typing import NDArray
 
 from nrs_design.certificates.evidence import AbstractEvidence, CommonQuadratic, UnstableMode
 from nrs_design.certificates.evidence.unstable_mode import is_stable, worst_eigenvalue
-from nrs_design.certificates.search.balance import mean_norm_coordinates, scale
+from nrs_design.certificates.search.allowance import NotAffordableError
+from nrs_design.certificates.search.balance import mean_norm, mean_norm_coordinates, scale
 from nrs_design.certificates.search.decay import largest_position, rate_at, rate_of
 from nrs_design.certificates.search.family import Family
 from nrs_design.certificates.search.gradient import iterate_gradient
@@ -25,9 +26,9 @@ from nrs_design.certificates.search.period import find_growing_period
 from nrs_design.certificates.search.polynomial import (
     Candidate,
     Lift,
-    count_variables,
     find_common_polynomial,
     lift_family,
+    polynomial_cost,
     round_polynomial,
 )
 from nrs_design.certificates.search.rounding import round_rate, round_to_evidence
@@ -43,8 +44,6 @@ BACK_OFFS = (0.9995, 0.998, 0.99, 0.9, 0.5, 0.1, 1e-3)
 SUSPICION = 1e-7
 OUT_OF_RANGE = "the modes are beyond the range of floating point"
 
-# Larger semidefinite programs are beyond patience: the time grows with the third power.
-MAX_VARIABLES = 1800
 RATE_BISECTIONS = 8
 POLYNOMIAL_BACK_OFF = 0.98
 
@@ -67,27 +66,44 @@ def examine_every_mode(family: Family) -> Finding:
 
 def search_by_lmi(family: Family, *, optimize_rate: bool) -> Finding:
     """Search by semidefinite programming; then, if asked to, raise the rate."""
-    time = family.system.time
+    time, allowance = family.system.time, family.allowance
     if not np.isfinite(family.limit):
         return None, OUT_OF_RANGE
-    Q = find_common_quadratic(family.matrices, time, rate_at(0.0, family.limit, time))
+    least = rate_at(0.0, family.limit, time)
+    try:
+        Q = find_common_quadratic(family.matrices, time, least, allowance=allowance)
+    except NotAffordableError:
+        Q = mean_norm(family.matrices, time)
+        if margins(family.matrices, Q, time, least).min() <= 0:
+            raise
+        return _round_at_own_rate(family, Q)
     if Q is None:
         return None, "the solver found no candidate with positive margins"
-    if optimize_rate:
-        best = largest_position(family.matrices, time, family.limit)
+    if optimize_rate and (evidence := _fastest(family)):
+        return evidence, "found with the largest decay rate"
+    return _round_at_own_rate(family, Q)
+
+
+def _fastest(family: Family) -> CommonQuadratic | None:
+    """Search for the largest rate in half of the time that is left, and round in the other half."""
+    time, allowance = family.system.time, family.allowance
+    best = largest_position(family.matrices, time, family.limit, allowance.part(0.5))
+    try:
         for back_off in BACK_OFFS:
             rate = rate_at(best * back_off, family.limit, time)
-            candidate = find_common_quadratic(family.matrices, time, rate)
+            candidate = find_common_quadratic(family.matrices, time, rate, allowance=allowance)
             if candidate is not None and (evidence := _round(family, candidate, rate)):
-                return evidence, "found with the largest decay rate"
-    return _round_at_own_rate(family, Q)
+                return evidence
+    except NotAffordableError:
+        pass
+    return None
 
 
 def search_by_gradient(family: Family) -> Finding:
     """Search by the Liberzon-Tempo iteration."""
     if not np.isfinite(family.limit):
         return None, OUT_OF_RANGE
-    result = iterate_gradient(family.matrices)
+    result = iterate_gradient(family.matrices, allowance=family.allowance)
     if result.Q is None:
         return None, f"not converged after {result.updates} updates"
     evidence, outcome = _round_at_own_rate(family, result.Q)
@@ -101,7 +117,7 @@ def search_raw(family: Family) -> Finding:
         return None, OUT_OF_RANGE
     matrices = scale(family.matrices, -family.exponents)
     least = rate_at(0.0, family.limit, time)
-    Q = find_common_quadratic(matrices, time, least, solve_by_clarabel)
+    Q = find_common_quadratic(matrices, time, least, solve_by_clarabel, family.allowance)
     if Q is None:
         return None, "the solver found no candidate with positive margins"
     shifts = family.exponents[:, None] + family.exponents[None, :]
@@ -116,7 +132,8 @@ def search_preconditioned(family: Family) -> Finding:
     T = mean_norm_coordinates(family.matrices, time)
     inverse = np.linalg.inv(T)
     least = rate_at(0.0, family.limit, time)
-    Q = find_common_quadratic(inverse @ family.matrices @ T, time, least, solve_by_clarabel)
+    matrices = inverse @ family.matrices @ T
+    Q = find_common_quadratic(matrices, time, least, solve_by_clarabel, family.allowance)
     if Q is None:
         return None, "the solver found no candidate with positive margins"
     return _round_at_own_rate(family, inverse.T @ Q @ inverse)
@@ -124,7 +141,7 @@ def search_preconditioned(family: Family) -> Finding:
 
 def prove_obstruction(family: Family) -> Finding:
     """Search for a proof that there is no common quadratic function."""
-    multipliers = solve_dual(family.matrices, family.system.time)
+    multipliers = solve_dual(family.matrices, family.system.time, family.allowance)
     if multipliers is None:
         return None, "the dual has no strict solution"
     evidence = round_obstruction(family.system, multipliers, family.exponents)
@@ -135,12 +152,11 @@ def prove_obstruction(family: Family) -> Finding:
 
 def search_polynomial(family: Family, *, degree: int, optimize_rate: bool = False) -> Finding:
     """Search for a common homogeneous polynomial of degree 2d, and a large rate if asked to."""
-    system = family.system
-    variables = count_variables(system.order, len(system.modes), degree)
-    if variables > MAX_VARIABLES:
-        return None, f"not tried: {variables} variables are too many"
+    system, allowance = family.system, family.allowance
+    allowance.require(*polynomial_cost(system.order, len(system.modes), degree))
     lift = lift_family(system, family.exponents, degree)
-    candidate = find_common_polynomial(lift, system.time, rate_at(0.0, family.limit, system.time))
+    least = rate_at(0.0, family.limit, system.time)
+    candidate = find_common_polynomial(lift, system.time, least, allowance)
     if candidate is None:
         return None, "the solver found no candidate with positive margins"
     evidence = round_polynomial(system, lift, candidate, family.limit)
@@ -156,13 +172,17 @@ def _faster_polynomial(family: Family, lift: Lift) -> AbstractEvidence | None:
     time = family.system.time
 
     def find(position: float) -> Candidate | None:
-        return find_common_polynomial(lift, time, rate_at(position, family.limit, time))
+        rate = rate_at(position, family.limit, time)
+        return find_common_polynomial(lift, time, rate, family.allowance)
 
     low, high = 0.0, 1.0
-    for _ in range(RATE_BISECTIONS):
-        middle = (low + high) / 2
-        low, high = (low, middle) if find(middle) is None else (middle, high)
-    candidate = find(POLYNOMIAL_BACK_OFF * low) if low > 0 else None
+    try:
+        for _ in range(RATE_BISECTIONS):
+            middle = (low + high) / 2
+            low, high = (low, middle) if find(middle) is None else (middle, high)
+        candidate = find(POLYNOMIAL_BACK_OFF * low) if low > 0 else None
+    except NotAffordableError:
+        return None
     if candidate is None:
         return None
     return round_polynomial(family.system, lift, candidate, family.limit)
@@ -177,7 +197,7 @@ def search_mode_quadratic(family: Family) -> Finding:
 def search_parameter_quadratic(family: Family) -> Finding:
     """Search for a quadratic function that is affine in a constant parameter."""
     evidence = find_parameter_quadratic(
-        family.system, family.matrices, family.exponents, family.limit
+        family.system, family.matrices, family.exponents, family.limit, family.allowance
     )
     return evidence, "found" if evidence else "no candidate passes the exact check"
 
@@ -198,7 +218,7 @@ def search_switching_at_values(family: Family) -> Finding:
 
 def search_mixture(family: Family) -> Finding:
     """Search for an unstable convex combination of modes."""
-    evidence = find_unstable_mixture(family.system, family.matrices)
+    evidence = find_unstable_mixture(family.system, family.matrices, family.allowance)
     return evidence, "found" if evidence else "every combination tried is stable"
 
 

@@ -26,7 +26,7 @@ def lying(shape, value):
 
 @pytest.mark.parametrize("value", LIES)
 def test_a_lying_semidefinite_solver_never_decides(monkeypatch, value):
-    def lie(rows, offset, sizes, equalities=0):
+    def lie(rows, offset, sizes, equalities=0, time_limit=0.0):
         return np.full(rows.shape[1], value)
 
     for module in (polynomial, obstruction, mode_quadratic):
@@ -50,7 +50,7 @@ def test_a_lying_quadratic_search_never_decides(monkeypatch, value):
 
 def test_a_function_that_is_not_symmetric_never_decides(monkeypatch):
     skew = np.array([[1.0, 5.0], [-5.0, 1.0]])
-    monkeypatch.setattr(rungs, "find_common_quadratic", lambda *_: skew)
+    monkeypatch.setattr(rungs, "find_common_quadratic", lambda *_, **__: skew)
     found = certify(dayawansa_martin(12), Method.LMI, Limits(optimize_rate=False))
     assert found.verdict is Verdict.INCONCLUSIVE
 

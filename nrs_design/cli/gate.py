@@ -11,12 +11,15 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from nrs_design.cli import exit_codes
-from nrs_design.cli.options import Json, Quiet
+from nrs_design.cli.options import Budget, Json, MaxDegree, Memory, Quiet
 from nrs_design.cli.printing import note, progress
 from nrs_design.errors import NrsDesignError
 
 if TYPE_CHECKING:
     from nrs_design.gating.obligations import GateOutcome
+
+# Highest degree, budget and memory, as far as they are given.
+Search = tuple[int | None, float | None, float | None]
 
 # By severity of the worst obligation, from none to a defect of this program.
 OF_SEVERITY = (
@@ -57,6 +60,9 @@ def gate(
     no_reports: Annotated[
         bool, typer.Option("--no-reports", help="Write certificates, but no HTML reports.")
     ] = False,
+    max_degree: MaxDegree = None,
+    budget: Budget = None,
+    memory: Memory = None,
     as_json: Json = False,
     quiet: Quiet = False,
 ) -> None:
@@ -76,11 +82,12 @@ def gate(
             f"--json and --format {format_} exclude each other", remedy="keep one of them"
         )
     chosen = FormatOption.JSON if as_json else format_
+    search = (max_degree, budget, memory)
     start = perf_counter()
     outcome = (
         _re_check(paths, lock, quiet=quiet)
         if locked
-        else _certify(paths, lock, reports, html=not no_reports, quiet=quiet)
+        else _certify(paths, lock, reports, search, html=not no_reports, quiet=quiet)
     )
     document = FORMATS[chosen](outcome)
     if out is not None:
@@ -96,15 +103,16 @@ def gate(
 
 
 def _certify(
-    paths: list[Path], lock: Path, reports: Path, *, html: bool, quiet: bool
+    paths: list[Path], lock: Path, reports: Path, search: Search, *, html: bool, quiet: bool
 ) -> GateOutcome:
     from nrs_design.gating.find_specs import find_specs
     from nrs_design.gating.lock import write_lock
     from nrs_design.gating.run import Files, run_gate
+    from nrs_design.pipeline import Overrides
 
     specs = find_specs(paths)
     with progress("gate", quiet=quiet) as step:
-        outcome = run_gate(specs, Files(reports, html=html), step)
+        outcome = run_gate(specs, Files(reports, html=html), step, Overrides(*search))
     return write_lock(outcome, lock)
 
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from nrs_design.cli import exit_codes
-from nrs_design.cli.options import Json, Quiet, SpecFile
+from nrs_design.cli.options import Budget, Json, MaxDegree, Memory, Quiet, SpecFile
 from nrs_design.cli.printing import note, print_json, progress
 from nrs_design.errors import DesignError
 
@@ -42,6 +42,9 @@ def report(
         bool,
         typer.Option("--times", help="Add the time of every rung; pages then differ each time."),
     ] = False,
+    max_degree: MaxDegree = None,
+    budget: Budget = None,
+    memory: Memory = None,
     as_json: Json = False,
     quiet: Quiet = False,
 ) -> None:
@@ -49,13 +52,14 @@ def report(
 
     Example: nrs-design report specs/neuroboscope/soft-tissue.nrs.yaml --format pdf
     """
-    from nrs_design.pipeline import run_certification
+    from nrs_design.pipeline import Overrides, limits_of, run_certification
     from nrs_design.reporting import build_report
     from nrs_design.spec import read_spec
 
     loaded = read_spec(spec)
     with progress(f"reporting {loaded.spec.name}", quiet=quiet) as step:
-        result = run_certification(loaded, progress=step)
+        limits = limits_of(loaded.spec, Overrides(max_degree, budget, memory))
+        result = run_certification(loaded, limits=limits, progress=step)
         step("figures")
         page = build_report(result, _evidence(result, quiet=quiet), times=times)
         files = _write(page, file_format, out)

@@ -8,6 +8,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field, model_validator
 
+from nrs_design.spec.certification import CertificationSpec
 from nrs_design.spec.faults import did_you_mean, fault
 from nrs_design.spec.fields import Label, Name, Title
 from nrs_design.spec.model import SpecModel
@@ -94,6 +95,9 @@ class SwitchedSystemSpec(SpecModel):
     )
     resets: Annotated[tuple[ResetSpec, ...], Field(max_length=MAX_TRANSITIONS)] = Field(
         default=(), description="what switches do to the state; the others leave it as it is"
+    )
+    certification: CertificationSpec = Field(
+        default_factory=CertificationSpec, description="how far the search for a proof goes"
     )
 
     @property

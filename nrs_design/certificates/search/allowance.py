@@ -92,8 +92,10 @@ class Allowance:
             If no time is left.
         """
         if not self.goes_on():
+            whole = self._parent is None or not self._parent.goes_on()
+            share = "" if whole else "its share of "
             raise NotAffordableError(
-                f"stopped: the budget of {self.total:g} s is used up (--budget)"
+                f"stopped: {share}the budget of {self.total:g} s is used up (--budget)"
             )
 
     def affords(self, cost: Cost) -> bool:

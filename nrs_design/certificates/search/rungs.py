@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from nrs_design.certificates.evidence import AbstractEvidence, CommonQuadratic, UnstableMode
 from nrs_design.certificates.evidence.unstable_mode import is_stable, worst_eigenvalue
-from nrs_design.certificates.search.allowance import NotAffordableError
+from nrs_design.certificates.search.allowance import Cost, NotAffordableError
 from nrs_design.certificates.search.balance import mean_norm, mean_norm_coordinates, scale
 from nrs_design.certificates.search.decay import largest_position, rate_at, rate_of
 from nrs_design.certificates.search.family import Family
@@ -36,12 +36,15 @@ from nrs_design.certificates.search.unstable_value import (
     find_unstable_switching,
     find_unstable_value,
 )
-from nrs_design.switched.system import Mode, SwitchedSystem, Time
+from nrs_design.switched.matrix import RationalMatrix
+from nrs_design.switched.system import Mode, Time
 
 # How far below the best rate found the claimed one may lie: a wider gap needs fewer digits.
 BACK_OFFS = (0.9995, 0.998, 0.99, 0.9, 0.5, 0.1, 1e-3)
 # Modes nearer to the stability limit than this, relative to their norm, get an exact test first.
 SUSPICION = 1e-7
+# Exact tests of a mode that are predicted to take no more seconds are always made.
+ALWAYS_TESTED = 0.05
 OUT_OF_RANGE = "the modes are beyond the range of floating point"
 
 RATE_BISECTIONS = 8
@@ -56,12 +59,12 @@ def examine_suspicious_modes(family: Family) -> Finding:
     suspicious = [
         mode for mode, ok in zip(family.system.modes, _seems_stable(family), strict=True) if not ok
     ]
-    return _first_unstable(suspicious, family.system)
+    return _first_unstable(suspicious, family)
 
 
 def examine_every_mode(family: Family) -> Finding:
     """Test every mode exactly."""
-    return _first_unstable(family.system.modes, family.system)
+    return _first_unstable(family.system.modes, family)
 
 
 def search_by_lmi(family: Family, *, optimize_rate: bool) -> Finding:
@@ -103,7 +106,8 @@ def search_by_gradient(family: Family) -> Finding:
     """Search by the Liberzon-Tempo iteration."""
     if not np.isfinite(family.limit):
         return None, OUT_OF_RANGE
-    result = iterate_gradient(family.matrices, allowance=family.allowance)
+    # The rungs below need time as well.
+    result = iterate_gradient(family.matrices, allowance=family.allowance.part(0.5))
     if result.Q is None:
         return None, f"not converged after {result.updates} updates"
     evidence, outcome = _round_at_own_rate(family, result.Q)
@@ -252,6 +256,14 @@ def _round(family: Family, Q: NDArray[np.float64], rate: float) -> CommonQuadrat
     return round_to_evidence(family.checker, Q, family.exponents, claimed, passes)
 
 
+def exact_test_cost(A: RationalMatrix) -> Cost:
+    """Predict what the exact test of one mode takes."""
+    n = A.shape[0]
+    bits = max(entry.bit_length() for row in (*A.numerators, (A.denominator,)) for entry in row)
+    grown = n * (bits + n.bit_length())
+    return Cost(n**4 * (1e-7 + 2e-13 * grown**2))
+
+
 def _seems_stable(family: Family) -> NDArray[np.bool_]:
     if not np.isfinite(family.matrices).all():
         return np.zeros(len(family.matrices), dtype=bool)
@@ -265,10 +277,13 @@ def _seems_stable(family: Family) -> NDArray[np.bool_]:
     return np.asarray(np.abs(eigenvalues).max(axis=1) < 1 - SUSPICION)
 
 
-def _first_unstable(modes: Iterable[Mode], system: SwitchedSystem) -> Finding:
-    count = 0
+def _first_unstable(modes: Iterable[Mode], family: Family) -> Finding:
+    system, count = family.system, 0
     for mode in modes:
         count += 1
+        cost = exact_test_cost(mode.A)
+        if cost.seconds > ALWAYS_TESTED:
+            family.allowance.take(cost, f"the exact test of mode {mode.name}")
         if is_stable(mode.A, system.time):
             continue
         evidence = UnstableMode(mode.name, worst_eigenvalue(mode.A, system.time))

@@ -27,6 +27,7 @@ from nrs_design.certificates.evidence import (
 )
 from nrs_design.certificates.evidence.block_triangular import diagonal_block
 from nrs_design.certificates.evidence.common_polynomial import MAX_DEGREE, MAX_MONOMIALS
+from nrs_design.certificates.evidence.unstable_mode import is_stable
 from nrs_design.certificates.search.allowance import GIGABYTE, Allowance, NotAffordableError
 from nrs_design.certificates.search.family import Family, floats_in_silence
 from nrs_design.certificates.search.limits import rate_limit
@@ -52,7 +53,7 @@ from nrs_design.certificates.search.rungs import (
 from nrs_design.certificates.search.structure import merge_equal_modes, triangular_blocks
 from nrs_design.certificates.second_opinion import confirm
 from nrs_design.errors import DesignError, InternalError
-from nrs_design.switched.system import SwitchedSystem, Time
+from nrs_design.switched.system import Mode, SwitchedSystem, Time
 
 Progress = Callable[[str], None]
 
@@ -328,6 +329,8 @@ def _applicable(system: SwitchedSystem) -> set[Method]:
     """Return the rungs that can decide a system with its kind of switching."""
     switching = system.switching
     wanted = {Method.MODE_QUADRATIC}
+    if any(not is_stable(mode.A, system.time) for mode in _left_modes(system)):
+        return wanted | ({Method.PERIOD} if system.is_uniform else set())
     if system.is_uniform and not switching.resets:
         wanted |= {Method.LMI, Method.OBSTRUCTION, Method.POLYNOMIAL}
     if system.is_uniform:
@@ -342,6 +345,12 @@ def _applicable(system: SwitchedSystem) -> set[Method]:
         wanted |= {Method.PARAMETER_QUADRATIC}
         wanted |= {Method.VALUE} if system.is_uniform else set()
     return wanted
+
+
+def _left_modes(system: SwitchedSystem) -> list[Mode]:
+    """Return the modes that must be left: only these may be unstable."""
+    lasting = {mode.name for mode in system.lasting_modes()}
+    return [mode for mode in system.modes if mode.name not in lasting]
 
 
 def _take(rung: Rung, family: Family) -> Finding:

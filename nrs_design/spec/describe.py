@@ -82,9 +82,9 @@ def _parameter(name: str, parameter: ParameterSpec) -> Iterator[Row]:
 def _switching(switching: SwitchingSpec) -> Iterator[Row]:
     if switching.is_arbitrary:
         yield Row("switching", str(switching), "", "")
-    if switching.dwell_time is not None:
-        dwell = switching.dwell_time
-        yield Row("switching.dwell_time", dwell.text, _text(float(dwell.value)), dwell.unit)
+    for at, dwell in switching.dwell_times():
+        name = ".".join(("switching", *at))
+        yield Row(name, dwell.text, _text(float(dwell.value)), dwell.unit)
     if switching.transitions is not None:
         pairs = [f"{source} to {target}" for source, target in switching.transitions]
         listed = ", ".join(pairs[:MAX_LISTED]) + ", ..." * (len(pairs) > MAX_LISTED)

@@ -68,8 +68,8 @@ class InteractionDesignSpec(SpecModel):
             if not isinstance(controller, PositionControllerSpec):
                 _check_references(name, controller, self.environments)
         check_names(self.switching, self.controllers, "controller")
-        if self.switching.dwell_time is not None:
-            _check_dwell_time(self.switching.dwell_time, self)
+        for at, dwell in self.switching.dwell_times():
+            _check_dwell_time(dwell, self, ("switching", *at))
         return self
 
 
@@ -106,9 +106,8 @@ def _check_references(
             )
 
 
-def _check_dwell_time(dwell: DwellTime, spec: InteractionDesignSpec) -> None:
+def _check_dwell_time(dwell: DwellTime, spec: InteractionDesignSpec, at: tuple[str, ...]) -> None:
     """Check that nothing changes during a dwell time: the environment obeys no rule of ours."""
-    at = ("switching", "dwell_time")
     if dwell.unit != "s":
         raise fault(f"{dwell.text!r} is not a time", "write seconds, such as '2.76 s'", *at)
     for name, controller in spec.controllers.items():
@@ -117,7 +116,7 @@ def _check_dwell_time(dwell: DwellTime, spec: InteractionDesignSpec) -> None:
             raise fault(
                 f"a dwell time and several contacts of {name!r} exclude each other: the contact "
                 "may change at any time, whatever the controller",
-                "leave dwell_time out, or write a spec for each environment",
+                f"leave {at[1]} out, or write a spec for each environment",
                 *at,
             )
         if isinstance(controller, ImpedanceControllerSpec):
@@ -127,7 +126,7 @@ def _check_dwell_time(dwell: DwellTime, spec: InteractionDesignSpec) -> None:
                 raise fault(
                     f"a dwell time and the range of environment {contact!r} exclude each other: "
                     "its parameters may move during the dwell time, and the proof would not hold",
-                    "leave dwell_time out, or give the environment its nominal values only",
+                    f"leave {at[1]} out, or give the environment its nominal values only",
                     *at,
                 )
 
@@ -140,6 +139,6 @@ def _check_constant_gains(
             raise fault(
                 f"a dwell time and the range of {gain} of {name!r} exclude each other: the gain "
                 "may move during the dwell time, and the proof would not hold",
-                "leave dwell_time out, or give the gain one value only",
+                f"leave {at[1]} out, or give the gain one value only",
                 *at,
             )

@@ -94,7 +94,9 @@ class SwitchedSystemSpec(SpecModel):
         description="when modes change: arbitrary, or rules with dwell_time and transitions"
     )
     resets: Annotated[tuple[ResetSpec, ...], Field(max_length=MAX_TRANSITIONS)] = Field(
-        default=(), description="what switches do to the state; the others leave it as it is"
+        default=(),
+        description="what switches do to the state; the others leave it as it is. Several from one "
+        "mode to another are as many switches: any one of them may happen",
     )
     certification: CertificationSpec = Field(
         default_factory=CertificationSpec, description="how far the search for a proof goes"
@@ -110,9 +112,9 @@ class SwitchedSystemSpec(SpecModel):
         modes = _modes_by_name(self.modes)
         _check_parameters(self)
         check_names(self.switching, modes, "mode")
-        _check_dwell_time(self)
-        resets = _resets_by_transition(self, modes)
-        _check_sizes(self, modes, resets)
+        _check_dwell_times(self)
+        _check_resets(self, modes)
+        _check_sizes(self, modes)
         return self
 
 
@@ -167,32 +169,28 @@ def _report_unknown(spec: SwitchedSystemSpec, index: int) -> None:
                     )
 
 
-def _check_dwell_time(spec: SwitchedSystemSpec) -> None:
-    dwell = spec.switching.dwell_time
-    if dwell is None:
-        return
+def _check_dwell_times(spec: SwitchedSystemSpec) -> None:
     unit, example = ("s", "2.76 s") if spec.time == "continuous" else ("steps", "3 steps")
-    if dwell.unit != unit:
-        raise fault(
-            f"{dwell.text!r} is not a dwell time in {spec.time} time, expected {unit}",
-            f"such as {example!r}",
-            *("switching", "dwell_time"),
-        )
     ranged = next((name for name, p in spec.parameters.items() if not p.fixed), None)
-    if ranged is not None:
-        raise fault(
-            f"a dwell time and the range of parameter {ranged!r} exclude each other: the proof "
-            "with a dwell time holds for constant matrices only",
-            "leave dwell_time out, or give the parameter its nominal value only",
-            *("switching", "dwell_time"),
-        )
+    for at, dwell in spec.switching.dwell_times():
+        if dwell.unit != unit:
+            raise fault(
+                f"{dwell.text!r} is not a dwell time in {spec.time} time, expected {unit}",
+                f"such as {example!r}",
+                *("switching", *at),
+            )
+        if ranged is not None:
+            raise fault(
+                f"a dwell time and the range of parameter {ranged!r} exclude each other: the proof "
+                "with a dwell time holds for constant matrices only",
+                f"leave {at[0]} out, or give the parameter its nominal value only",
+                *("switching", *at),
+            )
 
 
-def _resets_by_transition(
-    spec: SwitchedSystemSpec, modes: Mapping[str, ModeSpec]
-) -> dict[Transition, ResetSpec]:
+def _check_resets(spec: SwitchedSystemSpec, modes: Mapping[str, ModeSpec]) -> None:
     allowed = None if spec.switching.transitions is None else set(spec.switching.transitions)
-    found: dict[Transition, ResetSpec] = {}
+    found: set[ResetSpec] = set()
     for index, reset in enumerate(spec.resets):
         at = ("resets", index)
         for key, name in (("from", reset.source), ("to", reset.target)):
@@ -207,11 +205,10 @@ def _resets_by_transition(
                 "add it to switching.transitions, or remove this reset",
                 *at,
             )
-        if transition in found:
-            raise fault("this switch has a reset already", "keep one of them", *at)
+        if reset in found:
+            raise fault("this reset is listed twice", "list each once", *at)
         _check_shape(reset, modes, *at)
-        found[transition] = reset
-    return found
+        found.add(reset)
 
 
 def _check_shape(reset: ResetSpec, modes: Mapping[str, ModeSpec], *at: int | str) -> None:
@@ -225,14 +222,11 @@ def _check_shape(reset: ResetSpec, modes: Mapping[str, ModeSpec], *at: int | str
         )
 
 
-def _check_sizes(
-    spec: SwitchedSystemSpec,
-    modes: Mapping[str, ModeSpec],
-    resets: Mapping[Transition, ResetSpec],
-) -> None:
+def _check_sizes(spec: SwitchedSystemSpec, modes: Mapping[str, ModeSpec]) -> None:
     """Check that a switch between different states says what becomes of the state."""
     if len({mode.dimension for mode in spec.modes}) == 1:
         return
+    resets = {(reset.source, reset.target) for reset in spec.resets}
     for (source, target), at in _transitions(spec):
         n, m = modes[source].dimension, modes[target].dimension
         if n != m and (source, target) not in resets:

@@ -112,7 +112,7 @@ def test_rules_of_controllers() -> None:
             '[0, "1/2"]]}',
             "[0, 1]]}\n  - {to: b, from: a, map: [[1, 0], [0, 1]]}",
             "{to: b",
-            "has a reset already",
+            "listed twice",
         ),
     ],
 )

@@ -81,12 +81,12 @@ def test_dwell_time_in_steps():
 def test_transitions():
     system = given(TWO, "{transitions: [[b, a]]}")
     assert system.switching.transitions == (("b", "a"),)
-    assert [(s.name, t.name) for s, t in system.transitions()] == [("b", "a")]
+    assert [(edge.source.name, edge.target.name) for edge in system.edges()] == [("b", "a")]
 
 
 def test_no_transitions_at_all():
     system = given(TWO, "{transitions: []}")
-    assert system.transitions() == []
+    assert system.edges() == []
     assert system.assumptions[-1] == "The mode never changes."
 
 
@@ -107,7 +107,7 @@ def test_a_constant_parameter_is_kept_apart_from_the_transitions():
     system = given(CONSTANT, "arbitrary")
     assert system.switching.transitions is None
     assert not system.switching.is_arbitrary
-    assert len(system.transitions()) == 12
+    assert len(system.edges()) == 12
     assert system.switching.fixed_ends == (("a/m-min", "a/m-max"), ("b/m-min", "b/m-max"))
     assert system.assumptions[1:] == (
         "Parameter m is unknown in [0, 2], but constant: it has one value in all modes and at all "
@@ -122,9 +122,10 @@ def test_resets_hold_for_all_corners():
     assert system.switching.resets == (Reset("a/k-min", "b", half), Reset("a/k-max", "b", half))
     assert system.switching.transitions is None
     low, high, b = system.modes
-    assert system.reset_map(low, b) == half
-    assert system.reset_map(low, high) is None
-    assert system.reset_map(b, low) is None
+    maps = {(edge.source, edge.target): edge.map for edge in system.edges()}
+    assert maps[low, b] == half
+    assert maps[low, high] is None
+    assert maps[b, low] is None
     assert system.assumptions[2:] == (
         "At a switch from a to b the state is mapped as the resets of the spec say; at every other "
         "switch it is continuous.",
@@ -155,7 +156,7 @@ def test_states_of_different_sizes():
     assert system.order == 2
     assert system.states == ("x1", "x2")
     assert not system.is_uniform
-    assert system.reset_map(*system.modes).shape == (2, 1)
+    assert [edge.map.shape for edge in system.edges()] == [(2, 1), (1, 2)]
 
 
 def test_long_lists_are_counted():

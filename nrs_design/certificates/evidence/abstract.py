@@ -90,6 +90,8 @@ class AbstractEvidence(ABC):
         for mode in system.modes:
             if not _is_well_formed(mode.A):
                 return f"mode {mode.name} is not a square matrix over a positive denominator"
+        if (contradiction := system.find_contradiction()) is not None:
+            return contradiction
         if not self.fits(system.switching):
             return f"evidence of kind {self.kind} does not cover this kind of switching"
         if not system.is_uniform and not self.allows_unequal_modes:

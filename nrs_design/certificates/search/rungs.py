@@ -56,15 +56,18 @@ Rung = Callable[[Family], Finding]
 
 def examine_suspicious_modes(family: Family) -> Finding:
     """Test exactly the modes that floating-point eigenvalues do not show to be stable."""
+    lasting = {mode.name for mode in family.system.lasting_modes()}
     suspicious = [
-        mode for mode, ok in zip(family.system.modes, _seems_stable(family), strict=True) if not ok
+        mode
+        for mode, ok in zip(family.system.modes, _seems_stable(family), strict=True)
+        if not ok and mode.name in lasting
     ]
     return _first_unstable(suspicious, family)
 
 
 def examine_every_mode(family: Family) -> Finding:
-    """Test every mode exactly."""
-    return _first_unstable(family.system.modes, family)
+    """Test exactly every mode that need never be left."""
+    return _first_unstable(family.system.lasting_modes(), family)
 
 
 def search_by_lmi(family: Family, *, optimize_rate: bool) -> Finding:

@@ -88,7 +88,8 @@ def _growth(system: SwitchedSystem, response: TimeResponse) -> tuple[str, Array]
 
 def _period(system: SwitchedSystem, evidence: UnstablePeriod) -> tuple[Block, ...]:
     index = {mode.name: k for k, mode in enumerate(system.modes)}
-    run = periodic_run(system, [(index[name], float(time)) for name, time in evidence.steps])
+    steps = [(index[name], float(time)) for name, time in evidence.steps]
+    run = periodic_run(system, steps, evidence.edges)
     first = one_period(run)
     periods = round(run.response.time[-1] / run.period)
     line = _line(run)
@@ -102,7 +103,7 @@ def _period(system: SwitchedSystem, evidence: UnstablePeriod) -> tuple[Block, ..
             f"{_rate(run, system.time)}. The certificate shows with rigorous enclosures that the "
             "factor is above one; these digits are floating point."
         ),
-        _steps_table(evidence, unit),
+        _steps_table(system, evidence, unit),
         Illustration(
             "run",
             f"The witness over {plural(periods, 'period')}",
@@ -131,14 +132,29 @@ def _rate(run: PeriodicRun, time: Time) -> str:
     return f", a mean growth rate of {number(rate, 4)} 1/s" if time is Time.CONTINUOUS else ""
 
 
-def _steps_table(evidence: UnstablePeriod, unit: str) -> Table:
+def _steps_table(system: SwitchedSystem, evidence: UnstablePeriod, unit: str) -> Table:
+    names = [name for name, _ in evidence.steps]
+    resets = _resets(system, list(zip(names, (*names[1:], *names[:1]), strict=True)), evidence)
+    head = ("Step", "Mode", f"Time in it [{unit}]", *(("Then",) if any(resets) else ()))
     rows = tuple(
-        (str(k + 1), name, f"{float(time):.6g}")
+        (str(k + 1), name, f"{float(time):.6g}", *((resets[k],) if any(resets) else ()))
         for k, (name, time) in enumerate(evidence.steps[:_LISTED])
     )
     more = len(evidence.steps) - len(rows)
-    title = "One period" + (f", its first {_LISTED} steps" if more else "")
-    return Table(title, ("Step", "Mode", f"Time in it [{unit}]"), rows)
+    return Table("One period" + (f", its first {_LISTED} steps" if more else ""), head, rows)
+
+
+def _resets(
+    system: SwitchedSystem, switches: list[tuple[str, str]], evidence: UnstablePeriod
+) -> list[str]:
+    """Say for each step what its switch does to the state; nothing where it leaves it as it is."""
+    maps, ways = system.switching.maps(), evidence.edges or (0,) * len(switches)
+    texts = []
+    for switch, way in zip(switches, ways, strict=True):
+        count = len(maps.get(switch, ()))
+        which = f"reset {way + 1} of {count}" if count > 1 else "reset"
+        texts.append(f"{which} to {switch[1]}" if count else "")
+    return texts
 
 
 def _mixture(system: SwitchedSystem, evidence: UnstableMixture) -> tuple[Block, ...]:

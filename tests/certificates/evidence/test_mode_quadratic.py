@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from nrs_design.certificates.certify import Method, Verdict, certify
 from nrs_design.certificates.evidence import ModeQuadratic
-from nrs_design.certificates.evidence.mode_quadratic import _lower_integers
+from nrs_design.certificates.evidence.flow import _lower_integers
 from nrs_design.certificates.exact import is_positive_definite
 from nrs_design.switched.system import Switching, Time
 from tests.certificates.systems import (

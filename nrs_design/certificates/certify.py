@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from enum import StrEnum
 from functools import partial
-from itertools import islice
+from itertools import islice, zip_longest
 from time import perf_counter
 
 from numpy.linalg import LinAlgError
@@ -28,9 +28,15 @@ from nrs_design.certificates.evidence import (
 from nrs_design.certificates.evidence.block_triangular import diagonal_block
 from nrs_design.certificates.evidence.common_polynomial import MAX_DEGREE, MAX_MONOMIALS
 from nrs_design.certificates.evidence.unstable_mode import is_stable
-from nrs_design.certificates.search.allowance import GIGABYTE, Allowance, NotAffordableError
+from nrs_design.certificates.search.allowance import (
+    GIGABYTE,
+    Allowance,
+    Cost,
+    NotAffordableError,
+)
 from nrs_design.certificates.search.family import Family, floats_in_silence
 from nrs_design.certificates.search.limits import rate_limit
+from nrs_design.certificates.search.mode_quadratic import functions_cost
 from nrs_design.certificates.search.polynomial import highest_degree, polynomial_cost
 from nrs_design.certificates.search.rungs import (
     Finding,
@@ -41,6 +47,7 @@ from nrs_design.certificates.search.rungs import (
     search_by_gradient,
     search_by_lmi,
     search_mixture,
+    search_mode_polynomial,
     search_mode_quadratic,
     search_parameter_quadratic,
     search_period,
@@ -71,6 +78,7 @@ class Method(StrEnum):
     GRADIENT = "gradient"
     OBSTRUCTION = "obstruction"
     MIXTURE = "mixture"
+    MODE_POLYNOMIAL = "mode-polynomial"
     MODE_QUADRATIC = "mode-quadratic"
     PARAMETER_QUADRATIC = "parameter-quadratic"
     PERIOD = "period"
@@ -286,21 +294,50 @@ def _rungs(
         yield "mode quadratic", search_mode_quadratic
     if Method.MIXTURE in wanted:
         yield "mixture", search_mixture
-    polynomials: Iterator[tuple[str, Rung]] = iter(())
+    ladders = []
     if Method.POLYNOMIAL in wanted:
-        polynomials = _polynomials(system, limits, allowance)
-    yield from islice(polynomials, FIRST_DEGREES)
+        ladders.append(_common_polynomials(system, limits, allowance))
+    if Method.MODE_POLYNOMIAL in wanted:
+        ladders.append(_mode_polynomials(system, limits, allowance))
+    for ladder in ladders:
+        yield from islice(ladder, FIRST_DEGREES)
     if Method.PERIOD in wanted:
         yield "period", search_period
     if Method.VALUE in wanted:
         yield "switching at constant values", search_switching_at_values
-    yield from polynomials
+    for rungs in zip_longest(*ladders):
+        yield from (rung for rung in rungs if rung is not None)
 
 
-def _polynomials(
+def _common_polynomials(
     system: SwitchedSystem, limits: Limits, allowance: Allowance
 ) -> Iterator[tuple[str, Rung]]:
-    """Yield polynomials of rising degree, and at last the reason why there is no higher one.
+    """Yield common polynomials of rising degree."""
+    search = partial(partial, search_polynomial, optimize_rate=limits.optimize_rate)
+    cost = partial(polynomial_cost, system.order, len(system.modes))
+    return _rising(
+        "polynomial", system, limits, allowance, lambda d: (cost(d)[0], search(degree=d))
+    )
+
+
+def _mode_polynomials(
+    system: SwitchedSystem, limits: Limits, allowance: Allowance
+) -> Iterator[tuple[str, Rung]]:
+    """Yield polynomials for each mode of rising degree."""
+    search = partial(partial, search_mode_polynomial)
+    cost = partial(functions_cost, system)
+    name = "mode polynomial"
+    return _rising(name, system, limits, allowance, lambda d: (cost(d)[0], search(degree=d)))
+
+
+def _rising(
+    name: str,
+    system: SwitchedSystem,
+    limits: Limits,
+    allowance: Allowance,
+    rung_of: Callable[[int], tuple[Cost, Rung]],
+) -> Iterator[tuple[str, Rung]]:
+    """Yield rungs of rising degree, and at last the reason why there is no higher one.
 
     Degrees rise while they are predicted to fit into what is left of the budget, so how far they
     rise does not depend on the machine. In one state, all forms of a degree are alike.
@@ -308,16 +345,17 @@ def _polynomials(
     if system.order == 1:
         return
     for d in range(2, highest_degree(system.order) + 1):
-        name = f"polynomial of degree {2 * d}"
+        step = f"{name} of degree {2 * d}"
         if limits.max_degree is not None and 2 * d > limits.max_degree:
-            yield name, _refuse(f"not tried: --max-degree is {limits.max_degree}")
+            yield step, _refuse(f"not tried: --max-degree is {limits.max_degree}")
             return
-        fits = allowance.affords(polynomial_cost(system.order, len(system.modes), d)[0])
-        yield name, partial(search_polynomial, degree=d, optimize_rate=limits.optimize_rate)
+        cost, rung = rung_of(d)
+        fits = allowance.affords(cost)
+        yield step, rung
         if not fits:
             return
     held = f"a certificate holds at most {MAX_MONOMIALS} monomials and degree {MAX_DEGREE}"
-    yield "polynomial of higher degree", _refuse(f"not tried: {held}")
+    yield f"{name} of higher degree", _refuse(f"not tried: {held}")
 
 
 def _refuse(reason: str) -> Rung:
@@ -329,6 +367,8 @@ def _applicable(system: SwitchedSystem) -> set[Method]:
     """Return the rungs that can decide a system with its kind of switching."""
     switching = system.switching
     wanted = {Method.MODE_QUADRATIC}
+    if system.time is Time.DISCRETE and not (switching.is_arbitrary or switching.fixed_ends):
+        wanted |= {Method.MODE_POLYNOMIAL}
     if any(not is_stable(mode.A, system.time) for mode in _left_modes(system)):
         return wanted | ({Method.PERIOD} if system.is_uniform else set())
     if system.is_uniform and not switching.resets:

@@ -34,6 +34,7 @@ class MethodOption(StrEnum):
     GRADIENT = "gradient"
     OBSTRUCTION = "obstruction"
     MIXTURE = "mixture"
+    MODE_POLYNOMIAL = "mode-polynomial"
     MODE_QUADRATIC = "mode-quadratic"
     PARAMETER_QUADRATIC = "parameter-quadratic"
     PERIOD = "period"

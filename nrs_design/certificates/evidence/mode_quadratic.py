@@ -32,7 +32,7 @@ from nrs_design.certificates.exact import (
 )
 from nrs_design.spec.exact import exact_text
 from nrs_design.switched.matrix import RationalMatrix, multiply
-from nrs_design.switched.system import Edge, Stay, SwitchedSystem, Switching, Time
+from nrs_design.switched.system import Edge, Mode, Stay, SwitchedSystem, Switching, Time
 
 MAX_DWELL_STEPS = 4096
 MAX_PIECES = 4096
@@ -97,14 +97,12 @@ class ModeQuadratic(AbstractEvidence):
         for mode, (_, Q) in zip(system.modes, self.functions, strict=True):
             if not is_square(Q, mode.A.shape[0]):
                 return f"Q of mode {mode.name} has the wrong size"
-        for edge in system.edges():
-            if edge.map is None and edge.source.A.shape != edge.target.A.shape:
-                return f"the switch {_words(edge)} has no reset"
-            if edge.map is not None and edge.map.shape != _shape(edge):
-                return f"the switch {_words(edge)} has no fitting reset"
-        if misfit := find_rate_misfit(self.rate, system.time) or self._find_odd_stay(system):
-            return misfit
-        return self._find_raising_switch(system)
+        return (
+            find_odd_switch(system)
+            or find_rate_misfit(self.rate, system.time)
+            or self._find_odd_stay(system)
+            or self._find_raising_switch(system)
+        )
 
     def _find_odd_stay(self, system: SwitchedSystem) -> str | None:
         """Check that the stays to be shown are few, short and, in discrete time, whole."""
@@ -139,12 +137,30 @@ class ModeQuadratic(AbstractEvidence):
         return None
 
     def forms(self, system: SwitchedSystem) -> Iterator[tuple[str, IntegerMatrix]]:
-        """Yield every Q_i, its decrease, and the switches after every stay that counts."""
+        """Yield every Q_i, and every decrease."""
+        for name, Q in self.functions:
+            yield f"Q of mode {name} is not symmetric and positive definite", Q
+        yield from self.decreases(system)
+
+    def decreasing_modes(self, system: SwitchedSystem) -> list[Mode]:
+        """Return the mode in which each of the decreases begins, in their order.
+
+        For discrete time, where every stay takes steps.
+        """
+        stays = system.stays()
+        counts = {
+            name: int(stay.longest or 0) - int(stay.shortest) + 1 if name in self.leaving else 1
+            for name, stay in stays.items()
+        }
+        modes = [mode for mode in system.modes if mode.name not in self.leaving]
+        return modes + [e.source for e in system.edges() for _ in range(counts[e.source.name])]
+
+    def decreases(self, system: SwitchedSystem) -> Iterator[tuple[str, IntegerMatrix]]:
+        """Yield the decrease in every mode, and at the switches after every stay that counts."""
         form = lyapunov_decrease if system.time is Time.CONTINUOUS else stein_decrease
         Q, stays = dict(self.functions), system.stays()
         for mode in system.modes:
             A = mode.A
-            yield f"Q of mode {mode.name} is not symmetric and positive definite", Q[mode.name]
             if mode.name not in self.leaving:
                 failure = f"V does not decrease at the claimed rate in mode {mode.name}"
                 yield failure, form(A.numerators, A.denominator, Q[mode.name], self.rate)
@@ -194,15 +210,7 @@ class ModeQuadratic(AbstractEvidence):
 
     def claim(self, system: SwitchedSystem) -> str:
         """State the bound on every solution."""
-        continuous = system.time is Time.CONTINUOUS
-        law, bound = ("x' = A x", "exp(-alpha t)") if continuous else ("x+ = A x", "rho^t")
-        value = rate_text(self.rate, system.time)
-        rate = f"alpha = {value} 1/s" if continuous else f"rho = {value}"
-        return (
-            f"Every solution of {law} under the declared switching ({describe(system)}) satisfies "
-            f"|x(t)| <= c {bound} |x(0)| with {rate} and some constant c that is the same for all "
-            "signals."
-        )
+        return bound_claim(system, self.rate)
 
     def to_fields(self) -> dict[str, Any]:
         """Return the functions, the rate, and what is known of modes that must be left."""
@@ -229,6 +237,29 @@ class ModeQuadratic(AbstractEvidence):
         leaving = tuple(read_text(name) for name in fields.get("leaving", ()))
         pieces = read_integer(fields.get("pieces", 1))
         return cls(tuple(functions), exponents.pop(), read_ratio(fields["rate"]), leaving, pieces)
+
+
+def find_odd_switch(system: SwitchedSystem) -> str | None:
+    """Say which switch has no reset between modes of different sizes, or one that does not fit."""
+    for edge in system.edges():
+        if edge.map is None and edge.source.A.shape != edge.target.A.shape:
+            return f"the switch {_words(edge)} has no reset"
+        if edge.map is not None and edge.map.shape != _shape(edge):
+            return f"the switch {_words(edge)} has no fitting reset"
+    return None
+
+
+def bound_claim(system: SwitchedSystem, rate: Fraction) -> str:
+    """State a bound, up to a constant factor, on every solution that keeps the rules."""
+    continuous = system.time is Time.CONTINUOUS
+    law, bound = ("x' = A x", "exp(-alpha t)") if continuous else ("x+ = A x", "rho^t")
+    value = rate_text(rate, system.time)
+    rate_words = f"alpha = {value} 1/s" if continuous else f"rho = {value}"
+    return (
+        f"Every solution of {law} under the declared switching ({describe(system)}) satisfies "
+        f"|x(t)| <= c {bound} |x(0)| with {rate_words} and some constant c that is the same for "
+        "all signals."
+    )
 
 
 def describe(system: SwitchedSystem) -> str:

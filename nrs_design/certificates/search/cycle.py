@@ -8,6 +8,7 @@ from itertools import islice
 
 import numpy as np
 
+from nrs_design.certificates.search.allowance import Allowance
 from nrs_design.certificates.search.graph import Array, Cycle, Graph, Jump
 
 MAX_CYCLES = 120
@@ -18,8 +19,10 @@ SWEEPS = 4
 STARTS = 4
 
 
-def growing_cycles(graph: Graph) -> Iterator[tuple[Cycle, Array]]:
+def growing_cycles(graph: Graph, allowance: Allowance) -> Iterator[tuple[Cycle, Array]]:
     """Yield the elementary cycles that seem to grow the most, or to decay the least.
+
+    When time is over, those that have been looked at are compared.
 
     Yields
     ------
@@ -30,6 +33,8 @@ def growing_cycles(graph: Graph) -> Iterator[tuple[Cycle, Array]]:
     for cycle in islice(elementary_cycles(graph.jumps), MAX_CYCLES):
         times = _best_pair(graph, cycle) if len(cycle) == 2 else _best_times(graph, cycle)
         scanned.append((float(graph.growth(cycle, times)), cycle, times))
+        if not allowance.goes_on():
+            break
     scanned.sort(key=lambda item: -item[0])
     yield from ((cycle, times) for _, cycle, times in scanned[:STARTS])
 

@@ -31,6 +31,7 @@ from nrs_design.certificates.search.sdp import (
     pack,
     program_cost,
     symmetric_basis,
+    unpack,
 )
 from nrs_design.switched.matrix import RationalMatrix
 from nrs_design.switched.system import SwitchedSystem, Time
@@ -95,18 +96,14 @@ def lift_family(system: SwitchedSystem, exponents: Exponents, degree: int) -> Li
         Half the degree of the function.
     """
     basis = monomials(system.order, degree)
-    weights = [factorial(degree) / prod(map(factorial, a)) for a in basis]
-    scaling: Exponents = np.rint(np.log2(weights) / 2).astype(np.int64)
+    scaling = monomial_weights(system.order, degree)
     scaling -= np.array(basis, dtype=np.int64) @ exponents
     lifted = np.array([_lift_mode(mode.A, degree, system.time).floats() for mode in system.modes])
     matrices = np.ldexp(lifted, scaling[:, None] - scaling[None, :])
-    pairs = [group for group in products(system.order, degree) if len(group) > 1]
-    vanishing = [_difference(group[0], other, scaling) for group in pairs for other in group[1:]]
-    K = len(basis)
     # The unit of the modes themselves: lifted entries, and margins with them, grow with degree.
     given = np.array([mode.A.floats() for mode in system.modes])
     unit = time_unit(scale(given, exponents), system.time)
-    forms = np.array(vanishing).reshape(-1, K, K)
+    forms = _differences(system.order, degree, scaling)
     return Lift(system.order, degree, np.ldexp(matrices, unit), forms, scaling, unit)
 
 
@@ -119,6 +116,31 @@ def products(variables: int, degree: int) -> list[list[Pair]]:
             key = tuple(p + q for p, q in zip(a, basis[j], strict=True))
             groups.setdefault(key, []).append((i, j))
     return [sorted(group, key=lambda pair: pair[0] != pair[1]) for group in groups.values()]
+
+
+def monomial_weights(variables: int, degree: int) -> Exponents:
+    """Return the logarithms of powers of two near ``sqrt(multinomial)``."""
+    counts = [factorial(degree) / prod(map(factorial, a)) for a in monomials(variables, degree)]
+    return np.asarray(np.rint(np.log2(counts) / 2).astype(np.int64))
+
+
+def _differences(variables: int, degree: int, scaling: Exponents) -> Array:
+    """Return a basis of the forms that vanish identically, shape (p, K, K)."""
+    pairs = [group for group in products(variables, degree) if len(group) > 1]
+    forms = [_difference(group[0], other, scaling) for group in pairs for other in group[1:]]
+    return np.array(forms).reshape(-1, len(scaling), len(scaling))
+
+
+def vanishing_basis(variables: int, degree: int, scaling: Exponents) -> Array:
+    """Return an orthonormal basis of the forms that vanish, in the coordinates ``2^e z(x)``."""
+    return orthonormal(_differences(variables, degree, scaling))
+
+
+def orthonormal(forms: Array) -> Array:
+    """Return an orthonormal basis of the span of symmetric matrices, shape (p, K, K)."""
+    if not len(forms):
+        return forms
+    return unpack(np.linalg.qr(pack(forms).T)[0].T, forms.shape[-1])
 
 
 def highest_degree(variables: int) -> int:
@@ -170,7 +192,7 @@ def find_common_polynomial(
     m, K = lift.matrices.shape[:2]
     basis, identity = symmetric_basis(K), pack(np.eye(K))
     size, forms = len(basis), len(lift.vanishing)
-    directions = np.linalg.qr(pack(lift.vanishing).T)[0].T if forms else np.zeros((0, size))
+    directions = pack(orthonormal(lift.vanishing))
     blocks = [np.zeros((size, size + m * forms + 1)) for _ in range(m + 2)]
     blocks[0][:, :size] = np.eye(size)
     blocks[1][:, :size] = -np.eye(size)
@@ -244,7 +266,7 @@ def _integers(
             [_shift(factor * entry, -lift.unit) for entry in row]
             for row in _round(np.ldexp(N, bits - normalized), exponents)
         ]
-        vanishing.append(_make_vanish(rounded, groups))
+        vanishing.append(make_vanish(rounded, groups))
     return CommonPolynomial(
         degree=lift.degree,
         Q=tuple(map(tuple, Q)),
@@ -266,7 +288,7 @@ def _shift(value: int, exponent: int) -> int:
     return value << exponent if exponent >= 0 else value >> -exponent
 
 
-def _make_vanish(N: list[list[int]], groups: list[list[Pair]]) -> list[list[int]]:
+def make_vanish(N: list[list[int]], groups: list[list[Pair]]) -> list[list[int]]:
     """Correct one entry for each product of monomials so that ``z' N z`` vanishes exactly."""
     for group in groups:
         total = sum(N[i][j] * (1 if i == j else 2) for i, j in group)

@@ -19,7 +19,7 @@ from nrs_design.certificates.search.family import Family
 from nrs_design.certificates.search.gradient import iterate_gradient
 from nrs_design.certificates.search.lmi import find_common_quadratic, margins, solve_by_clarabel
 from nrs_design.certificates.search.mixture import find_unstable_mixture
-from nrs_design.certificates.search.mode_quadratic import find_mode_quadratic
+from nrs_design.certificates.search.mode_quadratic import find_mode_functions
 from nrs_design.certificates.search.obstruction import round_obstruction, solve_dual
 from nrs_design.certificates.search.parameter_quadratic import find_parameter_quadratic
 from nrs_design.certificates.search.period import find_growing_period
@@ -197,7 +197,13 @@ def _faster_polynomial(family: Family, lift: Lift) -> AbstractEvidence | None:
 
 def search_mode_quadratic(family: Family) -> Finding:
     """Search for one quadratic function per mode, for constrained switching."""
-    evidence = find_mode_quadratic(family.system, family.limit)
+    evidence = find_mode_functions(family.system, family.limit, allowance=family.allowance)
+    return evidence, "found" if evidence else "no candidate passes the exact check"
+
+
+def search_mode_polynomial(family: Family, *, degree: int) -> Finding:
+    """Search for one polynomial of degree 2d per mode, for constrained switching."""
+    evidence = find_mode_functions(family.system, family.limit, degree, family.allowance)
     return evidence, "found" if evidence else "no candidate passes the exact check"
 
 
@@ -231,7 +237,7 @@ def search_mixture(family: Family) -> Finding:
 
 def search_period(family: Family) -> Finding:
     """Search for a periodic signal that makes solutions grow."""
-    evidence = find_growing_period(family.system, family.matrices)
+    evidence = find_growing_period(family.system, family.matrices, family.allowance)
     return evidence, "found" if evidence else "no periodic signal tried makes solutions grow"
 
 

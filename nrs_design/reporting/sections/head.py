@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from nrs_design import __version__
-from nrs_design.certificates.evidence import AbstractEvidence, ModeQuadratic, Shows
+from nrs_design.certificates.evidence import AbstractEvidence, ModePolynomial, ModeQuadratic, Shows
 from nrs_design.certificates.evidence.fields import rate_text
 from nrs_design.reporting.formatting import number, plural, shortened
 from nrs_design.spec import InteractionDesignSpec, RobotSpec
@@ -93,7 +93,9 @@ def _rate(system: SwitchedSystem, evidence: AbstractEvidence | None) -> list[tup
     if rate is None:
         return []
     text = rate_text(rate, system.time)
-    constant = ", up to a constant factor" if isinstance(evidence, ModeQuadratic) else ""
+    constant = (
+        ", up to a constant factor" if isinstance(evidence, ModeQuadratic | ModePolynomial) else ""
+    )
     open_end = ", and any slower one" if evidence.kind == "block-triangular" else ""
     if open_end:
         # The slowest block's rate itself is not reached where blocks are coupled.

@@ -7,6 +7,7 @@ from nrs_design.certificates.evidence import (
     BlockTriangular,
     CommonPolynomial,
     CommonQuadratic,
+    ModePolynomial,
     ModeQuadratic,
     ParameterQuadratic,
     UnstableMixture,
@@ -17,6 +18,8 @@ from nrs_design.certificates.evidence import (
 from nrs_design.switched.constant import system_at
 from nrs_design.switched.system import SwitchedSystem, Time
 
+# What rests on the declared rules of switching.
+_RULED = (ModeQuadratic, ModePolynomial)
 # How a proof was decided, by the kind of evidence.
 _DECIDED: dict[type[AbstractEvidence], str] = {
     CommonQuadratic: (
@@ -32,6 +35,11 @@ _DECIDED: dict[type[AbstractEvidence], str] = {
         "every Q holds integers over a power of two, and integer arithmetic decides that each is "
         "positive definite, that it decreases in its mode, and that no admissible switch raises "
         "the function. The solver only proposed them"
+    ),
+    ModePolynomial: (
+        "every Q and every form that vanishes hold integers, and integer arithmetic decides that "
+        "each Q is positive definite in the monomials, that its polynomial decreases in its mode, "
+        "and that no admissible switch raises the function. The solver only proposed them"
     ),
     ParameterQuadratic: (
         "the decrease is a polynomial of degree two in the parameter, and integer arithmetic "
@@ -49,7 +57,7 @@ def bound_meaning(system: SwitchedSystem, evidence: AbstractEvidence) -> str:
     """Say what the proved bound means."""
     continuous = system.time is Time.CONTINUOUS
     factor = "exp(-alpha T) in every time T" if continuous else "rho in every step"
-    if isinstance(evidence, ModeQuadratic):
+    if isinstance(evidence, _RULED):
         return (
             "The bound means: for every signal that keeps the rules, the distance from rest "
             f"shrinks by the factor {factor}, up to one constant c in front. So it may grow for a "
@@ -75,7 +83,7 @@ def rules_meaning(system: SwitchedSystem, evidence: AbstractEvidence) -> tuple[s
     """Say which part the declared rules of switching have in a proof."""
     switching = system.switching
     texts = []
-    if isinstance(evidence, ModeQuadratic):
+    if isinstance(evidence, _RULED):
         if switching.dwell_time > 0:
             texts.append(
                 f"The dwell time of {_dwell(system)} is part of the claim: the machine itself must "
@@ -94,7 +102,9 @@ def rules_meaning(system: SwitchedSystem, evidence: AbstractEvidence) -> tuple[s
         texts.append("The proof does not need the parameter to be constant: it may change freely.")
     # With a constant parameter, the list of transitions only keeps its two ends apart.
     listed = switching.transitions is not None and not switching.fixed_ends
-    if (switching.dwell_time > 0 or listed) and not isinstance(evidence, ModeQuadratic):
+    if (switching.dwell_time > 0 or listed) and not isinstance(
+        evidence, ModeQuadratic | ModePolynomial
+    ):
         texts.append(
             "The proof does not need the declared rules of switching: it holds for arbitrary "
             "switching."
@@ -106,7 +116,7 @@ def decision_meaning(system: SwitchedSystem, evidence: AbstractEvidence) -> str:
     """Say how the decision was made."""
     text = f"The decision is exact: the modes are rational matrices, {_DECIDED[type(evidence)]}"
     exponential = (
-        isinstance(evidence, ModeQuadratic)
+        isinstance(evidence, _RULED)
         and system.time is Time.CONTINUOUS
         and system.switching.dwell_time > 0
     )
@@ -146,9 +156,9 @@ def excluded_signals(system: SwitchedSystem, evidence: AbstractEvidence) -> tupl
     """Say which switching signals and parameters a proof does not cover."""
     switching = system.switching
     texts = []
-    if isinstance(evidence, ModeQuadratic) and switching.dwell_time > 0:
+    if isinstance(evidence, _RULED) and switching.dwell_time > 0:
         texts.append(f"Switching earlier than {_dwell(system)} after the last switch.")
-    if isinstance(evidence, ModeQuadratic) and switching.transitions is not None:
+    if isinstance(evidence, _RULED) and switching.transitions is not None:
         texts.append("Switches that the spec does not list.")
     if isinstance(evidence, ParameterQuadratic):
         texts.append("A parameter that changes while the system moves, however slowly.")

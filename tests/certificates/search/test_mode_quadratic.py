@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from nrs_design.certificates.search.family import Family
-from nrs_design.certificates.search.mode_quadratic import _Problem, find_mode_quadratic
+from nrs_design.certificates.search.mode_quadratic import _Problem, find_mode_functions
 from nrs_design.switched.system import Switching
 from tests.certificates.systems import (
     ando_shih,
@@ -20,17 +20,17 @@ from tests.certificates.systems import (
     [geromel_colaneri("2.752"), ando_shih("0.99"), rectangular(), slow_switching_in_steps()],
 )
 def test_what_is_found_passes_the_exact_check(system):
-    assert find_mode_quadratic(system, Family.of(system).limit).find_fault(system) is None
+    assert find_mode_functions(system, Family.of(system).limit).find_fault(system) is None
 
 
 @pytest.mark.parametrize("system", [geromel_colaneri("2.74"), shears(), ando_shih("1.001")])
 def test_nothing_is_found_where_there_is_nothing(system):
-    assert find_mode_quadratic(system, Family.of(system).limit) is None
+    assert find_mode_functions(system, Family.of(system).limit) is None
 
 
 def test_no_ends_of_constant_parameters():
     system = shears(Switching(transitions=(), fixed_ends=(("m0", "m1"),)))
-    assert find_mode_quadratic(system, Family.of(system).limit) is None
+    assert find_mode_functions(system, Family.of(system).limit) is None
 
 
 @pytest.mark.parametrize(

@@ -61,7 +61,7 @@ def test_corrected_forms_vanish_whatever_was_rounded(n, degree, random):
     for i in range(K):
         for j in range(i, K):
             N[i][j] = N[j][i] = random.randint(-(10**20), 10**20)
-    corrected = polynomial._make_vanish(N, products(n, degree))
+    corrected = polynomial.make_vanish(N, products(n, degree))
     assert vanishes(corrected, n, degree)
     assert all(corrected[i][j] == corrected[j][i] for i in range(K) for j in range(K))
 

@@ -3,8 +3,9 @@
 import numpy as np
 import pytest
 
+from nrs_design.certificates.search.allowance import Allowance
 from nrs_design.certificates.search.family import Family
-from nrs_design.certificates.search.mode_quadratic import _Problem, find_mode_functions
+from nrs_design.certificates.search.mode_quadratic import _Found, _Problem, find_mode_functions
 from nrs_design.switched.system import Switching
 from tests.certificates.systems import (
     ando_shih,
@@ -38,10 +39,10 @@ def test_no_ends_of_constant_parameters():
 )  # fmt: skip
 def test_functions_that_lie_give_no_verdict(lie):
     system = geromel_colaneri("2.76")
-    problem = _Problem(system)
+    problem = _Problem(system, 1)
     functions = [np.full((2, 2), lie)] * 2
     try:
-        assert problem.round(functions, 1e-3) is None
+        assert problem.round(_Found(functions, []), 1e-3) is None
     except (OverflowError, ValueError):
         return
 
@@ -49,6 +50,6 @@ def test_functions_that_lie_give_no_verdict(lie):
 @pytest.mark.parametrize("rate", [0.0, -1.0, 0.5, 1e300])
 def test_rates_that_lie_give_no_verdict(rate):
     system = geromel_colaneri("2.76")
-    problem = _Problem(system)
-    functions = problem.solve(1e-4)
-    assert problem.round(functions, rate) is None
+    problem = _Problem(system, 1)
+    found = problem.solve(1e-4, Allowance())
+    assert problem.round(found, rate) is None

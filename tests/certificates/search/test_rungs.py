@@ -6,8 +6,10 @@ import numpy as np
 import pytest
 
 from nrs_design.certificates.certify import Limits, Method, Verdict, certify
+from nrs_design.certificates.checker import Checker
 from nrs_design.certificates.evidence import UnstablePeriod
 from nrs_design.certificates.search import mode_quadratic, obstruction, polynomial, rungs
+from nrs_design.certificates.search.allowance import Allowance, NotAffordableError
 from nrs_design.certificates.search.family import Family
 from nrs_design.certificates.search.gradient import GradientResult
 from nrs_design.errors import DesignError
@@ -85,9 +87,9 @@ def test_every_rung_says_how_it_ended():
 def test_a_lift_beyond_patience_is_not_tried():
     n = 12
     system = family([[-(i == j) + (i == j + 1) for j in range(n)] for i in range(n)])
-    evidence, words = rungs.search_polynomial(Family.of(system), degree=4)
-    assert evidence is None
-    assert "not tried" in words
+    family_ = Family.checked_by(Checker(system), Allowance(60.0))
+    with pytest.raises(NotAffordableError, match="not tried"):
+        rungs.search_polynomial(family_, degree=4)
 
 
 @pytest.mark.parametrize("method", list(Method))

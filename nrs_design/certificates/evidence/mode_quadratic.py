@@ -36,6 +36,7 @@ from nrs_design.switched.system import Edge, Stay, SwitchedSystem, Switching, Ti
 
 MAX_DWELL_STEPS = 4096
 MAX_PIECES = 4096
+MAX_ENCLOSED = 2**18
 MAX_NAMED = 8
 MAX_POWER_BITS = 10**6
 
@@ -118,7 +119,8 @@ class ModeQuadratic(AbstractEvidence):
             return "the dwell time is too long"
         if system.time is Time.DISCRETE and any(time.denominator != 1 for time in times):
             return "the dwell time is not a whole number of steps"
-        if not 1 <= self.pieces <= MAX_PIECES:
+        enclosed = self.pieces * sum(e.source.name in self.leaving for e in system.edges())
+        if not 1 <= self.pieces <= MAX_PIECES or enclosed > MAX_ENCLOSED:
             return "the stays are enclosed in too few or too many pieces"
         if system.time is Time.DISCRETE and _power_is_too_large(system, self):
             return "the dwell time is too long for such large numbers"

@@ -282,6 +282,7 @@ def run_shortest_dwell(
     ------
     DesignError
         In discrete time, or if the spec declares ranges: a dwell time holds for fixed parameters.
+        If it declares longest dwell times, which would bound the shortest one.
     """
     from nrs_design.certificates.certify import certify
     from nrs_design.certificates.margin import find_shortest_dwell
@@ -292,6 +293,12 @@ def run_shortest_dwell(
             "a shortest dwell time is for continuous time and fixed parameters",
             path=result.loaded.path,
             remedy="give single values instead of ranges",
+        )
+    if len(system.lasting_modes()) < len(system.modes):
+        raise DesignError(
+            "a shortest dwell time is not searched beside longest ones",
+            path=result.loaded.path,
+            remedy="leave longest_dwell_time out, or declare the dwell_time and certify that",
         )
     limits = limits or limits_of(result.loaded.spec)
     quick = replace(limits, optimize_rate=False, budget=min(limits.budget, MARGIN_BUDGET))

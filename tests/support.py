@@ -83,7 +83,8 @@ def holds(system: SwitchedSystem, evidence: AbstractEvidence) -> bool:
         return truth.holds(system, evidence)
     if isinstance(evidence, UnstableMode):
         (mode,) = [mode for mode in system.modes if mode.name == evidence.mode]
-        return not is_stable_by_lyapunov(mode.A.fractions(), discrete=discrete)
+        may_stay = truth.bounds_of(system, evidence.mode)[1] is None
+        return may_stay and not is_stable_by_lyapunov(mode.A.fractions(), discrete=discrete)
     Q, rate = exact(evidence.Q), evidence.rate
     if rate <= 0 or (discrete and rate >= 1) or not is_definite_by_ldl(Q):
         return False

@@ -179,7 +179,8 @@ def certify(
     Returns
     -------
     Certification
-        Every statement in it has passed the exact check and flint's second opinion.
+        Every statement in it has passed the exact check, and flint's second opinion as far as
+        that goes (`nrs_design.certificates.second_opinion`).
 
     Raises
     ------

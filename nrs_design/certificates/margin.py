@@ -172,7 +172,7 @@ def find_shortest_dwell(system: SwitchedSystem, certify: Certify, start: Fractio
     Parameters
     ----------
     system : SwitchedSystem
-        Its own dwell time is left out of account.
+        Its own dwell times are left out of account; it has no longest ones.
     certify : callable
         Decides a system.
     start : Fraction
@@ -185,7 +185,8 @@ def find_shortest_dwell(system: SwitchedSystem, certify: Certify, start: Fractio
     """
 
     def decide(dwell: Fraction) -> Outcome:
-        found = certify(replace(system, switching=replace(system.switching, dwell_time=dwell)))
+        switching = replace(system.switching, dwell_time=dwell, stays=())
+        found = certify(replace(system, switching=switching))
         return found.verdict, found
 
     tried = _Tried(decide)

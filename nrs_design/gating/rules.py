@@ -103,11 +103,12 @@ MODE_STABLE = Rule(
     "Every mode is stable",
     "Staying in one mode forever is an admissible switching signal, whatever the dwell time and "
     "the transitions that the spec declares, so every mode must be Hurwitz (all eigenvalues in the "
-    "left half plane) or, in discrete time, Schur (inside the unit circle). Decided in exact "
-    "arithmetic from the characteristic polynomial.",
+    "left half plane) or, in discrete time, Schur (inside the unit circle). Only a mode with a "
+    "longest dwell time need not be: it must be left. Decided in exact arithmetic from the "
+    "characteristic polynomial.",
     "Look at the eigenvalue and at the signs of this mode's matrix; for a controller, add damping "
-    "(raise Bt), lower Kp, or narrow the range of the environment. No rule of switching, such as a "
-    "longer dwell time, mends an unstable mode.",
+    "(raise Bt), lower Kp, or narrow the range of the environment. Of the rules of switching, only "
+    "a longest dwell time allows an unstable mode, if the machine leaves the mode by then.",
 )
 SWITCHING_STABLE = Rule(
     "NRS102",

@@ -167,9 +167,13 @@ def _follow(
         if len(modes) >= steps:
             return states, modes
         mode, stayed = move.mode, stayed + move.steps
-        # To stay comes first; a mode that must be left and cannot be is no case of a spec.
-        must_leave = stayed + 1 > paces[mode].most and len(successors[mode]) > 1
-        move = _least_loss(mode, states[-1], roots, successors[mode][int(must_leave) :])
+        # To stay comes first.
+        must_leave = stayed + 1 > paces[mode].most
+        moves = successors[mode][int(must_leave) :]
+        if not moves:
+            # What may follow is none of these modes.
+            return states, modes
+        move = _least_loss(mode, states[-1], roots, moves)
         stayed = stayed if move.mode == mode else 0
 
 

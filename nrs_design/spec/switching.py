@@ -258,7 +258,7 @@ def check_names(switching: SwitchingSpec, names: Collection[str], noun: str) -> 
     """Report a fault if a rule names something that does not exist, or cannot be kept."""
     for at, _ in switching.dwell_times():
         for name in at[1:]:
-            _check_name(name, names, noun, *at, "[key]")
+            _check_name(name, names, noun, *at)
     for index, transition in enumerate(switching.transitions or ()):
         for side, name in enumerate(transition):
             _check_name(name, names, noun, "transitions", index, side)

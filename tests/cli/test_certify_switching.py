@@ -7,6 +7,7 @@ import sys
 
 import pytest
 
+from nrs_design.certificates.certificate import content_id
 from nrs_design.spec import read_spec
 from tests.support import COMMUTING, HARD, PRINT_ERROR, ROOT, SOFT_TISSUE, run, write_spec
 
@@ -56,6 +57,45 @@ def test_inconclusive_with_a_remark_keeps_it(tmp_path):
     document = json.loads((tmp_path / "reports" / "given.cert.json").read_text())
     assert [item["kind"] for item in document["statements"]] == ["no-common-quadratic"]
     assert document["verdict"] == "inconclusive"
+
+
+def test_two_resets_from_one_mode_to_another(tmp_path):
+    path = ROOT / "docs" / "examples" / "contact-either-way.nrs.yaml"
+    result = run("certify-switching", path, cwd=tmp_path)
+    assert result.returncode == 1, result.stdout + result.stderr
+    assert "then reset 2 to contact" in result.stdout
+    assert "Mode free is left after at most 4 s." in result.stdout
+    file = tmp_path / "reports" / "contact-either-way.cert.json"
+    assert run("verify", file, path, cwd=tmp_path).returncode == 1
+    document = json.loads(file.read_text())
+    (statement,) = document["statements"]
+    statement["edges"] = [1 - edge for edge in statement["edges"]]
+    file.write_text(json.dumps(document | {"id": content_id(document)}))
+    forged = run("verify", file, path, cwd=tmp_path)
+    assert "rejected" in (forged.stdout + forged.stderr).lower()
+    page = run("report", path, "--out", "page.html", cwd=tmp_path)
+    assert page.returncode == 1, page.stderr
+    assert "reset 2 of 2 to contact" in (tmp_path / "page.html").read_text()
+
+
+def test_a_mode_that_must_be_left(tmp_path):
+    path = EXAMPLES / "failing-controller.nrs.yaml"
+    result = run("certify-switching", path, cwd=tmp_path)
+    assert result.returncode == 0, result.stdout
+    assert "at most 1 step in both-fail" in result.stdout
+    file = tmp_path / "reports" / "failing-controller.cert.json"
+    assert run("verify", file, path, cwd=tmp_path).returncode == 0
+    document = json.loads(file.read_text())
+    document["statements"][0]["leaving"].append("works")
+    file.write_text(json.dumps(document | {"id": content_id(document)}))
+    forged = run("verify", file, path, cwd=tmp_path)
+    assert forged.returncode == 1
+    assert "has no longest dwell time" in forged.stdout + forged.stderr
+    page = run("report", path, "--out", "page.html", cwd=tmp_path)
+    assert page.returncode == 0, page.stderr
+    assert "which must be left" in (tmp_path / "page.html").read_text()
+    shortest = run("certify-switching", path, "--shortest-dwell", cwd=tmp_path)
+    assert shortest.returncode == 2
 
 
 @pytest.mark.parametrize("name", ["hand-range", "wide-range", "thesis-print-error", "flutter"])

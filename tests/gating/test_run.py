@@ -63,6 +63,21 @@ def test_refuted_spec_names_the_unstable_modes_with_their_place(examine):
     assert "not Schur (eigenvalue 1)" in bad.message
 
 
+def test_a_mode_that_must_be_left_need_not_be_stable(examine):
+    rules = "switching: {dwell_time: {good: 3 steps}, longest_dwell_time: {bad: 2 steps}}"
+    text = UNSTABLE.replace("switching: arbitrary", rules)
+    assert text != UNSTABLE
+    outcome = examine(text)
+    assert found(outcome.specs[0]) == [
+        ("NRS101", "good", "proved"),
+        ("NRS101", "bad", "met"),
+        ("NRS102", "system", "proved"),
+        ("NRS104", "certificate", "met"),
+    ]
+    message = outcome.specs[0].obligations[1].message
+    assert message == "mode bad is not Schur, but it must be left in time"
+
+
 def test_inconclusive_fails(examine, inconclusive):
     outcome = examine(STABLE)
     (broken,) = outcome.broken

@@ -36,6 +36,7 @@ from nrs_design.switched.system import Edge, Mode, Stay, SwitchedSystem, Switchi
 
 MAX_DWELL_STEPS = 4096
 MAX_PIECES = 4096
+MAX_ENCLOSED = 2**18
 MAX_NAMED = 8
 MAX_POWER_BITS = 10**6
 
@@ -117,7 +118,8 @@ class ModeQuadratic(AbstractEvidence):
             return "the dwell time is too long"
         if system.time is Time.DISCRETE and any(time.denominator != 1 for time in times):
             return "the dwell time is not a whole number of steps"
-        if not 1 <= self.pieces <= MAX_PIECES:
+        enclosed = self.pieces * sum(e.source.name in self.leaving for e in system.edges())
+        if not 1 <= self.pieces <= MAX_PIECES or enclosed > MAX_ENCLOSED:
             return "the stays are enclosed in too few or too many pieces"
         if system.time is Time.DISCRETE and _power_is_too_large(system, self):
             return "the dwell time is too long for such large numbers"
@@ -242,9 +244,8 @@ class ModeQuadratic(AbstractEvidence):
 def find_odd_switch(system: SwitchedSystem) -> str | None:
     """Say which switch has no reset between modes of different sizes, or one that does not fit."""
     for edge in system.edges():
-        if edge.map is None and edge.source.A.shape != edge.target.A.shape:
-            return f"the switch {_words(edge)} has no reset"
-        if edge.map is not None and edge.map.shape != _shape(edge):
+        given = edge.source.A.shape if edge.map is None else edge.map.shape
+        if given != (edge.target.A.shape[0], edge.source.A.shape[0]):
             return f"the switch {_words(edge)} has no fitting reset"
     return None
 
@@ -269,7 +270,7 @@ def describe(system: SwitchedSystem) -> str:
     parts = []
     if switching.dwell_time > 0:
         others = "each other mode" if switching.stays else "each mode"
-        parts.append(f"at least {exact_text(switching.dwell_time)} {unit} in {others}")
+        parts.append(f"{_time_words(Stay(switching.dwell_time), unit)} in {others}")
     parts += [f"{_time_words(stay, unit)} in {name}" for name, stay in switching.stays[:MAX_NAMED]]
     if len(switching.stays) > MAX_NAMED:
         parts.append(f"{len(switching.stays)} modes with dwell times of their own")
@@ -281,20 +282,15 @@ def describe(system: SwitchedSystem) -> str:
 
 
 def _time_words(stay: Stay, unit: str) -> str:
-    shortest = exact_text(stay.shortest)
+    last = stay.shortest if stay.longest is None else stay.longest
+    end = f"{exact_text(last)} {'step' if unit == 'steps' and last == 1 else unit}"
     if stay.longest is None:
-        return f"at least {shortest} {unit}"
-    longest = exact_text(stay.longest)
-    return f"{shortest} to {longest} {unit}" if stay.shortest > 0 else f"at most {longest} {unit}"
+        return f"at least {end}"
+    return f"{exact_text(stay.shortest)} to {end}" if stay.shortest > 0 else f"at most {end}"
 
 
 def _words(edge: Edge) -> str:
     return f"from {edge.source.name} to {edge.target.name}"
-
-
-def _shape(edge: Edge) -> tuple[int, int]:
-    """Return the shape that the map of an edge must have."""
-    return edge.target.A.shape[0], edge.source.A.shape[0]
 
 
 def _jump(edge: Edge, Q: Mapping[str, Matrix]) -> IntegerMatrix:

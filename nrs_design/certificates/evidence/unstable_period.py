@@ -52,6 +52,8 @@ class UnstablePeriod(AbstractEvidence):
 
     def fits(self, switching: Switching) -> bool:
         """Tell whether every dwell time is long and short enough, and every switch allowed."""
+        if len(self.steps) > MAX_STEPS:
+            return False
         names = [name for name, _ in self.steps]
         following = _switches(names)
         switches = {(a, b) for a, b in following if a != b}
@@ -100,7 +102,13 @@ class UnstablePeriod(AbstractEvidence):
         """State the signal and what follows."""
         continuous = system.time is Time.CONTINUOUS
         law, unit = ("x' = A x", " s") if continuous else ("x+ = A x", " steps")
-        then = [f" and reset {edge + 1}" for edge in self.edges] or [""] * len(self.steps)
+        maps, switches = system.switching.maps(), _switches([name for name, _ in self.steps])
+        choices = [len(maps.get(switch, ())) > 1 for switch in switches]
+        ways = self.edges or (0,) * len(switches)
+        then = [
+            f", then reset {way + 1} to {switch[1]}" if choice else ""
+            for way, choice, switch in zip(ways, choices, switches, strict=True)
+        ]
         signal = ", ".join(
             f"{name} for {float(dwell):.6g}{unit}{reset}"
             for (name, dwell), reset in zip(self.steps, then, strict=True)

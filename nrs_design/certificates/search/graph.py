@@ -117,11 +117,12 @@ def _jumps(system: SwitchedSystem) -> tuple[Jump, ...]:
     index = {mode.name: k for k, mode in enumerate(system.modes)}
     ends = {name: end for pair in system.switching.fixed_ends for end, name in enumerate(pair)}
     jumps: list[Jump] = []
+    identity = np.eye(system.order)
     ways: dict[tuple[int, int], int] = {}
     for edge in system.edges():
         if ends.get(edge.source.name) == ends.get(edge.target.name):
             pair = index[edge.source.name], index[edge.target.name]
             ways[pair] = ways.get(pair, -1) + 1
-            map_ = np.eye(system.order) if edge.map is None else np.array(edge.map.floats())
+            map_ = identity if edge.map is None else np.array(edge.map.floats())
             jumps.append(Jump(*pair, ways[pair], map_))
     return tuple(jumps)

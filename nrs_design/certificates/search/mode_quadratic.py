@@ -47,9 +47,9 @@ BACK_OFFS = (0.999, 0.99, 0.9, 0.5, 0.1, 1e-3)
 FEW_STAYS = 64
 # Times at which the functions are sought for a mode that must be left, and pieces that are shown.
 SAMPLES = 17
-PIECES = (32, 256)
+PIECES = (32, 256, 1024)
 # Enclosures take time: fewer attempts.
-ENCLOSED_BITS = (10, 20, 40)
+ENCLOSED_BITS = (12, 28)
 ENCLOSED_BACK_OFFS = (0.9, 0.5, 0.1)
 
 

@@ -20,6 +20,8 @@ Indices = NDArray[np.int64]
 BEAM = 150
 MAX_LEGS = 8
 CLOSED = 4
+# Where there are more ways to switch, only elementary cycles are tried.
+MAX_JUMPS = 20_000
 # In continuous time, every so many of the times to try in a mode are enough.
 STRIDE = 4
 
@@ -34,6 +36,8 @@ def growing_walks(graph: Graph, allowance: Allowance) -> Iterator[tuple[Cycle, A
     tuple
         The jumps of the walk, and the times before each of them.
     """
+    if len(graph.jumps) > MAX_JUMPS:
+        return
     beam = _Beam.of(graph)
     walks = beam.first_legs()
     for _ in range(MAX_LEGS - 1):

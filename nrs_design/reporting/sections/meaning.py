@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 from nrs_design.certificates.evidence import (
     AbstractEvidence,
     BlockTriangular,
@@ -15,11 +17,14 @@ from nrs_design.certificates.evidence import (
     UnstablePeriod,
     UnstableValue,
 )
+from nrs_design.reporting.formatting import shortened
 from nrs_design.switched.constant import system_at
 from nrs_design.switched.system import SwitchedSystem, Time
 
 # What rests on the declared rules of switching.
 _RULED = (ModeQuadratic, ModePolynomial)
+# Modes that a sentence names.
+_NAMED = 8
 # How a proof was decided, by the kind of evidence.
 _DECIDED: dict[type[AbstractEvidence], str] = {
     CommonQuadratic: (
@@ -33,8 +38,8 @@ _DECIDED: dict[type[AbstractEvidence], str] = {
     ),
     ModeQuadratic: (
         "every Q holds integers over a power of two, and integer arithmetic decides that each is "
-        "positive definite, that it decreases in its mode, and that no admissible switch raises "
-        "the function. The solver only proposed them"
+        "positive definite, that it decreases in its mode if that may last, and that no admissible "
+        "switch raises the function. The solver only proposed them"
     ),
     ModePolynomial: (
         "every Q and every form that vanishes hold integers, and integer arithmetic decides that "
@@ -89,6 +94,7 @@ def rules_meaning(system: SwitchedSystem, evidence: AbstractEvidence) -> tuple[s
                 f"The dwell time of {_dwell(system)} is part of the claim: the machine itself must "
                 "refuse to switch earlier."
             )
+        texts += _own_dwell_times(system, evidence)
         if switching.transitions is not None:
             texts.append("The list of allowed switches is part of the claim as well.")
         if switching.resets:
@@ -102,14 +108,26 @@ def rules_meaning(system: SwitchedSystem, evidence: AbstractEvidence) -> tuple[s
         texts.append("The proof does not need the parameter to be constant: it may change freely.")
     # With a constant parameter, the list of transitions only keeps its two ends apart.
     listed = switching.transitions is not None and not switching.fixed_ends
-    if (switching.dwell_time > 0 or listed) and not isinstance(
-        evidence, ModeQuadratic | ModePolynomial
-    ):
+    ruled = switching.dwell_time > 0 or bool(switching.stays) or listed
+    if ruled and not isinstance(evidence, _RULED):
         texts.append(
             "The proof does not need the declared rules of switching: it holds for arbitrary "
             "switching."
         )
     return tuple(texts)
+
+
+def _own_dwell_times(system: SwitchedSystem, evidence: ModeQuadratic) -> Iterator[str]:
+    if any(stay.shortest > 0 for _, stay in system.switching.stays):
+        yield (
+            "The dwell times of single modes are part of the claim: the machine must refuse to "
+            "leave them earlier."
+        )
+    if evidence.leaving:
+        yield (
+            f"The longest dwell time of {shortened(evidence.leaving, _NAMED)} is part of the "
+            "claim: the machine itself must leave in time. The function may grow there meanwhile."
+        )
 
 
 def decision_meaning(system: SwitchedSystem, evidence: AbstractEvidence) -> str:
@@ -118,7 +136,7 @@ def decision_meaning(system: SwitchedSystem, evidence: AbstractEvidence) -> str:
     exponential = (
         isinstance(evidence, _RULED)
         and system.time is Time.CONTINUOUS
-        and system.switching.dwell_time > 0
+        and (system.switching.dwell_time > 0 or bool(system.switching.stays))
     )
     if exponential:
         text += "; exponentials over the dwell time are enclosed rigorously, in balls"
@@ -158,11 +176,21 @@ def excluded_signals(system: SwitchedSystem, evidence: AbstractEvidence) -> tupl
     texts = []
     if isinstance(evidence, _RULED) and switching.dwell_time > 0:
         texts.append(f"Switching earlier than {_dwell(system)} after the last switch.")
+    if isinstance(evidence, _RULED) and any(s.shortest > 0 for _, s in switching.stays):
+        texts.append("Leaving a mode before its own dwell time is over.")
+    if isinstance(evidence, _RULED) and (leaving := _leaving(evidence)):
+        texts.append(f"Staying longer than declared in {shortened(leaving, _NAMED)}.")
     if isinstance(evidence, _RULED) and switching.transitions is not None:
         texts.append("Switches that the spec does not list.")
     if isinstance(evidence, ParameterQuadratic):
         texts.append("A parameter that changes while the system moves, however slowly.")
     return tuple(texts)
+
+
+def _leaving(evidence: ModeQuadratic | ModePolynomial) -> tuple[str, ...]:
+    """Return the modes that must be left for the proof to hold."""
+    own = evidence.quadratic if isinstance(evidence, ModePolynomial) else evidence
+    return own.leaving
 
 
 def refutation_meaning(system: SwitchedSystem, evidence: AbstractEvidence) -> tuple[str, ...]:

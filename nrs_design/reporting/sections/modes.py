@@ -97,10 +97,15 @@ def _table(system: SwitchedSystem, values: Spectra, listed: NDArray[np.int64]) -
 
 def _caption(system: SwitchedSystem, drawn: int, rate: float | None) -> str:
     some = "" if drawn == len(system.modes) else f" The {drawn} slowest modes are drawn."
+    lasting = len(system.lasting_modes())
+    which = "all" if lasting == len(system.modes) else "those of modes that may last"
     if system.time is Time.CONTINUOUS:
         text = "A mode is stable if all its eigenvalues lie left of the imaginary axis"
-        border = "; all lie left of the dashed line, the proved rate." if rate is not None else "."
+        border = f"; {which} lie left of the dashed line, the proved rate."
     else:
         text = "A mode is stable if all its eigenvalues lie inside the unit circle"
-        border = "; all lie inside the dashed circle, the proved contraction." if rate else "."
-    return f"{text}{border} Stable modes alone do not make switching stable.{some}"
+        border = f"; {which} lie inside the dashed circle, the proved contraction."
+    text += border if rate and lasting else "."
+    if lasting < len(system.modes):
+        text += " A mode that must be left need not be stable."
+    return f"{text} Stable modes alone do not make switching stable.{some}"

@@ -162,7 +162,7 @@ def _ruled(system: SwitchedSystem, evidence: ModeQuadratic) -> tuple[Illustratio
         f"{_RULED} Drawn is the root of V of the active mode, over its start. Where the next mode "
         "takes over, it may jump, but it stays below the dashed bound of the certificate, which "
         "holds for every signal that keeps the rules. In a norm that is the same in all "
-        f"modes, the bound holds with the factor c.{_some(system, hardest)}",
+        f"modes, the bound holds with the factor c.{_rises(evidence)}{_some(system, hardest)}",
         draw_run(
             response,
             active_norms(hardest, response, functions),
@@ -178,7 +178,8 @@ def _ruled(system: SwitchedSystem, evidence: ModeQuadratic) -> tuple[Illustratio
         "phase-plane",
         "The same run in the plane of the two states",
         "Path of the state, one color for each active mode, with a level curve of each mode's own "
-        "function, all at one value. While a mode is active, its own function decreases."
+        "function, all at one value. While a mode is active, its own function decreases"
+        + (", except in a mode that must be left." if evidence.leaving else ".")
         + _jumps(system),
         draw_mode_levels(response, hardest, roots),
     )
@@ -312,6 +313,14 @@ def _phase_plane(
 
 def _jumps(system: SwitchedSystem) -> str:
     return " A reset is drawn with the step before it." if system.switching.resets else ""
+
+
+def _rises(evidence: ModeQuadratic) -> str:
+    if not evidence.leaving:
+        return ""
+    return (
+        " In a mode that must be left it may rise above the bound; at the next switch it is below."
+    )
 
 
 def _freely(system: SwitchedSystem) -> str:

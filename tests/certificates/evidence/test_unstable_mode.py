@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from nrs_design.certificates.certify import certify
 from nrs_design.certificates.evidence import Shows, UnstableMode
 from nrs_design.certificates.evidence.unstable_mode import is_stable, worst_eigenvalue
-from nrs_design.switched.system import Reset, Switching, Time
+from nrs_design.switched.system import Reset, Stay, Switching, Time
 from tests.support import dayawansa_martin, family, holds, is_stable_by_lyapunov, matrix
 
 
@@ -107,3 +107,13 @@ def test_words_and_fields():
 def test_malformed_fields(fields):
     with pytest.raises((KeyError, TypeError, ValueError)):
         UnstableMode.from_fields(fields, family([[2]]))
+
+
+def test_a_mode_that_must_be_left_refutes_nothing():
+    stays = (("m0", Stay(Fraction(1), Fraction(3))),)
+    system = family([[2]], [["1/8"]], time=Time.DISCRETE)
+    system = replace(system, switching=Switching(stays=stays))
+    evidence = UnstableMode("m0", "2")
+    assert evidence.find_fault(replace(system, switching=Switching(Fraction(3)))) is None
+    assert "does not cover this kind of switching" in evidence.find_fault(system)
+    assert not holds(system, evidence)

@@ -117,15 +117,17 @@ def rules_meaning(system: SwitchedSystem, evidence: AbstractEvidence) -> tuple[s
     return tuple(texts)
 
 
-def _own_dwell_times(system: SwitchedSystem, evidence: ModeQuadratic) -> Iterator[str]:
+def _own_dwell_times(
+    system: SwitchedSystem, evidence: ModeQuadratic | ModePolynomial
+) -> Iterator[str]:
     if any(stay.shortest > 0 for _, stay in system.switching.stays):
         yield (
             "The dwell times of single modes are part of the claim: the machine must refuse to "
             "leave them earlier."
         )
-    if evidence.leaving:
+    if leaving := _leaving(evidence):
         yield (
-            f"The longest dwell time of {shortened(evidence.leaving, _NAMED)} is part of the "
+            f"The longest dwell time of {shortened(leaving, _NAMED)} is part of the "
             "claim: the machine itself must leave in time. The function may grow there meanwhile."
         )
 

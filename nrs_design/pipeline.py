@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -15,7 +15,7 @@ from nrs_design.controllers.controller_design import ControllerDesign
 from nrs_design.controllers.gains import gains_of
 from nrs_design.errors import DesignError, NrsDesignError
 from nrs_design.models.plant import build_plant
-from nrs_design.spec import InteractionDesignSpec, LoadedSpec, RobotSpec, read_spec
+from nrs_design.spec import InteractionDesignSpec, LoadedSpec, RobotSpec, Spec, read_spec
 from nrs_design.spec.bounds import nearly
 from nrs_design.switched.assemble import assemble, has_ranges
 from nrs_design.switched.system import SwitchedSystem, Time
@@ -143,6 +143,45 @@ def run_evidence(loaded: LoadedSpec, design: ControllerDesign) -> DesignEvidence
         return examine_design(loaded.spec, build_plant(loaded.spec), design)
 
 
+@dataclass(frozen=True, slots=True)
+class Overrides:
+    """What a command sets about the search, over what the spec says; None leaves it.
+
+    Parameters
+    ----------
+    max_degree : int or None
+        Highest degree of a polynomial function.
+    budget : float or None
+        Time in s.
+    memory : float or None
+        In GB.
+    """
+
+    max_degree: int | None = None
+    budget: float | None = None
+    memory: float | None = None
+
+
+def limits_of(spec: Spec, overrides: Overrides | None = None, optimize_rate: bool = True) -> Limits:
+    """Return how far the search goes: by default, as the spec says, or as a command sets it."""
+    from nrs_design.certificates.certify import Limits
+    from nrs_design.certificates.search.allowance import GIGABYTE
+
+    limits, asked = Limits(optimize_rate=optimize_rate), overrides or Overrides()
+    declared = None if isinstance(spec, RobotSpec) else spec.certification
+    if declared is not None and declared.max_degree is not None:
+        limits = replace(limits, max_degree=declared.max_degree)
+    if declared is not None and declared.budget is not None:
+        limits = replace(limits, budget=float(declared.budget.exact))
+    if asked.max_degree is not None:
+        limits = replace(limits, max_degree=asked.max_degree)
+    if asked.budget is not None:
+        limits = replace(limits, budget=asked.budget)
+    if asked.memory is not None:
+        limits = replace(limits, memory=asked.memory * GIGABYTE)
+    return limits
+
+
 def run_certification(
     loaded: LoadedSpec,
     *,
@@ -162,7 +201,7 @@ def run_certification(
     coordinates : {"deflection", "force"}, optional
         Overrides what the spec says.
     limits : Limits, optional
-        How far the searches go.
+        How far the searches go; by default as the spec says.
     progress : callable
         Told the name of each step.
 
@@ -181,6 +220,7 @@ def run_certification(
     gains = gains_of(design) if design else {}
     with placed(loaded):
         system = assemble(loaded.spec, gains, coordinates)
+    limits = limits or limits_of(loaded.spec)
     certification = certify(system, method or Methods.AUTO, limits, progress)
     certificate = (
         Certificate(
@@ -217,9 +257,6 @@ def run_margin(
     DesignError
         If the spec declares no range.
     """
-    from dataclasses import replace
-
-    from nrs_design.certificates.certify import Limits as DefaultLimits
     from nrs_design.certificates.certify import certify
     from nrs_design.certificates.margin import find_margin
 
@@ -233,7 +270,7 @@ def run_margin(
                 at=(given,),
             )
     gains = gains_of(result.design) if result.design else {}
-    limits = limits or DefaultLimits()
+    limits = limits or limits_of(result.loaded.spec)
     quick = replace(limits, optimize_rate=False, budget=min(limits.budget, MARGIN_BUDGET))
 
     def assemble_at(scale: Fraction) -> SwitchedSystem:
@@ -265,9 +302,6 @@ def run_shortest_dwell(
         In discrete time, or if something may change between two switches, or if the spec declares
         longest dwell times, which would bound the shortest one.
     """
-    from dataclasses import replace
-
-    from nrs_design.certificates.certify import Limits as DefaultLimits
     from nrs_design.certificates.certify import certify
     from nrs_design.certificates.margin import find_shortest_dwell
 
@@ -281,7 +315,7 @@ def run_shortest_dwell(
                 remedy="leave longest_dwell_time out, or declare the dwell_time and certify that",
                 at=("switching", "longest_dwell_time"),
             )
-    limits = limits or DefaultLimits()
+    limits = limits or limits_of(result.loaded.spec)
     quick = replace(limits, optimize_rate=False, budget=min(limits.budget, MARGIN_BUDGET))
 
     def decide(candidate: SwitchedSystem) -> Certification:

@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from enum import StrEnum
 from functools import partial
+from itertools import islice, zip_longest
 from time import perf_counter
 
 from numpy.linalg import LinAlgError
@@ -24,9 +25,18 @@ from nrs_design.certificates.evidence import (
     Shows,
 )
 from nrs_design.certificates.evidence.block_triangular import diagonal_block
+from nrs_design.certificates.evidence.common_polynomial import MAX_DEGREE, MAX_MONOMIALS
 from nrs_design.certificates.evidence.unstable_mode import is_stable
+from nrs_design.certificates.search.allowance import (
+    GIGABYTE,
+    Allowance,
+    Cost,
+    NotAffordableError,
+)
 from nrs_design.certificates.search.family import Family, floats_in_silence
 from nrs_design.certificates.search.limits import rate_limit
+from nrs_design.certificates.search.mode_quadratic import functions_cost
+from nrs_design.certificates.search.polynomial import highest_degree, polynomial_cost
 from nrs_design.certificates.search.rungs import (
     Finding,
     Rung,
@@ -37,6 +47,7 @@ from nrs_design.certificates.search.rungs import (
     search_by_gradient,
     search_by_lmi,
     search_mixture,
+    search_mode_polynomial,
     search_mode_quadratic,
     search_parameter_quadratic,
     search_period,
@@ -53,8 +64,10 @@ from nrs_design.switched.system import Mode, SwitchedSystem, Time
 
 Progress = Callable[[str], None]
 
-DEFAULT_MAX_DEGREE = 12
 DEFAULT_BUDGET = 60.0
+DEFAULT_MEMORY = 2 * GIGABYTE
+# Degrees that are tried before a search for growing periods, which is quicker than higher ones.
+FIRST_DEGREES = 2
 
 
 class Method(StrEnum):
@@ -65,6 +78,7 @@ class Method(StrEnum):
     GRADIENT = "gradient"
     OBSTRUCTION = "obstruction"
     MIXTURE = "mixture"
+    MODE_POLYNOMIAL = "mode-polynomial"
     MODE_QUADRATIC = "mode-quadratic"
     PARAMETER_QUADRATIC = "parameter-quadratic"
     PERIOD = "period"
@@ -78,16 +92,19 @@ class Limits:
 
     Parameters
     ----------
-    max_degree : int
-        Highest degree of a homogeneous polynomial function.
+    max_degree : int or None
+        Highest degree of a homogeneous polynomial function; None for as high as the budget allows.
     budget : float
-        No new rung is begun after so many seconds.
+        Time in s. Steps that are predicted not to fit are not begun, others are stopped.
+    memory : float
+        Steps that are predicted to need more bytes are not begun.
     optimize_rate : bool
         Look for the largest provable decay rate, not only for some.
     """
 
-    max_degree: int = DEFAULT_MAX_DEGREE
+    max_degree: int | None = None
     budget: float = DEFAULT_BUDGET
+    memory: float = DEFAULT_MEMORY
     optimize_rate: bool = True
 
 
@@ -173,6 +190,7 @@ def certify(
         If two exact computations disagree.
     """
     limits = limits or Limits()
+    allowance = Allowance(limits.budget, limits.memory)
     if method is not Method.AUTO and method not in _applicable(system) | {Method.MODE_QUADRATIC}:
         raise DesignError(
             f"the method {method} does not apply to this kind of switching and time",
@@ -183,9 +201,13 @@ def certify(
     blocks = triangular_blocks(merged) if simple else (tuple(range(system.order)),)
     checker = Checker(system)
     if len(blocks) == 1:
-        result = _climb(checker if merged is system else Checker(merged), method, limits, progress)
+        checker_of_merged = checker if merged is system else Checker(merged)
+        result = _climb(checker_of_merged, method, limits, allowance, progress)
     else:
-        parts = [_certify_block(merged, block, method, limits, progress) for block in blocks]
+        parts = [
+            _certify_block(merged, block, method, limits, allowance.part(1 / left), progress)
+            for left, block in zip(range(len(blocks), 0, -1), blocks, strict=True)
+        ]
         result = _combine(merged, blocks, parts)
     statements = _spread(result.statements, merged, system)
     for statement in statements:
@@ -202,12 +224,13 @@ def _certify_block(
     block: tuple[int, ...],
     method: Method,
     limits: Limits,
+    allowance: Allowance,
     progress: Progress,
 ) -> Certification:
     """Certify the family of one diagonal block."""
     full = diagonal_block(system, block)
     merged = merge_equal_modes(full)
-    result = _climb(Checker(merged), method, limits, progress)
+    result = _climb(Checker(merged), method, limits, allowance, progress)
     return replace(
         result,
         system=full,
@@ -215,18 +238,20 @@ def _certify_block(
     )
 
 
-def _climb(checker: Checker, method: Method, limits: Limits, progress: Progress) -> Certification:
+def _climb(
+    checker: Checker, method: Method, limits: Limits, allowance: Allowance, progress: Progress
+) -> Certification:
     """Try one rung after the other until one decides, or the budget is used up."""
     system = checker.system
     with floats_in_silence():
-        family = Family.checked_by(checker)
-    begun = perf_counter()
+        family = Family.checked_by(checker, allowance)
     attempts: list[Attempt] = []
     remarks: list[AbstractEvidence] = []
-    for name, rung in _rungs(system, method, limits, remarks):
+    for name, rung in _rungs(system, method, limits, allowance, remarks):
         start = perf_counter()
-        if attempts and start - begun > limits.budget:
-            attempts.append(Attempt(name, "not begun: the budget of time is used up", 0.0))
+        if attempts and allowance.left <= 0:
+            spent = f"not begun: the budget of {allowance.total:g} s is used up (--budget)"
+            attempts.append(Attempt(name, spent, 0.0))
             break
         progress(name)
         evidence, outcome = _take(rung, family)
@@ -241,7 +266,11 @@ def _climb(checker: Checker, method: Method, limits: Limits, progress: Progress)
 
 
 def _rungs(
-    system: SwitchedSystem, method: Method, limits: Limits, remarks: list[AbstractEvidence]
+    system: SwitchedSystem,
+    method: Method,
+    limits: Limits,
+    allowance: Allowance,
+    remarks: list[AbstractEvidence],
 ) -> Iterator[tuple[str, Rung]]:
     """Yield the rungs, cheapest first; what has been shown so far decides what is worth trying."""
     wanted = _applicable(system) if method is Method.AUTO else {method}
@@ -268,22 +297,81 @@ def _rungs(
         yield "mode quadratic", search_mode_quadratic
     if Method.MIXTURE in wanted:
         yield "mixture", search_mixture
-    polynomial = partial(partial, search_polynomial, optimize_rate=limits.optimize_rate)
-    degrees = range(2, limits.max_degree // 2 + 1) if Method.POLYNOMIAL in wanted else ()
-    for d in degrees[:2]:
-        yield f"polynomial of degree {2 * d}", polynomial(degree=d)
+    ladders = []
+    if Method.POLYNOMIAL in wanted:
+        ladders.append(_common_polynomials(system, limits, allowance))
+    if Method.MODE_POLYNOMIAL in wanted:
+        ladders.append(_mode_polynomials(system, limits, allowance))
+    for ladder in ladders:
+        yield from islice(ladder, FIRST_DEGREES)
     if Method.PERIOD in wanted:
         yield "period", search_period
     if Method.VALUE in wanted:
         yield "switching at constant values", search_switching_at_values
-    for d in degrees[2:]:
-        yield f"polynomial of degree {2 * d}", polynomial(degree=d)
+    for rungs in zip_longest(*ladders):
+        yield from (rung for rung in rungs if rung is not None)
+
+
+def _common_polynomials(
+    system: SwitchedSystem, limits: Limits, allowance: Allowance
+) -> Iterator[tuple[str, Rung]]:
+    """Yield common polynomials of rising degree."""
+    search = partial(partial, search_polynomial, optimize_rate=limits.optimize_rate)
+    cost = partial(polynomial_cost, system.order, len(system.modes))
+    return _rising(
+        "polynomial", system, limits, allowance, lambda d: (cost(d)[0], search(degree=d))
+    )
+
+
+def _mode_polynomials(
+    system: SwitchedSystem, limits: Limits, allowance: Allowance
+) -> Iterator[tuple[str, Rung]]:
+    """Yield polynomials for each mode of rising degree."""
+    search = partial(partial, search_mode_polynomial)
+    cost = partial(functions_cost, system)
+    name = "mode polynomial"
+    return _rising(name, system, limits, allowance, lambda d: (cost(d)[0], search(degree=d)))
+
+
+def _rising(
+    name: str,
+    system: SwitchedSystem,
+    limits: Limits,
+    allowance: Allowance,
+    rung_of: Callable[[int], tuple[Cost, Rung]],
+) -> Iterator[tuple[str, Rung]]:
+    """Yield rungs of rising degree, and at last the reason why there is no higher one.
+
+    Degrees rise while they are predicted to fit into what is left of the budget, so how far they
+    rise does not depend on the machine. In one state, all forms of a degree are alike.
+    """
+    if system.order == 1:
+        return
+    for d in range(2, highest_degree(system.order) + 1):
+        step = f"{name} of degree {2 * d}"
+        if limits.max_degree is not None and 2 * d > limits.max_degree:
+            yield step, _refuse(f"not tried: --max-degree is {limits.max_degree}")
+            return
+        cost, rung = rung_of(d)
+        fits = allowance.affords(cost)
+        yield step, rung
+        if not fits:
+            return
+    held = f"a certificate holds at most {MAX_MONOMIALS} monomials and degree {MAX_DEGREE}"
+    yield f"{name} of higher degree", _refuse(f"not tried: {held}")
+
+
+def _refuse(reason: str) -> Rung:
+    """Return a rung that is not tried."""
+    return lambda family: (None, reason)
 
 
 def _applicable(system: SwitchedSystem) -> set[Method]:
     """Return the rungs that can decide a system with its kind of switching."""
     switching = system.switching
     wanted = {Method.MODE_QUADRATIC}
+    if system.time is Time.DISCRETE and not (switching.is_arbitrary or switching.fixed_ends):
+        wanted |= {Method.MODE_POLYNOMIAL}
     if any(not is_stable(mode.A, system.time) for mode in _left_modes(system)):
         return wanted | ({Method.PERIOD} if system.is_uniform else set())
     if system.is_uniform and not switching.resets:
@@ -309,12 +397,14 @@ def _left_modes(system: SwitchedSystem) -> list[Mode]:
 
 
 def _take(rung: Rung, family: Family) -> Finding:
-    """Try one rung; where floating point fails, nothing is found."""
+    """Try one rung; where it is not affordable, or floating point fails, nothing is found."""
     try:
         with floats_in_silence():
             return rung(family)
     except TooLargeError as error:
         return None, f"not tried: {error.message}"
+    except NotAffordableError as reason:
+        return None, str(reason)
     except (LinAlgError, OverflowError) as error:
         return None, f"floating point failed ({error})"
 

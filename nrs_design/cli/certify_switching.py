@@ -9,7 +9,16 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from nrs_design.cli import exit_codes
-from nrs_design.cli.options import CoordinatesOption, Json, Quiet, SpecFile, Verbose
+from nrs_design.cli.options import (
+    Budget,
+    CoordinatesOption,
+    Json,
+    MaxDegree,
+    Memory,
+    Quiet,
+    SpecFile,
+    Verbose,
+)
 from nrs_design.cli.printing import note, print_json, progress, say
 
 if TYPE_CHECKING:
@@ -27,6 +36,7 @@ class MethodOption(StrEnum):
     GRADIENT = "gradient"
     OBSTRUCTION = "obstruction"
     MIXTURE = "mixture"
+    MODE_POLYNOMIAL = "mode-polynomial"
     MODE_QUADRATIC = "mode-quadratic"
     PARAMETER_QUADRATIC = "parameter-quadratic"
     PERIOD = "period"
@@ -49,12 +59,9 @@ def certify_switching(
     optimize_rate: Annotated[
         bool, typer.Option(help="Look for the largest provable decay rate.")
     ] = True,
-    max_degree: Annotated[
-        int, typer.Option(min=2, max=64, help="Highest degree of a polynomial function.")
-    ] = 12,
-    budget: Annotated[
-        float, typer.Option(min=0.0, help="Begin no new rung after so many seconds.")
-    ] = 60.0,
+    max_degree: MaxDegree = None,
+    budget: Budget = None,
+    memory: Memory = None,
     margin: Annotated[
         bool,
         typer.Option(
@@ -73,16 +80,22 @@ def certify_switching(
     Example: nrs-design certify-switching specs/neuroboscope/soft-tissue.nrs.yaml
     """
     from nrs_design.certificates.certificate import dump
-    from nrs_design.certificates.certify import Limits, Method
+    from nrs_design.certificates.certify import Method
     from nrs_design.output import CERTIFICATE, write_output
     from nrs_design.ownership import check_certificate, origin_of
-    from nrs_design.pipeline import run_certification, run_margin, run_shortest_dwell
+    from nrs_design.pipeline import (
+        Overrides,
+        limits_of,
+        run_certification,
+        run_margin,
+        run_shortest_dwell,
+    )
     from nrs_design.spec import read_spec
 
     loaded = read_spec(spec)
     path = out or Path("reports") / f"{loaded.spec.name}.cert.json"
     check_certificate(spec, path)
-    limits = Limits(max_degree, budget, optimize_rate)
+    limits = limits_of(loaded.spec, Overrides(max_degree, budget, memory), optimize_rate)
     with progress(f"certifying {loaded.spec.name}", quiet=quiet) as step:
         result = run_certification(
             loaded,

@@ -11,12 +11,15 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from nrs_design.cli import exit_codes
-from nrs_design.cli.options import Json, Quiet
+from nrs_design.cli.options import Budget, Json, MaxDegree, Memory, Quiet
 from nrs_design.cli.printing import note, progress
 from nrs_design.errors import NrsDesignError, OutputError
 
 if TYPE_CHECKING:
     from nrs_design.gating.obligations import GateOutcome
+
+# Highest degree, budget and memory, as far as they are given.
+Search = tuple[int | None, float | None, float | None]
 
 # By severity of the worst obligation, from none to a defect of this program.
 OF_SEVERITY = (
@@ -66,6 +69,9 @@ def gate(
     no_reports: Annotated[
         bool, typer.Option("--no-reports", help="Write certificates, but no HTML reports.")
     ] = False,
+    max_degree: MaxDegree = None,
+    budget: Budget = None,
+    memory: Memory = None,
     as_json: Json = False,
     quiet: Quiet = False,
 ) -> None:
@@ -95,11 +101,12 @@ def gate(
     if out is not None and out.name.lower().endswith(SUFFIXES):
         raise OutputError("is the name of a spec", path=out, remedy="choose another --out")
     chosen = FormatOption.JSON if as_json else format_
+    search = (max_degree, budget, memory)
     start = perf_counter()
     outcome = (
         _re_check(paths, lock, quiet=quiet)
         if locked
-        else _certify(paths, lock, reports, html=not no_reports, prune=prune, quiet=quiet)
+        else _certify(paths, lock, reports, search, html=not no_reports, prune=prune, quiet=quiet)
     )
     document = FORMATS[chosen](outcome)
     if out is not None:
@@ -118,18 +125,27 @@ def gate(
 
 
 def _certify(
-    paths: list[Path], lock: Path, reports: Path, *, html: bool, prune: bool, quiet: bool
+    paths: list[Path],
+    lock: Path,
+    reports: Path,
+    search: Search,
+    *,
+    html: bool,
+    prune: bool,
+    quiet: bool,
 ) -> GateOutcome:
     from nrs_design.gating.find_specs import find_specs
     from nrs_design.gating.lock import read_lock_if_any
     from nrs_design.gating.renew import certificates_of, check_folder, write_lock
     from nrs_design.gating.run import Files, run_gate
+    from nrs_design.pipeline import Overrides
 
     specs = find_specs(paths)
     check_folder(reports, lock)
     locked = certificates_of(read_lock_if_any(lock), lock)
     with progress("gate", quiet=quiet) as step:
-        outcome = run_gate(specs, Files(reports, html=html, locked=locked), step)
+        files = Files(reports, html=html, locked=locked)
+        outcome = run_gate(specs, files, step, Overrides(*search))
     return _with_passed_over(write_lock(outcome, lock, prune=prune), paths)
 
 

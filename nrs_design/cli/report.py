@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from nrs_design.cli import exit_codes
-from nrs_design.cli.options import Json, Quiet, SpecFile
+from nrs_design.cli.options import Budget, Json, MaxDegree, Memory, Quiet, SpecFile
 from nrs_design.cli.printing import note, print_json, progress, say
 from nrs_design.errors import DesignError
 
@@ -53,6 +53,9 @@ def report(
             help="Write this date on the page or document; without it there is none.",
         ),
     ] = None,
+    max_degree: MaxDegree = None,
+    budget: Budget = None,
+    memory: Memory = None,
     as_json: Json = False,
     quiet: Quiet = False,
 ) -> None:
@@ -61,7 +64,7 @@ def report(
     Example: nrs-design report specs/neuroboscope/soft-tissue.nrs.yaml --format pdf
     """
     from nrs_design.ownership import check_owner
-    from nrs_design.pipeline import run_certification
+    from nrs_design.pipeline import Overrides, limits_of, run_certification
     from nrs_design.reporting import build_report
     from nrs_design.spec import read_spec
 
@@ -69,7 +72,8 @@ def report(
     if out is None:
         check_owner(spec, loaded.spec.name, REPORTS)
     with progress(f"reporting {loaded.spec.name}", quiet=quiet) as step:
-        result = run_certification(loaded, progress=step)
+        limits = limits_of(loaded.spec, Overrides(max_degree, budget, memory))
+        result = run_certification(loaded, limits=limits, progress=step)
         step("figures")
         day = date.date() if date else None
         page = build_report(result, _evidence(result, quiet=quiet), times=times, date=day)

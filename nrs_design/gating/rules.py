@@ -125,8 +125,10 @@ SWITCHING_STABLE = Rule(
     "function exists refutes nothing.",
     "If refuted by a mode, mend that mode first (NRS101). If refuted by a signal, take it away: "
     "declare a longer dwell time or only the transitions that really occur, narrow the ranges, or "
-    "add damping (raise Bt). If inconclusive, neither was found: do the same, or search longer by "
-    "certify-switching with a higher --max-degree or --budget; --margin finds the largest box of "
+    "add damping (raise Bt). If inconclusive, neither was found: do the same, or search longer "
+    "with a larger --budget, more --memory or a higher --max-degree, whichever the message says "
+    "has ended the search (certify-switching, report and gate take them, and a spec says budget "
+    "and max_degree under `certification`); certify-switching --margin finds the largest box of "
     "ranges with a proof, --shortest-dwell the shortest dwell time. The gate fails until there is "
     "a proof.",
 )
@@ -227,9 +229,11 @@ WORDS: Mapping[str, Word] = MappingProxyType(
                 "Neither a proof nor a refutation was found. This is not a statement of "
                 "stability, nor of instability, even where it is shown that no common quadratic "
                 "function exists.",
-                "Search longer: certify-switching with a higher --max-degree or --budget. Or ask "
-                "for less: a longer dwell time, narrower ranges (--margin finds the largest with "
-                "a proof), more damping. A gate fails closed. Exit code 3.",
+                "Search longer: with a larger --budget, more --memory or a higher --max-degree "
+                "(of certify-switching, report and gate), whichever the message says has ended "
+                "the search. Or ask for less: a longer dwell time, narrower ranges "
+                "(certify-switching --margin finds the largest with a proof), more damping. A "
+                "gate fails closed. Exit code 3.",
             ),
             Word(
                 "met",

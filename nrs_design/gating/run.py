@@ -25,7 +25,13 @@ from nrs_design.gating.paths import is_utf8
 from nrs_design.gating.places import Places
 from nrs_design.output import CERTIFICATE, PAGE, write_output
 from nrs_design.ownership import REMEDY, check_owner, origin_of
-from nrs_design.pipeline import Result, run_certification, run_evidence
+from nrs_design.pipeline import (
+    Overrides,
+    Result,
+    limits_of,
+    run_certification,
+    run_evidence,
+)
 from nrs_design.spec import LoadedSpec, RobotSpec, read_spec
 
 if TYPE_CHECKING:
@@ -76,7 +82,10 @@ class Files:
 
 
 def run_gate(
-    specs: Sequence[Path], files: Files, progress: Progress = lambda step: None
+    specs: Sequence[Path],
+    files: Files,
+    progress: Progress = lambda step: None,
+    overrides: Overrides | None = None,
 ) -> GateOutcome:
     """Design and certify every spec, and write its certificate and report.
 
@@ -88,6 +97,8 @@ def run_gate(
         Where to write.
     progress : callable
         Told the name of each step.
+    overrides : Overrides, optional
+        How far the searches go, over what each spec says.
 
     Returns
     -------
@@ -100,7 +111,9 @@ def run_gate(
         tuple(
             item
             if isinstance(item, SpecOutcome)
-            else _examine_safely(item, item.spec.name.casefold() in shared, files, progress)
+            else _examine_safely(
+                item, item.spec.name.casefold() in shared, files, progress, overrides
+            )
             for item in read
         )
     )
@@ -122,12 +135,18 @@ def _shared_names(specs: Iterable[LoadedSpec]) -> set[str]:
 
 
 def _examine_safely(
-    loaded: LoadedSpec, shares_its_name: bool, files: Files, progress: Progress
+    loaded: LoadedSpec,
+    shares_its_name: bool,
+    files: Files,
+    progress: Progress,
+    overrides: Overrides | None,
 ) -> SpecOutcome:
     try:
         if shares_its_name:
             raise _shared_name(loaded)
-        return _examine(loaded, files, lambda step: progress(f"{loaded.spec.name}: {step}"))
+        return _examine(
+            loaded, files, lambda step: progress(f"{loaded.spec.name}: {step}"), overrides
+        )
     except Exception as error:
         # One spec must not keep the others from being examined, whatever goes wrong with it.
         return failed(loaded.path, error, loaded.sha256)
@@ -145,11 +164,14 @@ def _shared_name(loaded: LoadedSpec) -> SpecError:
     )
 
 
-def _examine(loaded: LoadedSpec, files: Files, progress: Progress) -> SpecOutcome:
+def _examine(
+    loaded: LoadedSpec, files: Files, progress: Progress, overrides: Overrides | None
+) -> SpecOutcome:
     if isinstance(loaded.spec, RobotSpec):
         return Examiner.of(loaded).nothing_to_certify()
     files.check_owner(loaded.path, loaded.spec.name)
-    result = run_certification(loaded, progress=progress)
+    limits = limits_of(loaded.spec, overrides)
+    result = run_certification(loaded, limits=limits, progress=progress)
     certification, certificate = result.certification, result.certificate
     examiner = Examiner.of(loaded)
     searched = "; ".join(f"{a.step}: {a.outcome}" for a in certification.attempts)

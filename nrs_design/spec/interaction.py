@@ -8,6 +8,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field, model_validator
 
+from nrs_design.spec.certification import CertificationSpec
 from nrs_design.spec.controllers import (
     ControllerSpec,
     PositionControllerSpec,
@@ -61,6 +62,9 @@ class InteractionDesignSpec(SpecModel):
     switching: Switching = Field(
         description="when controllers change: arbitrary, or rules with dwell_time and transitions "
         "between controllers"
+    )
+    certification: CertificationSpec = Field(
+        default_factory=CertificationSpec, description="how far the search for a proof goes"
     )
 
     @model_validator(mode="after")

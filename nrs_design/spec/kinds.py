@@ -14,6 +14,7 @@ ACTUATOR_GAIN = QuantityKind(
     {"rad/s": "the gain is per command unit: write '{value} rad/s/rpm'"},
 )
 DURATION = QuantityKind("a duration", ("s",), "0.0351 s")
+SEARCH_BUDGET = QuantityKind("a budget of time", ("s",), "60 s")
 DWELL_TIME = QuantityKind("a dwell time", ("s",), "2.76 s")
 DERIVATIVE_GAIN = QuantityKind(
     "a derivative gain",

@@ -9,6 +9,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field, model_validator
 
+from nrs_design.spec.certification import CertificationSpec
 from nrs_design.spec.dwell import DwellObstacle, find_changing_parameter
 from nrs_design.spec.faults import all_of, did_you_mean, fault
 from nrs_design.spec.fields import Label, Name, Title
@@ -101,6 +102,9 @@ class SwitchedSystemSpec(SpecModel):
         default=(),
         description="what switches do to the state; the others leave it as it is. Several from one "
         "mode to another are as many switches: any one of them may happen",
+    )
+    certification: CertificationSpec = Field(
+        default_factory=CertificationSpec, description="how far the search for a proof goes"
     )
 
     @property

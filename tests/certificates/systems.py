@@ -164,7 +164,29 @@ def hidden_shears(time: Time = Time.CONTINUOUS) -> SwitchedSystem:
     return family(rest, up, down, rest, time=time, switching=PAIRS)
 
 
+def lossy_network(scale: Entry = 1) -> SwitchedSystem:
+    """Stable by degree 4 and by no quadratic functions (Philippe et al. 2016, section 4)."""
+    s, gains = Fraction(scale), (("0", "0.27"), ("-0.49", "0"), ("-0.49", "0.27"), ("0", "0"))
+    matrices = [
+        [
+            [s * Fraction("0.94"), s * Fraction("0.56")],
+            [s * (Fraction("0.14") + Fraction(k1)), s * (Fraction("0.46") + Fraction(k2))],
+        ]
+        for k1, k2 in gains
+    ]
+    # Only node 3 has an edge to itself; the others are left after one step.
+    one = Stay(Fraction(1), Fraction(1))
+    edges = ("12", "21", "13", "31", "23", "32", "34", "43")
+    switching = Switching(
+        transitions=tuple((f"n{a}", f"n{b}") for a, b in edges),
+        stays=tuple((name, one) for name in ("n1", "n2", "n4")),
+    )
+    names = ("n1", "n2", "n3", "n4")
+    return family(*matrices, time=Time.DISCRETE, switching=switching, names=names)
+
+
 SYSTEMS = {
+    "mode-polynomial": lossy_network,
     "common-quadratic": lambda: dayawansa_martin(5),
     "common-polynomial": lambda: dayawansa_martin(6),
     "common-polynomial, discrete": lambda: ando_shih("0.72"),

@@ -68,14 +68,15 @@ def test_inconclusive_leaves_no_file(tmp_path):
     assert result.returncode == 3
     assert "INCONCLUSIVE (common quadratic function: unknown)" in result.stdout
     assert "not a statement of stability" in result.stdout
-    assert "not begun: the budget of time is used up" in result.stdout
+    assert "not begun: the budget of 0 s is used up (--budget)" in result.stdout
     assert not (tmp_path / "reports").exists()
 
 
 def test_inconclusive_with_a_remark_keeps_it(tmp_path):
     write_spec(tmp_path / "eleven.nrs.yaml", *HARD)
-    result = run("certify-switching", "eleven.nrs.yaml", cwd=tmp_path)
+    result = run("certify-switching", "eleven.nrs.yaml", "--max-degree", 8, cwd=tmp_path)
     assert result.returncode == 3
+    assert "polynomial of degree 10: not tried: --max-degree is 8" in result.stdout
     assert "INCONCLUSIVE (common quadratic function: impossible)" in result.stdout
     assert "not a statement of stability" in result.stdout
     document = json.loads((tmp_path / "reports" / "given.cert.json").read_text())
@@ -351,6 +352,49 @@ def test_json_without_a_proof(tmp_path, spec, code, verdict):
     assert document["decay_rate"] is None
     assert (document["certificate"] is None) == (verdict == "inconclusive")
     assert (document["claim"] is None) == (verdict == "inconclusive")
+
+
+def test_the_default_degree_follows_the_budget(tmp_path):
+    """This pair needs a degree beyond 12."""
+    pair = [[-1, -1], [1, -1]], [[-1, "-10.95"], ["20/219", -1]]
+    write_spec(tmp_path / "high.nrs.yaml", *pair)
+    result = run("certify-switching", "high.nrs.yaml", "--json", cwd=tmp_path)
+    assert result.returncode == 0
+    assert "polynomial of degree 18" in json.loads(result.stdout)["method"]
+
+
+def test_a_spec_says_how_far_the_search_goes_and_options_override_it(tmp_path):
+    path = write_spec(tmp_path / "eleven.nrs.yaml", *HARD).path
+    path.write_text(path.read_text() + "certification: {max_degree: 6, budget: 20 s}\n")
+    result = run("certify-switching", path, cwd=tmp_path)
+    assert "polynomial of degree 8: not tried: --max-degree is 6" in result.stdout
+    result = run("certify-switching", path, "--max-degree", 4, cwd=tmp_path)
+    assert "polynomial of degree 6: not tried: --max-degree is 4" in result.stdout
+    result = run("report", path, "--max-degree", 4, cwd=tmp_path)
+    assert result.returncode == 3
+    result = run("gate", path, "--max-degree", 4, "--no-reports", cwd=tmp_path)
+    assert result.returncode == 3
+    assert "not tried: --max-degree is 4" in result.stdout
+    result = run("certify-switching", path, "--memory", "1e-9", cwd=tmp_path)
+    assert "GB are allowed (--memory)" in result.stdout
+
+
+@pytest.mark.parametrize(
+    ("section", "words"),
+    [
+        ("{max_degree: 7}", "7 is not an even integer from 2 to 64"),
+        ("{max_degree: 66}", "66 is not an even integer from 2 to 64"),
+        ("{budget: 1e9 s}", "beyond 600 s"),
+        ("{budget: 60}", "budget"),
+        ("{memory: 1 GB}", "memory"),
+    ],
+)
+def test_limits_of_the_search_that_a_spec_may_not_say(tmp_path, section, words):
+    path = write_spec(tmp_path / "eleven.nrs.yaml", *HARD).path
+    path.write_text(path.read_text() + f"certification: {section}\n")
+    result = run("check", path, cwd=tmp_path)
+    assert result.returncode == 2
+    assert words in result.stderr
 
 
 def test_quiet(tmp_path):

@@ -32,10 +32,11 @@ from nrs_design.certificates.exact import (
 )
 from nrs_design.spec.bounds import rounded_down, rounded_up
 from nrs_design.switched.matrix import RationalMatrix, multiply
-from nrs_design.switched.system import Edge, Stay, SwitchedSystem, Switching, Time
+from nrs_design.switched.system import Edge, Mode, Stay, SwitchedSystem, Switching, Time
 
 MAX_DWELL_STEPS = 4096
 MAX_PIECES = 4096
+MAX_ENCLOSED = 2**18
 MAX_NAMED = 8
 MAX_POWER_BITS = 10**6
 
@@ -97,13 +98,12 @@ class ModeQuadratic(AbstractEvidence):
         for mode, (_, Q) in zip(system.modes, self.functions, strict=True):
             if not is_square(Q, mode.A.shape[0]):
                 return f"Q of mode {mode.name} has the wrong size"
-        for edge in system.edges():
-            given = edge.source.A.shape if edge.map is None else edge.map.shape
-            if given != (edge.target.A.shape[0], edge.source.A.shape[0]):
-                return f"the switch {_words(edge)} has no fitting reset"
-        if misfit := find_rate_misfit(self.rate, system.time) or self._find_odd_stay(system):
-            return misfit
-        return self._find_raising_switch(system)
+        return (
+            find_odd_switch(system)
+            or find_rate_misfit(self.rate, system.time)
+            or self._find_odd_stay(system)
+            or self._find_raising_switch(system)
+        )
 
     def _find_odd_stay(self, system: SwitchedSystem) -> str | None:
         """Check that the stays to be shown are few, short and, in discrete time, whole."""
@@ -118,7 +118,8 @@ class ModeQuadratic(AbstractEvidence):
             return "the dwell time is too long"
         if system.time is Time.DISCRETE and any(time.denominator != 1 for time in times):
             return "the dwell time is not a whole number of steps"
-        if not 1 <= self.pieces <= MAX_PIECES:
+        enclosed = self.pieces * sum(e.source.name in self.leaving for e in system.edges())
+        if not 1 <= self.pieces <= MAX_PIECES or enclosed > MAX_ENCLOSED:
             return "the stays are enclosed in too few or too many pieces"
         if system.time is Time.DISCRETE and _power_is_too_large(system, self):
             return "the dwell time is too long for such large numbers"
@@ -138,12 +139,30 @@ class ModeQuadratic(AbstractEvidence):
         return None
 
     def forms(self, system: SwitchedSystem) -> Iterator[tuple[str, IntegerMatrix]]:
-        """Yield every Q_i, its decrease, and the switches after every stay that counts."""
+        """Yield every Q_i, and every decrease."""
+        for name, Q in self.functions:
+            yield f"Q of mode {name} is not symmetric and positive definite", Q
+        yield from self.decreases(system)
+
+    def decreasing_modes(self, system: SwitchedSystem) -> list[Mode]:
+        """Return the mode in which each of the decreases begins, in their order.
+
+        For discrete time, where every stay takes steps.
+        """
+        stays = system.stays()
+        counts = {
+            name: int(stay.longest or 0) - int(stay.shortest) + 1 if name in self.leaving else 1
+            for name, stay in stays.items()
+        }
+        modes = [mode for mode in system.modes if mode.name not in self.leaving]
+        return modes + [e.source for e in system.edges() for _ in range(counts[e.source.name])]
+
+    def decreases(self, system: SwitchedSystem) -> Iterator[tuple[str, IntegerMatrix]]:
+        """Yield the decrease in every mode, and at the switches after every stay that counts."""
         form = lyapunov_decrease if system.time is Time.CONTINUOUS else stein_decrease
         Q, stays = dict(self.functions), system.stays()
         for mode in system.modes:
             A = mode.A
-            yield f"Q of mode {mode.name} is not symmetric and positive definite", Q[mode.name]
             if mode.name not in self.leaving:
                 failure = f"V does not decrease at the claimed rate in mode {mode.name}"
                 yield failure, form(A.numerators, A.denominator, Q[mode.name], self.rate)
@@ -193,13 +212,7 @@ class ModeQuadratic(AbstractEvidence):
 
     def claim(self, system: SwitchedSystem) -> str:
         """State the bound on every solution."""
-        continuous = system.time is Time.CONTINUOUS
-        law, bound = ("x' = A x", "exp(-alpha t)") if continuous else ("x+ = A x", "rho^t")
-        return (
-            f"Every solution of {law} under the declared switching ({describe(system)}) satisfies "
-            f"|x(t)| <= c {bound} |x(0)| with {rate_words(self.rate, system.time)} and some "
-            "constant c that is the same for all signals."
-        )
+        return bound_claim(system, self.rate)
 
     def spread(self, merged: SwitchedSystem, system: SwitchedSystem) -> Self:
         """Repeat the function of every mode for its equals, between which nothing changes."""
@@ -231,6 +244,26 @@ class ModeQuadratic(AbstractEvidence):
         leaving = tuple(read_text(name) for name in fields.get("leaving", ()))
         pieces = read_integer(fields.get("pieces", 1))
         return cls(tuple(functions), exponents.pop(), read_ratio(fields["rate"]), leaving, pieces)
+
+
+def find_odd_switch(system: SwitchedSystem) -> str | None:
+    """Say which switch has no reset between modes of different sizes, or one that does not fit."""
+    for edge in system.edges():
+        given = edge.source.A.shape if edge.map is None else edge.map.shape
+        if given != (edge.target.A.shape[0], edge.source.A.shape[0]):
+            return f"the switch {_words(edge)} has no fitting reset"
+    return None
+
+
+def bound_claim(system: SwitchedSystem, rate: Fraction) -> str:
+    """State a bound, up to a constant factor, on every solution that keeps the rules."""
+    continuous = system.time is Time.CONTINUOUS
+    law, bound = ("x' = A x", "exp(-alpha t)") if continuous else ("x+ = A x", "rho^t")
+    return (
+        f"Every solution of {law} under the declared switching ({describe(system)}) satisfies "
+        f"|x(t)| <= c {bound} |x(0)| with {rate_words(rate, system.time)} and some constant c "
+        "that is the same for all signals."
+    )
 
 
 def describe(system: SwitchedSystem) -> str:

@@ -2,24 +2,27 @@
 
 from __future__ import annotations
 
-from collections import deque
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from itertools import islice
 
 import numpy as np
 
+from nrs_design.certificates.search.allowance import Allowance
 from nrs_design.certificates.search.graph import Array, Cycle, Graph, Jump
 
 MAX_CYCLES = 120
-MAX_PATHS = 20_000
+MAX_LENGTH = 64
+MAX_STEPS = 200_000
 # Times of one leg after the other are changed so often, for cycles of three legs and more.
 SWEEPS = 4
 # How many of the fastest growing cycles are given out.
 STARTS = 4
 
 
-def growing_cycles(graph: Graph) -> Iterator[tuple[Cycle, Array]]:
+def growing_cycles(graph: Graph, allowance: Allowance) -> Iterator[tuple[Cycle, Array]]:
     """Yield the elementary cycles that seem to grow the most, or to decay the least.
+
+    When time is over, those that have been looked at are compared.
 
     Yields
     ------
@@ -30,6 +33,8 @@ def growing_cycles(graph: Graph) -> Iterator[tuple[Cycle, Array]]:
     for cycle in islice(elementary_cycles(graph.jumps), MAX_CYCLES):
         times = _best_pair(graph, cycle) if len(cycle) == 2 else _best_times(graph, cycle)
         scanned.append((float(graph.growth(cycle, times)), cycle, times))
+        if not allowance.goes_on():
+            break
     scanned.sort(key=lambda item: -item[0])
     yield from ((cycle, times) for _, cycle, times in scanned[:STARTS])
 
@@ -37,23 +42,35 @@ def growing_cycles(graph: Graph) -> Iterator[tuple[Cycle, Array]]:
 def elementary_cycles(jumps: Sequence[Jump]) -> Iterator[Cycle]:
     """Yield the cycles that visit no mode twice, by increasing length, each once.
 
-    A cycle begins with its first mode. Only paths that may come back are carried on, and no more
-    than a bounded number of them.
+    A cycle begins with its first mode. The search ends after a bounded number of steps.
     """
-    returning = sorted(_returning(jumps), key=lambda k: jumps[k].source)
     leaving: dict[int, list[int]] = {}
-    for k in returning:
+    for k in _returning(jumps):
         leaving.setdefault(jumps[k].source, []).append(k)
-    paths: deque[Cycle] = deque((k,) for k in returning)
-    for _ in range(MAX_PATHS):
-        if not paths:
-            return
-        path = paths.popleft()
-        visited, end = [jumps[k].source for k in path], jumps[path[-1]].target
+    steps = iter(range(MAX_STEPS))
+    for length in range(2, min(len(leaving), MAX_LENGTH) + 1):
+        for start in sorted(leaving):
+            for k in leaving[start]:
+                yield from _closed((k,), jumps, leaving, length, steps)
+
+
+def _closed(
+    path: Cycle,
+    jumps: Sequence[Jump],
+    leaving: Mapping[int, list[int]],
+    length: int,
+    steps: Iterator[int],
+) -> Iterator[Cycle]:
+    """Yield the cycles of one length that begin with a path; all modes come after the first."""
+    visited, end = [jumps[k].source for k in path], jumps[path[-1]].target
+    if next(steps, None) is None:
+        return
+    if len(path) == length:
         if end == visited[0]:
             yield path
-        elif end > visited[0] and end not in visited:
-            paths.extend((*path, k) for k in leaving.get(end, ()))
+    elif end > visited[0] and end not in visited:
+        for k in leaving[end]:
+            yield from _closed((*path, k), jumps, leaving, length, steps)
 
 
 def _returning(jumps: Sequence[Jump]) -> list[int]:

@@ -5,13 +5,14 @@ from __future__ import annotations
 import warnings
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from itertools import chain
 
 import numpy as np
 from numpy.typing import NDArray
 
 from nrs_design.certificates.checker import Checker
+from nrs_design.certificates.search.allowance import Allowance
 from nrs_design.certificates.search.balance import balance, scale
 from nrs_design.certificates.search.decay import limit_rate
 from nrs_design.switched.matrix import RationalMatrix
@@ -32,12 +33,15 @@ class Family:
         The d.
     limit : float
         Rate of the slowest mode that need never be left; without one, a rate out of reach.
+    allowance : Allowance
+        Time and memory for the searches; unlimited by default.
     """
 
     checker: Checker
     matrices: NDArray[np.float64]
     exponents: NDArray[np.int64]
     limit: float
+    allowance: Allowance = field(default_factory=Allowance)
 
     @property
     def system(self) -> SwitchedSystem:
@@ -50,19 +54,20 @@ class Family:
         return cls.checked_by(Checker(system))
 
     @classmethod
-    def checked_by(cls, checker: Checker) -> Family:
+    def checked_by(cls, checker: Checker, allowance: Allowance | None = None) -> Family:
         """Convert and balance the modes that a checker speaks about."""
+        allowance = allowance or Allowance()
         system = checker.system
         if not system.is_uniform:
             limit = _limit(system, [to_floats([mode.A]) for mode in system.modes])
-            return cls(checker, np.zeros((0, 0, 0)), np.zeros(0, dtype=np.int64), limit)
+            return cls(checker, np.zeros((0, 0, 0)), np.zeros(0, dtype=np.int64), limit, allowance)
         matrices = to_floats([mode.A for mode in system.modes])
         limit = _limit(system, [matrices])
         exponents = balance(matrices)
         scaled = scale(matrices, exponents)
         if not np.isfinite(scaled).all():
             scaled, exponents = matrices, np.zeros_like(exponents)
-        return cls(checker, scaled, exponents, limit)
+        return cls(checker, scaled, exponents, limit, allowance)
 
 
 def _limit(system: SwitchedSystem, families: list[NDArray[np.float64]]) -> float:

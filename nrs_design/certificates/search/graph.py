@@ -16,6 +16,8 @@ Array = NDArray[np.float64]
 Cycle = tuple[int, ...]
 
 TIMES = 48
+# Entries of the products that are looked at together.
+CHUNK_ENTRIES = 2_000_000
 # Steps beyond the dwell time that a stay may have: few, and then up to where a mode has decayed.
 FIBONACCI = (0, 1, 2, 3, 5, 8, 13, 21, 34, 55, 89, 144, 233, 377, 610, 987)
 DECAYED = 1e-3
@@ -87,6 +89,10 @@ class Graph:
 
     def growth(self, cycle: Cycle, times: Array) -> Array:
         """Return the growth per time of periodic signals; times of shape (..., legs)."""
+        chunk = max(1, CHUNK_ENTRIES // self.flows.matrices[0].size)
+        if times.ndim > 1 and len(times) > chunk:
+            parts = [self.growth(cycle, times[k : k + chunk]) for k in range(0, len(times), chunk)]
+            return np.concatenate(parts)
         product: Array | ComplexArray = np.eye(len(self.flows.matrices[0]))
         for leg, k in enumerate(cycle):
             jump = self.jumps[k]
@@ -111,11 +117,12 @@ def _jumps(system: SwitchedSystem) -> tuple[Jump, ...]:
     index = {mode.name: k for k, mode in enumerate(system.modes)}
     ends = {name: end for pair in system.switching.fixed_ends for end, name in enumerate(pair)}
     jumps: list[Jump] = []
+    identity = np.eye(system.order)
     ways: dict[tuple[int, int], int] = {}
     for edge in system.edges():
         if ends.get(edge.source.name) == ends.get(edge.target.name):
             pair = index[edge.source.name], index[edge.target.name]
             ways[pair] = ways.get(pair, -1) + 1
-            map_ = np.eye(system.order) if edge.map is None else np.array(edge.map.floats())
+            map_ = identity if edge.map is None else np.array(edge.map.floats())
             jumps.append(Jump(*pair, ways[pair], map_))
     return tuple(jumps)

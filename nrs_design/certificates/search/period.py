@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from nrs_design.certificates.evidence import UnstablePeriod
+from nrs_design.certificates.search.allowance import Allowance
 from nrs_design.certificates.search.balance import mean_norm_coordinates
 from nrs_design.certificates.search.cycle import growing_cycles
 from nrs_design.certificates.search.graph import Cycle, Graph
@@ -31,7 +32,9 @@ ROUNDS = 40
 LONGEST_STEPS = 2000
 
 
-def find_growing_period(system: SwitchedSystem, matrices: Array) -> UnstablePeriod | None:
+def find_growing_period(
+    system: SwitchedSystem, matrices: Array, allowance: Allowance | None = None
+) -> UnstablePeriod | None:
     """Search for a period with a spectral radius above one, and enclose it rigorously.
 
     Parameters
@@ -40,35 +43,48 @@ def find_growing_period(system: SwitchedSystem, matrices: Array) -> UnstablePeri
         Exact modes.
     matrices : ndarray, shape (m, n, n)
         The same in floating point, perhaps scaled.
+    allowance : Allowance, optional
+        Time and memory; unlimited by default.
+
+    Raises
+    ------
+    NotAffordableError
+        If time or memory do not suffice, and nothing was found.
     """
+    allowance = allowance or Allowance()
     if system.time is Time.DISCRETE and system.switching.is_arbitrary:
-        return _find_word(system, matrices)
+        return _find_word(system, matrices, allowance)
     if system.switching.resets:
         # The scaled modes of a search do not fit the resets.
         matrices = np.array([mode.A.floats() for mode in system.modes])
     graph = Graph.of(system, matrices)
-    for cycle, times in _candidates(system, graph):
+    for cycle, times in _candidates(system, graph, allowance):
         if evidence := _round(system, graph, cycle, times):
             return evidence
+        allowance.check()
+    allowance.check()
     return None
 
 
-def _find_word(system: SwitchedSystem, matrices: Array) -> UnstablePeriod | None:
-    for word, radius in growing_words(matrices):
+def _find_word(
+    system: SwitchedSystem, matrices: Array, allowance: Allowance
+) -> UnstablePeriod | None:
+    for word, radius in growing_words(matrices, allowance):
         steps = tuple((system.modes[i].name, Fraction(1)) for i in word)
         if evidence := _enclose(system, UnstablePeriod(steps, 0), radius):
             return evidence
     return None
 
 
-def _candidates(system: SwitchedSystem, graph: Graph) -> Iterator[Candidate]:
+def _candidates(system: SwitchedSystem, graph: Graph, allowance: Allowance) -> Iterator[Candidate]:
     """Yield signals that grow in floating point."""
-    longer = growing_walks(graph)
+    longer = growing_walks(graph, allowance)
     if system.switching.is_arbitrary:
         longer = _greedy_signals(graph)
     refine = _refined if system.time is Time.CONTINUOUS else _refined_steps
-    for cycle, start in chain(_twice(growing_cycles(graph)), longer):
+    for cycle, start in chain(_twice(growing_cycles(graph, allowance)), longer):
         times = graph.admissible(cycle, start)
+        allowance.check()
         if graph.growth(cycle, times) > 0:
             yield cycle, times
         better = refine(graph, cycle, times)

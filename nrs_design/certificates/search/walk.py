@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from nrs_design.certificates.search.allowance import Allowance, Cost
 from nrs_design.certificates.search.balance import mean_norm_coordinates
 from nrs_design.certificates.search.flows import spectral_radii
 from nrs_design.certificates.search.graph import Array, Cycle, Graph
@@ -19,11 +20,13 @@ Indices = NDArray[np.int64]
 BEAM = 150
 MAX_LEGS = 8
 CLOSED = 4
+# Where there are more ways to switch, only elementary cycles are tried.
+MAX_JUMPS = 20_000
 # In continuous time, every so many of the times to try in a mode are enough.
 STRIDE = 4
 
 
-def growing_walks(graph: Graph) -> Iterator[tuple[Cycle, Array]]:
+def growing_walks(graph: Graph, allowance: Allowance) -> Iterator[tuple[Cycle, Array]]:
     """Yield closed walks that seem to grow the most per time, the shortest first.
 
     Walks from mode to mode are carried on where they can make the most of a state per time.
@@ -33,9 +36,12 @@ def growing_walks(graph: Graph) -> Iterator[tuple[Cycle, Array]]:
     tuple
         The jumps of the walk, and the times before each of them.
     """
+    if len(graph.jumps) > MAX_JUMPS:
+        return
     beam = _Beam.of(graph)
     walks = beam.first_legs()
     for _ in range(MAX_LEGS - 1):
+        allowance.require(beam.cost(), "walks through the graph of switches")
         walks = beam.extended(walks.best(beam.growth(walks), BEAM))
         if not len(walks.jumps):
             return
@@ -74,6 +80,13 @@ class _Beam:
         times = tuple(grid[::stride] for grid in graph.times)
         powers = tuple(np.real(graph.flows.at(mode, grid)) for mode, grid in enumerate(times))
         return cls(graph, times, powers, _coordinates(graph))
+
+    def cost(self) -> Cost:
+        """Predict the memory for walks with one more leg: at most as if all were at one mode."""
+        counts = np.zeros(len(self.times))
+        for jump in self.graph.jumps:
+            counts[jump.source] += len(self.times[jump.target])
+        return Cost(0.0, 32 * BEAM * float(counts.max()) * self.powers[0][0].size)
 
     def first_legs(self) -> _Walks:
         modes = [k for k, times in enumerate(self.times) for _ in times]

@@ -7,7 +7,7 @@ from fractions import Fraction
 from typing import TYPE_CHECKING
 
 from nrs_design import __version__
-from nrs_design.certificates.evidence import AbstractEvidence, ModeQuadratic, Shows
+from nrs_design.certificates.evidence import AbstractEvidence, ModePolynomial, ModeQuadratic, Shows
 from nrs_design.reporting.formatting import plural, shortened
 from nrs_design.spec import InteractionDesignSpec, RobotSpec
 from nrs_design.spec.bounds import lower, rounded_down, rounded_up, upper
@@ -90,7 +90,8 @@ def _rate(system: SwitchedSystem, evidence: AbstractEvidence | None) -> list[tup
     rate = proved_rate(system, evidence)
     if evidence is None or rate is None:
         return []
-    constant = ", up to a constant factor" if isinstance(evidence, ModeQuadratic) else ""
+    up_to_a_constant = isinstance(evidence, ModeQuadratic | ModePolynomial)
+    constant = ", up to a constant factor" if up_to_a_constant else ""
     open_end = ", and any slower one" if evidence.kind == "block-triangular" else ""
     if open_end:
         # The slowest block's rate itself is not reached where blocks are coupled.

@@ -9,6 +9,7 @@ from nrs_design.certificates.evidence import (
     BlockTriangular,
     CommonPolynomial,
     CommonQuadratic,
+    ModePolynomial,
     ModeQuadratic,
     ParameterQuadratic,
     UnstableMixture,
@@ -21,6 +22,8 @@ from nrs_design.spec.bounds import rounded_up
 from nrs_design.switched.constant import system_at
 from nrs_design.switched.system import SwitchedSystem, Time
 
+# What rests on the declared rules of switching.
+_RULED = (ModeQuadratic, ModePolynomial)
 # Modes that a sentence names.
 _NAMED = 8
 # How a proof was decided, by the kind of evidence.
@@ -39,6 +42,11 @@ _DECIDED: dict[type[AbstractEvidence], str] = {
         "positive definite, that it decreases in its mode if that may last, and that no admissible "
         "switch raises the function. The solver only proposed them"
     ),
+    ModePolynomial: (
+        "every Q and every form that vanishes hold integers, and integer arithmetic decides that "
+        "each Q is positive definite in the monomials, that its polynomial decreases in its mode, "
+        "and that no admissible switch raises the function. The solver only proposed them"
+    ),
     ParameterQuadratic: (
         "the decrease is a polynomial of degree two in the parameter, and integer arithmetic "
         "decides that its three matrices are positive definite, so that all values between the "
@@ -55,7 +63,7 @@ def bound_meaning(system: SwitchedSystem, evidence: AbstractEvidence) -> str:
     """Say what the proved bound means."""
     continuous = system.time is Time.CONTINUOUS
     factor = "exp(-alpha T) in every time T" if continuous else "rho in every step"
-    if isinstance(evidence, ModeQuadratic):
+    if isinstance(evidence, _RULED):
         return (
             "The bound means: for every signal that keeps the rules, the distance from rest "
             f"shrinks by the factor {factor}, up to one constant c in front. So it may grow for a "
@@ -81,7 +89,7 @@ def rules_meaning(system: SwitchedSystem, evidence: AbstractEvidence) -> tuple[s
     """Say which part the declared rules of switching have in a proof."""
     switching = system.switching
     texts = []
-    if isinstance(evidence, ModeQuadratic):
+    if isinstance(evidence, _RULED):
         if switching.dwell_time > 0:
             texts.append(
                 f"The dwell time of {_dwell(system)} is part of the claim: the machine itself must "
@@ -102,7 +110,7 @@ def rules_meaning(system: SwitchedSystem, evidence: AbstractEvidence) -> tuple[s
     # With a constant parameter, the list of transitions only keeps its two ends apart.
     listed = switching.transitions is not None and not switching.fixed_ends
     ruled = switching.dwell_time > 0 or bool(switching.stays) or listed
-    if ruled and not isinstance(evidence, ModeQuadratic):
+    if ruled and not isinstance(evidence, _RULED):
         texts.append(
             "The proof does not need the declared rules of switching: it holds for arbitrary "
             "switching."
@@ -110,15 +118,17 @@ def rules_meaning(system: SwitchedSystem, evidence: AbstractEvidence) -> tuple[s
     return tuple(texts)
 
 
-def _own_dwell_times(system: SwitchedSystem, evidence: ModeQuadratic) -> Iterator[str]:
+def _own_dwell_times(
+    system: SwitchedSystem, evidence: ModeQuadratic | ModePolynomial
+) -> Iterator[str]:
     if any(stay.shortest > 0 for _, stay in system.switching.stays):
         yield (
             "The dwell times of single modes are part of the claim: the machine must refuse to "
             "leave them earlier."
         )
-    if evidence.leaving:
+    if leaving := _leaving(evidence):
         yield (
-            f"The longest dwell time of {shortened(evidence.leaving, _NAMED)} is part of the "
+            f"The longest dwell time of {shortened(leaving, _NAMED)} is part of the "
             "claim: the machine itself must leave in time. The function may grow there meanwhile."
         )
 
@@ -127,7 +137,7 @@ def decision_meaning(system: SwitchedSystem, evidence: AbstractEvidence) -> str:
     """Say how the decision was made."""
     text = f"The decision is exact: the modes are rational matrices, {_DECIDED[type(evidence)]}"
     exponential = (
-        isinstance(evidence, ModeQuadratic)
+        isinstance(evidence, _RULED)
         and system.time is Time.CONTINUOUS
         and (system.switching.dwell_time > 0 or bool(system.switching.stays))
     )
@@ -167,17 +177,23 @@ def excluded_signals(system: SwitchedSystem, evidence: AbstractEvidence) -> tupl
     """Say which switching signals and parameters a proof does not cover."""
     switching = system.switching
     texts = []
-    if isinstance(evidence, ModeQuadratic) and switching.dwell_time > 0:
+    if isinstance(evidence, _RULED) and switching.dwell_time > 0:
         texts.append(f"Switching earlier than {_dwell(system)} after the last switch.")
-    if isinstance(evidence, ModeQuadratic) and any(s.shortest > 0 for _, s in switching.stays):
+    if isinstance(evidence, _RULED) and any(s.shortest > 0 for _, s in switching.stays):
         texts.append("Leaving a mode before its own dwell time is over.")
-    if isinstance(evidence, ModeQuadratic) and evidence.leaving:
-        texts.append(f"Staying longer than declared in {shortened(evidence.leaving, _NAMED)}.")
-    if isinstance(evidence, ModeQuadratic) and switching.transitions is not None:
+    if isinstance(evidence, _RULED) and (leaving := _leaving(evidence)):
+        texts.append(f"Staying longer than declared in {shortened(leaving, _NAMED)}.")
+    if isinstance(evidence, _RULED) and switching.transitions is not None:
         texts.append("Switches that the spec does not list.")
     if isinstance(evidence, ParameterQuadratic):
         texts.append("A parameter that changes while the system moves, however slowly.")
     return tuple(texts)
+
+
+def _leaving(evidence: ModeQuadratic | ModePolynomial) -> tuple[str, ...]:
+    """Return the modes that must be left for the proof to hold."""
+    own = evidence.quadratic if isinstance(evidence, ModePolynomial) else evidence
+    return own.leaving
 
 
 def refutation_meaning(system: SwitchedSystem, evidence: AbstractEvidence) -> tuple[str, ...]:

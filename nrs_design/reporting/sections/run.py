@@ -14,6 +14,7 @@ from nrs_design.certificates.evidence import (
     BlockTriangular,
     CommonPolynomial,
     CommonQuadratic,
+    ModePolynomial,
     ModeQuadratic,
     ParameterQuadratic,
 )
@@ -93,6 +94,8 @@ def run_section(system: SwitchedSystem, evidence: AbstractEvidence | None) -> Se
         figures = _polynomial(system, evidence)
     elif isinstance(evidence, ModeQuadratic):
         figures = _ruled(system, evidence)
+    elif isinstance(evidence, ModePolynomial):
+        figures = _ruled_beside(system, float(evidence.quadratic.rate))
     elif isinstance(evidence, ParameterQuadratic):
         figures = _at_parameter(system, evidence)
     elif isinstance(evidence, BlockTriangular):
@@ -187,6 +190,30 @@ def _ruled(system: SwitchedSystem, evidence: ModeQuadratic) -> tuple[Illustratio
         + _jumps(system),
         draw_mode_levels(response, hardest, roots),
     )
+
+
+def _ruled_beside(system: SwitchedSystem, rate: float) -> tuple[Illustration, ...]:
+    """Draw a run that keeps the rules in the Euclidean norm, beside the slope of its bound."""
+    hardest = hardest_modes(system, None, _RULED_MODES)
+    functions = {mode.name: np.eye(mode.A.shape[0]) for mode in hardest.modes}
+    step, steps = _horizon(hardest, rate)
+    response = admissible_run(hardest, functions, step, min(steps, _RULED_STEPS))
+    response = _until_small(response, active_norms(hardest, response, functions))
+    run = Illustration(
+        "run",
+        "Switching beside the proved rate",
+        f"{_RULED} The dashed line has the proved rate. The certificate says that every run that "
+        "keeps the rules stays below such a line, up to one constant factor; so this run may lie "
+        f"above the line for a while.{_some(system, hardest)}",
+        draw_run(
+            response,
+            active_norms(hardest, response, functions),
+            _bound(response, rate, system.time, "slope of the proved bound, "),
+            hardest,
+            "|x(t)| / |x(0)|, Euclidean norm [1]",
+        ),
+    )
+    return (run, *_phase_plane(hardest, response, None))
 
 
 def _blocks(system: SwitchedSystem, evidence: BlockTriangular) -> tuple[Illustration, ...]:

@@ -108,7 +108,7 @@ def test_valid_certificate_of_other_gains(export, tmp_path, capsys):
     Path("mine.json").write_text(dump(other))
     assert verify(Path("mine.json"), loaded).fault is None
     assert export(SPEC, "--certificate", "mine.json") == 1
-    assert "other gains of insertion" in capsys.readouterr().out
+    assert "other gains of insertion" in capsys.readouterr().err
     assert files() == ["mine.json"]
 
 
@@ -116,7 +116,7 @@ def test_certificate_in_other_coordinates(export, capsys):
     other = run_certification(read_spec(SPEC), coordinates="force").certificate
     Path("mine.json").write_text(dump(other))
     assert export(SPEC, "--certificate", "mine.json") == 1
-    assert "other coordinates" in capsys.readouterr().out
+    assert "other coordinates" in capsys.readouterr().err
 
 
 def test_certificate_that_is_none(export):

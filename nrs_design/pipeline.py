@@ -16,6 +16,7 @@ from nrs_design.controllers.gains import gains_of
 from nrs_design.errors import DesignError, NrsDesignError
 from nrs_design.models.plant import build_plant
 from nrs_design.spec import InteractionDesignSpec, LoadedSpec, RobotSpec, read_spec
+from nrs_design.spec.bounds import nearly
 from nrs_design.switched.assemble import assemble, has_ranges
 from nrs_design.switched.system import SwitchedSystem, Time
 
@@ -236,10 +237,12 @@ def run_margin(
     quick = replace(limits, optimize_rate=False, budget=min(limits.budget, MARGIN_BUDGET))
 
     def assemble_at(scale: Fraction) -> SwitchedSystem:
-        progress(f"box scaled by {float(scale):.4g}")
+        progress(f"box scaled by {nearly(scale)}")
         return assemble(spec, gains, result.coordinates, scale)
 
-    return find_margin(assemble_at, lambda system: certify(system, limits=quick))
+    return find_margin(
+        assemble_at, lambda system: certify(system, limits=quick), result.certification
+    )
 
 
 def run_shortest_dwell(
@@ -259,7 +262,8 @@ def run_shortest_dwell(
     Raises
     ------
     DesignError
-        In discrete time, or if the spec declares ranges: a dwell time holds for fixed parameters.
+        In discrete time, or if something may change between two switches, or if the spec declares
+        longest dwell times, which would bound the shortest one.
     """
     from dataclasses import replace
 
@@ -267,22 +271,34 @@ def run_shortest_dwell(
     from nrs_design.certificates.certify import certify
     from nrs_design.certificates.margin import find_shortest_dwell
 
-    system = result.certification.system
-    if system.time is not Time.CONTINUOUS or has_ranges(result.loaded.spec):
+    known = result.certification
+    system = known.system
+    _refuse_dwell(result.loaded, system.time)
+    if len(system.lasting_modes()) < len(system.modes):
         with placed(result.loaded):
             raise DesignError(
-                "a shortest dwell time is for continuous time and fixed parameters",
-                remedy="give single values instead of ranges",
-                at=("time",) if system.time is not Time.CONTINUOUS else ("parameters",),
+                "a shortest dwell time is not searched beside longest ones",
+                remedy="leave longest_dwell_time out, or declare the dwell_time and certify that",
+                at=("switching", "longest_dwell_time"),
             )
     limits = limits or DefaultLimits()
     quick = replace(limits, optimize_rate=False, budget=min(limits.budget, MARGIN_BUDGET))
 
     def decide(candidate: SwitchedSystem) -> Certification:
-        progress(f"dwell time {float(candidate.switching.dwell_time):.4g} s")
+        progress(f"dwell time {nearly(candidate.switching.dwell_time, 's')}")
         return certify(candidate, limits=quick)
 
-    largest = max(
-        abs(entry) for mode in system.modes for row in mode.A.fractions() for entry in row
-    )
-    return find_shortest_dwell(system, decide, 1 / largest if largest else Fraction(1))
+    return find_shortest_dwell(system, decide, known)
+
+
+def _refuse_dwell(loaded: LoadedSpec, time: Time) -> None:
+    """Stop where a dwell time would say nothing, by the rule that a spec with one must keep."""
+    if time is not Time.CONTINUOUS:
+        raise DesignError(
+            "a shortest dwell time is for continuous time",
+            path=loaded.path,
+            remedy="in discrete time, declare a dwell_time in steps and certify that",
+        )
+    assert not isinstance(loaded.spec, RobotSpec)  # It has no modes, hence no certification.
+    if obstacle := loaded.spec.find_dwell_obstacle():
+        raise DesignError(obstacle.message, path=loaded.path, remedy=obstacle.remedy)

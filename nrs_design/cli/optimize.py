@@ -5,6 +5,9 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Any
 
+import typer
+
+from nrs_design.cli.goals import exit_code, goals_summary, print_goals, print_warnings, warnings_of
 from nrs_design.cli.options import Json, Quiet, SpecFile
 from nrs_design.cli.printing import note, print_json, progress, say
 from nrs_design.cli.tables import print_table
@@ -15,6 +18,8 @@ if TYPE_CHECKING:
 
 def optimize(spec: SpecFile, as_json: Json = False, quiet: Quiet = False) -> None:
     """Optimize virtual mass Mt and damping Bt for displayed impedance and sensitivity.
+
+    Goals of the spec are respected; the exit code is 1 if gains that are given miss one.
 
     Example: nrs-design optimize specs/neuroboscope/soft-tissue.nrs.yaml
     """
@@ -33,6 +38,7 @@ def optimize(spec: SpecFile, as_json: Json = False, quiet: Quiet = False) -> Non
             )
         step("margins")
         evidence = run_evidence(loaded, design)
+    warnings = warnings_of(loaded.spec, evidence)
     if as_json:
         print_json(
             "optimize",
@@ -41,13 +47,16 @@ def optimize(spec: SpecFile, as_json: Json = False, quiet: Quiet = False) -> Non
                 "spec_sha256": loaded.sha256,
                 "motion_loop": motion_summary(evidence),
                 "controllers": [_summary(item) for item in evidence.impedance],
+                "warnings": warnings,
             },
         )
-    if as_json or quiet:
-        return
-    if not evidence.impedance:
-        note("no impedance controllers in this spec; see nrs-design tune for the others")
-    _print(loaded.spec.name, evidence)
+    elif not quiet:
+        if not evidence.impedance:
+            note("no impedance controllers in this spec; see nrs-design tune for the others")
+        _print(loaded.spec.name, evidence)
+        print_goals(loaded.spec.name, evidence.impedance)
+        print_warnings(warnings, quiet=quiet)
+    raise typer.Exit(exit_code(evidence.impedance))
 
 
 def motion_summary(evidence: DesignEvidence) -> dict[str, Any]:
@@ -75,6 +84,7 @@ def _summary(item: ImpedanceEvidence) -> dict[str, Any]:
         "delay_margin_s": finite(margins.delay_margin),
         "disk_margin": finite(margins.disk_margin),
         "stiffness_limit": finite(margins.stiffness_limit),
+        "goals": goals_summary(item),
         "units": {
             "Mt": "kg*m^2",
             "Bt": "N*m*s/rad",

@@ -29,7 +29,7 @@ def reproduce(
 
     Example: nrs-design reproduce --html reports/reproduce.html
     """
-    from nrs_design.output import write_output
+    from nrs_design.output import PAGE, write_output
     from nrs_design.reproduction.page import render_page
     from nrs_design.reproduction.row import drifted
     from nrs_design.reproduction.table import reproduce as recompute
@@ -37,7 +37,7 @@ def reproduce(
     with progress("recomputing", quiet=quiet) as step:
         table = recompute(step)
     if html is not None:
-        write_output(html, render_page(table))
+        write_output(html, render_page(table), replaces=PAGE)
     if as_json:
         print_json("reproduce", _summary(table))
     elif not quiet:

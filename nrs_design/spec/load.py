@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+import json
 import os
 from dataclasses import dataclass
 from pathlib import Path
@@ -44,7 +45,7 @@ class LoadedSpec:
     path : Path
         The file, as it was named.
     sha256 : str
-        Hash of the file's bytes, in hexadecimal.
+        Hash of what the file says, in hexadecimal; see `hash_meaning`.
     text : str
         The file's text.
     spec : InteractionDesignSpec, SwitchedSystemSpec or RobotSpec
@@ -72,7 +73,7 @@ def read_spec(path: str | os.PathLike[str]) -> LoadedSpec:
     Returns
     -------
     LoadedSpec
-        The spec, its text and the hash of its bytes.
+        The spec, its text and the hash of what it says.
 
     Raises
     ------
@@ -80,8 +81,10 @@ def read_spec(path: str | os.PathLike[str]) -> LoadedSpec:
         With path, line, column, message and remedy, if anything about the file is wrong.
     """
     file = Path(path)
-    content, text = read_text(file)
-    return LoadedSpec(file, hashlib.sha256(content).hexdigest(), text, parse_spec(text, file))
+    _, text = read_text(file)
+    root, syntax = read_document(text, file)
+    spec = _validate(root, syntax, file)
+    return LoadedSpec(file, hash_meaning(root), text, spec)
 
 
 def load_spec(path: str | os.PathLike[str]) -> Spec:
@@ -104,7 +107,21 @@ def parse_spec(text: str, path: Path | None = None) -> Spec:
     SpecError
         With line, column, message and remedy.
     """
-    root, syntax = read_document(text, path)
+    return _validate(*read_document(text, path), path)
+
+
+def hash_meaning(root: Node) -> str:
+    """Return the SHA-256 of what a document says, in hexadecimal.
+
+    Two documents share it exactly if they have the same keys in the same order and the same
+    texts: comments, line ends, quotes and layout do not count. A spec is read from these texts and
+    from nothing else. Order counts because modes are numbered in the order of the controllers.
+    """
+    canonical = json.dumps(to_data(root), separators=(",", ":"), ensure_ascii=True)
+    return hashlib.sha256(canonical.encode()).hexdigest()
+
+
+def _validate(root: Node, syntax: tuple[Fault, ...], path: Path | None) -> Spec:
     found: tuple[Fault, ...] = ()
     model = KINDS[_kind_of(root, path, syntax)]
     try:

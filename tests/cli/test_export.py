@@ -62,6 +62,19 @@ def test_json(export, capsys):
     assert document["record"] == json.loads(Path(document["file"]).read_text())
 
 
+def test_the_files_of_another_spec_are_not_overwritten(export, capsys, certificate):
+    for name in ("a.nrs.yaml", "b.nrs.yaml"):
+        Path(name).write_bytes(SPEC.read_bytes())
+    Path("mine.json").write_text(certificate)
+    assert export("a.nrs.yaml") == 0
+    before = {name: Path(name).read_bytes() for name in files()}
+    assert export("b.nrs.yaml") == 2
+    assert export("b.nrs.yaml", "--certificate", "mine.json") == 2
+    assert "belongs to a.nrs.yaml" in capsys.readouterr().err
+    assert export("a.nrs.yaml", "--out", "a.nrs.yaml") == 2
+    assert {name: Path(name).read_bytes() for name in files()} == before
+
+
 def test_given_certificate_is_used_and_not_written_again(export, certificate):
     Path("mine.json").write_text(certificate)
     assert export(SPEC, "--certificate", "mine.json") == 0

@@ -195,6 +195,12 @@ IMPEDANCE_FAULTS = [
         "bone",
         "no environment",
     ),
+    (
+        "environment: soft",
+        "environment: soft\n    contacts: [hand]",
+        "[hand]\n",
+        "'insertion' is designed for 'soft', but that is not among its contacts",
+    ),
     ("    environment: soft\n", "", "insertion", "environment` is missing"),
     ("Mt: 0.01 kg*m^2", "Mt: -0.01 kg*m^2", "-0.01", "zero or positive"),
     ("Mt: 0.01 kg*m^2", "Mt: 0.01 kg", "0.01 kg", "square of its lever arm"),

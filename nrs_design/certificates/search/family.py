@@ -6,6 +6,7 @@ import warnings
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
+from itertools import chain
 
 import numpy as np
 from numpy.typing import NDArray
@@ -30,7 +31,7 @@ class Family:
     exponents : ndarray of int, shape (n,)
         The d.
     limit : float
-        Rate of the slowest mode.
+        Rate of the slowest mode that need never be left; without one, a rate out of reach.
     """
 
     checker: Checker
@@ -53,16 +54,28 @@ class Family:
         """Convert and balance the modes that a checker speaks about."""
         system = checker.system
         if not system.is_uniform:
-            limits = [limit_rate(to_floats([mode.A]), system.time) for mode in system.modes]
-            limit = min(limits) if system.time is Time.CONTINUOUS else max(limits)
+            limit = _limit(system, [to_floats([mode.A]) for mode in system.modes])
             return cls(checker, np.zeros((0, 0, 0)), np.zeros(0, dtype=np.int64), limit)
         matrices = to_floats([mode.A for mode in system.modes])
-        limit = limit_rate(matrices, system.time)
+        limit = _limit(system, [matrices])
         exponents = balance(matrices)
         scaled = scale(matrices, exponents)
         if not np.isfinite(scaled).all():
             scaled, exponents = matrices, np.zeros_like(exponents)
         return cls(checker, scaled, exponents, limit)
+
+
+def _limit(system: SwitchedSystem, families: list[NDArray[np.float64]]) -> float:
+    lasting = {mode.name for mode in system.lasting_modes()}
+    if len(lasting) < len(system.modes):
+        names = [mode.name for mode in system.modes]
+        matrices = dict(zip(names, chain.from_iterable(families), strict=True))
+        families = [matrices[name][None] for name in names if name in lasting]
+        if not families:
+            sizes = [np.abs(np.linalg.eigvals(A)).max() for A in matrices.values()]
+            return float(max(sizes)) if system.time is Time.CONTINUOUS else 0.0
+    limits = [limit_rate(matrices, system.time) for matrices in families]
+    return min(limits) if system.time is Time.CONTINUOUS else max(limits)
 
 
 def to_floats(matrices: Sequence[RationalMatrix]) -> NDArray[np.float64]:

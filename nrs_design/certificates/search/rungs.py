@@ -6,6 +6,7 @@ Floating point only chooses what to try. What a rung returns has passed the exac
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
+from fractions import Fraction
 
 import numpy as np
 from numpy.typing import NDArray
@@ -43,6 +44,7 @@ from nrs_design.switched.system import Mode, SwitchedSystem, Time
 
 # How far below the best rate found the claimed one may lie: a wider gap needs fewer digits.
 BACK_OFFS = (0.9995, 0.998, 0.99, 0.9, 0.5, 0.1, 1e-3)
+BACK_OFF = Fraction(1999, 2000)
 # Modes nearer to the stability limit than this, relative to their norm, get an exact test first.
 SUSPICION = 1e-7
 OUT_OF_RANGE = "the modes are beyond the range of floating point"
@@ -58,15 +60,18 @@ Rung = Callable[[Family], Finding]
 
 def examine_suspicious_modes(family: Family) -> Finding:
     """Test exactly the modes that floating-point eigenvalues do not show to be stable."""
+    lasting = {mode.name for mode in family.system.lasting_modes()}
     suspicious = [
-        mode for mode, ok in zip(family.system.modes, _seems_stable(family), strict=True) if not ok
+        mode
+        for mode, ok in zip(family.system.modes, _seems_stable(family), strict=True)
+        if not ok and mode.name in lasting
     ]
     return _first_unstable(suspicious, family.system)
 
 
 def examine_every_mode(family: Family) -> Finding:
-    """Test every mode exactly."""
-    return _first_unstable(family.system.modes, family.system)
+    """Test exactly every mode that need never be left."""
+    return _first_unstable(family.system.lasting_modes(), family.system)
 
 
 def search_by_lmi(family: Family, *, optimize_rate: bool) -> Finding:
@@ -85,6 +90,18 @@ def search_by_lmi(family: Family, *, optimize_rate: bool) -> Finding:
             if candidate is not None and (evidence := _round(family, candidate, rate)):
                 return evidence, "found with the largest decay rate"
     return _round_at_own_rate(family, Q)
+
+
+def decide_one_state(family: Family) -> Finding:
+    """Take ``V(x) = x^2``, at a rate computed exactly: modes may be nearer to 1 than floats are."""
+    system = family.system
+    numbers = [mode.A.fractions()[0][0] for mode in system.modes]
+    claimed = BACK_OFF * -max(numbers)
+    if system.time is Time.DISCRETE:
+        claimed = 1 - BACK_OFF * (1 - max(map(abs, numbers)))
+    evidence = CommonQuadratic(((1,),), 0, round_rate(claimed, system.time))
+    fault = family.checker.find_fault(evidence)
+    return (evidence, "found") if fault is None else (None, fault)
 
 
 def search_by_gradient(family: Family) -> Finding:

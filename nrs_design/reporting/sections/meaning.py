@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 from nrs_design.certificates.evidence import (
     AbstractEvidence,
     BlockTriangular,
@@ -14,9 +16,13 @@ from nrs_design.certificates.evidence import (
     UnstablePeriod,
     UnstableValue,
 )
+from nrs_design.reporting.formatting import shortened
+from nrs_design.spec.bounds import rounded_up
 from nrs_design.switched.constant import system_at
 from nrs_design.switched.system import SwitchedSystem, Time
 
+# Modes that a sentence names.
+_NAMED = 8
 # How a proof was decided, by the kind of evidence.
 _DECIDED: dict[type[AbstractEvidence], str] = {
     CommonQuadratic: (
@@ -30,8 +36,8 @@ _DECIDED: dict[type[AbstractEvidence], str] = {
     ),
     ModeQuadratic: (
         "every Q holds integers over a power of two, and integer arithmetic decides that each is "
-        "positive definite, that it decreases in its mode, and that no admissible switch raises "
-        "the function. The solver only proposed them"
+        "positive definite, that it decreases in its mode if that may last, and that no admissible "
+        "switch raises the function. The solver only proposed them"
     ),
     ParameterQuadratic: (
         "the decrease is a polynomial of degree two in the parameter, and integer arithmetic "
@@ -81,6 +87,7 @@ def rules_meaning(system: SwitchedSystem, evidence: AbstractEvidence) -> tuple[s
                 f"The dwell time of {_dwell(system)} is part of the claim: the machine itself must "
                 "refuse to switch earlier."
             )
+        texts += _own_dwell_times(system, evidence)
         if switching.transitions is not None:
             texts.append("The list of allowed switches is part of the claim as well.")
         if switching.resets:
@@ -94,12 +101,26 @@ def rules_meaning(system: SwitchedSystem, evidence: AbstractEvidence) -> tuple[s
         texts.append("The proof does not need the parameter to be constant: it may change freely.")
     # With a constant parameter, the list of transitions only keeps its two ends apart.
     listed = switching.transitions is not None and not switching.fixed_ends
-    if (switching.dwell_time > 0 or listed) and not isinstance(evidence, ModeQuadratic):
+    ruled = switching.dwell_time > 0 or bool(switching.stays) or listed
+    if ruled and not isinstance(evidence, ModeQuadratic):
         texts.append(
             "The proof does not need the declared rules of switching: it holds for arbitrary "
             "switching."
         )
     return tuple(texts)
+
+
+def _own_dwell_times(system: SwitchedSystem, evidence: ModeQuadratic) -> Iterator[str]:
+    if any(stay.shortest > 0 for _, stay in system.switching.stays):
+        yield (
+            "The dwell times of single modes are part of the claim: the machine must refuse to "
+            "leave them earlier."
+        )
+    if evidence.leaving:
+        yield (
+            f"The longest dwell time of {shortened(evidence.leaving, _NAMED)} is part of the "
+            "claim: the machine itself must leave in time. The function may grow there meanwhile."
+        )
 
 
 def decision_meaning(system: SwitchedSystem, evidence: AbstractEvidence) -> str:
@@ -108,7 +129,7 @@ def decision_meaning(system: SwitchedSystem, evidence: AbstractEvidence) -> str:
     exponential = (
         isinstance(evidence, ModeQuadratic)
         and system.time is Time.CONTINUOUS
-        and system.switching.dwell_time > 0
+        and (system.switching.dwell_time > 0 or bool(system.switching.stays))
     )
     if exponential:
         text += "; exponentials over the dwell time are enclosed rigorously, in balls"
@@ -148,6 +169,10 @@ def excluded_signals(system: SwitchedSystem, evidence: AbstractEvidence) -> tupl
     texts = []
     if isinstance(evidence, ModeQuadratic) and switching.dwell_time > 0:
         texts.append(f"Switching earlier than {_dwell(system)} after the last switch.")
+    if isinstance(evidence, ModeQuadratic) and any(s.shortest > 0 for _, s in switching.stays):
+        texts.append("Leaving a mode before its own dwell time is over.")
+    if isinstance(evidence, ModeQuadratic) and evidence.leaving:
+        texts.append(f"Staying longer than declared in {shortened(evidence.leaving, _NAMED)}.")
     if isinstance(evidence, ModeQuadratic) and switching.transitions is not None:
         texts.append("Switches that the spec does not list.")
     if isinstance(evidence, ParameterQuadratic):
@@ -238,4 +263,4 @@ def refutation_limits(evidence: AbstractEvidence) -> tuple[str, ...]:
 
 def _dwell(system: SwitchedSystem) -> str:
     unit = "s" if system.time is Time.CONTINUOUS else "steps"
-    return f"{float(system.switching.dwell_time):.10g} {unit}"
+    return rounded_up(system.switching.dwell_time, unit)

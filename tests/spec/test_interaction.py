@@ -153,7 +153,7 @@ IMPEDANCE_FAULTS = [
     ("limits: {", "limits: [", "[velocity", "not closed"),
     ("8 deg/s", "8 rpm", "8 rpm", "never converted"),
     ("2 Hz", "2 1/s", "2 1/s", "write '2 Hz'"),
-    ("model: elastic", "model: elastc", "soft", "did you mean elastic?"),
+    ("model: elastic", "model: elastc", "elastc", "did you mean elastic?"),
     ("    model: elastic\n", "", "soft", "`environments.soft.model` is missing"),
     ("747.1461 N/m", "43 N*m/rad", "43 N*m/rad", "remove lever_arm"),
     ("747.1461 N/m", "43 N*m", "43 N*m", "write '43 N*m/rad'"),
@@ -179,7 +179,7 @@ IMPEDANCE_FAULTS = [
     ("  soft:", "  1:", "1:", "not text"),
     ("  soft:", "  'so ft':", "'so ft'", "not a name"),
     ("  hand:", "  soft:", "soft:\n    model: kelvin", "there twice"),
-    ("type: impedance", "type: impedence", "insertion", "did you mean impedance?"),
+    ("type: impedance", "type: impedence", "impedence", "did you mean impedance?"),
     ("environment: soft", "environment: sofd", "sofd", "did you mean soft?"),
     ("environment: soft", "environment: soft\n    contacts: []", "[]", "must not be empty"),
     (

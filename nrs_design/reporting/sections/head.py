@@ -10,7 +10,7 @@ from nrs_design import __version__
 from nrs_design.certificates.evidence import AbstractEvidence, ModePolynomial, ModeQuadratic, Shows
 from nrs_design.reporting.formatting import plural, shortened
 from nrs_design.spec import InteractionDesignSpec, RobotSpec
-from nrs_design.spec.bounds import lower, rounded_down, rounded_up, upper
+from nrs_design.spec.bounds import at_least, at_most, lower, upper
 from nrs_design.switched.system import SwitchedSystem, Time
 
 if TYPE_CHECKING:
@@ -97,8 +97,10 @@ def _rate(system: SwitchedSystem, evidence: AbstractEvidence | None) -> list[tup
         # The slowest block's rate itself is not reached where blocks are coupled.
         constant = ", not attained, up to a constant factor"
     if system.time is Time.CONTINUOUS:
-        return [("Proved decay rate alpha", f"{rounded_down(rate, '1/s')}{constant}")]
-    return [("Proved contraction rho", f"{rounded_up(rate, 'per step')}{constant}")]
+        text = at_least(rate, "1/s").removeprefix("= ")
+        return [("Proved decay rate alpha", f"{text}{constant}")]
+    text = at_most(rate, "per step").removeprefix("= ")
+    return [("Proved contraction rho", f"{text}{constant}")]
 
 
 def _limit(certification: Certification) -> list[tuple[str, str]]:

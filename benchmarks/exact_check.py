@@ -8,8 +8,8 @@ from time import perf_counter
 
 from benchmarks.measure import Comparison, Finding, time_side_by_side
 from benchmarks.sylvester import check_apart, proved_family
-from nrs_design.certificates.evidence import CommonQuadratic
-from nrs_design.switched.system import SwitchedSystem
+from nrs_design.proof.evidence import CommonQuadratic
+from nrs_design.proof.system import SwitchedSystem
 
 ORDERS, QUICK_ORDERS = (6, 8, 13, 18, 21), (6, 8, 13)
 TARGET = 500.0

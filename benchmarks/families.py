@@ -7,8 +7,8 @@ from fractions import Fraction
 import numpy as np
 from numpy.typing import NDArray
 
-from nrs_design.switched.matrix import RationalMatrix
-from nrs_design.switched.system import Mode, SwitchedSystem, Time
+from nrs_design.proof.matrix import RationalMatrix
+from nrs_design.proof.system import Mode, SwitchedSystem, Time
 
 Matrices = NDArray[np.float64]
 

@@ -14,8 +14,8 @@ from pathlib import Path
 from statistics import median
 from time import perf_counter
 
-from nrs_design.certificates.certify import Certification, Limits, Method, certify
-from nrs_design.switched.system import SwitchedSystem
+from nrs_design.proof.system import SwitchedSystem
+from nrs_design.search.certify import Certification, Limits, Method, certify
 
 LAUNCHER = Path(__file__).with_name("launcher.py")
 LIBRARIES = ("nrs-design", "numpy", "scipy", "clarabel", "cvxpy", "sympy")

@@ -63,6 +63,6 @@ def gradient_ends_within(matrices: Matrices, seconds: float) -> bool:
 
 
 def _iterate(matrices: Matrices) -> None:
-    from nrs_design.certificates.search.gradient import iterate_gradient
+    from nrs_design.search.gradient import iterate_gradient
 
     iterate_gradient(matrices, max_updates=10**9)

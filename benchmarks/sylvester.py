@@ -16,8 +16,8 @@ from sympy import Matrix
 
 from benchmarks.families import stable_family, to_system
 from benchmarks.measure import prove
-from nrs_design.certificates.evidence import CommonQuadratic
-from nrs_design.switched.system import SwitchedSystem
+from nrs_design.proof.evidence import CommonQuadratic
+from nrs_design.proof.system import SwitchedSystem
 
 DECIMALS = 3
 

@@ -15,16 +15,16 @@ from nrs_design.controllers.controller_design import ControllerDesign
 from nrs_design.controllers.gains import gains_of
 from nrs_design.errors import DesignError, NrsDesignError
 from nrs_design.models.plant import build_plant
+from nrs_design.proof.bounds import nearly
+from nrs_design.proof.system import SwitchedSystem, Time
 from nrs_design.spec import InteractionDesignSpec, LoadedSpec, RobotSpec, Spec, read_spec
-from nrs_design.spec.bounds import nearly
 from nrs_design.switched.assemble import assemble, has_ranges
-from nrs_design.switched.system import SwitchedSystem, Time
 
 if TYPE_CHECKING:
-    from nrs_design.certificates.certify import Certification, Limits, Method
-    from nrs_design.certificates.margin import BoxMargin, DwellMargin
     from nrs_design.design.evidence import DesignEvidence
     from nrs_design.models.robot import Robot
+    from nrs_design.search.certify import Certification, Limits, Method
+    from nrs_design.search.margin import BoxMargin, DwellMargin
 
 Progress = Callable[[str], None]
 
@@ -164,8 +164,8 @@ class Overrides:
 
 def limits_of(spec: Spec, overrides: Overrides | None = None, optimize_rate: bool = True) -> Limits:
     """Return how far the search goes: by default, as the spec says, or as a command sets it."""
-    from nrs_design.certificates.certify import Limits
-    from nrs_design.certificates.search.allowance import GIGABYTE
+    from nrs_design.search.allowance import GIGABYTE
+    from nrs_design.search.certify import Limits
 
     limits, asked = Limits(optimize_rate=optimize_rate), overrides or Overrides()
     declared = None if isinstance(spec, RobotSpec) else spec.certification
@@ -210,8 +210,8 @@ def run_certification(
     DesignError, AssemblyError
         If the spec has no design, or its modes make no switched system.
     """
-    from nrs_design.certificates.certify import Method as Methods
-    from nrs_design.certificates.certify import certify
+    from nrs_design.search.certify import Method as Methods
+    from nrs_design.search.certify import certify
 
     progress("design")
     design = run_design(loaded)
@@ -257,8 +257,8 @@ def run_margin(
     DesignError
         If the spec declares no range.
     """
-    from nrs_design.certificates.certify import certify
-    from nrs_design.certificates.margin import find_margin
+    from nrs_design.search.certify import certify
+    from nrs_design.search.margin import find_margin
 
     spec = result.loaded.spec
     if not has_ranges(spec):
@@ -302,8 +302,8 @@ def run_shortest_dwell(
         In discrete time, or if something may change between two switches, or if the spec declares
         longest dwell times, which would bound the shortest one.
     """
-    from nrs_design.certificates.certify import certify
-    from nrs_design.certificates.margin import find_shortest_dwell
+    from nrs_design.search.certify import certify
+    from nrs_design.search.margin import find_shortest_dwell
 
     known = result.certification
     system = known.system

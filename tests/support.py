@@ -9,11 +9,11 @@ from pathlib import Path
 
 from flint import fmpq, fmpq_mat
 
-from nrs_design.certificates.evidence import AbstractEvidence, CommonQuadratic, UnstableMode
+from nrs_design.proof.evidence import AbstractEvidence, CommonQuadratic, UnstableMode
+from nrs_design.proof.matrix import RationalMatrix
+from nrs_design.proof.system import Mode, SwitchedSystem, Time
 from nrs_design.spec import LoadedSpec, parse_exact, read_spec
-from nrs_design.switched.matrix import RationalMatrix
-from nrs_design.switched.system import Mode, SwitchedSystem, Time
-from tests.certificates import truth
+from tests.proof import truth
 
 ROOT = Path(__file__).parents[1]
 ROBOT = ROOT / "specs" / "neuroboscope"
@@ -81,7 +81,7 @@ def holds(system: SwitchedSystem, evidence: AbstractEvidence) -> bool:
     """Oracle: the definition of a kind of evidence.
 
     The two kinds that most systems end with are decided in fractions and by other algorithms than
-    those of the package; the others are left to `tests.certificates.truth`.
+    those of the package; the others are left to `tests.proof.truth`.
     """
     discrete = system.time is Time.DISCRETE
     if not isinstance(evidence, (CommonQuadratic, UnstableMode)):

@@ -66,6 +66,4 @@ def test_parameters_that_are_described_exist(name):
 
 
 def test_walk_reaches_the_core():
-    assert {"nrs_design.certificates.exact", "nrs_design.cli.app", "nrs_design.spec.load"} <= set(
-        MODULES
-    )
+    assert {"nrs_design.proof.exact", "nrs_design.cli.app", "nrs_design.spec.load"} <= set(MODULES)

@@ -9,14 +9,14 @@ from dataclasses import dataclass
 from enum import StrEnum
 from typing import Any
 
-from nrs_design.certificates.evidence import (
+from nrs_design.proof.evidence import (
     AbstractEvidence,
     BlockTriangular,
     CommonQuadratic,
     Shows,
     UnstableMode,
 )
-from nrs_design.switched.system import SwitchedSystem
+from nrs_design.proof.system import SwitchedSystem
 
 SCHEMA = "nrs-design/certificate/3"
 # What says nothing about the claim, so that the id does not cover it.

@@ -19,15 +19,15 @@ from nrs_design.certificates.certificate import (
     content_id,
     to_document,
 )
-from nrs_design.certificates.evidence import AbstractEvidence, Shows, read_evidence
-from nrs_design.certificates.evidence.fields import read_text
-from nrs_design.certificates.second_opinion import confirm
-from nrs_design.errors import CertificateError, NrsDesignError
+from nrs_design.errors import DISAGREE, CertificateError, InternalError, NrsDesignError
 from nrs_design.files import open_regular
+from nrs_design.proof.evidence import AbstractEvidence, Shows, read_evidence
+from nrs_design.proof.evidence.fields import read_text
+from nrs_design.proof.second_opinion import agrees
+from nrs_design.proof.system import SwitchedSystem
+from nrs_design.proof.text import quoted
 from nrs_design.spec import LoadedSpec
-from nrs_design.spec.exact import quoted
 from nrs_design.switched.assemble import assemble
-from nrs_design.switched.system import SwitchedSystem
 
 MAX_BYTES = 256 * 2**20
 MAX_VERDICTS = 2
@@ -88,7 +88,8 @@ def verify_document(
         return Verification(None, error.message)
     if fault is None:
         for statement in certificate.statements:
-            confirm(certificate.system, statement)
+            if not agrees(certificate.system, statement):
+                raise InternalError(DISAGREE)
     return Verification(certificate, fault)
 
 

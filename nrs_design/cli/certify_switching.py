@@ -24,8 +24,8 @@ from nrs_design.cli.printing import note, print_json, progress, say
 if TYPE_CHECKING:
     from fractions import Fraction
 
-    from nrs_design.certificates.margin import BoxMargin, DwellMargin
     from nrs_design.pipeline import Result
+    from nrs_design.search.margin import BoxMargin, DwellMargin
 
 
 class MethodOption(StrEnum):
@@ -80,7 +80,6 @@ def certify_switching(
     Example: nrs-design certify-switching specs/neuroboscope/soft-tissue.nrs.yaml
     """
     from nrs_design.certificates.certificate import dump
-    from nrs_design.certificates.certify import Method
     from nrs_design.output import CERTIFICATE, write_output
     from nrs_design.ownership import check_certificate, origin_of
     from nrs_design.pipeline import (
@@ -90,6 +89,7 @@ def certify_switching(
         run_margin,
         run_shortest_dwell,
     )
+    from nrs_design.search.certify import Method
     from nrs_design.spec import read_spec
 
     loaded = read_spec(spec)
@@ -155,7 +155,7 @@ def summary(result: Result, path: Path | None) -> dict[str, Any]:
 
 def _safe_float(rate: Fraction, time: str) -> float:
     """Return a double on the side of slower decay."""
-    from nrs_design.spec.bounds import lower_float, upper_float
+    from nrs_design.proof.bounds import lower_float, upper_float
 
     return lower_float(rate) if time == "continuous" else upper_float(rate)
 
@@ -165,7 +165,7 @@ def margins_summary(box: BoxMargin | None, dwell: DwellMargin | None) -> dict[st
 
     Every double is on the side that stays true; beside it is the exact number.
     """
-    from nrs_design.spec.bounds import lower_float, upper_float
+    from nrs_design.proof.bounds import lower_float, upper_float
 
     content: dict[str, Any] = {}
     if box is not None:
@@ -190,7 +190,7 @@ def margins_summary(box: BoxMargin | None, dwell: DwellMargin | None) -> dict[st
 
 
 def _print_margin(box: BoxMargin | None) -> None:
-    from nrs_design.spec.bounds import rounded_down, rounded_up
+    from nrs_design.proof.bounds import rounded_down, rounded_up
 
     if box is None:
         return
@@ -207,7 +207,7 @@ def _print_margin(box: BoxMargin | None) -> None:
 
 
 def _print_dwell(dwell: DwellMargin | None) -> None:
-    from nrs_design.spec.bounds import rounded_down, rounded_up
+    from nrs_design.proof.bounds import rounded_down, rounded_up
 
     if dwell is None:
         return

@@ -12,7 +12,6 @@ from pydantic import BaseModel, ConfigDict, Field, model_validator
 
 from nrs_design import __version__
 from nrs_design.certificates.certificate import Certificate
-from nrs_design.certificates.evidence.fields import rate_text
 from nrs_design.controllers.controller_design import ControllerDesign
 from nrs_design.controllers.float32 import exact_decimal
 from nrs_design.controllers.gains import UNITS, gains_of
@@ -24,7 +23,8 @@ from nrs_design.controllers.laws import (
     ProportionalForce,
 )
 from nrs_design.errors import CertificateError
-from nrs_design.switched.system import Time
+from nrs_design.proof.evidence.fields import rate_text
+from nrs_design.proof.system import Time
 
 LawName = Literal["motion", "impedance", "force", "position"]
 Sha256 = Annotated[str, Field(pattern="^[0-9a-f]{64}$")]

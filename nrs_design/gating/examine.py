@@ -8,13 +8,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from nrs_design.certificates.certificate import Certificate
-from nrs_design.certificates.evidence import AbstractEvidence, Shows
-from nrs_design.certificates.evidence.fields import rate_text
-from nrs_design.certificates.evidence.unstable_mode import (
-    affordable,
-    is_stable,
-    worst_eigenvalue,
-)
 from nrs_design.errors import DesignError
 from nrs_design.gating.obligations import Caution, Obligation, SpecOutcome, Status
 from nrs_design.gating.places import Places
@@ -27,9 +20,16 @@ from nrs_design.gating.rules import (
     SWITCHING_STABLE,
     Rule,
 )
+from nrs_design.proof.evidence import AbstractEvidence, Shows
+from nrs_design.proof.evidence.fields import rate_text
+from nrs_design.proof.evidence.unstable_mode import (
+    affordable,
+    is_stable,
+    worst_eigenvalue,
+)
+from nrs_design.proof.system import Mode, SwitchedSystem, Time
 from nrs_design.spec import InteractionDesignSpec, LoadedSpec, doubt_spec
 from nrs_design.spec.document import Position
-from nrs_design.switched.system import Mode, SwitchedSystem, Time
 
 if TYPE_CHECKING:
     from nrs_design.design.evidence import DesignEvidence

@@ -6,6 +6,8 @@ from fractions import Fraction
 
 from nrs_design.controllers.laws import Admittance, ProportionalForce
 from nrs_design.models.environment import Contact
+from nrs_design.proof.matrix import RationalMatrix
+from nrs_design.proof.system import Mode, SwitchedSystem, Time
 from nrs_design.reproduction import thesis
 from nrs_design.switched.close_loop import (
     Row,
@@ -14,8 +16,6 @@ from nrs_design.switched.close_loop import (
     realize,
     to_force_coordinates,
 )
-from nrs_design.switched.matrix import RationalMatrix
-from nrs_design.switched.system import Mode, SwitchedSystem, Time
 
 MOTION = realize(thesis.REALIZED_LOOP)
 

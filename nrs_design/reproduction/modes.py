@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from nrs_design.certificates.evidence.unstable_mode import is_stable
+from nrs_design.proof.evidence.unstable_mode import is_stable
 from nrs_design.reproduction import thesis
 from nrs_design.reproduction.matrices import (
     MOTION,

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from nrs_design.certificates.certify import Certification, certify
-from nrs_design.certificates.evidence import CommonQuadratic
-from nrs_design.certificates.evidence.fields import rate_words
+from nrs_design.proof.evidence import CommonQuadratic
+from nrs_design.proof.evidence.fields import rate_words
+from nrs_design.proof.system import SwitchedSystem
 from nrs_design.reproduction import thesis
 from nrs_design.reproduction.matrices import family, hybrid_rows, impedance_rows, printed_rows
 from nrs_design.reproduction.row import Row, Verdict, claim
-from nrs_design.switched.system import SwitchedSystem
+from nrs_design.search.certify import Certification, certify
 
 STABLE = "stable under arbitrary switching"
 

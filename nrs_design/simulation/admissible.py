@@ -9,9 +9,9 @@ from fractions import Fraction
 
 import numpy as np
 
+from nrs_design.proof.system import Stay, SwitchedSystem, Time
 from nrs_design.simulation.norms import Array
 from nrs_design.simulation.switched import TimeResponse
-from nrs_design.switched.system import Stay, SwitchedSystem, Time
 
 # Fewest dwell times that a run of so many steps should hold.
 _LEGS = 8

@@ -9,11 +9,11 @@ from fractions import Fraction
 import numpy as np
 from numpy.typing import NDArray
 
-from nrs_design.certificates.evidence import CommonPolynomial, ModeQuadratic, ParameterQuadratic
-from nrs_design.certificates.exact import IntegerMatrix
-from nrs_design.certificates.lift import monomials
-from nrs_design.switched.constant import system_at
-from nrs_design.switched.system import SwitchedSystem, Switching
+from nrs_design.proof.constant import system_at
+from nrs_design.proof.evidence import CommonPolynomial, ModeQuadratic, ParameterQuadratic
+from nrs_design.proof.exact import IntegerMatrix
+from nrs_design.proof.lift import monomials
+from nrs_design.proof.system import SwitchedSystem, Switching
 
 Array = NDArray[np.float64]
 

@@ -10,9 +10,9 @@ from functools import reduce
 
 import numpy as np
 
+from nrs_design.proof.system import SwitchedSystem, Time
 from nrs_design.simulation.norms import Array
 from nrs_design.simulation.switched import TimeResponse, fine_step
-from nrs_design.switched.system import SwitchedSystem, Time
 
 # Mode index and time spent in it, in s or steps.
 Steps = Sequence[tuple[int, float]]

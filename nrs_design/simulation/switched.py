@@ -8,9 +8,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from nrs_design.simulation.margins import drift
+from nrs_design.proof.system import SwitchedSystem, Time
 from nrs_design.simulation.norms import Array, Norm
-from nrs_design.switched.system import SwitchedSystem, Time
+from nrs_design.simulation.rates import drift
 
 # Growth per step below which a run of an unstable mode is shown as one on the stability limit.
 _MARGINAL = 1e-5

@@ -6,10 +6,10 @@ from collections.abc import Iterator
 from fractions import Fraction
 from typing import NamedTuple
 
+from nrs_design.proof.text import exact_text
 from nrs_design.spec import kinds
 from nrs_design.spec.controllers import ControllerSpec, ImpedanceControllerSpec
 from nrs_design.spec.environment import EnvironmentSpec, KelvinVoigtSpec
-from nrs_design.spec.exact import exact_text
 from nrs_design.spec.gain_fields import GainSpec
 from nrs_design.spec.goals import GoalsSpec
 from nrs_design.spec.interaction import InteractionDesignSpec

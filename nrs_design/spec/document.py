@@ -28,7 +28,7 @@ from ruamel.yaml.events import (
 
 from nrs_design.errors import Fault, SpecError
 from nrs_design.files import open_regular
-from nrs_design.spec.exact import quoted
+from nrs_design.proof.text import quoted
 from nrs_design.spec.syntax import explain_syntax, fault_mark
 
 MAX_BYTES = 1024 * 1024

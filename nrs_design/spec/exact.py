@@ -7,6 +7,7 @@ import unicodedata
 from fractions import Fraction
 
 from nrs_design.errors import SpecError
+from nrs_design.proof.text import quoted
 
 MAX_LENGTH = 100
 MAX_EXPONENT = 100
@@ -45,20 +46,6 @@ _FAULTS: tuple[tuple[re.Pattern[str], str, str], ...] = (
     (re.compile(r"[+-]?0[0-9].*"), "starts with a superfluous zero", "remove the leading zeros"),
     (re.compile(r"[+-]?[0-9]+,[0-9]+.*"), "has a comma", "use the decimal point '.'"),
 )
-
-
-def quoted(text: str) -> str:
-    """Quote a piece of user text for a message, shortened and without control characters."""
-    return repr(text if len(text) <= 40 else text[:37] + "...")
-
-
-def exact_text(number: Fraction) -> str:
-    """Write a fraction as the shortest decimal if that is exact, as ``p/q`` otherwise."""
-    try:
-        text = repr(float(number)).removesuffix(".0")
-    except OverflowError:
-        return str(number)
-    return text if Fraction(text) == number else str(number)
 
 
 def is_number(text: str) -> bool:

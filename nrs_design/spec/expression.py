@@ -11,14 +11,9 @@ from fractions import Fraction
 from typing import NamedTuple
 
 from nrs_design.errors import SpecError
+from nrs_design.proof.text import quoted
 from nrs_design.spec.affine import Affine
-from nrs_design.spec.exact import (
-    UNSIGNED_DECIMAL_PATTERN,
-    is_number,
-    number_fault,
-    parse_exact,
-    quoted,
-)
+from nrs_design.spec.exact import UNSIGNED_DECIMAL_PATTERN, is_number, number_fault, parse_exact
 
 MAX_LENGTH = 200
 MAX_DEPTH = 20

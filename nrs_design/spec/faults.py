@@ -11,8 +11,8 @@ from pydantic import BaseModel, ValidationError
 from pydantic_core import ErrorDetails, PydanticCustomError
 
 from nrs_design.errors import Fault, SpecError
+from nrs_design.proof.text import quoted
 from nrs_design.spec.document import Mapping, Node, Position, Sequence
-from nrs_design.spec.exact import quoted
 
 Location = tuple[int | str, ...]
 _T = TypeVar("_T")

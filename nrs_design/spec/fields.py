@@ -10,7 +10,8 @@ from typing import Annotated, Any
 from pydantic import PlainValidator, WithJsonSchema
 
 from nrs_design.files import is_device_name
-from nrs_design.spec.exact import DECIMAL_PATTERN, RATIO_PATTERN, parse_exact, quoted
+from nrs_design.proof.text import quoted
+from nrs_design.spec.exact import DECIMAL_PATTERN, RATIO_PATTERN, parse_exact
 from nrs_design.spec.faults import as_text, fault, reported
 
 NAME_PATTERN = "^[a-z0-9][a-z0-9._-]{0,63}$"

@@ -6,8 +6,8 @@ from typing import Annotated, Any
 
 from pydantic import BeforeValidator, Field, WithJsonSchema, model_validator
 
+from nrs_design.proof.text import quoted
 from nrs_design.spec import kinds
-from nrs_design.spec.exact import quoted
 from nrs_design.spec.faults import fault
 from nrs_design.spec.model import SpecModel
 from nrs_design.spec.quantity import Quantity, QuantityKind, is_less

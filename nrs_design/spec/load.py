@@ -11,6 +11,7 @@ from pathlib import Path
 from pydantic import ValidationError
 
 from nrs_design.errors import Fault, SpecError
+from nrs_design.proof.text import quoted
 from nrs_design.spec.document import (
     Mapping,
     Node,
@@ -21,7 +22,6 @@ from nrs_design.spec.document import (
     read_text,
     to_data,
 )
-from nrs_design.spec.exact import quoted
 from nrs_design.spec.faults import did_you_mean, file_faults, place_of
 from nrs_design.spec.interaction import InteractionDesignSpec
 from nrs_design.spec.robot import RobotSpec

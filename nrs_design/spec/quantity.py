@@ -9,13 +9,8 @@ from dataclasses import dataclass, field
 from fractions import Fraction
 
 from nrs_design.errors import SpecError
-from nrs_design.spec.exact import (
-    DECIMAL_PATTERN,
-    MAX_LENGTH,
-    RATIO_PATTERN,
-    parse_exact,
-    quoted,
-)
+from nrs_design.proof.text import quoted
+from nrs_design.spec.exact import DECIMAL_PATTERN, MAX_LENGTH, RATIO_PATTERN, parse_exact
 from nrs_design.spec.units import MAX_UNIT_LENGTH, Unit, parse_unit
 
 # Beyond these a number is a slip of the pen, and products of such numbers leave the floats.

@@ -9,8 +9,8 @@ from pydantic import BeforeValidator, Field, PlainValidator, WithJsonSchema, mod
 from pydantic_core import PydanticCustomError
 
 from nrs_design.errors import SpecError
+from nrs_design.proof.text import quoted
 from nrs_design.spec import kinds
-from nrs_design.spec.exact import quoted
 from nrs_design.spec.faults import as_text, fault, reported
 from nrs_design.spec.model import SpecModel
 from nrs_design.spec.quantity import (

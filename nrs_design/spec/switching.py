@@ -12,8 +12,9 @@ from typing import Annotated, Any
 from pydantic import BeforeValidator, Field, PlainValidator, WithJsonSchema, model_validator
 
 from nrs_design.errors import SpecError
+from nrs_design.proof.text import quoted
 from nrs_design.spec import kinds
-from nrs_design.spec.exact import parse_exact, quoted
+from nrs_design.spec.exact import parse_exact
 from nrs_design.spec.faults import all_of, as_text, did_you_mean, fault, reported
 from nrs_design.spec.fields import Exact, Label
 from nrs_design.spec.model import SpecModel

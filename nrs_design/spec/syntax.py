@@ -5,7 +5,7 @@ from __future__ import annotations
 from ruamel.yaml.error import MarkedYAMLError, StringMark, YAMLError
 from ruamel.yaml.reader import ReaderError
 
-from nrs_design.spec.exact import quoted
+from nrs_design.proof.text import quoted
 
 # The first fragment that occurs in the parser's report decides.
 _EXPLANATIONS: tuple[tuple[str, str, str], ...] = (

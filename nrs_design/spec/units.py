@@ -16,7 +16,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 
 from nrs_design.errors import SpecError
-from nrs_design.spec.exact import quoted
+from nrs_design.proof.text import quoted
 
 BASE_UNITS = ("kg", "m", "s", "rad", "rpm")
 MAX_UNIT_LENGTH = 60

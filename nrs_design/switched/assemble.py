@@ -13,6 +13,7 @@ from nrs_design.errors import AssemblyError
 from nrs_design.models.actuator import Actuator
 from nrs_design.models.motion_loop import MotionLoop, close_motion_loop
 from nrs_design.models.plant import build_plant
+from nrs_design.proof.system import Mode, SwitchedSystem, Time
 from nrs_design.spec import (
     ImpedanceControllerSpec,
     InteractionDesignSpec,
@@ -26,7 +27,6 @@ from nrs_design.switched.close_loop import close_loop
 from nrs_design.switched.constraints import assemble_switching
 from nrs_design.switched.gain_box import gain_boxes
 from nrs_design.switched.parameters import corner_modes, fixed_parameter, read_parameters
-from nrs_design.switched.system import Mode, SwitchedSystem, Time
 
 __all__ = ["GIVEN_MATRICES", "assemble", "from_design", "from_matrices", "has_ranges"]
 

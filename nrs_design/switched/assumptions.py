@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from fractions import Fraction
 
+from nrs_design.proof.text import exact_text
 from nrs_design.spec import DwellTime, SwitchedSystemSpec, SwitchingSpec
-from nrs_design.spec.exact import exact_text
 from nrs_design.switched.parameters import Parameter
 
 MAX_LISTED = 20

@@ -18,14 +18,14 @@ from nrs_design.errors import AssemblyError
 from nrs_design.models.environment import Contact
 from nrs_design.models.motion_loop import MotionLoop
 from nrs_design.models.plant import Plant
+from nrs_design.proof.matrix import RationalMatrix, multiply
+from nrs_design.proof.system import Mode, SwitchedSystem, Time
 from nrs_design.spec import SwitchingSpec
 from nrs_design.switched.assumptions import CONTINUOUS, rule_texts
 from nrs_design.switched.constraints import assemble_switching
 from nrs_design.switched.gain_box import GainBox
-from nrs_design.switched.matrix import RationalMatrix, multiply
 from nrs_design.switched.parameter_box import Axis, box_corners
 from nrs_design.switched.parameters import Corner
-from nrs_design.switched.system import Mode, SwitchedSystem, Time
 
 Row = list[Fraction]
 

@@ -8,10 +8,10 @@ from itertools import chain, islice, product
 from typing import TypeVar
 
 from nrs_design.errors import AssemblyError
+from nrs_design.proof.matrix import RationalMatrix
+from nrs_design.proof.system import Reset, Stay, Switching
 from nrs_design.spec import DwellTime, ResetSpec, SwitchingSpec
-from nrs_design.switched.matrix import RationalMatrix
 from nrs_design.switched.parameters import Corner, pair_ends
-from nrs_design.switched.system import Reset, Stay, Switching
 
 MAX_ASSEMBLED = 200_000
 

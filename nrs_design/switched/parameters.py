@@ -13,9 +13,9 @@ from itertools import product
 
 from nrs_design.errors import InternalError
 from nrs_design.models.environment import Interval
+from nrs_design.proof.matrix import RationalMatrix
+from nrs_design.proof.system import FixedParameter, Mode
 from nrs_design.spec import ModeSpec, SwitchedSystemSpec
-from nrs_design.switched.matrix import RationalMatrix
-from nrs_design.switched.system import FixedParameter, Mode
 
 Rows = Sequence[Sequence[Fraction]]
 Values = Mapping[str, Fraction]

@@ -17,7 +17,8 @@ from nrs_design.certificates.certificate import (
     to_document,
     verdict_of,
 )
-from nrs_design.certificates.evidence import (
+from nrs_design.pipeline import run_certification
+from nrs_design.proof.evidence import (
     BlockTriangular,
     CommonQuadratic,
     ModeQuadratic,
@@ -25,10 +26,9 @@ from nrs_design.certificates.evidence import (
     UnstableMode,
     UnstablePeriod,
 )
-from nrs_design.certificates.evidence.fields import rate_text
-from nrs_design.pipeline import run_certification
+from nrs_design.proof.evidence.fields import rate_text
+from nrs_design.proof.system import Reset, Switching, Time
 from nrs_design.spec import read_spec
-from nrs_design.switched.system import Reset, Switching, Time
 from tests.support import COMMUTING, PRINT_ERROR, ROOT, family, matrix, number_in
 
 Q = ((1, 0), (0, 1))

@@ -29,9 +29,6 @@ from pathlib import Path
 import pytest
 
 from nrs_design.certificates.certificate import content_id, dump
-from nrs_design.certificates.certify import Limits, Method
-from nrs_design.certificates.evidence import CommonQuadratic, UnstableMode
-from nrs_design.certificates.evidence.unstable_mode import worst_eigenvalue
 from nrs_design.certificates.verify import (
     Verification,
     read_document,
@@ -41,6 +38,9 @@ from nrs_design.certificates.verify import (
 from nrs_design.controllers.float32 import exact_decimal
 from nrs_design.errors import CertificateError
 from nrs_design.pipeline import run_certification
+from nrs_design.proof.evidence import CommonQuadratic, UnstableMode
+from nrs_design.proof.evidence.unstable_mode import worst_eigenvalue
+from nrs_design.search.certify import Limits, Method
 from nrs_design.spec import LoadedSpec, read_spec
 from tests.support import (
     COMMUTING,

@@ -6,12 +6,12 @@ from functools import cache
 import pytest
 
 from nrs_design.certificates.certificate import Certificate, content_id, dump
-from nrs_design.certificates.certify import Limits, Method, certify
 from nrs_design.certificates.verify import read_document, verify_document
+from nrs_design.search.certify import Limits, Method, certify
 from nrs_design.spec import read_spec
 from nrs_design.switched.assemble import assemble
-from tests.certificates.tamper import mutations
-from tests.certificates.truth import holds
+from tests.proof.tamper import mutations
+from tests.proof.truth import holds
 
 DAYAWANSA_MARTIN_6 = [["-1", "-1"], ["1", "-1"]], [["-1", "-6"], ["1/6", "-1"]]
 BRANICKY = [["-1", "10"], ["-100", "-1"]], [["-1", "100"], ["-10", "-1"]]

@@ -9,8 +9,8 @@ from fractions import Fraction
 import pytest
 
 from nrs_design.certificates.certificate import content_id
+from nrs_design.proof.bounds import rounded_down, rounded_up
 from nrs_design.spec import read_spec
-from nrs_design.spec.bounds import rounded_down, rounded_up
 from tests.support import COMMUTING, HARD, PRINT_ERROR, ROOT, SOFT_TISSUE, run, write_spec
 
 EXAMPLES = ROOT / "specs" / "examples"

@@ -109,7 +109,7 @@ def test_valid_certificate_of_other_gains(export, tmp_path, capsys):
     """A certificate that verifies, since the gains are within the bounds of the spec."""
     from dataclasses import replace
 
-    from nrs_design.certificates.certify import certify
+    from nrs_design.search.certify import certify
     from nrs_design.switched.assemble import assemble
 
     loaded = read_spec(SPEC)
@@ -153,13 +153,13 @@ def test_refuted_design_is_not_exported(export, capsys):
 
 
 def test_inconclusive_design_is_not_exported(export, monkeypatch):
-    from nrs_design.certificates.certify import Certification, CommonQuadraticStatus, Verdict
+    from nrs_design.search.certify import Certification, CommonQuadraticStatus, Verdict
 
     def give_up(system, *arguments, **options):
         unknown = CommonQuadraticStatus.UNKNOWN
         return Certification(system, Verdict.INCONCLUSIVE, unknown, "auto", (), ())
 
-    monkeypatch.setattr("nrs_design.certificates.certify.certify", give_up)
+    monkeypatch.setattr("nrs_design.search.certify.certify", give_up)
     assert export(SPEC) == 3
     assert files() == []
 

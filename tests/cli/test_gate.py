@@ -113,8 +113,8 @@ def test_broken_spec_is_worse_than_a_refuted_one(gate, capsys):
 
 
 def test_inconclusive_is_exit_3_and_refuted_is_worse(gate, monkeypatch):
-    from nrs_design.certificates import certify as module
-    from nrs_design.certificates.certify import Certification, CommonQuadraticStatus, Verdict
+    from nrs_design.search import certify as module
+    from nrs_design.search.certify import Certification, CommonQuadraticStatus, Verdict
 
     def give_up_on_stable(system, *arguments, **options):
         if system.name != "stable":
@@ -133,7 +133,7 @@ def test_internal_error_is_exit_4(gate, monkeypatch, capsys):
     def fail(*arguments, **options):
         raise ZeroDivisionError("unforeseen")
 
-    monkeypatch.setattr("nrs_design.certificates.certify.certify", fail)
+    monkeypatch.setattr("nrs_design.search.certify.certify", fail)
     Path("specs/broken.nrs.yaml").write_text(BROKEN)
     assert gate("specs", "--no-reports") == 4
     assert "NRS900 error: ZeroDivisionError: unforeseen" in capsys.readouterr().out

@@ -117,7 +117,7 @@ def test_certificate_of_other_gains_is_refused(result):
 
 
 def test_certificate_that_refutes_is_refused(result):
-    from nrs_design.certificates.evidence import UnstableMode
+    from nrs_design.proof.evidence import UnstableMode
 
     refuting = replace(result.certificate, statements=(UnstableMode("insertion", "1"),))
     with pytest.raises(CertificateError, match="does not prove stability"):

@@ -71,7 +71,7 @@ def project(gated: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Pat
 @pytest.fixture
 def inconclusive(monkeypatch: pytest.MonkeyPatch) -> None:
     """Let every search end without a proof and without a refutation."""
-    from nrs_design.certificates.certify import (
+    from nrs_design.search.certify import (
         Attempt,
         Certification,
         CommonQuadraticStatus,
@@ -84,4 +84,4 @@ def inconclusive(monkeypatch: pytest.MonkeyPatch) -> None:
             system, Verdict.INCONCLUSIVE, CommonQuadraticStatus.UNKNOWN, "auto", (), attempts
         )
 
-    monkeypatch.setattr("nrs_design.certificates.certify.certify", give_up)
+    monkeypatch.setattr("nrs_design.search.certify.certify", give_up)

@@ -6,15 +6,15 @@ from pathlib import Path
 
 from ruamel.yaml import YAML
 
-from nrs_design.certificates.certify import Certification, Verdict, certify
 from nrs_design.controllers.laws import Admittance
 from nrs_design.models.environment import Contact
 from nrs_design.models.motion_loop import MotionLoop
+from nrs_design.proof.matrix import RationalMatrix
+from nrs_design.proof.system import Mode, SwitchedSystem, Time
+from nrs_design.search.certify import Certification, Verdict, certify
 from nrs_design.spec import parse_exact, parse_spec
 from nrs_design.switched.assemble import GIVEN_MATRICES, assemble
 from nrs_design.switched.close_loop import impedance_mode, realize, to_force_coordinates
-from nrs_design.switched.matrix import RationalMatrix
-from nrs_design.switched.system import Mode, SwitchedSystem, Time
 from tests.support import holds
 
 DATA = Path(__file__).parents[1] / "data" / "known_answers.yaml"

@@ -4,7 +4,7 @@ systems", IEEE Transactions on Automatic Control 43(4), 1998.
 Two Hurwitz modes that are unstable under some switching.
 """
 
-from nrs_design.certificates.evidence.unstable_mode import is_stable
+from nrs_design.proof.evidence.unstable_mode import is_stable
 
 from .known import known, settle
 

@@ -9,9 +9,9 @@ from dataclasses import replace
 
 import pytest
 
-from nrs_design.certificates.certify import certify
+from nrs_design.proof.system import Switching
+from nrs_design.search.certify import certify
 from nrs_design.spec import parse_exact
-from nrs_design.switched.system import Switching
 from tests.support import holds
 
 from .known import known, settle

@@ -9,7 +9,7 @@ from fractions import Fraction
 
 import pytest
 
-from nrs_design.certificates.certify import Limits, certify
+from nrs_design.search.certify import Limits, certify
 
 from .known import given, settle
 

@@ -14,8 +14,8 @@ from fractions import Fraction
 
 import pytest
 
-from nrs_design.certificates.certify import Limits, Method, certify
-from tests.certificates.systems import lossy_network
+from nrs_design.search.certify import Limits, Method, certify
+from tests.proof.systems import lossy_network
 
 RADIUS = 0.9748171979372074
 BOUNDS = {4: 0.9863468387970061, 6: 0.9769402921375085}

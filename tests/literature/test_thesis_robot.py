@@ -6,8 +6,8 @@ and cites 1002 +- 568 N/m at 0.24 m for a surgeon's hand.
 
 import pytest
 
-from nrs_design.certificates.certify import certify
-from nrs_design.certificates.evidence import UnstablePeriod
+from nrs_design.proof.evidence import UnstablePeriod
+from nrs_design.search.certify import certify
 from nrs_design.spec import parse_exact
 
 from .known import known, robot, settle

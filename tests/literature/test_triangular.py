@@ -4,7 +4,7 @@ Hurwitz matrices that are all upper triangular share a quadratic Lyapunov functi
 taken diagonal.
 """
 
-from nrs_design.certificates.certify import Method, certify
+from nrs_design.search.certify import Method, certify
 
 from .known import known, settle
 

@@ -6,12 +6,12 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
-from nrs_design.certificates.certify import Method
 from nrs_design.errors import DesignError
 from nrs_design.pipeline import run_certification, run_evidence
 from nrs_design.reporting import build_report
 from nrs_design.reporting.document import Bullets, Paragraph, Table
 from nrs_design.reporting.figures.run import draw_phase_plane, draw_run
+from nrs_design.search.certify import Method
 from nrs_design.simulation.switched import TimeResponse
 from nrs_design.spec import read_spec
 from tests.reporting.conftest import KINDS, ROOT, report_of

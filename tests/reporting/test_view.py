@@ -3,9 +3,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from nrs_design.proof.system import Time
 from nrs_design.reporting.figures.complex_plane import draw_eigenvalues
 from nrs_design.reporting.figures.view import disk, half_plane
-from nrs_design.switched.system import Time
 
 FAR = np.array([-1 + 3j, -1 - 3j, -20000, -2 + 3j, -2 - 3j, -4])
 parts = st.floats(-1e6, 1e6).filter(lambda x: x == 0 or abs(x) > 1e-6)

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from nrs_design.switched.matrix import RationalMatrix
-from nrs_design.switched.system import ARBITRARY, Mode, Reset, SwitchedSystem, Time
+from nrs_design.proof.matrix import RationalMatrix
+from nrs_design.proof.system import ARBITRARY, Mode, Reset, SwitchedSystem, Time
 
 
 def system(*matrices, time=Time.CONTINUOUS, switching=ARBITRARY):

@@ -7,7 +7,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from nrs_design.certificates.evidence import CommonPolynomial, ParameterQuadratic
+from nrs_design.proof.evidence import CommonPolynomial, ParameterQuadratic
+from nrs_design.proof.system import Switching
 from nrs_design.simulation.norms import (
     diagonal_exponents,
     function_at,
@@ -18,7 +19,6 @@ from nrs_design.simulation.norms import (
     scaled_form,
     scaled_matrices,
 )
-from nrs_design.switched.system import Switching
 from tests.simulation.systems import system
 
 

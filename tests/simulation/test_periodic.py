@@ -6,13 +6,13 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
+from nrs_design.proof.system import Switching, Time
 from nrs_design.simulation.periodic import (
     mixture_matrix,
     one_period,
     periodic_run,
     steps_of_mixture,
 )
-from nrs_design.switched.system import Switching, Time
 from tests.simulation.systems import reset, system
 
 SHEARS = system([[-1, 10], [0, -1]], [[-1, 0], [10, -1]])

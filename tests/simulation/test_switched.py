@@ -5,8 +5,9 @@ import math
 import numpy as np
 import pytest
 
-from nrs_design.simulation.margins import mode_rates
+from nrs_design.proof.system import Time
 from nrs_design.simulation.norms import quadratic_norm
+from nrs_design.simulation.rates import mode_rates
 from nrs_design.simulation.switched import (
     alone,
     eigenvalues,
@@ -18,7 +19,6 @@ from nrs_design.simulation.switched import (
     worst_direction,
     worst_switching,
 )
-from nrs_design.switched.system import Time
 from tests.simulation.systems import system
 
 # Narendra and Balakrishnan (1994), commuting modes.

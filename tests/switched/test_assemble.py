@@ -5,9 +5,9 @@ import pytest
 from nrs_design.controllers.gains import gains_of
 from nrs_design.errors import AssemblyError, CertificateError
 from nrs_design.pipeline import run_design
+from nrs_design.proof.system import Time
 from nrs_design.spec import load_spec, parse_spec, read_spec
 from nrs_design.switched.assemble import GIVEN_MATRICES, assemble, motion_loop
-from nrs_design.switched.system import Time
 from tests.support import COMMUTING, FORCE_LIMIT, SOFT_TISSUE
 
 GIVEN_LOOP = """motion_loop:

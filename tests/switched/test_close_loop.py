@@ -8,7 +8,6 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from nrs_design.certificates.exact import characteristic_polynomial, is_hurwitz
 from nrs_design.controllers.controller_design import Controller, ControllerDesign
 from nrs_design.controllers.laws import (
     Admittance,
@@ -24,6 +23,8 @@ from nrs_design.models.actuator import Actuator
 from nrs_design.models.environment import Contact, Environment, Interval
 from nrs_design.models.motion_loop import MotionLoop
 from nrs_design.models.plant import Plant
+from nrs_design.proof.exact import characteristic_polynomial, is_hurwitz
+from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.switched.close_loop import (
     close_loop,
     force_mode,
@@ -31,7 +32,6 @@ from nrs_design.switched.close_loop import (
     realize,
     to_force_coordinates,
 )
-from nrs_design.switched.matrix import RationalMatrix
 
 F = Fraction
 # Thesis 6.3.2.2: Ap = [[0, 1], [-1618.80, -56.89]], Cp = [1618.80, 28.416].

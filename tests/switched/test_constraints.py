@@ -7,11 +7,11 @@ import pytest
 from nrs_design.controllers.gains import gains_of
 from nrs_design.errors import AssemblyError
 from nrs_design.pipeline import run_design
+from nrs_design.proof.matrix import RationalMatrix
+from nrs_design.proof.system import Reset, Stay
 from nrs_design.spec import LoadedSpec, parse_spec
 from nrs_design.switched import constraints
 from nrs_design.switched.assemble import GIVEN_MATRICES, assemble
-from nrs_design.switched.matrix import RationalMatrix
-from nrs_design.switched.system import Reset, Stay
 
 HEAD = "kind: switched-system\nname: s\ntime: continuous\n"
 TWO = "modes:\n  - {name: a, A: [[-1]]}\n  - {name: b, A: [[-2]]}\n"

@@ -7,18 +7,18 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from nrs_design.certificates.certify import Limits, Verdict, certify
-from nrs_design.certificates.evidence import CommonQuadratic, UnstableMode
 from nrs_design.controllers.gains import gains_of
 from nrs_design.controllers.laws import Admittance
 from nrs_design.errors import AssemblyError
 from nrs_design.models.environment import Contact, Interval
 from nrs_design.pipeline import run_design
+from nrs_design.proof.evidence import CommonQuadratic, UnstableMode
+from nrs_design.search.certify import Limits, Verdict, certify
 from nrs_design.spec import LoadedSpec, parse_spec, read_spec
 from nrs_design.switched.assemble import DECLARED, assemble, has_ranges, motion_loop
 from nrs_design.switched.close_loop import impedance_mode, realize, to_force_coordinates
 from nrs_design.switched.gain_box import GainBox
-from tests.certificates.truth import combine, decrease, is_definite
+from tests.proof.truth import combine, decrease, is_definite
 from tests.support import ROOT
 
 F = Fraction

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from nrs_design.errors import DataError
 from nrs_design.files import open_regular
 from nrs_design.identification.datasets.columns import Column, find_columns
-from nrs_design.spec.exact import quoted
+from nrs_design.proof.text import quoted
 
 Array = NDArray[np.float64]
 Progress = Callable[[float], None]

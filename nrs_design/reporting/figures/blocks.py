@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from nrs_design.proof.system import SwitchedSystem
 from nrs_design.reporting.style import BLUE, SKY, VERMILLION, legend, new_axes, styled
 from nrs_design.reporting.text import wrapped
-from nrs_design.switched.system import SwitchedSystem
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

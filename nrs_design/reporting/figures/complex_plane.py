@@ -9,9 +9,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from nrs_design.certificates.evidence.fields import rate_words
 from nrs_design.design.root_locus import locus_gains, root_locus
 from nrs_design.design.transfer import TransferFunction, poles
+from nrs_design.proof.evidence.fields import rate_words
+from nrs_design.proof.system import Time
 from nrs_design.reporting.figures.view import View, disk, half_plane
 from nrs_design.reporting.style import (
     ALARM,
@@ -26,7 +27,6 @@ from nrs_design.reporting.style import (
     new_axes,
     styled,
 )
-from nrs_design.switched.system import Time
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from nrs_design.certificates.evidence.fields import rate_words
+from nrs_design.proof.evidence.fields import rate_words
+from nrs_design.proof.system import Time
 from nrs_design.reporting.style import (
     BLUE,
     INK,
@@ -21,7 +22,6 @@ from nrs_design.reporting.style import (
     styled,
 )
 from nrs_design.reporting.text import wrapped
-from nrs_design.switched.system import Time
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

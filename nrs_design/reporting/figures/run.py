@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from nrs_design.proof.system import SwitchedSystem, Time
 from nrs_design.reporting.style import (
     BLUE,
     CYCLE,
@@ -24,7 +25,6 @@ from nrs_design.reporting.style import (
 )
 from nrs_design.reporting.text import wrapped
 from nrs_design.simulation.norms import Norm, level_curve
-from nrs_design.switched.system import SwitchedSystem, Time
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -2,20 +2,20 @@
 
 from __future__ import annotations
 
-from nrs_design.certificates.evidence import (
+from nrs_design.proof.bounds import rounded_down, rounded_up
+from nrs_design.proof.evidence import (
     AbstractEvidence,
     BlockTriangular,
     CommonPolynomial,
     NoCommonQuadratic,
     Shows,
 )
-from nrs_design.certificates.evidence.block_triangular import diagonal_block
+from nrs_design.proof.evidence.block_triangular import diagonal_block
+from nrs_design.proof.system import SwitchedSystem, Time
 from nrs_design.reporting.document import Block, Bullets, Illustration, Paragraph, Section, Table
 from nrs_design.reporting.figures.blocks import draw_blocks
 from nrs_design.reporting.formatting import shortened
 from nrs_design.reporting.sections.no_common_quadratic import obstruction_blocks
-from nrs_design.spec.bounds import rounded_down, rounded_up
-from nrs_design.switched.system import SwitchedSystem, Time
 
 _LISTED = 32
 _STRUCTURE = (

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
-from nrs_design.certificates.evidence import (
+from nrs_design.proof.evidence import (
     AbstractEvidence,
     BlockTriangular,
     CommonPolynomial,
@@ -16,6 +16,7 @@ from nrs_design.certificates.evidence import (
     ParameterQuadratic,
     Shows,
 )
+from nrs_design.proof.system import SwitchedSystem
 from nrs_design.reporting.document import Section
 from nrs_design.reporting.sections.blocks import blocks_section
 from nrs_design.reporting.sections.mode_polynomial import mode_polynomial_section
@@ -26,10 +27,9 @@ from nrs_design.reporting.sections.polynomial import polynomial_section
 from nrs_design.reporting.sections.quadratic import quadratic_section
 from nrs_design.reporting.sections.run import run_section
 from nrs_design.reporting.sections.witness import witness_section
-from nrs_design.switched.system import SwitchedSystem
 
 if TYPE_CHECKING:
-    from nrs_design.certificates.certify import Certification
+    from nrs_design.search.certify import Certification
 
 
 def evidence_sections(certification: Certification) -> Iterator[Section]:

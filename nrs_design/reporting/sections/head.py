@@ -7,15 +7,15 @@ from fractions import Fraction
 from typing import TYPE_CHECKING
 
 from nrs_design import __version__
-from nrs_design.certificates.evidence import AbstractEvidence, ModePolynomial, ModeQuadratic, Shows
+from nrs_design.proof.bounds import at_least, at_most, lower, upper
+from nrs_design.proof.evidence import AbstractEvidence, ModePolynomial, ModeQuadratic, Shows
+from nrs_design.proof.system import SwitchedSystem, Time
 from nrs_design.reporting.formatting import plural, shortened
 from nrs_design.spec import InteractionDesignSpec, RobotSpec
-from nrs_design.spec.bounds import at_least, at_most, lower, upper
-from nrs_design.switched.system import SwitchedSystem, Time
 
 if TYPE_CHECKING:
-    from nrs_design.certificates.certify import Certification
     from nrs_design.pipeline import Result
+    from nrs_design.search.certify import Certification
 
 NO_CLAIM = (
     "Neither a proof nor a refutation was found. This is no statement about stability: the modes "

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from nrs_design.certificates.evidence import (
+from nrs_design.proof.bounds import rounded_up
+from nrs_design.proof.constant import system_at
+from nrs_design.proof.evidence import (
     AbstractEvidence,
     BlockTriangular,
     CommonPolynomial,
@@ -17,10 +19,8 @@ from nrs_design.certificates.evidence import (
     UnstablePeriod,
     UnstableValue,
 )
+from nrs_design.proof.system import SwitchedSystem, Time
 from nrs_design.reporting.formatting import shortened
-from nrs_design.spec.bounds import rounded_up
-from nrs_design.switched.constant import system_at
-from nrs_design.switched.system import SwitchedSystem, Time
 
 # What rests on the declared rules of switching.
 _RULED = (ModeQuadratic, ModePolynomial)

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from nrs_design.certificates.evidence import ModePolynomial
+from nrs_design.proof.evidence import ModePolynomial
+from nrs_design.proof.system import SwitchedSystem
 from nrs_design.reporting.document import Paragraph, Section, Table
 from nrs_design.reporting.formatting import number
-from nrs_design.switched.system import SwitchedSystem
 
 
 def mode_polynomial_section(system: SwitchedSystem, evidence: ModePolynomial) -> Section:

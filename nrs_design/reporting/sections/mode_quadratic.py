@@ -5,15 +5,15 @@ from __future__ import annotations
 import math
 from fractions import Fraction
 
-from nrs_design.certificates.evidence import ModeQuadratic
+from nrs_design.proof.bounds import at_most
+from nrs_design.proof.evidence import ModeQuadratic
+from nrs_design.proof.system import SwitchedSystem, Time
 from nrs_design.reporting.document import Block, Illustration, Paragraph, Section
 from nrs_design.reporting.figures.lyapunov import draw_quadratics
 from nrs_design.reporting.formatting import shortened
 from nrs_design.reporting.sections.quadratic import SCALED, matrix_table
 from nrs_design.simulation.admissible import norm_ratio
 from nrs_design.simulation.norms import mode_functions
-from nrs_design.spec.bounds import at_most
-from nrs_design.switched.system import SwitchedSystem, Time
 
 _TABLES = 4
 _DRAWN = 6

@@ -9,12 +9,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from nrs_design.proof.system import SwitchedSystem, Time
 from nrs_design.reporting.document import Illustration, Paragraph, Section, Table
 from nrs_design.reporting.figures.complex_plane import draw_eigenvalues
 from nrs_design.reporting.formatting import number, roots, shortened
-from nrs_design.simulation.margins import mode_rates
+from nrs_design.simulation.rates import mode_rates
 from nrs_design.simulation.switched import eigenvalues
-from nrs_design.switched.system import SwitchedSystem, Time
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

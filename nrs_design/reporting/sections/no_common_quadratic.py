@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from fractions import Fraction
 
-from nrs_design.certificates.evidence import NoCommonQuadratic
+from nrs_design.proof.evidence import NoCommonQuadratic
+from nrs_design.proof.system import SwitchedSystem, Time
 from nrs_design.reporting.document import Block, Paragraph, Section, Table
 from nrs_design.reporting.formatting import number
-from nrs_design.switched.system import SwitchedSystem, Time
 
 _LISTED = 24
 

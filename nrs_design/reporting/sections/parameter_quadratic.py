@@ -4,15 +4,15 @@ from __future__ import annotations
 
 import numpy as np
 
-from nrs_design.certificates.evidence import ParameterQuadratic
-from nrs_design.certificates.evidence.fields import rate_words
+from nrs_design.proof.evidence import ParameterQuadratic
+from nrs_design.proof.evidence.fields import rate_words
+from nrs_design.proof.system import SwitchedSystem
 from nrs_design.reporting.document import Illustration, Paragraph, Section, Table
 from nrs_design.reporting.figures.lyapunov import draw_parameter_rates, draw_quadratics
 from nrs_design.reporting.formatting import number
 from nrs_design.reporting.sections.quadratic import SCALED, matrix_table
-from nrs_design.simulation.margins import parameter_rates
 from nrs_design.simulation.norms import Array, function_at
-from nrs_design.switched.system import SwitchedSystem
+from nrs_design.simulation.rates import parameter_rates
 
 _POINTS = 61
 _LISTED = 24

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from nrs_design.certificates.evidence import CommonPolynomial
+from nrs_design.proof.evidence import CommonPolynomial
+from nrs_design.proof.system import SwitchedSystem, Time
 from nrs_design.reporting.document import Paragraph, Section, Table
 from nrs_design.reporting.formatting import number
 from nrs_design.reporting.sections.rates import rate_blocks
-from nrs_design.simulation.margins import polynomial_rates
-from nrs_design.switched.system import SwitchedSystem, Time
+from nrs_design.simulation.rates import polynomial_rates
 
 
 def polynomial_section(system: SwitchedSystem, evidence: CommonPolynomial) -> Section:

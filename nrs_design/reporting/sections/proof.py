@@ -5,7 +5,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from nrs_design.certificates.certificate import CommonQuadraticStatus
-from nrs_design.certificates.evidence import AbstractEvidence, Shows
+from nrs_design.proof.evidence import AbstractEvidence, Shows
+from nrs_design.proof.system import SwitchedSystem, Time
 from nrs_design.reporting.document import Block, Bullets, Paragraph, Section
 from nrs_design.reporting.sections.head import NO_CLAIM
 from nrs_design.reporting.sections.meaning import (
@@ -21,11 +22,10 @@ from nrs_design.reporting.sections.meaning import (
 from nrs_design.spec import InteractionDesignSpec
 from nrs_design.switched.assemble import has_ranges
 from nrs_design.switched.gain_box import KEPT_VELOCITY
-from nrs_design.switched.system import SwitchedSystem, Time
 
 if TYPE_CHECKING:
-    from nrs_design.certificates.certify import Certification
     from nrs_design.pipeline import Result
+    from nrs_design.search.certify import Certification
 
 _NOT_COVERED_BY_A_DESIGN: tuple[str, ...] = (
     "Sampling, delay and quantization of the controller: the proof is in continuous time.",

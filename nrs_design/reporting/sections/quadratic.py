@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import numpy as np
 
-from nrs_design.certificates.evidence import CommonQuadratic
+from nrs_design.proof.evidence import CommonQuadratic
+from nrs_design.proof.system import SwitchedSystem, Time
 from nrs_design.reporting.document import Block, Illustration, Paragraph, Section, Table
 from nrs_design.reporting.figures.lyapunov import draw_quadratic
 from nrs_design.reporting.formatting import number
 from nrs_design.reporting.sections.rates import rate_blocks
-from nrs_design.simulation.margins import mode_rates
 from nrs_design.simulation.norms import Array, scaled_matrices
-from nrs_design.switched.system import SwitchedSystem, Time
+from nrs_design.simulation.rates import mode_rates
 
 WRITTEN = 8
 _RATES = {

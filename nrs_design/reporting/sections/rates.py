@@ -6,12 +6,12 @@ from fractions import Fraction
 
 import numpy as np
 
-from nrs_design.certificates.evidence.fields import rate_words
+from nrs_design.proof.evidence.fields import rate_words
+from nrs_design.proof.system import SwitchedSystem, Time
 from nrs_design.reporting.document import Block, Illustration, Table
 from nrs_design.reporting.figures.lyapunov import draw_mode_rates
 from nrs_design.reporting.formatting import number
 from nrs_design.simulation.norms import Array
-from nrs_design.switched.system import SwitchedSystem, Time
 
 # A page holds no more; those with the least slack are shown.
 LISTED = 24

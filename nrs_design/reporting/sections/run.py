@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from nrs_design.certificates.evidence import (
+from nrs_design.proof.evidence import (
     AbstractEvidence,
     BlockTriangular,
     CommonPolynomial,
@@ -18,6 +18,7 @@ from nrs_design.certificates.evidence import (
     ModeQuadratic,
     ParameterQuadratic,
 )
+from nrs_design.proof.system import SwitchedSystem, Time
 from nrs_design.reporting.document import Illustration, Section
 from nrs_design.reporting.figures.run import (
     MOTION_STATES,
@@ -27,7 +28,6 @@ from nrs_design.reporting.figures.run import (
 )
 from nrs_design.reporting.sections.modes import hardest_modes
 from nrs_design.simulation.admissible import active_norms, admissible_run
-from nrs_design.simulation.margins import parameter_rates
 from nrs_design.simulation.norms import (
     function_at,
     mode_functions,
@@ -36,6 +36,7 @@ from nrs_design.simulation.norms import (
     quadratic_norm,
     scaled_matrices,
 )
+from nrs_design.simulation.rates import parameter_rates
 from nrs_design.simulation.switched import (
     TimeResponse,
     fine_step,
@@ -44,7 +45,6 @@ from nrs_design.simulation.switched import (
     worst_direction,
     worst_switching,
 )
-from nrs_design.switched.system import SwitchedSystem, Time
 
 if TYPE_CHECKING:
     from nrs_design.simulation.norms import Array, Norm

@@ -7,7 +7,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from nrs_design.certificates.evidence import (
+from nrs_design.proof.bounds import nearly
+from nrs_design.proof.constant import system_at
+from nrs_design.proof.evidence import (
     AbstractEvidence,
     BlockTriangular,
     UnstableMixture,
@@ -15,8 +17,9 @@ from nrs_design.certificates.evidence import (
     UnstablePeriod,
     UnstableValue,
 )
-from nrs_design.certificates.evidence.unstable_mode import worst_eigenvalue
-from nrs_design.certificates.evidence.unstable_value import value_text
+from nrs_design.proof.evidence.unstable_mode import worst_eigenvalue
+from nrs_design.proof.evidence.unstable_value import value_text
+from nrs_design.proof.system import SwitchedSystem, Time
 from nrs_design.reporting.document import Block, Illustration, Paragraph, Section, Table
 from nrs_design.reporting.figures.complex_plane import draw_eigenvalues
 from nrs_design.reporting.figures.run import draw_phase_plane, draw_run
@@ -31,9 +34,6 @@ from nrs_design.simulation.periodic import (
     steps_of_mixture,
 )
 from nrs_design.simulation.switched import TimeResponse, alone, eigenvalues, unstable_run
-from nrs_design.spec.bounds import nearly
-from nrs_design.switched.constant import system_at
-from nrs_design.switched.system import SwitchedSystem, Time
 
 _EUCLIDEAN = "|x(t)| / |x(0)|, Euclidean norm [1]"
 _LISTED = 24

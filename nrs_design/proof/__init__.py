@@ -1,0 +1,1 @@
+"""What decides, and nothing else: the trusted ground floor."""

@@ -1,0 +1,135 @@
+"""What every kind of evidence can do: be checked, be confirmed, be said in words, be stored."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Iterator, Mapping
+from enum import StrEnum
+from fractions import Fraction
+from typing import Any, ClassVar, Self
+
+from nrs_design.proof.evidence.fields import find_unreadable
+from nrs_design.proof.exact import (
+    IntegerMatrix,
+    TooLargeError,
+    is_positive_definite,
+    is_symmetric,
+    is_too_large,
+)
+from nrs_design.proof.matrix import RationalMatrix
+from nrs_design.proof.system import SwitchedSystem, Switching
+
+
+class Shows(StrEnum):
+    """What follows if the evidence holds."""
+
+    STABILITY = "stability"
+    INSTABILITY = "instability"
+    NO_COMMON_QUADRATIC = "no common quadratic function"
+
+
+class AbstractEvidence(ABC):
+    """Numbers that prove a statement about a switched system.
+
+    A kind of evidence is a set of conditions on integers: its shape (`find_misfit`) and symmetric
+    integer matrices that must be positive definite (`forms`). Both are computed from the system,
+    so that evidence for one system is no evidence for another.
+    """
+
+    kind: ClassVar[str]
+    allows_unequal_modes: ClassVar[bool] = False
+
+    @property
+    @abstractmethod
+    def shows(self) -> Shows:
+        """What follows if it holds."""
+
+    def proved_rate(self, system: SwitchedSystem) -> Fraction | None:
+        """Return the rate of decay (alpha in 1/s, or rho per step), if it shows one."""
+        return None
+
+    @abstractmethod
+    def find_misfit(self, system: SwitchedSystem) -> str | None:
+        """Say why the evidence cannot belong to the system, or None."""
+
+    @abstractmethod
+    def forms(self, system: SwitchedSystem) -> Iterator[tuple[str, IntegerMatrix]]:
+        """Yield what must be positive definite, each with the name of its failure."""
+
+    @abstractmethod
+    def claim(self, system: SwitchedSystem) -> str:
+        """Say in words what is shown."""
+
+    @abstractmethod
+    def to_fields(self) -> dict[str, Any]:
+        """Return its numbers for the certificate file."""
+
+    @classmethod
+    @abstractmethod
+    def from_fields(cls, fields: Mapping[str, Any], system: SwitchedSystem) -> Self:
+        """Read its numbers from a certificate file.
+
+        Raises
+        ------
+        KeyError, TypeError, ValueError
+            If a field is missing or malformed.
+        """
+
+    def fits(self, switching: Switching) -> bool:
+        """Tell whether the argument covers these switching signals.
+
+        By default: whatever holds under arbitrary switching holds for fewer signals, as long as
+        no reset changes the state.
+        """
+        return not switching.resets
+
+    def spread(self, merged: SwitchedSystem, system: SwitchedSystem) -> AbstractEvidence:
+        """Carry evidence over from modes of which no two are equal to all modes of a system.
+
+        By default nothing changes: names of modes stay valid, and what holds for a mode holds for
+        its equals. A kind with numbers for every mode repeats them.
+
+        Parameters
+        ----------
+        merged : SwitchedSystem
+            What this is evidence for: the first of every set of equal modes.
+        system : SwitchedSystem
+            The same with all modes.
+        """
+        return self
+
+    def find_fault(self, system: SwitchedSystem) -> str | None:
+        """TRUSTED: say why the evidence does not hold for the system, or None if it holds."""
+        if not system.modes:
+            return "the system has no modes"
+        if len({mode.name for mode in system.modes}) < len(system.modes):
+            return "two modes of the system have the same name"
+        for mode in system.modes:
+            if not _is_well_formed(mode.A):
+                return f"mode {mode.name} is not a square matrix over a positive denominator"
+        if (unreadable := find_unreadable(self)) is not None:
+            return unreadable
+        if (contradiction := system.find_contradiction()) is not None:
+            return contradiction
+        if not self.fits(system.switching):
+            return f"evidence of kind {self.kind} does not cover this kind of switching"
+        if not system.is_uniform and not self.allows_unequal_modes:
+            return f"evidence of kind {self.kind} needs modes of equal size"
+        try:
+            misfit = self.find_misfit(system)
+        except TooLargeError as error:
+            return str(error)
+        if misfit is not None:
+            return misfit
+        for failure, form in self.forms(system):
+            if is_too_large(form):
+                return f"{failure}, or it does but its numbers are too large to check"
+            if not is_symmetric(form) or not is_positive_definite(form):
+                return failure
+        return None
+
+
+def _is_well_formed(A: RationalMatrix) -> bool:
+    """Tell whether a matrix is square, and its denominator keeps the signs of its numerators."""
+    rows = A.numerators
+    return A.denominator > 0 and len(rows) > 0 and all(len(row) == len(rows) for row in rows)

@@ -1,0 +1,106 @@
+"""One quadratic Lyapunov function for all modes."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any, ClassVar, Self
+
+from nrs_design.proof.evidence.abstract import AbstractEvidence, Shows
+from nrs_design.proof.evidence.fields import (
+    matrix_fields,
+    rate_words,
+    read_matrix,
+    read_ratio,
+)
+from nrs_design.proof.exact import (
+    IntegerMatrix,
+    lyapunov_decrease,
+    stein_decrease,
+)
+from nrs_design.proof.system import SwitchedSystem, Time
+
+
+@dataclass(frozen=True, slots=True)
+class CommonQuadratic(AbstractEvidence):
+    """``V(x) = x' Q x`` decreases in every mode.
+
+    Parameters
+    ----------
+    Q : tuple of tuple of int, shape (n, n)
+        Numerators of the symmetric matrix.
+    denominator_log2 : int
+        Q is these numerators over two to this power.
+    rate : Fraction
+        Continuous time: the decay rate alpha in 1/s, with ``A'Q + QA + 2 alpha Q < 0``.
+        Discrete time: the contraction rho per step, with ``A'QA < rho^2 Q``.
+    """
+
+    kind: ClassVar[str] = "common-quadratic"
+
+    Q: tuple[tuple[int, ...], ...]
+    denominator_log2: int
+    rate: Fraction
+
+    @property
+    def shows(self) -> Shows:
+        """Stability."""
+        return Shows.STABILITY
+
+    def proved_rate(self, system: SwitchedSystem) -> Fraction:
+        """Return the claimed rate."""
+        return self.rate
+
+    def find_misfit(self, system: SwitchedSystem) -> str | None:
+        """Check shapes and the sign of the rate."""
+        if not is_square(self.Q, system.order):
+            return f"Q is not a {system.order} x {system.order} matrix"
+        return find_rate_misfit(self.rate, system.time)
+
+    def forms(self, system: SwitchedSystem) -> Iterator[tuple[str, IntegerMatrix]]:
+        """Yield Q and the decrease in every mode."""
+        yield "Q is not symmetric and positive definite", self.Q
+        form = lyapunov_decrease if system.time is Time.CONTINUOUS else stein_decrease
+        for mode in system.modes:
+            failure = f"V does not decrease at the claimed rate in mode {mode.name}"
+            yield failure, form(mode.A.numerators, mode.A.denominator, self.Q, self.rate)
+
+    def claim(self, system: SwitchedSystem) -> str:
+        """State the bound on every solution."""
+        return decay_claim(system, self.rate, "in the norm |x| = sqrt(x' Q x)")
+
+    def to_fields(self) -> dict[str, Any]:
+        """Return Q and the rate."""
+        return {"Q": matrix_fields(self.Q, self.denominator_log2), "rate": str(self.rate)}
+
+    @classmethod
+    def from_fields(cls, fields: Mapping[str, Any], system: SwitchedSystem) -> Self:
+        """Read Q and the rate."""
+        Q, denominator_log2 = read_matrix(fields["Q"])
+        return cls(Q, denominator_log2, read_ratio(fields["rate"]))
+
+
+def is_square(M: IntegerMatrix, n: int) -> bool:
+    """Tell whether a matrix has n rows and n columns."""
+    return len(M) == n and all(len(row) == n for row in M)
+
+
+def find_rate_misfit(rate: Fraction, time: Time) -> str | None:
+    """Say why a rate is not one of exponential decay, or None."""
+    if rate <= 0 or (time is Time.DISCRETE and rate >= 1):
+        return "the claimed rate is not one of exponential decay"
+    return None
+
+
+def decay_claim(system: SwitchedSystem, rate: Fraction, norm: str) -> str:
+    """State that every solution decays at a rate in a norm."""
+    continuous = system.time is Time.CONTINUOUS
+    law = "x' = A x" if continuous else "x+ = A x"
+    bound = "exp(-alpha t) |x(0)|" if continuous else "rho^t |x(0)|"
+    count = len(system.modes)
+    among = "its one mode" if count == 1 else f"the {count} modes"
+    return (
+        f"Every solution of {law}, switching arbitrarily among {among}, satisfies "
+        f"|x(t)| <= {bound} with {rate_words(rate, system.time)}, {norm}."
+    )

@@ -1,0 +1,127 @@
+"""A quadratic function that depends on one unknown but constant parameter."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from fractions import Fraction
+from math import lcm
+from typing import Any, ClassVar, Self
+
+from nrs_design.proof.evidence.abstract import AbstractEvidence, Shows
+from nrs_design.proof.evidence.common_quadratic import (
+    find_rate_misfit,
+    is_square,
+)
+from nrs_design.proof.evidence.fields import (
+    Matrix,
+    matrix_fields,
+    rate_words,
+    read_matrix,
+    read_ratio,
+)
+from nrs_design.proof.exact import IntegerMatrix, add, lyapunov_decrease
+from nrs_design.proof.system import SwitchedSystem, Time
+
+
+@dataclass(frozen=True, slots=True)
+class ParameterQuadratic(AbstractEvidence):
+    """``V(x) = x' Q(p) x`` with ``Q(p) = (1-p) Q_low + p Q_high`` decreases for all p in [0, 1].
+
+    With ``M_ab = -(A_a'Q_b + Q_b A_a + 2 alpha Q_b)``, the decrease at p is
+    ``(1-p)^2 M_ll + p(1-p) (M_lh + M_hl) + p^2 M_hh``, positive definite if the three
+    matrices ``M_ll``, ``M_hh`` and ``M_lh + M_hl`` are. The same for every pair of ends.
+
+    Parameters
+    ----------
+    low, high : tuple of tuple of int, shape (n, n)
+        Numerators of Q at the two ends of the parameter.
+    denominator_log2 : int
+        Both are over two to this power.
+    rate : Fraction
+        alpha in 1/s.
+    """
+
+    kind: ClassVar[str] = "parameter-quadratic"
+
+    low: Matrix
+    high: Matrix
+    denominator_log2: int
+    rate: Fraction
+
+    @property
+    def shows(self) -> Shows:
+        """Stability."""
+        return Shows.STABILITY
+
+    def proved_rate(self, system: SwitchedSystem) -> Fraction:
+        """Return the claimed rate."""
+        return self.rate
+
+    def find_misfit(self, system: SwitchedSystem) -> str | None:
+        """Check time, pairs, shapes and rate."""
+        if system.time is not Time.CONTINUOUS:
+            return "parameter-dependent functions are for continuous time"
+        paired = sorted(name for pair in system.switching.fixed_ends for name in pair)
+        if paired != sorted(mode.name for mode in system.modes):
+            return "the modes are not the ends of one constant parameter"
+        if not is_square(self.low, system.order) or not is_square(self.high, system.order):
+            return f"Q is not a {system.order} x {system.order} matrix"
+        return find_rate_misfit(self.rate, system.time)
+
+    def forms(self, system: SwitchedSystem) -> Iterator[tuple[str, IntegerMatrix]]:
+        """Yield both functions, and the three conditions of every pair."""
+        yield "Q at the low end is not symmetric and positive definite", self.low
+        yield "Q at the high end is not symmetric and positive definite", self.high
+        modes = {mode.name: mode.A for mode in system.modes}
+        rate = self.rate
+        for low, high in system.switching.fixed_ends:
+            A, B = modes[low], modes[high]
+            # Over one denominator and at one rate, all forms have the same `lyapunov_factor`, so
+            # the sum of two is that multiple of the sum of the true ones.
+            common = lcm(A.denominator, B.denominator)
+            at_low, at_high = (
+                [
+                    lyapunov_decrease(
+                        _times(M.numerators, common // M.denominator), common, Q, rate
+                    )
+                    for Q in (self.low, self.high)
+                ]
+                for M in (A, B)
+            )
+            yield f"V does not decrease in mode {low}", at_low[0]
+            yield f"V does not decrease in mode {high}", at_high[1]
+            mixed = add(at_low[1], at_high[0])
+            yield f"V does not decrease between {low} and {high}", mixed
+
+    def claim(self, system: SwitchedSystem) -> str:
+        """State the bound on every solution."""
+        count = len(system.switching.fixed_ends)
+        among = "the one mode" if count == 1 else f"the {count} modes"
+        return (
+            f"For every constant value of the parameter in its range, every solution of x' = A x, "
+            f"switching arbitrarily among {among} at that value, satisfies |x(t)| <= exp(-alpha t) "
+            f"|x(0)| with {rate_words(self.rate, system.time)}, in a norm "
+            "|x| = sqrt(x' Q x) with Q affine in the parameter."
+        )
+
+    def to_fields(self) -> dict[str, Any]:
+        """Return both ends of Q and the rate."""
+        return {
+            "Q_low": matrix_fields(self.low, self.denominator_log2),
+            "Q_high": matrix_fields(self.high, self.denominator_log2),
+            "rate": str(self.rate),
+        }
+
+    @classmethod
+    def from_fields(cls, fields: Mapping[str, Any], system: SwitchedSystem) -> Self:
+        """Read both ends of Q and the rate."""
+        low, exponent = read_matrix(fields["Q_low"])
+        high, other = read_matrix(fields["Q_high"])
+        if exponent != other:
+            raise ValueError("the two ends of Q do not share one denominator")
+        return cls(low, high, exponent, read_ratio(fields["rate"]))
+
+
+def _times(M: IntegerMatrix, factor: int) -> list[list[int]]:
+    return [[factor * entry for entry in row] for row in M]

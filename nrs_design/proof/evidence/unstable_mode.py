@@ -1,0 +1,148 @@
+"""One mode that is not stable by itself."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass
+from typing import Any, ClassVar, Self
+
+from nrs_design.proof.evidence.abstract import AbstractEvidence, Shows
+from nrs_design.proof.evidence.fields import read_text
+from nrs_design.proof.exact import (
+    MAX_SPECTRUM_WORK,
+    IntegerMatrix,
+    TooLargeError,
+    bit_length,
+    is_hurwitz,
+    is_schur,
+    spectrum_work,
+)
+from nrs_design.proof.matrix import RationalMatrix
+from nrs_design.proof.system import Mode, SwitchedSystem, Switching, Time
+
+
+@dataclass(frozen=True, slots=True)
+class UnstableMode(AbstractEvidence):
+    """Staying in one mode, which is not Hurwitz (discrete time: not Schur), is admissible.
+
+    It is not where the mode has a longest dwell time: such a mode may be unstable.
+
+    Parameters
+    ----------
+    mode : str
+        Its name.
+    eigenvalue : str
+        Its worst eigenvalue, to six digits, for the reader.
+    """
+
+    kind: ClassVar[str] = "unstable-mode"
+    allows_unequal_modes: ClassVar[bool] = True
+
+    mode: str
+    eigenvalue: str
+
+    @property
+    def shows(self) -> Shows:
+        """Instability."""
+        return Shows.INSTABILITY
+
+    def fits(self, switching: Switching) -> bool:
+        """Tell whether no rule forces a signal to leave the mode."""
+        return switching.stay(self.mode).longest is None
+
+    def find_misfit(self, system: SwitchedSystem) -> str | None:
+        """Check that the mode exists and is not stable."""
+        named = [mode for mode in system.modes if mode.name == self.mode]
+        if len(named) != 1:
+            return f"there is no single mode named {self.mode}"
+        if is_too_large(named[0].A):
+            return f"the numbers of mode {self.mode} are too large to check"
+        return f"mode {self.mode} is stable" if is_stable(named[0].A, system.time) else None
+
+    def forms(self, system: SwitchedSystem) -> Iterator[tuple[str, IntegerMatrix]]:
+        """Yield nothing: no matrix has to be positive definite."""
+        yield from ()
+
+    def claim(self, system: SwitchedSystem) -> str:
+        """State that the mode is not stable, and what follows."""
+        continuous = system.time is Time.CONTINUOUS
+        region = "Hurwitz" if continuous else "Schur"
+        law = "x' = A x" if continuous else "x+ = A x"
+        return (
+            f"Mode {self.mode} is not {region} (eigenvalue about {self.eigenvalue}): staying in "
+            f"it is an admissible switching signal, so {law} is not uniformly exponentially stable."
+        )
+
+    def to_fields(self) -> dict[str, Any]:
+        """Return the mode and its eigenvalue."""
+        return {"mode": self.mode, "eigenvalue": self.eigenvalue}
+
+    @classmethod
+    def from_fields(cls, fields: Mapping[str, Any], system: SwitchedSystem) -> Self:
+        """Read the mode's name; its eigenvalue is computed again."""
+        name = read_text(fields["mode"])
+        matrix = next((mode.A for mode in system.modes if mode.name == name), None)
+        if matrix is None:
+            raise ValueError(f"the spec has no mode {name}")
+        return cls(name, worst_eigenvalue(matrix, system.time))
+
+
+def is_too_large(A: RationalMatrix) -> bool:
+    """Tell whether `is_stable` would take more than some seconds."""
+    return _work(A) > MAX_SPECTRUM_WORK
+
+
+def affordable(modes: Iterable[Mode]) -> Iterator[tuple[Mode, bool]]:
+    """Yield modes, each with whether it can be decided within some seconds for all of them."""
+    spent = 0
+    for mode in modes:
+        work = _work(mode.A)
+        fits = spent + work <= MAX_SPECTRUM_WORK
+        spent += work * fits
+        yield mode, fits
+
+
+def _work(A: RationalMatrix) -> int:
+    return spectrum_work(
+        len(A.numerators), max(bit_length(A.numerators), A.denominator.bit_length())
+    )
+
+
+def is_stable(A: RationalMatrix, time: Time) -> bool:
+    """TRUSTED: decide whether a matrix is Hurwitz (continuous time) or Schur (discrete time).
+
+    Raises
+    ------
+    TooLargeError
+        If that would take more than some seconds.
+    """
+    _check_size(A)
+    if time is Time.CONTINUOUS:
+        return is_hurwitz(A.numerators)
+    return is_schur(A.numerators, A.denominator)
+
+
+def worst_eigenvalue(A: RationalMatrix, time: Time) -> str:
+    """Return the eigenvalue nearest to or farthest beyond the stability limit, to six digits.
+
+    Raises
+    ------
+    TooLargeError
+        If that would take more than some seconds.
+    """
+    from flint import fmpz_mat
+
+    _check_size(A)
+    roots: list[Any] = fmpz_mat([list(row) for row in A.numerators]).charpoly().complex_roots()
+    centers = [complex(root / A.denominator) for root, _ in roots]
+    z = max(centers, key=lambda z: z.real if time is Time.CONTINUOUS else abs(z))
+    if abs(z.imag) <= 1e-14 * abs(z):
+        return f"{z.real:.6g}"
+    return f"{z.real:.6g} +- {abs(z.imag):.6g}j"
+
+
+def _check_size(A: RationalMatrix) -> None:
+    if is_too_large(A):
+        raise TooLargeError(
+            "the numbers of a mode are too large to decide exactly whether it is stable"
+        )

@@ -1,0 +1,353 @@
+"""TRUSTED: exact decisions about integer matrices, in plain Python integers.
+
+Definiteness and the stability of a mode are decided here and nowhere else. What else a verdict
+rests on: the conditions in `nrs_design.proof.evidence` that form these matrices, and, where
+a condition holds an exponential or a period (`mode_quadratic` with a dwell time in continuous time,
+`unstable_period`), the enclosures of python-flint, which are taken as they are.
+
+A rational matrix is given as integers over a positive denominator; positive factors change
+neither definiteness nor the Hurwitz property, so all tests run on integers.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+from fractions import Fraction
+from itertools import accumulate, combinations_with_replacement
+from math import gcd, lcm
+from operator import mul, sub
+
+IntegerMatrix = Sequence[Sequence[int]]
+
+# Elimination takes about rows^3 steps on numbers that grow with rows times bits: seconds at this.
+MAX_WORK = 10**8
+# The characteristic polynomial takes about n^4 products of numbers with up to n times bits.
+MAX_SPECTRUM_WORK = 10**9
+# From this length on, the time of such a product grows faster than the length.
+LONG_BITS = 3000
+# Modes over a longer common denominator are not added up.
+MAX_DENOMINATOR_BITS = 10**5
+
+# Bits of the smallest diagonal entry in the elimination with rounded numbers: one digit of Python.
+CLEAR_BITS = 28
+
+
+class TooLargeError(ArithmeticError):
+    """Numbers with so many digits that no exact decision about them ends in reasonable time."""
+
+
+def is_symmetric(M: IntegerMatrix) -> bool:
+    """Tell whether a matrix is square and equal to its transpose."""
+    return list(map(tuple, M)) == transpose(M)
+
+
+def is_too_large(M: IntegerMatrix) -> bool:
+    """Tell whether deciding anything about a matrix would take more than some seconds."""
+    return len(M) ** 3 * bit_length(M) > MAX_WORK
+
+
+def spectrum_work(order: int, bits: int) -> int:
+    """Predict what deciding where eigenvalues are takes; `MAX_SPECTRUM_WORK` is some seconds.
+
+    Parameters
+    ----------
+    order : int
+        Rows of the integer matrix.
+    bits : int
+        Its entries, and its denominator if that counts, are smaller in size than ``2^bits``.
+    """
+    longest = order * bits
+    return order**3 * longest * (LONG_BITS + longest) // LONG_BITS
+
+
+def bit_length(M: IntegerMatrix) -> int:
+    """Return b such that all entries are smaller in size than ``2^b``."""
+    return max((max(map(int.bit_length, row)) for row in M if row), default=0)
+
+
+def common_denominator(denominators: Iterable[int]) -> int | None:
+    """Return the least common multiple, or None where it is too long to work with."""
+    common = 1
+    for denominator in denominators:
+        common = lcm(common, denominator)
+        if common.bit_length() > MAX_DENOMINATOR_BITS:
+            return None
+    return common
+
+
+def add(left: IntegerMatrix, right: IntegerMatrix, weight: int = 1) -> list[list[int]]:
+    """Return ``left + weight right``."""
+    return [
+        [a + weight * b for a, b in zip(*rows, strict=True)]
+        for rows in zip(left, right, strict=True)
+    ]
+
+
+def is_positive_definite(M: IntegerMatrix) -> bool:
+    """Decide whether a symmetric integer matrix is positive definite.
+
+    A matrix that is clearly so is recognized with short numbers; the others are decided by
+    fraction-free elimination (Bareiss 1968): the k-th pivot is the k-th leading principal
+    minor, and by Sylvester's criterion all of them are positive iff M is positive definite.
+
+    Parameters
+    ----------
+    M : sequence of sequence of int, shape (n, n)
+        Must be symmetric.
+
+    Raises
+    ------
+    ValueError
+        If M is empty or not symmetric.
+    """
+    if not M or not is_symmetric(M):
+        raise ValueError("a definiteness test needs a symmetric matrix")
+    upper = [entry for i, row in enumerate(M) for entry in row[i:]]
+    return _is_clearly_positive_definite(upper, len(M)) or _has_positive_minors(upper, len(M))
+
+
+def _is_clearly_positive_definite(upper: Sequence[int], order: int) -> bool:
+    """Tell whether elimination with rounded numbers shows that a matrix is positive definite.
+
+    Rounding down to multiples of 2^s changes a symmetric matrix of order r by an E with entries of
+    size below 2^s, so ``E <= r 2^s I``: what is left after ``r 2^s I`` is subtracted, too, is below
+    the matrix. The matrix itself and every Schur complement is replaced by such a smaller one. If
+    all pivots of these are positive, so are those of the matrix. No is no answer.
+
+    Parameters
+    ----------
+    upper : sequence of int
+        The rows of a symmetric matrix one after the other, each from its diagonal on.
+    order : int
+        Number of its rows.
+    """
+    shift = CLEAR_BITS - min(upper[k] for k in _diagonal(order)).bit_length()
+    entries = [entry << shift if shift >= 0 else entry >> -shift for entry in upper]
+    while order:
+        for k in _diagonal(order):
+            entries[k] -= order
+        pivot, row, rest = entries[0], entries[1:order], entries[order:]
+        if pivot <= 0:
+            return False
+        # In the order of the entries: the pairs of every entry of the row with all from it on.
+        pairs = combinations_with_replacement(row, 2)
+        entries = list(map(sub, rest, [a * b // pivot for a, b in pairs]))
+        order -= 1
+    return True
+
+
+def _diagonal(order: int) -> Iterator[int]:
+    """Return where the diagonal is in an upper triangle that is written row after row."""
+    return accumulate(range(order, 1, -1), initial=0)
+
+
+def _has_positive_minors(upper: Sequence[int], order: int) -> bool:
+    """Decide whether all leading principal minors are positive; parameters as above."""
+    entries, previous = list(upper), 1
+    while order:
+        pivot, row, rest = entries[0], entries[1:order], entries[order:]
+        if pivot <= 0:
+            return False
+        pairs = combinations_with_replacement(row, 2)
+        entries = [
+            (pivot * entry - a * b) // previous for entry, (a, b) in zip(rest, pairs, strict=True)
+        ]
+        previous, order = pivot, order - 1
+    return True
+
+
+def is_positive_semidefinite(M: IntegerMatrix) -> bool:
+    """Decide whether a symmetric integer matrix is positive semidefinite.
+
+    Elimination as in `is_positive_definite`, with a symmetric choice of pivots: the Schur
+    complement of a positive diagonal entry is positive semidefinite iff the matrix is, and a
+    matrix with no positive diagonal entry is positive semidefinite iff it is zero.
+
+    Raises
+    ------
+    ValueError
+        If M is empty or not symmetric.
+    """
+    if not M or not is_symmetric(M):
+        raise ValueError("a definiteness test needs a symmetric matrix")
+    rows = [list(row) for row in M]
+    while rows:
+        k = max(range(len(rows)), key=lambda i: rows[i][i])
+        pivot, pivot_row = rows[k][k], rows[k]
+        if pivot <= 0:
+            return not any(map(any, rows))
+        rest = [i for i in range(len(rows)) if i != k]
+        rows = [[pivot * rows[i][j] - pivot_row[i] * pivot_row[j] for j in rest] for i in rest]
+        divisor = gcd(*(entry for row in rows for entry in row)) or 1
+        rows = [[entry // divisor for entry in row] for row in rows]
+    return True
+
+
+def multiply(left: IntegerMatrix, right: IntegerMatrix) -> list[list[int]]:
+    """Return the matrix product.
+
+    Every row of the right factor is written as one long integer, with its entries as digits of a
+    base that no entry of the product can overflow. A row of the product is then a sum of as many
+    long products as it has factors; half of the base makes its digits positive.
+
+    Raises
+    ------
+    ValueError
+        If the factors do not fit, or the rows of one are not of one length.
+    """
+    if any(len(row) != len(right) for row in left):
+        raise ValueError("a product needs as many columns on the left as rows on the right")
+    width = bit_length(left) + bit_length(right) + len(right).bit_length() + 1
+    half, mask = 1 << (width - 1), (1 << width) - 1
+    shifts = range(0, width * len(right[0]), width)
+    long_rows = [sum([a << shift for a, shift in zip(row, shifts, strict=True)]) for row in right]
+    halves = sum(half << shift for shift in shifts)
+    sums = [sum(map(mul, row, long_rows), halves) for row in left]
+    return [[(total >> shift & mask) - half for shift in shifts] for total in sums]
+
+
+def transpose(M: IntegerMatrix) -> list[tuple[int, ...]]:
+    """Return the columns as rows."""
+    return list(zip(*M, strict=True))
+
+
+def congruence(L: IntegerMatrix, Q: IntegerMatrix) -> list[list[int]]:
+    """Return ``L' Q L``."""
+    return multiply(transpose(L), multiply(Q, L))
+
+
+def lyapunov_decrease(
+    N: IntegerMatrix, denominator: int, Q: IntegerMatrix, rate: Fraction
+) -> list[list[int]]:
+    """Form ``-(A'Q + QA + 2 rate Q)`` for ``A = N / denominator``, times `lyapunov_factor`.
+
+    Parameters
+    ----------
+    N, Q : integer matrices, shape (n, n)
+        Q symmetric.
+    denominator : int
+        Positive.
+    rate : Fraction
+        The claimed decay rate alpha, in 1/s.
+    """
+    QN = multiply(Q, N)
+    p, q = 2 * rate.numerator * denominator, rate.denominator
+    common = gcd(p, q)
+    p, q = p // common, q // common
+    return [
+        [-q * (a + b) - p * entry for a, b, entry in zip(*rows, strict=True)]
+        for rows in zip(QN, transpose(QN), Q, strict=True)
+    ]
+
+
+def lyapunov_factor(denominator: int, rate: Fraction) -> int:
+    """Return the positive integer that `lyapunov_decrease` multiplies with.
+
+    It depends on denominator and rate only, so forms that share these may be added up.
+    """
+    return denominator * (2 * rate * denominator).denominator
+
+
+def stein_decrease(
+    N: IntegerMatrix, denominator: int, Q: IntegerMatrix, factor: Fraction
+) -> list[list[int]]:
+    """Form ``factor^2 Q - A'QA`` for ``A = N / denominator``, times `stein_factor`.
+
+    Parameters
+    ----------
+    N, Q : integer matrices, shape (n, n)
+        Q symmetric.
+    denominator : int
+        Positive.
+    factor : Fraction
+        The claimed contraction rho per step.
+    """
+    p = factor.numerator**2 * denominator**2
+    q = factor.denominator**2
+    return [
+        [p * before - q * after for before, after in zip(*rows, strict=True)]
+        for rows in zip(Q, congruence(N, Q), strict=True)
+    ]
+
+
+def stein_factor(denominator: int, factor: Fraction) -> int:
+    """Return the positive integer that `stein_decrease` multiplies with."""
+    return (denominator * factor.denominator) ** 2
+
+
+def characteristic_polynomial(N: IntegerMatrix) -> list[int]:
+    """Return the integer coefficients of ``det(s I - N)``, highest power first.
+
+    Faddeev-LeVerrier recursion; every division is exact.
+    """
+    n = len(N)
+    coefficients = [1]
+    M = [[0] * n for _ in range(n)]
+    for k in range(1, n + 1):
+        for i in range(n):
+            M[i][i] += coefficients[-1]
+        M = multiply(N, M)
+        coefficients.append(-sum(M[i][i] for i in range(n)) // k)
+    return coefficients
+
+
+def is_hurwitz_polynomial(coefficients: Sequence[int]) -> bool:
+    """Decide whether all roots have negative real parts.
+
+    Routh's scheme. Each row is multiplied by a positive integer to stay in integers and divided
+    by its greatest common divisor to stay small; neither changes a sign. With a positive leading
+    coefficient, the roots are all in the open left half-plane iff the scheme runs to its end
+    with a positive first column.
+
+    Parameters
+    ----------
+    coefficients : sequence of int
+        Highest power first; the leading one is not zero.
+    """
+    if coefficients[0] < 0:
+        coefficients = [-c for c in coefficients]
+    above, row = list(coefficients[0::2]), list(coefficients[1::2])
+    for _ in range(len(coefficients) - 1):
+        if not row or row[0] <= 0 or above[0] <= 0:
+            return False
+        shifted = row[1:] + [0] * (len(above) - len(row))
+        below = [row[0] * a - above[0] * r for a, r in zip(above[1:], shifted, strict=True)]
+        divisor = gcd(*below) or 1
+        above, row = row, [entry // divisor for entry in below]
+    return above[0] > 0
+
+
+def is_hurwitz(N: IntegerMatrix) -> bool:
+    """Decide whether N, and so N over any positive number, has its spectrum left of the axis."""
+    return is_hurwitz_polynomial(characteristic_polynomial(N))
+
+
+def is_schur(N: IntegerMatrix, denominator: int) -> bool:
+    """Decide whether all eigenvalues of ``N / denominator`` are inside the unit circle.
+
+    The map ``z = (1 + s) / (1 - s)`` takes the open left half-plane onto the open unit disk, so
+    the polynomial ``(1 - s)^n p((1 + s) / (1 - s))`` is tested for the Hurwitz property. Its
+    leading coefficient vanishes iff -1 is an eigenvalue.
+    """
+    n = len(N)
+    scaled = [c * denominator ** (n - k) for k, c in enumerate(characteristic_polynomial(N))]
+    mapped = [0] * (n + 1)
+    for k, c in enumerate(scaled):
+        for j, term in enumerate(_multiply(_power((1, 1), n - k), _power((-1, 1), k))):
+            mapped[j] += c * term
+    return mapped[0] != 0 and is_hurwitz_polynomial(mapped)
+
+
+def _power(binomial: Sequence[int], exponent: int) -> list[int]:
+    product = [1]
+    for _ in range(exponent):
+        product = _multiply(product, binomial)
+    return product
+
+
+def _multiply(left: Sequence[int], right: Sequence[int]) -> list[int]:
+    product = [0] * (len(left) + len(right) - 1)
+    for i, a in enumerate(left):
+        for j, b in enumerate(right):
+            product[i + j] += a * b
+    return product

@@ -1,0 +1,85 @@
+"""A second opinion by python-flint on what our own integers have decided.
+
+The trusted check decides; this module only has a right of veto. A disagreement is a defect of
+this program or of flint, and never a verdict.
+
+How far it goes: stable modes and averages are decided anew from the matrices; for a common
+quadratic function the conditions are formed and decided anew; for every other kind flint decides
+the definiteness of the forms that our code made. There is no second opinion where flint itself has
+the first one: enclosures of exponentials (dwell times in continuous time) and growing periods.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+from nrs_design.proof.constant import system_at
+from nrs_design.proof.evidence import (
+    AbstractEvidence,
+    BlockTriangular,
+    CommonQuadratic,
+    UnstableMixture,
+    UnstableMode,
+    UnstableValue,
+)
+from nrs_design.proof.evidence.block_triangular import diagonal_block
+from nrs_design.proof.evidence.unstable_mixture import mixture
+from nrs_design.proof.matrix import RationalMatrix
+from nrs_design.proof.system import SwitchedSystem, Time
+
+
+def agrees(system: SwitchedSystem, evidence: AbstractEvidence) -> bool:
+    """Tell whether flint, too, accepts evidence that the trusted check has accepted."""
+    if isinstance(evidence, UnstableMode):
+        matrix = next(mode.A for mode in system.modes if mode.name == evidence.mode)
+        return not _is_surely_stable(matrix, system.time)
+    if isinstance(evidence, UnstableMixture):
+        return not _is_surely_stable(mixture(system, evidence.weights), system.time)
+    if isinstance(evidence, UnstableValue):
+        return agrees(system_at(system, evidence.share), evidence.part)
+    if isinstance(evidence, BlockTriangular):
+        blocks = evidence.blocks
+        return all(agrees(diagonal_block(system, blocks[k]), part) for k, part in evidence.parts)
+    if isinstance(evidence, CommonQuadratic):
+        return _decreases_everywhere(system, evidence)
+    return all(_has_positive_spectrum(_matrix(form)) for _, form in evidence.forms(system))
+
+
+def _decreases_everywhere(system: SwitchedSystem, evidence: CommonQuadratic) -> bool:
+    """Form Q and the decrease in every mode anew, in flint's arithmetic."""
+    Q, p, q = _matrix(evidence.Q), evidence.rate.numerator, evidence.rate.denominator
+
+    def decrease(A: RationalMatrix) -> Any:
+        N, d = _matrix(A.numerators), A.denominator
+        if system.time is Time.DISCRETE:
+            return Q * (p * p * d * d) - N.transpose() * Q * N * (q * q)
+        half = Q * (N * q)
+        return -half - half.transpose() - Q * (2 * p * d)
+
+    modes = (decrease(mode.A) for mode in system.modes)
+    return _has_positive_spectrum(Q) and all(map(_has_positive_spectrum, modes))
+
+
+def _matrix(rows: Sequence[Sequence[int]]) -> Any:
+    from flint import fmpz_mat
+
+    return fmpz_mat([list(row) for row in rows])
+
+
+def _has_positive_spectrum(M: Any) -> bool:
+    """Tell whether the characteristic polynomial of a symmetric flint matrix alternates in sign.
+
+    All roots are real, so by Descartes' rule they are all positive iff it does.
+    """
+    coefficients = M.charpoly().coeffs()
+    n = len(coefficients) - 1
+    return all((c > 0) == ((n - k) % 2 == 0) and c != 0 for k, c in enumerate(coefficients))
+
+
+def _is_surely_stable(A: RationalMatrix, time: Time) -> bool:
+    """Tell whether rigorous enclosures of all eigenvalues lie in the stable region."""
+    roots: list[Any] = _matrix(A.numerators).charpoly().complex_roots()
+    if time is Time.CONTINUOUS:
+        return all(root.real < 0 for root, _ in roots)
+    return all(abs(root / A.denominator) < 1 for root, _ in roots)

@@ -1,0 +1,91 @@
+"""Exact diagonal scaling by powers of two, common to a family of matrices (untrusted search)."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from nrs_design.proof.system import Time
+
+SWEEPS = 64
+# Larger Lyapunov equations are solved by Schur decompositions, not as one linear system.
+DENSE_ORDER = 10
+
+
+def balance(matrices: NDArray[np.float64]) -> NDArray[np.int64]:
+    """Choose exponents d so that ``2^-d A 2^d`` has rows and columns of like size.
+
+    Osborne's iteration on the sum of the absolute values of all matrices, rounded to powers of
+    two so that scaling loses nothing. A zero row or column keeps its scale.
+
+    Parameters
+    ----------
+    matrices : ndarray, shape (m, n, n)
+        The family.
+
+    Returns
+    -------
+    ndarray of int, shape (n,)
+        Exponents.
+    """
+    total = np.abs(matrices).sum(axis=0)
+    np.fill_diagonal(total, 0.0)
+    exponents = np.zeros(len(total), dtype=np.int64)
+    for _ in range(SWEEPS):
+        before = exponents.copy()
+        for i in range(len(total)):
+            row, column = total[i].sum(), total[:, i].sum()
+            if 0 < row < np.inf and 0 < column < np.inf:
+                step = int(np.rint(0.5 * (np.log2(row) - np.log2(column))))
+                exponents[i] += step
+                total[i] = np.ldexp(total[i], -step)
+                total[:, i] = np.ldexp(total[:, i], step)
+        if np.array_equal(before, exponents):
+            break
+    return exponents
+
+
+def scale(matrices: NDArray[np.float64], exponents: NDArray[np.int64]) -> NDArray[np.float64]:
+    """Return ``2^-d A 2^d`` for every matrix; exact but for under- and overflow."""
+    scaled: NDArray[np.float64] = np.ldexp(matrices, exponents[None, :] - exponents[:, None])
+    return scaled
+
+
+def mean_norm_coordinates(matrices: NDArray[np.float64], time: Time) -> NDArray[np.float64]:
+    """Return T such that in coordinates ``x = T z`` the mean of the modes' own norms is round.
+
+    Each stable mode has the norm ``x' P x`` of its Lyapunov equation, scaled to trace one.
+
+    Parameters
+    ----------
+    matrices : ndarray, shape (m, n, n)
+        Stable modes.
+    time : Time
+        Continuous or discrete.
+    """
+    return np.asarray(np.linalg.inv(np.linalg.cholesky(mean_norm(matrices, time))).T)
+
+
+def mean_norm(matrices: NDArray[np.float64], time: Time) -> NDArray[np.float64]:
+    """Return the sum of the matrices of the modes' own norms, each of trace two."""
+    forms = [own_norm(A, time) for A in matrices]
+    return np.asarray(np.sum([2 * P / np.trace(P) for P in forms], axis=0))
+
+
+def own_norm(A: NDArray[np.float64], time: Time) -> NDArray[np.float64]:
+    """Solve ``A'P + PA = -I``, in discrete time ``A'PA - P = -I``; shape (n, n)."""
+    n, identity = len(A), np.eye(len(A))
+    if n > DENSE_ORDER:
+        from scipy.linalg import solve_continuous_lyapunov, solve_discrete_lyapunov
+
+        if time is Time.CONTINUOUS:
+            P = solve_continuous_lyapunov(A.T, -identity)
+        else:
+            P = solve_discrete_lyapunov(A.T, identity, method="bilinear")
+        return np.asarray((P + P.T) / 2)
+    if time is Time.CONTINUOUS:
+        operator = np.kron(A.T, identity) + np.kron(identity, A.T)
+    else:
+        operator = np.kron(A.T, A.T) - np.eye(n * n)
+    P = np.linalg.solve(operator, -identity.ravel()).reshape(n, n)
+    return np.asarray((P + P.T) / 2)

@@ -1,0 +1,150 @@
+"""A primal-dual interior-point method for cones of one order, in plain numpy (untrusted).
+
+Made for the search for a common quadratic function: all matrices have the same small order, there
+is a strictly feasible start, and a good point is enough. So it ends after some ten steps where a
+general solver goes for the optimum, and needs no solver to be loaded. Directions of Nesterov and
+Todd with the predictor and corrector of Mehrotra (Toh, Todd, Tütüncü 1999; Vandenberghe 2010).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from nrs_design.search.allowance import Cost
+from nrs_design.search.sdp import pack, unpack
+
+Array = NDArray[np.float64]
+
+MAX_STEPS = 60
+# Share of the way to the border of the cones that a step goes.
+STEP_SHARE = 0.95
+# The optimum counts as found when X and Z are this close to complementary.
+GAP_FLOOR = 1e-12
+# The value is good enough where no other one can be larger by more than this factor.
+GOOD_FACTOR = 2.0
+# Seconds per multiplication, and per step; bytes per entry of the images, with their copies.
+PER_PRODUCT = 2e-10
+PER_STEP = 1e-3
+PER_ENTRY = 32
+
+
+@dataclass(frozen=True)
+class Cones:
+    """Matrices ``X_j(y) = constant_j + sum_k y_k images_jk`` that must be positive semidefinite.
+
+    Parameters
+    ----------
+    constant : ndarray, shape (cones, n, n)
+        Symmetric.
+    images : ndarray, shape (variables, cones, n, n)
+        Symmetric.
+    """
+
+    constant: Array
+    images: Array
+
+    def at(self, y: Array) -> Array:
+        """Return all X_j, shape (cones, n, n)."""
+        change = y @ self.images.reshape(len(y), -1)
+        return self.constant + change.reshape(self.constant.shape)
+
+
+class _Scaled(NamedTuple):
+    """The coordinates in which X and its multiplier Z are the same diagonal matrix."""
+
+    W: Array
+    d: Array
+    rows: Array
+
+
+def step_cost(variables: int, cones: int, order: int) -> Cost:
+    """Predict what one step of `maximize_last` takes."""
+    entries = variables * cones * order**2
+    products = 2 * variables**2 * cones * order * (order + 1) / 2 + 4 * entries * order
+    return Cost(PER_STEP + PER_PRODUCT * products, PER_ENTRY * entries)
+
+
+def maximize_last(cones: Cones, start: Array, goes_on: Callable[[], bool] = lambda: True) -> Array:
+    """Maximize the last variable, until it is positive and within a factor of the largest one.
+
+    Parameters
+    ----------
+    cones : Cones
+        The constraints.
+    start : ndarray, shape (variables,)
+        Strictly feasible; the matrices that the last variable enters grow as it falls.
+    goes_on : callable
+        Asked before every step; No ends the search with the last iterate.
+
+    Returns
+    -------
+    ndarray, shape (variables,)
+        The last iterate, in floating point strictly feasible.
+    """
+    y, X = start, cones.at(start)
+    inverse = np.linalg.inv(X)
+    # With this unit, Z = inverse satisfies the equation of the last variable at the start.
+    Z = -inverse / (cones.images[-1] * inverse).sum()
+    for _ in range(MAX_STEPS):
+        if not goes_on():
+            break
+        try:
+            dy, dZ = _step(cones, X, Z)
+        except np.linalg.LinAlgError:
+            break
+        trial = cones.at(y + dy)
+        if not (np.isfinite(trial).all() and np.isfinite(dZ).all()):
+            break
+        y, X, Z = y + dy, trial, Z + dZ
+        gap = float((X * Z).sum())
+        if gap <= max(GAP_FLOOR, (GOOD_FACTOR - 1) * y[-1]):
+            break
+    return y
+
+
+def _step(cones: Cones, X: Array, Z: Array) -> tuple[Array, Array]:
+    """Return the changes of y and Z."""
+    scaled = _scale(cones, X, Z)
+    d, n = scaled.d, X.shape[-1]
+    residual = cones.images.reshape(len(cones.images), -1) @ Z.ravel()
+    residual[-1] += 1.0
+    gram = scaled.rows @ scaled.rows.T
+
+    def direction(target: Array) -> tuple[Array, Array, Array]:
+        force = scaled.rows @ pack(target).ravel() + residual
+        dy = np.asarray(np.linalg.solve(gram, force), dtype=np.float64)
+        dX = unpack((dy @ scaled.rows).reshape(len(X), -1), n)
+        return dy, dX, target - dX
+
+    D = d[..., None] * np.eye(n)
+    _, dX, dZ = direction(-D)
+    gap = (d * d).sum()
+    reached = ((D + _reach(d, dX, 1.0) * dX) * (D + _reach(d, dZ, 1.0) * dZ)).sum()
+    center = max(reached / gap, 0.0) ** 3 * gap / d.size
+    bend = (dX @ dZ + dZ @ dX) / (d[..., None] + d[..., None, :])
+    dy, dX, dZ = direction(center / d[..., None] * np.eye(n) - bend - D)
+    back = np.swapaxes(scaled.W, -1, -2)
+    return _reach(d, dX, STEP_SHARE) * dy, _reach(d, dZ, STEP_SHARE) * (back @ dZ @ scaled.W)
+
+
+def _scale(cones: Cones, X: Array, Z: Array) -> _Scaled:
+    """Find W with ``W X W' = W^-T Z W^-1`` diagonal, and bring all images there."""
+    L = np.linalg.cholesky(X)
+    R = np.linalg.cholesky((Z + np.swapaxes(Z, -1, -2)) / 2)
+    _, d, Vt = np.linalg.svd(np.swapaxes(R, -1, -2) @ L)
+    W = np.sqrt(d)[..., None] * Vt @ np.linalg.inv(L)
+    images = W @ cones.images @ np.swapaxes(W, -1, -2)
+    return _Scaled(W, d, pack(images).reshape(len(images), -1))
+
+
+def _reach(d: Array, change: Array, share: float) -> float:
+    """Return how far a step may go, one at most, as a share of the way to the border."""
+    root = np.sqrt(d)
+    relative = change / (root[..., None] * root[..., None, :])
+    steepest = float(-np.linalg.eigvalsh(relative)[..., 0].min())
+    return 1.0 if steepest <= share else share / steepest

@@ -1,0 +1,95 @@
+"""Search for a convex combination of modes that is not Hurwitz."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from fractions import Fraction
+from itertools import combinations, islice, product
+
+import numpy as np
+from numpy.typing import NDArray
+
+from nrs_design.proof.evidence import UnstableMixture
+from nrs_design.proof.evidence.unstable_mixture import mixture
+from nrs_design.proof.evidence.unstable_mode import worst_eigenvalue
+from nrs_design.proof.system import SwitchedSystem
+from nrs_design.search.allowance import Allowance
+
+Array = NDArray[np.float64]
+
+SHARES = 128
+MAX_PAIRS = 300
+RANDOM_MIXTURES = 2000
+# Entries of the averages that are looked at together.
+CHUNK_ENTRIES = 2_000_000
+DENOMINATORS = (16, 64, 1024, 2**20)
+
+
+def find_unstable_mixture(
+    system: SwitchedSystem, matrices: Array, allowance: Allowance | None = None
+) -> UnstableMixture | None:
+    """Scan pairs of modes and random mixtures for a spectral abscissa that is not negative.
+
+    Parameters
+    ----------
+    system : SwitchedSystem
+        Exact modes, continuous time.
+    matrices : ndarray, shape (m, n, n)
+        The same in floating point.
+    allowance : Allowance, optional
+        When its time is over, the search ends with what it has seen.
+    """
+    weights, abscissa = _least_stable(matrices, allowance or Allowance())
+    if abscissa < -1e-9 * np.abs(matrices).max():
+        return None
+    for denominator in DENOMINATORS:
+        shares = _rationalize(weights, denominator)
+        named = tuple(
+            (mode.name, share)
+            for mode, share in zip(system.modes, shares, strict=True)
+            if share > 0
+        )
+        evidence = UnstableMixture(named, worst_eigenvalue(mixture(system, named), system.time))
+        if evidence.find_fault(system) is None:
+            return evidence
+    return None
+
+
+def _least_stable(matrices: Array, allowance: Allowance) -> tuple[Array, float]:
+    """Return the weights of the average with the largest spectral abscissa, and that abscissa."""
+    m, n = matrices.shape[:2]
+    found, largest = np.ones(m) / m, -np.inf
+    for weights in _candidates(m, max(1, CHUNK_ENTRIES // max(n * n, m))):
+        averages = np.tensordot(weights, matrices, axes=1)
+        abscissas = np.linalg.eigvals(averages).real.max(axis=1)
+        best = int(abscissas.argmax())
+        if abscissas[best] > largest:
+            found, largest = weights[best], float(abscissas[best])
+        if not allowance.goes_on():
+            break
+    return found, largest
+
+
+def _candidates(m: int, chunk: int) -> Iterator[Array]:
+    """Yield rows of weights: pairs of modes at evenly spaced shares, then random ones."""
+    if m == 1:
+        yield np.ones((1, 1))
+        return
+    grid = list(product(islice(combinations(range(m), 2), MAX_PAIRS), range(1, SHARES)))
+    for start in range(0, len(grid), chunk):
+        part = grid[start : start + chunk]
+        weights, rows = np.zeros((len(part), m)), np.arange(len(part))
+        shares = np.array([share for _, share in part]) / SHARES
+        weights[rows, [i for (i, _), _ in part]] = shares
+        weights[rows, [j for (_, j), _ in part]] = 1 - shares
+        yield weights
+    rng = np.random.default_rng(0)
+    for start in range(0, RANDOM_MIXTURES if m > 2 else 0, chunk):
+        yield rng.dirichlet(np.full(m, 0.5), min(chunk, RANDOM_MIXTURES - start))
+
+
+def _rationalize(weights: Array, denominator: int) -> list[Fraction]:
+    """Round weights to a common denominator, keeping their sum at one."""
+    counts = np.floor(weights * denominator + 0.5).astype(int)
+    counts[counts.argmax()] += denominator - counts.sum()
+    return [Fraction(int(count), denominator) for count in counts]

@@ -1,0 +1,118 @@
+"""Search for a proof that no common quadratic function exists.
+
+None exists iff there are positive semidefinite ``X_i``, not all zero, with
+``sum A_i X_i + X_i A_i' >= 0`` (discrete time: ``sum A_i X_i A_i' - X_i >= 0``).
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from nrs_design.proof.evidence import NoCommonQuadratic
+from nrs_design.proof.system import SwitchedSystem, Time
+from nrs_design.search.allowance import Allowance
+from nrs_design.search.lmi import time_unit
+from nrs_design.search.sdp import (
+    maximize_margin,
+    pack,
+    program_cost,
+    symmetric_basis,
+    unpack,
+)
+
+Array = NDArray[np.float64]
+
+FACTOR_BITS = (8, 12, 16, 24, 32)
+RANK_TOLERANCE = 1e-9
+
+
+def solve_dual(matrices: Array, time: Time, allowance: Allowance | None = None) -> Array | None:
+    """Maximize s with ``sum A_i X_i + X_i A_i' >= s I`` over ``X_i >= 0`` of total trace one.
+
+    Parameters
+    ----------
+    matrices : ndarray, shape (m, n, n)
+        Modes, preferably balanced; the fewer, the better.
+    time : Time
+        Continuous or discrete.
+    allowance : Allowance, optional
+        Time and memory; unlimited by default.
+
+    Returns
+    -------
+    ndarray, shape (m, n, n), or None
+        The X_i if s > 0.
+
+    Raises
+    ------
+    NotAffordableError
+        If time or memory do not suffice.
+    """
+    allowance = allowance or Allowance()
+    m, n = matrices.shape[:2]
+    own = n * (n + 1) // 2
+    cost = program_cost(m * own + 1, own, [(n, 2 * own)] * (m + 1))
+    allowance.take(cost, f"a program of {m * own + 1} unknowns and {m + 1} blocks")
+    matrices = np.ldexp(matrices, time_unit(matrices, time))
+    basis, identity = symmetric_basis(n), pack(np.eye(n))
+    size = len(basis)
+    if time is Time.CONTINUOUS:
+        half = matrices[:, None] @ basis[None]
+        images = half + half.transpose(0, 1, 3, 2)
+    else:
+        images = matrices[:, None] @ basis[None] @ matrices.transpose(0, 2, 1)[:, None] - basis
+    variables = m * size
+    trace = np.append(np.tile(identity, m), 0.0)[None]
+    positive = np.hstack([-np.eye(variables), np.zeros((variables, 1))])
+    total = np.column_stack([-pack(images).reshape(variables, size).T, identity])
+    rows = np.vstack([trace, positive, total])
+    offset = np.zeros(len(rows))
+    offset[0] = 1.0
+    x = maximize_margin(rows, offset, [n] * (m + 1), 1, allowance.left)
+    if x is None or x[-1] <= 0:
+        return None
+    return unpack(x[:-1].reshape(m, size), n)
+
+
+def round_obstruction(
+    system: SwitchedSystem, multipliers: Array, exponents: NDArray[np.int64]
+) -> NoCommonQuadratic | None:
+    """Factor ``X_i = L_i L_i'``, round the factors, and check; None if no rounding passes.
+
+    Parameters
+    ----------
+    system : SwitchedSystem
+        Exact modes, in the order of the multipliers.
+    multipliers : ndarray, shape (m, n, n)
+        The X_i in coordinates scaled by ``2^d``.
+    exponents : ndarray of int, shape (n,)
+        The d.
+    """
+    largest = np.linalg.eigvalsh(multipliers).max()
+    if not np.isfinite(largest) or largest <= 0:
+        return None
+    factors = [_factor(X / largest) for X in multipliers]
+    shifts = [int(e - exponents.min()) for e in exponents]
+    for bits in FACTOR_BITS:
+        rounded = []
+        for mode, L in zip(system.modes, factors, strict=True):
+            integers = tuple(
+                tuple(round(float(entry) * 2.0**bits) << shift for entry in row)
+                for row, shift in zip(L, shifts, strict=True)
+            )
+            if any(any(row) for row in integers):
+                rounded.append((mode.name, integers))
+        evidence = NoCommonQuadratic(tuple(rounded))
+        if rounded and evidence.find_fault(system) is None:
+            return evidence
+    return None
+
+
+def _factor(X: Array) -> Array:
+    """Return L with ``X = L L'`` up to negligible eigenvalues; at least one column."""
+    values, vectors = np.linalg.eigh(X)
+    keep = values > min(RANK_TOLERANCE, values.max())
+    if not keep.any():
+        return np.zeros((len(X), 1))
+    return np.asarray(vectors[:, keep] * np.sqrt(values[keep]))

@@ -1,0 +1,226 @@
+"""Search for a periodic switching signal along which a solution grows."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from fractions import Fraction
+from itertools import chain, groupby
+from math import ceil, exp, isinf, log, log2
+
+import numpy as np
+from numpy.typing import NDArray
+
+from nrs_design.proof.evidence import UnstablePeriod
+from nrs_design.proof.system import SwitchedSystem, Time
+from nrs_design.search.allowance import Allowance
+from nrs_design.search.balance import mean_norm_coordinates
+from nrs_design.search.cycle import growing_cycles
+from nrs_design.search.graph import Cycle, Graph
+from nrs_design.search.walk import growing_walks
+from nrs_design.search.words import growing_words
+
+Array = NDArray[np.float64]
+Candidate = tuple[Cycle, Array]
+
+GREEDY_STEPS = 3000
+GREEDY_PERIODS = (2, 3, 4, 6, 8)
+TIME_BITS = (8, 12, 16, 24, 40)
+WALKS = 4
+# Longer cycles are not tried with other times in a second round.
+MAX_DOUBLED = 8
+CHANGES = (1, 2, 4, 8, -1, -2, -4, -8)
+ROUNDS = 40
+LONGEST_STEPS = 2000
+
+
+def find_growing_period(
+    system: SwitchedSystem, matrices: Array, allowance: Allowance | None = None
+) -> UnstablePeriod | None:
+    """Search for a period with a spectral radius above one, and enclose it rigorously.
+
+    Parameters
+    ----------
+    system : SwitchedSystem
+        Exact modes.
+    matrices : ndarray, shape (m, n, n)
+        The same in floating point, perhaps scaled.
+    allowance : Allowance, optional
+        Time and memory; unlimited by default.
+
+    Raises
+    ------
+    NotAffordableError
+        If time or memory do not suffice, and nothing was found.
+    """
+    allowance = allowance or Allowance()
+    if system.time is Time.DISCRETE and system.switching.is_arbitrary:
+        return _find_word(system, matrices, allowance)
+    if system.switching.resets:
+        # The scaled modes of a search do not fit the resets.
+        matrices = np.array([mode.A.floats() for mode in system.modes])
+    graph = Graph.of(system, matrices)
+    for cycle, times in _candidates(system, graph, allowance):
+        if evidence := _round(system, graph, cycle, times):
+            return evidence
+        allowance.check()
+    allowance.check()
+    return None
+
+
+def _find_word(
+    system: SwitchedSystem, matrices: Array, allowance: Allowance
+) -> UnstablePeriod | None:
+    for word, radius in growing_words(matrices, allowance):
+        steps = tuple((system.modes[i].name, Fraction(1)) for i in word)
+        if evidence := _enclose(system, UnstablePeriod(steps, 0), radius):
+            return evidence
+    return None
+
+
+def _candidates(system: SwitchedSystem, graph: Graph, allowance: Allowance) -> Iterator[Candidate]:
+    """Yield signals that grow in floating point."""
+    longer = _longer_signals(system, graph, allowance)
+    refine = _refined if system.time is Time.CONTINUOUS else _refined_steps
+    for cycle, start in chain(_twice(growing_cycles(graph, allowance)), longer):
+        times = graph.admissible(cycle, start)
+        allowance.check()
+        if graph.growth(cycle, times) > 0:
+            yield cycle, times
+        better = refine(graph, cycle, times)
+        if graph.growth(cycle, better) > 0:
+            yield cycle, better
+
+
+def _longer_signals(
+    system: SwitchedSystem, graph: Graph, allowance: Allowance
+) -> Iterator[Candidate]:
+    """Yield signals that may come back to a mode; in continuous time few, for refining is slow."""
+    if system.switching.is_arbitrary:
+        yield from _greedy_signals(graph)
+    elif system.time is Time.DISCRETE:
+        yield from growing_walks(graph, allowance)
+    else:
+        walks = growing_walks(graph, allowance)
+        yield from sorted(walks, key=lambda walk: -float(graph.growth(*walk)))[:WALKS]
+
+
+def _twice(cycles: Iterator[Candidate]) -> Iterator[Candidate]:
+    """Yield cycles, and short ones once more with two rounds of different times."""
+    for cycle, times in cycles:
+        yield cycle, times
+        if len(cycle) <= MAX_DOUBLED:
+            yield cycle + cycle, np.concatenate([times * 1.2, times * 0.8])
+
+
+def _greedy_signals(graph: Graph) -> Iterator[Candidate]:
+    """Yield signals with more steps: what an adversary settles into that always picks the worst.
+
+    It maximizes the mean of the modes' own norms after each short step. Its last few dwell times
+    are taken as a period.
+    """
+    matrices = graph.flows.matrices
+    inverse = np.linalg.inv(mean_norm_coordinates(matrices, Time.CONTINUOUS))
+    step = 0.05 / float(np.abs(np.linalg.eigvals(matrices)).max())
+    transitions = [graph.flows.at(k, np.array(step)).real for k in range(len(matrices))]
+    x, chosen = inverse[0] + 0.1, []
+    for _ in range(GREEDY_STEPS):
+        images = [E @ x for E in transitions]
+        chosen.append(int(np.argmax([np.linalg.norm(inverse @ y) for y in images])))
+        x = images[chosen[-1]] / np.linalg.norm(images[chosen[-1]])
+    runs = [(mode, len(list(group))) for mode, group in groupby(chosen)][1:-1]
+    between = {(jump.source, jump.target): k for k, jump in enumerate(graph.jumps)}
+    for length in GREEDY_PERIODS:
+        modes = [mode for mode, _ in runs[-length:]]
+        switches = list(zip(modes, (*modes[1:], *modes[:1]), strict=True))
+        if len(modes) == length and set(switches) <= between.keys():
+            counts = np.array([count for _, count in runs[-length:]], dtype=float)
+            yield tuple(between[switch] for switch in switches), step * counts
+
+
+def _refined(graph: Graph, cycle: Cycle, times: Array) -> Array:
+    """Climb from a start, over the logarithms of the times beyond the shortest."""
+    from scipy.optimize import minimize
+
+    modes = graph.modes(cycle)
+    shortest, longest = graph.shortest[modes], graph.longest[modes]
+    beyond = np.maximum(times - shortest, 1e-6 * times.max())
+
+    def bounded(logs: Array) -> Array:
+        return np.asarray(np.minimum(shortest + np.exp(logs), longest))
+
+    def decline(logs: Array) -> float:
+        return -float(graph.growth(cycle, bounded(logs)))
+
+    best = minimize(
+        decline,
+        np.log(beyond),
+        method="Nelder-Mead",
+        options={"maxiter": 400, "xatol": 1e-6, "fatol": 1e-12},
+    )
+    return bounded(best.x)
+
+
+def _refined_steps(graph: Graph, cycle: Cycle, times: Array) -> Array:
+    """Change the number of steps of one leg at a time while that helps."""
+    modes = graph.modes(cycle)
+    shortest = graph.shortest[modes]
+    longest = np.minimum(graph.longest[modes], shortest + LONGEST_STEPS)
+    best = float(graph.growth(cycle, times))
+    changes = np.kron(np.eye(len(cycle)), np.array(CHANGES)[:, None])
+    for _ in range(ROUNDS):
+        tried = np.clip(times + changes, shortest, longest)
+        growth = graph.growth(cycle, tried)
+        if not growth.max() > best:
+            break
+        best, times = float(growth.max()), tried[int(growth.argmax())]
+    return times
+
+
+def _round(
+    system: SwitchedSystem, graph: Graph, cycle: Cycle, times: Array
+) -> UnstablePeriod | None:
+    """Round times to few digits, keep them admissible, and check."""
+    names = [system.modes[mode].name for mode in graph.modes(cycle)]
+    edges = tuple(graph.jumps[k].way for k in cycle)
+    has_choice = len(set(_pairs(graph))) < len(graph.jumps)
+    for bits in TIME_BITS if system.time is Time.CONTINUOUS else TIME_BITS[-1:]:
+        steps = tuple(
+            (name, _admissible(system, name, _short(float(time), bits)))
+            for name, time in zip(names, times, strict=True)
+        )
+        floats = np.array([float(time) for _, time in steps])
+        growth = float(graph.growth(cycle, floats) * floats.sum())
+        evidence = UnstablePeriod(steps, 0, edges if has_choice else ())
+        if found := _enclose(system, evidence, exp(min(growth, 700.0))):
+            return found
+    return None
+
+
+def _pairs(graph: Graph) -> list[tuple[int, int]]:
+    return [(jump.source, jump.target) for jump in graph.jumps]
+
+
+def _admissible(system: SwitchedSystem, mode: str, time: Fraction) -> Fraction:
+    stay = system.stays()[mode]
+    time = max(time, stay.shortest)
+    return time if stay.longest is None else min(time, stay.longest)
+
+
+def _enclose(
+    system: SwitchedSystem, evidence: UnstablePeriod, radius: float
+) -> UnstablePeriod | None:
+    """Try powers from where the trace should exceed n."""
+    if not radius > 1 or isinf(radius):
+        return None
+    first = max(0, ceil(log2(log(2 * system.order) / log(radius))))
+    for doublings in range(first, first + 4):
+        tried = UnstablePeriod(evidence.steps, doublings, evidence.edges)
+        if tried.find_fault(system) is None:
+            return tried
+    return None
+
+
+def _short(time: float, bits: int) -> Fraction:
+    """Round a time to so many significant bits."""
+    shift = bits - int(np.frexp(time)[1])
+    return Fraction(round(Fraction(time) * Fraction(2) ** shift)) / Fraction(2) ** shift

@@ -1,0 +1,316 @@
+"""Search for a common homogeneous polynomial Lyapunov function.
+
+``V(x) = z' Q z`` with z the monomials of degree d. The derivative along a mode is
+``z' (L'Q + QL) z`` with the lifted mode L, and any form that vanishes identically may be added to
+its Gram matrix. The existence of such a function for some degree is necessary for stability
+under arbitrary switching too (Mason, Boscain and Chitour 2006).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+from math import comb, factorial, prod
+
+import numpy as np
+from numpy.typing import NDArray
+
+from nrs_design.proof.evidence import CommonPolynomial
+from nrs_design.proof.evidence.common_polynomial import (
+    MAX_DEGREE,
+    MAX_MONOMIALS,
+    lifted_factor,
+)
+from nrs_design.proof.lift import derivative_lift, monomials, power_lift
+from nrs_design.proof.matrix import RationalMatrix
+from nrs_design.proof.system import SwitchedSystem, Time
+from nrs_design.search.allowance import Allowance, Cost
+from nrs_design.search.balance import scale
+from nrs_design.search.lmi import decreases, time_unit
+from nrs_design.search.rounding import round_rate
+from nrs_design.search.sdp import (
+    maximize_margin,
+    pack,
+    program_cost,
+    symmetric_basis,
+    unpack,
+)
+
+Array = NDArray[np.float64]
+Exponents = NDArray[np.int64]
+Pair = tuple[int, int]
+
+ROUNDING_BITS = (10, 14, 18, 24, 30, 38, 46, 52)
+BACK_OFFS = (0.99, 0.9, 0.5, 0.1, 1e-2, 1e-4)
+
+
+@dataclass(frozen=True)
+class Lift:
+    """A family lifted to degree d, in floating point and in well-conditioned coordinates.
+
+    Parameters
+    ----------
+    variables : int
+        The number of states n.
+    degree : int
+        The d.
+    matrices : ndarray, shape (m, K, K)
+        Lifted modes in the coordinates ``2^e z(x)``.
+    vanishing : ndarray, shape (p, K, K)
+        Basis of the symmetric N with ``z' N z = 0`` for all x, in the same coordinates.
+    exponents : ndarray of int, shape (K,)
+        The e.
+    unit : int
+        The modes are those in a unit of time of two to this power (discrete time: zero).
+    """
+
+    variables: int
+    degree: int
+    matrices: Array
+    vanishing: Array
+    exponents: Exponents
+    unit: int
+
+
+@dataclass(frozen=True)
+class Candidate:
+    """Gram matrix Q, shape (K, K), and one vanishing form per mode, shape (m, K, K)."""
+
+    Q: Array
+    vanishing: Array
+
+
+def lift_family(system: SwitchedSystem, exponents: Exponents, degree: int) -> Lift:
+    """Lift the modes exactly, then scale by powers of two.
+
+    Monomials are weighted by powers of two near ``sqrt(multinomial)``: nearly an orthonormal
+    basis in the rotation-invariant inner product of forms, so that degree keeps helping.
+
+    Parameters
+    ----------
+    system : SwitchedSystem
+        Exact modes.
+    exponents : ndarray of int, shape (n,)
+        Balancing exponents of the states.
+    degree : int
+        Half the degree of the function.
+    """
+    basis = monomials(system.order, degree)
+    scaling = monomial_weights(system.order, degree)
+    scaling -= np.array(basis, dtype=np.int64) @ exponents
+    lifted = np.array([_lift_mode(mode.A, degree, system.time).floats() for mode in system.modes])
+    matrices = np.ldexp(lifted, scaling[:, None] - scaling[None, :])
+    # The unit of the modes themselves: lifted entries, and margins with them, grow with degree.
+    given = np.array([mode.A.floats() for mode in system.modes])
+    unit = time_unit(scale(given, exponents), system.time)
+    forms = _differences(system.order, degree, scaling)
+    return Lift(system.order, degree, np.ldexp(matrices, unit), forms, scaling, unit)
+
+
+def products(variables: int, degree: int) -> list[list[Pair]]:
+    """Group the pairs of monomials by their product; diagonal pairs first in their group."""
+    basis = monomials(variables, degree)
+    groups: dict[tuple[int, ...], list[Pair]] = {}
+    for i, a in enumerate(basis):
+        for j in range(i, len(basis)):
+            key = tuple(p + q for p, q in zip(a, basis[j], strict=True))
+            groups.setdefault(key, []).append((i, j))
+    return [sorted(group, key=lambda pair: pair[0] != pair[1]) for group in groups.values()]
+
+
+def monomial_weights(variables: int, degree: int) -> Exponents:
+    """Return the logarithms of powers of two near ``sqrt(multinomial)``."""
+    counts = [factorial(degree) / prod(map(factorial, a)) for a in monomials(variables, degree)]
+    return np.asarray(np.rint(np.log2(counts) / 2).astype(np.int64))
+
+
+def _differences(variables: int, degree: int, scaling: Exponents) -> Array:
+    """Return a basis of the forms that vanish identically, shape (p, K, K)."""
+    pairs = [group for group in products(variables, degree) if len(group) > 1]
+    forms = [_difference(group[0], other, scaling) for group in pairs for other in group[1:]]
+    return np.array(forms).reshape(-1, len(scaling), len(scaling))
+
+
+def vanishing_basis(variables: int, degree: int, scaling: Exponents) -> Array:
+    """Return an orthonormal basis of the forms that vanish, in the coordinates ``2^e z(x)``."""
+    return orthonormal(_differences(variables, degree, scaling))
+
+
+def orthonormal(forms: Array) -> Array:
+    """Return an orthonormal basis of the span of symmetric matrices, shape (p, K, K)."""
+    if not len(forms):
+        return forms
+    return unpack(np.linalg.qr(pack(forms).T)[0].T, forms.shape[-1])
+
+
+def highest_degree(variables: int) -> int:
+    """Return the largest d whose monomials a certificate can hold."""
+    degrees = range(1, MAX_DEGREE // 2 + 1)
+    fitting = (d for d in degrees if comb(variables + d - 1, d) <= MAX_MONOMIALS)
+    return max(fitting, default=1)
+
+
+def polynomial_cost(variables: int, modes: int, degree: int) -> tuple[Cost, str]:
+    """Predict what `find_common_polynomial` takes before anything is lifted; say for what."""
+    order = comb(variables + degree - 1, degree)
+    shared = order * (order + 1) // 2 + 1
+    forms = shared - 1 - comb(variables + 2 * degree - 1, 2 * degree)
+    cones = [(order, shared)] * 2 + [(order, shared + forms)] * modes
+    return program_cost(shared + modes * forms, shared, cones), f"a program in {order} monomials"
+
+
+def find_common_polynomial(
+    lift: Lift, time: Time, rate: float, allowance: Allowance | None = None
+) -> Candidate | None:
+    """Maximize the margin by semidefinite programming.
+
+    Parameters
+    ----------
+    lift : Lift
+        As `lift_family` gives it.
+    time : Time
+        Continuous or discrete.
+    rate : float
+        alpha in 1/s, or rho per step.
+    allowance : Allowance, optional
+        Time and memory; unlimited by default.
+
+    Returns
+    -------
+    Candidate or None
+        None if the margin is not positive.
+
+    Raises
+    ------
+    NotAffordableError
+        If time or memory do not suffice.
+    """
+    allowance = allowance or Allowance()
+    allowance.take(*polynomial_cost(lift.variables, len(lift.matrices), lift.degree))
+    rate = float(np.ldexp(rate, lift.unit))
+    lifted_rate = rate * lift.degree if time is Time.CONTINUOUS else rate**lift.degree
+    m, K = lift.matrices.shape[:2]
+    basis, identity = symmetric_basis(K), pack(np.eye(K))
+    size, forms = len(basis), len(lift.vanishing)
+    directions = pack(orthonormal(lift.vanishing))
+    blocks = [np.zeros((size, size + m * forms + 1)) for _ in range(m + 2)]
+    blocks[0][:, :size] = np.eye(size)
+    blocks[1][:, :size] = -np.eye(size)
+    for k, block in enumerate(blocks[2:]):
+        images = decreases(lift.matrices[k], basis, time, lifted_rate)
+        block[:, :size] = -pack(images).T
+        block[:, size + k * forms : size + (k + 1) * forms] = -directions.T
+        block[:, -1] = identity
+    offset = np.concatenate([identity, np.zeros(size * (m + 1))])
+    x = maximize_margin(np.vstack(blocks), offset, [K] * (m + 2), time_limit=allowance.left)
+    if x is None or x[-1] <= 0:
+        return None
+    weights = x[size:-1].reshape(m, forms)
+    Q = np.tensordot(x[:size], basis, axes=1)
+    return Candidate(Q, np.tensordot(weights @ directions, basis, axes=1))
+
+
+def round_polynomial(
+    system: SwitchedSystem, lift: Lift, candidate: Candidate, limit: float
+) -> CommonPolynomial | None:
+    """Round a candidate to integers at the best rate that it shows; None if nothing passes.
+
+    Parameters
+    ----------
+    system : SwitchedSystem
+        Exact modes.
+    lift : Lift
+        The lift that the candidate belongs to.
+    candidate : Candidate
+        Found by `find_common_polynomial`.
+    limit : float
+        Rate of the slowest mode, which no function exceeds.
+    """
+    best = _own_rate(lift, candidate, system.time)
+    if not np.isfinite(best):
+        return None
+    for back_off in BACK_OFFS:
+        if system.time is Time.CONTINUOUS:
+            rate = round_rate(min(best, limit) * back_off, system.time)
+        else:
+            rate = round_rate(1 - (1 - max(best, limit)) * back_off, system.time)
+        for bits in ROUNDING_BITS:
+            evidence = _integers(system, lift, candidate, rate, bits)
+            if evidence.find_fault(system) is None:
+                return evidence
+    return None
+
+
+def _own_rate(lift: Lift, candidate: Candidate, time: Time) -> float:
+    """Return the rate that Q and the vanishing forms show, by generalized eigenvalues."""
+    forms = decreases(lift.matrices, candidate.Q, time, 0.0) + candidate.vanishing
+    inverse = np.linalg.inv(np.linalg.cholesky(candidate.Q))
+    smallest = float(np.linalg.eigvalsh(inverse @ forms @ inverse.T).min())
+    if time is Time.CONTINUOUS:
+        return float(np.ldexp(smallest / (2 * lift.degree), -lift.unit))
+    return float(max(-smallest, 0.0) ** (0.5 / lift.degree))
+
+
+def _integers(
+    system: SwitchedSystem, lift: Lift, candidate: Candidate, rate: Fraction, bits: int
+) -> CommonPolynomial:
+    exponents = lift.exponents - lift.exponents.min()
+    normalized = int(np.frexp(np.abs(candidate.Q).max())[1])
+    Q = _round(np.ldexp(candidate.Q, bits - normalized), exponents)
+    groups = products(system.order, lift.degree)
+    vanishing = []
+    for mode, N in zip(system.modes, candidate.vanishing, strict=True):
+        # The integer form of the decrease is this multiple of the floating-point one.
+        factor = lifted_factor(mode, lift.degree, rate, system.time)
+        rounded = [
+            [_shift(factor * entry, -lift.unit) for entry in row]
+            for row in _round(np.ldexp(N, bits - normalized), exponents)
+        ]
+        vanishing.append(make_vanish(rounded, groups))
+    return CommonPolynomial(
+        degree=lift.degree,
+        Q=tuple(map(tuple, Q)),
+        denominator_log2=max(0, bits + 2 * int(-lift.exponents.min())),
+        vanishing=tuple(tuple(map(tuple, N)) for N in vanishing),
+        rate=rate,
+    )
+
+
+def _round(M: Array, exponents: Exponents) -> list[list[int]]:
+    """Round to integers, then undo the scaling: ``2^e M 2^e``."""
+    return [
+        [round(float(v)) << int(ei + ej) for v, ej in zip(row, exponents, strict=True)]
+        for row, ei in zip((M + M.T) / 2, exponents, strict=True)
+    ]
+
+
+def _shift(value: int, exponent: int) -> int:
+    return value << exponent if exponent >= 0 else value >> -exponent
+
+
+def make_vanish(N: list[list[int]], groups: list[list[Pair]]) -> list[list[int]]:
+    """Correct one entry for each product of monomials so that ``z' N z`` vanishes exactly."""
+    for group in groups:
+        total = sum(N[i][j] * (1 if i == j else 2) for i, j in group)
+        i, j = group[0]
+        # Without a diagonal pair in the group, the total is even.
+        N[i][j] -= total if i == j else total // 2
+        N[j][i] = N[i][j]
+    return N
+
+
+def _lift_mode(A: RationalMatrix, degree: int, time: Time) -> RationalMatrix:
+    if time is Time.CONTINUOUS:
+        rows, denominator = derivative_lift(A.numerators, degree), A.denominator
+    else:
+        rows, denominator = power_lift(A.numerators, degree), A.denominator**degree
+    return RationalMatrix(tuple(map(tuple, rows)), denominator)
+
+
+def _difference(one: Pair, other: Pair, scaling: Exponents) -> Array:
+    """Return the form ``z_i z_j - z_k z_l`` of two pairs with the same product, scaled."""
+    form = np.zeros((len(scaling), len(scaling)))
+    for (i, j), sign in ((one, 1.0), (other, -1.0)):
+        form[i, j] += sign / 2
+        form[j, i] += sign / 2
+    return np.asarray(np.ldexp(form, -scaling[:, None] - scaling[None, :]))

@@ -1,0 +1,61 @@
+"""Structure that makes a family smaller before any search: equal modes and triangular blocks."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from nrs_design.proof.matrix import RationalMatrix
+from nrs_design.proof.system import SwitchedSystem
+
+Pattern = NDArray[np.bool_]
+
+
+def merge_equal_modes(system: SwitchedSystem) -> SwitchedSystem:
+    """Keep the first of every set of equal modes; the same system if there are none."""
+    first: dict[RationalMatrix, int] = {}
+    for index, mode in enumerate(system.modes):
+        first.setdefault(mode.A, index)
+    if len(first) == len(system.modes):
+        return system
+    return replace(system, modes=tuple(system.modes[index] for index in first.values()))
+
+
+def triangular_blocks(system: SwitchedSystem) -> tuple[tuple[int, ...], ...]:
+    """Order the states into blocks such that no block is driven by an earlier one.
+
+    The blocks are the strongly connected components of the union of all patterns of A.
+    """
+    n = system.order
+    pattern = np.zeros((n, n), dtype=bool)
+    for mode in system.modes:
+        pattern |= np.array(mode.A.numerators, dtype=bool)
+        if pattern.all():
+            return (tuple(range(n)),)
+    reaches = _reach(pattern)
+    # States that reach each other are one block; its first state stands for it.
+    first = np.argmax(reaches & reaches.T, axis=1)
+    blocks = [tuple(int(i) for i in np.flatnonzero(first == k)) for k in sorted({*first})]
+    drives = [[pattern[np.ix_(a, b)].any() for b in blocks] for a in blocks]
+    return tuple(blocks[k] for k in _sources_first(np.array(drives)))
+
+
+def _reach(pattern: Pattern) -> Pattern:
+    """Return which state is driven by which in any number of steps, by squaring."""
+    reaches = pattern | np.eye(len(pattern), dtype=bool)
+    for _ in range(len(pattern).bit_length()):
+        reaches = reaches @ reaches
+    return reaches
+
+
+def _sources_first(driven_by: Pattern) -> list[int]:
+    """Order blocks so that each is driven by itself and later ones only."""
+    remaining, order = set(range(len(driven_by))), []
+    while remaining:
+        # A block that drives no other remaining block comes next.
+        index = min(k for k in remaining if not any(driven_by[j, k] for j in remaining if j != k))
+        order.append(index)
+        remaining.remove(index)
+    return order

@@ -1,0 +1,109 @@
+"""What the trusted walk over the conditions refuses, whatever the evidence says of itself."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+import pytest
+
+from nrs_design.proof.evidence import AbstractEvidence, Shows
+from nrs_design.proof.exact import MAX_WORK
+from nrs_design.proof.matrix import RationalMatrix
+from nrs_design.proof.system import Mode, Reset, Switching
+from tests.proof.systems import family, matrix
+
+SYSTEM = family([[-1, 0], [0, -1]], [[-2, 0], [0, -1]])
+
+
+@dataclass(frozen=True)
+class Claimed(AbstractEvidence):
+    """Evidence that consists of the forms it is told."""
+
+    kind = "claimed"
+    matrices: tuple = ()
+    misfit: str | None = None
+    shift: int = 0
+
+    @property
+    def shows(self):
+        return Shows.STABILITY
+
+    def find_misfit(self, system):
+        return self.misfit
+
+    def forms(self, system):
+        for form in self.matrices:
+            yield "it fails", tuple(tuple(v << self.shift for v in row) for row in form)
+
+    def claim(self, system):
+        return ""
+
+    def to_fields(self):
+        return {}
+
+    @classmethod
+    def from_fields(cls, fields, system):
+        return cls()
+
+
+def test_positive_definite_forms_hold():
+    assert Claimed((((2, 1), (1, 2)), ((5,),))).find_fault(SYSTEM) is None
+
+
+@pytest.mark.parametrize(
+    "form",
+    [
+        ((1, 2), (2, 4)),  # singular
+        ((1, 0), (0, -1)),
+        ((0,),),
+        ((2, 1), (0, 2)),  # positive as a form, but not symmetric
+        ((2, 1),),  # not square
+    ],
+)
+def test_one_bad_form_among_good_ones_is_found(form):
+    good = ((2, 1), (1, 2))
+    assert Claimed((good, form, good)).find_fault(SYSTEM) == "it fails"
+
+
+def test_a_form_too_large_is_no_proof():
+    fault = Claimed((((1,),),), shift=MAX_WORK).find_fault(SYSTEM)
+    assert "too large to check" in fault
+
+
+@pytest.mark.parametrize(
+    ("number", "said"),
+    [(10**4300, "14285 bits"), (np.int64(3), "int64"), (3.0, "float")],
+    ids=["long", "NumPy", "float"],
+)
+def test_numbers_that_no_file_can_hold_are_no_proof(number, said):
+    """Integers of NumPy overflow without a word, long ones cannot be written."""
+    assert said in Claimed((((number,),),)).find_fault(SYSTEM)
+
+
+def test_a_misfit_comes_before_the_forms():
+    assert Claimed((((0,),),), "of another system").find_fault(SYSTEM) == "of another system"
+
+
+@pytest.mark.parametrize(
+    "A",
+    [
+        RationalMatrix(((-1, 0), (0, -1)), -1),
+        RationalMatrix(((-1, 0), (0, -1)), 0),
+        RationalMatrix(((-1, 0),), 1),
+        RationalMatrix((), 1),
+    ],
+)
+def test_a_malformed_mode_carries_no_proof(A):
+    system = replace(SYSTEM, modes=(*SYSTEM.modes, Mode("odd", A)))
+    assert "mode odd is not a square matrix" in Claimed().find_fault(system)
+
+
+def test_no_modes_or_two_of_one_name_carry_no_proof():
+    assert Claimed().find_fault(replace(SYSTEM, modes=())) == "the system has no modes"
+    twice = replace(SYSTEM, modes=SYSTEM.modes * 2)
+    assert "the same name" in Claimed().find_fault(twice)
+
+
+def test_resets_and_unequal_modes_must_be_asked_for():
+    resets = Switching(resets=(Reset("m0", "m1", matrix([[2, 0], [0, 2]])),))
+    assert "does not cover" in Claimed().find_fault(replace(SYSTEM, switching=resets))
+    assert "equal size" in Claimed().find_fault(family([[-1]], [[-1, 0], [0, -1]]))

@@ -1,0 +1,143 @@
+"""Evidence of kind block-triangular: the order of blocks, what the parts must show, attacks."""
+
+from dataclasses import replace
+from fractions import Fraction
+from time import process_time
+
+import pytest
+
+from nrs_design.proof.evidence import (
+    BlockTriangular,
+    CommonQuadratic,
+    UnstableMode,
+    read_evidence,
+)
+from nrs_design.proof.evidence.block_triangular import diagonal_block
+from nrs_design.proof.system import Switching, Time
+from nrs_design.search.certify import CommonQuadraticStatus, Verdict, certify
+from tests.proof.systems import dayawansa_martin, family, genuine, resets_between
+
+ONE = CommonQuadratic(((1,),), 0, Fraction(1, 2))
+CASCADE = family([[-1, 5], [0, -2]], [[-2, -7], [0, -1]])
+
+
+def test_a_cascade_by_hand():
+    evidence = BlockTriangular(((0,), (1,)), ((0, ONE), (1, ONE)))
+    assert evidence.find_fault(CASCADE) is None
+    assert evidence.proved_rate(CASCADE) == Fraction(1, 2)
+
+
+def test_the_rate_is_that_of_the_slowest_block():
+    slow = replace(ONE, rate=Fraction(1, 8))
+    evidence = BlockTriangular(((0,), (1,)), ((0, ONE), (1, slow)))
+    assert evidence.proved_rate(CASCADE) == Fraction(1, 8)
+    steps = family([["1/8", 5], [0, "1/4"]], time=Time.DISCRETE)
+    assert BlockTriangular(((0,), (1,)), ((0, ONE), (1, slow))).find_fault(steps) is not None
+    fast = BlockTriangular(((0,), (1,)), ((0, replace(ONE, rate=Fraction(1, 4))), (1, ONE)))
+    assert fast.find_fault(steps) is None
+    assert fast.proved_rate(steps) == Fraction(1, 2)
+
+
+def test_the_order_of_blocks_is_the_direction_of_driving():
+    # State 1 is driven by state 2: block {1} comes first.
+    reversed_order = BlockTriangular(((1,), (0,)), ((0, ONE), (1, ONE)))
+    assert "triangular" in str(reversed_order.find_fault(CASCADE))
+
+
+def test_both_directions_of_driving_are_one_block():
+    # Each mode is triangular, but in different orders; their average is not stable.
+    system = family([[-1, 10], [0, -1]], [[-1, 0], [10, -1]])
+    for blocks in (((0,), (1,)), ((1,), (0,))):
+        evidence = BlockTriangular(blocks, ((0, ONE), (1, ONE)))
+        assert evidence.find_fault(system) is not None
+    assert certify(system).verdict is Verdict.REFUTED
+
+
+@pytest.mark.parametrize(
+    "blocks", [((0,),), ((0, 1), (1,)), ((0,), (1,), ()), ((0,), (2,)), ((0, 0), (1,)), ()]
+)
+def test_blocks_partition_the_states(blocks):
+    parts = tuple((k, ONE) for k in range(len(blocks)))
+    assert BlockTriangular(blocks, parts).find_fault(CASCADE) is not None
+
+
+@pytest.mark.parametrize("indices", [(0,), (1,), (0, 0), (1, 0), (0, 1, 1), (0, 2), (0, -1)])
+def test_stability_needs_every_block_once(indices):
+    parts = tuple((index, ONE) for index in indices)
+    assert BlockTriangular(((0,), (1,)), parts).find_fault(CASCADE) is not None
+
+
+def test_one_unstable_block_suffices():
+    system = family([[-1, 5, 1], [0, 0, 1], [0, -1, 0]])
+    evidence = BlockTriangular(((0,), (1, 2)), ((1, UnstableMode("m0", "0 +- 1j")),))
+    assert evidence.find_fault(system) is None
+    assert certify(system).verdict is Verdict.REFUTED
+
+
+def test_parts_show_one_and_the_same():
+    parts = ((0, ONE), (1, UnstableMode("m0", "1")))
+    assert BlockTriangular(((0,), (1,)), parts).find_fault(CASCADE) is not None
+    assert BlockTriangular(((0,), (1,)), ()).find_fault(CASCADE) is not None
+
+
+def test_a_decoupled_state_hides_no_obstruction():
+    system, _ = genuine("block-triangular")
+    found = certify(system)
+    assert found.verdict is Verdict.PROVED
+    assert found.common_quadratic is CommonQuadraticStatus.IMPOSSIBLE
+
+
+def test_quadratic_blocks_make_a_quadratic_whole():
+    assert certify(CASCADE).common_quadratic is CommonQuadraticStatus.EXISTS
+
+
+def test_blocks_of_the_pair_of_dayawansa_and_martin_beyond_its_limit():
+    rows = [mode.A.fractions() for mode in dayawansa_martin(12).modes]
+    system = family(*([[-1, 3, 0], [0, *A[0]], [0, *A[1]]] for A in rows))
+    found = certify(system)
+    assert found.verdict is Verdict.REFUTED
+    assert found.evidence.kind == "block-triangular"
+
+
+def test_resets_may_drive_against_the_order():
+    evidence = BlockTriangular(((0,), (1,)), ((0, ONE), (1, ONE)))
+    resets = resets_between(("m0", "m1", [[1, 0], [9, 1]]))
+    assert evidence.find_fault(replace(CASCADE, switching=Switching(resets=resets))) is not None
+
+
+def test_a_part_must_fit_the_switching_too():
+    mixed = genuine("unstable-mixture")[1]
+    rows = [mode.A.fractions() for mode in genuine("unstable-mixture")[0].modes]
+    system = family(*([[*A[0], 0], [*A[1], 0], [0, 0, -1]] for A in rows))
+    evidence = BlockTriangular(((0, 1), (2,)), ((0, mixed),))
+    assert evidence.find_fault(system) is None
+    assert evidence.find_fault(replace(system, switching=Switching(Fraction(5)))) is not None
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        {"blocks": [[0] * 10**5, [1]]},
+        {"blocks": [[], [0, 1]]},
+        {"blocks": []},
+        {"blocks": [[0], [7]]},
+        {"parts": []},
+        {"parts": [{"block": -1, "kind": "common-quadratic"}]},
+        {"parts": [{"block": 0, "kind": "block-triangular", "blocks": [[0]], "parts": []}]},
+    ],
+)
+def test_hostile_fields_are_rejected_at_once(change):
+    fields = {
+        "kind": "block-triangular",
+        **BlockTriangular(((0,), (1,)), ((0, ONE), (1, ONE))).to_fields(),
+    }
+    start = process_time()
+    with pytest.raises(ValueError, match=r"part|nothing"):
+        read_evidence({**fields, **change}, CASCADE)
+    assert process_time() - start < 0.5
+
+
+def test_the_diagonal_block_of_a_family():
+    block = diagonal_block(CASCADE, (1,))
+    assert [mode.A.fractions() for mode in block.modes] == [[[-2]], [[-1]]]
+    assert block.states == ("x2",)

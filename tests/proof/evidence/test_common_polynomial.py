@@ -1,0 +1,138 @@
+"""Evidence of kind common-polynomial: published values, its conditions, and attacks on them."""
+
+from dataclasses import replace
+from fractions import Fraction
+from time import process_time
+
+import pytest
+
+from nrs_design.proof.evidence import CommonPolynomial, read_evidence
+from nrs_design.proof.system import Switching
+from nrs_design.search.certify import Limits, Method, Verdict, certify
+from tests.proof.systems import (
+    dayawansa_martin,
+    family,
+    genuine,
+    oscillator,
+    resets_between,
+    robot,
+)
+from tests.proof.truth import holds
+
+
+def by_polynomial(system, degree):
+    return certify(system, Method.POLYNOMIAL, Limits(max_degree=degree, budget=30))
+
+
+@pytest.mark.parametrize(
+    ("a", "degree"), [("6", 4), ("7", 4), ("10.76", 12), ("11", 20), ("11.1", 24)]
+)
+def test_pair_of_dayawansa_and_martin_has_a_polynomial(a, degree):
+    found = by_polynomial(dayawansa_martin(a), degree)
+    assert found.verdict is Verdict.PROVED
+    assert 2 * found.evidence.degree <= degree
+    # Both modes have the eigenvalues -1 +- j: no function decays faster.
+    assert 0 < found.evidence.rate <= 1
+
+
+def test_quadratic_functions_end_where_published():
+    # 3 + 2 sqrt(2) = 5.8284...; degree four begins where degree two ends.
+    assert by_polynomial(dayawansa_martin("5.829"), 4).evidence.degree == 2
+
+
+@pytest.mark.parametrize("a", ["11.262", "11.27", "12"])
+def test_no_polynomial_beyond_the_limit_of_stability(a):
+    assert by_polynomial(dayawansa_martin(a), 24).verdict is not Verdict.PROVED
+
+
+@pytest.mark.parametrize(("kbar", "proved"), [("6", True), ("6.7", True), ("6.986", False)])
+def test_oscillator_up_to_its_published_limit(kbar, proved):
+    # 6.98513 (Zelentsovsky 1994).
+    assert (by_polynomial(oscillator(kbar), 20).verdict is Verdict.PROVED) is proved
+
+
+def test_designs_of_the_robot_by_the_published_degrees():
+    tissue = robot("0.01", [("43", "1.04"), ("43", "2.15"), ("62", "1.04"), ("62", "2.15")])
+    hand = robot(
+        "0",
+        [("24.9984", "1.04"), ("24.9984", "2.15"), ("90.432", "1.04"), ("90.432", "2.15")],
+    )
+    for system, degree in ((tissue, 4), (hand, 6)):
+        found = certify(system, limits=Limits(optimize_rate=False))
+        assert 2 * found.evidence.degree == degree
+        assert found.evidence.find_fault(system) is None
+
+
+def test_the_rate_cannot_be_raised_beyond_the_slowest_mode():
+    system, evidence = genuine("common-polynomial")
+    assert replace(evidence, rate=Fraction(1)).find_fault(system) is not None
+    assert replace(evidence, rate=Fraction(0)).find_fault(system) is not None
+    assert replace(evidence, rate=-evidence.rate).find_fault(system) is not None
+
+
+def test_a_form_that_does_not_vanish_would_prove_anything():
+    # With N = c I the condition always holds: it must be seen that z'Nz is not zero.
+    system = dayawansa_martin(12)
+    _, evidence = genuine("common-polynomial")
+    size = len(evidence.Q)
+    N = tuple(tuple(10**9 * (i == j) for j in range(size)) for i in range(size))
+    forged = replace(evidence, vanishing=(N, N))
+    assert forged.find_fault(system) == "a form that must vanish does not"
+
+
+def test_vanishing_forms_belong_to_their_modes():
+    system, evidence = genuine("common-polynomial")
+    assert replace(evidence, vanishing=evidence.vanishing[:1]).find_fault(system) is not None
+    swapped = replace(evidence, vanishing=evidence.vanishing[::-1])
+    assert swapped.find_fault(system) is not None or holds(system, swapped)
+
+
+def test_it_does_not_cover_resets():
+    system, evidence = genuine("common-polynomial")
+    resets = resets_between(("m0", "m1", [[2, 0], [0, 2]]))
+    assert evidence.find_fault(replace(system, switching=Switching(resets=resets))) is not None
+
+
+@pytest.mark.parametrize(
+    "switching",
+    [
+        Switching(Fraction(3)),
+        Switching(transitions=(("m0", "m1"),)),
+        Switching(fixed_ends=(("m0", "m1"),)),
+    ],
+)
+def test_it_covers_fewer_signals_than_all(switching):
+    system, evidence = genuine("common-polynomial")
+    assert evidence.find_fault(replace(system, switching=switching)) is None
+
+
+@pytest.mark.parametrize("degree", [0, -2, 66, 10**300])
+def test_degrees_out_of_range_are_rejected_at_once(degree):
+    system, evidence = genuine("common-polynomial")
+    fields = {"kind": evidence.kind, **evidence.to_fields(), "degree": degree}
+    start = process_time()
+    assert read_evidence(fields, system).find_fault(system) is not None
+    assert process_time() - start < 0.5
+
+
+def test_odd_degrees_do_not_exist():
+    system, evidence = genuine("common-polynomial")
+    with pytest.raises(ValueError, match="odd"):
+        read_evidence({"kind": evidence.kind, **evidence.to_fields(), "degree": 5}, system)
+
+
+@pytest.mark.parametrize(("n", "degree"), [(64, 2), (64, 32), (16, 3)])
+def test_lifts_that_nobody_can_check_are_rejected_at_once(n, degree):
+    system = family([[-(i == j) for j in range(n)] for i in range(n)])
+    evidence = CommonPolynomial(degree, ((1,),), 0, (((0,),),), Fraction(1, 2))
+    start = process_time()
+    assert "monomials" in str(evidence.find_fault(system))
+    assert process_time() - start < 0.5
+
+
+def test_giant_integers_do_not_hang():
+    system, evidence = genuine("common-polynomial")
+    giant = tuple(tuple(q * 10**4000 for q in row) for row in evidence.Q)
+    start = process_time()
+    replace(evidence, Q=giant).find_fault(system)
+    assert process_time() - start < 1

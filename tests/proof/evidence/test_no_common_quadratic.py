@@ -1,0 +1,83 @@
+"""Evidence of kind no-common-quadratic: thresholds, the trace argument, and attacks."""
+
+from dataclasses import replace
+
+import pytest
+
+from nrs_design.proof.evidence import NoCommonQuadratic
+from nrs_design.proof.system import Switching
+from nrs_design.search.certify import CommonQuadraticStatus, Limits, certify
+from tests.proof.systems import (
+    ando_shih,
+    dayawansa_martin,
+    degenerate_dual,
+    family,
+    genuine,
+    oscillator,
+)
+
+IDENTITY = ((1, 0), (0, 1))
+
+
+def status(system):
+    return certify(system, limits=Limits(max_degree=2, optimize_rate=False)).common_quadratic
+
+
+@pytest.mark.parametrize(
+    ("system", "expected"),
+    [
+        # 3 + 2 sqrt(2) = 5.82842...
+        (dayawansa_martin("5.828"), "exists"),
+        (dayawansa_martin("5.829"), "impossible"),
+        # Circle criterion: 1 + 2 sqrt(2) = 3.82842...
+        (oscillator("3.828"), "exists"),
+        (oscillator("3.829"), "impossible"),
+        # 1/sqrt(2) = 0.70710...
+        (ando_shih("0.707"), "exists"),
+        (ando_shih("0.708"), "impossible"),
+        (degenerate_dual(), "impossible"),
+    ],
+)
+def test_both_sides_of_published_thresholds(system, expected):
+    assert status(system) is CommonQuadraticStatus(expected)
+
+
+@pytest.mark.parametrize("example", ["no-common-quadratic", "no-common-quadratic, discrete"])
+def test_it_is_never_shown_for_a_family_that_has_one(example):
+    _, evidence = genuine(example)
+    for easy in (dayawansa_martin(5), ando_shih("0.7")):
+        assert evidence.find_fault(easy) is not None
+
+
+def test_a_hurwitz_mode_alone_has_a_function_whatever_the_factors():
+    system = family([[-1, 100], [0, -1]])
+    for L in (IDENTITY, ((1,), (0,)), ((3, -5), (2, 7)), ((0,), (0,))):
+        assert NoCommonQuadratic((("m0", L),)).find_fault(system) is not None
+
+
+def test_multipliers_cannot_be_negative():
+    # X = -I would "show" it for -I; a factor L makes X = L L' whatever its sign.
+    system = family([[-1, 0], [0, -1]])
+    assert NoCommonQuadratic((("m0", ((-1, 0), (0, -1))),)).find_fault(system) is not None
+
+
+def test_a_mode_may_occur_once_only():
+    system, evidence = genuine("no-common-quadratic")
+    doubled = NoCommonQuadratic((*evidence.factors, evidence.factors[0]))
+    assert doubled.find_fault(system) is not None
+    assert NoCommonQuadratic(()).find_fault(system) is not None
+
+
+def test_shapes():
+    system, evidence = genuine("no-common-quadratic")
+    name = evidence.factors[0][0]
+    for L in (((1, 0),), ((1, 0), (0,)), ((), ()), ((1,), (0,), (0,))):
+        assert NoCommonQuadratic(((name, L),)).find_fault(system) is not None
+
+
+def test_it_says_nothing_about_stability_and_holds_under_any_switching():
+    system, evidence = genuine("no-common-quadratic")
+    for switching in (Switching(transitions=()), Switching(fixed_ends=(("m0", "m1"),))):
+        assert evidence.find_fault(replace(system, switching=switching)) is None
+    assert evidence.proved_rate(system) is None
+    assert str(evidence.shows) == "no common quadratic function"

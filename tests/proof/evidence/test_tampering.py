@@ -1,0 +1,70 @@
+"""Attacks on the fields of every kind of evidence.
+
+Whatever is changed, either the evidence is rejected, or what it now says is true all the same.
+"""
+
+import json
+
+import pytest
+
+from nrs_design.proof.evidence import KINDS, read_evidence
+from nrs_design.proof.evidence.abstract import AbstractEvidence
+from tests.proof.systems import SYSTEMS, genuine
+from tests.proof.tamper import mutations
+from tests.proof.truth import holds
+
+# What `verify` takes for a rejection.
+REJECTIONS = (LookupError, TypeError, ValueError, ArithmeticError, AttributeError)
+
+
+def read(fields, system) -> AbstractEvidence | None:
+    try:
+        return read_evidence(fields, system)
+    except REJECTIONS:
+        return None
+
+
+def stored(evidence) -> dict:
+    return json.loads(json.dumps({"kind": evidence.kind, **evidence.to_fields()}))
+
+
+def test_every_kind_has_an_example():
+    assert {name.split(",")[0] for name in SYSTEMS} == {kind.kind for kind in KINDS}
+
+
+@pytest.mark.parametrize("example", SYSTEMS)
+def test_genuine_evidence_is_accepted_and_true(example):
+    system, evidence = genuine(example)
+    assert evidence.find_fault(system) is None
+    assert holds(system, evidence)
+
+
+@pytest.mark.parametrize("example", SYSTEMS)
+def test_evidence_survives_storage(example):
+    system, evidence = genuine(example)
+    assert read(stored(evidence), system) == evidence
+
+
+@pytest.mark.parametrize("example", SYSTEMS)
+def test_changed_evidence_is_rejected_or_true_all_the_same(example):
+    system, evidence = genuine(example)
+    rejected = 0
+    for words, fields in mutations(stored(evidence)):
+        changed = read(fields, system)
+        if changed is None or changed.find_fault(system) is not None:
+            rejected += 1
+            continue
+        assert holds(system, changed), words
+        # A change that reading forgives must be undone where the certificate is written anew.
+        assert changed.claim(system)
+    assert rejected > 10
+
+
+@pytest.mark.parametrize("example", SYSTEMS)
+@pytest.mark.parametrize("other", SYSTEMS)
+def test_evidence_of_one_system_is_none_for_another(example, other):
+    _, evidence = genuine(example)
+    system, _ = genuine(other)
+    fields = read(stored(evidence), system)
+    if fields is not None and fields.find_fault(system) is None:
+        assert holds(system, fields)

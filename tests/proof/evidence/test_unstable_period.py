@@ -1,0 +1,314 @@
+"""Evidence of kind unstable-period: published limits, which signals are admissible, attacks."""
+
+from dataclasses import replace
+from fractions import Fraction
+from math import log
+from time import process_time
+
+import numpy as np
+import pytest
+from flint import ctx
+
+from nrs_design.proof.evidence import UnstablePeriod, read_evidence
+from nrs_design.proof.evidence.unstable_period import monodromy
+from nrs_design.proof.system import Stay, Switching, Time
+from nrs_design.search.certify import Method, Verdict, certify
+from tests.proof.systems import (
+    branicky,
+    dayawansa_martin,
+    family,
+    genuine,
+    geromel_colaneri,
+    golden,
+    matrix,
+    must_leave,
+    oscillator,
+    resets_between,
+    robot,
+    two_ways,
+)
+from tests.proof.truth import exponential, holds
+
+WIDE = [("1", "2.15"), ("200", "2.15")]
+
+
+def signal(*steps, doublings=20):
+    named = tuple((f"m{mode}", Fraction(dwell)) for mode, dwell in steps)
+    return UnstablePeriod(named, doublings)
+
+
+def by_period(system):
+    return certify(system, Method.PERIOD)
+
+
+@pytest.mark.parametrize("a", ["11.262", "11.27", "12", "30"])
+def test_pair_of_dayawansa_and_martin_is_refuted_beyond_its_limit(a):
+    found = by_period(dayawansa_martin(a))
+    assert found.verdict is Verdict.REFUTED
+    assert holds(found.system, found.evidence)
+
+
+@pytest.mark.parametrize("a", ["11.2", "11.26", "6"])
+def test_and_never_below_it(a):
+    # The limit is 11.2608....
+    assert by_period(dayawansa_martin(a)).verdict is not Verdict.REFUTED
+
+
+@pytest.mark.parametrize(("kbar", "refuted"), [("6.98", False), ("6.99", True), ("7", True)])
+def test_oscillator_on_both_sides_of_its_limit(kbar, refuted):
+    # 6.98513.
+    assert (by_period(oscillator(kbar)).verdict is Verdict.REFUTED) is refuted
+
+
+@pytest.mark.parametrize(
+    ("dwell", "refuted"),
+    [("2.70", True), ("2.707", True), ("2.7078", False), ("2.76", False), ("3", False)],
+)
+def test_pair_of_geromel_and_colaneri_by_dwell_time(dwell, refuted):
+    # Unstable up to 2.70775 s.
+    found = by_period(geromel_colaneri(dwell))
+    assert (found.verdict is Verdict.REFUTED) is refuted
+    if refuted:
+        assert all(time >= Fraction(dwell) for _, time in found.evidence.steps)
+
+
+@pytest.mark.parametrize(("c", "refuted"), [("0.618", False), ("0.6181", True)])
+def test_golden_ratio(c, refuted):
+    # 1/0.61803... is the joint spectral radius of the pair, reached by alternating.
+    found = by_period(golden(c))
+    assert (found.verdict is Verdict.REFUTED) is refuted
+    if refuted:
+        assert {name for name, _ in found.evidence.steps} == {"m0", "m1"}
+
+
+def test_wide_range_of_stiffness_without_virtual_mass():
+    # Both modes are Hurwitz; 0.04597 s and 0.03276 s in turn grow by about 1 1/s.
+    system = robot("0", WIDE)
+    steps = ((1, "0.04597"), (0, "0.03276"))
+    evidence = [signal(*order) for order in (steps, [(1 - m, t) for m, t in steps])]
+    growing = [item for item in evidence if item.find_fault(system) is None]
+    assert growing
+    flows = [
+        exponential(np.array(system.modes[int(name[1])].A.floats()) * float(dwell))
+        for name, dwell in growing[0].steps
+    ]
+    radius = np.abs(np.linalg.eigvals(flows[1] @ flows[0])).max()
+    assert log(radius) / (0.04597 + 0.03276) == pytest.approx(1.0, abs=0.1)
+    assert by_period(system).verdict is Verdict.REFUTED
+
+
+def test_a_spectral_radius_of_exactly_one_is_no_growth():
+    rotation = family([[0, 1], [-1, 0]])
+    quarter = family([[0, 1], [-1, 0]], time=Time.DISCRETE)
+    for doublings in range(0, 61, 6):
+        assert signal((0, "1.5"), doublings=doublings).find_fault(rotation) is not None
+        assert signal((0, 1), doublings=doublings).find_fault(quarter) is not None
+    jordan = family([[1, 1], [0, 1]], time=Time.DISCRETE)
+    assert signal((0, 1), doublings=60).find_fault(jordan) is not None
+
+
+def test_a_radius_barely_above_one_needs_many_doublings():
+    barely = family([["1.0000001", 0], [0, "1/2"]], time=Time.DISCRETE)
+    assert signal((0, 1), doublings=2).find_fault(barely) is not None
+    assert signal((0, 1), doublings=30).find_fault(barely) is None
+    below = family([["0.9999999", 0], [0, "1/2"]], time=Time.DISCRETE)
+    assert all(signal((0, 1), doublings=k).find_fault(below) for k in range(61))
+
+
+def test_a_large_transient_is_no_growth():
+    shear = family([["1/2", 10**12], [0, "1/2"]], time=Time.DISCRETE)
+    assert all(signal((0, 1), doublings=k).find_fault(shear) for k in range(0, 61, 3))
+
+
+def test_the_order_of_time_is_that_of_the_steps():
+    # From m0 to m1 the state is swapped, back it is left: only the order tells which is first.
+    resets = resets_between(("m0", "m1", [[0, 1], [0, 0]]))
+    system = family(
+        [[2, 0], [0, "1/2"]],
+        [["1/2", 0], [0, 4]],
+        time=Time.DISCRETE,
+        switching=Switching(resets=resets),
+    )
+    before, ctx.prec = ctx.prec, 100
+    try:
+        product = monodromy(system, signal((0, 1), (1, 1)).steps)
+    finally:
+        ctx.prec = before
+    expected = np.diag([0.5, 4]) @ np.array([[0, 1], [0, 0]]) @ np.diag([2, 0.5])
+    found = [[float(product[i, j]) for j in range(2)] for i in range(2)]
+    assert np.array_equal(np.array(found), expected)
+
+
+def test_resets_at_the_switch_back_to_the_first_mode_count():
+    pair = [[-1, 0], [0, -1]], [[-1, 0], [0, -1]]
+    grow = resets_between(("m1", "m0", [[9, 0], [0, 9]]))
+    evidence = signal((0, "0.5"), (1, "0.5"))
+    assert evidence.find_fault(family(*pair, switching=Switching(resets=grow))) is None
+    assert evidence.find_fault(family(*pair)) is not None
+    elsewhere = resets_between(("m0", "m0", [[9, 0], [0, 9]]))
+    staying = family(*pair, switching=Switching(resets=elsewhere))
+    assert evidence.find_fault(staying) is not None
+    # Two steps of one mode are a longer stay, and no switch.
+    assert signal((0, "0.5"), (0, "0.5")).find_fault(staying) is not None
+
+
+def test_dwell_times_transitions_and_constant_parameters_are_obeyed():
+    system, evidence = genuine("unstable-period")
+    longest = max(dwell for _, dwell in evidence.steps)
+    for switching in (
+        Switching(longest),
+        Switching(transitions=(("m0", "m1"),)),
+        Switching(transitions=(("m1", "m0"),)),
+        Switching(transitions=()),
+        Switching(fixed_ends=(("m0", "m1"),)),
+    ):
+        assert evidence.find_fault(replace(system, switching=switching)) is not None
+    shortest = min(dwell for _, dwell in evidence.steps)
+    for switching in (
+        Switching(shortest),
+        Switching(transitions=(("m0", "m1"), ("m1", "m0"))),
+    ):
+        assert evidence.find_fault(replace(system, switching=switching)) is None
+
+
+def test_one_value_of_a_constant_parameter_refutes():
+    rows = [mode.A.fractions() for mode in branicky().modes]
+    system = family(
+        rows[0], rows[1], rows[0], rows[1], switching=Switching(
+            fixed_ends=(("m0", "m2"), ("m1", "m3"))
+        )
+    )  # fmt: skip
+    _, evidence = genuine("unstable-period")
+    assert evidence.find_fault(system) is None
+    crossed = replace(evidence, steps=tuple(
+        ({"m1": "m3"}.get(name, name), dwell) for name, dwell in evidence.steps
+    ))  # fmt: skip
+    assert crossed.find_fault(system) is not None
+
+
+def test_steps_are_whole_in_discrete_time():
+    assert signal((0, "1.5"), (1, 1)).find_fault(golden("0.7")) is not None
+    assert signal((0, 1), (1, 1)).find_fault(golden("0.7")) is None
+
+
+@pytest.mark.parametrize(
+    "evidence",
+    [
+        signal(),
+        signal((0, 0), (1, 1)),
+        signal((0, -1), (1, 1)),
+        signal((0, 4097)),
+        signal((7, 1)),
+        signal((0, 1), (1, 1), doublings=-1),
+        signal((0, 1), (1, 1), doublings=61),
+        signal((0, 1), (1, 1), doublings=10**30),
+        UnstablePeriod((("m0", Fraction(1)),) * 10**6, 3),
+    ],
+)
+@pytest.mark.parametrize("time", list(Time))
+def test_signals_out_of_range_are_rejected_at_once(evidence, time):
+    system = replace(family([[5, 1], [0, 5]], [[5, 0], [1, 5]]), time=time)
+    start = process_time()
+    assert evidence.find_fault(system) is not None
+    assert process_time() - start < 1
+
+
+@pytest.mark.parametrize("time", list(Time))
+def test_long_signals_of_many_states_do_not_hang(time):
+    n = 64
+    A = [[(i * 7 + j * 3) % 5 - 2 - 9 * (i == j) for j in range(n)] for i in range(n)]
+    system = family(A, time=time)
+    start = process_time()
+    assert signal(*[(0, 4000 - k) for k in range(500)]).find_fault(system) is not None
+    assert process_time() - start < 1
+
+
+def test_enormous_modes_do_not_hang_or_overflow():
+    for time in Time:
+        system = family([[-(10**200), 10**200], [-(10**200), -1]], time=time)
+        start = process_time()
+        signal((0, 4096), doublings=60).find_fault(system)
+        assert process_time() - start < 1
+
+
+def test_the_precision_of_flint_is_left_as_it_was():
+    before = ctx.prec
+    genuine("unstable-period")
+    system, evidence = genuine("unstable-period")
+    evidence.find_fault(system)
+    assert ctx.prec == before
+    with pytest.raises((ValueError, ZeroDivisionError)):
+        UnstablePeriod((("m0", Fraction(1)),), 3).find_fault(family([[1]])) or read_evidence(
+            {"kind": "unstable-period", "steps": [["m0", "1/0"]]}, system
+        )
+    assert ctx.prec == before
+
+
+def test_exponentials_enclose_those_of_numpy():
+    A = matrix([["-0.3", 7], [-5, "-0.1"]])
+    system = family(A.fractions())
+    before, ctx.prec = ctx.prec, 300
+    try:
+        enclosed = monodromy(system, (("m0", Fraction(5, 4)),))
+    finally:
+        ctx.prec = before
+    found = np.array([[float(enclosed[i, j].mid()) for j in range(2)] for i in range(2)])
+    assert found == pytest.approx(exponential(np.array(A.floats()) * 1.25), rel=1e-9)
+
+
+def test_a_stay_longer_than_the_longest_refutes_nothing():
+    # Four steps in m0 and one in m1 double the state; three leave it as it is.
+    grows = signal((0, 4), (1, 1))
+    assert grows.find_fault(must_leave(4)) is None
+    assert holds(must_leave(4), grows)
+    assert "does not cover" in grows.find_fault(must_leave(3))
+    assert not holds(must_leave(3), grows)
+
+
+@pytest.mark.parametrize(
+    "steps", [[(0, 2), (0, 2), (1, 1)], [(0, 2), (1, 1), (0, 2)], [(0, 1)], [(0, 2), (0, 2)]]
+)
+def test_a_stay_cannot_be_split(steps):
+    # Round the period, two steps of one mode in turn are one stay, and one alone never ends.
+    evidence = signal(*steps)
+    for longest in (3, 4):
+        assert "does not cover" in evidence.find_fault(must_leave(longest))
+        assert not holds(must_leave(longest), evidence)
+
+
+def test_dwell_times_by_mode():
+    stays = (("m1", Stay(Fraction(2))),)
+    pair = [["1/2", 2], [0, "1/2"]], [["1/2", 0], [2, "1/2"]]
+    system = family(*pair, time=Time.DISCRETE, switching=Switching(stays=stays))
+    assert signal((0, 1), (1, 2)).find_fault(system) is None
+    assert "does not cover" in signal((0, 1), (1, 1)).find_fault(system)
+    assert signal((0, 1), (1, 1)).find_fault(family(*pair, time=Time.DISCRETE)) is None
+
+
+def test_which_reset_is_taken_must_be_said():
+    steps = signal((0, 1), (1, 1)).steps
+    system = two_ways(5)
+    assert UnstablePeriod(steps, 6, (1, 0)).find_fault(system) is None
+    # The other reset, none of them, one too many, one that does not exist.
+    wrong = [(0, 0), (), (1,), (1, 0, 0), (2, 0), (-1, 0), (1, 1)]
+    for edges in wrong:
+        evidence = UnstablePeriod(steps, 6, edges)
+        assert evidence.find_fault(system) is not None
+        assert len(edges) != 2 or not holds(system, evidence)
+    assert UnstablePeriod(steps, 6, (1, 0)).find_fault(two_ways("3.9")) is not None
+
+
+def test_the_reset_that_is_taken_is_in_the_file():
+    system, evidence = genuine("unstable-period, two ways")
+    fields = {"kind": evidence.kind, **evidence.to_fields()}
+    assert fields["edges"] == [1, 0]
+    assert "then reset 2 to m1, m1 for 1 steps)" in evidence.claim(system)
+    assert read_evidence(fields, system) == evidence
+    with pytest.raises(ValueError, match="one edge for each step"):
+        read_evidence({**fields, "edges": [1]}, system)
+    assert "edges" not in genuine("unstable-period")[1].to_fields()
+
+
+def test_an_edge_against_the_transitions_refutes_nothing():
+    one_way = must_leave(4, transitions=(("m1", "m0"),))
+    assert "does not cover" in signal((0, 4), (1, 1)).find_fault(one_way)

@@ -1,0 +1,227 @@
+"""Systems and genuine evidence that several tests of evidence share."""
+
+from collections.abc import Sequence
+from fractions import Fraction
+from functools import cache
+
+from nrs_design.controllers.laws import Admittance
+from nrs_design.models.environment import Contact
+from nrs_design.proof.evidence import AbstractEvidence
+from nrs_design.proof.matrix import RationalMatrix
+from nrs_design.proof.system import ARBITRARY, Mode, Reset, Stay, SwitchedSystem, Switching, Time
+from nrs_design.search.certify import Limits, Method, certify
+from nrs_design.switched.close_loop import Realization, impedance_mode
+
+Entry = int | str | Fraction
+Rows = Sequence[Sequence[Entry]]
+
+
+def matrix(rows: Rows) -> RationalMatrix:
+    return RationalMatrix.from_rows([[Fraction(entry) for entry in row] for row in rows])
+
+
+def family(
+    *matrices: Rows,
+    time: Time = Time.CONTINUOUS,
+    switching: Switching = ARBITRARY,
+    names: Sequence[str] | None = None,
+) -> SwitchedSystem:
+    """Make a system with modes m0, m1, ... of any sizes."""
+    labels = names or [f"m{i}" for i in range(len(matrices))]
+    modes = tuple(Mode(label, matrix(A)) for label, A in zip(labels, matrices, strict=True))
+    states = tuple(f"x{i + 1}" for i in range(max(len(A) for A in matrices)))
+    return SwitchedSystem("family", time, states, modes, (), switching)
+
+
+def dayawansa_martin(a: Entry, switching: Switching = ARBITRARY) -> SwitchedSystem:
+    """Quadratic iff a < 5.8284..., stable iff a < 11.2608... (Dayawansa and Martin 1999)."""
+    a = Fraction(a)
+    return family([[-1, -1], [1, -1]], [[-1, -a], [1 / a, -1]], switching=switching)
+
+
+def oscillator(kbar: Entry, switching: Switching = ARBITRARY) -> SwitchedSystem:
+    """Stable under arbitrary switching iff kbar < 6.98513... (Zelentsovsky 1994)."""
+    return family([[0, 1], [-2, -1]], [[0, 1], [-2 - Fraction(kbar), -1]], switching=switching)
+
+
+def geromel_colaneri(dwell: Entry, **rules: object) -> SwitchedSystem:
+    """LMI proof iff the dwell time exceeds 2.75084 s; unstable up to 2.70775 s (2006)."""
+    switching = Switching(Fraction(dwell), **rules)
+    return family([[0, 1], [-10, -1]], [[0, 1], ["-0.1", "-0.5"]], switching=switching)
+
+
+def branicky() -> SwitchedSystem:
+    """Two Hurwitz modes that grow under switching (Branicky 1998)."""
+    return family([[-1, 10], [-100, -1]], [[-1, 100], [-10, -1]])
+
+
+def golden(c: Entry) -> SwitchedSystem:
+    """Joint spectral radius c (1 + sqrt 5)/2 (Jungers 2009)."""
+    c = Fraction(c)
+    return family([[c, c], [0, c]], [[c, 0], [c, c]], time=Time.DISCRETE)
+
+
+def ando_shih(c: Entry, switching: Switching = ARBITRARY) -> SwitchedSystem:
+    """Joint spectral radius c, but no quadratic function beyond 0.7071 (Ando and Shih 1998)."""
+    c = Fraction(c)
+    pair = [[c, 0], [c, 0]], [[0, c], [0, -c]]
+    return family(*pair, time=Time.DISCRETE, switching=switching)
+
+
+def shears(switching: Switching = ARBITRARY) -> SwitchedSystem:
+    """Both modes have the eigenvalue -1 twice, their average has the eigenvalue 4."""
+    return family([[-1, 10], [0, -1]], [[-1, 0], [10, -1]], switching=switching)
+
+
+def degenerate_dual() -> SwitchedSystem:
+    """Dayawansa and Martin at a = 6 beside a decoupled stable state."""
+    return family([[-1, 0, 0], [0, -1, -1], [0, 1, -1]], [[-1, 0, 0], [0, -1, -6], [0, "1/6", -1]])
+
+
+def robot(Mt: str, contacts: Sequence[tuple[str, str]]) -> SwitchedSystem:
+    """Impedance modes on the motion loop of thesis 6.3.2.2, for pairs of stiffness and Bt."""
+    motion = Realization(
+        ((Fraction(0), Fraction(1)), (Fraction("-1618.80"), Fraction("-56.89"))),
+        (Fraction("1618.80"), Fraction("28.4160")),
+    )
+    return family(
+        *(
+            impedance_mode(
+                motion,
+                Admittance(Fraction(Mt), Fraction(Bt)),
+                Contact("contact", Fraction(k), Fraction(0)),
+            )
+            for k, Bt in contacts
+        )
+    )
+
+
+def resets_between(*maps: tuple[str, str, Rows]) -> tuple[Reset, ...]:
+    return tuple(Reset(source, target, matrix(rows)) for source, target, rows in maps)
+
+
+def rectangular() -> SwitchedSystem:
+    """A mode of two states and one of one, joined by contracting resets."""
+    resets = resets_between(("m0", "m1", [["1/2", 0]]), ("m1", "m0", [["1/2"], [0]]))
+    return family([[0, 1], [-3, -1]], [[-1]], switching=Switching(resets=resets))
+
+
+def slow_switching_in_steps() -> SwitchedSystem:
+    """Discrete time: alternating grows with up to four steps in each mode, from five on not."""
+    pair = [["1/2", 2], [0, "1/2"]], [["1/2", 0], [2, "1/2"]]
+    return family(*pair, time=Time.DISCRETE, switching=Switching(Fraction(6)))
+
+
+def must_leave(longest: int, **rules: object) -> SwitchedSystem:
+    """Discrete time: x doubles in m0, for so many steps at most, and is an eighth after one in m1.
+
+    So it grows iff ``2^longest > 8``, by the slowest cycle: longest steps in m0 and one in m1.
+    """
+    stays = (("m0", Stay(Fraction(1), Fraction(longest))),)
+    return family([[2]], [["1/8"]], time=Time.DISCRETE, switching=Switching(stays=stays, **rules))
+
+
+def must_leave_in_time(rest: Entry) -> SwitchedSystem:
+    """Continuous time: x grows by e^t in m0, for 1/2 to 1 s, and decays by e^-t in m1.
+
+    Stable iff m1 lasts for more than 1 s.
+    """
+    stays = (("m0", Stay(Fraction(1, 2), Fraction(1))), ("m1", Stay(Fraction(rest))))
+    return family([[1]], [[-1]], switching=Switching(stays=stays))
+
+
+def two_ways(gain: Entry) -> SwitchedSystem:
+    """Discrete time: both modes halve the state, and of two resets one multiplies by the gain."""
+    resets = resets_between(("m0", "m1", [["1/2"]]), ("m0", "m1", [[gain]]))
+    return family([["1/2"]], [["1/2"]], time=Time.DISCRETE, switching=Switching(resets=resets))
+
+
+PAIR = Switching(fixed_ends=(("m0", "m1"),))
+PAIRS = Switching(fixed_ends=(("m0", "m1"), ("m2", "m3")))
+
+
+def hidden_value(strength: Entry, time: Time = Time.CONTINUOUS) -> SwitchedSystem:
+    """``A(s) = [[-1, c s], [c (1 - s), -1]]``, s unknown but constant in [0, 1].
+
+    Its eigenvalues are ``-1 +- c sqrt(s (1 - s))``: Hurwitz at both ends, and for all s iff c < 2.
+    In discrete time without the diagonal: Schur at both ends, and for all s iff c < 2.
+    """
+    diagonal = -1 if time is Time.CONTINUOUS else 0
+    ends = [[diagonal, 0], [strength, diagonal]], [[diagonal, strength], [0, diagonal]]
+    return family(*ends, time=time, switching=PAIR)
+
+
+def hidden_shears(time: Time = Time.CONTINUOUS) -> SwitchedSystem:
+    """Two shears, one growing with the parameter and one shrinking.
+
+    Every mode is stable at every value. At both ends one shear is gone, so that switching is
+    stable; in between the average has the eigenvalue ``-1 + 5 sqrt(s (1 - s))``. In discrete time
+    the product of the two has a radius above one.
+    """
+    diagonal = "-1" if time is Time.CONTINUOUS else "1/2"
+    rest = [[diagonal, 0], [0, diagonal]]
+    up, down = [[diagonal, 10], [0, diagonal]], [[diagonal, 0], [10, diagonal]]
+    return family(rest, up, down, rest, time=time, switching=PAIRS)
+
+
+def lossy_network(scale: Entry = 1) -> SwitchedSystem:
+    """Stable by degree 4 and by no quadratic functions (Philippe et al. 2016, section 4)."""
+    s, gains = Fraction(scale), (("0", "0.27"), ("-0.49", "0"), ("-0.49", "0.27"), ("0", "0"))
+    matrices = [
+        [
+            [s * Fraction("0.94"), s * Fraction("0.56")],
+            [s * (Fraction("0.14") + Fraction(k1)), s * (Fraction("0.46") + Fraction(k2))],
+        ]
+        for k1, k2 in gains
+    ]
+    # Only node 3 has an edge to itself; the others are left after one step.
+    one = Stay(Fraction(1), Fraction(1))
+    edges = ("12", "21", "13", "31", "23", "32", "34", "43")
+    switching = Switching(
+        transitions=tuple((f"n{a}", f"n{b}") for a, b in edges),
+        stays=tuple((name, one) for name in ("n1", "n2", "n4")),
+    )
+    names = ("n1", "n2", "n3", "n4")
+    return family(*matrices, time=Time.DISCRETE, switching=switching, names=names)
+
+
+SYSTEMS = {
+    "mode-polynomial": lossy_network,
+    "common-quadratic": lambda: dayawansa_martin(5),
+    "common-polynomial": lambda: dayawansa_martin(6),
+    "common-polynomial, discrete": lambda: ando_shih("0.72"),
+    "no-common-quadratic": lambda: dayawansa_martin(6),
+    "no-common-quadratic, discrete": lambda: ando_shih("0.99"),
+    "block-triangular": degenerate_dual,
+    "unstable-mode": lambda: family([[0, 1], [-1, 0]]),
+    "unstable-mixture": shears,
+    "unstable-period": branicky,
+    "unstable-period, discrete": lambda: golden("0.6181"),
+    "mode-quadratic, dwell": lambda: geromel_colaneri("2.76"),
+    "mode-quadratic, one way": lambda: dayawansa_martin(12, Switching(transitions=(("m0", "m1"),))),
+    "mode-quadratic, rectangular": rectangular,
+    "mode-quadratic, discrete": lambda: ando_shih("0.99"),
+    "mode-quadratic, steps": slow_switching_in_steps,
+    "mode-quadratic, left": lambda: must_leave(2),
+    "mode-quadratic, left in time": lambda: must_leave_in_time("1.2"),
+    "mode-quadratic, two ways": lambda: two_ways(3),
+    "unstable-period, left": lambda: must_leave(4),
+    "unstable-period, two ways": lambda: two_ways(5),
+    "parameter-quadratic": lambda: oscillator(50, PAIR),
+    "unstable-value": lambda: hidden_value(3),
+    "unstable-value, discrete": lambda: hidden_value(3, Time.DISCRETE),
+    "unstable-value, average": hidden_shears,
+    "unstable-value, period": lambda: hidden_shears(Time.DISCRETE),
+}
+METHODS = {
+    "common-polynomial, discrete": Method.POLYNOMIAL,
+    "unstable-mixture": Method.MIXTURE,
+}
+
+
+@cache
+def genuine(example: str) -> tuple[SwitchedSystem, AbstractEvidence]:
+    """Return a system and evidence of a kind that the search really finds."""
+    system, kind = SYSTEMS[example](), example.split(",")[0]
+    found = certify(system, METHODS.get(example, Method.AUTO), Limits(optimize_rate=False))
+    return system, next(item for item in found.statements if item.kind == kind)

@@ -1,0 +1,96 @@
+"""The system at one value of a constant parameter."""
+
+from dataclasses import replace
+from fractions import Fraction
+
+import pytest
+
+from nrs_design.proof.constant import name_between, system_at
+from nrs_design.proof.system import ARBITRARY, FixedParameter, Stay, Switching
+from nrs_design.spec import parse_spec
+from nrs_design.switched.assemble import assemble
+
+TEXT = """\
+kind: switched-system
+name: s
+time: continuous
+parameters:
+  k: {nominal: 3, range: [1, 5]}
+  m: {nominal: 1, range: ["1/2", 2], varies: false}
+modes:
+  - {name: a, A: [[-1 - k, 2*m], [0, -1]]}
+  - {name: b, A: [[-1, m], [0, -1]]}
+  - {name: c, A: [[-1, 0], [1, -1]]}
+switching: RULES
+"""
+
+
+def assembled(rules="arbitrary"):
+    return assemble(parse_spec(TEXT.replace("RULES", rules)), {}, None)
+
+
+@pytest.mark.parametrize("share", [Fraction(0), Fraction(1), Fraction(1, 3)])
+def test_matrices_are_those_of_the_spec_at_that_value(share):
+    spec, value = parse_spec(TEXT.replace("RULES", "arbitrary")), Fraction(1, 2) + share * 3 / 2
+    found = system_at(assembled(), share)
+    expected = {
+        f"{mode.name}{end}": mode.matrix({"k": k, "m": value})
+        for mode in spec.modes
+        for end, k in ((("/k-min", 1), ("/k-max", 5)) if mode.name == "a" else (("", 3),))
+    }
+    assert {mode.name: mode.A.fractions() for mode in found.modes} == expected
+    assert found.switching == ARBITRARY
+
+
+def test_the_parameter_is_known_by_name():
+    parameter = FixedParameter("m", Fraction(1, 2), Fraction(2))
+    assert assembled().switching.fixed_parameter == parameter
+    nominal = assemble(parse_spec(TEXT.replace("RULES", "arbitrary")), {}, None, Fraction(0))
+    assert nominal.switching == ARBITRARY
+
+
+def test_allowed_switches_stay_allowed():
+    found = system_at(assembled("{transitions: [[a, b], [b, c]]}"), Fraction(1, 2))
+    # Corners of one mode follow each other freely.
+    assert set(found.switching.transitions) == {
+        ("a/k-min", "a/k-max"),
+        ("a/k-max", "a/k-min"),
+        ("a/k-min", "b"),
+        ("a/k-max", "b"),
+        ("b", "c"),
+    }
+
+
+def test_a_switch_that_one_end_forbids_is_forbidden():
+    system = assembled()
+    low, high = system.switching.fixed_ends[:2]
+    for allowed, count in (
+        ([(low[0], high[0]), (low[1], high[1])], 1),
+        ([(low[0], high[0])], 0),
+        ([(low[0], high[1]), (low[1], high[0])], 0),
+    ):
+        rules = Switching(transitions=tuple(allowed), fixed_ends=system.switching.fixed_ends)
+        found = system_at(type(system)(*_fields(system)[:-1], rules), Fraction(1, 2))
+        assert len(found.switching.transitions) == count
+
+
+def _fields(system):
+    return [getattr(system, name) for name in system.__dataclass_fields__]
+
+
+def test_name_of_a_pair_is_what_its_ends_share():
+    assert name_between("a/k-min/m-min", "a/k-min/m-max") == "a/k-min"
+    assert name_between("low", "high") == "low to high"
+
+
+def test_a_stay_must_suit_both_ends():
+    system = assembled()
+    stays = (
+        ("a/k-min/m-min", Stay(Fraction(1), Fraction(5))),
+        ("a/k-min/m-max", Stay(Fraction(2), Fraction(9))),
+    )
+    found = system_at(
+        replace(system, switching=replace(system.switching, stays=stays)), Fraction(1)
+    )
+    assert found.switching.stays == (("a/k-min", Stay(Fraction(2), Fraction(5))),)
+    assert system_at(system, Fraction(1)).switching == ARBITRARY

@@ -1,0 +1,490 @@
+"""The trusted file. Published cases first, then independent oracles, then bad input."""
+
+from fractions import Fraction
+from math import gcd
+
+import numpy as np
+import pytest
+from flint import fmpz_mat
+from hypothesis import example, given, settings
+from hypothesis import strategies as st
+
+from nrs_design.proof.exact import (
+    CLEAR_BITS,
+    characteristic_polynomial,
+    congruence,
+    is_hurwitz,
+    is_hurwitz_polynomial,
+    is_positive_definite,
+    is_schur,
+    is_symmetric,
+    lyapunov_decrease,
+    lyapunov_factor,
+    multiply,
+    stein_decrease,
+    stein_factor,
+)
+from tests.support import exact, is_definite_by_ldl, is_stable_by_lyapunov, matrix
+
+SMALL = st.integers(-4, 4)
+WIDE = st.integers(-(10**30), 10**30)
+
+
+UP_TO_8 = st.integers(1, 8)
+
+
+def squares(entries, sizes=UP_TO_8):
+    return sizes.flatmap(
+        lambda n: st.lists(st.lists(entries, min_size=n, max_size=n), min_size=n, max_size=n)
+    )
+
+
+def rectangle(rows, columns):
+    entries = st.one_of(SMALL, WIDE)
+    row = st.lists(entries, min_size=columns, max_size=columns)
+    return st.lists(row, min_size=rows, max_size=rows)
+
+
+def times(X, Y):
+    return [
+        [sum(a * b for a, b in zip(r, c, strict=True)) for c in zip(*Y, strict=False)] for r in X
+    ]
+
+
+def transposed(X):
+    return [list(column) for column in zip(*X, strict=False)]
+
+
+def symmetric(M):
+    return [
+        [a + b for a, b in zip(*rows, strict=True)] for rows in zip(M, transposed(M), strict=False)
+    ]
+
+
+def hilbert(n, sign=1):
+    """Integer multiple of the Hilbert matrix, the last diagonal entry optionally negated."""
+    factor = 1
+    for k in range(1, 2 * n):
+        factor = factor * k // gcd(factor, k)
+    M = [[factor // (i + j + 1) for j in range(n)] for i in range(n)]
+    M[-1][-1] *= sign
+    return M
+
+
+def expand(*roots):
+    """Coefficients of the product of (s - r), times a positive integer."""
+    coefficients = [Fraction(1)]
+    for r in roots:
+        shifted = [*coefficients, Fraction(0)]
+        coefficients = [a - r * b for a, b in zip(shifted, [0, *coefficients], strict=True)]
+    factor = 1
+    for c in coefficients:
+        factor = factor * c.denominator // gcd(factor, c.denominator)
+    return [int(c * factor) for c in coefficients]
+
+
+class TestPositiveDefinite:
+    @pytest.mark.parametrize("n", range(1, 13))
+    def test_hilbert_matrices(self, n):
+        # D. Hilbert 1894: positive definite, with determinants that no float resolves.
+        assert is_positive_definite(hilbert(n))
+        assert n == 1 or not is_positive_definite(hilbert(n, sign=-1))
+
+    def test_hilbert_12_at_the_edge(self):
+        # Taking det(H_n)/det(H_{n-1}) off the last entry makes it exactly singular.
+        M = hilbert(12)
+        last = Fraction(int(fmpz_mat(M).det()), int(fmpz_mat([r[:-1] for r in M[:-1]]).det()))
+        scaled = [[e * last.denominator for e in row] for row in M]
+        scaled[-1][-1] -= last.numerator
+        assert not is_positive_definite(scaled)
+        scaled[-1][-1] += 1
+        assert is_positive_definite(scaled)
+
+    @pytest.mark.parametrize(
+        ("M", "definite"),
+        [
+            ([[1]], True),
+            ([[0]], False),
+            ([[-1]], False),
+            ([[2, -1, 0], [-1, 2, -1], [0, -1, 2]], True),  # second difference (Strang)
+            ([[2, -1, -1], [-1, 2, -1], [-1, -1, 2]], False),  # its periodic form is singular
+            ([[0, 1], [1, 0]], False),
+            ([[1, 2], [2, 1]], False),
+            ([[-1, 0], [0, -1]], False),  # both leading minors: -1, +1
+            ([[1, 1, 0], [1, 1, 0], [0, 0, 1]], False),  # zero pivot in the middle
+            ([[36, 48], [48, 64]], False),  # decimal-singular, 0.36 * 0.64 = 0.48^2
+        ],
+    )
+    def test_known(self, M, definite):
+        assert is_positive_definite(M) is definite
+
+    @given(squares(st.one_of(SMALL, WIDE)))
+    def test_against_elimination_in_fractions(self, M):
+        S = symmetric(M)
+        assert is_positive_definite(S) == is_definite_by_ldl(S)
+
+    @given(squares(SMALL), st.integers(0, 3))
+    def test_gram_matrices(self, M, shift):
+        """M'M + shift I is positive definite iff shift > 0 or M is nonsingular."""
+        G = times(transposed(M), M)
+        for i in range(len(M)):
+            G[i][i] += shift
+        assert is_positive_definite(G) == (shift > 0 or fmpz_mat(M).det() != 0)
+
+    @given(squares(SMALL, st.just(4)), squares(SMALL, st.just(4)))
+    def test_congruence(self, M, T):
+        S = symmetric(M)
+        congruent = is_positive_definite(times(transposed(T), times(S, T)))
+        assert congruent == (is_positive_definite(S) and fmpz_mat(T).det() != 0)
+
+    @given(squares(SMALL), st.integers(1, 10**60))
+    def test_positive_scaling(self, M, factor):
+        S = symmetric(M)
+        scaled = [[factor * e for e in row] for row in S]
+        assert is_positive_definite(S) == is_positive_definite(scaled)
+        assert not (is_positive_definite(S) and is_positive_definite([[-e for e in r] for r in S]))
+
+    @settings(deadline=None)
+    @given(squares(st.floats(-1, 1)))
+    def test_numpy_away_from_the_boundary(self, M):
+        S = np.array(M) + np.array(M).T
+        values = np.linalg.eigvalsh(S)
+        if abs(values[0]) < 1e-9:
+            return
+        integers = [[int(Fraction(float(e)) * 2**1080) for e in row] for row in S]
+        assert is_positive_definite(integers) == (values[0] > 0)
+
+    @pytest.mark.parametrize(
+        "M",
+        [[], [[]], [[1, 2], [3, 1]], [[1, 0]], [[1], [0]], [[1, 0], [0]], [[1, 2, 3], [2, 4, 5]]],
+    )
+    def test_not_symmetric_is_an_error(self, M):
+        with pytest.raises(ValueError, match=r"symmetric|zip"):
+            is_positive_definite(M)
+
+    def test_one_entry_off_by_one_is_not_symmetric(self):
+        M = hilbert(8)
+        M[2][5] += 1
+        assert not is_symmetric(M)
+
+    @given(
+        st.integers(2, 7).flatmap(
+            lambda n: st.tuples(
+                st.lists(st.integers(0, 2 * CLEAR_BITS + 40), min_size=n, max_size=n),
+                st.lists(SMALL, min_size=n * n, max_size=n * n),
+            )
+        ),
+        st.sampled_from([-(2**40), -1, 0, 1, 2**40]),
+    )
+    def test_one_small_pivot_among_large_ones(self, drawn, last):
+        """A congruence that rounding cannot see through: T' diag(2^e, ..., last) T, det T = 1."""
+        exponents, entries = drawn
+        n = len(exponents)
+        T = [[entries[i * n + j] if j > i else int(i == j) for j in range(n)] for i in range(n)]
+        D = [[0] * n for _ in range(n)]
+        for i, exponent in enumerate(exponents):
+            D[i][i] = 2**exponent
+        D[-1][-1] = last
+        assert is_positive_definite(times(transposed(T), times(D, T))) == (last > 0)
+
+
+class TestProducts:
+    @given(
+        st.tuples(st.integers(1, 6), st.integers(1, 6), st.integers(1, 6)).flatmap(
+            lambda sizes: st.tuples(
+                rectangle(sizes[0], sizes[1]),
+                rectangle(sizes[1], sizes[2]),
+            )
+        )
+    )
+    def test_against_sums_of_products(self, factors):
+        left, right = factors
+        assert multiply(left, right) == times(left, right)
+
+    @pytest.mark.parametrize("bits", [0, 1, 7, 30, 31, 64, 200])
+    @pytest.mark.parametrize("signs", [(1, 1), (1, -1), (-1, 1), (-1, -1)])
+    def test_the_largest_entries_of_all_sizes_do_not_overflow(self, bits, signs):
+        a, b = (sign * (2**bits - 1) for sign in signs)
+        for n in (1, 2, 3, 4, 8, 9, 16):
+            assert multiply([[a] * n] * 2, [[b, -b, 1]] * n) == [[a * b * n, -a * b * n, a * n]] * 2
+
+    @given(squares(WIDE), SMALL)
+    def test_congruence(self, Q, factor):
+        L = [[factor + i, i * i - factor] for i in range(len(Q))]
+        assert congruence(L, Q) == times(transposed(L), times(Q, L))
+
+    @pytest.mark.parametrize(
+        ("left", "right"),
+        [([[1]], [[1], [2]]), ([[1, 2]], [[1]]), ([[1, 2]], [[1, 2], [3]]), ([[1, 2], [3]], [[1]])],
+    )
+    def test_factors_that_do_not_fit(self, left, right):
+        with pytest.raises(ValueError, match=r"needs as many|argument 2 is"):
+            multiply(left, right)
+
+
+class TestForms:
+    A = (("-1/2", "1/3"), ("0.25", -2))
+    Q = ((3, 1), (1, 2))
+
+    @pytest.mark.parametrize("rate", ["0", "1/7", "2"])
+    def test_lyapunov_is_a_positive_multiple(self, rate):
+        self.same_ray(lyapunov_decrease, rate, self.lyapunov, lyapunov_factor)
+
+    @pytest.mark.parametrize("rate", ["0", "1/7", "2"])
+    def test_stein_is_a_positive_multiple(self, rate):
+        self.same_ray(stein_decrease, rate, self.stein, stein_factor)
+
+    def same_ray(self, form, rate, formula, multiple):
+        A, factor = matrix(self.A), Fraction(rate)
+        found = form(A.numerators, A.denominator, self.Q, factor)
+        wanted = formula(exact(self.A), factor)
+        ratios = {
+            Fraction(f) / w
+            for fs, ws in zip(found, wanted, strict=False)
+            for f, w in zip(fs, ws, strict=True)
+        }
+        assert ratios == {multiple(A.denominator, factor)}
+        assert ratios.pop() > 0
+
+    def lyapunov(self, A, rate):
+        QA = times(self.Q, A)
+        return [
+            [-(QA[i][j] + QA[j][i]) - 2 * rate * self.Q[i][j] for j in range(2)] for i in range(2)
+        ]
+
+    def stein(self, A, rate):
+        AQA = times(transposed(A), times(self.Q, A))
+        return [[rate**2 * self.Q[i][j] - AQA[i][j] for j in range(2)] for i in range(2)]
+
+    @given(squares(SMALL, st.just(3)), squares(SMALL, st.just(3)), st.integers(1, 9))
+    def test_always_symmetric(self, N, M, denominator):
+        Q = symmetric(M)
+        assert is_symmetric(lyapunov_decrease(N, denominator, Q, Fraction(1, 3)))
+        assert is_symmetric(stein_decrease(N, denominator, Q, Fraction(1, 3)))
+
+    def test_scalar_rate_is_tight(self):
+        # x' = -x decays at rates below 1 and not at 1.
+        tiny = Fraction(1, 10**30)
+        assert is_positive_definite(lyapunov_decrease([[-1]], 1, [[1]], 1 - tiny))
+        assert not is_positive_definite(lyapunov_decrease([[-1]], 1, [[1]], Fraction(1)))
+        # x+ = -x/2 contracts by factors above 1/2.
+        assert is_positive_definite(stein_decrease([[-1]], 2, [[1]], Fraction(1, 2) + tiny))
+        assert not is_positive_definite(stein_decrease([[-1]], 2, [[1]], Fraction(1, 2)))
+
+
+class TestCharacteristicPolynomial:
+    def test_companion(self):
+        assert characteristic_polynomial([[0, 1, 0], [0, 0, 1], [-6, -11, -6]]) == [1, 6, 11, 6]
+
+    @given(squares(st.one_of(SMALL, WIDE)))
+    def test_against_flint(self, N):
+        wanted = [int(c) for c in reversed(fmpz_mat(N).charpoly().coeffs())]
+        assert characteristic_polynomial(N) == wanted
+
+
+class TestHurwitz:
+    @pytest.mark.parametrize(
+        ("coefficients", "stable"),
+        [
+            ([1, 2, 3, 4, 5], False),  # Routh's textbook case: two roots in the right half-plane
+            ([1, 10, 35, 50, 24], True),  # (s+1)(s+2)(s+3)(s+4)
+            ([1, 1, 2, 24], False),  # Nise, example 6.1's sign changes
+            ([1, 2, 3, 6, 5, 3], False),  # zero in the first column (epsilon method)
+            ([1, 7, 6, 42, 8, 56], False),  # a whole row of zeros: roots on the axis
+            ([1, 1, 1, 1], False),  # (s+1)(s^2+1)
+            ([1, 0, 1], False),
+            ([1, 0, 2, 0, 1], False),  # (s^2+1)^2
+            ([1, 2, 1], True),
+            ([1, 1], True),
+            ([1, 0], False),
+            ([1, -1], False),
+            ([7], True),
+            ([-7], True),
+            ([-1, -6, -11, -6], True),  # a negative leading coefficient
+            ([1, 6, 11, 0], False),
+            ([1, 6, 0, 6], False),
+            ([1, 6, 11, 66], False),  # a pair exactly on the axis, s^2 + 11
+            ([1, 6, 11, 65], True),
+            ([1, 6, 11, 67], False),
+        ],
+    )
+    def test_known_polynomials(self, coefficients, stable):
+        assert is_hurwitz_polynomial(coefficients) is stable
+
+    @pytest.mark.parametrize("digits", [3, 30, 300, 3000])
+    def test_huge_integers_at_the_edge(self, digits):
+        # (s + 1)(s^2 + 2 d s + 1) with d = +-10^-digits, times 10^digits.
+        big = 10**digits
+        assert is_hurwitz_polynomial([big, big + 2, big + 2, big])
+        assert not is_hurwitz_polynomial([big, big, big, big])
+        assert not is_hurwitz_polynomial([big, big - 2, big - 2, big])
+
+    @given(
+        st.lists(st.fractions(-5, 5, max_denominator=7), min_size=0, max_size=4),
+        st.lists(
+            st.tuples(
+                st.fractions(-5, 5, max_denominator=7), st.fractions(-5, 5, max_denominator=7)
+            ),
+            max_size=3,
+        ),
+    )
+    @example([], [(Fraction(0), Fraction(1))])
+    @example([Fraction(0)], [])
+    def test_from_roots(self, real, pairs):
+        """Roots r and p +- q j are known, so the answer is."""
+        coefficients = expand(*real)
+        for p, q in pairs:
+            factor = [1, -2 * p, p * p + q * q]
+            product = [Fraction(0)] * (len(coefficients) + 2)
+            for i, a in enumerate(coefficients):
+                for j, b in enumerate(factor):
+                    product[i + j] += a * b
+            common = 1
+            for c in product:
+                common = common * c.denominator // gcd(common, c.denominator)
+            coefficients = [int(c * common) for c in product]
+        stable = all(r < 0 for r in real) and all(p < 0 for p, _ in pairs)
+        assert is_hurwitz_polynomial(coefficients) == stable
+
+    @pytest.mark.parametrize(
+        ("A", "stable"),
+        [
+            ([["-0.36", "-0.48"], ["-0.48", "-0.64"]], False),  # an eigenvalue exactly 0
+            ([["-0.36", "-0.48"], ["-0.48", "-0.6400000000000001"]], True),
+            ([[0, 1], [-1, 0]], False),  # rotation, +-j
+            ([["-1e-100", 1], [-1, "-1e-100"]], True),
+            ([["1e-100", 1], [-1, "1e-100"]], False),
+            ([[0]], False),
+            ([[0, 0], [0, 0]], False),
+            ([[0, 1], [0, 0]], False),  # double integrator
+            # Thesis 6.3.2.2 as printed (+1618.80) and with the sign of its own motion loop.
+            (
+                [
+                    [0, 1, 0, 0],
+                    ["1618.80", "-56.89", -1, 0],
+                    [0, 0, -215, 100],
+                    ["70183.13", "1231.97", 0, 0],
+                ],
+                False,
+            ),
+            (
+                [
+                    [0, 1, 0, 0],
+                    ["-1618.80", "-56.89", -1, 0],
+                    [0, 0, -215, 100],
+                    ["70183.13", "1231.97", 0, 0],
+                ],
+                True,
+            ),
+        ],
+    )
+    def test_known_matrices(self, A, stable):
+        assert is_hurwitz(matrix(A).numerators) is stable
+
+    @settings(deadline=None)
+    @given(squares(SMALL, st.integers(1, 4)), st.sampled_from([0, 1, 3, 8]))
+    def test_against_the_lyapunov_equation(self, N, shift):
+        self.agree(N, shift)
+
+    @pytest.mark.slow
+    @settings(deadline=None, max_examples=200)
+    @given(squares(st.one_of(SMALL, WIDE)), st.sampled_from([0, 8, 2 * 10**30]))
+    def test_against_the_lyapunov_equation_at_any_size(self, N, shift):
+        self.agree(N, shift)
+
+    def agree(self, N, shift):
+        shifted = [[e - shift * (i == j) for j, e in enumerate(r)] for i, r in enumerate(N)]
+        assert is_hurwitz(shifted) == is_stable_by_lyapunov(shifted)
+
+    @settings(deadline=None)
+    @given(squares(SMALL))
+    def test_numpy_away_from_the_axis(self, N):
+        real = np.linalg.eigvals(np.array(N, dtype=float)).real.max()
+        if abs(real) > 1e-3:
+            assert is_hurwitz(N) == (real < 0)
+
+    @given(squares(SMALL), st.integers(1, 10**40))
+    def test_transposition_and_positive_scaling(self, N, factor):
+        expected = is_hurwitz(N)
+        assert is_hurwitz(transposed(N)) == expected
+        assert is_hurwitz([[factor * e for e in row] for row in N]) == expected
+
+    @given(squares(SMALL, st.just(3)), squares(SMALL, st.just(3)))
+    def test_similarity(self, N, T):
+        """T N adj(T) is det(T) times a similar matrix."""
+        det = int(fmpz_mat(T).det())
+        if det == 0:
+            return
+        adjugate = fmpz_mat(T).inv() * abs(det)
+        inverse = [[int(adjugate[i, j].p) for j in range(3)] for i in range(3)]
+        assert is_hurwitz(times(times(T, N), inverse)) == is_hurwitz(N)
+
+
+class TestSchur:
+    @pytest.mark.parametrize(
+        ("A", "stable"),
+        [
+            ([[1]], False),
+            ([[-1]], False),
+            ([[0]], True),
+            ([["0.999999999999999999999"]], True),
+            ([["-0.999999999999999999999"]], True),
+            ([["1.000000000000000000001"]], False),
+            ([["-1.000000000000000000001"]], False),
+            ([[0, 1], [-1, 0]], False),  # +-j
+            ([["0.6", "0.8"], ["-0.8", "0.6"]], False),  # 0.6 +- 0.8j, exactly on the circle
+            ([["0.6", "0.8"], ["-0.8", "0.5999999999999999999"]], True),
+            ([["0.6", "0.8"], ["-0.8", "0.6000000000000000001"]], False),
+            ([["0.5", "1e100"], [0, "-0.5"]], True),
+            ([[0, 1], [0, 0]], True),  # nilpotent
+            ([[0, 1], [1, 0]], False),  # +1 and -1
+            ([[2, 0], [0, "0.5"]], False),
+            ([[0, 0, 1], [1, 0, 0], [0, 1, 0]], False),  # third roots of unity
+            ([["0.7", 0], ["0.7", 0]], True),  # Ando and Shih 1998, scaled
+        ],
+    )
+    def test_known_matrices(self, A, stable):
+        M = matrix(A)
+        assert is_schur(M.numerators, M.denominator) is stable
+
+    @settings(deadline=None)
+    @given(squares(SMALL, st.integers(1, 4)), st.sampled_from([1, 2, 3, 4, 5, 8]))
+    @example([[1, 0], [0, 1]], 1)
+    @example([[-1, 1], [0, -1]], 1)
+    def test_against_the_stein_equation(self, N, denominator):
+        self.agree(N, denominator)
+
+    @pytest.mark.slow
+    @settings(deadline=None, max_examples=200)
+    @given(squares(st.one_of(SMALL, WIDE)), st.sampled_from([1, 5, 16, 10**31]))
+    def test_against_the_stein_equation_at_any_size(self, N, denominator):
+        self.agree(N, denominator)
+
+    def agree(self, N, denominator):
+        A = [[Fraction(e, denominator) for e in row] for row in N]
+        assert is_schur(N, denominator) == is_stable_by_lyapunov(A, discrete=True)
+
+    @settings(deadline=None)
+    @given(squares(SMALL), st.integers(1, 30))
+    def test_numpy_away_from_the_circle(self, N, denominator):
+        radius = np.abs(np.linalg.eigvals(np.array(N) / denominator)).max()
+        if abs(radius - 1) > 1e-2:
+            assert is_schur(N, denominator) == (radius < 1)
+
+    @given(squares(SMALL), st.integers(1, 20), st.integers(1, 10**20))
+    def test_common_factors_and_signs(self, N, denominator, factor):
+        expected = is_schur(N, denominator)
+        scaled = [[factor * e for e in row] for row in N]
+        assert is_schur(scaled, factor * denominator) == expected
+        assert is_schur([[-e for e in row] for row in N], denominator) == expected
+
+
+@pytest.mark.parametrize("n", [16, 32])
+def test_large_matrices(n):
+    """Tridiagonal -2, 1, 1: eigenvalues -2 + 2 cos(...) < 0, inside (-4, 0)."""
+    T = [[-2 if i == j else int(abs(i - j) == 1) for j in range(n)] for i in range(n)]
+    assert is_hurwitz(T)
+    assert is_positive_definite([[-e for e in row] for row in T])
+    assert is_schur(T, 4)
+    T[0][0] += 2  # then the largest eigenvalue is positive
+    assert not is_hurwitz(T)

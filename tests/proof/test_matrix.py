@@ -1,0 +1,75 @@
+from fractions import Fraction
+from math import inf
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from nrs_design.proof.matrix import RationalMatrix, multiply
+
+ROWS = st.integers(1, 4).flatmap(
+    lambda n: st.lists(st.lists(st.fractions(), min_size=n, max_size=n), min_size=n, max_size=n)
+)
+
+
+def test_least_common_denominator():
+    A = RationalMatrix.from_rows([[Fraction(1, 6), Fraction("-0.25")], [2, 0]])
+    assert RationalMatrix(((2, -3), (24, 0)), 12) == A
+    assert A.shape == (2, 2)
+
+
+@given(ROWS)
+def test_nothing_is_lost(rows):
+    A = RationalMatrix.from_rows(rows)
+    assert A.denominator > 0
+    assert A.fractions() == rows
+    assert A.floats() == [[float(entry) for entry in row] for row in rows]
+
+
+@given(ROWS)
+def test_product_with_the_identity(rows):
+    identity = [[int(i == j) for j in range(len(rows))] for i in range(len(rows))]
+    assert multiply(rows, identity) == rows == multiply(identity, rows)
+
+
+def test_integers_of_numpy_become_those_of_python():
+    """They overflow without a word: 2^62 times 4 is 0 to NumPy."""
+    A = RationalMatrix.from_rows(np.array([[2**62, 1], [-3, 0]]))
+    assert RationalMatrix(((2**62, 1), (-3, 0))) == A
+    B = RationalMatrix.from_rows([[Fraction(np.int64(1), np.int64(3)), np.int8(100)]])
+    assert RationalMatrix(((1, 300),), 3) == B
+    direct = RationalMatrix(((np.int64(2**62),),), np.int64(4))
+    for M in (A, B, direct):
+        assert {type(entry) for row in M.numerators for entry in row} == {int}
+        assert type(M.denominator) is int
+
+
+@pytest.mark.parametrize("entry", [0.5, Fraction(1, 2), "1", None])
+def test_numerators_are_integers(entry):
+    with pytest.raises(TypeError):
+        RationalMatrix(((entry,),))
+
+
+@pytest.mark.parametrize("entry", [float("nan"), float("inf"), None, np.float32(0.5), 1j])
+def test_entries_are_finite_numbers(entry):
+    with pytest.raises((TypeError, ValueError, OverflowError)):
+        RationalMatrix.from_rows([[entry]])
+
+
+def test_known_product():
+    half = Fraction(1, 2)
+    assert multiply([[1, half]], [[2, 0], [0, 4]]) == [[2, 2]]
+
+
+@pytest.mark.parametrize(("left", "right"), [([[1, 2]], [[1]]), ([[1]], [[1], [2]])])
+def test_shapes_that_do_not_fit(left, right):
+    with pytest.raises(ValueError, match="zip"):
+        multiply(left, right)
+
+
+def test_entries_beyond_floating_point():
+    A = RationalMatrix(((10**400, -(10**400)), (1, 10**300)), 1)
+    assert A.floats() == [[inf, -inf], [1.0, 1e300]]
+    tiny = RationalMatrix(((1, 10**200),), 10**400)
+    assert tiny.floats() == [[0.0, 1e-200]]

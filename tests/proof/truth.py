@@ -1,0 +1,433 @@
+"""Oracles: what each kind of evidence says, recomputed from its definition.
+
+Fractions and NumPy only: no lift, no elimination and no enclosure of the package is used.
+"""
+
+from collections.abc import Mapping
+from dataclasses import replace
+from fractions import Fraction
+from itertools import product
+
+import numpy as np
+
+from nrs_design.proof.evidence import (
+    AbstractEvidence,
+    BlockTriangular,
+    CommonPolynomial,
+    CommonQuadratic,
+    ModeQuadratic,
+    NoCommonQuadratic,
+    ParameterQuadratic,
+    UnstableMixture,
+    UnstableMode,
+    UnstablePeriod,
+    UnstableValue,
+)
+from nrs_design.proof.matrix import RationalMatrix
+from nrs_design.proof.system import Mode, SwitchedSystem, Time
+
+Rows = list[list[Fraction]]
+Polynomial = dict[tuple[int, ...], Fraction]
+
+
+def times(X: Rows, Y: Rows) -> Rows:
+    return [[sum(a * b for a, b in zip(r, c, strict=True)) for c in transpose(Y)] for r in X]
+
+
+def transpose(X: Rows) -> Rows:
+    return [list(column) for column in zip(*X, strict=True)]
+
+
+def combine(*terms: tuple[Fraction | int, Rows]) -> Rows:
+    rows, columns = len(terms[0][1]), len(terms[0][1][0])
+    return [
+        [sum((w * X[i][j] for w, X in terms), Fraction(0)) for j in range(columns)]
+        for i in range(rows)
+    ]
+
+
+def is_definite(M: Rows, *, strictly: bool = True) -> bool:
+    """Gaussian elimination in fractions; singular matrices by all their principal minors."""
+    M = [list(row) for row in M]
+    if any(len(row) != len(M) for row in M) or transpose(M) != M:
+        return False
+    if strictly:
+        return all(determinant([row[:k] for row in M[:k]]) > 0 for k in range(1, len(M) + 1))
+    chosen = product((False, True), repeat=len(M))
+    return all(
+        determinant([[M[i][j] for j, b in enumerate(keep) if b] for i in index]) >= 0
+        for keep in chosen
+        if (index := [i for i, b in enumerate(keep) if b])
+    )
+
+
+def determinant(M: Rows) -> Fraction:
+    rows, value = [[Fraction(entry) for entry in row] for row in M], Fraction(1)
+    for k in range(len(rows)):
+        pivot = next((i for i in range(k, len(rows)) if rows[i][k] != 0), None)
+        if pivot is None:
+            return Fraction(0)
+        if pivot != k:
+            rows[k], rows[pivot], value = rows[pivot], rows[k], -value
+        value *= rows[k][k]
+        for i in range(k + 1, len(rows)):
+            factor = rows[i][k] / rows[k][k]
+            rows[i] = [a - factor * b for a, b in zip(rows[i], rows[k], strict=True)]
+    return value
+
+
+def decrease(A: Rows, Q: Rows, rate: Fraction, time: Time) -> Rows:
+    """Return ``-(A'Q + QA + 2 rate Q)`` or ``rate^2 Q - A'QA``."""
+    if time is Time.CONTINUOUS:
+        return combine((-1, times(transpose(A), Q)), (-1, times(Q, A)), (-2 * rate, Q))
+    return combine((rate**2, Q), (-1, times(transpose(A), times(Q, A))))
+
+
+def is_rate(rate: Fraction, time: Time) -> bool:
+    return rate > 0 and (time is Time.CONTINUOUS or rate < 1)
+
+
+def holds(system: SwitchedSystem, evidence: AbstractEvidence) -> bool:
+    """Tell whether what the numbers say is true for this system."""
+    return _ORACLES[type(evidence)](system, evidence)
+
+
+def _common_quadratic(system: SwitchedSystem, item: CommonQuadratic) -> bool:
+    return is_rate(item.rate, system.time) and all(
+        is_definite(form)
+        for form in (
+            item.Q,
+            *(decrease(m.A.fractions(), item.Q, item.rate, system.time) for m in system.modes),
+        )
+    )
+
+
+def _common_polynomial(system: SwitchedSystem, item: CommonPolynomial) -> bool:
+    """The Gram matrix of the decrease must be definite and expand to the decrease itself."""
+    n, d = system.order, item.degree
+    basis = sorted((a for a in product(range(d + 1), repeat=n) if sum(a) == d), reverse=True)
+    shapes_fit = all(len(M) == len(basis) for M in (item.Q, *item.vanishing))
+    if not (is_rate(item.rate, system.time) and shapes_fit and is_definite(item.Q)):
+        return False
+    V = expand(item.Q, basis)
+    for mode, N in zip(system.modes, item.vanishing, strict=True):
+        if any(expand(N, basis).values()):
+            return False
+        if not is_definite(_gram(mode.A, item, N, basis, V, system.time)):
+            return False
+    return True
+
+
+def _gram(mode, item, N, basis, V, time) -> Rows:
+    """Return a Gram matrix of the decrease with N added, as the definition of the kind has it."""
+    A = mode.fractions()
+    lifted = [_row(derive(monomial, A) if time is Time.CONTINUOUS else compose(monomial, A), basis)
+              for monomial in basis]  # fmt: skip
+    d, rate = item.degree, item.rate
+    if time is Time.CONTINUOUS:
+        form = decrease(lifted, item.Q, d * rate, time)
+        factor = mode.denominator * (2 * d * rate * mode.denominator).denominator
+        expected = add(scale(_derivative(V, A), -1), scale(V, -2 * d * rate))
+    else:
+        form = decrease(lifted, item.Q, rate**d, time)
+        factor = mode.denominator ** (2 * d) * (rate**d).denominator ** 2
+        expected = add(scale(V, rate ** (2 * d)), scale(_substitute(V, A), -1))
+    assert add(expand(form, basis), scale(expected, -1)) == {}
+    return combine((factor, form), (1, [[Fraction(e) for e in row] for row in N]))
+
+
+def _row(polynomial: Polynomial, basis) -> list[Fraction]:
+    return [polynomial.get(monomial, Fraction(0)) for monomial in basis]
+
+
+def expand(M: Rows, basis) -> Polynomial:
+    total: Polynomial = {}
+    for (i, a), (j, b) in product(enumerate(basis), repeat=2):
+        key = tuple(p + q for p, q in zip(a, b, strict=True))
+        total = {**total, key: total.get(key, Fraction(0)) + M[i][j]}
+    return total
+
+
+def add(p: Polynomial, q: Polynomial) -> Polynomial:
+    total = {key: p.get(key, Fraction(0)) + q.get(key, Fraction(0)) for key in p.keys() | q.keys()}
+    return {key: value for key, value in total.items() if value}
+
+
+def scale(p: Polynomial, factor: Fraction | int) -> Polynomial:
+    return {key: factor * value for key, value in p.items()}
+
+
+def derive(monomial: tuple[int, ...], A: Rows) -> Polynomial:
+    """Derivative of a monomial along ``x' = A x``."""
+    return _derivative({monomial: Fraction(1)}, A)
+
+
+def _derivative(p: Polynomial, A: Rows) -> Polynomial:
+    total: Polynomial = {}
+    n = len(A)
+    for key, value in p.items():
+        for i, j in product(range(n), repeat=2):
+            if key[i]:
+                moved = list(key)
+                moved[i] -= 1
+                moved[j] += 1
+                total = add(total, {tuple(moved): value * key[i] * A[i][j]})
+    return total
+
+
+def compose(monomial: tuple[int, ...], A: Rows) -> Polynomial:
+    """A monomial of ``A x``."""
+    return _substitute({monomial: Fraction(1)}, A)
+
+
+def _substitute(p: Polynomial, A: Rows) -> Polynomial:
+    total: Polynomial = {}
+    n = len(A)
+    for key, value in p.items():
+        term: Polynomial = {(0,) * n: value}
+        for i, exponent in enumerate(key):
+            for _ in range(exponent):
+                shifted: Polynomial = {}
+                for k, v in term.items():
+                    for j in range(n):
+                        moved = (*k[:j], k[j] + 1, *k[j + 1 :])
+                        shifted = add(shifted, {moved: v * A[i][j]})
+                term = shifted
+        total = add(total, term)
+    return total
+
+
+def _no_common_quadratic(system: SwitchedSystem, item: NoCommonQuadratic) -> bool:
+    modes = {mode.name: mode.A.fractions() for mode in system.modes}
+    n = system.order
+    total = [[Fraction(0)] * n for _ in range(n)]
+    for name, L in item.factors:
+        A, X = modes[name], times(L, transpose(L))
+        if system.time is Time.CONTINUOUS:
+            total = combine((1, total), (1, times(A, X)), (1, times(X, transpose(A))))
+        else:
+            total = combine((1, total), (1, times(times(A, X), transpose(A))), (-1, X))
+    names = [name for name, _ in item.factors]
+    return len(set(names)) == len(names) and is_definite(total)
+
+
+def _parameter_quadratic(system: SwitchedSystem, item: ParameterQuadratic) -> bool:
+    """Sample the parameter; at each value the decrease is that of a common quadratic."""
+    modes = {mode.name: mode.A.fractions() for mode in system.modes}
+    for p in (Fraction(k, 16) for k in range(17)):
+        Q = combine((1 - p, item.low), (p, item.high))
+        matrices = [
+            combine((1 - p, modes[a]), (p, modes[b])) for a, b in system.switching.fixed_ends
+        ]
+        forms = [decrease(A, Q, item.rate, system.time) for A in matrices]
+        if not all(map(is_definite, [Q, *forms])):
+            return False
+    return is_rate(item.rate, system.time)
+
+
+def edges_of(system: SwitchedSystem) -> list[tuple[str, str, Rows]]:
+    """List source, target and map of all switches, from the rules themselves."""
+    sizes = {mode.name: len(mode.A.numerators) for mode in system.modes}
+    found = []
+    for a, b in product(sizes, repeat=2):
+        allowed = system.switching.transitions
+        if a == b or (allowed is not None and (a, b) not in allowed):
+            continue
+        resets = [
+            r.map.fractions() for r in system.switching.resets if (r.source, r.target) == (a, b)
+        ]
+        found += [(a, b, G) for G in resets or [identity(sizes[a])]]
+    return found
+
+
+def bounds_of(system: SwitchedSystem, mode: str) -> tuple[Fraction, Fraction | None]:
+    """Shortest and longest stay."""
+    for name, stay in system.switching.stays:
+        if name == mode:
+            return stay.shortest, stay.longest
+    return system.switching.dwell_time, None
+
+
+def identity(n: int) -> Rows:
+    return [[Fraction(int(i == j)) for j in range(n)] for i in range(n)]
+
+
+def _mode_quadratic(system: SwitchedSystem, item: ModeQuadratic) -> bool:
+    """From entry to entry, after every stay that counts: all up to the longest, or the shortest."""
+    Q: Mapping[str, Rows] = dict(item.functions)
+    time = system.time
+    if list(Q) != [m.name for m in system.modes] or not is_rate(item.rate, time):
+        return False
+    for mode in system.modes:
+        form = decrease(mode.A.fractions(), Q[mode.name], item.rate, time)
+        if not is_definite(Q[mode.name]):
+            return False
+        if mode.name not in item.leaving and not is_definite(form):
+            return False
+    modes = {mode.name: mode.A.fractions() for mode in system.modes}
+    return all(
+        _does_not_raise(modes[a], G, Q[a], Q[b], item.rate, time, stay)
+        for a, b, G in edges_of(system)
+        for stay in _stays(time, *bounds_of(system, a), leaving=a in item.leaving)
+    )
+
+
+def _stays(time, shortest, longest, *, leaving) -> list[Fraction]:
+    if time is Time.DISCRETE:
+        shortest = max(shortest, Fraction(1))
+    if not leaving:
+        return [shortest]
+    assert longest is not None
+    if time is Time.DISCRETE:
+        return [Fraction(k) for k in range(int(shortest), int(longest) + 1)]
+    return [shortest + (longest - shortest) * Fraction(k, 64) for k in range(65)]
+
+
+def _does_not_raise(A, G, before, after, rate, time, stay) -> bool:
+    if time is Time.DISCRETE:
+        jump = G
+        for _ in range(int(stay)):
+            jump = times(jump, combine((1 / rate, A)))
+        image = times(transpose(jump), times(after, jump))
+        return is_definite(combine((1, before), (-1, image)))
+    if stay == 0:
+        image = times(transpose(G), times(after, G))
+        return is_definite(combine((1, before), (-1, image)), strictly=False)
+    jump = _floats(G) @ exponential((_floats(A) + float(rate) * np.eye(len(A))) * float(stay))
+    form = _floats(before) - jump.T @ _floats(after) @ jump
+    return bool(np.linalg.eigvalsh(form).min() > -1e-9 * np.abs(_floats(before)).max())
+
+
+def exponential(M: np.ndarray) -> np.ndarray:
+    """Taylor series of a small multiple, squared again and again."""
+    squarings = max(0, int(np.ceil(np.log2(np.abs(M).sum() + 1))) + 4)
+    term = total = np.eye(len(M))
+    for k in range(1, 20):
+        term = term @ (M / 2.0**squarings) / k
+        total = total + term
+    for _ in range(squarings):
+        total = total @ total
+    return total
+
+
+def _floats(rows) -> np.ndarray:
+    return np.array([[float(entry) for entry in row] for row in rows])
+
+
+def _unstable_mode(system: SwitchedSystem, item: UnstableMode) -> bool:
+    A = next(mode.A for mode in system.modes if mode.name == item.mode)
+    may_stay = bounds_of(system, item.mode)[1] is None
+    return may_stay and _is_marginal_or_worse(A, system.time)
+
+
+def _unstable_mixture(system: SwitchedSystem, item: UnstableMixture) -> bool:
+    modes = {mode.name: mode.A.fractions() for mode in system.modes}
+    mean = combine(*((w, modes[name]) for name, w in item.weights))
+    proper = all(w >= 0 for _, w in item.weights) and sum(w for _, w in item.weights) == 1
+    return proper and _is_marginal_or_worse(RationalMatrix.from_rows(mean), system.time)
+
+
+def _is_marginal_or_worse(A: RationalMatrix, time: Time) -> bool:
+    values = np.linalg.eigvals(np.array(A.floats()))
+    if time is Time.CONTINUOUS:
+        return bool(values.real.max() > -1e-7)
+    return bool(np.abs(values).max() > 1 - 1e-7)
+
+
+def _unstable_period(system: SwitchedSystem, item: UnstablePeriod) -> bool:
+    """Walk round the period: switches are edges, stays within their bounds, and it grows."""
+    modes = {mode.name: _floats(mode.A.fractions()) for mode in system.modes}
+    product_ = np.eye(system.order)
+    names = [name for name, _ in item.steps]
+    for k, (name, dwell) in enumerate(item.steps):
+        shortest, longest = bounds_of(system, name)
+        following = names[(k + 1) % len(names)]
+        if dwell <= 0 or dwell < shortest or (longest is not None and dwell > longest):
+            return False
+        if following == name and longest is not None:
+            return False
+        if system.time is Time.CONTINUOUS:
+            product_ = exponential(modes[name] * float(dwell)) @ product_
+        else:
+            product_ = np.linalg.matrix_power(modes[name], int(dwell)) @ product_
+        if following != name:
+            ways = [G for a, b, G in edges_of(system) if (a, b) == (name, following)]
+            way = item.edges[k] if item.edges else 0
+            if not 0 <= way < len(ways):
+                return False
+            product_ = _floats(ways[way]) @ product_
+    return bool(np.abs(np.linalg.eigvals(product_)).max() > 1 - 1e-9)
+
+
+def _unstable_value(system: SwitchedSystem, item: UnstableValue) -> bool:
+    """The part must hold for the averages of the ends, under the rules that both ends share."""
+    modes = {mode.name: mode.A.fractions() for mode in system.modes}
+    names = {}
+    for low, high in system.switching.fixed_ends:
+        same = [a for a, b in zip(low.split("/"), high.split("/"), strict=True) if a == b]
+        names["/".join(same) or f"{low} to {high}"] = (low, high)
+    averages = tuple(
+        Mode(
+            name,
+            RationalMatrix.from_rows(
+                combine((1 - item.share, modes[low]), (item.share, modes[high]))
+            ),
+        )
+        for name, (low, high) in names.items()
+    )
+    if isinstance(item.part, UnstablePeriod) and not _obeys(system, item.part, names):
+        return False
+    return 0 <= item.share <= 1 and holds(replace(system, modes=averages), item.part)
+
+
+def _obeys(system: SwitchedSystem, part: UnstablePeriod, names: Mapping[str, tuple]) -> bool:
+    allowed = system.switching.transitions
+    steps = [names[name] for name, _ in part.steps]
+    switches = [
+        pair
+        for a, b in zip(steps, steps[1:] + steps[:1], strict=True)
+        if a != b
+        for pair in zip(a, b, strict=True)
+    ]
+    long_enough = all(dwell >= system.switching.dwell_time for _, dwell in part.steps)
+    return long_enough and (allowed is None or set(switches) <= set(allowed))
+
+
+def _block_triangular(system: SwitchedSystem, item: BlockTriangular) -> bool:
+    order = [state for block in item.blocks for state in block]
+    if sorted(order) != list(range(system.order)):
+        return False
+    where = {state: k for k, block in enumerate(item.blocks) for state in block}
+    for mode in system.modes:
+        for i, j in product(range(system.order), repeat=2):
+            if where[i] > where[j] and mode.A.numerators[i][j] != 0:
+                return False
+    covered = {k for k, _ in item.parts}
+    complete = covered == set(range(len(item.blocks))) or str(item.shows) != "stability"
+    return complete and all(holds(restrict(system, item.blocks[k]), part) for k, part in item.parts)
+
+
+def restrict(system: SwitchedSystem, block: tuple[int, ...]) -> SwitchedSystem:
+    """Return the family of one diagonal block."""
+    modes = tuple(
+        Mode(
+            mode.name,
+            RationalMatrix.from_rows([[mode.A.fractions()[i][j] for j in block] for i in block]),
+        )
+        for mode in system.modes
+    )
+    return replace(system, states=tuple(system.states[i] for i in block), modes=modes)
+
+
+_ORACLES = {
+    CommonQuadratic: _common_quadratic,
+    CommonPolynomial: _common_polynomial,
+    NoCommonQuadratic: _no_common_quadratic,
+    ParameterQuadratic: _parameter_quadratic,
+    ModeQuadratic: _mode_quadratic,
+    UnstableMode: _unstable_mode,
+    UnstableMixture: _unstable_mixture,
+    UnstablePeriod: _unstable_period,
+    UnstableValue: _unstable_value,
+    BlockTriangular: _block_triangular,
+}

@@ -1,0 +1,539 @@
+"""The whole search on families whose answer is known; lying solvers; hard numbers.
+
+The verdict may be inconclusive where numbers are extreme. It may never be wrong.
+"""
+
+from dataclasses import replace
+from fractions import Fraction
+from itertools import product
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from nrs_design.errors import DesignError, InternalError
+from nrs_design.pipeline import run_certification
+from nrs_design.proof.evidence import BlockTriangular, CommonQuadratic, Shows
+from nrs_design.proof.system import Switching, Time
+from nrs_design.search import lmi, rungs
+from nrs_design.search.certify import (
+    CommonQuadraticStatus,
+    Limits,
+    Method,
+    Verdict,
+    certify,
+)
+from nrs_design.search.gradient import GradientResult
+from nrs_design.spec import read_spec
+from tests.support import ROOT, dayawansa_martin, family, holds, is_stable_by_lyapunov
+
+ROTATION = [[0, 1], [-1, 0]]
+SINGULAR = [["-0.36", "-0.48"], ["-0.48", "-0.64"]]
+STABLE = dayawansa_martin(5)
+MARGINAL = family([[-1, 0], [0, -1]], ROTATION)
+UNSTABLE = family([[-1, 0], [0, -1]], [[1, 0], [0, -1]])
+NOT_QUADRATIC = dayawansa_martin(6)
+SHEARS = family([[-1, 10], [0, -1]], [[-1, 0], [10, -1]])
+SLOW = replace(dayawansa_martin(12), switching=Switching(dwell_time=Fraction(10)))
+CONSTANT = replace(dayawansa_martin(12), switching=Switching(fixed_ends=(("m0", "m1"),)))
+DISCRETE = family([["1/2", 1], [0, "1/2"]], [["1/2", 0], [0, "-1/2"]], time=Time.DISCRETE)
+DISCRETE_METHODS = [
+    Method.LMI,
+    Method.OBSTRUCTION,
+    Method.MODE_QUADRATIC,
+    Method.PERIOD,
+    Method.POLYNOMIAL,
+]
+UNSTABLE_BLOCK = [[-1, 0, 0], [0, -1, 0], [0, 0, 1]]
+
+
+def ando_shih(c):
+    """Joint spectral radius c, but no quadratic function beyond 0.7071 (Ando and Shih 1998)."""
+    return [[c, 0], [c, 0]], [[0, c], [0, f"-{c}"]]
+
+
+@st.composite
+def merging_families(draw):
+    """Discrete time: few different blocks, coupled in some modes, and some modes twice."""
+    entry = st.integers(-3, 3).map(lambda n: Fraction(n, 4))
+    blocks = []
+    for size in draw(st.lists(st.integers(1, 2), min_size=1, max_size=2)):
+        square = st.lists(
+            st.lists(entry, min_size=size, max_size=size), min_size=size, max_size=size
+        )
+        blocks.append(draw(st.lists(square, min_size=1, max_size=2)))
+    modes = []
+    for _ in range(draw(st.integers(1, 3))):
+        modes.append(_stacked([draw(st.sampled_from(block)) for block in blocks], draw(entry)))
+    repeated = draw(st.lists(st.sampled_from(modes), max_size=2))
+    return family(*modes, *repeated, time=Time.DISCRETE)
+
+
+def _stacked(blocks, coupling):
+    """Put blocks on the diagonal, with one number everywhere above them."""
+    order, rows = sum(map(len, blocks)), []
+    for block in blocks:
+        before, n = len(rows), len(block)
+        right = [coupling] * (order - before - n)
+        rows += [[*[0] * before, *row, *right] for row in block]
+    return rows
+
+
+ANY_RATE = Limits(optimize_rate=False)
+# What every result must say of itself, whatever it is.
+SHOWN = {Shows.STABILITY: Verdict.PROVED, Shows.INSTABILITY: Verdict.REFUTED}
+
+
+def settle(system, method=Method.AUTO, limits=None):
+    """Certify, and hold every statement against its definition."""
+    result = certify(system, method, limits)
+    assert all(holds(system, statement) for statement in result.statements)
+    shown = {statement.shows for statement in result.statements}
+    assert not {Shows.STABILITY, Shows.INSTABILITY} <= shown
+    verdicts = [SHOWN[kind] for kind in shown if kind in SHOWN]
+    assert result.verdict is (verdicts[0] if verdicts else Verdict.INCONCLUSIVE)
+    assert (result.evidence is None) == (result.verdict is Verdict.INCONCLUSIVE)
+    if result.common_quadratic is CommonQuadraticStatus.EXISTS:
+        assert result.verdict is Verdict.PROVED
+        assert Shows.NO_COMMON_QUADRATIC not in shown
+    if result.verdict is Verdict.REFUTED:
+        assert result.common_quadratic is CommonQuadraticStatus.IMPOSSIBLE
+    if isinstance(result.evidence, CommonQuadratic):
+        assert result.common_quadratic is CommonQuadraticStatus.EXISTS
+    return result
+
+
+def outcome(system, method=Method.AUTO, limits=None):
+    """Return the verdict, and whether a common quadratic function exists."""
+    result = settle(system, method, limits)
+    return str(result.verdict), str(result.common_quadratic)
+
+
+def bad_mode(evidence):
+    """Return the name of the mode that refutes, maybe by one of its blocks."""
+    if isinstance(evidence, BlockTriangular):
+        ((_, evidence),) = evidence.parts
+    return evidence.mode
+
+
+class TestNearTheThreshold:
+    """Dayawansa and Martin 1999: quadratic iff a < 3 + 2 sqrt(2) = 5.82842712474619..."""
+
+    @pytest.mark.parametrize("a", ["1", "3", "5", "5.8", "5.82", "5.828", "5.8284"])
+    def test_proved_below(self, a):
+        assert outcome(dayawansa_martin(a), limits=ANY_RATE) == ("proved", "exists")
+
+    @pytest.mark.parametrize("a", ["5.8285", "5.829", "5.83", "6", "8", "10"])
+    def test_no_quadratic_function_above(self, a):
+        assert outcome(dayawansa_martin(a)) == ("proved", "impossible")
+        for method in (Method.LMI, Method.GRADIENT):
+            assert outcome(dayawansa_martin(a), method) == ("inconclusive", "unknown")
+
+    @pytest.mark.parametrize("a", ["11.262", "12", "100"])
+    def test_refuted_beyond_the_limit_of_stability(self, a):
+        """Stable iff a < 11.2608..."""
+        assert outcome(dayawansa_martin(a)) == ("refuted", "impossible")
+
+    @pytest.mark.parametrize("a", ["11", "11.26"])
+    def test_never_wrong_just_below_it(self, a):
+        assert settle(dayawansa_martin(a)).verdict is not Verdict.REFUTED
+
+    def test_best_rate_is_safe_and_close(self):
+        """With A + alpha I in place of A, a = 5 stays quadratic up to alpha about 0.10557."""
+        rate = settle(STABLE).evidence.rate
+        assert Fraction("0.105") < rate < Fraction("0.1056")
+
+
+class TestModes:
+    @pytest.mark.parametrize(
+        "A", [ROTATION, SINGULAR, [[0, 0], [0, 0]], [[0, 1], [0, 0]], [[1, 0], [0, -1]]]
+    )
+    @pytest.mark.parametrize("others", [0, 1, 3])
+    def test_one_bad_mode_refutes(self, A, others):
+        result = settle(family(*[[[-1, 0], [0, -1]]] * others, A))
+        assert result.verdict is Verdict.REFUTED
+        assert bad_mode(result.evidence) == f"m{others}"
+
+    @pytest.mark.parametrize(
+        "A",
+        [
+            ROTATION,
+            [["0.6", "0.8"], ["-0.8", "0.6"]],
+            [[1, 0], [0, 0]],
+            [[0, 0], [0, -1]],
+            [[2, 0], [0, 0]],
+        ],
+    )
+    def test_one_bad_mode_refutes_in_discrete_time(self, A):
+        result = settle(family([[0, 0], [0, 0]], A, time=Time.DISCRETE))
+        assert result.verdict is Verdict.REFUTED
+
+    @pytest.mark.parametrize("digits", [6, 9, 15, 30, 90])
+    def test_barely_stable_and_barely_unstable(self, digits):
+        tiny = Fraction(1, 10**digits)
+        barely = settle(family([[-tiny, 1], [-1, -tiny]]))
+        assert barely.verdict is not Verdict.REFUTED
+        assert settle(family([[tiny, 1], [-1, tiny]])).verdict is Verdict.REFUTED
+        assert settle(family([[1 + tiny]], time=Time.DISCRETE)).verdict is Verdict.REFUTED
+        assert settle(family([[1 - tiny]], time=Time.DISCRETE)).verdict is not Verdict.REFUTED
+
+    @pytest.mark.parametrize("optimize_rate", [True, False])
+    @pytest.mark.parametrize(
+        ("A", "time", "verdict"),
+        [
+            (-1, Time.CONTINUOUS, Verdict.PROVED),
+            (0, Time.CONTINUOUS, Verdict.REFUTED),
+            (1, Time.CONTINUOUS, Verdict.REFUTED),
+            ("-1e-9", Time.CONTINUOUS, Verdict.PROVED),
+            (0, Time.DISCRETE, Verdict.PROVED),
+            ("1/2", Time.DISCRETE, Verdict.PROVED),
+            ("-1/2", Time.DISCRETE, Verdict.PROVED),
+            (1, Time.DISCRETE, Verdict.REFUTED),
+            (-1, Time.DISCRETE, Verdict.REFUTED),
+        ],
+    )
+    def test_one_state_one_mode(self, A, time, verdict, optimize_rate):
+        limits = Limits(optimize_rate=optimize_rate)
+        assert settle(family([[A]], time=time), limits=limits).verdict is verdict
+
+    @pytest.mark.parametrize("optimize_rate", [True, False])
+    @pytest.mark.parametrize("A", [[[0, 0], [0, 0]], [[0, 1], [0, 0]], [["1/2", 5], [0, "-1/2"]]])
+    def test_dead_beat_and_defective_modes(self, A, optimize_rate):
+        result = settle(family(A, time=Time.DISCRETE), limits=Limits(optimize_rate=optimize_rate))
+        assert result.verdict is Verdict.PROVED
+
+    @pytest.mark.parametrize("sign", [1, -1])
+    @pytest.mark.parametrize("digits", [3, 17, 21, 300, 1900])
+    def test_one_state_nearer_to_the_limit_than_floats_are(self, digits, sign):
+        """Decided exactly, alone and with others; so are the blocks of larger modes."""
+        tiny = Fraction(1, 10**digits)
+        below, above = sign * (1 - tiny), sign * (1 + tiny)
+        for near, verdict in ((below, Verdict.PROVED), (above, Verdict.REFUTED)):
+            assert settle(family([[near]], time=Time.DISCRETE)).verdict is verdict
+            assert settle(family([[near]], [[-near]], time=Time.DISCRETE)).verdict is verdict
+            coupled = [[near, 1], [0, -near]]
+            assert settle(family(coupled, time=Time.DISCRETE)).verdict is verdict
+        assert settle(family([[-tiny]], [[-1]])).verdict is Verdict.PROVED
+        assert settle(family([[tiny]], [[-1]])).verdict is Verdict.REFUTED
+
+    def test_identical_modes(self):
+        pair = family(*[[[-1, 4], [-4, -2]]] * 5)
+        assert settle(pair).verdict is Verdict.PROVED
+
+    def test_many_modes(self):
+        """300 modes around -I, more than enter the solver at once."""
+        generator = np.random.default_rng(3)
+        matrices = [
+            [
+                [Fraction(int(e), 100) - 2 * (i == j) for j, e in enumerate(row)]
+                for i, row in enumerate(A)
+            ]
+            for A in generator.integers(-40, 40, (300, 5, 5))
+        ]
+        assert settle(family(*matrices), limits=ANY_RATE).verdict is Verdict.PROVED
+
+    def test_many_modes_with_one_bad_one(self):
+        matrices = [[[-1, Fraction(i, 300)], [0, -1]] for i in range(300)]
+        matrices[217] = SINGULAR
+        assert settle(family(*matrices)).evidence.mode == "m217"
+
+    def test_many_states(self):
+        A = [[-2 if i == j else int(j == i + 1) for j in range(20)] for i in range(20)]
+        B = [list(column) for column in zip(*A, strict=True)]
+        assert settle(family(A, B), limits=ANY_RATE).verdict is Verdict.PROVED
+
+
+class TestScales:
+    """In other units of time and of the states, the answer is the same."""
+
+    @pytest.mark.parametrize("scale", ["1e-100", "1e-9", "1e-5", "1e5", "1e9", "1e100", "1e190"])
+    def test_unit_of_time(self, scale):
+        result = settle(dayawansa_martin(5, Fraction(scale)))
+        assert result.verdict is Verdict.PROVED
+        assert 0.105 < result.evidence.rate / Fraction(scale) < 0.1056
+        above = settle(dayawansa_martin(6, Fraction(scale)))
+        assert above.verdict is Verdict.PROVED
+        assert above.common_quadratic is CommonQuadraticStatus.IMPOSSIBLE
+
+    @pytest.mark.parametrize("scale", ["1e-100", "1e-5", "1e5", "1e100"])
+    def test_units_of_the_states(self, scale):
+        s = Fraction(scale)
+        pair = [[[-1, -s], [1 / s, -1]], [[-1, -5 * s], [1 / (5 * s), -1]]]
+        assert settle(family(*pair)).verdict is Verdict.PROVED
+
+    def test_entries_from_1e_minus_5_to_1e5(self):
+        A = [["-1e-5", "1e5", 0], [0, "-1e5", "1"], ["-1e-5", 0, "-1e-1"]]
+        stable = is_stable_by_lyapunov(family(A).modes[0].A.fractions())
+        result = settle(family(A))
+        assert stable
+        assert result.verdict is not Verdict.REFUTED
+
+    @pytest.mark.parametrize("scale", ["1e-190", "1e-100", "1e-5", "1e5", "1e100", "1e190"])
+    @pytest.mark.parametrize("time", list(Time))
+    def test_nothing_crashes(self, scale, time):
+        s = Fraction(scale)
+        for matrices in (
+            [[[-1, s], [0, -1]], [[-1, 0], [1 / s, -1]]],
+            [[[-1, s], [0, -1]], [[-1 / s, 0], [1, -1]]],
+            [[[-s, 0], [0, -1 / s]]],
+            [[[Fraction(1, 2), s], [0, Fraction(1, 2)]]],
+            [[[Fraction(1, 2), s], [s, Fraction(1, 2)]]],
+            [[[0, s], [0, 0]], [[0, 0], [s, 0]]],
+        ):
+            settle(family(*matrices, time=time), limits=ANY_RATE)
+
+    def test_beyond_floating_point(self):
+        huge = 10**400
+        assert settle(family([[-huge, 1], [1, -1]])).verdict is Verdict.INCONCLUSIVE
+        assert settle(family([[huge, 1], [1, -1]])).verdict is Verdict.REFUTED
+        assert settle(family([[-huge, 0], [0, -1]])).verdict is Verdict.PROVED
+        assert certify(family([[huge, 0], [0, -1]])).verdict is Verdict.REFUTED
+
+
+class TestMethods:
+    @pytest.mark.parametrize(
+        "system",
+        [STABLE, dayawansa_martin("1/5"), family([[-1, 1], [-1, -1]], [[-2, 3], [-3, -2]])],
+    )
+    def test_gradient_and_lmi_agree_where_it_is_easy(self, system):
+        for method in (Method.GRADIENT, Method.LMI, Method.AUTO):
+            assert settle(system, method).verdict is Verdict.PROVED
+
+    def test_gradient_proves_the_robot(self):
+        loaded = read_spec(ROOT / "specs" / "neuroboscope" / "soft-tissue.nrs.yaml")
+        result = run_certification(loaded, method=Method.GRADIENT)
+        assert result.certification.verdict is Verdict.PROVED
+        assert result.certification.method == "gradient"
+
+    def test_gradient_gives_up(self):
+        result = settle(NOT_QUADRATIC, Method.GRADIENT)
+        assert result.verdict is Verdict.INCONCLUSIVE
+        assert any("not converged" in attempt.outcome for attempt in result.attempts)
+
+    def test_gradient_is_refused_in_discrete_time(self):
+        with pytest.raises(DesignError, match="gradient does not apply") as caught:
+            certify(family([["1/2"]], time=Time.DISCRETE), Method.GRADIENT)
+        assert caught.value.remedy == "use --method auto"
+
+    def test_steps_are_told_and_timed(self):
+        told = []
+        result = certify(dayawansa_martin(12), progress=told.append)
+        assert told == [
+            "suspicious modes",
+            "lmi",
+            "obstruction",
+            "every mode",
+            "mixture",
+            "polynomial of degree 4",
+            "polynomial of degree 6",
+            "period",
+        ]
+        assert [attempt.step for attempt in result.attempts] == told
+        assert all(attempt.seconds >= 0 for attempt in result.attempts)
+
+    @pytest.mark.parametrize(
+        ("method", "system", "expected"),
+        [
+            (Method.LMI, STABLE, ("proved", "exists")),
+            (Method.GRADIENT, STABLE, ("proved", "exists")),
+            (Method.OBSTRUCTION, STABLE, ("inconclusive", "unknown")),
+            (Method.OBSTRUCTION, NOT_QUADRATIC, ("inconclusive", "impossible")),
+            (Method.POLYNOMIAL, NOT_QUADRATIC, ("proved", "unknown")),
+            (Method.PERIOD, NOT_QUADRATIC, ("inconclusive", "unknown")),
+            (Method.PERIOD, dayawansa_martin(12), ("refuted", "impossible")),
+            (Method.MIXTURE, dayawansa_martin(12), ("inconclusive", "unknown")),
+            (Method.MIXTURE, SHEARS, ("refuted", "impossible")),
+            (Method.MODE_QUADRATIC, SLOW, ("proved", "unknown")),
+            (Method.PARAMETER_QUADRATIC, CONSTANT, ("proved", "unknown")),
+            (Method.VALUE, CONSTANT, ("inconclusive", "unknown")),
+            (Method.AUTO, SLOW, ("proved", "impossible")),
+            (Method.AUTO, CONSTANT, ("proved", "impossible")),
+        ],
+    )
+    def test_every_rung_alone(self, method, system, expected):
+        assert outcome(system, method) == expected
+
+    @pytest.mark.parametrize("method", list(Method))
+    def test_an_unstable_mode_is_found_whatever_was_asked_for(self, method):
+        bad = replace(
+            UNSTABLE,
+            switching=CONSTANT.switching
+            if method in (Method.PARAMETER_QUADRATIC, Method.VALUE)
+            else UNSTABLE.switching,
+        )
+        assert outcome(bad, method) == ("refuted", "impossible")
+
+    @pytest.mark.parametrize(
+        ("method", "system"),
+        [
+            (Method.PARAMETER_QUADRATIC, STABLE),
+            (Method.VALUE, STABLE),
+            (Method.MIXTURE, SLOW),
+            (Method.GRADIENT, DISCRETE),
+            (Method.MIXTURE, DISCRETE),
+        ],
+    )
+    def test_rungs_that_do_not_apply_are_refused(self, method, system):
+        with pytest.raises(DesignError, match="does not apply"):
+            certify(system, method)
+
+    def test_highest_degree(self):
+        """a = 10 needs degree 8."""
+        result = settle(dayawansa_martin(10), limits=Limits(max_degree=6))
+        assert (result.verdict, result.common_quadratic) == ("inconclusive", "impossible")
+        last = result.attempts[-1]
+        assert (last.step, last.outcome) == (
+            "polynomial of degree 8",
+            "not tried: --max-degree is 6",
+        )
+        assert settle(dayawansa_martin(10), limits=Limits(max_degree=8)).evidence.degree == 4
+
+    def test_no_rung_is_begun_when_the_budget_is_used_up(self):
+        result = settle(dayawansa_martin(10), limits=Limits(budget=0.0))
+        assert result.verdict is Verdict.INCONCLUSIVE
+        assert "budget" in result.attempts[-1].outcome
+        assert len(result.attempts) < 3
+
+    def test_equal_modes_and_blocks_change_nothing(self):
+        """Two copies of each mode, beside a state that decays by itself."""
+        blocks = [
+            [[*row, 0] for row in mode.A.fractions()] + [[0, 0, -1]] for mode in NOT_QUADRATIC.modes
+        ]
+        assert outcome(family(*blocks, *blocks)) == ("proved", "impossible")
+        assert outcome(family(*blocks, *blocks, UNSTABLE_BLOCK)) == ("refuted", "impossible")
+
+    @pytest.mark.parametrize("c", ["0.72", "0.99"])
+    def test_equal_modes_in_discrete_time(self, c):
+        """Proved by a function for each mode, or by polynomials: both repeat what equals share."""
+        assert outcome(family(*ando_shih(c), ando_shih(c)[1], time=Time.DISCRETE))[0] == "proved"
+
+    @pytest.mark.parametrize("method", [Method.AUTO, Method.POLYNOMIAL, Method.MODE_QUADRATIC])
+    def test_a_parameter_that_does_not_reach_the_diagonal(self, method):
+        """Two corners with the same two blocks: every statement about a block is for both."""
+        modes = [
+            [[*row, coupling, 0] for row in top] + [[0, 0, *row] for row in bottom]
+            for coupling in (1, 2)
+            for top, bottom in product(ando_shih("0.72"), repeat=2)
+        ]
+        system = family(*modes, time=Time.DISCRETE)
+        limits = Limits(max_degree=4, optimize_rate=False)
+        assert settle(system, method, limits).verdict is Verdict.PROVED
+
+    @settings(deadline=None, max_examples=60)
+    @given(merging_families(), st.sampled_from([Method.AUTO, *DISCRETE_METHODS]))
+    def test_merged_modes_and_blocks_always_end_in_a_verdict(self, system, method):
+        """Whatever a search returns holds for all modes, equal ones and those of blocks too."""
+        settle(system, method, Limits(max_degree=4, budget=1.0, optimize_rate=False))
+
+    def test_rate_limit_is_never_beaten(self):
+        for system in (STABLE, NOT_QUADRATIC, DISCRETE):
+            result = settle(system)
+            rate = result.evidence.proved_rate(system)
+            better = rate <= result.rate_limit
+            assert better if system.time is Time.CONTINUOUS else rate >= result.rate_limit
+
+
+LIES = {
+    "indefinite": lambda n: np.diag([1.0] + [-1.0] * (n - 1)),
+    "negative": lambda n: -np.eye(n),
+    "zero": lambda n: np.zeros((n, n)),
+    "identity": np.eye,
+    "singular": lambda n: np.ones((n, n)),
+    "skew": lambda n: np.triu(np.ones((n, n))) - np.tril(np.ones((n, n)), -1),
+    "lopsided": lambda n: np.eye(n) + np.triu(np.full((n, n), 1e9), 1),
+    "nan": lambda n: np.full((n, n), np.nan),
+    "one nan": lambda n: np.where(np.eye(n) > 0, 1.0, np.nan),
+    "inf": lambda n: np.full((n, n), np.inf),
+    "mixed inf": lambda n: np.diag([np.inf] + [1.0] * (n - 1)),
+    "huge": lambda n: 1.5e308 * np.eye(n),
+    "tiny": lambda n: 5e-324 * np.eye(n),
+    "stretched": lambda n: np.diag(10.0 ** np.linspace(-300, 300, n)),
+    "slightly wrong": lambda n: np.eye(n) - 1e-9 * np.ones((n, n)),
+}
+SYSTEMS = {
+    "stable": (STABLE, {Verdict.PROVED, Verdict.INCONCLUSIVE}),
+    # The lie is about quadratic functions; what follows on the ladder is honest.
+    "not quadratic": (NOT_QUADRATIC, {Verdict.PROVED}),
+    "grows": (dayawansa_martin(12), {Verdict.REFUTED}),
+    "marginal": (MARGINAL, {Verdict.REFUTED}),
+    "unstable": (UNSTABLE, {Verdict.REFUTED}),
+    "antistable": (family([[1, 0], [0, 1]]), {Verdict.REFUTED}),
+    "saddle": (family([[-1, 0], [0, 1]]), {Verdict.REFUTED}),
+    "stable discrete": (
+        family([["1/2", 0], [1, "1/2"]], time=Time.DISCRETE),
+        {Verdict.PROVED, Verdict.INCONCLUSIVE},
+    ),
+    "unstable discrete": (family([[2, 0], [0, 2]], time=Time.DISCRETE), {Verdict.REFUTED}),
+}
+
+
+@pytest.mark.parametrize("lie", LIES)
+@pytest.mark.parametrize("name", SYSTEMS)
+class TestLyingSolvers:
+    """Whatever the search returns, and even if no mode is tested before it."""
+
+    @pytest.fixture(autouse=True)
+    def _only_the_lie(self, monkeypatch):
+        monkeypatch.setattr(
+            rungs, "_seems_stable", lambda family: np.ones(len(family.matrices), bool)
+        )
+        monkeypatch.setattr(
+            rungs, "iterate_gradient", lambda matrices, **options: GradientResult(None, 0)
+        )
+
+    def test_the_solver(self, monkeypatch, lie, name):
+        monkeypatch.setattr(lmi, "_solve", lambda matrices, *rest: LIES[lie](matrices.shape[1]))
+        self.never_wrong(name)
+
+    def test_the_search(self, monkeypatch, lie, name):
+        def answer(matrices, *rest, **options):
+            return LIES[lie](matrices.shape[1])
+
+        monkeypatch.setattr(rungs, "find_common_quadratic", answer)
+        monkeypatch.setattr("nrs_design.search.decay.find_common_quadratic", answer)
+        self.never_wrong(name)
+
+    def test_the_gradient(self, monkeypatch, lie, name):
+        def answer(matrices, **options):
+            return GradientResult(LIES[lie](matrices.shape[1]), 1)
+
+        monkeypatch.setattr(rungs, "iterate_gradient", answer)
+        monkeypatch.setattr(rungs, "find_common_quadratic", lambda *arguments, **options: None)
+        self.never_wrong(name)
+
+    def test_every_semidefinite_program(self, monkeypatch, lie, name):
+        """The same lie wherever the solver is called, and only there."""
+
+        def answer(rows, offset, sizes, equalities=0, time_limit=0.0):
+            x = np.resize(LIES[lie](2).ravel(), rows.shape[1])
+            return x if np.isfinite(x).all() else None
+
+        for module in ("lmi", "obstruction", "polynomial", "mode_quadratic"):
+            monkeypatch.setattr(f"nrs_design.search.{module}.maximize_margin", answer)
+        system, allowed = SYSTEMS[name]
+        for limits in (Limits(), ANY_RATE):
+            assert settle(system, limits=limits).verdict in allowed | {Verdict.INCONCLUSIVE}
+
+    def never_wrong(self, name):
+        system, allowed = SYSTEMS[name]
+        for limits in (Limits(), ANY_RATE):
+            assert settle(system, limits=limits).verdict in allowed
+
+
+def test_slightly_wrong_answers_do_not_pass(monkeypatch):
+    """A Q for a = 5.82 is not one for a = 5.9, however near."""
+    below = certify(dayawansa_martin("5.82"), limits=ANY_RATE).evidence
+    Q = np.array(below.Q, dtype=float)
+    monkeypatch.setattr(lmi, "_solve", lambda *arguments: Q)
+    assert settle(dayawansa_martin("5.9"), Method.LMI).verdict is Verdict.INCONCLUSIVE
+    assert outcome(dayawansa_martin("5.9")) == ("proved", "impossible")
+
+
+def test_a_wrong_check_is_stopped(monkeypatch):
+    """If the trusted check accepted anything, flint would still stop a wrong proof."""
+    monkeypatch.setattr(CommonQuadratic, "find_fault", lambda self, system: None)
+    monkeypatch.setattr(rungs, "find_common_quadratic", lambda *arguments, **options: np.eye(2))
+    monkeypatch.setattr(rungs, "rate_of", lambda *arguments: 0.5)
+    with pytest.raises(InternalError):
+        certify(NOT_QUADRATIC, limits=ANY_RATE)

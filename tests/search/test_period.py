@@ -1,0 +1,66 @@
+"""Search for growing periodic signals."""
+
+import numpy as np
+import pytest
+
+from nrs_design.proof.system import Switching
+from nrs_design.search.family import Family, floats_in_silence
+from nrs_design.search.period import find_growing_period
+from tests.proof.systems import (
+    branicky,
+    dayawansa_martin,
+    family,
+    geromel_colaneri,
+    golden,
+    oscillator,
+)
+from tests.proof.truth import holds
+
+
+def search(system):
+    with floats_in_silence():
+        return find_growing_period(system, Family.of(system).matrices)
+
+
+@pytest.mark.parametrize(
+    "system", [branicky(), dayawansa_martin("11.27"), oscillator(7), golden("0.6181")]
+)
+def test_what_is_found_grows(system):
+    evidence = search(system)
+    assert evidence.find_fault(system) is None
+    assert holds(system, evidence)
+
+
+@pytest.mark.parametrize(
+    "system", [dayawansa_martin("11.2"), oscillator("6.9"), golden("0.618"), geromel_colaneri(3)]
+)
+def test_nothing_is_found_in_stable_families(system):
+    assert search(system) is None
+
+
+def test_words_of_several_letters():
+    # A shift of four states around a circle grows only over all four modes in order.
+    def step(k):
+        target = (k + 1) % 4
+        return [[int(i == target and j == k) * 2 for j in range(4)] for i in range(4)]
+
+    system = family(*map(step, range(4)), time=golden("1").time)
+    evidence = search(system)
+    assert {name for name, _ in evidence.steps} == {"m0", "m1", "m2", "m3"}
+    assert holds(system, evidence)
+
+
+@pytest.mark.parametrize(
+    "switching", [Switching(transitions=(("m0", "m1"),)), Switching(fixed_ends=(("m0", "m1"),))]
+)
+def test_rules_are_obeyed(switching):
+    system = branicky()
+    rows = [mode.A.fractions() for mode in system.modes]
+    assert search(family(*rows, switching=switching)) is None
+
+
+@pytest.mark.parametrize("lie", [1e3, -1e3])
+def test_matrices_that_lie_give_no_verdict(lie):
+    system = dayawansa_martin(5)
+    with floats_in_silence():
+        assert find_growing_period(system, np.array([[[0.1, lie], [-lie, 0.1]]] * 2)) is None

@@ -30,7 +30,8 @@ def write_output(path: Path, content: str | bytes) -> None:
     if path.is_symlink() or (path.exists() and not path.is_file()):
         kind = "a symbolic link" if path.is_symlink() else "a folder or a device"
         raise OutputError(f"is {kind}, not a file", path=path, remedy="name another file")
-    data = content.encode() if isinstance(content, str) else content
+    # A file name that is no text may have got in; it is shown with escapes.
+    data = content.encode(errors="backslashreplace") if isinstance(content, str) else content
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
         handle, temporary = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.")

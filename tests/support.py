@@ -72,6 +72,11 @@ def run(
     return subprocess.run(command, capture_output=True, text=True, cwd=cwd, env=env, check=False)
 
 
+def number_in(text: str) -> Fraction:
+    """Read a number of a claim, such as ``0.25`` or ``1 - 2.5e-22``."""
+    return Fraction(text) if " - " not in text else 1 - Fraction(text.removeprefix("1 - "))
+
+
 def holds(system: SwitchedSystem, evidence: AbstractEvidence) -> bool:
     """Oracle: the definition of a kind of evidence.
 
@@ -83,7 +88,8 @@ def holds(system: SwitchedSystem, evidence: AbstractEvidence) -> bool:
         return truth.holds(system, evidence)
     if isinstance(evidence, UnstableMode):
         (mode,) = [mode for mode in system.modes if mode.name == evidence.mode]
-        return not is_stable_by_lyapunov(mode.A.fractions(), discrete=discrete)
+        may_stay = truth.bounds_of(system, evidence.mode)[1] is None
+        return may_stay and not is_stable_by_lyapunov(mode.A.fractions(), discrete=discrete)
     Q, rate = exact(evidence.Q), evidence.rate
     if rate <= 0 or (discrete and rate >= 1) or not is_definite_by_ldl(Q):
         return False

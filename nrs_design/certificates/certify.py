@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from enum import StrEnum
 from functools import partial
+from itertools import islice, zip_longest
 from time import perf_counter
 
 from numpy.linalg import LinAlgError
@@ -21,21 +22,32 @@ from nrs_design.certificates.checker import Checker
 from nrs_design.certificates.evidence import (
     AbstractEvidence,
     BlockTriangular,
-    CommonPolynomial,
     Shows,
 )
 from nrs_design.certificates.evidence.block_triangular import diagonal_block
+from nrs_design.certificates.evidence.common_polynomial import MAX_DEGREE, MAX_MONOMIALS
+from nrs_design.certificates.evidence.unstable_mode import is_stable
+from nrs_design.certificates.search.allowance import (
+    GIGABYTE,
+    Allowance,
+    Cost,
+    NotAffordableError,
+)
 from nrs_design.certificates.search.family import Family, floats_in_silence
 from nrs_design.certificates.search.limits import rate_limit
+from nrs_design.certificates.search.mode_quadratic import functions_cost
+from nrs_design.certificates.search.polynomial import highest_degree, polynomial_cost
 from nrs_design.certificates.search.rungs import (
     Finding,
     Rung,
+    decide_one_state,
     examine_every_mode,
     examine_suspicious_modes,
     prove_obstruction,
     search_by_gradient,
     search_by_lmi,
     search_mixture,
+    search_mode_polynomial,
     search_mode_quadratic,
     search_parameter_quadratic,
     search_period,
@@ -48,12 +60,14 @@ from nrs_design.certificates.search.rungs import (
 from nrs_design.certificates.search.structure import merge_equal_modes, triangular_blocks
 from nrs_design.certificates.second_opinion import confirm
 from nrs_design.errors import DesignError, InternalError, TooLargeError
-from nrs_design.switched.system import SwitchedSystem, Time
+from nrs_design.switched.system import Mode, SwitchedSystem, Time
 
 Progress = Callable[[str], None]
 
-DEFAULT_MAX_DEGREE = 12
 DEFAULT_BUDGET = 60.0
+DEFAULT_MEMORY = 2 * GIGABYTE
+# Degrees that are tried before a search for growing periods, which is quicker than higher ones.
+FIRST_DEGREES = 2
 
 
 class Method(StrEnum):
@@ -64,6 +78,7 @@ class Method(StrEnum):
     GRADIENT = "gradient"
     OBSTRUCTION = "obstruction"
     MIXTURE = "mixture"
+    MODE_POLYNOMIAL = "mode-polynomial"
     MODE_QUADRATIC = "mode-quadratic"
     PARAMETER_QUADRATIC = "parameter-quadratic"
     PERIOD = "period"
@@ -77,16 +92,19 @@ class Limits:
 
     Parameters
     ----------
-    max_degree : int
-        Highest degree of a homogeneous polynomial function.
+    max_degree : int or None
+        Highest degree of a homogeneous polynomial function; None for as high as the budget allows.
     budget : float
-        No new rung is begun after so many seconds.
+        Time in s. Steps that are predicted not to fit are not begun, others are stopped.
+    memory : float
+        Steps that are predicted to need more bytes are not begun.
     optimize_rate : bool
         Look for the largest provable decay rate, not only for some.
     """
 
-    max_degree: int = DEFAULT_MAX_DEGREE
+    max_degree: int | None = None
     budget: float = DEFAULT_BUDGET
+    memory: float = DEFAULT_MEMORY
     optimize_rate: bool = True
 
 
@@ -161,7 +179,8 @@ def certify(
     Returns
     -------
     Certification
-        Every statement in it has passed the exact check and flint's second opinion.
+        Every statement in it has passed the exact check, and flint's second opinion as far as
+        that goes (`nrs_design.certificates.second_opinion`).
 
     Raises
     ------
@@ -171,6 +190,7 @@ def certify(
         If two exact computations disagree.
     """
     limits = limits or Limits()
+    allowance = Allowance(limits.budget, limits.memory)
     if method is not Method.AUTO and method not in _applicable(system) | {Method.MODE_QUADRATIC}:
         raise DesignError(
             f"the method {method} does not apply to this kind of switching and time",
@@ -181,11 +201,15 @@ def certify(
     blocks = triangular_blocks(merged) if simple else (tuple(range(system.order)),)
     checker = Checker(system)
     if len(blocks) == 1:
-        result = _climb(checker if merged is system else Checker(merged), method, limits, progress)
+        checker_of_merged = checker if merged is system else Checker(merged)
+        result = _climb(checker_of_merged, method, limits, allowance, progress)
     else:
-        parts = [_certify_block(merged, block, method, limits, progress) for block in blocks]
+        parts = [
+            _certify_block(merged, block, method, limits, allowance.part(1 / left), progress)
+            for left, block in zip(range(len(blocks), 0, -1), blocks, strict=True)
+        ]
         result = _combine(merged, blocks, parts)
-    statements = tuple(spread(statement, merged, system) for statement in result.statements)
+    statements = _spread(result.statements, merged, system)
     for statement in statements:
         if fault := checker.find_fault(statement):
             raise InternalError(f"the search returned evidence that does not hold: {fault}")
@@ -200,31 +224,34 @@ def _certify_block(
     block: tuple[int, ...],
     method: Method,
     limits: Limits,
+    allowance: Allowance,
     progress: Progress,
 ) -> Certification:
     """Certify the family of one diagonal block."""
     full = diagonal_block(system, block)
     merged = merge_equal_modes(full)
-    result = _climb(Checker(merged), method, limits, progress)
+    result = _climb(Checker(merged), method, limits, allowance, progress)
     return replace(
         result,
         system=full,
-        statements=tuple(spread(statement, merged, full) for statement in result.statements),
+        statements=_spread(result.statements, merged, full),
     )
 
 
-def _climb(checker: Checker, method: Method, limits: Limits, progress: Progress) -> Certification:
+def _climb(
+    checker: Checker, method: Method, limits: Limits, allowance: Allowance, progress: Progress
+) -> Certification:
     """Try one rung after the other until one decides, or the budget is used up."""
     system = checker.system
     with floats_in_silence():
-        family = Family.checked_by(checker)
-    begun = perf_counter()
+        family = Family.checked_by(checker, allowance)
     attempts: list[Attempt] = []
     remarks: list[AbstractEvidence] = []
-    for name, rung in _rungs(system, method, limits, remarks):
+    for name, rung in _rungs(system, method, limits, allowance, remarks):
         start = perf_counter()
-        if attempts and start - begun > limits.budget:
-            attempts.append(Attempt(name, "not begun: the budget of time is used up", 0.0))
+        if attempts and allowance.left <= 0:
+            spent = f"not begun: the budget of {allowance.total:g} s is used up (--budget)"
+            attempts.append(Attempt(name, spent, 0.0))
             break
         progress(name)
         evidence, outcome = _take(rung, family)
@@ -239,17 +266,23 @@ def _climb(checker: Checker, method: Method, limits: Limits, progress: Progress)
 
 
 def _rungs(
-    system: SwitchedSystem, method: Method, limits: Limits, remarks: list[AbstractEvidence]
+    system: SwitchedSystem,
+    method: Method,
+    limits: Limits,
+    allowance: Allowance,
+    remarks: list[AbstractEvidence],
 ) -> Iterator[tuple[str, Rung]]:
     """Yield the rungs, cheapest first; what has been shown so far decides what is worth trying."""
     wanted = _applicable(system) if method is Method.AUTO else {method}
     if system.is_uniform:
         yield "suspicious modes", examine_suspicious_modes
-    if Method.LMI in wanted:
+    if Method.LMI in wanted and system.order == 1:
+        yield "one state", decide_one_state
+    elif Method.LMI in wanted:
         yield "lmi", partial(search_by_lmi, optimize_rate=limits.optimize_rate)
     if Method.OBSTRUCTION in wanted:
         yield "obstruction", prove_obstruction
-    if Method.LMI in wanted and not remarks:
+    if Method.LMI in wanted and system.order > 1 and not remarks:
         # The solver may have stalled: other coordinates, before giving up on quadratics.
         yield "lmi, raw", search_raw
         yield "lmi, preconditioned", search_preconditioned
@@ -264,22 +297,83 @@ def _rungs(
         yield "mode quadratic", search_mode_quadratic
     if Method.MIXTURE in wanted:
         yield "mixture", search_mixture
-    polynomial = partial(partial, search_polynomial, optimize_rate=limits.optimize_rate)
-    degrees = range(2, limits.max_degree // 2 + 1) if Method.POLYNOMIAL in wanted else ()
-    for d in degrees[:2]:
-        yield f"polynomial of degree {2 * d}", polynomial(degree=d)
+    ladders = []
+    if Method.POLYNOMIAL in wanted:
+        ladders.append(_common_polynomials(system, limits, allowance))
+    if Method.MODE_POLYNOMIAL in wanted:
+        ladders.append(_mode_polynomials(system, limits, allowance))
+    for ladder in ladders:
+        yield from islice(ladder, FIRST_DEGREES)
     if Method.PERIOD in wanted:
         yield "period", search_period
     if Method.VALUE in wanted:
         yield "switching at constant values", search_switching_at_values
-    for d in degrees[2:]:
-        yield f"polynomial of degree {2 * d}", polynomial(degree=d)
+    for rungs in zip_longest(*ladders):
+        yield from (rung for rung in rungs if rung is not None)
+
+
+def _common_polynomials(
+    system: SwitchedSystem, limits: Limits, allowance: Allowance
+) -> Iterator[tuple[str, Rung]]:
+    """Yield common polynomials of rising degree."""
+    search = partial(partial, search_polynomial, optimize_rate=limits.optimize_rate)
+    cost = partial(polynomial_cost, system.order, len(system.modes))
+    return _rising(
+        "polynomial", system, limits, allowance, lambda d: (cost(d)[0], search(degree=d))
+    )
+
+
+def _mode_polynomials(
+    system: SwitchedSystem, limits: Limits, allowance: Allowance
+) -> Iterator[tuple[str, Rung]]:
+    """Yield polynomials for each mode of rising degree."""
+    search = partial(partial, search_mode_polynomial)
+    cost = partial(functions_cost, system)
+    name = "mode polynomial"
+    return _rising(name, system, limits, allowance, lambda d: (cost(d)[0], search(degree=d)))
+
+
+def _rising(
+    name: str,
+    system: SwitchedSystem,
+    limits: Limits,
+    allowance: Allowance,
+    rung_of: Callable[[int], tuple[Cost, Rung]],
+) -> Iterator[tuple[str, Rung]]:
+    """Yield rungs of rising degree, and at last the reason why there is no higher one.
+
+    Degrees rise while they are predicted to fit into what is left of the budget, so how far they
+    rise does not depend on the machine. In one state, all forms of a degree are alike.
+    """
+    if system.order == 1:
+        return
+    for d in range(2, highest_degree(system.order) + 1):
+        step = f"{name} of degree {2 * d}"
+        if limits.max_degree is not None and 2 * d > limits.max_degree:
+            yield step, _refuse(f"not tried: --max-degree is {limits.max_degree}")
+            return
+        cost, rung = rung_of(d)
+        fits = allowance.affords(cost)
+        yield step, rung
+        if not fits:
+            return
+    held = f"a certificate holds at most {MAX_MONOMIALS} monomials and degree {MAX_DEGREE}"
+    yield f"{name} of higher degree", _refuse(f"not tried: {held}")
+
+
+def _refuse(reason: str) -> Rung:
+    """Return a rung that is not tried."""
+    return lambda family: (None, reason)
 
 
 def _applicable(system: SwitchedSystem) -> set[Method]:
     """Return the rungs that can decide a system with its kind of switching."""
     switching = system.switching
     wanted = {Method.MODE_QUADRATIC}
+    if system.time is Time.DISCRETE and not (switching.is_arbitrary or switching.fixed_ends):
+        wanted |= {Method.MODE_POLYNOMIAL}
+    if any(not is_stable(mode.A, system.time) for mode in _left_modes(system)):
+        return wanted | ({Method.PERIOD} if system.is_uniform else set())
     if system.is_uniform and not switching.resets:
         wanted |= {Method.LMI, Method.OBSTRUCTION, Method.POLYNOMIAL}
     if system.is_uniform:
@@ -296,13 +390,21 @@ def _applicable(system: SwitchedSystem) -> set[Method]:
     return wanted
 
 
+def _left_modes(system: SwitchedSystem) -> list[Mode]:
+    """Return the modes that must be left: only these may be unstable."""
+    lasting = {mode.name for mode in system.lasting_modes()}
+    return [mode for mode in system.modes if mode.name not in lasting]
+
+
 def _take(rung: Rung, family: Family) -> Finding:
-    """Try one rung; where floating point fails, nothing is found."""
+    """Try one rung; where it is not affordable, or floating point fails, nothing is found."""
     try:
         with floats_in_silence():
             return rung(family)
     except TooLargeError as error:
         return None, f"not tried: {error.message}"
+    except NotAffordableError as reason:
+        return None, str(reason)
     except (LinAlgError, OverflowError) as error:
         return None, f"floating point failed ({error})"
 
@@ -315,6 +417,15 @@ def _conclude(
 ) -> Certification:
     status = common_quadratic_of(system, statements)
     return Certification(system, verdict_of(statements), status, method, statements, attempts)
+
+
+def _spread(
+    statements: tuple[AbstractEvidence, ...], merged: SwitchedSystem, system: SwitchedSystem
+) -> tuple[AbstractEvidence, ...]:
+    """Carry evidence over from merged modes to all modes."""
+    if merged is system:
+        return statements
+    return tuple(statement.spread(merged, system) for statement in statements)
 
 
 def _combine(
@@ -339,30 +450,3 @@ def _combine(
                 statements.append(BlockTriangular(blocks, ((k, statement),)))
     method = "blocks: " + ", ".join(dict.fromkeys(part.method for part in parts))
     return _conclude(system, method, tuple(statements), attempts)
-
-
-def spread(
-    statement: AbstractEvidence, merged: SwitchedSystem, system: SwitchedSystem
-) -> AbstractEvidence:
-    """Carry evidence over from merged modes to all of them.
-
-    Only polynomial functions hold numbers for every mode; names of modes stay valid.
-    """
-    if isinstance(statement, CommonPolynomial) and len(merged.modes) < len(system.modes):
-        forms = {m.A: N for m, N in zip(merged.modes, statement.vanishing, strict=True)}
-        return replace(statement, vanishing=tuple(forms[mode.A] for mode in system.modes))
-    if isinstance(statement, BlockTriangular):
-        return replace(
-            statement,
-            parts=tuple(
-                (k, _spread_part(part, statement.blocks[k], merged, system))
-                for k, part in statement.parts
-            ),
-        )
-    return statement
-
-
-def _spread_part(
-    part: AbstractEvidence, block: tuple[int, ...], merged: SwitchedSystem, system: SwitchedSystem
-) -> AbstractEvidence:
-    return spread(part, diagonal_block(merged, block), diagonal_block(system, block))

@@ -1,7 +1,11 @@
 """TRUSTED: exact decisions about integer matrices, in plain Python integers.
 
-Everything that is called proved or refuted rests on this file and on nothing cleverer. A
-rational matrix is given as integers over a positive denominator; positive factors change
+Definiteness and the stability of a mode are decided here and nowhere else. What else a verdict
+rests on: the conditions in `nrs_design.certificates.evidence` that form these matrices, and, where
+a condition holds an exponential or a period (`mode_quadratic` with a dwell time in continuous time,
+`unstable_period`), the enclosures of python-flint, which are taken as they are.
+
+A rational matrix is given as integers over a positive denominator; positive factors change
 neither definiteness nor the Hurwitz property, so all tests run on integers.
 """
 

@@ -45,12 +45,12 @@ def derivative_lift(N: IntegerMatrix, degree: int) -> list[list[int]]:
 def power_lift(N: IntegerMatrix, degree: int) -> list[list[int]]:
     """Return the matrix of ``z+ = A^d z`` over ``denominator^degree`` for ``A = N / denominator``.
 
-    Row a holds the coefficients of ``prod_i ((A x)_i)^(a_i)``.
+    Row a holds the coefficients of ``prod_i ((A x)_i)^(a_i)``. The matrix need not be square.
     """
-    n = len(N)
+    n = len(N[0])
     index = {monomial: k for k, monomial in enumerate(monomials(n, degree))}
     lifted = []
-    for monomial in monomials(n, degree):
+    for monomial in monomials(len(N), degree):
         product: dict[Monomial, int] = {(0,) * n: 1}
         for i, exponent in enumerate(monomial):
             for _ in range(exponent):

@@ -1,7 +1,12 @@
-"""A second, independent opinion on every exact decision, by python-flint.
+"""A second opinion by python-flint on what our own integers have decided.
 
 The trusted check decides; this module only has a right of veto. A disagreement is a defect of
 this program or of flint and ends in InternalError, never in a verdict.
+
+How far it goes: stable modes and averages are decided anew from the matrices; for a common
+quadratic function the conditions are formed and decided anew; for every other kind flint decides
+the definiteness of the forms that our code made. There is no second opinion where flint itself has
+the first one: enclosures of exponentials (dwell times in continuous time) and growing periods.
 """
 
 from __future__ import annotations

@@ -14,6 +14,7 @@ from typing import Any, NoReturn
 
 from nrs_design.certificates.certificate import (
     SCHEMA,
+    UNSIGNED,
     Certificate,
     content_id,
     to_document,
@@ -109,6 +110,12 @@ def read_document(path: Path) -> dict[str, Any]:
     except OSError as error:
         raise CertificateError(f"cannot be read ({error.strerror})", path=path) from error
     except (ValueError, RecursionError) as error:
+        if path.name.endswith((".yaml", ".yml")):
+            raise CertificateError(
+                "this is a spec, not a certificate",
+                path=path,
+                remedy="name the certificate first: nrs-design verify CERT SPEC",
+            ) from error
         raise CertificateError(
             f"not a certificate: {error}", path=path, remedy="make it with certify-switching --out"
         ) from error
@@ -135,7 +142,7 @@ def _find_foreign(
     if document.get("id") != content_id(document):
         return "its content does not match its id: it was altered"
     if document.get("schema") != SCHEMA:
-        return f"its schema is not {SCHEMA}"
+        return f"its schema is not {SCHEMA}: another version of nrs-design made it, make it anew"
     if document.get("spec") != {"name": spec.spec.name, "sha256": spec.sha256}:
         return "it belongs to another spec, or the spec has changed since"
     wanted = coordinates or getattr(spec.spec, "coordinates", None)
@@ -175,7 +182,7 @@ def _statements(
 
 def _find_difference(document: Mapping[str, Any], certificate: Certificate) -> str | None:
     expected = to_document(certificate)
-    for key in sorted(expected.keys() | (document.keys() - {"id"})):
+    for key in sorted(expected.keys() | (document.keys() - UNSIGNED)):
         # Membership too: a missing field is not the same as one that is null.
         if (key in document) != (key in expected) or _text_of(document, key) != _text_of(
             expected, key

@@ -4,23 +4,21 @@ from __future__ import annotations
 
 import atexit
 import gc
-import io
 import os
 import sys
-from collections.abc import Iterable, Iterator
-from contextlib import contextmanager
+from collections.abc import Iterable
 from importlib import import_module
-from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated
 
 import typer
-from typer.core import TyperGroup
 
 from nrs_design import __version__
 from nrs_design.cli import exit_codes
-from nrs_design.cli.printing import note
+from nrs_design.cli.errors import print_error, summary
+from nrs_design.cli.groups import CommandGroup
+from nrs_design.cli.printing import note, print_json
+from nrs_design.cli.streams import lasting
 from nrs_design.errors import NrsDesignError
-from nrs_design.printable import printable
 
 # Each is in the module of its name; the help lists them in this order.
 COMMANDS = (
@@ -52,34 +50,6 @@ SETTINGS = {
 COLLECT_AFTER = 50_000
 
 
-class _Program(TyperGroup):
-    """The commands; what is wrong with their arguments is said in printable words.
-
-    An argument may be a stranger's file name that a shell has put there.
-    """
-
-    def make_context(self, *args: Any, **kwargs: Any) -> Any:
-        """Read the arguments of the program."""
-        with _printable_faults():
-            return super().make_context(*args, **kwargs)
-
-    def invoke(self, ctx: Any) -> Any:
-        """Read the arguments of a command and run it."""
-        with _printable_faults():
-            return super().invoke(ctx)
-
-
-@contextmanager
-def _printable_faults() -> Iterator[None]:
-    try:
-        yield
-    except Exception as error:
-        # Wrong usage, which the command-line library prints itself.
-        if hasattr(error, "format_message") and hasattr(error, "message"):
-            error.message = printable(error.message)
-        raise
-
-
 def make_app(names: Iterable[str] = COMMANDS) -> typer.Typer:
     """Build the application with some of its commands; only these are imported.
 
@@ -90,7 +60,7 @@ def make_app(names: Iterable[str] = COMMANDS) -> typer.Typer:
     """
     app = typer.Typer(
         name="nrs-design",
-        cls=_Program,
+        cls=CommandGroup,
         no_args_is_help=True,
         pretty_exceptions_enable=False,
         context_settings={"help_option_names": ["-h", "--help"]},
@@ -125,34 +95,14 @@ def _root(
     """Hold the options of the program itself."""
 
 
-def _open_streams() -> None:
-    """Make sure that every text can be printed.
-
-    Streams that the caller has closed take it in vain; characters that the encoding of a stream
-    does not have are written as escapes.
-    """
-    nowhere = Path(os.devnull)
-    sys.stdout = sys.stdout or nowhere.open("w")
-    sys.stderr = sys.stderr or nowhere.open("w")
-    for stream in (sys.stdout, sys.stderr):
-        if isinstance(stream, io.TextIOWrapper):
-            stream.reconfigure(errors="backslashreplace")
-
-
 def _run() -> None:
-    """Run the commands and flush, so that a verdict that was not delivered is no success.
-
-    Click ends with exit code 1 when the reader of the output has gone: not our "refuted".
-    """
+    """Run the commands and flush, so that a verdict that was not delivered is no success."""
     named = sys.argv[1:2]
     app = make_app(named if set(named) & set(COMMANDS) else COMMANDS)
     try:
         app()
-    except SystemExit as end:
-        if isinstance(end.__context__, BrokenPipeError):
-            raise end.__context__ from None
+    finally:
         sys.stdout.flush()
-        raise
 
 
 def main() -> None:
@@ -162,18 +112,18 @@ def main() -> None:
     gc.set_threshold(COLLECT_AFTER)
     # Nor is what is left at the end worth a search for garbage.
     atexit.register(gc.freeze)
-    _open_streams()
+    sys.stdout, sys.stderr = lasting(sys.stdout), lasting(sys.stderr)
     try:
         _run()
     except NrsDesignError as error:
-        note(f"error[{error.rule}]: {error}")
+        if "--json" in sys.argv:
+            print_json("error", summary(error))
+        print_error(error)
         sys.exit(exit_codes.USAGE)
     except OSError as error:
         # What could not be written must not be tried again at exit.
         os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
-        # Where the reader of our output has gone, there is nobody left to tell.
-        if not isinstance(error, BrokenPipeError):
-            note(f"error: the output cannot be written ({error.strerror})")
+        note(f"error: the output cannot be written ({error.strerror})")
         sys.exit(exit_codes.USAGE)
     except Exception as error:
         if "-v" in sys.argv or "--verbose" in sys.argv:

@@ -8,10 +8,30 @@ from typing import Annotated
 
 import typer
 
+QUIET = "Print nothing but errors, and what --json, --format or --out ask for; see the exit code."
 SpecFile = Annotated[Path, typer.Argument(metavar="SPEC", help="Spec file (*.nrs.yaml).")]
 Json = Annotated[bool, typer.Option("--json", help="Print one JSON document on stdout.")]
-Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="Print the result only.")]
+Quiet = Annotated[bool, typer.Option("--quiet", "-q", help=QUIET)]
 Verbose = Annotated[bool, typer.Option("--verbose", "-v", help="Print every step.")]
+
+
+MaxDegree = Annotated[
+    int | None,
+    typer.Option(
+        min=2,
+        max=64,
+        help="Highest degree of a polynomial function; default: the spec's, or as the budget "
+        "allows.",
+    ),
+]
+Budget = Annotated[
+    float | None,
+    typer.Option(min=0.0, help="Time for each search in s; default: the spec's, or 60."),
+]
+Memory = Annotated[
+    float | None,
+    typer.Option(min=0.0, help="Memory for a step of the search in GB; default 2."),
+]
 
 
 class CoordinatesOption(StrEnum):

@@ -8,23 +8,24 @@ from typing import Annotated
 
 import typer
 
+from nrs_design.cli.options import Quiet
 from nrs_design.cli.printing import note
 
 
 def schema(
     out: Annotated[Path | None, typer.Option(help="Write to a file instead of stdout.")] = None,
+    quiet: Quiet = False,
 ) -> None:
     """Print the JSON Schema (draft-07) of spec files.
 
     Example: nrs-design schema --out nrs.schema.json
     """
     from nrs_design.output import write_output
-    from nrs_design.printable import json_text
-    from nrs_design.spec.schema import json_schema
+    from nrs_design.spec.schema import schema_text
 
-    text = json_text(json_schema()) + "\n"
+    text = schema_text()
     if out is None:
         sys.stdout.write(text)
         return
     write_output(out, text)
-    note(f"schema written to {out}")
+    note(f"schema written to {out}", quiet=quiet)

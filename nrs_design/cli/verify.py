@@ -57,16 +57,15 @@ def verify(
             },
         )
     elif checked is None:
-        say(f"REJECTED: {outcome.fault}")
-    else:
-        _print(checked, loaded.spec, quiet=quiet)
+        say(f"REJECTED: {outcome.fault}", verdict="rejected")
+    elif not quiet:
+        _print(checked, loaded.spec)
     raise typer.Exit(exit_codes.OF_VERDICT.get(verdict, exit_codes.REFUTED))
 
 
-def _print(certificate: Certificate, spec: Spec, *, quiet: bool) -> None:
-    say(f"{certificate.verdict.upper()}: the certificate holds, checked exactly.")
-    if quiet:
-        return
+def _print(certificate: Certificate, spec: Spec) -> None:
+    verdict = certificate.verdict
+    say(f"{verdict.upper()}: the certificate holds, checked exactly.", verdict=verdict)
     for statement in certificate.statements:
         say(f"  {statement.claim(certificate.system)}")
     if certificate.coordinates:

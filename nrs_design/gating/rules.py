@@ -80,8 +80,10 @@ CERTIFICATE = Rule(
 OUTPUT = Rule(
     "NRS005",
     "The results can be written",
-    "Results are written whole or not at all, and never through a symbolic link.",
-    "Choose another place with --out or --reports, or make the folder writable.",
+    "Results are written whole or not at all, never through a symbolic link, and never over a "
+    "file of another spec or one that is no result of nrs-design.",
+    "Choose another place with --out or --reports, give the spec a name of its own, or make the "
+    "folder writable.",
 )
 DATA = Rule(
     "NRS006",
@@ -103,11 +105,12 @@ MODE_STABLE = Rule(
     "Every mode is stable",
     "Staying in one mode forever is an admissible switching signal, whatever the dwell time and "
     "the transitions that the spec declares, so every mode must be Hurwitz (all eigenvalues in the "
-    "left half plane) or, in discrete time, Schur (inside the unit circle). Decided in exact "
-    "arithmetic from the characteristic polynomial.",
+    "left half plane) or, in discrete time, Schur (inside the unit circle). Only a mode with a "
+    "longest dwell time need not be: it must be left. Decided in exact arithmetic from the "
+    "characteristic polynomial.",
     "Look at the eigenvalue and at the signs of this mode's matrix; for a controller, add damping "
-    "(raise Bt), lower Kp, or narrow the range of the environment. No rule of switching, such as a "
-    "longer dwell time, mends an unstable mode.",
+    "(raise Bt), lower Kp, or narrow the range of the environment. Of the rules of switching, only "
+    "a longest dwell time allows an unstable mode, if the machine leaves the mode by then.",
 )
 SWITCHING_STABLE = Rule(
     "NRS102",
@@ -122,8 +125,10 @@ SWITCHING_STABLE = Rule(
     "function exists refutes nothing.",
     "If refuted by a mode, mend that mode first (NRS101). If refuted by a signal, take it away: "
     "declare a longer dwell time or only the transitions that really occur, narrow the ranges, or "
-    "add damping (raise Bt). If inconclusive, neither was found: do the same, or search longer by "
-    "certify-switching with a higher --max-degree or --budget; --margin finds the largest box of "
+    "add damping (raise Bt). If inconclusive, neither was found: do the same, or search longer "
+    "with a larger --budget, more --memory or a higher --max-degree, whichever the message says "
+    "has ended the search (certify-switching, report and gate take them, and a spec says budget "
+    "and max_degree under `certification`); certify-switching --margin finds the largest box of "
     "ranges with a proof, --shortest-dwell the shortest dwell time. The gate fails until there is "
     "a proof.",
 )
@@ -137,6 +142,17 @@ STIFFNESS_RANGE = Rule(
     "NRS102, at every corner of the parameter box and so inside it.",
     "Raise Bt or its upper bound, or narrow the stiffness range to what really occurs.",
 )
+GOAL = Rule(
+    "NRS106",
+    "The design meets its goal",
+    "Every goal that the spec sets for a controller is met by the gains that ship: a margin at the "
+    "nominal values and at every corner of the ranges of all contacts and gains; the error of the "
+    "displayed impedance or of the steady force at the nominal values and at every corner of the "
+    "ranges of the environment that it is designed for. Values between corners are not looked at. "
+    "Computed in floating point: not a proof. docs/design/goals.md defines every goal.",
+    "Let `nrs-design optimize` choose gains that are given, widen their bounds, narrow the ranges, "
+    "or relax the goal.",
+)
 CERTIFICATE_HOLDS = Rule(
     "NRS104",
     "The certificate holds for its spec",
@@ -148,10 +164,13 @@ CERTIFICATE_HOLDS = Rule(
 LOCKED = Rule(
     "NRS105",
     "The lock file agrees with the specs",
-    "With --locked, every spec must have an entry with the hash of its present content and with "
-    "the certificate that was locked, and every locked spec must still exist.",
+    "With --locked, every spec must have an entry with the hash of what it says now (comments and "
+    "layout do not count), with the certificate and the gains that were locked, and designed by "
+    "this version of nrs-design; and every locked spec must still exist and be examined. Goals "
+    "that only a design can decide, such as NRS103, end as they are locked: they are not computed "
+    "again.",
     "Run `nrs-design gate` without --locked, look at what changed, and commit the new lock file "
-    "together with its certificates.",
+    "together with its certificates; with --prune for specs that were removed.",
 )
 INTERNAL = Rule(
     "NRS900",
@@ -178,6 +197,7 @@ RULES: Mapping[str, Rule] = MappingProxyType(
             STIFFNESS_RANGE,
             CERTIFICATE_HOLDS,
             LOCKED,
+            GOAL,
             INTERNAL,
         )
     }
@@ -209,9 +229,11 @@ WORDS: Mapping[str, Word] = MappingProxyType(
                 "Neither a proof nor a refutation was found. This is not a statement of "
                 "stability, nor of instability, even where it is shown that no common quadratic "
                 "function exists.",
-                "Search longer: certify-switching with a higher --max-degree or --budget. Or ask "
-                "for less: a longer dwell time, narrower ranges (--margin finds the largest with "
-                "a proof), more damping. A gate fails closed. Exit code 3.",
+                "Search longer: with a larger --budget, more --memory or a higher --max-degree "
+                "(of certify-switching, report and gate), whichever the message says has ended "
+                "the search. Or ask for less: a longer dwell time, narrower ranges "
+                "(certify-switching --margin finds the largest with a proof), more damping. A "
+                "gate fails closed. Exit code 3.",
             ),
             Word(
                 "met",

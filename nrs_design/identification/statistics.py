@@ -113,7 +113,7 @@ def uncertainty(
     n, p = sensitivities.shape
     whiteness = ljung_box(residuals)
     bread = _inverse(sensitivities)
-    hidden = 0.0 if scatter is None else bread @ scatter @ bread
+    hidden = 0.0 if scatter is None else _propagated(bread, scatter)
     if whiteness >= WHITE:
         variance = float(residuals @ residuals) / (n - p)
         return Uncertainty(variance * bread + hidden, n - p, whiteness)
@@ -164,6 +164,13 @@ def _jackknife(J: Array, residuals: Array, edges: NDArray[np.int64], bread: Arra
         shifts.append(bread @ np.linalg.solve(without, part.T @ residuals[first:last]))
     moved = np.array(shifts)
     return np.asarray(moved.T @ moved * (count - 1) / count)
+
+
+def _propagated(bread: Array, scatter: Array) -> Array:
+    """Return ``bread scatter bread`` as a square, so that rounding leaves no negative variance."""
+    values, vectors = np.linalg.eigh(scatter)
+    root = bread @ (vectors * np.sqrt(np.maximum(values, 0.0)))
+    return np.asarray(root @ root.T)
 
 
 def _inverse(J: Array) -> Array:

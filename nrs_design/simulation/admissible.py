@@ -5,17 +5,45 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
+from fractions import Fraction
 
 import numpy as np
 
 from nrs_design.simulation.norms import Array
-from nrs_design.simulation.switched import TimeResponse, times
-from nrs_design.switched.system import SwitchedSystem, Time
+from nrs_design.simulation.switched import TimeResponse
+from nrs_design.switched.system import Stay, SwitchedSystem, Time
 
 # Fewest dwell times that a run of so many steps should hold.
 _LEGS = 8
 # Modes to start in; the worst run of them is kept.
 _STARTS = 6
+
+
+@dataclass(frozen=True)
+class _Pace:
+    """How a mode moves: its step in s, the flow of one step, the fewest steps and the most."""
+
+    step: float
+    flow: Array
+    fewest: int
+    most: float
+
+    @classmethod
+    def of(cls, A: Array, stay: Stay, time: Time, step: float, steps: int) -> _Pace:
+        """Choose a step that divides the dwell time, or at least ends before the mode is left."""
+        if time is Time.DISCRETE:
+            most = math.inf if stay.longest is None else int(stay.longest)
+            return cls(1.0, A, int(stay.shortest), most)
+        from scipy.linalg import expm
+
+        fewest, length = 1, Fraction(step)
+        if stay.shortest > 0:
+            fewest = max(1, min(math.ceil(stay.shortest / length), steps // _LEGS))
+            length = stay.shortest / fewest
+        elif stay.longest is not None:
+            length = min(length, stay.longest)
+        most = math.inf if stay.longest is None else int(stay.longest / length)
+        return cls(float(length), np.asarray(expm(A * float(length))), fewest, most)
 
 
 @dataclass(frozen=True)
@@ -25,11 +53,13 @@ class _Move:
     mode: int
     reset: Array
     steps: int
+    time: float
     whole: Array
 
     @classmethod
-    def into(cls, mode: int, reset: Array, steps: int, flow: Array) -> _Move:
-        return cls(mode, reset, steps, np.asarray(np.linalg.matrix_power(flow, steps) @ reset))
+    def into(cls, mode: int, reset: Array, steps: int, pace: _Pace) -> _Move:
+        whole = np.linalg.matrix_power(pace.flow, steps) @ reset
+        return cls(mode, reset, steps, steps * pace.step, np.asarray(whole))
 
 
 def admissible_run(
@@ -37,9 +67,9 @@ def admissible_run(
 ) -> TimeResponse:
     """Simulate a greedy adversary that keeps the rules.
 
-    After every dwell time it stays for another step, or switches and stays for a dwell time:
-    whichever loses the least of ``sqrt(x' Q_i x)`` of the active mode per time. It is a bad run,
-    not the worst one.
+    After every dwell time it stays for another step, if the mode need not be left, or switches and
+    stays for a dwell time: whichever loses the least of ``sqrt(x' Q_i x)`` of the active mode per
+    time. It is a bad run, not the worst one.
 
     Parameters
     ----------
@@ -48,20 +78,24 @@ def admissible_run(
     functions : mapping
         Matrix Q_i of every mode by its name, positive definite.
     step : float
-        Wanted time between decisions, in s; the dwell time becomes a multiple of it.
+        Wanted time between decisions, in s; in each mode the dwell time is a multiple of it.
     steps : int
         Number N of steps, at least.
     """
-    step, dwell = _grid(system, step, steps)
-    flows = _flows(system, step)
+    stays = system.stays()
+    paces = [
+        _Pace.of(np.array(mode.A.floats()), stays[mode.name], system.time, step, steps)
+        for mode in system.modes
+    ]
     roots = [np.asarray(np.linalg.cholesky(functions[m.name]).T) for m in system.modes]
-    successors = _successors(system, flows, dwell)
+    successors = _successors(system, paces)
     runs = []
-    for mode, initial in _starts(flows, roots, successors, dwell):
-        states, modes = _follow(mode, initial, flows, roots, successors, dwell, steps)
-        runs.append((_kept(roots, states, modes), states, modes))
+    for mode, initial in _starts(paces, roots, successors):
+        states, modes = _follow(mode, initial, paces, roots, successors, steps)
+        runs.append((_kept(roots, paces, states, modes), states, modes))
     _, states, modes = max(runs, key=lambda run: run[0])
-    return TimeResponse(times(step, len(modes)), _filled(states), np.array(modes))
+    instants = np.concatenate([[0.0], np.cumsum([paces[mode].step for mode in modes])])
+    return TimeResponse(instants, _filled(states), np.array(modes))
 
 
 def active_norms(
@@ -83,44 +117,24 @@ def norm_ratio(functions: Mapping[str, Array]) -> float:
     return math.sqrt(max(float(s[-1]) for s in spectra) / min(float(s[0]) for s in spectra))
 
 
-def _grid(system: SwitchedSystem, step: float, steps: int) -> tuple[float, int]:
-    """Return a step that divides the dwell time, and how many make one."""
-    dwell = float(system.switching.dwell_time)
-    if system.time is Time.DISCRETE:
-        return 1.0, max(1, int(dwell))
-    if dwell == 0:
-        return step, 1
-    count = max(1, min(math.ceil(dwell / step), steps // _LEGS))
-    return dwell / count, count
-
-
-def _flows(system: SwitchedSystem, step: float) -> list[Array]:
-    matrices = [np.array(mode.A.floats()) for mode in system.modes]
-    if system.time is Time.DISCRETE:
-        return matrices
-    from scipy.linalg import expm
-
-    return [np.asarray(expm(A * step)) for A in matrices]
-
-
-def _successors(system: SwitchedSystem, flows: list[Array], dwell: int) -> list[list[_Move]]:
+def _successors(system: SwitchedSystem, paces: list[_Pace]) -> list[list[_Move]]:
     """Return what may follow each mode; to stay comes first."""
     index = {mode.name: k for k, mode in enumerate(system.modes)}
-    moves = [[_Move.into(k, np.eye(len(flow)), 1, flow)] for k, flow in enumerate(flows)]
-    for source, target in system.transitions():
-        reset, k = system.reset_map(source, target), index[target.name]
-        jump = np.eye(source.A.shape[0]) if reset is None else np.array(reset.floats())
-        moves[index[source.name]].append(_Move.into(k, jump, dwell, flows[k]))
+    moves = [[_Move.into(k, np.eye(len(pace.flow)), 1, pace)] for k, pace in enumerate(paces)]
+    for edge in system.edges():
+        k = index[edge.target.name]
+        jump = np.eye(len(paces[k].flow)) if edge.map is None else np.array(edge.map.floats())
+        moves[index[edge.source.name]].append(_Move.into(k, jump, paces[k].fewest, paces[k]))
     return moves
 
 
 def _starts(
-    flows: list[Array], roots: list[Array], successors: list[list[_Move]], dwell: int
+    paces: list[_Pace], roots: list[Array], successors: list[list[_Move]]
 ) -> list[tuple[int, Array]]:
     """Return some modes, each with the state that keeps the most over a dwell time and a move."""
     found = []
     for mode, moves in enumerate(successors):
-        flow = np.linalg.matrix_power(flows[mode], dwell)
+        flow = np.linalg.matrix_power(paces[mode].flow, paces[mode].fewest)
         best = max((_largest(roots, mode, move, flow) for move in moves), key=lambda item: item[0])
         found.append((best[0], mode, best[1]))
     found.sort(key=lambda item: -item[0])
@@ -137,40 +151,48 @@ def _largest(roots: list[Array], mode: int, move: _Move, flow: Array) -> tuple[f
 def _follow(
     mode: int,
     initial: Array,
-    flows: list[Array],
+    paces: list[_Pace],
     roots: list[Array],
     successors: list[list[_Move]],
-    dwell: int,
     steps: int,
 ) -> tuple[list[Array], list[int]]:
     """Move on greedily until there are enough steps."""
     states, modes = [initial], []
-    move = _Move.into(mode, np.eye(len(initial)), dwell, flows[mode])
+    move, stayed = _Move.into(mode, np.eye(len(initial)), paces[mode].fewest, paces[mode]), 0
     while True:
         states[-1] = move.reset @ states[-1]
         for _ in range(move.steps):
-            states.append(flows[move.mode] @ states[-1])
+            states.append(paces[move.mode].flow @ states[-1])
             modes.append(move.mode)
         if len(modes) >= steps:
             return states, modes
-        move = _least_loss(move.mode, states[-1], roots, successors)
+        mode, stayed = move.mode, stayed + move.steps
+        # To stay comes first.
+        must_leave = stayed + 1 > paces[mode].most
+        moves = successors[mode][int(must_leave) :]
+        if not moves:
+            # What may follow is none of these modes.
+            return states, modes
+        move = _least_loss(mode, states[-1], roots, moves)
+        stayed = stayed if move.mode == mode else 0
 
 
-def _kept(roots: list[Array], states: list[Array], modes: list[int]) -> float:
-    """Return the mean growth of the active function per step, as a logarithm."""
+def _kept(roots: list[Array], paces: list[_Pace], states: list[Array], modes: list[int]) -> float:
+    """Return the mean growth of the active function per time, as a logarithm."""
     first = float(np.linalg.norm(roots[modes[0]] @ states[0]))
     last = float(np.linalg.norm(roots[modes[-1]] @ states[-1]))
-    return math.log(last / first) / len(modes) if last > 0 else -math.inf
+    time = sum(paces[mode].step for mode in modes)
+    return math.log(last / first) / time if last > 0 else -math.inf
 
 
-def _least_loss(mode: int, x: Array, roots: list[Array], successors: list[list[_Move]]) -> _Move:
+def _least_loss(mode: int, x: Array, roots: list[Array], moves: list[_Move]) -> _Move:
     now = float(np.linalg.norm(roots[mode] @ x))
 
     def gain(move: _Move) -> float:
         after = float(np.linalg.norm(roots[move.mode] @ (move.whole @ x)))
-        return math.log(after / now) / move.steps if after > 0 and now > 0 else -math.inf
+        return math.log(after / now) / move.time if after > 0 and now > 0 else -math.inf
 
-    return max(successors[mode], key=gain)
+    return max(moves, key=gain)
 
 
 def _filled(states: list[Array]) -> Array:

@@ -45,7 +45,9 @@ class PeriodicRun:
     radius: float
 
 
-def periodic_run(system: SwitchedSystem, steps: Steps, growth: float = 100.0) -> PeriodicRun:
+def periodic_run(
+    system: SwitchedSystem, steps: Steps, edges: Sequence[int] = (), growth: float = 100.0
+) -> PeriodicRun:
     """Simulate a periodic signal until its growth can be seen.
 
     Parameters
@@ -54,11 +56,13 @@ def periodic_run(system: SwitchedSystem, steps: Steps, growth: float = 100.0) ->
         Modes of one size; resets are applied where the signal switches.
     steps : sequence of (int, float)
         Mode and time in it, over one period.
+    edges : sequence of int
+        For each step, which reset to the next mode is taken; empty where there is no choice.
     growth : float
         The run ends when the state has grown by this factor, but not before three periods (if
         that is not too far), nor after thirty.
     """
-    legs = _legs(system, steps)
+    legs = _legs(system, steps, edges)
     monodromy = reduce(lambda product, leg: leg.whole @ product, legs, np.eye(system.order))
     values, vectors = np.linalg.eig(monodromy)
     leading = int(np.abs(values).argmax())
@@ -124,22 +128,22 @@ class _Leg:
         return np.asarray(self.last @ np.linalg.matrix_power(self.piece, self.pieces - 1))
 
 
-def _legs(system: SwitchedSystem, steps: Steps) -> list[_Leg]:
+def _legs(system: SwitchedSystem, steps: Steps, edges: Sequence[int]) -> list[_Leg]:
     from scipy.linalg import expm
 
-    fine = fine_step(system)
+    fine, maps = fine_step(system), system.switching.maps()
     # Many steps in a period leave fewer samples for each.
     most = max(1, _SAMPLES // (_FEWEST * len(steps)))
-    following = (*steps[1:], *steps[:1])
+    successors = [mode for mode, _ in (*steps[1:], *steps[:1])]
     legs = []
-    for (mode, time), (successor, _) in zip(steps, following, strict=True):
+    for k, ((mode, time), successor) in enumerate(zip(steps, successors, strict=True)):
         A = np.array(system.modes[mode].A.floats())
         discrete = system.time is Time.DISCRETE
         pieces = int(time) if discrete else min(max(_SMOOTH, math.ceil(time / fine)), most)
         piece = A if discrete else expm(A * (time / pieces))
-        reset = system.reset_map(system.modes[mode], system.modes[successor])
-        jumps = reset is not None and mode != successor
-        last = np.array(reset.floats()) @ piece if jumps and reset is not None else piece
+        resets = maps.get((system.modes[mode].name, system.modes[successor].name))
+        way = edges[k] if edges else 0
+        last = piece if resets is None else np.array(resets[way].floats()) @ piece
         legs.append(_Leg(mode, piece, last, pieces, time))
     return legs
 

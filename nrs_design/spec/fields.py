@@ -101,6 +101,10 @@ Weight = Annotated[
     Fraction, _number(lambda x: x >= 0, "zero or positive"), WithJsonSchema(NUMBER_SCHEMA)
 ]
 Positive = Annotated[Fraction, _number(lambda x: x > 0, "positive"), WithJsonSchema(NUMBER_SCHEMA)]
+AboveOne = Annotated[Fraction, _number(lambda x: x > 1, "above 1"), WithJsonSchema(NUMBER_SCHEMA)]
+BelowTwo = Annotated[
+    Fraction, _number(lambda x: 0 < x < 2, "between 0 and 2"), WithJsonSchema(NUMBER_SCHEMA)
+]
 Digits = Annotated[
     int,
     PlainValidator(read_digits),

@@ -14,6 +14,7 @@ ACTUATOR_GAIN = QuantityKind(
     {"rad/s": "the gain is per command unit: write '{value} rad/s/rpm'"},
 )
 DURATION = QuantityKind("a duration", ("s",), "0.0351 s")
+SEARCH_BUDGET = QuantityKind("a budget of time", ("s",), "60 s")
 DWELL_TIME = QuantityKind("a dwell time", ("s",), "2.76 s")
 DERIVATIVE_GAIN = QuantityKind(
     "a derivative gain",
@@ -39,6 +40,7 @@ ANGULAR_VELOCITY = QuantityKind(
         "1/s": "name the angle: write '{value} rad/s'",
         "rpm": "rpm is the driver's command unit and is never converted: write deg/s or rad/s",
     },
+    rational=False,
 )
 TORQUE = QuantityKind(
     "a torque",
@@ -57,6 +59,7 @@ BANDWIDTH = QuantityKind(
         "1/s": _FREQUENCY,
         "rpm": "rpm is the driver's command unit and is never converted: write Hz or rad/s",
     },
+    rational=False,
 )
 STIFFNESS = QuantityKind(
     "a stiffness",
@@ -110,6 +113,7 @@ ANGLE = QuantityKind(
     ("rad",),
     "45 deg",
     {"rad/s": "that is an angular velocity: write '{value} deg' or '{value} rad'"},
+    rational=False,
 )
 LINEAR_VELOCITY = QuantityKind("a velocity", ("m/s",), "18.5 mm/s")
 ACCELERATION = QuantityKind("an acceleration", ("m/s^2",), "9.81 m/s^2")
@@ -118,6 +122,7 @@ ANGULAR_ACCELERATION = QuantityKind(
     ("rad/s^2",),
     "3.584 rad/s^2",
     {"1/s^2": "name the angle: write '{value} rad/s^2'"},
+    rational=False,
 )
 COMMAND = QuantityKind(
     "a speed command of the motor driver",

@@ -102,12 +102,16 @@ class QuantityKind:
         A quantity of this kind.
     confusions : mapping of str to str
         Advice for units that are often written instead; ``{value}`` is the number as written.
+    rational : bool
+        Whether the SI value must be rational, as everything that enters a proof; then units with
+        a factor of pi (``deg``, ``Hz``) are refused.
     """
 
     name: str
     units: tuple[str, ...]
     example: str
     confusions: Mapping[str, str] = field(default_factory=dict)
+    rational: bool = True
 
     @property
     def si_unit(self) -> str:
@@ -168,12 +172,23 @@ def checked_kind(quantity: Quantity, kind: QuantityKind) -> Quantity:
             f"{quoted(quantity.text)} is not {kind.name}, expected {' or '.join(kind.units)}",
             remedy=kind.advice(quantity.text.partition(" ")[0], quantity.dimension),
         )
+    if kind.rational and not quantity.is_exact:
+        raise _irrational(quantity, kind)
     if quantity.value and not SMALLEST <= abs(quantity.rational_part) <= LARGEST:
         raise SpecError(
             f"{quoted(quantity.text)} is not a physical magnitude for {kind.name}",
             remedy=f"SI values between {SMALLEST:g} and {LARGEST:g} are read",
         )
     return quantity
+
+
+def _irrational(quantity: Quantity, kind: QuantityKind) -> SpecError:
+    unit = next(u for u in kind.units if parse_unit(u).dimension == quantity.dimension)
+    return SpecError(
+        f"the unit of {quoted(quantity.text)} holds a factor of pi: not exact in SI",
+        remedy=f"{kind.name} enters the proof: write it in {unit}, "
+        f"such as '{quantity.si:.6g} {unit}' (rounded)",
+    )
 
 
 def _without_unit(text: str, kind: QuantityKind) -> SpecError:
@@ -184,10 +199,12 @@ def _without_unit(text: str, kind: QuantityKind) -> SpecError:
             remedy=f"write '{glued[1]} {glued[2]}'",
         )
     parse_exact(text)
-    return SpecError(
-        f"{quoted(text)} has no unit, expected {' or '.join(kind.units)}",
-        remedy=f"write '{text} {kind.example.partition(' ')[2]}' if that is the unit meant",
-    )
+    unit = kind.example.partition(" ")[2]
+    remedy = f"write '{text} {unit}' if that is the unit meant"
+    if kind.units == ("m",):
+        remedy = f"write '{text} mm' or '{text} m', whichever is meant"
+    expected = " or ".join(kind.units)
+    return SpecError(f"{quoted(text)} has no unit, expected {expected}", remedy=remedy)
 
 
 def is_less(a: Quantity, b: Quantity) -> bool:

@@ -4,11 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from fractions import Fraction
+from functools import partial
 from typing import Annotated, Literal
 
 from pydantic import Field, model_validator
 
-from nrs_design.spec.faults import did_you_mean, fault
+from nrs_design.spec.certification import CertificationSpec
+from nrs_design.spec.dwell import DwellObstacle, find_changing_parameter
+from nrs_design.spec.faults import all_of, did_you_mean, fault
 from nrs_design.spec.fields import Label, Name, Title
 from nrs_design.spec.model import SpecModel
 from nrs_design.spec.parameters import MAX_PARAMETERS, Entry, ParameterName, ParameterSpec
@@ -96,7 +99,12 @@ class SwitchedSystemSpec(SpecModel):
         description="when modes change: arbitrary, or rules with dwell_time and transitions"
     )
     resets: Annotated[tuple[ResetSpec, ...], Field(max_length=MAX_TRANSITIONS)] = Field(
-        default=(), description="what switches do to the state; the others leave it as it is"
+        default=(),
+        description="what switches do to the state; the others leave it as it is. Several from one "
+        "mode to another are as many switches: any one of them may happen",
+    )
+    certification: CertificationSpec = Field(
+        default_factory=CertificationSpec, description="how far the search for a proof goes"
     )
 
     @property
@@ -104,14 +112,20 @@ class SwitchedSystemSpec(SpecModel):
         """Number of states n of the largest mode."""
         return max(mode.dimension for mode in self.modes)
 
+    def find_dwell_obstacle(self) -> DwellObstacle | None:
+        """Say why no dwell time can be claimed for this spec, or None."""
+        return find_changing_parameter(self.parameters)
+
     @model_validator(mode="after")
     def _check(self) -> SwitchedSystemSpec:
         modes = _modes_by_name(self.modes)
-        _check_parameters(self)
-        check_names(self.switching, modes, "mode")
-        _check_dwell_time(self)
-        resets = _resets_by_transition(self, modes)
-        _check_sizes(self, modes, resets)
+        all_of(
+            lambda: _check_parameters(self),
+            lambda: check_names(self.switching, modes, "mode"),
+            lambda: _check_dwell_times(self),
+        )
+        _check_resets(self, modes)
+        _check_sizes(self, modes)
         return self
 
 
@@ -125,11 +139,8 @@ def _modes_by_name(modes: tuple[ModeSpec, ...]) -> dict[str, ModeSpec]:
 
 
 def _check_parameters(spec: SwitchedSystemSpec) -> None:
-    used: set[str] = set()
-    for index, mode in enumerate(spec.modes):
-        used |= mode.parameters
-        if not mode.parameters <= spec.parameters.keys():
-            _report_unknown(spec, index)
+    all_of(*(partial(_check_known, spec, index) for index in range(len(spec.modes))))
+    used = frozenset[str]().union(*(mode.parameters for mode in spec.modes))
     constant = [name for name, parameter in spec.parameters.items() if not parameter.varies]
     if len(constant) > 1:
         raise fault(
@@ -163,45 +174,51 @@ def _check_parameters(spec: SwitchedSystemSpec) -> None:
         )
 
 
-def _report_unknown(spec: SwitchedSystemSpec, index: int) -> None:
-    for i, row in enumerate(spec.modes[index].A):
-        for j, entry in enumerate(row):
-            for name in entry.names:
-                if name not in spec.parameters:
-                    known = did_you_mean(name, spec.parameters, "parameters here are")
-                    raise fault(
-                        f"{name!r} is not a number, and there is no parameter of that name",
-                        known if spec.parameters else "write a number, or declare parameters",
-                        *("modes", index, "A", i, j),
-                    )
-
-
-def _check_dwell_time(spec: SwitchedSystemSpec) -> None:
-    dwell = spec.switching.dwell_time
-    if dwell is None:
+def _check_known(spec: SwitchedSystemSpec, index: int) -> None:
+    if spec.modes[index].parameters <= spec.parameters.keys():
         return
+
+    def check(name: str, *at: int) -> None:
+        if name not in spec.parameters:
+            known = did_you_mean(name, spec.parameters, "parameters here are")
+            raise fault(
+                f"{name!r} is not a number, and there is no parameter of that name",
+                known if spec.parameters else "write a number, or declare parameters",
+                "modes",
+                index,
+                "A",
+                *at,
+            )
+
+    all_of(
+        *(
+            partial(check, name, i, j)
+            for i, row in enumerate(spec.modes[index].A)
+            for j, entry in enumerate(row)
+            for name in sorted(entry.names)
+        )
+    )
+
+
+def _check_dwell_times(spec: SwitchedSystemSpec) -> None:
     unit, example = ("s", "2.76 s") if spec.time == "continuous" else ("steps", "3 steps")
-    if dwell.unit != unit:
-        raise fault(
-            f"{dwell.text!r} is not a dwell time in {spec.time} time, expected {unit}",
-            f"such as {example!r}",
-            *("switching", "dwell_time"),
-        )
-    ranged = next((name for name, p in spec.parameters.items() if not p.fixed), None)
-    if ranged is not None:
-        raise fault(
-            f"a dwell time and the range of parameter {ranged!r} exclude each other: the proof "
-            "with a dwell time holds for constant matrices only",
-            "leave dwell_time out, or give the parameter its nominal value only",
-            *("switching", "dwell_time"),
-        )
+    obstacle = spec.find_dwell_obstacle()
+    for at, dwell in spec.switching.dwell_times():
+        if dwell.unit != unit:
+            raise fault(
+                f"{dwell.text!r} is not a dwell time in {spec.time} time, expected {unit}",
+                f"such as {example!r}",
+                *("switching", *at),
+            )
+        if obstacle is not None:
+            raise fault(
+                obstacle.message, f"leave {at[0]} out, or {obstacle.remedy}", *("switching", *at)
+            )
 
 
-def _resets_by_transition(
-    spec: SwitchedSystemSpec, modes: Mapping[str, ModeSpec]
-) -> dict[Transition, ResetSpec]:
+def _check_resets(spec: SwitchedSystemSpec, modes: Mapping[str, ModeSpec]) -> None:
     allowed = None if spec.switching.transitions is None else set(spec.switching.transitions)
-    found: dict[Transition, ResetSpec] = {}
+    found: set[ResetSpec] = set()
     for index, reset in enumerate(spec.resets):
         at = ("resets", index)
         for key, name in (("from", reset.source), ("to", reset.target)):
@@ -216,11 +233,10 @@ def _resets_by_transition(
                 "add it to switching.transitions, or remove this reset",
                 *at,
             )
-        if transition in found:
-            raise fault("this switch has a reset already", "keep one of them", *at)
+        if reset in found:
+            raise fault("this reset is listed twice", "list each once", *at)
         _check_shape(reset, modes, *at)
-        found[transition] = reset
-    return found
+        found.add(reset)
 
 
 def _check_shape(reset: ResetSpec, modes: Mapping[str, ModeSpec], *at: int | str) -> None:
@@ -234,14 +250,11 @@ def _check_shape(reset: ResetSpec, modes: Mapping[str, ModeSpec], *at: int | str
         )
 
 
-def _check_sizes(
-    spec: SwitchedSystemSpec,
-    modes: Mapping[str, ModeSpec],
-    resets: Mapping[Transition, ResetSpec],
-) -> None:
+def _check_sizes(spec: SwitchedSystemSpec, modes: Mapping[str, ModeSpec]) -> None:
     """Check that a switch between different states says what becomes of the state."""
     if len({mode.dimension for mode in spec.modes}) == 1:
         return
+    resets = {(reset.source, reset.target) for reset in spec.resets}
     for (source, target), at in _transitions(spec):
         n, m = modes[source].dimension, modes[target].dimension
         if n != m and (source, target) not in resets:

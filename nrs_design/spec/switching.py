@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
+from functools import partial
 from math import lcm
 from typing import Annotated, Any
 
@@ -13,7 +14,7 @@ from pydantic import BeforeValidator, Field, PlainValidator, WithJsonSchema, mod
 from nrs_design.errors import SpecError
 from nrs_design.spec import kinds
 from nrs_design.spec.exact import parse_exact, quoted
-from nrs_design.spec.faults import as_text, did_you_mean, fault, reported
+from nrs_design.spec.faults import all_of, as_text, did_you_mean, fault, reported
 from nrs_design.spec.fields import Exact, Label
 from nrs_design.spec.model import SpecModel
 from nrs_design.spec.quantity import QUANTITY_PATTERN, parse_quantity
@@ -28,7 +29,11 @@ LONGEST_DWELL = 4096
 ARBITRARY = "arbitrary"
 _FORM = "write 'arbitrary', or {dwell_time: ..., transitions: [[from, to], ...]}"
 _DWELL_TIME = (
-    "shortest time in a mode before the next switch, in s; a number of steps in discrete time"
+    "shortest time in a mode before the next switch, in s; a number of steps in discrete time; one "
+    "for all modes, or by name: {a: 1 s, b: 2 s}"
+)
+_LONGEST_DWELL_TIME = (
+    "longest time in a mode, by which it must be left; one for all modes, or by name: {a: 5 s}"
 )
 _TRANSITIONS = "allowed switches as [from, to]; default: all"
 
@@ -56,6 +61,10 @@ class DwellTime:
     unit: str
 
 
+# One for all modes, or by their names; those left out have none.
+DwellTimes = DwellTime | dict[str, DwellTime]
+
+
 def parse_dwell_time(text: str) -> DwellTime:
     """Read a time such as ``2.76 s``, or a number of steps such as ``3 steps``.
 
@@ -74,16 +83,27 @@ def parse_dwell_time(text: str) -> DwellTime:
     if not 0 < dwell.value <= LONGEST_DWELL:
         raise SpecError(
             f"{quoted(text)} is not between 0 and {LONGEST_DWELL} {dwell.unit}",
-            remedy="give a positive dwell time, or leave dwell_time out",
+            remedy="give a positive time, or leave it out",
         )
     return dwell
 
 
-def _read_dwell_time(value: object) -> DwellTime:
+def _read_dwell_times(value: object) -> DwellTimes:
     if isinstance(value, DwellTime):
         return value
-    text = as_text(value)
-    return reported(lambda: parse_dwell_time(text))
+    if not isinstance(value, Mapping):
+        text = as_text(value)
+        return reported(lambda: parse_dwell_time(text))
+    if not value:
+        raise fault("no mode is named", "write one time for all, or {a: 1 s, b: 2 s}")
+    return {name: _read_dwell_time(name, dwell) for name, dwell in value.items()}
+
+
+def _read_dwell_time(name: str, value: object) -> DwellTime:
+    if isinstance(value, DwellTime):
+        return value
+    text = as_text(value, name)
+    return reported(lambda: parse_dwell_time(text), name)
 
 
 def _read_transitions(value: object) -> tuple[Transition, ...]:
@@ -104,7 +124,13 @@ def _read_transitions(value: object) -> tuple[Transition, ...]:
     return tuple(found)
 
 
-_DWELL_SCHEMA: dict[str, Any] = {"type": "string", "pattern": QUANTITY_PATTERN}
+_ONE_DWELL: dict[str, Any] = {"type": "string", "pattern": QUANTITY_PATTERN}
+_DWELL_SCHEMA: dict[str, Any] = {
+    "anyOf": [
+        _ONE_DWELL,
+        {"type": "object", "additionalProperties": _ONE_DWELL, "minProperties": 1},
+    ]
+}
 _TRANSITIONS_SCHEMA: dict[str, Any] = {
     "type": "array",
     "items": {
@@ -120,8 +146,11 @@ class SwitchingSpec(SpecModel):
     """Rules for the switching signal; without any, it is arbitrary."""
 
     dwell_time: Annotated[
-        DwellTime | None, PlainValidator(_read_dwell_time), WithJsonSchema(_DWELL_SCHEMA)
+        DwellTimes | None, PlainValidator(_read_dwell_times), WithJsonSchema(_DWELL_SCHEMA)
     ] = Field(default=None, description=_DWELL_TIME)
+    longest_dwell_time: Annotated[
+        DwellTimes | None, PlainValidator(_read_dwell_times), WithJsonSchema(_DWELL_SCHEMA)
+    ] = Field(default=None, description=_LONGEST_DWELL_TIME)
     transitions: Annotated[
         tuple[Transition, ...] | None,
         PlainValidator(_read_transitions),
@@ -131,17 +160,35 @@ class SwitchingSpec(SpecModel):
     @property
     def is_arbitrary(self) -> bool:
         """Whether there are no rules."""
-        return self.dwell_time is None and self.transitions is None
+        return self == SwitchingSpec()
+
+    def dwell_times(self) -> Iterator[tuple[tuple[str, ...], DwellTime]]:
+        """Yield every time in a mode that is written, and where it is: field, and mode if any."""
+        for field in ("dwell_time", "longest_dwell_time"):
+            written = getattr(self, field)
+            if isinstance(written, DwellTime):
+                yield (field,), written
+            elif written is not None:
+                yield from (((field, name), dwell) for name, dwell in written.items())
+
+    def stay(self, name: str) -> tuple[DwellTime | None, DwellTime | None]:
+        """Return the shortest and the longest time in a mode."""
+        return _of(self.dwell_time, name), _of(self.longest_dwell_time, name)
 
     def __str__(self) -> str:
         """Say the rules in a few words."""
-        rules = []
-        if self.dwell_time is not None:
-            rules.append(f"dwell time {self.dwell_time.text}")
+        rules = [
+            f"{at[0].replace('_', ' ')} {dwell.text}" + "".join(f" in {name}" for name in at[1:])
+            for at, dwell in self.dwell_times()
+        ]
         if self.transitions is not None:
             count = len(self.transitions)
             rules.append(f"{count} allowed transition{'s' * (count != 1)}")
         return ", ".join(rules) or ARBITRARY
+
+
+def _of(written: DwellTimes | None, name: str) -> DwellTime | None:
+    return written.get(name) if isinstance(written, dict) else written
 
 
 def _read_switching(value: object) -> object:
@@ -165,6 +212,7 @@ Switching = Annotated[
                     "type": "object",
                     "properties": {
                         "dwell_time": _DWELL_SCHEMA | {"description": _DWELL_TIME},
+                        "longest_dwell_time": _DWELL_SCHEMA | {"description": _LONGEST_DWELL_TIME},
                         "transitions": _TRANSITIONS_SCHEMA | {"description": _TRANSITIONS},
                     },
                     "minProperties": 1,
@@ -228,15 +276,42 @@ def check_denominators(numbers: Iterable[Fraction], *at: int | str) -> None:
 
 
 def check_names(switching: SwitchingSpec, names: Collection[str], noun: str) -> None:
-    """Report a fault if a transition names something that does not exist."""
-    for index, transition in enumerate(switching.transitions or ()):
-        for side, name in enumerate(transition):
-            if name not in names:
-                raise fault(
-                    f"there is no {noun} {quoted(name)}",
-                    did_you_mean(name, names),
-                    "switching",
-                    "transitions",
-                    index,
-                    side,
-                )
+    """Report a fault if a rule names something that does not exist, or cannot be kept."""
+    places = [at for at, _ in switching.dwell_times()]
+    all_of(
+        *(partial(_check_name, name, names, noun, *at) for at in places for name in at[1:]),
+        *(
+            partial(_check_name, name, names, noun, "transitions", index, side)
+            for index, transition in enumerate(switching.transitions or ())
+            for side, name in enumerate(transition)
+        ),
+        *(partial(_check_stay, switching, name, names, noun) for name in names),
+    )
+
+
+def _check_name(name: str, names: Collection[str], noun: str, *at: int | str) -> None:
+    if name not in names:
+        remedy = did_you_mean(name, names)
+        raise fault(f"there is no {noun} {quoted(name)}", remedy, "switching", *at)
+
+
+def _check_stay(switching: SwitchingSpec, name: str, names: Collection[str], noun: str) -> None:
+    """Check that a mode that must be left can be left, and no earlier than it may be."""
+    shortest, longest = switching.stay(name)
+    if longest is None:
+        return
+    at = ("switching", "longest_dwell_time", name)
+    if shortest is not None and longest.value < shortest.value:
+        raise fault(
+            f"{noun} {name!r} must be left after {longest.text}, but not before {shortest.text}",
+            "give a longest dwell time that is not below the dwell time",
+            *at,
+        )
+    allowed = switching.transitions
+    follows = len(names) > 1 if allowed is None else any(source == name for source, _ in allowed)
+    if not follows:
+        raise fault(
+            f"{noun} {name!r} must be left, but nothing may follow it",
+            f"allow a switch from {name}, or give it no longest dwell time",
+            *at,
+        )

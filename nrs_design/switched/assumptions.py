@@ -5,12 +5,17 @@ from __future__ import annotations
 from collections.abc import Sequence
 from fractions import Fraction
 
-from nrs_design.spec import SwitchedSystemSpec, SwitchingSpec
+from nrs_design.spec import DwellTime, SwitchedSystemSpec, SwitchingSpec
 from nrs_design.spec.exact import exact_text
 from nrs_design.switched.parameters import Parameter
 
 MAX_LISTED = 20
 CONTINUOUS = "continuous at a switch (identity resets)"
+_STAYS = {
+    "dwell_time": "stays active for at least",
+    "longest_dwell_time": "is left after at most",
+}
+_THEN = {"dwell_time": " before the next switch", "longest_dwell_time": ""}
 GIVEN_MATRICES = (
     "The modes are the matrices of the spec, taken exactly; the input is zero.",
     f"The state is {CONTINUOUS}; any switching signal is possible.",
@@ -34,10 +39,16 @@ def _switch_texts(spec: SwitchedSystemSpec) -> tuple[str, ...]:
         return GIVEN_MATRICES[1:]
     jump = f"The state is {CONTINUOUS}."
     if spec.resets:
+        switches = [(reset.source, reset.target) for reset in spec.resets]
         jump = (
-            f"At a switch {_listed([(r.source, r.target) for r in spec.resets])} the state is "
-            "mapped as the resets of the spec say; at every other switch it is continuous."
+            f"At a switch {_listed(list(dict.fromkeys(switches)))} the state is mapped as the "
+            "resets of the spec say; at every other switch it is continuous."
         )
+        if len(set(switches)) < len(switches):
+            jump += (
+                " Where several resets lead from one mode to another, any one of them may happen, "
+                "and always one of them does."
+            )
     return jump, *rule_texts(spec.switching, "mode")
 
 
@@ -46,11 +57,9 @@ def rule_texts(rules: SwitchingSpec, noun: str) -> tuple[str, ...]:
     if rules.is_arbitrary:
         return ("Any switching signal is possible.",)
     texts = []
-    if rules.dwell_time is not None:
-        texts.append(
-            f"Every {noun} stays active for at least {exact_text(rules.dwell_time.value)} "
-            f"{rules.dwell_time.unit} before the next switch."
-        )
+    for at, dwell in rules.dwell_times():
+        which = f"{noun.capitalize()} {at[1]}" if at[1:] else f"Every {noun}"
+        texts.append(f"{which} {_STAYS[at[0]]} {_time_text(dwell)}{_THEN[at[0]]}.")
     if rules.transitions is not None:
         texts.append(
             f"The {noun} changes only {_listed(rules.transitions)}."
@@ -60,6 +69,11 @@ def rule_texts(rules: SwitchingSpec, noun: str) -> tuple[str, ...]:
     else:
         texts.append(f"Any {noun} may follow any other.")
     return tuple(texts)
+
+
+def _time_text(dwell: DwellTime) -> str:
+    unit = "step" if dwell.unit == "steps" and dwell.value == 1 else dwell.unit
+    return f"{exact_text(dwell.value)} {unit}"
 
 
 def scale_texts(scale: Fraction) -> tuple[str, ...]:

@@ -121,6 +121,7 @@ def close_loop(
         raise AssemblyError(
             f"the modes have {' and '.join(map(str, sizes))} states, so they share no state",
             remedy="give all impedance controllers a virtual inertia Mt > 0, or none of them",
+            at=("controllers",),
         )
     states = _state_names(motion.order, sizes[0], coordinates)
     assumptions = _assumptions(design, coordinates, rules, boxes, given=loop.given)
@@ -213,6 +214,7 @@ def force_mode(motion: Realization, law: ProportionalForce, contact: Contact) ->
         raise AssemblyError(
             f"force control in contact with {contact.label}, which has damping, is not modelled",
             remedy="use an elastic environment for force controllers",
+            at=("environments", contact.label, "damping"),
         )
     rows = [list(row) for row in motion.A]
     gain = law.Kp * contact.stiffness
@@ -229,6 +231,21 @@ def _state_names(motion_order: int, size: int, coordinates: str) -> tuple[str, .
     return tuple(names)
 
 
+_INPUTS = (
+    "All inputs are zero (velocity command, reference force, motion of the environment); all modes "
+    "then rest at one point, the state zero.",
+    "Under a constant command the modes may rest at different points. Where stability is proved, "
+    "bounded inputs keep the state bounded; how far it goes, and that it settles, is not claimed.",
+)
+_CONTACT_KEPT = (
+    (Admittance, "Contact is not lost: free motion is not one of the modes."),
+    (
+        ProportionalForce,
+        "Contact is not lost while force is controlled: the environment would pull as it pushes.",
+    ),
+)
+
+
 def _assumptions(
     design: ControllerDesign,
     coordinates: str,
@@ -243,6 +260,11 @@ def _assumptions(
         if given
         else "The motion loop is the linear actuator model of the spec, at its nominal values, "
         "under the motion gains listed here."
+    )
+    kept = tuple(
+        text
+        for law, text in _CONTACT_KEPT
+        if any(isinstance(c.law, law) for c in design.controllers)
     )
     impedance = any(isinstance(c.law, Admittance) for c in design.controllers)
     contacts = [
@@ -261,11 +283,13 @@ def _assumptions(
     }[coordinates]
     return (
         motion,
+        *_INPUTS,
         "The axes of the robot do not act on each other.",
         *contacts,
         "In contact, the environment follows its linear model; its parameters stay in the "
         "declared ranges and may change arbitrarily fast.",
-        *((last, "Contact is not lost: free motion is not one of the modes.") if impedance else ()),
+        *((last,) if impedance else ()),
+        *kept,
         *_switch_texts(rules),
         "Continuous time: sampling, delay, quantization, friction and saturation are not modelled.",
         f"{shipped}, or anywhere in their ranges." if ranged else f"{shipped}.",

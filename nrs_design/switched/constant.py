@@ -2,17 +2,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from fractions import Fraction
 
 from nrs_design.switched.matrix import RationalMatrix
-from nrs_design.switched.system import Mode, SwitchedSystem
+from nrs_design.switched.system import Mode, Stay, SwitchedSystem, Switching
 
 
 def system_at(system: SwitchedSystem, share: Fraction) -> SwitchedSystem:
     """TRUSTED: return the modes at one value of the constant parameter, under the same rules.
 
-    A switch is allowed if it is allowed at both ends of the parameter. Resets are left out.
+    A switch is allowed, and a stay long and short enough, if it is so at both ends of the
+    parameter. Resets are left out.
 
     Parameters
     ----------
@@ -45,14 +47,27 @@ def system_at(system: SwitchedSystem, share: Fraction) -> SwitchedSystem:
             for target, *others in pairs
             if source != target and listed.issuperset(zip(ends, others, strict=True))
         )
+    own = {name for name, _ in system.switching.stays}
     switching = replace(
         system.switching,
         transitions=transitions,
         resets=(),
         fixed_ends=(),
         fixed_parameter=None,
+        stays=tuple(
+            (name, _common_stay(system.switching, ends))
+            for name, *ends in pairs
+            if own.intersection(ends)
+        ),
     )
     return replace(system, modes=tuple(modes), switching=switching)
+
+
+def _common_stay(switching: Switching, modes: Sequence[str]) -> Stay:
+    """Return what all modes allow."""
+    stays = [switching.stay(mode) for mode in modes]
+    ends = [stay.longest for stay in stays if stay.longest is not None]
+    return Stay(max(stay.shortest for stay in stays), min(ends, default=None))
 
 
 def name_between(low: str, high: str) -> str:

@@ -8,10 +8,10 @@ from itertools import chain, islice, product
 from typing import TypeVar
 
 from nrs_design.errors import AssemblyError
-from nrs_design.spec import ResetSpec, SwitchingSpec
+from nrs_design.spec import DwellTime, ResetSpec, SwitchingSpec
 from nrs_design.switched.matrix import RationalMatrix
 from nrs_design.switched.parameters import Corner, pair_ends
-from nrs_design.switched.system import Reset, Switching
+from nrs_design.switched.system import Reset, Stay, Switching
 
 MAX_ASSEMBLED = 200_000
 
@@ -44,12 +44,28 @@ def assemble_switching(
         If the rules become too many.
     """
     ends = tuple(pair for corners in groups.values() for pair in pair_ends(corners))
-    dwell = Fraction(0) if rules.dwell_time is None else rules.dwell_time.value
+    common = rules.dwell_time.value if isinstance(rules.dwell_time, DwellTime) else Fraction(0)
     transitions = None
     if rules.transitions is not None:
-        stays = ((name, name) for name in groups)
-        transitions = _limited(_expand(chain(stays, rules.transitions), groups))
-    return Switching(dwell, transitions, _limited(_assembled_resets(resets, groups)), ends)
+        within = ((name, name) for name in groups)
+        transitions = _limited(_expand(chain(within, rules.transitions), groups))
+    jumps = _limited(_assembled_resets(resets, groups))
+    stays = tuple(_assembled_stays(rules, groups, Stay(common)))
+    return Switching(common, transitions, jumps, ends, stays=stays)
+
+
+def _assembled_stays(
+    rules: SwitchingSpec, groups: Groups, common: Stay
+) -> Iterator[tuple[str, Stay]]:
+    """Yield how long the modes stay active that have dwell times of their own."""
+    for name, corners in groups.items():
+        shortest, longest = rules.stay(name)
+        stay = Stay(
+            Fraction(0) if shortest is None else shortest.value,
+            None if longest is None else longest.value,
+        )
+        if stay != common:
+            yield from ((corner.mode, stay) for corner in corners)
 
 
 def _assembled_resets(resets: Sequence[ResetSpec], groups: Groups) -> Iterator[Reset]:
@@ -72,5 +88,6 @@ def _limited(found: Iterator[T]) -> tuple[T, ...]:
         raise AssemblyError(
             f"the rules make more than {MAX_ASSEMBLED} switches between corners",
             remedy="declare fewer transitions, resets, parameters or ranges",
+            at=("switching",),
         )
     return kept

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import StrEnum
 from fractions import Fraction
 
-from nrs_design.switched.matrix import RationalMatrix
+from nrs_design.switched.matrix import RationalMatrix, exact_fraction
 
 
 class Time(StrEnum):
@@ -28,6 +28,8 @@ class Mode:
 class Reset:
     """What happens to the state at a switch: ``x+ = map x`` (thesis 5.9).
 
+    Several resets may lead from one mode to another: each is a switch of its own.
+
     Parameters
     ----------
     source, target : str
@@ -39,6 +41,39 @@ class Reset:
     source: str
     target: str
     map: RationalMatrix
+
+
+@dataclass(frozen=True, slots=True)
+class Edge:
+    """One way from a mode to the next.
+
+    Parameters
+    ----------
+    source, target : Mode
+        The modes before and after.
+    map : RationalMatrix or None, shape (n of target, n of source)
+        What becomes of the state; None leaves it as it is.
+    """
+
+    source: Mode
+    target: Mode
+    map: RationalMatrix | None
+
+
+@dataclass(frozen=True, slots=True)
+class Stay:
+    """How long a mode stays active, in s (discrete time: steps).
+
+    Parameters
+    ----------
+    shortest : Fraction
+        The dwell time: no switch comes earlier.
+    longest : Fraction or None
+        The mode is left by then; None lets it stay forever.
+    """
+
+    shortest: Fraction = Fraction(0)
+    longest: Fraction | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,11 +93,12 @@ class Switching:
     ----------
     dwell_time : Fraction
         Shortest time in a mode, in s; in discrete time the smallest number of steps, at least one.
-        Zero in continuous time leaves it free.
+        Zero in continuous time leaves it free. For all modes that `stays` does not name.
     transitions : tuple of (str, str) or None
         Allowed switches from one mode to another; None allows all.
     resets : tuple of Reset
-        For some transitions; the others leave the state as it is.
+        For some transitions; the others leave the state as it is. Where several lead from one mode
+        to another, a switch takes any one of them, and never leaves the state as it is.
     fixed_ends : tuple of (str, str)
         Pairs of modes that are the two ends of a parameter that is unknown but does not change:
         the mode in force is ``(1 - p) low + p high`` with one p for all pairs and all times. Every
@@ -71,6 +107,8 @@ class Switching:
         the fewer ones of a constant parameter; a signal that grows must keep to one value.
     fixed_parameter : FixedParameter or None
         What that parameter is, if known; for words only.
+    stays : tuple of (str, Stay)
+        Modes with a dwell time of their own, or with a longest one.
     """
 
     dwell_time: Fraction = Fraction(0)
@@ -78,6 +116,22 @@ class Switching:
     resets: tuple[Reset, ...] = ()
     fixed_ends: tuple[tuple[str, str], ...] = ()
     fixed_parameter: FixedParameter | None = None
+    stays: tuple[tuple[str, Stay], ...] = ()
+
+    def stay(self, mode: str) -> Stay:
+        """Return how long a mode stays active."""
+        return dict(self.stays).get(mode, Stay(self.dwell_time))
+
+    def maps(self) -> dict[tuple[str, str], list[RationalMatrix]]:
+        """Return the maps of the resets, in order, by the switch that they belong to."""
+        maps: dict[tuple[str, str], list[RationalMatrix]] = {}
+        for reset in self.resets:
+            maps.setdefault((reset.source, reset.target), []).append(reset.map)
+        return maps
+
+    def __post_init__(self) -> None:
+        """Take a dwell time of any exact kind as a fraction of Python integers."""
+        object.__setattr__(self, "dwell_time", exact_fraction(self.dwell_time))
 
     @property
     def is_arbitrary(self) -> bool:
@@ -126,21 +180,47 @@ class SwitchedSystem:
         order = self.order
         return all(len(mode.A.numerators) == order for mode in self.modes)
 
-    def transitions(self) -> list[tuple[Mode, Mode]]:
-        """Return the allowed switches from one mode to another."""
+    def edges(self) -> list[Edge]:
+        """Return the allowed switches from one mode to another, one for each way to switch."""
         transitions = self.switching.transitions
         allowed = None if transitions is None else frozenset(transitions)
+        maps = self.switching.maps()
         return [
-            (source, target)
+            Edge(source, target, map_)
             for source in self.modes
             for target in self.modes
             if source.name != target.name
             and (allowed is None or (source.name, target.name) in allowed)
+            for map_ in maps.get((source.name, target.name), [None])
         ]
 
-    def reset_map(self, source: Mode, target: Mode) -> RationalMatrix | None:
-        """Return the reset at a switch, or None if the state is left as it is."""
+    def stays(self) -> dict[str, Stay]:
+        """Return how long each mode stays active; in discrete time at least one step."""
+        own = {name: self._at_least_a_step(stay) for name, stay in self.switching.stays}
+        common = self._at_least_a_step(Stay(self.switching.dwell_time))
+        return {mode.name: own.get(mode.name, common) for mode in self.modes}
+
+    def _at_least_a_step(self, stay: Stay) -> Stay:
+        if self.time is Time.CONTINUOUS or stay.shortest >= 1:
+            return stay
+        return replace(stay, shortest=Fraction(1))
+
+    def lasting_modes(self) -> tuple[Mode, ...]:
+        """Return the modes that need never be left."""
+        left = {name for name, stay in self.switching.stays if stay.longest is not None}
+        return tuple(mode for mode in self.modes if mode.name not in left)
+
+    def find_contradiction(self) -> str | None:
+        """TRUSTED: say why the rules of switching make no sense for these modes, or None."""
+        names = {mode.name for mode in self.modes}
+        own = self.switching.stays
+        if len(dict(own)) < len(own) or not dict(own).keys() <= names:
+            return "the dwell times are not those of modes"
+        for name, stay in own:
+            shortest, longest = self._at_least_a_step(stay).shortest, stay.longest
+            if longest is not None and longest < shortest:
+                return f"mode {name} must be left before it may be"
         for reset in self.switching.resets:
-            if (reset.source, reset.target) == (source.name, target.name):
-                return reset.map
+            if reset.source == reset.target or not {reset.source, reset.target} <= names:
+                return "a reset does not lead from one mode to another"
         return None

@@ -10,7 +10,7 @@ from nrs_design.controllers.laws import Admittance
 from nrs_design.models.environment import Contact
 from nrs_design.switched.close_loop import Realization, impedance_mode
 from nrs_design.switched.matrix import RationalMatrix
-from nrs_design.switched.system import ARBITRARY, Mode, Reset, SwitchedSystem, Switching, Time
+from nrs_design.switched.system import ARBITRARY, Mode, Reset, Stay, SwitchedSystem, Switching, Time
 
 Entry = int | str | Fraction
 Rows = Sequence[Sequence[Entry]]
@@ -112,6 +112,30 @@ def slow_switching_in_steps() -> SwitchedSystem:
     return family(*pair, time=Time.DISCRETE, switching=Switching(Fraction(6)))
 
 
+def must_leave(longest: int, **rules: object) -> SwitchedSystem:
+    """Discrete time: x doubles in m0, for so many steps at most, and is an eighth after one in m1.
+
+    So it grows iff ``2^longest > 8``, by the slowest cycle: longest steps in m0 and one in m1.
+    """
+    stays = (("m0", Stay(Fraction(1), Fraction(longest))),)
+    return family([[2]], [["1/8"]], time=Time.DISCRETE, switching=Switching(stays=stays, **rules))
+
+
+def must_leave_in_time(rest: Entry) -> SwitchedSystem:
+    """Continuous time: x grows by e^t in m0, for 1/2 to 1 s, and decays by e^-t in m1.
+
+    Stable iff m1 lasts for more than 1 s.
+    """
+    stays = (("m0", Stay(Fraction(1, 2), Fraction(1))), ("m1", Stay(Fraction(rest))))
+    return family([[1]], [[-1]], switching=Switching(stays=stays))
+
+
+def two_ways(gain: Entry) -> SwitchedSystem:
+    """Discrete time: both modes halve the state, and of two resets one multiplies by the gain."""
+    resets = resets_between(("m0", "m1", [["1/2"]]), ("m0", "m1", [[gain]]))
+    return family([["1/2"]], [["1/2"]], time=Time.DISCRETE, switching=Switching(resets=resets))
+
+
 PAIR = Switching(fixed_ends=(("m0", "m1"),))
 PAIRS = Switching(fixed_ends=(("m0", "m1"), ("m2", "m3")))
 
@@ -140,7 +164,29 @@ def hidden_shears(time: Time = Time.CONTINUOUS) -> SwitchedSystem:
     return family(rest, up, down, rest, time=time, switching=PAIRS)
 
 
+def lossy_network(scale: Entry = 1) -> SwitchedSystem:
+    """Stable by degree 4 and by no quadratic functions (Philippe et al. 2016, section 4)."""
+    s, gains = Fraction(scale), (("0", "0.27"), ("-0.49", "0"), ("-0.49", "0.27"), ("0", "0"))
+    matrices = [
+        [
+            [s * Fraction("0.94"), s * Fraction("0.56")],
+            [s * (Fraction("0.14") + Fraction(k1)), s * (Fraction("0.46") + Fraction(k2))],
+        ]
+        for k1, k2 in gains
+    ]
+    # Only node 3 has an edge to itself; the others are left after one step.
+    one = Stay(Fraction(1), Fraction(1))
+    edges = ("12", "21", "13", "31", "23", "32", "34", "43")
+    switching = Switching(
+        transitions=tuple((f"n{a}", f"n{b}") for a, b in edges),
+        stays=tuple((name, one) for name in ("n1", "n2", "n4")),
+    )
+    names = ("n1", "n2", "n3", "n4")
+    return family(*matrices, time=Time.DISCRETE, switching=switching, names=names)
+
+
 SYSTEMS = {
+    "mode-polynomial": lossy_network,
     "common-quadratic": lambda: dayawansa_martin(5),
     "common-polynomial": lambda: dayawansa_martin(6),
     "common-polynomial, discrete": lambda: ando_shih("0.72"),
@@ -156,6 +202,11 @@ SYSTEMS = {
     "mode-quadratic, rectangular": rectangular,
     "mode-quadratic, discrete": lambda: ando_shih("0.99"),
     "mode-quadratic, steps": slow_switching_in_steps,
+    "mode-quadratic, left": lambda: must_leave(2),
+    "mode-quadratic, left in time": lambda: must_leave_in_time("1.2"),
+    "mode-quadratic, two ways": lambda: two_ways(3),
+    "unstable-period, left": lambda: must_leave(4),
+    "unstable-period, two ways": lambda: two_ways(5),
     "parameter-quadratic": lambda: oscillator(50, PAIR),
     "unstable-value": lambda: hidden_value(3),
     "unstable-value, discrete": lambda: hidden_value(3, Time.DISCRETE),

@@ -225,40 +225,77 @@ def _parameter_quadratic(system: SwitchedSystem, item: ParameterQuadratic) -> bo
     return is_rate(item.rate, system.time)
 
 
+def edges_of(system: SwitchedSystem) -> list[tuple[str, str, Rows]]:
+    """List source, target and map of all switches, from the rules themselves."""
+    sizes = {mode.name: len(mode.A.numerators) for mode in system.modes}
+    found = []
+    for a, b in product(sizes, repeat=2):
+        allowed = system.switching.transitions
+        if a == b or (allowed is not None and (a, b) not in allowed):
+            continue
+        resets = [
+            r.map.fractions() for r in system.switching.resets if (r.source, r.target) == (a, b)
+        ]
+        found += [(a, b, G) for G in resets or [identity(sizes[a])]]
+    return found
+
+
+def bounds_of(system: SwitchedSystem, mode: str) -> tuple[Fraction, Fraction | None]:
+    """Shortest and longest stay."""
+    for name, stay in system.switching.stays:
+        if name == mode:
+            return stay.shortest, stay.longest
+    return system.switching.dwell_time, None
+
+
+def identity(n: int) -> Rows:
+    return [[Fraction(int(i == j)) for j in range(n)] for i in range(n)]
+
+
 def _mode_quadratic(system: SwitchedSystem, item: ModeQuadratic) -> bool:
+    """From entry to entry, after every stay that counts: all up to the longest, or the shortest."""
     Q: Mapping[str, Rows] = dict(item.functions)
-    time, dwell = system.time, system.switching.dwell_time
+    time = system.time
     if list(Q) != [m.name for m in system.modes] or not is_rate(item.rate, time):
         return False
     for mode in system.modes:
         form = decrease(mode.A.fractions(), Q[mode.name], item.rate, time)
-        if not is_definite(Q[mode.name]) or not is_definite(form):
+        if not is_definite(Q[mode.name]):
             return False
+        if mode.name not in item.leaving and not is_definite(form):
+            return False
+    modes = {mode.name: mode.A.fractions() for mode in system.modes}
     return all(
-        _does_not_raise(system, source, target, Q, item.rate, dwell)
-        for source, target in system.transitions()
+        _does_not_raise(modes[a], G, Q[a], Q[b], item.rate, time, stay)
+        for a, b, G in edges_of(system)
+        for stay in _stays(time, *bounds_of(system, a), leaving=a in item.leaving)
     )
 
 
-def _does_not_raise(system, source, target, Q, rate, dwell) -> bool:
-    A, n = source.A.fractions(), len(source.A.numerators)
-    reset = system.reset_map(source, target)
-    identity = [[Fraction(int(i == j)) for j in range(n)] for i in range(n)]
-    G = identity if reset is None else reset.fractions()
-    if system.time is Time.DISCRETE:
-        steps, flow = int(max(dwell, 1)), identity
-        for _ in range(steps):
-            flow = times(combine((1 / rate, A)), flow)
-        jump = times(G, flow)
-        image = times(transpose(jump), times(Q[target.name], jump))
-        return is_definite(combine((1, Q[source.name]), (-1, image)))
-    if dwell == 0:
-        image = times(transpose(G), times(Q[target.name], G))
-        return is_definite(combine((1, Q[source.name]), (-1, image)), strictly=False)
-    jump = _floats(G) @ exponential((_floats(A) + float(rate) * np.eye(n)) * float(dwell))
-    before, after = _floats(Q[source.name]), _floats(Q[target.name])
-    form = before - jump.T @ after @ jump
-    return bool(np.linalg.eigvalsh(form).min() > -1e-9 * np.abs(before).max())
+def _stays(time, shortest, longest, *, leaving) -> list[Fraction]:
+    if time is Time.DISCRETE:
+        shortest = max(shortest, Fraction(1))
+    if not leaving:
+        return [shortest]
+    assert longest is not None
+    if time is Time.DISCRETE:
+        return [Fraction(k) for k in range(int(shortest), int(longest) + 1)]
+    return [shortest + (longest - shortest) * Fraction(k, 64) for k in range(65)]
+
+
+def _does_not_raise(A, G, before, after, rate, time, stay) -> bool:
+    if time is Time.DISCRETE:
+        jump = G
+        for _ in range(int(stay)):
+            jump = times(jump, combine((1 / rate, A)))
+        image = times(transpose(jump), times(after, jump))
+        return is_definite(combine((1, before), (-1, image)))
+    if stay == 0:
+        image = times(transpose(G), times(after, G))
+        return is_definite(combine((1, before), (-1, image)), strictly=False)
+    jump = _floats(G) @ exponential((_floats(A) + float(rate) * np.eye(len(A))) * float(stay))
+    form = _floats(before) - jump.T @ _floats(after) @ jump
+    return bool(np.linalg.eigvalsh(form).min() > -1e-9 * np.abs(_floats(before)).max())
 
 
 def exponential(M: np.ndarray) -> np.ndarray:
@@ -279,7 +316,8 @@ def _floats(rows) -> np.ndarray:
 
 def _unstable_mode(system: SwitchedSystem, item: UnstableMode) -> bool:
     A = next(mode.A for mode in system.modes if mode.name == item.mode)
-    return _is_marginal_or_worse(A, system.time)
+    may_stay = bounds_of(system, item.mode)[1] is None
+    return may_stay and _is_marginal_or_worse(A, system.time)
 
 
 def _unstable_mixture(system: SwitchedSystem, item: UnstableMixture) -> bool:
@@ -297,13 +335,27 @@ def _is_marginal_or_worse(A: RationalMatrix, time: Time) -> bool:
 
 
 def _unstable_period(system: SwitchedSystem, item: UnstablePeriod) -> bool:
+    """Walk round the period: switches are edges, stays within their bounds, and it grows."""
     modes = {mode.name: _floats(mode.A.fractions()) for mode in system.modes}
     product_ = np.eye(system.order)
-    for name, dwell in item.steps:
+    names = [name for name, _ in item.steps]
+    for k, (name, dwell) in enumerate(item.steps):
+        shortest, longest = bounds_of(system, name)
+        following = names[(k + 1) % len(names)]
+        if dwell <= 0 or dwell < shortest or (longest is not None and dwell > longest):
+            return False
+        if following == name and longest is not None:
+            return False
         if system.time is Time.CONTINUOUS:
             product_ = exponential(modes[name] * float(dwell)) @ product_
         else:
             product_ = np.linalg.matrix_power(modes[name], int(dwell)) @ product_
+        if following != name:
+            ways = [G for a, b, G in edges_of(system) if (a, b) == (name, following)]
+            way = item.edges[k] if item.edges else 0
+            if not 0 <= way < len(ways):
+                return False
+            product_ = _floats(ways[way]) @ product_
     return bool(np.abs(np.linalg.eigvals(product_)).max() > 1 - 1e-9)
 
 

@@ -81,3 +81,16 @@ def test_hidden_scatter_adds():
     J, e = np.ones((100, 1)), rng.normal(size=100)
     more = uncertainty(J, e, scatter=np.array([[100.0]]))
     assert more.covariance[0, 0] == pytest.approx(uncertainty(J, e).covariance[0, 0] + 0.01)
+
+
+def test_no_variance_is_negative_where_parameters_are_all_but_unknown():
+    # Two columns that nearly agree and one without effect: the plain product of three matrices
+    # rounds to a negative variance here, and its root is not a number.
+    generator = np.random.default_rng(4)
+    column = generator.standard_normal(400)
+    almost = column + 1e-9 * generator.standard_normal(400)
+    J = np.column_stack([column, almost, 1e-13 * generator.standard_normal(400)])
+    scatter = J.T @ J
+    found = uncertainty(J, 1e-3 * generator.standard_normal(400), scatter=scatter)
+    assert np.all(np.diag(found.covariance) >= 0)
+    assert np.all(np.isfinite(found.errors))

@@ -9,7 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from nrs_design.simulation.admissible import active_norms, admissible_run, norm_ratio
-from nrs_design.switched.system import Switching, Time
+from nrs_design.switched.system import Stay, Switching, Time
 from tests.simulation.systems import reset, system
 
 # Geromel and Colaneri (2006).
@@ -87,3 +87,46 @@ def test_adversary_finds_the_growth_of_free_switching():
 
 def test_ratio_of_norms():
     assert norm_ratio({"a": np.diag([1.0, 4.0]), "b": np.diag([16.0, 2.0])}) == pytest.approx(4.0)
+
+
+def test_dwell_times_by_mode_and_modes_that_must_be_left():
+    rules = Switching(
+        stays=(
+            ("m0", Stay(Fraction("0.3"), Fraction(1))),
+            ("m1", Stay(Fraction(2), Fraction(3))),
+        )
+    )
+    run = admissible_run(system(*PAIR, switching=rules), UNIT, 0.05, 400)
+    instants, modes = np.cumsum([0, *(count for _, count in stays(run))]), stays(run)
+    assert len(modes) > 4
+    for k, (mode, _) in enumerate(modes[:-1]):
+        time = run.time[instants[k + 1]] - run.time[instants[k]]
+        low, high = ((0.3, 1.0), (2.0, 3.0))[mode]
+        assert low - 1e-9 <= time <= high + 1e-9
+
+
+def test_a_mode_that_must_be_left_after_a_step():
+    rules = Switching(stays=(("m0", Stay(Fraction(1), Fraction(1))),))
+    pair = ([[2, 0], [0, 2]], [["1/4", 0], [0, "1/4"]])
+    run = admissible_run(system(*pair, time=Time.DISCRETE, switching=rules), UNIT, 1.0, 50)
+    assert all(count == 1 for mode, count in stays(run) if mode == 0)
+    assert len(stays(run)) > 20
+
+
+def test_the_run_ends_where_no_mode_may_follow():
+    rules = Switching(transitions=(), stays=(("m0", Stay(Fraction(1), Fraction(4))),))
+    pair = ([[2]], [["1/100"]])
+    unit = {f"m{i}": np.eye(1) for i in range(2)}
+    run = admissible_run(system(*pair, time=Time.DISCRETE, switching=rules), unit, 1.0, 50)
+    assert stays(run) == [(0, 4)] or len(run.mode) >= 50
+
+
+def test_the_worst_of_several_resets_is_taken():
+    both = (reset("m0", "m1", [[1]]), reset("m0", "m1", [[3]]))
+    rules = Switching(Fraction(1), resets=both)
+    unit = {f"m{i}": np.eye(1) for i in range(2)}
+    run = admissible_run(
+        system([["1/2"]], [["1/2"]], time=Time.DISCRETE, switching=rules), unit, 1.0, 40
+    )
+    # Half of it, and three times that at the switch.
+    assert run.state[1, 0] == pytest.approx(1.5 * run.state[0, 0])

@@ -75,3 +75,11 @@ def test_marginal_average_ends_the_search_for_a_period():
     swing = system([[0, 1], [-1, 0]])
     steps = steps_of_mixture(swing, (("m0", Fraction(1)),))
     assert 0 < steps[0][1] <= 0.1
+
+
+def test_the_reset_that_is_chosen_acts():
+    both = (reset("m0", "m1", [[1]]), reset("m0", "m1", [[10]]))
+    pair = system([[-1]], [[-1]], switching=Switching(resets=both))
+    radii = [periodic_run(pair, [(0, 1.0), (1, 1.0)], edges).radius for edges in ((0, 0), (1, 0))]
+    assert radii[1] == pytest.approx(10 * radii[0])
+    assert radii[0] == pytest.approx(np.exp(-2))

@@ -43,6 +43,32 @@ def test_exact_is_refused_where_pi_enters() -> None:
         _ = quantity.exact
 
 
+@pytest.mark.parametrize(
+    ("text", "kind", "said"),
+    [
+        ("43 N*m/deg", kinds.STIFFNESS, "write it in N*m/rad, such as '2463.72 N*m/rad'"),
+        ("4 deg/s/rpm", kinds.ACTUATOR_GAIN, "such as '0.0698132 rad/s/rpm'"),
+        ("57 Hz/rad", kinds.ZERO, "such as '358.142 1/s'"),
+        ("2 N*m*s/deg", kinds.IMPEDANCE, "N*m*s/rad"),
+        ("2 deg/(N*m)", kinds.FORCE_GAIN, "rad/(N*m)"),
+        ("1 rad/Hz", kinds.DWELL_TIME, "write it in s"),
+        ("1 rad/Hz", kinds.DURATION, "write it in s"),
+    ],
+)
+def test_units_with_pi_are_refused_in_what_enters_a_proof(
+    text: str, kind: QuantityKind, said: str
+) -> None:
+    with pytest.raises(SpecError, match="factor of pi") as caught:
+        parse_quantity(text, kind)
+    assert said in str(caught.value.remedy)
+
+
+@pytest.mark.parametrize("kind", [v for v in vars(kinds).values() if isinstance(v, QuantityKind)])
+def test_what_may_hold_pi_is_an_angle_per_time(kind: QuantityKind) -> None:
+    names = {"an angle", "an angular velocity", "an angular acceleration", "a bandwidth"}
+    assert kind.rational == (kind.name not in names)
+
+
 def test_ratios_have_units_too() -> None:
     assert parse_quantity("1/3 s", kinds.DURATION).exact == Fraction(1, 3)
 

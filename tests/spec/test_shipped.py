@@ -255,3 +255,27 @@ def gains(spec: InteractionDesignSpec) -> list[tuple[str, str]]:
         texts = (controller.Mt.min.text, controller.Bt.min.text)
         found.append((texts[0].partition(" ")[0], texts[1].partition(" ")[0]))
     return found
+
+
+def test_a_controller_that_fails_is_unstable_only_then() -> None:
+    # Philippe et al. 2016: A + B K with A = [[0.94, 0.56], [0.14, 0.46]] and K = [-0.49, 0.27].
+    spec = system("specs/examples/failing-controller.nrs.yaml")
+    gains = {"works": (1, 1), "first-fails": (0, 1), "second-fails": (1, 0), "both-fail": (0, 0)}
+    rows = {
+        name: [
+            (Fraction("0.94"), Fraction("0.56")),
+            (Fraction("0.14") - a * Fraction("0.49"), Fraction("0.46") + b * Fraction("0.27")),
+        ]
+        for name, (a, b) in gains.items()
+    }
+    assert {mode.name: numbers(mode) for mode in spec.modes} == rows
+    # An eigenvalue beyond 1: the characteristic polynomial is negative there.
+    (a, b), (c, d) = rows["both-fail"]
+    assert (1 - a) * (1 - d) - b * c < 0
+
+
+def test_two_ways_to_land() -> None:
+    spec = system("docs/examples/contact-either-way.nrs.yaml")
+    pair = system("specs/examples/geromel-colaneri.nrs.yaml")
+    assert [numbers(mode) for mode in spec.modes] == [numbers(mode) for mode in pair.modes]
+    assert len({(reset.source, reset.target) for reset in spec.resets}) == 1 < len(spec.resets)

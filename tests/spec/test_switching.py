@@ -112,7 +112,7 @@ def test_rules_of_controllers() -> None:
             '[0, "1/2"]]}',
             "[0, 1]]}\n  - {to: b, from: a, map: [[1, 0], [0, 1]]}",
             "{to: b",
-            "has a reset already",
+            "listed twice",
         ),
     ],
 )
@@ -232,3 +232,77 @@ def test_position_and_force_may_be_ordered() -> None:
     rules = "{dwell_time: 1 s, transitions: [[position, force], [force, position]]}"
     spec = interaction(spoiled(FORCE, "switching: arbitrary", f"switching: {rules}"))
     assert spec.switching.transitions == (("position", "force"), ("force", "position"))
+
+
+DISCRETE = spoiled(SWITCHED, "continuous", "discrete")
+STAYS = "{dwell_time: {b: 2 steps}, longest_dwell_time: {a: 1 step, b: 5 steps}}"
+
+
+def test_times_by_mode() -> None:
+    rules = switched(spoiled(DISCRETE, "arbitrary", STAYS)).switching
+    two, one = DwellTime("2 steps", Fraction(2), "steps"), DwellTime("1 step", Fraction(1), "steps")
+    assert rules.stay("a") == (None, one)
+    assert rules.stay("b") == (two, DwellTime("5 steps", Fraction(5), "steps"))
+    assert not rules.is_arbitrary
+    assert str(rules) == (
+        "dwell time 2 steps in b, longest dwell time 1 step in a, longest dwell time 5 steps in b"
+    )
+
+
+def test_one_longest_time_for_all() -> None:
+    rules = switched(spoiled(SWITCHED, "arbitrary", "{longest_dwell_time: 3 s}")).switching
+    assert {rules.stay(name)[1] for name in "ab"} == {DwellTime("3 s", Fraction(3), "s")}
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "at", "said"),
+    [
+        ("{b: 2 steps}", "{c: 2 steps}", "2 steps}", "there is no mode 'c'"),
+        ("{b: 2 steps}", "{}", "{}, longest", "no mode is named"),
+        ("{b: 2 steps}", "{b: [2]}", "[2]", "single value"),
+        ("b: 2 steps", "b: 2 s", "2 s}", "not a dwell time in discrete time, expected steps"),
+        ("b: 2 steps", "b: 2.5 steps", "2.5 steps", "not a whole number"),
+        ("b: 2 steps", "b: 6 steps", "5 steps}}", "after 5 steps, but not before 6 steps"),
+        ("a: 1 step,", "a: 1 s,", "1 s,", "not a dwell time in discrete time"),
+        ("5 steps}}", "5 steps}, transitions: [[b, a]]}", "1 step,", "nothing may follow it"),
+    ],
+)
+def test_refuses_times_that_cannot_be_kept(old: str, new: str, at: str, said: str) -> None:
+    text = spoiled(spoiled(DISCRETE, "arbitrary", STAYS), old, new)
+    error = refusal(text)
+    assert said in f"{error.message} ({error.remedy})"
+    assert (error.line, error.column) == place_of(text, at)
+
+
+def test_a_mode_alone_cannot_be_left() -> None:
+    text = spoiled(DISCRETE, "arbitrary", "{longest_dwell_time: 2 steps}")
+    text = spoiled(text, '  - {name: b, A: [[-1, -6], ["1/6", -1]]}\n', "")
+    assert "'a' must be left, but nothing may follow it" in refusal(text).message
+
+
+def test_a_longest_time_and_a_range_exclude_each_other() -> None:
+    ranged = spoiled(DISCRETE, "[[-1, -1]", '[["-k", -1]')
+    ranged = spoiled(ranged, "modes:", "parameters: {k: {nominal: 1, range: [0, 1]}}\nmodes:")
+    error = refusal(spoiled(ranged, "arbitrary", "{longest_dwell_time: {b: 2 steps}}"))
+    assert "the range of parameter 'k' exclude each other" in error.message
+    assert "leave longest_dwell_time out" in str(error.remedy)
+
+
+def test_several_resets_from_one_mode_to_another() -> None:
+    other = "  - {from: a, to: b, map: [[2, 0], [0, 1]]}\n"
+    spec = switched(SAMPLE + other)
+    assert [(reset.source, reset.target) for reset in spec.resets] == [("a", "b"), ("a", "b")]
+    error = refusal(SAMPLE + other + spoiled(other, "[2, 0]", "[2.0, 0]"))
+    assert "this reset is listed twice" in error.message
+
+
+def test_controllers_that_must_be_left() -> None:
+    text = spoiled(PAIR, "dwell_time: 500 ms", "longest_dwell_time: {insertion: 5 s}")
+    text = spoiled(
+        text, "[[insertion, withdrawal]]", "[[insertion, withdrawal], [withdrawal, insertion]]"
+    )
+    assert interaction(text).switching.stay("insertion")[1] == DwellTime("5 s", Fraction(5), "s")
+    moving = spoiled(
+        text, "    environment: soft\n", "    environment: soft\n    contacts: [soft, hand]\n"
+    )
+    assert "leave longest_dwell_time out" in str(refusal(moving).remedy)

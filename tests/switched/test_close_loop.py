@@ -246,6 +246,20 @@ class TestAssembly:
         assert "free motion is not one of the modes" in deflection
         position = " ".join(assembled(Controller("p", PositionControl(), None, ())).assumptions)
         assert "free motion" not in position
+        assert "Contact is not lost" not in position
+
+    def test_assumptions_name_inputs_and_what_follows_for_them(self):
+        for law in (impedance("in", 0), Controller("p", PositionControl(), None, ())):
+            texts = " ".join(assembled(law).assumptions)
+            assert "All inputs are zero" in texts
+            assert "rest at different points" in texts
+            assert "bounded inputs keep the state bounded" in texts
+
+    def test_loss_of_contact_is_named_for_force_control_too(self):
+        law = ProportionalForce(F("0.02"))
+        texts = " ".join(assembled(Controller("f", law, "soft", ("soft",))).assumptions)
+        assert "Contact is not lost while force is controlled" in texts
+        assert "free motion is not one of the modes" not in texts
 
     def test_mixed_inertia(self):
         with pytest.raises(AssemblyError, match="3 and 4 states") as caught:

@@ -1,5 +1,6 @@
 """The system at one value of a constant parameter."""
 
+from dataclasses import replace
 from fractions import Fraction
 
 import pytest
@@ -7,7 +8,7 @@ import pytest
 from nrs_design.spec import parse_spec
 from nrs_design.switched.assemble import assemble
 from nrs_design.switched.constant import name_between, system_at
-from nrs_design.switched.system import ARBITRARY, FixedParameter, Switching
+from nrs_design.switched.system import ARBITRARY, FixedParameter, Stay, Switching
 
 TEXT = """\
 kind: switched-system
@@ -80,3 +81,16 @@ def _fields(system):
 def test_name_of_a_pair_is_what_its_ends_share():
     assert name_between("a/k-min/m-min", "a/k-min/m-max") == "a/k-min"
     assert name_between("low", "high") == "low to high"
+
+
+def test_a_stay_must_suit_both_ends():
+    system = assembled()
+    stays = (
+        ("a/k-min/m-min", Stay(Fraction(1), Fraction(5))),
+        ("a/k-min/m-max", Stay(Fraction(2), Fraction(9))),
+    )
+    found = system_at(
+        replace(system, switching=replace(system.switching, stays=stays)), Fraction(1)
+    )
+    assert found.switching.stays == (("a/k-min", Stay(Fraction(2), Fraction(5))),)
+    assert system_at(system, Fraction(1)).switching == ARBITRARY

@@ -11,7 +11,7 @@ from nrs_design.spec import LoadedSpec, parse_spec
 from nrs_design.switched import constraints
 from nrs_design.switched.assemble import GIVEN_MATRICES, assemble
 from nrs_design.switched.matrix import RationalMatrix
-from nrs_design.switched.system import Reset
+from nrs_design.switched.system import Reset, Stay
 
 HEAD = "kind: switched-system\nname: s\ntime: continuous\n"
 TWO = "modes:\n  - {name: a, A: [[-1]]}\n  - {name: b, A: [[-2]]}\n"
@@ -81,12 +81,12 @@ def test_dwell_time_in_steps():
 def test_transitions():
     system = given(TWO, "{transitions: [[b, a]]}")
     assert system.switching.transitions == (("b", "a"),)
-    assert [(s.name, t.name) for s, t in system.transitions()] == [("b", "a")]
+    assert [(edge.source.name, edge.target.name) for edge in system.edges()] == [("b", "a")]
 
 
 def test_no_transitions_at_all():
     system = given(TWO, "{transitions: []}")
-    assert system.transitions() == []
+    assert system.edges() == []
     assert system.assumptions[-1] == "The mode never changes."
 
 
@@ -107,7 +107,7 @@ def test_a_constant_parameter_is_kept_apart_from_the_transitions():
     system = given(CONSTANT, "arbitrary")
     assert system.switching.transitions is None
     assert not system.switching.is_arbitrary
-    assert len(system.transitions()) == 12
+    assert len(system.edges()) == 12
     assert system.switching.fixed_ends == (("a/m-min", "a/m-max"), ("b/m-min", "b/m-max"))
     assert system.assumptions[1:] == (
         "Parameter m is unknown in [0, 2], but constant: it has one value in all modes and at all "
@@ -122,9 +122,10 @@ def test_resets_hold_for_all_corners():
     assert system.switching.resets == (Reset("a/k-min", "b", half), Reset("a/k-max", "b", half))
     assert system.switching.transitions is None
     low, high, b = system.modes
-    assert system.reset_map(low, b) == half
-    assert system.reset_map(low, high) is None
-    assert system.reset_map(b, low) is None
+    maps = {(edge.source, edge.target): edge.map for edge in system.edges()}
+    assert maps[low, b] == half
+    assert maps[low, high] is None
+    assert maps[b, low] is None
     assert system.assumptions[2:] == (
         "At a switch from a to b the state is mapped as the resets of the spec say; at every other "
         "switch it is continuous.",
@@ -155,7 +156,7 @@ def test_states_of_different_sizes():
     assert system.order == 2
     assert system.states == ("x1", "x2")
     assert not system.is_uniform
-    assert system.reset_map(*system.modes).shape == (2, 1)
+    assert [edge.map.shape for edge in system.edges()] == [(2, 1), (1, 2)]
 
 
 def test_long_lists_are_counted():
@@ -220,3 +221,41 @@ def test_controllers_in_any_order():
         "States are continuous at a switch (identity resets); any switching signal is possible."
         in system.assumptions
     )
+
+
+def test_times_by_mode():
+    rules = "{dwell_time: {b: 2 steps}, longest_dwell_time: {a: 1 step}}"
+    system = given(TWO, rules, "discrete")
+    assert system.switching.dwell_time == 0
+    assert system.stays() == {"a": Stay(Fraction(1), Fraction(1)), "b": Stay(Fraction(2))}
+    assert [mode.name for mode in system.lasting_modes()] == ["b"]
+    assert system.assumptions[-3:] == (
+        "Mode b stays active for at least 2 steps before the next switch.",
+        "Mode a is left after at most 1 step.",
+        "Any mode may follow any other.",
+    )
+
+
+def test_one_dwell_time_needs_no_list():
+    assert given(TWO, "{dwell_time: 2 s}").switching.stays == ()
+    both = given(TWO, "{dwell_time: 2 s, longest_dwell_time: {b: 3 s}}").switching
+    assert both.stays == (("b", Stay(Fraction(2), Fraction(3))),)
+    assert both.stay("a") == Stay(Fraction(2))
+
+
+def test_each_reset_is_an_edge():
+    resets = "[{from: a, to: b, map: [[2]]}, {from: a, to: b, map: [[3]]}]"
+    system = given(TWO, f"arbitrary\nresets: {resets}")
+    edges = [(e.source.name, e.target.name, e.map and e.map.fractions()) for e in system.edges()]
+    assert edges == [("a", "b", [[2]]), ("a", "b", [[3]]), ("b", "a", None)]
+    assert system.assumptions[1] == (
+        "At a switch from a to b the state is mapped as the resets of the spec say; at every other "
+        "switch it is continuous. Where several resets lead from one mode to another, any one of "
+        "them may happen, and always one of them does."
+    )
+
+
+def test_controllers_that_must_be_left():
+    system = pair("{longest_dwell_time: {insertion: 5 s}}")
+    assert system.switching.stays == (("insertion/soft", Stay(Fraction(0), Fraction(5))),)
+    assert "Controller insertion is left after at most 5 s." in system.assumptions

@@ -9,6 +9,7 @@ from nrs_design.certificates.evidence.abstract import AbstractEvidence, Shows
 from nrs_design.certificates.evidence.block_triangular import BlockTriangular
 from nrs_design.certificates.evidence.common_polynomial import CommonPolynomial
 from nrs_design.certificates.evidence.common_quadratic import CommonQuadratic
+from nrs_design.certificates.evidence.mode_polynomial import ModePolynomial
 from nrs_design.certificates.evidence.mode_quadratic import ModeQuadratic
 from nrs_design.certificates.evidence.no_common_quadratic import NoCommonQuadratic
 from nrs_design.certificates.evidence.parameter_quadratic import ParameterQuadratic
@@ -22,6 +23,7 @@ KINDS: tuple[type[AbstractEvidence], ...] = (
     CommonQuadratic,
     CommonPolynomial,
     ModeQuadratic,
+    ModePolynomial,
     NoCommonQuadratic,
     ParameterQuadratic,
     UnstableMode,
@@ -52,6 +54,7 @@ __all__ = [
     "BlockTriangular",
     "CommonPolynomial",
     "CommonQuadratic",
+    "ModePolynomial",
     "ModeQuadratic",
     "NoCommonQuadratic",
     "ParameterQuadratic",

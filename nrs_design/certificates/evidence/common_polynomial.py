@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from math import comb
 from typing import Any, ClassVar, Self
@@ -110,6 +110,11 @@ class CommonPolynomial(AbstractEvidence):
         degree = 2 * self.degree
         norm = f"where |x|^{degree} is a positive definite form of degree {degree} in x"
         return decay_claim(system, self.rate, norm)
+
+    def spread(self, merged: SwitchedSystem, system: SwitchedSystem) -> Self:
+        """Repeat the vanishing form of every mode for its equals."""
+        forms = {mode.A: N for mode, N in zip(merged.modes, self.vanishing, strict=True)}
+        return replace(self, vanishing=tuple(forms[mode.A] for mode in system.modes))
 
     def to_fields(self) -> dict[str, Any]:
         """Return the degree, Q, the vanishing forms and the rate."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Any, ClassVar, Self
 
@@ -12,11 +12,13 @@ from nrs_design.certificates.evidence.common_quadratic import find_rate_misfit, 
 from nrs_design.certificates.evidence.fields import (
     Matrix,
     matrix_fields,
-    rate_text,
+    rate_words,
+    read_integer,
     read_matrix,
     read_ratio,
     read_text,
 )
+from nrs_design.certificates.evidence.flow import enclosed_form, power
 from nrs_design.certificates.exact import (
     MAX_WORK,
     IntegerMatrix,
@@ -28,24 +30,26 @@ from nrs_design.certificates.exact import (
     lyapunov_decrease,
     stein_decrease,
 )
+from nrs_design.spec.bounds import rounded_down, rounded_up
 from nrs_design.switched.matrix import RationalMatrix, multiply
-from nrs_design.switched.system import Mode, SwitchedSystem, Switching, Time
+from nrs_design.switched.system import Edge, Mode, Stay, SwitchedSystem, Switching, Time
 
-PRECISION = 300
-MIDPOINT_BITS = 160
 MAX_DWELL_STEPS = 4096
+MAX_PIECES = 4096
+MAX_ENCLOSED = 2**18
+MAX_NAMED = 8
 MAX_POWER_BITS = 10**6
-# Balls beyond this fail; what is nearer to zero than its inverse counts as zero with that radius.
-RANGE_LOG2 = 32_768
 
 
 @dataclass(frozen=True, slots=True)
 class ModeQuadratic(AbstractEvidence):
-    """``V_i(x) = x' Q_i x`` decreases in mode i, and no switch raises the function.
+    """``V_i(x) = x' Q_i x`` decreases from switch to switch.
 
-    With ``B_i = A_i + alpha I`` and the shortest dwell time T, for every transition from i to j
-    with reset map G: ``exp(B_i T)' G' Q_j G exp(B_i T) <= Q_i`` (Geromel and Colaneri 2006, for
-    T > 0; thesis 5.13, for T = 0). In discrete time ``A_i / rho`` and its T-th power.
+    With ``B_i = A_i + alpha I``, for every edge from i to j with reset map G, and a stay of t in i:
+    ``exp(B_i t)' G' Q_j G exp(B_i t) <= Q_i``. Where V_i decreases in its own mode, it suffices to
+    show this for the shortest stay (Geromel and Colaneri 2006, for a dwell time; thesis 5.13, for
+    none). A mode that must be left may be unstable: there it is shown for every stay from the
+    shortest to the longest. In discrete time ``A_i / rho`` and its powers.
 
     Parameters
     ----------
@@ -55,6 +59,10 @@ class ModeQuadratic(AbstractEvidence):
         All Q_i are these numerators over two to this power.
     rate : Fraction
         alpha in 1/s, or rho per step.
+    leaving : tuple of str
+        Modes in which V_i need not decrease, because they have a longest dwell time.
+    pieces : int
+        In continuous time, each stay in such a mode is enclosed in so many equal pieces.
     """
 
     kind: ClassVar[str] = "mode-quadratic"
@@ -63,6 +71,8 @@ class ModeQuadratic(AbstractEvidence):
     functions: tuple[tuple[str, Matrix], ...]
     denominator_log2: int
     rate: Fraction
+    leaving: tuple[str, ...] = ()
+    pieces: int = 1
 
     @property
     def shows(self) -> Shows:
@@ -70,107 +80,160 @@ class ModeQuadratic(AbstractEvidence):
         return Shows.STABILITY
 
     def fits(self, switching: Switching) -> bool:
-        """Tell whether every mode in force is one of the modes, and every reset is unambiguous.
+        """Tell whether every mode in force is one of the modes.
 
         A constant parameter is anywhere between its ends, where a function for each end says
         nothing about it.
         """
-        switches = {(reset.source, reset.target) for reset in switching.resets}
-        unambiguous = len(switches) == len(switching.resets) and all(a != b for a, b in switches)
-        return unambiguous and not switching.fixed_ends
+        return not switching.fixed_ends
 
     def proved_rate(self, system: SwitchedSystem) -> Fraction:
         """Return the claimed rate."""
         return self.rate
 
     def find_misfit(self, system: SwitchedSystem) -> str | None:
-        """Check shapes, rate and, where time is free or discrete, the switches."""
+        """Check shapes, rate, stays and, where a switch may come at once, the switches."""
         if [name for name, _ in self.functions] != [mode.name for mode in system.modes]:
             return "there is not one function for each mode"
         for mode, (_, Q) in zip(system.modes, self.functions, strict=True):
             if not is_square(Q, mode.A.shape[0]):
                 return f"Q of mode {mode.name} has the wrong size"
-        for source, target in system.transitions():
-            if _reset_shape(system, source, target) != (target.A.shape[0], source.A.shape[0]):
-                return f"the switch from {source.name} to {target.name} has no fitting reset"
-        if _dwell(system) > MAX_DWELL_STEPS:
+        return (
+            find_odd_switch(system)
+            or find_rate_misfit(self.rate, system.time)
+            or self._find_odd_stay(system)
+            or self._find_raising_switch(system)
+        )
+
+    def _find_odd_stay(self, system: SwitchedSystem) -> str | None:
+        """Check that the stays to be shown are few, short and, in discrete time, whole."""
+        stays = system.stays()
+        if len(set(self.leaving)) < len(self.leaving) or not set(self.leaving) <= stays.keys():
+            return "the modes that must be left are not those of the system"
+        if any(stays[name].longest is None for name in self.leaving):
+            return "a mode in which the function need not decrease has no longest dwell time"
+        times = [stay.shortest for stay in stays.values()]
+        times += [longest for stay in stays.values() if (longest := stay.longest) is not None]
+        if max(times) > MAX_DWELL_STEPS:
             return "the dwell time is too long"
-        if system.time is Time.DISCRETE and _dwell(system).denominator != 1:
+        if system.time is Time.DISCRETE and any(time.denominator != 1 for time in times):
             return "the dwell time is not a whole number of steps"
-        if misfit := find_rate_misfit(self.rate, system.time):
-            return misfit
-        if system.time is Time.DISCRETE and _power_is_too_large(system, self.rate):
+        enclosed = self.pieces * sum(e.source.name in self.leaving for e in system.edges())
+        if not 1 <= self.pieces <= MAX_PIECES or enclosed > MAX_ENCLOSED:
+            return "the stays are enclosed in too few or too many pieces"
+        if system.time is Time.DISCRETE and _power_is_too_large(system, self):
             return "the dwell time is too long for such large numbers"
-        return None if _dwell(system) > 0 else self._find_raising_switch(system)
+        return None
 
     def _find_raising_switch(self, system: SwitchedSystem) -> str | None:
         """Check the switches that may follow each other at once: exact, equality allowed."""
-        Q = dict(self.functions)
-        for source, target in system.transitions():
-            jump = _jump(system, source, target, Q)
+        Q, stays = dict(self.functions), system.stays()
+        for edge in system.edges():
+            if stays[edge.source.name].shortest > 0 or edge.source.name in self.leaving:
+                continue
+            jump = _jump(edge, Q)
             if is_too_large(jump):
-                return f"the numbers at the switch from {source.name} are too large to check"
+                return f"the numbers at the switch from {edge.source.name} are too large to check"
             if not is_symmetric(jump) or not is_positive_semidefinite(jump):
-                return f"the switch from {source.name} to {target.name} raises the function"
+                return f"the switch {_words(edge)} raises the function"
         return None
 
     def forms(self, system: SwitchedSystem) -> Iterator[tuple[str, IntegerMatrix]]:
-        """Yield every Q_i, its decrease, and the switches after a dwell time."""
+        """Yield every Q_i, and every decrease."""
+        for name, Q in self.functions:
+            yield f"Q of mode {name} is not symmetric and positive definite", Q
+        yield from self.decreases(system)
+
+    def decreasing_modes(self, system: SwitchedSystem) -> list[Mode]:
+        """Return the mode in which each of the decreases begins, in their order.
+
+        For discrete time, where every stay takes steps.
+        """
+        stays = system.stays()
+        counts = {
+            name: int(stay.longest or 0) - int(stay.shortest) + 1 if name in self.leaving else 1
+            for name, stay in stays.items()
+        }
+        modes = [mode for mode in system.modes if mode.name not in self.leaving]
+        return modes + [e.source for e in system.edges() for _ in range(counts[e.source.name])]
+
+    def decreases(self, system: SwitchedSystem) -> Iterator[tuple[str, IntegerMatrix]]:
+        """Yield the decrease in every mode, and at the switches after every stay that counts."""
         form = lyapunov_decrease if system.time is Time.CONTINUOUS else stein_decrease
-        Q = dict(self.functions)
+        Q, stays = dict(self.functions), system.stays()
         for mode in system.modes:
             A = mode.A
-            yield f"Q of mode {mode.name} is not symmetric and positive definite", Q[mode.name]
-            failure = f"V does not decrease at the claimed rate in mode {mode.name}"
-            yield failure, form(A.numerators, A.denominator, Q[mode.name], self.rate)
-        if _dwell(system) > 0:
-            for source, target in system.transitions():
-                failure = (
-                    f"after the dwell time, {source.name} to {target.name} raises the function"
-                )
-                yield failure, self._dwell_form(system, source, target, Q)
+            if mode.name not in self.leaving:
+                failure = f"V does not decrease at the claimed rate in mode {mode.name}"
+                yield failure, form(A.numerators, A.denominator, Q[mode.name], self.rate)
+        for edge in system.edges():
+            stay = stays[edge.source.name]
+            if edge.source.name in self.leaving:
+                failure = f"after some stay, {_words(edge)} raises the function"
+                yield from ((failure, form) for form in self._stay_forms(system, edge, stay, Q))
+            elif stay.shortest > 0:
+                failure = f"after the dwell time, {_words(edge)} raises the function"
+                yield failure, self._form_after(system, edge, stay.shortest, stay.shortest, Q)
 
-    def _dwell_form(
-        self, system: SwitchedSystem, source: Mode, target: Mode, Q: Mapping[str, Matrix]
-    ) -> IntegerMatrix:
-        """Return a matrix whose positive definiteness shows that a late switch does not raise V."""
+    def _stay_forms(
+        self, system: SwitchedSystem, edge: Edge, stay: Stay, Q: Mapping[str, Matrix]
+    ) -> Iterator[IntegerMatrix]:
+        """Yield a form for each number of steps, or for each piece of the times in a mode."""
+        assert stay.longest is not None
         if system.time is Time.DISCRETE:
-            steps = int(_dwell(system))
-            flow = _power(source.A, steps)
-            scale = self.rate ** (2 * steps)
-            jump = _image(system, source, target, flow)
-            image, square = congruence(jump.numerators, Q[target.name]), jump.denominator**2
-            left = scale.numerator * square
-            return add(
-                [[left * q for q in row] for row in Q[source.name]], image, -scale.denominator
-            )
-        return _enclosed_form(system, source, target, Q, self.rate)
+            for steps in range(int(stay.shortest), int(stay.longest) + 1):
+                yield self._form_after(system, edge, Fraction(steps), Fraction(steps), Q)
+            return
+        width = (stay.longest - stay.shortest) / self.pieces
+        for k in range(self.pieces):
+            begin = stay.shortest + k * width
+            yield self._form_after(system, edge, begin, begin + width, Q)
+
+    def _form_after(
+        self,
+        system: SwitchedSystem,
+        edge: Edge,
+        begin: Fraction,
+        end: Fraction,
+        Q: Mapping[str, Matrix],
+    ) -> IntegerMatrix:
+        """Return a matrix whose definiteness shows that no switch in that time raises V."""
+        if system.time is Time.CONTINUOUS:
+            return enclosed_form(edge, (begin, end), Q, self.rate)
+        flow = power(edge.source.A, int(begin))
+        scale = self.rate ** (2 * int(begin))
+        jump = flow
+        if edge.map is not None:
+            jump = RationalMatrix.from_rows(multiply(edge.map.fractions(), flow.fractions()))
+        image, square = congruence(jump.numerators, Q[edge.target.name]), jump.denominator**2
+        left = scale.numerator * square
+        before = [[left * q for q in row] for row in Q[edge.source.name]]
+        return add(before, image, -scale.denominator)
 
     def claim(self, system: SwitchedSystem) -> str:
         """State the bound on every solution."""
-        continuous = system.time is Time.CONTINUOUS
-        law, bound = ("x' = A x", "exp(-alpha t)") if continuous else ("x+ = A x", "rho^t")
-        value = rate_text(self.rate, system.time)
-        rate = f"alpha = {value} 1/s" if continuous else f"rho = {value}"
-        return (
-            f"Every solution of {law} under the declared switching ({describe(system)}) satisfies "
-            f"|x(t)| <= c {bound} |x(0)| with {rate} and some constant c that is the same for all "
-            "signals."
-        )
+        return bound_claim(system, self.rate)
+
+    def spread(self, merged: SwitchedSystem, system: SwitchedSystem) -> Self:
+        """Repeat the function of every mode for its equals, between which nothing changes."""
+        forms = {mode.A: Q for mode, (_, Q) in zip(merged.modes, self.functions, strict=True)}
+        return replace(self, functions=tuple((mode.name, forms[mode.A]) for mode in system.modes))
 
     def to_fields(self) -> dict[str, Any]:
-        """Return the functions and the rate."""
+        """Return the functions, the rate, and what is known of modes that must be left."""
+        leaving = {"leaving": list(self.leaving), "pieces": self.pieces} if self.leaving else {}
         return {
             "functions": [
                 {"mode": name, "Q": matrix_fields(Q, self.denominator_log2)}
                 for name, Q in self.functions
             ],
             "rate": str(self.rate),
+            **leaving,
         }
 
     @classmethod
     def from_fields(cls, fields: Mapping[str, Any], system: SwitchedSystem) -> Self:
-        """Read the functions and the rate."""
+        """Read the functions, the rate, and what is said of modes that must be left."""
         functions, exponents = [], set()
         for item in fields["functions"]:
             Q, exponent = read_matrix(item["Q"])
@@ -178,7 +241,29 @@ class ModeQuadratic(AbstractEvidence):
             exponents.add(exponent)
         if len(exponents) != 1:
             raise ValueError("the functions do not share one denominator")
-        return cls(tuple(functions), exponents.pop(), read_ratio(fields["rate"]))
+        leaving = tuple(read_text(name) for name in fields.get("leaving", ()))
+        pieces = read_integer(fields.get("pieces", 1))
+        return cls(tuple(functions), exponents.pop(), read_ratio(fields["rate"]), leaving, pieces)
+
+
+def find_odd_switch(system: SwitchedSystem) -> str | None:
+    """Say which switch has no reset between modes of different sizes, or one that does not fit."""
+    for edge in system.edges():
+        given = edge.source.A.shape if edge.map is None else edge.map.shape
+        if given != (edge.target.A.shape[0], edge.source.A.shape[0]):
+            return f"the switch {_words(edge)} has no fitting reset"
+    return None
+
+
+def bound_claim(system: SwitchedSystem, rate: Fraction) -> str:
+    """State a bound, up to a constant factor, on every solution that keeps the rules."""
+    continuous = system.time is Time.CONTINUOUS
+    law, bound = ("x' = A x", "exp(-alpha t)") if continuous else ("x+ = A x", "rho^t")
+    return (
+        f"Every solution of {law} under the declared switching ({describe(system)}) satisfies "
+        f"|x(t)| <= c {bound} |x(0)| with {rate_words(rate, system.time)} and some constant c "
+        "that is the same for all signals."
+    )
 
 
 def describe(system: SwitchedSystem) -> str:
@@ -187,7 +272,11 @@ def describe(system: SwitchedSystem) -> str:
     unit = "s" if system.time is Time.CONTINUOUS else "steps"
     parts = []
     if switching.dwell_time > 0:
-        parts.append(f"at least {float(switching.dwell_time):.10g} {unit} in each mode")
+        others = "each other mode" if switching.stays else "each mode"
+        parts.append(f"{_time_words(Stay(switching.dwell_time), unit)} in {others}")
+    parts += [f"{_time_words(stay, unit)} in {name}" for name, stay in switching.stays[:MAX_NAMED]]
+    if len(switching.stays) > MAX_NAMED:
+        parts.append(f"{len(switching.stays)} modes with dwell times of their own")
     if switching.transitions is not None:
         parts.append(f"{len(switching.transitions)} allowed transitions")
     if switching.resets:
@@ -195,109 +284,43 @@ def describe(system: SwitchedSystem) -> str:
     return ", ".join(parts) or "arbitrary"
 
 
-def _dwell(system: SwitchedSystem) -> Fraction:
-    """Return the shortest time in a mode; in discrete time at least one step."""
-    if system.time is Time.DISCRETE:
-        return max(system.switching.dwell_time, Fraction(1))
-    return system.switching.dwell_time
+def _time_words(stay: Stay, unit: str) -> str:
+    """Say how long a mode stays, rounded so that no other stay is claimed to be covered."""
+    if stay.longest is None:
+        return f"at least {rounded_up(stay.shortest, _unit(unit, stay.shortest))}"
+    last = rounded_down(stay.longest, _unit(unit, stay.longest))
+    return f"{rounded_up(stay.shortest)} to {last}" if stay.shortest > 0 else f"at most {last}"
 
 
-def _reset_shape(system: SwitchedSystem, source: Mode, target: Mode) -> tuple[int, int]:
-    reset = system.reset_map(source, target)
-    return (source.A.shape[0], source.A.shape[0]) if reset is None else reset.shape
+def _unit(unit: str, time: Fraction) -> str:
+    return "step" if unit == "steps" and time == 1 else unit
 
 
-def _jump(
-    system: SwitchedSystem, source: Mode, target: Mode, Q: Mapping[str, Matrix]
-) -> IntegerMatrix:
+def _words(edge: Edge) -> str:
+    return f"from {edge.source.name} to {edge.target.name}"
+
+
+def _jump(edge: Edge, Q: Mapping[str, Matrix]) -> IntegerMatrix:
     """Return a positive multiple of ``Q_i - G' Q_j G``."""
-    reset = system.reset_map(source, target)
+    before, after, reset = Q[edge.source.name], Q[edge.target.name], edge.map
     if reset is None:
-        return add(Q[source.name], Q[target.name], -1)
-    left = [[reset.denominator**2 * entry for entry in row] for row in Q[source.name]]
-    return add(left, congruence(reset.numerators, Q[target.name]), -1)
+        return add(before, after, -1)
+    left = [[reset.denominator**2 * entry for entry in row] for row in before]
+    return add(left, congruence(reset.numerators, after), -1)
 
 
-def _image(
-    system: SwitchedSystem, source: Mode, target: Mode, flow: RationalMatrix
-) -> RationalMatrix:
-    reset = system.reset_map(source, target)
-    if reset is None:
-        return flow
-    return RationalMatrix.from_rows(multiply(reset.fractions(), flow.fractions()))
-
-
-def _power_is_too_large(system: SwitchedSystem, rate: Fraction) -> bool:
+def _power_is_too_large(system: SwitchedSystem, evidence: ModeQuadratic) -> bool:
+    """Tell whether the powers would take more than some seconds, one by one or all together."""
     numbers = [v for mode in system.modes for row in mode.A.numerators for v in row]
     numbers += [mode.A.denominator for mode in system.modes]
-    bits = max(abs(v).bit_length() for v in (*numbers, rate.denominator))
-    power_bits = int(_dwell(system)) * bits
-    return power_bits > MAX_POWER_BITS or system.order**3 * power_bits > MAX_WORK
-
-
-def _power(A: RationalMatrix, exponent: int) -> RationalMatrix:
-    n = A.shape[0]
-    result = RationalMatrix.from_rows([[int(i == j) for j in range(n)] for i in range(n)])
-    for bit in bin(exponent)[2:]:
-        result = RationalMatrix.from_rows(multiply(result.fractions(), result.fractions()))
-        if bit == "1":
-            result = RationalMatrix.from_rows(multiply(A.fractions(), result.fractions()))
-    return result
-
-
-def _enclosed_form(
-    system: SwitchedSystem, source: Mode, target: Mode, Q: Mapping[str, Matrix], rate: Fraction
-) -> IntegerMatrix:
-    """Return integers below the true form times a positive number.
-
-    The form ``Q_i - E' Q_j E`` with ``E = G exp(B T)`` is enclosed in balls. If every entry is
-    within r of a rational midpoint, then its smallest eigenvalue is at least that of the midpoint
-    minus n r, so that much is subtracted from the diagonal.
-    """
-    from flint import arb_mat, ctx, fmpq, fmpq_mat, fmpz_mat
-
-    before, ctx.prec = ctx.prec, PRECISION
-    try:
-        A, T = source.A, system.switching.dwell_time
-        n = A.shape[0]
-        shifted = [
-            [Fraction(v, A.denominator) + (rate if i == j else 0) for j, v in enumerate(row)]
-            for i, row in enumerate(A.numerators)
-        ]
-        entries = [fmpq((v * T).numerator, (v * T).denominator) for row in shifted for v in row]
-        E = arb_mat(fmpq_mat(n, n, entries)).exp()
-        reset = system.reset_map(source, target)
-        if reset is not None:
-            flat = [fmpq(v, reset.denominator) for row in reset.numerators for v in row]
-            E = arb_mat(fmpq_mat(*reset.shape, flat)) * E
-        Qi, Qj = (arb_mat(fmpz_mat([list(row) for row in Q[m.name]])) for m in (source, target))
-        form = Qi - E.transpose() * Qj * E
-        return _lower_integers([[form[i, j] for j in range(n)] for i in range(n)])
-    finally:
-        ctx.prec = before
-
-
-def _lower_integers(form: list[list[Any]]) -> IntegerMatrix:
-    """Return integers that are below a symmetric ball matrix times a power of two."""
-    n = len(form)
-    if any(not ball.abs_upper() < 2**RANGE_LOG2 for row in form for ball in row):
-        return [[0] * n for _ in range(n)]
-    mids = [[_fraction(form[i][j].mid()) for j in range(n)] for i in range(n)]
-    radius = max(_fraction(form[i][j].rad()) for i in range(n) for j in range(n))
-    # Both a midpoint and a radius may have been taken for zero.
-    radius += 2 * Fraction(1, 2**RANGE_LOG2)
-    # Both triangles enclose the same number: take the upper one, and let the radius cover it.
-    scale = 2**MIDPOINT_BITS
-    largest = max((abs(v) for row in mids for v in row), default=Fraction(1)) or Fraction(1)
-    unit = Fraction(scale) / largest
-    slack = n * (radius * unit + 1)
-    rounded = [[round(mids[min(i, j)][max(i, j)] * unit) for j in range(n)] for i in range(n)]
-    return [[rounded[i][j] - (int(slack) + 1 if i == j else 0) for j in range(n)] for i in range(n)]
-
-
-def _fraction(ball: Any) -> Fraction:
-    """Return an exact ball (of radius zero) as a fraction, or zero for one very near to it."""
-    mantissa, exponent = ball.man_exp()
-    if int(mantissa).bit_length() + int(exponent) < -RANGE_LOG2:
-        return Fraction(0)
-    return Fraction(int(mantissa)) * Fraction(2) ** int(exponent)
+    bits = max(abs(v).bit_length() for v in (*numbers, evidence.rate.denominator))
+    stays, total, largest = system.stays(), 0, 0
+    for edge in system.edges():
+        stay = stays[edge.source.name]
+        leaves = edge.source.name in evidence.leaving and stay.longest is not None
+        last = int(stay.longest) if leaves and stay.longest is not None else int(stay.shortest)
+        largest = max(largest, last)
+        if leaves:
+            total += sum(range(int(stay.shortest), last + 1))
+    work = system.order**3 * bits
+    return largest * bits > MAX_POWER_BITS or largest * work > MAX_WORK or total * work > MAX_WORK

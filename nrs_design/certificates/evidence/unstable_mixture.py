@@ -81,9 +81,9 @@ class UnstableMixture(AbstractEvidence):
         """State the combination and what follows."""
         shares = " + ".join(f"{weight} {name}" for name, weight in self.weights)
         return (
-            f"The average {shares} of modes is not Hurwitz (eigenvalue {self.eigenvalue}): fast "
-            "switching with these shares follows it, so x' = A x is not uniformly exponentially "
-            "stable under arbitrary switching."
+            f"The average {shares} of modes is not Hurwitz (eigenvalue about {self.eigenvalue}): "
+            "fast switching with these shares follows it, so x' = A x is not uniformly "
+            "exponentially stable under arbitrary switching."
         )
 
     def to_fields(self) -> dict[str, Any]:

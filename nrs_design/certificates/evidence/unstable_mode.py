@@ -25,6 +25,8 @@ from nrs_design.switched.system import Mode, SwitchedSystem, Switching, Time
 class UnstableMode(AbstractEvidence):
     """Staying in one mode, which is not Hurwitz (discrete time: not Schur), is admissible.
 
+    It is not where the mode has a longest dwell time: such a mode may be unstable.
+
     Parameters
     ----------
     mode : str
@@ -45,8 +47,8 @@ class UnstableMode(AbstractEvidence):
         return Shows.INSTABILITY
 
     def fits(self, switching: Switching) -> bool:
-        """Tell that it always applies: no rule forces a signal to leave its first mode."""
-        return True
+        """Tell whether no rule forces a signal to leave the mode."""
+        return switching.stay(self.mode).longest is None
 
     def find_misfit(self, system: SwitchedSystem) -> str | None:
         """Check that the mode exists and is not stable."""
@@ -67,7 +69,7 @@ class UnstableMode(AbstractEvidence):
         region = "Hurwitz" if continuous else "Schur"
         law = "x' = A x" if continuous else "x+ = A x"
         return (
-            f"Mode {self.mode} is not {region} (eigenvalue {self.eigenvalue}): staying in "
+            f"Mode {self.mode} is not {region} (eigenvalue about {self.eigenvalue}): staying in "
             f"it is an admissible switching signal, so {law} is not uniformly exponentially stable."
         )
 

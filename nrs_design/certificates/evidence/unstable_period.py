@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any, ClassVar, Self
@@ -10,6 +10,7 @@ from typing import Any, ClassVar, Self
 from nrs_design.certificates.evidence.abstract import AbstractEvidence, Shows
 from nrs_design.certificates.evidence.fields import read_integer, read_ratio, read_text
 from nrs_design.certificates.exact import IntegerMatrix
+from nrs_design.spec.bounds import nearly
 from nrs_design.switched.matrix import RationalMatrix
 from nrs_design.switched.system import SwitchedSystem, Switching, Time
 
@@ -34,12 +35,16 @@ class UnstablePeriod(AbstractEvidence):
         Mode and dwell time in s (discrete time: number of steps), in order.
     doublings : int
         k is two to this power.
+    edges : tuple of int
+        For each step, which of the resets to the next mode is taken, counted from zero in the order
+        of the spec. Empty where there is no choice.
     """
 
     kind: ClassVar[str] = "unstable-period"
 
     steps: tuple[tuple[str, Fraction], ...]
     doublings: int
+    edges: tuple[int, ...] = ()
 
     @property
     def shows(self) -> Shows:
@@ -47,16 +52,31 @@ class UnstablePeriod(AbstractEvidence):
         return Shows.INSTABILITY
 
     def fits(self, switching: Switching) -> bool:
-        """Tell whether every dwell time is long enough and every switch allowed."""
-        following = zip(self.steps, (*self.steps[1:], *self.steps[:1]), strict=True)
-        switches = {(a, b) for (a, _), (b, _) in following if a != b}
+        """Tell whether every dwell time is long and short enough, and every switch allowed."""
+        if len(self.steps) > MAX_STEPS:
+            return False
+        names = [name for name, _ in self.steps]
+        following = _switches(names)
+        switches = {(a, b) for a, b in following if a != b}
         allowed = switching.transitions
         ends = {name: end for pair in switching.fixed_ends for end, name in enumerate(pair)}
+        staying = {a for a, b in following if a == b}
         return (
             (allowed is None or switches <= set(allowed))
-            and all(dwell >= switching.dwell_time for _, dwell in self.steps)
+            and all(_may_stay(switching, *step, step[0] in staying) for step in self.steps)
+            and self._takes_edges(switching)
             # A constant parameter is at one of its ends all the time.
-            and len({ends.get(name) for name, _ in self.steps}) == 1
+            and len({ends.get(name) for name in names}) == 1
+        )
+
+    def _takes_edges(self, switching: Switching) -> bool:
+        """Tell whether the chosen resets exist; without a choice there is at most one each."""
+        maps, switches = switching.maps(), _switches([name for name, _ in self.steps])
+        counts = [len(maps.get(switch, ())) for switch in switches]
+        if not self.edges:
+            return max(counts, default=0) <= 1
+        return len(self.edges) == len(counts) and all(
+            0 <= edge < max(count, 1) for edge, count in zip(self.edges, counts, strict=True)
         )
 
     def find_misfit(self, system: SwitchedSystem) -> str | None:
@@ -71,7 +91,7 @@ class UnstablePeriod(AbstractEvidence):
             return f"a dwell time is not between 0 and {MAX_DWELL}"
         if system.time is Time.DISCRETE and any(dwell.denominator != 1 for _, dwell in self.steps):
             return "a number of steps is not whole"
-        if not expands(system, self.steps, self.doublings):
+        if not expands(system, self.steps, self.doublings, self.edges):
             return "the enclosure of the monodromy matrix does not show growth"
         return None
 
@@ -82,8 +102,21 @@ class UnstablePeriod(AbstractEvidence):
     def claim(self, system: SwitchedSystem) -> str:
         """State the signal and what follows."""
         continuous = system.time is Time.CONTINUOUS
-        law, unit = ("x' = A x", " s") if continuous else ("x+ = A x", " steps")
-        signal = ", ".join(f"{name} for {float(dwell):.6g}{unit}" for name, dwell in self.steps)
+        law, unit = ("x' = A x", "s") if continuous else ("x+ = A x", "steps")
+        maps, switches = system.switching.maps(), _switches([name for name, _ in self.steps])
+        choices = [len(maps.get(switch, ())) > 1 for switch in switches]
+        ways = self.edges or (0,) * len(switches)
+        then = [
+            f", then reset {way + 1} to {switch[1]}" if choice else ""
+            for way, choice, switch in zip(ways, choices, switches, strict=True)
+        ]
+        times = [nearly(dwell, unit) for _, dwell in self.steps]
+        signal = ", ".join(
+            f"{name} for {time}{reset}"
+            for (name, _), time, reset in zip(self.steps, times, then, strict=True)
+        )
+        if any(time.startswith("about") for time in times):
+            signal += "; the certificate holds the exact times"
         return (
             f"Repeating the signal ({signal}) makes some solution grow without bound: the spectral "
             f"radius over one period is above 1, so {law} is unstable under this switching."
@@ -91,8 +124,10 @@ class UnstablePeriod(AbstractEvidence):
 
     def to_fields(self) -> dict[str, Any]:
         """Return the signal and the power."""
+        edges = {"edges": list(self.edges)} if self.edges else {}
         return {
             "steps": [[name, str(dwell)] for name, dwell in self.steps],
+            **edges,
             "doublings": self.doublings,
         }
 
@@ -100,18 +135,37 @@ class UnstablePeriod(AbstractEvidence):
     def from_fields(cls, fields: Mapping[str, Any], system: SwitchedSystem) -> Self:
         """Read the signal and the power."""
         steps = tuple((read_text(name), read_ratio(dwell)) for name, dwell in fields["steps"])
-        return cls(steps, read_integer(fields["doublings"]))
+        edges = tuple(read_integer(edge) for edge in fields.get("edges", ()))
+        if edges and len(edges) != len(steps):
+            raise ValueError("there is not one edge for each step")
+        return cls(steps, read_integer(fields["doublings"]), edges)
+
+
+def _switches(names: Sequence[str]) -> list[tuple[str, str]]:
+    """Return what follows what, round the period; a mode alone follows itself."""
+    return list(zip(names, (*names[1:], *names[:1]), strict=True))
+
+
+def _may_stay(switching: Switching, mode: str, dwell: Fraction, goes_on: bool) -> bool:
+    """Tell whether a mode may be active for so long: one that must be left, not twice in turn."""
+    stay = switching.stay(mode)
+    if stay.longest is None:
+        return dwell >= stay.shortest
+    return stay.shortest <= dwell <= stay.longest and not goes_on
 
 
 def expands(
-    system: SwitchedSystem, steps: tuple[tuple[str, Fraction], ...], doublings: int
+    system: SwitchedSystem,
+    steps: tuple[tuple[str, Fraction], ...],
+    doublings: int,
+    edges: tuple[int, ...] = (),
 ) -> bool:
     """TRUSTED: decide whether ``|tr M^k| > n`` is certain, k two to the power of doublings."""
     from flint import ctx
 
     before, ctx.prec = ctx.prec, PRECISION
     try:
-        power = monodromy(system, steps)
+        power = monodromy(system, steps, edges)
         for _ in range(doublings):
             power = power * power
         trace = sum((power[i, i] for i in range(system.order)), start=0 * power[0, 0])
@@ -120,23 +174,32 @@ def expands(
         ctx.prec = before
 
 
-def monodromy(system: SwitchedSystem, steps: tuple[tuple[str, Fraction], ...]) -> Any:
-    """TRUSTED: enclose the monodromy matrix of a periodic signal, at flint's current precision."""
+def monodromy(
+    system: SwitchedSystem,
+    steps: tuple[tuple[str, Fraction], ...],
+    edges: tuple[int, ...] = (),
+) -> Any:
+    """TRUSTED: enclose the monodromy matrix of a periodic signal, at flint's current precision.
+
+    Every step is followed by the reset of the switch to the next mode, the last one by that of the
+    switch back to the first.
+    """
     from flint import arb_mat, fmpq, fmpq_mat
 
-    modes = {mode.name: mode for mode in system.modes}
+    modes, maps = {mode.name: mode for mode in system.modes}, system.switching.maps()
     product = arb_mat(fmpq_mat(system.order, system.order, _identity(system.order)))
-    following = (*steps[1:], *steps[:1])
-    for (name, dwell), (successor, _) in zip(steps, following, strict=True):
+    switches = _switches([name for name, _ in steps])
+    for (name, dwell), switch, edge in zip(
+        steps, switches, edges or (0,) * len(steps), strict=True
+    ):
         exact = _fmpq_matrix(modes[name].A)
         if system.time is Time.CONTINUOUS:
             factor = arb_mat(exact * fmpq(dwell.numerator, dwell.denominator)).exp()
         else:
             factor = arb_mat(exact) ** int(dwell)
         product = factor * product
-        reset = system.reset_map(modes[name], modes[successor])
-        if name != successor and reset is not None:
-            product = arb_mat(_fmpq_matrix(reset)) * product
+        if switch in maps:
+            product = arb_mat(_fmpq_matrix(maps[switch][edge])) * product
     return product
 
 

@@ -8,6 +8,8 @@ from numpy.typing import NDArray
 from nrs_design.switched.system import Time
 
 SWEEPS = 64
+# Larger Lyapunov equations are solved by Schur decompositions, not as one linear system.
+DENSE_ORDER = 10
 
 
 def balance(matrices: NDArray[np.float64]) -> NDArray[np.int64]:
@@ -61,13 +63,29 @@ def mean_norm_coordinates(matrices: NDArray[np.float64], time: Time) -> NDArray[
     time : Time
         Continuous or discrete.
     """
-    n, identity = matrices.shape[1], np.eye(matrices.shape[1])
-    mean = np.zeros((n, n))
-    for A in matrices:
+    return np.asarray(np.linalg.inv(np.linalg.cholesky(mean_norm(matrices, time))).T)
+
+
+def mean_norm(matrices: NDArray[np.float64], time: Time) -> NDArray[np.float64]:
+    """Return the sum of the matrices of the modes' own norms, each of trace two."""
+    forms = [own_norm(A, time) for A in matrices]
+    return np.asarray(np.sum([2 * P / np.trace(P) for P in forms], axis=0))
+
+
+def own_norm(A: NDArray[np.float64], time: Time) -> NDArray[np.float64]:
+    """Solve ``A'P + PA = -I``, in discrete time ``A'PA - P = -I``; shape (n, n)."""
+    n, identity = len(A), np.eye(len(A))
+    if n > DENSE_ORDER:
+        from scipy.linalg import solve_continuous_lyapunov, solve_discrete_lyapunov
+
         if time is Time.CONTINUOUS:
-            operator = np.kron(A.T, identity) + np.kron(identity, A.T)
+            P = solve_continuous_lyapunov(A.T, -identity)
         else:
-            operator = np.kron(A.T, A.T) - np.eye(n * n)
-        P = np.linalg.solve(operator, -identity.ravel()).reshape(n, n)
-        mean += (P + P.T) / np.trace(P)
-    return np.asarray(np.linalg.inv(np.linalg.cholesky(mean)).T)
+            P = solve_discrete_lyapunov(A.T, identity, method="bilinear")
+        return np.asarray((P + P.T) / 2)
+    if time is Time.CONTINUOUS:
+        operator = np.kron(A.T, identity) + np.kron(identity, A.T)
+    else:
+        operator = np.kron(A.T, A.T) - np.eye(n * n)
+    P = np.linalg.solve(operator, -identity.ravel()).reshape(n, n)
+    return np.asarray((P + P.T) / 2)

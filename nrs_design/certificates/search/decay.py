@@ -11,6 +11,7 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
+from nrs_design.certificates.search.allowance import Allowance, NotAffordableError
 from nrs_design.certificates.search.lmi import decreases, find_common_quadratic
 from nrs_design.switched.system import Time
 
@@ -38,7 +39,9 @@ def rate_at(position: float, limit: float, time: Time) -> float:
     return position * limit if time is Time.CONTINUOUS else 1 - position * (1 - limit)
 
 
-def largest_position(matrices: NDArray[np.float64], time: Time, limit: float) -> float:
+def largest_position(
+    matrices: NDArray[np.float64], time: Time, limit: float, allowance: Allowance | None = None
+) -> float:
     """Bisect for the largest position at which the search still finds a function.
 
     Parameters
@@ -49,19 +52,25 @@ def largest_position(matrices: NDArray[np.float64], time: Time, limit: float) ->
         Continuous or discrete.
     limit : float
         As `limit_rate` gives it.
+    allowance : Allowance, optional
+        When it is used up, the bisection ends early.
     """
     low, high = 0.0, 1.0
     while high - low > TOLERANCE:
         middle = (low + high) / 2
-        if find_common_quadratic(matrices, time, rate_at(middle, limit, time)) is None:
-            high = middle
-        else:
-            low = middle
+        rate = rate_at(middle, limit, time)
+        try:
+            found = find_common_quadratic(matrices, time, rate, allowance=allowance)
+        except NotAffordableError:
+            break
+        low, high = (low, middle) if found is None else (middle, high)
     return low
 
 
 def bisect_position(is_feasible: Callable[[float], bool]) -> float:
     """Bisect for the largest feasible position, however near to mere stability it is.
+
+    When what the search may take is used up, the bisection ends early.
 
     Returns
     -------
@@ -71,7 +80,10 @@ def bisect_position(is_feasible: Callable[[float], bool]) -> float:
     low, high = 0.0, 1.0
     while high > SMALLEST and high - low > RESOLUTION * high:
         middle = (low + high) / 2
-        low, high = (middle, high) if is_feasible(middle) else (low, middle)
+        try:
+            low, high = (middle, high) if is_feasible(middle) else (low, middle)
+        except NotAffordableError:
+            break
     return low
 
 

@@ -5,12 +5,14 @@ from __future__ import annotations
 import warnings
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from itertools import chain
 
 import numpy as np
 from numpy.typing import NDArray
 
 from nrs_design.certificates.checker import Checker
+from nrs_design.certificates.search.allowance import Allowance
 from nrs_design.certificates.search.balance import balance, scale
 from nrs_design.certificates.search.decay import limit_rate
 from nrs_design.switched.matrix import RationalMatrix
@@ -30,13 +32,16 @@ class Family:
     exponents : ndarray of int, shape (n,)
         The d.
     limit : float
-        Rate of the slowest mode.
+        Rate of the slowest mode that need never be left; without one, a rate out of reach.
+    allowance : Allowance
+        Time and memory for the searches; unlimited by default.
     """
 
     checker: Checker
     matrices: NDArray[np.float64]
     exponents: NDArray[np.int64]
     limit: float
+    allowance: Allowance = field(default_factory=Allowance)
 
     @property
     def system(self) -> SwitchedSystem:
@@ -49,20 +54,33 @@ class Family:
         return cls.checked_by(Checker(system))
 
     @classmethod
-    def checked_by(cls, checker: Checker) -> Family:
+    def checked_by(cls, checker: Checker, allowance: Allowance | None = None) -> Family:
         """Convert and balance the modes that a checker speaks about."""
+        allowance = allowance or Allowance()
         system = checker.system
         if not system.is_uniform:
-            limits = [limit_rate(to_floats([mode.A]), system.time) for mode in system.modes]
-            limit = min(limits) if system.time is Time.CONTINUOUS else max(limits)
-            return cls(checker, np.zeros((0, 0, 0)), np.zeros(0, dtype=np.int64), limit)
+            limit = _limit(system, [to_floats([mode.A]) for mode in system.modes])
+            return cls(checker, np.zeros((0, 0, 0)), np.zeros(0, dtype=np.int64), limit, allowance)
         matrices = to_floats([mode.A for mode in system.modes])
-        limit = limit_rate(matrices, system.time)
+        limit = _limit(system, [matrices])
         exponents = balance(matrices)
         scaled = scale(matrices, exponents)
         if not np.isfinite(scaled).all():
             scaled, exponents = matrices, np.zeros_like(exponents)
-        return cls(checker, scaled, exponents, limit)
+        return cls(checker, scaled, exponents, limit, allowance)
+
+
+def _limit(system: SwitchedSystem, families: list[NDArray[np.float64]]) -> float:
+    lasting = {mode.name for mode in system.lasting_modes()}
+    if len(lasting) < len(system.modes):
+        names = [mode.name for mode in system.modes]
+        matrices = dict(zip(names, chain.from_iterable(families), strict=True))
+        families = [matrices[name][None] for name in names if name in lasting]
+        if not families:
+            sizes = [np.abs(np.linalg.eigvals(A)).max() for A in matrices.values()]
+            return float(max(sizes)) if system.time is Time.CONTINUOUS else 0.0
+    limits = [limit_rate(matrices, system.time) for matrices in families]
+    return min(limits) if system.time is Time.CONTINUOUS else max(limits)
 
 
 def to_floats(matrices: Sequence[RationalMatrix]) -> NDArray[np.float64]:

@@ -10,8 +10,15 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from nrs_design.certificates.search.allowance import Allowance
+from nrs_design.certificates.search.balance import own_norm
+from nrs_design.switched.system import Time
+
 RELAXATION = 1.0
 RADIUS = 1e-2
+# Seconds per round and per multiplication in it.
+PER_ROUND = 2e-5
+PER_PRODUCT = 1e-8
 
 
 @dataclass(frozen=True, slots=True)
@@ -23,7 +30,10 @@ class GradientResult:
 
 
 def iterate_gradient(
-    matrices: NDArray[np.float64], rate: float = 0.0, max_updates: int = 20_000
+    matrices: NDArray[np.float64],
+    rate: float = 0.0,
+    max_updates: int = 20_000,
+    allowance: Allowance | None = None,
 ) -> GradientResult:
     """Iterate ``Q+ = [Q - mu grad v(Q, A_i)]+`` over the modes in turn until all have v <= 0.
 
@@ -39,13 +49,23 @@ def iterate_gradient(
         The modes are shifted by this rate, in 1/s.
     max_updates : int
         Updates after which the search gives up.
+    allowance : Allowance, optional
+        Time; unlimited by default.
+
+    Raises
+    ------
+    NotAffordableError
+        If the time is over.
     """
+    allowance = allowance or Allowance()
     m, n = matrices.shape[:2]
     theta = np.eye(n)
     shifted = matrices + rate * theta
-    Q = _solve_lyapunov(shifted[0], theta)
+    Q = own_norm(shifted[0], Time.CONTINUOUS)
     quiet = updates = i = 0
     while quiet < m and updates < max_updates:
+        allowance.charge(PER_ROUND + PER_PRODUCT * n**3)
+        allowance.check()
         A = shifted[i]
         values, vectors = np.linalg.eigh(A.T @ Q + Q @ A + theta)
         if values[-1] > 0:
@@ -55,14 +75,6 @@ def iterate_gradient(
             quiet += 1
         i = (i + 1) % m
     return GradientResult(Q if quiet == m else None, updates)
-
-
-def _solve_lyapunov(A: NDArray[np.float64], theta: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Solve ``A'Q + QA = -theta`` as one linear system; the matrices are small."""
-    n, identity = len(A), np.eye(len(A))
-    operator = np.kron(A.T, identity) + np.kron(identity, A.T)
-    Q = np.linalg.solve(operator, -theta.ravel()).reshape(n, n)
-    return np.asarray((Q + Q.T) / 2)
 
 
 def _step(A: NDArray[np.float64], x: NDArray[np.float64], v: float) -> NDArray[np.float64]:

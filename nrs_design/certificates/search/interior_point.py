@@ -8,12 +8,14 @@ Todd with the predictor and corrector of Mehrotra (Toh, Todd, Tütüncü 1999; V
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from nrs_design.certificates.search.allowance import Cost
 from nrs_design.certificates.search.sdp import pack, unpack
 
 Array = NDArray[np.float64]
@@ -25,6 +27,10 @@ STEP_SHARE = 0.95
 GAP_FLOOR = 1e-12
 # The value is good enough where no other one can be larger by more than this factor.
 GOOD_FACTOR = 2.0
+# Seconds per multiplication, and per step; bytes per entry of the images, with their copies.
+PER_PRODUCT = 2e-10
+PER_STEP = 1e-3
+PER_ENTRY = 32
 
 
 @dataclass(frozen=True)
@@ -56,7 +62,14 @@ class _Scaled(NamedTuple):
     rows: Array
 
 
-def maximize_last(cones: Cones, start: Array) -> Array:
+def step_cost(variables: int, cones: int, order: int) -> Cost:
+    """Predict what one step of `maximize_last` takes."""
+    entries = variables * cones * order**2
+    products = 2 * variables**2 * cones * order * (order + 1) / 2 + 4 * entries * order
+    return Cost(PER_STEP + PER_PRODUCT * products, PER_ENTRY * entries)
+
+
+def maximize_last(cones: Cones, start: Array, goes_on: Callable[[], bool] = lambda: True) -> Array:
     """Maximize the last variable, until it is positive and within a factor of the largest one.
 
     Parameters
@@ -65,6 +78,8 @@ def maximize_last(cones: Cones, start: Array) -> Array:
         The constraints.
     start : ndarray, shape (variables,)
         Strictly feasible; the matrices that the last variable enters grow as it falls.
+    goes_on : callable
+        Asked before every step; No ends the search with the last iterate.
 
     Returns
     -------
@@ -76,6 +91,8 @@ def maximize_last(cones: Cones, start: Array) -> Array:
     # With this unit, Z = inverse satisfies the equation of the last variable at the start.
     Z = -inverse / (cones.images[-1] * inverse).sum()
     for _ in range(MAX_STEPS):
+        if not goes_on():
+            break
         try:
             dy, dZ = _step(cones, X, Z)
         except np.linalg.LinAlgError:

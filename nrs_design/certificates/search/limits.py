@@ -17,7 +17,8 @@ MAX_WORDS = 3000
 def rate_limit(system: SwitchedSystem) -> float | None:
     """Return a rate that solutions cannot beat, because one of them attains it.
 
-    Continuous time: the slowest mode's ``-max Re``, in 1/s. Discrete time: the largest
+    Modes that must be left are left out of account; None if all are. Continuous time: the slowest
+    mode's ``-max Re``, in 1/s. Discrete time: the largest
     ``radius(A_k ... A_1)^(1/k)`` over short products of modes, a lower bound of the joint spectral
     radius; where switching is constrained, of single modes only.
 
@@ -26,10 +27,13 @@ def rate_limit(system: SwitchedSystem) -> float | None:
     system : SwitchedSystem
         The modes.
     """
+    modes = system.lasting_modes()
+    if not modes:
+        return None
     if system.is_uniform:
-        families = [to_floats([mode.A for mode in system.modes])]
+        families = [to_floats([mode.A for mode in modes])]
     else:
-        families = [to_floats([mode.A]) for mode in system.modes]
+        families = [to_floats([mode.A]) for mode in modes]
     limits = [limit_rate(matrices, system.time) for matrices in families]
     if not all(map(isfinite, limits)):
         return None

@@ -12,12 +12,18 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
-from nrs_design.certificates.search.interior_point import Cones, maximize_last
-from nrs_design.certificates.search.sdp import maximize_margin, pack, symmetric_basis
+from nrs_design.certificates.search.allowance import Allowance, Cost
+from nrs_design.certificates.search.interior_point import Cones, maximize_last, step_cost
+from nrs_design.certificates.search.sdp import (
+    maximize_margin,
+    pack,
+    program_cost,
+    symmetric_basis,
+)
 from nrs_design.switched.system import Time
 
 Matrices = NDArray[np.float64]
-Solve = Callable[[Matrices, Time, float, Matrices], Matrices | None]
+Solve = Callable[[Matrices, Time, float, Matrices, Allowance], Matrices | None]
 
 FIRST_MODES = 8
 # In continuous time, the unit of time is chosen so that the largest entry is just below 2^3.
@@ -26,6 +32,8 @@ ENTRY_LOG2 = 3
 MARGIN_FLOOR = 1e-10
 # The start lies below the margin of its Q by at least this.
 START_FLOOR = 1e-3
+# The method of our own is not begun if fewer steps than these fit.
+FEWEST_STEPS = 4
 
 
 def decreases(matrices: Matrices, Q: Matrices, time: Time, rate: float) -> Matrices:
@@ -42,7 +50,11 @@ def margins(matrices: Matrices, Q: Matrices, time: Time, rate: float) -> Matrice
 
 
 def find_common_quadratic(
-    matrices: Matrices, time: Time, rate: float, solve: Solve | None = None
+    matrices: Matrices,
+    time: Time,
+    rate: float,
+    solve: Solve | None = None,
+    allowance: Allowance | None = None,
 ) -> Matrices | None:
     """Look for Q with ``A'Q + QA + 2 rate Q < 0`` (or ``A'QA < rate^2 Q``) for all modes.
 
@@ -57,25 +69,33 @@ def find_common_quadratic(
     solve : callable, optional
         Solves the margin form for some of the modes, beginning at a Q between 0 and I; a method
         of our own by default.
+    allowance : Allowance, optional
+        Time and memory; unlimited by default.
 
     Returns
     -------
     ndarray, shape (n, n), or None
         A candidate with positive margins in floating point, or None.
+
+    Raises
+    ------
+    NotAffordableError
+        If time or memory do not suffice, and nothing was found.
     """
-    solve = solve or _solve
+    solve, allowance = solve or _solve, allowance or Allowance()
     unit = time_unit(matrices, time)
     matrices, rate = np.ldexp(matrices, unit), float(np.ldexp(rate, unit))
     m, n = matrices.shape[:2]
     active = sorted({k * (m - 1) // (FIRST_MODES - 1) for k in range(FIRST_MODES)})
     start: Matrices = np.eye(n) / 2
     while True:
-        Q = solve(matrices[active], time, rate, start)
+        Q = solve(matrices[active], time, rate, start, allowance)
         if Q is None or not np.isfinite(decreases(matrices, Q, time, rate)).all():
             return None
         margin = margins(matrices, Q, time, rate)
         if margin.min() > 0:
             return Q
+        allowance.check()
         if margin[active].min() <= MARGIN_FLOOR * np.abs(Q).max():
             return None
         violated = [k for k in np.argsort(margin) if margin[k] <= 0 and k not in active]
@@ -89,9 +109,13 @@ def time_unit(matrices: Matrices, time: Time) -> int:
     return ENTRY_LOG2 - int(np.frexp(np.abs(matrices).max())[1])
 
 
-def _solve(matrices: Matrices, time: Time, rate: float, Q: Matrices) -> Matrices | None:
+def _solve(
+    matrices: Matrices, time: Time, rate: float, Q: Matrices, allowance: Allowance
+) -> Matrices | None:
     """Improve on Q in the margin form for the given modes, with the method of our own."""
     m, n = matrices.shape[:2]
+    step = step_cost(n * (n + 1) // 2 + 1, m + 2, n)
+    allowance.require(Cost(FEWEST_STEPS * step.seconds, step.memory), _described(m, n))
     basis, identity = symmetric_basis(n), np.eye(n)
     constant, images = np.zeros((m + 2, n, n)), np.zeros((len(basis) + 1, m + 2, n, n))
     constant[1] = identity
@@ -100,13 +124,19 @@ def _solve(matrices: Matrices, time: Time, rate: float, Q: Matrices) -> Matrices
     images[-1, 2:] = -identity
     here = decreases(matrices, Q, time, rate)
     below = np.linalg.eigvalsh(here).min() - max(0.1 * np.abs(here).max(), START_FLOOR)
-    y = maximize_last(Cones(constant, images), np.append(pack(Q), below))
+    start = np.append(pack(Q), below)
+    y = maximize_last(Cones(constant, images), start, lambda: allowance.goes_on(step.seconds))
     return np.asarray(np.tensordot(y[:-1], basis, axes=1))
 
 
-def solve_by_clarabel(matrices: Matrices, time: Time, rate: float, Q: Matrices) -> Matrices | None:
+def solve_by_clarabel(
+    matrices: Matrices, time: Time, rate: float, Q: Matrices, allowance: Allowance
+) -> Matrices | None:
     """Solve the margin form for the given modes; None if the result is not finite."""
     m, n = matrices.shape[:2]
+    unknowns = n * (n + 1) // 2 + 1
+    cost = program_cost(unknowns, unknowns, [(n, unknowns)] * (m + 2))
+    allowance.take(cost, _described(m, n))
     basis, identity = symmetric_basis(n), pack(np.eye(n))
     size = len(basis)
     images = decreases(matrices, basis[:, None], time, rate)
@@ -114,5 +144,10 @@ def solve_by_clarabel(matrices: Matrices, time: Time, rate: float, Q: Matrices) 
     columns = np.vstack([np.eye(size), -np.eye(size), rows])
     margin = np.concatenate([np.zeros(2 * size), np.tile(identity, m)])
     offset = np.concatenate([identity, np.zeros(size * (m + 1))])
-    x = maximize_margin(np.column_stack([columns, margin]), offset, [n] * (m + 2))
+    rows = np.column_stack([columns, margin])
+    x = maximize_margin(rows, offset, [n] * (m + 2), time_limit=allowance.left)
     return None if x is None else np.tensordot(x[:-1], basis, axes=1)
+
+
+def _described(modes: int, order: int) -> str:
+    return f"a program of {order * (order + 1) // 2} unknowns and {modes + 2} blocks"

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from fractions import Fraction
-from itertools import combinations
+from itertools import combinations, islice, product
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,6 +12,7 @@ from numpy.typing import NDArray
 from nrs_design.certificates.evidence import UnstableMixture
 from nrs_design.certificates.evidence.unstable_mixture import mixture
 from nrs_design.certificates.evidence.unstable_mode import worst_eigenvalue
+from nrs_design.certificates.search.allowance import Allowance
 from nrs_design.switched.system import SwitchedSystem
 
 Array = NDArray[np.float64]
@@ -18,10 +20,14 @@ Array = NDArray[np.float64]
 SHARES = 128
 MAX_PAIRS = 300
 RANDOM_MIXTURES = 2000
+# Entries of the averages that are looked at together.
+CHUNK_ENTRIES = 2_000_000
 DENOMINATORS = (16, 64, 1024, 2**20)
 
 
-def find_unstable_mixture(system: SwitchedSystem, matrices: Array) -> UnstableMixture | None:
+def find_unstable_mixture(
+    system: SwitchedSystem, matrices: Array, allowance: Allowance | None = None
+) -> UnstableMixture | None:
     """Scan pairs of modes and random mixtures for a spectral abscissa that is not negative.
 
     Parameters
@@ -30,15 +36,14 @@ def find_unstable_mixture(system: SwitchedSystem, matrices: Array) -> UnstableMi
         Exact modes, continuous time.
     matrices : ndarray, shape (m, n, n)
         The same in floating point.
+    allowance : Allowance, optional
+        When its time is over, the search ends with what it has seen.
     """
-    weights = _candidates(len(matrices))
-    averages = np.tensordot(weights, matrices, axes=1)
-    abscissas = np.linalg.eigvals(averages).real.max(axis=1)
-    best = int(abscissas.argmax())
-    if abscissas[best] < -1e-9 * np.abs(matrices).max():
+    weights, abscissa = _least_stable(matrices, allowance or Allowance())
+    if abscissa < -1e-9 * np.abs(matrices).max():
         return None
     for denominator in DENOMINATORS:
-        shares = _rationalize(weights[best], denominator)
+        shares = _rationalize(weights, denominator)
         named = tuple(
             (mode.name, share)
             for mode, share in zip(system.modes, shares, strict=True)
@@ -50,18 +55,37 @@ def find_unstable_mixture(system: SwitchedSystem, matrices: Array) -> UnstableMi
     return None
 
 
-def _candidates(m: int) -> Array:
-    """Return rows of weights: pairs of modes at evenly spaced shares, then random ones."""
+def _least_stable(matrices: Array, allowance: Allowance) -> tuple[Array, float]:
+    """Return the weights of the average with the largest spectral abscissa, and that abscissa."""
+    m, n = matrices.shape[:2]
+    found, largest = np.ones(m) / m, -np.inf
+    for weights in _candidates(m, max(1, CHUNK_ENTRIES // max(n * n, m))):
+        averages = np.tensordot(weights, matrices, axes=1)
+        abscissas = np.linalg.eigvals(averages).real.max(axis=1)
+        best = int(abscissas.argmax())
+        if abscissas[best] > largest:
+            found, largest = weights[best], float(abscissas[best])
+        if not allowance.goes_on():
+            break
+    return found, largest
+
+
+def _candidates(m: int, chunk: int) -> Iterator[Array]:
+    """Yield rows of weights: pairs of modes at evenly spaced shares, then random ones."""
+    if m == 1:
+        yield np.ones((1, 1))
+        return
+    grid = list(product(islice(combinations(range(m), 2), MAX_PAIRS), range(1, SHARES)))
+    for start in range(0, len(grid), chunk):
+        part = grid[start : start + chunk]
+        weights, rows = np.zeros((len(part), m)), np.arange(len(part))
+        shares = np.array([share for _, share in part]) / SHARES
+        weights[rows, [i for (i, _), _ in part]] = shares
+        weights[rows, [j for (_, j), _ in part]] = 1 - shares
+        yield weights
     rng = np.random.default_rng(0)
-    pairs = list(combinations(range(m), 2))[:MAX_PAIRS]
-    shares = np.arange(1, SHARES) / SHARES
-    weights = np.zeros((len(pairs) * len(shares), m))
-    for k, (i, j) in enumerate(pairs):
-        rows = slice(k * len(shares), (k + 1) * len(shares))
-        weights[rows, i], weights[rows, j] = shares, 1 - shares
-    if m <= 2:
-        return weights if m == 2 else np.ones((1, 1))
-    return np.vstack([weights, rng.dirichlet(np.full(m, 0.5), RANDOM_MIXTURES)])
+    for start in range(0, RANDOM_MIXTURES if m > 2 else 0, chunk):
+        yield rng.dirichlet(np.full(m, 0.5), min(chunk, RANDOM_MIXTURES - start))
 
 
 def _rationalize(weights: Array, denominator: int) -> list[Fraction]:

@@ -1,27 +1,64 @@
-"""Search for one quadratic function per mode under a dwell time, a transition graph and resets."""
+"""Search for one function per mode under a dwell time, a transition graph and resets.
+
+Quadratic functions, or in discrete time polynomials: quadratic ones of the monomials of a degree,
+with a form that vanishes identically added to every decrease.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
 from fractions import Fraction
+from itertools import pairwise, product
+from math import comb
 
 import numpy as np
 from numpy.typing import NDArray
 
-from nrs_design.certificates.evidence import ModeQuadratic
+from nrs_design.certificates.evidence import ModePolynomial, ModeQuadratic
+from nrs_design.certificates.evidence.mode_polynomial import lift_system
+from nrs_design.certificates.evidence.unstable_mode import is_stable
+from nrs_design.certificates.lift import monomials
+from nrs_design.certificates.search.allowance import Allowance, Cost
 from nrs_design.certificates.search.balance import balance, scale
 from nrs_design.certificates.search.decay import bisect_position
 from nrs_design.certificates.search.lmi import decreases, time_unit
+from nrs_design.certificates.search.polynomial import (
+    make_vanish,
+    monomial_weights,
+    products,
+    vanishing_basis,
+)
 from nrs_design.certificates.search.rounding import round_rate
-from nrs_design.certificates.search.sdp import maximize_margin, pack, symmetric_basis
-from nrs_design.switched.system import SwitchedSystem, Time
+from nrs_design.certificates.search.sdp import (
+    maximize_margin,
+    pack,
+    program_cost,
+    symmetric_basis,
+)
+from nrs_design.switched.system import Edge, Mode, Stay, SwitchedSystem, Time
 
 Array = NDArray[np.float64]
+Exponents = NDArray[np.int64]
 
 BITS = (6, 8, 10, 14, 20, 28, 40, 50)
 BACK_OFFS = (0.999, 0.99, 0.9, 0.5, 0.1, 1e-3)
+# Numbers of steps that are each shown for a mode that is stable, too.
+FEW_STAYS = 64
+# Times at which the functions are sought for a mode that must be left, and pieces that are shown.
+SAMPLES = 17
+PIECES = (32, 256, 1024)
+# Enclosures take time: fewer attempts.
+ENCLOSED_BITS = (12, 28)
+ENCLOSED_BACK_OFFS = (0.9, 0.5, 0.1)
 
 
-def find_mode_quadratic(system: SwitchedSystem, limit: float) -> ModeQuadratic | None:
+Functions = ModeQuadratic | ModePolynomial
+
+
+def find_mode_functions(
+    system: SwitchedSystem, limit: float, degree: int = 1, allowance: Allowance | None = None
+) -> Functions | None:
     """Search for the functions with the largest rate, round them, and check.
 
     Parameters
@@ -30,51 +67,107 @@ def find_mode_quadratic(system: SwitchedSystem, limit: float) -> ModeQuadratic |
         Exact modes with their switching.
     limit : float
         Rate of the slowest mode.
+    degree : int
+        Half the degree of the functions; beyond 1 for discrete time.
+    allowance : Allowance, optional
+        Time and memory; unlimited by default.
 
     Returns
     -------
-    ModeQuadratic or None
+    ModeQuadratic, ModePolynomial or None
         None if no rounding of any candidate passes.
+
+    Raises
+    ------
+    NotAffordableError
+        If time or memory do not suffice for a first candidate.
     """
-    problem = _Problem(system)
-    if problem.solve(problem.rate_at(0.0, limit)) is None:
+    allowance = allowance or Allowance()
+    allowance.require(*functions_cost(system, degree))
+    problem = _Problem(system, degree)
+    if problem.solve(problem.rate_at(0.0, limit), allowance) is None:
         return None
-    best = bisect_position(lambda s: problem.solve(problem.rate_at(s, limit)) is not None)
-    for back_off in BACK_OFFS:
+    half = allowance.part(0.5)
+    best = bisect_position(lambda s: problem.solve(problem.rate_at(s, limit), half) is not None)
+    for back_off in ENCLOSED_BACK_OFFS if problem.encloses_stays else BACK_OFFS:
         rate = problem.rate_at(best * back_off, limit)
-        functions = problem.solve(rate)
-        if functions is not None and (evidence := problem.round(functions, rate)):
+        found = problem.solve(rate, allowance)
+        if found is not None and (evidence := problem.round(found, rate)):
             return evidence
     return None
+
+
+def functions_cost(system: SwitchedSystem, degree: int) -> tuple[Cost, str]:
+    """Predict what one solution takes, before anything is lifted; say for what."""
+    n = max(mode.A.shape[0] for mode in system.modes)
+    order = comb(n + degree - 1, degree)
+    own = order * (order + 1) // 2
+    forms = own - comb(n + 2 * degree - 1, 2 * degree)
+    decreases = len(system.modes) + sum(_count_stays(system, edge) for edge in system.edges())
+    shared = own * len(system.modes) + 1
+    cones = [(order, own)] * (2 * len(system.modes)) + [(order, 2 * own + forms)] * decreases
+    what = f"a program with {len(cones)} blocks of order {order}"
+    return program_cost(shared + forms * decreases, shared, cones), what
+
+
+def _count_stays(system: SwitchedSystem, edge: Edge) -> int:
+    stay = system.stays()[edge.source.name]
+    if stay.longest is None:
+        return 1
+    if system.time is Time.CONTINUOUS:
+        return SAMPLES
+    return int(stay.longest) - int(stay.shortest) + 1
+
+
+@dataclass(frozen=True)
+class _Found:
+    """A matrix for each mode, and a form that vanishes for each decrease."""
+
+    functions: list[Array]
+    vanishing: list[Array]
 
 
 class _Problem:
     """The semidefinite program, in balanced coordinates, for any rate."""
 
-    def __init__(self, system: SwitchedSystem) -> None:
-        self.system = system
+    def __init__(self, system: SwitchedSystem, degree: int) -> None:
+        self.given, self.degree = system, degree
+        self.cost = functions_cost(system, degree)
+        balanced = _balanced(system)
+        if degree > 1:
+            system = lift_system(system, degree)
+            balanced = [_lifted_exponents(d, degree) for d in balanced]
+        self.system, self.exponents = system, balanced
         names = {mode.name: k for k, mode in enumerate(system.modes)}
         matrices = [np.array(mode.A.floats()) for mode in system.modes]
-        if system.is_uniform:
-            exponents = balance(np.array(matrices))
-            self.exponents = [exponents] * len(matrices)
-        else:
-            self.exponents = [balance(A[None]) for A in matrices]
         self.matrices = [
             scale(A[None], d)[0] for A, d in zip(matrices, self.exponents, strict=True)
         ]
         self.switches = [
-            (names[a.name], names[b.name], self._reset(a.name, b.name))
-            for a, b in system.transitions()
+            self._switch(names[edge.source.name], names[edge.target.name], edge)
+            for edge in system.edges()
+        ]
+        self.stays = list(system.stays().values())
+        self.leaving = [
+            self._is_left(mode, stay) for mode, stay in zip(system.modes, self.stays, strict=True)
         ]
 
-    def _reset(self, source: str, target: str) -> Array:
-        """Return the reset map in balanced coordinates."""
-        modes = {mode.name: k for k, mode in enumerate(self.system.modes)}
-        i, j = modes[source], modes[target]
-        reset = self.system.reset_map(self.system.modes[i], self.system.modes[j])
-        G = np.eye(len(self.matrices[i])) if reset is None else np.array(reset.floats())
-        return np.asarray(np.ldexp(G, self.exponents[i][None, :] - self.exponents[j][:, None]))
+    @property
+    def encloses_stays(self) -> bool:
+        """Whether the checker will enclose all the times that a mode may stay active."""
+        return any(self.leaving) and self.system.time is Time.CONTINUOUS
+
+    def _switch(self, i: int, j: int, edge: Edge) -> tuple[int, int, Array]:
+        """Return an edge with its reset map in balanced coordinates."""
+        G = np.eye(len(self.matrices[i])) if edge.map is None else np.array(edge.map.floats())
+        return i, j, np.ldexp(G, self.exponents[i][None, :] - self.exponents[j][:, None])
+
+    def _is_left(self, mode: Mode, stay: Stay) -> bool:
+        """Tell whether to show every stay, which asks for less than a decrease, but for longer."""
+        if stay.longest is None:
+            return False
+        few = stay.longest - stay.shortest < FEW_STAYS and self.system.time is Time.DISCRETE
+        return few or not is_stable(mode.A, self.system.time)
 
     def rate_at(self, position: float, limit: float) -> float:
         """Return the rate between mere stability (0) and the slowest mode's (1)."""
@@ -82,72 +175,136 @@ class _Problem:
             return position * limit
         return 1 - position * (1 - limit)
 
-    def solve(self, rate: float) -> list[Array] | None:
+    def solve(self, rate: float, allowance: Allowance) -> _Found | None:
         """Maximize the margin for a rate; None if it is not positive."""
-        system, sizes = self.system, [len(A) for A in self.matrices]
-        starts = np.concatenate([[0], np.cumsum([n * (n + 1) // 2 for n in sizes])])
-        variables = int(starts[-1]) + 1
+        allowance.take(*self.cost)
+        sizes = [len(A) for A in self.matrices]
+        bases, forms = [symmetric_basis(n) for n in sizes], self._vanishing_forms()
+        wanted = list(self._decreases(bases, rate**self.degree))
+        widths = [len(basis) for basis in bases] + [len(forms[i]) for i, _, _ in wanted]
+        starts = np.concatenate([[0], np.cumsum(widths)])
+        columns = [slice(a, b) for a, b in pairwise(starts)]
         rows, offsets, cones = [], [], []
-        strict_switches = self._steps() > 0
-        flows = [self._flow(A, rate) for A in self.matrices]
 
         def add_cone(
-            n: int, parts: list[tuple[int, Array]], margin: float, constant: float
+            n: int, parts: list[tuple[slice, Array]], margin: float, constant: float
         ) -> None:
-            block = np.zeros((n * (n + 1) // 2, variables))
-            for k, images in parts:
-                block[:, starts[k] : starts[k + 1]] -= pack(images).T
+            block = np.zeros((n * (n + 1) // 2, int(starts[-1]) + 1))
+            for place, images in parts:
+                block[:, place] -= pack(images).T
             block[:, -1] = margin * pack(np.eye(n))
             rows.append(block)
             offsets.append(constant * pack(np.eye(n)))
             cones.append(n)
 
-        unit = min(time_unit(A, system.time) for A in self.matrices)
-        scaled_rate = float(np.ldexp(rate, unit))
-        for k, (A, n) in enumerate(zip(self.matrices, sizes, strict=True)):
-            basis = symmetric_basis(n)
-            add_cone(n, [(k, -basis)], 0.0, 1.0)
-            add_cone(n, [(k, basis)], 1.0, 0.0)
-            add_cone(
-                n, [(k, decreases(np.ldexp(A, unit), basis, system.time, scaled_rate))], 1.0, 0.0
-            )
-        for i, j, G in self.switches:
-            jump = G @ flows[i] if strict_switches else G
-            images = jump.T @ symmetric_basis(sizes[j]) @ jump
-            parts = [(i, symmetric_basis(sizes[i])), (j, -images)]
-            add_cone(sizes[i], parts, 1.0 if strict_switches else 0.0, 0.0)
-        x = maximize_margin(np.vstack(rows), np.concatenate(offsets), cones)
+        for k, basis in enumerate(bases):
+            add_cone(sizes[k], [(columns[k], -basis)], 0.0, 1.0)
+            add_cone(sizes[k], [(columns[k], basis)], 1.0, 0.0)
+        for k, (i, parts, strict) in enumerate(wanted):
+            images = [(columns[j], part) for j, part in parts]
+            images.append((columns[len(bases) + k], forms[i]))
+            add_cone(sizes[i], images, 1.0 if strict else 0.0, 0.0)
+        x = maximize_margin(
+            np.vstack(rows), np.concatenate(offsets), cones, time_limit=allowance.left
+        )
         if x is None or x[-1] <= 0:
             return None
+        spans = bases + [forms[i] for i, _, _ in wanted]
+        found = [np.tensordot(x[c], span, axes=1) for c, span in zip(columns, spans, strict=True)]
+        return _Found(found[: len(bases)], found[len(bases) :])
+
+    def _decreases(
+        self, functions: list[Array], rate: float
+    ) -> Iterator[tuple[int, list[tuple[int, Array]], bool]]:
+        """Yield what must be positive, in the order of `ModeQuadratic.decreases`.
+
+        Each as the index of its mode, what it takes from the functions of which modes, and whether
+        it must be positive definite.
+        """
+        unit = min(time_unit(A, self.system.time) for A in self.matrices)
+        scaled_rate = float(np.ldexp(rate, unit))
+        for k, A in enumerate(self.matrices):
+            if not self.leaving[k]:
+                scaled = np.ldexp(A, unit)
+                yield (
+                    k,
+                    [(k, decreases(scaled, functions[k], self.system.time, scaled_rate))],
+                    True,
+                )
+        flows = [self._flows(k, rate) for k in range(len(self.matrices))]
+        for i, j, G in self.switches:
+            strict = self.stays[i].shortest > 0 or self.leaving[i]
+            for flow in flows[i]:
+                jump = G @ flow
+                yield i, [(i, functions[i]), (j, -jump.T @ functions[j] @ jump)], strict
+
+    def _vanishing_forms(self) -> list[Array]:
+        """Return for each mode an orthonormal basis of the forms that vanish identically."""
+        if self.degree == 1:
+            return [np.zeros((0, len(A), len(A))) for A in self.matrices]
         return [
-            np.tensordot(x[starts[k] : starts[k + 1]], symmetric_basis(n), axes=1)
-            for k, n in enumerate(sizes)
+            vanishing_basis(mode.A.shape[0], self.degree, -d)
+            for mode, d in zip(self.given.modes, self.exponents, strict=True)
         ]
 
-    def _steps(self) -> float:
-        dwell = float(self.system.switching.dwell_time)
-        return max(dwell, 1.0) if self.system.time is Time.DISCRETE else dwell
-
-    def _flow(self, A: Array, rate: float) -> Array:
-        """Return the state transition over the dwell time, weighted by the rate."""
+    def _flows(self, mode: int, rate: float) -> list[Array]:
+        """Return the state transitions over the stays that count, weighted by the rate."""
         from scipy.linalg import expm
 
+        A, stay = self.matrices[mode], self.stays[mode]
+        first, last = float(stay.shortest), float(stay.shortest)
+        if self.leaving[mode] and stay.longest is not None:
+            last = float(stay.longest)
         if self.system.time is Time.CONTINUOUS:
-            return np.asarray(expm((A + rate * np.eye(len(A))) * self._steps()))
-        return np.asarray(np.linalg.matrix_power(A / rate, int(self._steps())))
+            times = np.linspace(first, last, SAMPLES if last > first else 1)
+            return [np.asarray(expm((A + rate * np.eye(len(A))) * time)) for time in times]
+        steps = range(int(first), int(last) + 1)
+        return [np.asarray(np.linalg.matrix_power(A / rate, k)) for k in steps]
 
-    def round(self, functions: list[Array], rate: float) -> ModeQuadratic | None:
+    def round(self, found: _Found, rate: float) -> Functions | None:
         """Round all functions to integers over one denominator, and check."""
         claimed = round_rate(rate, self.system.time)
         if not claimed > 0 or (self.system.time is Time.DISCRETE and claimed >= 1):
             return None
-        largest = max(np.abs(Q).max() for Q in functions)
+        largest = max(np.abs(Q).max() for Q in found.functions)
         unit = int(np.frexp(largest)[1])
-        for bits in BITS:
-            evidence = self._integers(functions, bits, unit, claimed)
-            if evidence.find_fault(self.system) is None:
+        if self.encloses_stays:
+            attempts = list(product(PIECES, ENCLOSED_BITS))
+        else:
+            attempts = [(1, bits) for bits in BITS]
+        for pieces, bits in attempts:
+            quadratic = self._integers(found.functions, bits, unit, claimed)
+            evidence: Functions = replace(quadratic, pieces=pieces)
+            if self.degree > 1:
+                evidence = self._with_vanishing(quadratic, found, bits - unit)
+            if evidence.find_fault(self.given) is None:
                 return evidence
         return None
+
+    def _with_vanishing(
+        self, quadratic: ModeQuadratic, found: _Found, shift: int
+    ) -> ModePolynomial:
+        """Add the forms that vanish, as integers to the unit of each of the exact decreases."""
+        evidence = ModePolynomial(self.degree, quadratic, ())
+        rounded = [np.ldexp(np.rint(np.ldexp(Q, shift)), -shift) for Q in found.functions]
+        floats = self._decreases(rounded, float(evidence.lifted.rate))
+        exact = evidence.lifted.decreases(self.system)
+        vanishing = []
+        for (i, parts, _), (_, form), N in zip(floats, exact, found.vanishing, strict=True):
+            d, decrease = self.exponents[i], np.sum([part for _, part in parts], axis=0)
+            k = int(np.abs(np.diag(decrease)).argmax())
+            factor = Fraction(form[k][k]) / Fraction(float(decrease[k, k]) or 1.0)
+            factor *= Fraction(4) ** int(d[k])
+            integers = [
+                [
+                    round(factor * Fraction(float(v)) / Fraction(2) ** int(a + b))
+                    for b, v in zip(d, row, strict=True)
+                ]
+                for a, row in zip(d, N, strict=True)
+            ]
+            variables = self.given.modes[i].A.shape[0]
+            vanishing.append(make_vanish(integers, products(variables, self.degree)))
+        return replace(evidence, vanishing=tuple(tuple(map(tuple, N)) for N in vanishing))
 
     def _integers(
         self, functions: list[Array], bits: int, unit: int, rate: Fraction
@@ -163,4 +320,20 @@ class _Problem:
                 for row, di in zip(scaled, d, strict=True)
             )
             rounded.append((mode.name, rows))
-        return ModeQuadratic(tuple(rounded), max(0, bits + 2 * top), rate)
+        names = (mode.name for mode in self.system.modes)
+        leaving = tuple(name for name, left in zip(names, self.leaving, strict=True) if left)
+        return ModeQuadratic(tuple(rounded), max(0, bits + 2 * top), rate, leaving)
+
+
+def _balanced(system: SwitchedSystem) -> list[Exponents]:
+    """Return balancing exponents for each mode; the same for all where they share their states."""
+    matrices = [np.array(mode.A.floats()) for mode in system.modes]
+    if system.is_uniform:
+        return [balance(np.array(matrices))] * len(matrices)
+    return [balance(A[None]) for A in matrices]
+
+
+def _lifted_exponents(exponents: Exponents, degree: int) -> Exponents:
+    """Return the exponents of monomials, in a nearly orthonormal basis of forms."""
+    basis = np.array(monomials(len(exponents), degree), dtype=np.int64)
+    return np.asarray(basis @ exponents - monomial_weights(len(exponents), degree))

@@ -10,8 +10,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from nrs_design.certificates.evidence import NoCommonQuadratic
+from nrs_design.certificates.search.allowance import Allowance
 from nrs_design.certificates.search.lmi import time_unit
-from nrs_design.certificates.search.sdp import maximize_margin, pack, symmetric_basis, unpack
+from nrs_design.certificates.search.sdp import (
+    maximize_margin,
+    pack,
+    program_cost,
+    symmetric_basis,
+    unpack,
+)
 from nrs_design.switched.system import SwitchedSystem, Time
 
 Array = NDArray[np.float64]
@@ -20,7 +27,7 @@ FACTOR_BITS = (8, 12, 16, 24, 32)
 RANK_TOLERANCE = 1e-9
 
 
-def solve_dual(matrices: Array, time: Time) -> Array | None:
+def solve_dual(matrices: Array, time: Time, allowance: Allowance | None = None) -> Array | None:
     """Maximize s with ``sum A_i X_i + X_i A_i' >= s I`` over ``X_i >= 0`` of total trace one.
 
     Parameters
@@ -29,13 +36,24 @@ def solve_dual(matrices: Array, time: Time) -> Array | None:
         Modes, preferably balanced; the fewer, the better.
     time : Time
         Continuous or discrete.
+    allowance : Allowance, optional
+        Time and memory; unlimited by default.
 
     Returns
     -------
     ndarray, shape (m, n, n), or None
         The X_i if s > 0.
+
+    Raises
+    ------
+    NotAffordableError
+        If time or memory do not suffice.
     """
+    allowance = allowance or Allowance()
     m, n = matrices.shape[:2]
+    own = n * (n + 1) // 2
+    cost = program_cost(m * own + 1, own, [(n, 2 * own)] * (m + 1))
+    allowance.take(cost, f"a program of {m * own + 1} unknowns and {m + 1} blocks")
     matrices = np.ldexp(matrices, time_unit(matrices, time))
     basis, identity = symmetric_basis(n), pack(np.eye(n))
     size = len(basis)
@@ -51,7 +69,7 @@ def solve_dual(matrices: Array, time: Time) -> Array | None:
     rows = np.vstack([trace, positive, total])
     offset = np.zeros(len(rows))
     offset[0] = 1.0
-    x = maximize_margin(rows, offset, [n] * (m + 1), equalities=1)
+    x = maximize_margin(rows, offset, [n] * (m + 1), 1, allowance.left)
     if x is None or x[-1] <= 0:
         return None
     return unpack(x[:-1].reshape(m, size), n)

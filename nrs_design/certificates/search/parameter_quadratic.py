@@ -6,10 +6,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from nrs_design.certificates.evidence import ParameterQuadratic
+from nrs_design.certificates.search.allowance import Allowance
 from nrs_design.certificates.search.decay import bisect_position
 from nrs_design.certificates.search.lmi import decreases, time_unit
 from nrs_design.certificates.search.rounding import round_rate, unscale
-from nrs_design.certificates.search.sdp import maximize_margin, pack, symmetric_basis
+from nrs_design.certificates.search.sdp import (
+    maximize_margin,
+    pack,
+    program_cost,
+    symmetric_basis,
+)
 from nrs_design.switched.system import SwitchedSystem, Time
 
 Array = NDArray[np.float64]
@@ -19,7 +25,11 @@ BACK_OFFS = (0.999, 0.99, 0.9, 0.5, 0.1, 1e-3)
 
 
 def find_parameter_quadratic(
-    system: SwitchedSystem, matrices: Array, exponents: NDArray[np.int64], limit: float
+    system: SwitchedSystem,
+    matrices: Array,
+    exponents: NDArray[np.int64],
+    limit: float,
+    allowance: Allowance | None = None,
 ) -> ParameterQuadratic | None:
     """Search for the function with the largest rate, round it, and check.
 
@@ -33,16 +43,25 @@ def find_parameter_quadratic(
         The d.
     limit : float
         Rate of the slowest mode, in 1/s.
+    allowance : Allowance, optional
+        Time and memory; unlimited by default.
+
+    Raises
+    ------
+    NotAffordableError
+        If time or memory do not suffice for a first function.
     """
+    allowance = allowance or Allowance()
     index = {mode.name: k for k, mode in enumerate(system.modes)}
     ends = [(index[low], index[high]) for low, high in system.switching.fixed_ends]
     pairs = matrices[np.array(ends)]
-    if _solve(pairs, 0.0) is None:
+    if _solve(pairs, 0.0, allowance) is None:
         return None
-    best = bisect_position(lambda s: _solve(pairs, s * limit) is not None)
+    half = allowance.part(0.5)
+    best = bisect_position(lambda s: _solve(pairs, s * limit, half) is not None)
     for back_off in BACK_OFFS:
         rate = best * back_off * limit
-        functions = _solve(pairs, rate)
+        functions = _solve(pairs, rate, allowance)
         if functions is None or rate <= 0:
             continue
         claimed = round_rate(rate, Time.CONTINUOUS)
@@ -57,9 +76,12 @@ def find_parameter_quadratic(
     return None
 
 
-def _solve(pairs: Array, rate: float) -> Array | None:
+def _solve(pairs: Array, rate: float, allowance: Allowance) -> Array | None:
     """Maximize the margin of all conditions; return both ends of Q, shape (2, n, n)."""
     n, unit = pairs.shape[-1], time_unit(pairs, Time.CONTINUOUS)
+    unknowns, blocks = n * (n + 1) + 1, 4 + 3 * len(pairs)
+    cost = program_cost(unknowns, unknowns, [(n, unknowns)] * blocks)
+    allowance.take(cost, f"a program of {unknowns} unknowns and {blocks} blocks")
     pairs, rate = np.ldexp(pairs, unit), float(np.ldexp(rate, unit))
     basis, identity = symmetric_basis(n), pack(np.eye(n))
     size = len(basis)
@@ -83,7 +105,10 @@ def _solve(pairs: Array, rate: float) -> Array | None:
         add_cone(at_low, None, 1.0, 0.0)
         add_cone(None, at_high, 1.0, 0.0)
         add_cone(at_high, at_low, 1.0, 0.0)
-    x = maximize_margin(np.vstack(rows), np.concatenate(constants), [n] * len(rows))
+    sizes = [n] * len(rows)
+    x = maximize_margin(
+        np.vstack(rows), np.concatenate(constants), sizes, time_limit=allowance.left
+    )
     if x is None or x[-1] <= 0:
         return None
     return np.tensordot(x[:-1].reshape(2, size), basis, axes=1)

@@ -16,12 +16,23 @@ import numpy as np
 from numpy.typing import NDArray
 
 from nrs_design.certificates.evidence import CommonPolynomial
-from nrs_design.certificates.evidence.common_polynomial import lifted_factor
+from nrs_design.certificates.evidence.common_polynomial import (
+    MAX_DEGREE,
+    MAX_MONOMIALS,
+    lifted_factor,
+)
 from nrs_design.certificates.lift import derivative_lift, monomials, power_lift
+from nrs_design.certificates.search.allowance import Allowance, Cost
 from nrs_design.certificates.search.balance import scale
 from nrs_design.certificates.search.lmi import decreases, time_unit
 from nrs_design.certificates.search.rounding import round_rate
-from nrs_design.certificates.search.sdp import maximize_margin, pack, symmetric_basis
+from nrs_design.certificates.search.sdp import (
+    maximize_margin,
+    pack,
+    program_cost,
+    symmetric_basis,
+    unpack,
+)
 from nrs_design.switched.matrix import RationalMatrix
 from nrs_design.switched.system import SwitchedSystem, Time
 
@@ -39,6 +50,8 @@ class Lift:
 
     Parameters
     ----------
+    variables : int
+        The number of states n.
     degree : int
         The d.
     matrices : ndarray, shape (m, K, K)
@@ -51,6 +64,7 @@ class Lift:
         The modes are those in a unit of time of two to this power (discrete time: zero).
     """
 
+    variables: int
     degree: int
     matrices: Array
     vanishing: Array
@@ -82,26 +96,15 @@ def lift_family(system: SwitchedSystem, exponents: Exponents, degree: int) -> Li
         Half the degree of the function.
     """
     basis = monomials(system.order, degree)
-    weights = [factorial(degree) / prod(map(factorial, a)) for a in basis]
-    scaling: Exponents = np.rint(np.log2(weights) / 2).astype(np.int64)
+    scaling = monomial_weights(system.order, degree)
     scaling -= np.array(basis, dtype=np.int64) @ exponents
     lifted = np.array([_lift_mode(mode.A, degree, system.time).floats() for mode in system.modes])
     matrices = np.ldexp(lifted, scaling[:, None] - scaling[None, :])
-    pairs = [group for group in products(system.order, degree) if len(group) > 1]
-    vanishing = [_difference(group[0], other, scaling) for group in pairs for other in group[1:]]
-    K = len(basis)
     # The unit of the modes themselves: lifted entries, and margins with them, grow with degree.
     given = np.array([mode.A.floats() for mode in system.modes])
     unit = time_unit(scale(given, exponents), system.time)
-    forms = np.array(vanishing).reshape(-1, K, K)
-    return Lift(degree, np.ldexp(matrices, unit), forms, scaling, unit)
-
-
-def count_variables(variables: int, modes: int, degree: int) -> int:
-    """Return the size of the semidefinite program before anything is lifted."""
-    size = comb(variables + degree - 1, degree)
-    symmetric = size * (size + 1) // 2
-    return symmetric + modes * (symmetric - comb(variables + 2 * degree - 1, 2 * degree)) + 1
+    forms = _differences(system.order, degree, scaling)
+    return Lift(system.order, degree, np.ldexp(matrices, unit), forms, scaling, unit)
 
 
 def products(variables: int, degree: int) -> list[list[Pair]]:
@@ -115,7 +118,50 @@ def products(variables: int, degree: int) -> list[list[Pair]]:
     return [sorted(group, key=lambda pair: pair[0] != pair[1]) for group in groups.values()]
 
 
-def find_common_polynomial(lift: Lift, time: Time, rate: float) -> Candidate | None:
+def monomial_weights(variables: int, degree: int) -> Exponents:
+    """Return the logarithms of powers of two near ``sqrt(multinomial)``."""
+    counts = [factorial(degree) / prod(map(factorial, a)) for a in monomials(variables, degree)]
+    return np.asarray(np.rint(np.log2(counts) / 2).astype(np.int64))
+
+
+def _differences(variables: int, degree: int, scaling: Exponents) -> Array:
+    """Return a basis of the forms that vanish identically, shape (p, K, K)."""
+    pairs = [group for group in products(variables, degree) if len(group) > 1]
+    forms = [_difference(group[0], other, scaling) for group in pairs for other in group[1:]]
+    return np.array(forms).reshape(-1, len(scaling), len(scaling))
+
+
+def vanishing_basis(variables: int, degree: int, scaling: Exponents) -> Array:
+    """Return an orthonormal basis of the forms that vanish, in the coordinates ``2^e z(x)``."""
+    return orthonormal(_differences(variables, degree, scaling))
+
+
+def orthonormal(forms: Array) -> Array:
+    """Return an orthonormal basis of the span of symmetric matrices, shape (p, K, K)."""
+    if not len(forms):
+        return forms
+    return unpack(np.linalg.qr(pack(forms).T)[0].T, forms.shape[-1])
+
+
+def highest_degree(variables: int) -> int:
+    """Return the largest d whose monomials a certificate can hold."""
+    degrees = range(1, MAX_DEGREE // 2 + 1)
+    fitting = (d for d in degrees if comb(variables + d - 1, d) <= MAX_MONOMIALS)
+    return max(fitting, default=1)
+
+
+def polynomial_cost(variables: int, modes: int, degree: int) -> tuple[Cost, str]:
+    """Predict what `find_common_polynomial` takes before anything is lifted; say for what."""
+    order = comb(variables + degree - 1, degree)
+    shared = order * (order + 1) // 2 + 1
+    forms = shared - 1 - comb(variables + 2 * degree - 1, 2 * degree)
+    cones = [(order, shared)] * 2 + [(order, shared + forms)] * modes
+    return program_cost(shared + modes * forms, shared, cones), f"a program in {order} monomials"
+
+
+def find_common_polynomial(
+    lift: Lift, time: Time, rate: float, allowance: Allowance | None = None
+) -> Candidate | None:
     """Maximize the margin by semidefinite programming.
 
     Parameters
@@ -126,18 +172,27 @@ def find_common_polynomial(lift: Lift, time: Time, rate: float) -> Candidate | N
         Continuous or discrete.
     rate : float
         alpha in 1/s, or rho per step.
+    allowance : Allowance, optional
+        Time and memory; unlimited by default.
 
     Returns
     -------
     Candidate or None
         None if the margin is not positive.
+
+    Raises
+    ------
+    NotAffordableError
+        If time or memory do not suffice.
     """
+    allowance = allowance or Allowance()
+    allowance.take(*polynomial_cost(lift.variables, len(lift.matrices), lift.degree))
     rate = float(np.ldexp(rate, lift.unit))
     lifted_rate = rate * lift.degree if time is Time.CONTINUOUS else rate**lift.degree
     m, K = lift.matrices.shape[:2]
     basis, identity = symmetric_basis(K), pack(np.eye(K))
     size, forms = len(basis), len(lift.vanishing)
-    directions = np.linalg.qr(pack(lift.vanishing).T)[0].T if forms else np.zeros((0, size))
+    directions = pack(orthonormal(lift.vanishing))
     blocks = [np.zeros((size, size + m * forms + 1)) for _ in range(m + 2)]
     blocks[0][:, :size] = np.eye(size)
     blocks[1][:, :size] = -np.eye(size)
@@ -147,7 +202,7 @@ def find_common_polynomial(lift: Lift, time: Time, rate: float) -> Candidate | N
         block[:, size + k * forms : size + (k + 1) * forms] = -directions.T
         block[:, -1] = identity
     offset = np.concatenate([identity, np.zeros(size * (m + 1))])
-    x = maximize_margin(np.vstack(blocks), offset, [K] * (m + 2))
+    x = maximize_margin(np.vstack(blocks), offset, [K] * (m + 2), time_limit=allowance.left)
     if x is None or x[-1] <= 0:
         return None
     weights = x[size:-1].reshape(m, forms)
@@ -211,7 +266,7 @@ def _integers(
             [_shift(factor * entry, -lift.unit) for entry in row]
             for row in _round(np.ldexp(N, bits - normalized), exponents)
         ]
-        vanishing.append(_make_vanish(rounded, groups))
+        vanishing.append(make_vanish(rounded, groups))
     return CommonPolynomial(
         degree=lift.degree,
         Q=tuple(map(tuple, Q)),
@@ -233,7 +288,7 @@ def _shift(value: int, exponent: int) -> int:
     return value << exponent if exponent >= 0 else value >> -exponent
 
 
-def _make_vanish(N: list[list[int]], groups: list[list[Pair]]) -> list[list[int]]:
+def make_vanish(N: list[list[int]], groups: list[list[Pair]]) -> list[list[int]]:
     """Correct one entry for each product of monomials so that ``z' N z`` vanishes exactly."""
     for group in groups:
         total = sum(N[i][j] * (1 if i == j else 2) for i, j in group)

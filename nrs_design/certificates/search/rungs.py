@@ -6,6 +6,7 @@ Floating point only chooses what to try. What a rung returns has passed the exac
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
+from fractions import Fraction
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,22 +17,23 @@ from nrs_design.certificates.evidence.unstable_mode import (
     is_stable,
     worst_eigenvalue,
 )
-from nrs_design.certificates.search.balance import mean_norm_coordinates, scale
+from nrs_design.certificates.search.allowance import Cost, NotAffordableError
+from nrs_design.certificates.search.balance import mean_norm, mean_norm_coordinates, scale
 from nrs_design.certificates.search.decay import largest_position, rate_at, rate_of
 from nrs_design.certificates.search.family import Family
 from nrs_design.certificates.search.gradient import iterate_gradient
 from nrs_design.certificates.search.lmi import find_common_quadratic, margins, solve_by_clarabel
 from nrs_design.certificates.search.mixture import find_unstable_mixture
-from nrs_design.certificates.search.mode_quadratic import find_mode_quadratic
+from nrs_design.certificates.search.mode_quadratic import find_mode_functions
 from nrs_design.certificates.search.obstruction import round_obstruction, solve_dual
 from nrs_design.certificates.search.parameter_quadratic import find_parameter_quadratic
 from nrs_design.certificates.search.period import find_growing_period
 from nrs_design.certificates.search.polynomial import (
     Candidate,
     Lift,
-    count_variables,
     find_common_polynomial,
     lift_family,
+    polynomial_cost,
     round_polynomial,
 )
 from nrs_design.certificates.search.rounding import round_rate, round_to_evidence
@@ -39,16 +41,18 @@ from nrs_design.certificates.search.unstable_value import (
     find_unstable_switching,
     find_unstable_value,
 )
-from nrs_design.switched.system import Mode, SwitchedSystem, Time
+from nrs_design.switched.matrix import RationalMatrix
+from nrs_design.switched.system import Mode, Time
 
 # How far below the best rate found the claimed one may lie: a wider gap needs fewer digits.
 BACK_OFFS = (0.9995, 0.998, 0.99, 0.9, 0.5, 0.1, 1e-3)
+BACK_OFF = Fraction(1999, 2000)
 # Modes nearer to the stability limit than this, relative to their norm, get an exact test first.
 SUSPICION = 1e-7
+# Exact tests of a mode that are predicted to take no more seconds are always made.
+ALWAYS_TESTED = 0.05
 OUT_OF_RANGE = "the modes are beyond the range of floating point"
 
-# Larger semidefinite programs are beyond patience: the time grows with the third power.
-MAX_VARIABLES = 1800
 RATE_BISECTIONS = 8
 POLYNOMIAL_BACK_OFF = 0.98
 
@@ -58,40 +62,73 @@ Rung = Callable[[Family], Finding]
 
 def examine_suspicious_modes(family: Family) -> Finding:
     """Test exactly the modes that floating-point eigenvalues do not show to be stable."""
+    lasting = {mode.name for mode in family.system.lasting_modes()}
     suspicious = [
-        mode for mode, ok in zip(family.system.modes, _seems_stable(family), strict=True) if not ok
+        mode
+        for mode, ok in zip(family.system.modes, _seems_stable(family), strict=True)
+        if not ok and mode.name in lasting
     ]
-    return _first_unstable(suspicious, family.system)
+    return _first_unstable(suspicious, family)
 
 
 def examine_every_mode(family: Family) -> Finding:
-    """Test every mode exactly."""
-    return _first_unstable(family.system.modes, family.system)
+    """Test exactly every mode that need never be left."""
+    return _first_unstable(family.system.lasting_modes(), family)
 
 
 def search_by_lmi(family: Family, *, optimize_rate: bool) -> Finding:
     """Search by semidefinite programming; then, if asked to, raise the rate."""
-    time = family.system.time
+    time, allowance = family.system.time, family.allowance
     if not np.isfinite(family.limit):
         return None, OUT_OF_RANGE
-    Q = find_common_quadratic(family.matrices, time, rate_at(0.0, family.limit, time))
+    least = rate_at(0.0, family.limit, time)
+    try:
+        Q = find_common_quadratic(family.matrices, time, least, allowance=allowance)
+    except NotAffordableError:
+        Q = mean_norm(family.matrices, time)
+        if margins(family.matrices, Q, time, least).min() <= 0:
+            raise
+        return _round_at_own_rate(family, Q)
     if Q is None:
         return None, "the solver found no candidate with positive margins"
-    if optimize_rate:
-        best = largest_position(family.matrices, time, family.limit)
+    if optimize_rate and (evidence := _fastest(family)):
+        return evidence, "found with the largest decay rate"
+    return _round_at_own_rate(family, Q)
+
+
+def _fastest(family: Family) -> CommonQuadratic | None:
+    """Search for the largest rate in half of the time that is left, and round in the other half."""
+    time, allowance = family.system.time, family.allowance
+    best = largest_position(family.matrices, time, family.limit, allowance.part(0.5))
+    try:
         for back_off in BACK_OFFS:
             rate = rate_at(best * back_off, family.limit, time)
-            candidate = find_common_quadratic(family.matrices, time, rate)
+            candidate = find_common_quadratic(family.matrices, time, rate, allowance=allowance)
             if candidate is not None and (evidence := _round(family, candidate, rate)):
-                return evidence, "found with the largest decay rate"
-    return _round_at_own_rate(family, Q)
+                return evidence
+    except NotAffordableError:
+        pass
+    return None
+
+
+def decide_one_state(family: Family) -> Finding:
+    """Take ``V(x) = x^2``, at a rate computed exactly: modes may be nearer to 1 than floats are."""
+    system = family.system
+    numbers = [mode.A.fractions()[0][0] for mode in system.modes]
+    claimed = BACK_OFF * -max(numbers)
+    if system.time is Time.DISCRETE:
+        claimed = 1 - BACK_OFF * (1 - max(map(abs, numbers)))
+    evidence = CommonQuadratic(((1,),), 0, round_rate(claimed, system.time))
+    fault = family.checker.find_fault(evidence)
+    return (evidence, "found") if fault is None else (None, fault)
 
 
 def search_by_gradient(family: Family) -> Finding:
     """Search by the Liberzon-Tempo iteration."""
     if not np.isfinite(family.limit):
         return None, OUT_OF_RANGE
-    result = iterate_gradient(family.matrices)
+    # The rungs below need time as well.
+    result = iterate_gradient(family.matrices, allowance=family.allowance.part(0.5))
     if result.Q is None:
         return None, f"not converged after {result.updates} updates"
     evidence, outcome = _round_at_own_rate(family, result.Q)
@@ -105,7 +142,7 @@ def search_raw(family: Family) -> Finding:
         return None, OUT_OF_RANGE
     matrices = scale(family.matrices, -family.exponents)
     least = rate_at(0.0, family.limit, time)
-    Q = find_common_quadratic(matrices, time, least, solve_by_clarabel)
+    Q = find_common_quadratic(matrices, time, least, solve_by_clarabel, family.allowance)
     if Q is None:
         return None, "the solver found no candidate with positive margins"
     shifts = family.exponents[:, None] + family.exponents[None, :]
@@ -120,7 +157,8 @@ def search_preconditioned(family: Family) -> Finding:
     T = mean_norm_coordinates(family.matrices, time)
     inverse = np.linalg.inv(T)
     least = rate_at(0.0, family.limit, time)
-    Q = find_common_quadratic(inverse @ family.matrices @ T, time, least, solve_by_clarabel)
+    matrices = inverse @ family.matrices @ T
+    Q = find_common_quadratic(matrices, time, least, solve_by_clarabel, family.allowance)
     if Q is None:
         return None, "the solver found no candidate with positive margins"
     return _round_at_own_rate(family, inverse.T @ Q @ inverse)
@@ -128,7 +166,7 @@ def search_preconditioned(family: Family) -> Finding:
 
 def prove_obstruction(family: Family) -> Finding:
     """Search for a proof that there is no common quadratic function."""
-    multipliers = solve_dual(family.matrices, family.system.time)
+    multipliers = solve_dual(family.matrices, family.system.time, family.allowance)
     if multipliers is None:
         return None, "the dual has no strict solution"
     evidence = round_obstruction(family.system, multipliers, family.exponents)
@@ -139,12 +177,11 @@ def prove_obstruction(family: Family) -> Finding:
 
 def search_polynomial(family: Family, *, degree: int, optimize_rate: bool = False) -> Finding:
     """Search for a common homogeneous polynomial of degree 2d, and a large rate if asked to."""
-    system = family.system
-    variables = count_variables(system.order, len(system.modes), degree)
-    if variables > MAX_VARIABLES:
-        return None, f"not tried: {variables} variables are too many"
+    system, allowance = family.system, family.allowance
+    allowance.require(*polynomial_cost(system.order, len(system.modes), degree))
     lift = lift_family(system, family.exponents, degree)
-    candidate = find_common_polynomial(lift, system.time, rate_at(0.0, family.limit, system.time))
+    least = rate_at(0.0, family.limit, system.time)
+    candidate = find_common_polynomial(lift, system.time, least, allowance)
     if candidate is None:
         return None, "the solver found no candidate with positive margins"
     evidence = round_polynomial(system, lift, candidate, family.limit)
@@ -160,13 +197,17 @@ def _faster_polynomial(family: Family, lift: Lift) -> AbstractEvidence | None:
     time = family.system.time
 
     def find(position: float) -> Candidate | None:
-        return find_common_polynomial(lift, time, rate_at(position, family.limit, time))
+        rate = rate_at(position, family.limit, time)
+        return find_common_polynomial(lift, time, rate, family.allowance)
 
     low, high = 0.0, 1.0
-    for _ in range(RATE_BISECTIONS):
-        middle = (low + high) / 2
-        low, high = (low, middle) if find(middle) is None else (middle, high)
-    candidate = find(POLYNOMIAL_BACK_OFF * low) if low > 0 else None
+    try:
+        for _ in range(RATE_BISECTIONS):
+            middle = (low + high) / 2
+            low, high = (low, middle) if find(middle) is None else (middle, high)
+        candidate = find(POLYNOMIAL_BACK_OFF * low) if low > 0 else None
+    except NotAffordableError:
+        return None
     if candidate is None:
         return None
     return round_polynomial(family.system, lift, candidate, family.limit)
@@ -174,14 +215,20 @@ def _faster_polynomial(family: Family, lift: Lift) -> AbstractEvidence | None:
 
 def search_mode_quadratic(family: Family) -> Finding:
     """Search for one quadratic function per mode, for constrained switching."""
-    evidence = find_mode_quadratic(family.system, family.limit)
+    evidence = find_mode_functions(family.system, family.limit, allowance=family.allowance)
+    return evidence, "found" if evidence else "no candidate passes the exact check"
+
+
+def search_mode_polynomial(family: Family, *, degree: int) -> Finding:
+    """Search for one polynomial of degree 2d per mode, for constrained switching."""
+    evidence = find_mode_functions(family.system, family.limit, degree, family.allowance)
     return evidence, "found" if evidence else "no candidate passes the exact check"
 
 
 def search_parameter_quadratic(family: Family) -> Finding:
     """Search for a quadratic function that is affine in a constant parameter."""
     evidence = find_parameter_quadratic(
-        family.system, family.matrices, family.exponents, family.limit
+        family.system, family.matrices, family.exponents, family.limit, family.allowance
     )
     return evidence, "found" if evidence else "no candidate passes the exact check"
 
@@ -202,13 +249,13 @@ def search_switching_at_values(family: Family) -> Finding:
 
 def search_mixture(family: Family) -> Finding:
     """Search for an unstable convex combination of modes."""
-    evidence = find_unstable_mixture(family.system, family.matrices)
+    evidence = find_unstable_mixture(family.system, family.matrices, family.allowance)
     return evidence, "found" if evidence else "every combination tried is stable"
 
 
 def search_period(family: Family) -> Finding:
     """Search for a periodic signal that makes solutions grow."""
-    evidence = find_growing_period(family.system, family.matrices)
+    evidence = find_growing_period(family.system, family.matrices, family.allowance)
     return evidence, "found" if evidence else "no periodic signal tried makes solutions grow"
 
 
@@ -236,6 +283,14 @@ def _round(family: Family, Q: NDArray[np.float64], rate: float) -> CommonQuadrat
     return round_to_evidence(family.checker, Q, family.exponents, claimed, passes)
 
 
+def exact_test_cost(A: RationalMatrix) -> Cost:
+    """Predict what the exact test of one mode takes."""
+    n = A.shape[0]
+    bits = max(entry.bit_length() for row in (*A.numerators, (A.denominator,)) for entry in row)
+    grown = n * (bits + n.bit_length())
+    return Cost(n**4 * (1e-7 + 2e-13 * grown**2))
+
+
 def _seems_stable(family: Family) -> NDArray[np.bool_]:
     if not np.isfinite(family.matrices).all():
         return np.zeros(len(family.matrices), dtype=bool)
@@ -249,13 +304,16 @@ def _seems_stable(family: Family) -> NDArray[np.bool_]:
     return np.asarray(np.abs(eigenvalues).max(axis=1) < 1 - SUSPICION)
 
 
-def _first_unstable(modes: Iterable[Mode], system: SwitchedSystem) -> Finding:
-    count = skipped = 0
+def _first_unstable(modes: Iterable[Mode], family: Family) -> Finding:
+    system, count, skipped = family.system, 0, 0
     for mode, fits in affordable(modes):
         if not fits:
             skipped += 1
             continue
         count += 1
+        cost = exact_test_cost(mode.A)
+        if cost.seconds > ALWAYS_TESTED:
+            family.allowance.take(cost, f"the exact test of mode {mode.name}")
         if is_stable(mode.A, system.time):
             continue
         evidence = UnstableMode(mode.name, worst_eigenvalue(mode.A, system.time))

@@ -2,13 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
+from math import inf
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from nrs_design.certificates.search.allowance import Cost
+
 Array = NDArray[np.float64]
+
+# Seconds per multiplication in the factorizations of a whole solution, and per program.
+PER_PRODUCT = 5e-9
+PER_PROGRAM = 2e-3
+# Bytes for each entry of the dense constraints (with the copies), and of the factors.
+PER_ENTRY = 24
+PER_FACTOR_ENTRY = 20
 
 
 def symmetric_basis(n: int) -> Array:
@@ -43,8 +53,34 @@ def triangle(n: int) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
     return row, column
 
 
+def program_cost(variables: int, shared: int, cones: Iterable[tuple[int, int]]) -> Cost:
+    """Predict what `maximize_margin` takes, before its constraints are built.
+
+    Parameters
+    ----------
+    variables : int
+        Number of unknowns.
+    shared : int
+        How many of them remain coupled when each cone's own have been eliminated.
+    cones : iterable of (int, int)
+        Order of each cone, and how many unknowns it depends on.
+    """
+    rows, products, factor = 0.0, shared**3 / 3, shared**2 / 2
+    for order, touched in cones:
+        size = order * (order + 1) / 2
+        rows += size
+        products += size**3 / 3 + size * touched * (size + touched)
+        factor += size * (size / 2 + touched)
+    memory = PER_ENTRY * rows * variables + PER_FACTOR_ENTRY * factor
+    return Cost(PER_PROGRAM + PER_PRODUCT * products, memory)
+
+
 def maximize_margin(
-    rows: Array, offset: Array, sizes: Sequence[int], equalities: int = 0
+    rows: Array,
+    offset: Array,
+    sizes: Sequence[int],
+    equalities: int = 0,
+    time_limit: float = inf,
 ) -> Array | None:
     """Maximize the last variable subject to ``offset - rows x`` in a product of cones.
 
@@ -58,6 +94,8 @@ def maximize_margin(
         Order of each cone.
     equalities : int
         Number of equations.
+    time_limit : float
+        The solver ends after so many seconds, with what it has.
 
     Returns
     -------
@@ -75,6 +113,7 @@ def maximize_margin(
     settings = clarabel.DefaultSettings()
     settings.verbose = False
     settings.max_threads = 1
+    settings.time_limit = time_limit
     solution: Any = clarabel.DefaultSolver(
         sparse.csc_matrix((variables, variables)),
         objective,

@@ -21,7 +21,8 @@ from nrs_design.cli.identify.common import (
     write_spec,
 )
 from nrs_design.cli.options import Json, Quiet
-from nrs_design.cli.printing import note, print_json, print_table, progress, say
+from nrs_design.cli.printing import note, print_json, progress, say
+from nrs_design.cli.tables import print_table
 
 if TYPE_CHECKING:
     from nrs_design.identification.actuator import ActuatorFit, ActuatorIdentification
@@ -72,7 +73,7 @@ def actuator(
         write_spec(write, merged, quiet=quiet)
     if as_json:
         print_json("identify-actuator", _summary(found))
-    else:
+    elif not quiet:
         _print(found)
     if report is not None:
         note(f"page written to {report}", quiet=quiet)

@@ -83,11 +83,13 @@ def check_report(path: Path | None) -> None:
 
 def write_report(path: Path, report: Report) -> None:
     """Write a report in the format that the name of the file says."""
-    from nrs_design.output import write_output
+    from nrs_design.output import PAGE, PDF, write_output
     from nrs_design.reporting import render_html, render_pdf
 
-    pdf = path.suffix.lower() == ".pdf"
-    write_output(path, render_pdf(report) if pdf else render_html(report))
+    if path.suffix.lower() == ".pdf":
+        write_output(path, render_pdf(report), replaces=PDF)
+    else:
+        write_output(path, render_html(report), replaces=PAGE)
 
 
 def write_spec(path: Path, text: str, *, quiet: bool) -> None:

@@ -22,7 +22,8 @@ from nrs_design.cli.identify.common import (
     write_spec,
 )
 from nrs_design.cli.options import Json, Quiet
-from nrs_design.cli.printing import note, print_json, print_table, progress, say
+from nrs_design.cli.printing import note, print_json, progress, say
+from nrs_design.cli.tables import print_table
 
 if TYPE_CHECKING:
     from nrs_design.identification.tissue import ModelFit, TissueIdentification
@@ -90,7 +91,7 @@ def tissue(
             note(f"warning: {caveat}")
     if as_json:
         print_json("identify-tissue", _summary(found, arm))
-    else:
+    elif not quiet:
         _print(found, arm)
     if report is not None:
         note(f"page written to {report}", quiet=quiet)

@@ -31,6 +31,11 @@ def _spec(spec: SpecOutcome) -> dict[str, Any]:
         "modes": spec.modes,
         "certificate": None if spec.certificate is None else from_here(spec.certificate),
         "certificate_id": spec.certificate_id,
+        "gains": {name: dict(gains) for name, gains in spec.gains.items()},
+        "warnings": [
+            {"message": item.message, "line": item.line, "column": item.column}
+            for item in spec.cautions
+        ],
         "obligations": [_obligation(item) for item in spec.obligations],
     }
 

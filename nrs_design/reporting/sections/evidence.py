@@ -10,6 +10,7 @@ from nrs_design.certificates.evidence import (
     BlockTriangular,
     CommonPolynomial,
     CommonQuadratic,
+    ModePolynomial,
     ModeQuadratic,
     NoCommonQuadratic,
     ParameterQuadratic,
@@ -17,6 +18,7 @@ from nrs_design.certificates.evidence import (
 )
 from nrs_design.reporting.document import Section
 from nrs_design.reporting.sections.blocks import blocks_section
+from nrs_design.reporting.sections.mode_polynomial import mode_polynomial_section
 from nrs_design.reporting.sections.mode_quadratic import mode_quadratic_section
 from nrs_design.reporting.sections.no_common_quadratic import no_common_quadratic_section
 from nrs_design.reporting.sections.parameter_quadratic import parameter_quadratic_section
@@ -52,6 +54,8 @@ def _section(system: SwitchedSystem, statement: AbstractEvidence) -> Iterator[Se
         yield quadratic_section(system, statement)
     elif isinstance(statement, CommonPolynomial):
         yield polynomial_section(system, statement)
+    elif isinstance(statement, ModePolynomial):
+        yield mode_polynomial_section(system, statement)
     elif isinstance(statement, ModeQuadratic):
         yield mode_quadratic_section(system, statement)
     elif isinstance(statement, ParameterQuadratic):

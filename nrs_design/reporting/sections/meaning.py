@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 from nrs_design.certificates.evidence import (
     AbstractEvidence,
     BlockTriangular,
     CommonPolynomial,
     CommonQuadratic,
+    ModePolynomial,
     ModeQuadratic,
     ParameterQuadratic,
     UnstableMixture,
@@ -14,9 +17,15 @@ from nrs_design.certificates.evidence import (
     UnstablePeriod,
     UnstableValue,
 )
+from nrs_design.reporting.formatting import shortened
+from nrs_design.spec.bounds import rounded_up
 from nrs_design.switched.constant import system_at
 from nrs_design.switched.system import SwitchedSystem, Time
 
+# What rests on the declared rules of switching.
+_RULED = (ModeQuadratic, ModePolynomial)
+# Modes that a sentence names.
+_NAMED = 8
 # How a proof was decided, by the kind of evidence.
 _DECIDED: dict[type[AbstractEvidence], str] = {
     CommonQuadratic: (
@@ -30,8 +39,13 @@ _DECIDED: dict[type[AbstractEvidence], str] = {
     ),
     ModeQuadratic: (
         "every Q holds integers over a power of two, and integer arithmetic decides that each is "
-        "positive definite, that it decreases in its mode, and that no admissible switch raises "
-        "the function. The solver only proposed them"
+        "positive definite, that it decreases in its mode if that may last, and that no admissible "
+        "switch raises the function. The solver only proposed them"
+    ),
+    ModePolynomial: (
+        "every Q and every form that vanishes hold integers, and integer arithmetic decides that "
+        "each Q is positive definite in the monomials, that its polynomial decreases in its mode, "
+        "and that no admissible switch raises the function. The solver only proposed them"
     ),
     ParameterQuadratic: (
         "the decrease is a polynomial of degree two in the parameter, and integer arithmetic "
@@ -49,7 +63,7 @@ def bound_meaning(system: SwitchedSystem, evidence: AbstractEvidence) -> str:
     """Say what the proved bound means."""
     continuous = system.time is Time.CONTINUOUS
     factor = "exp(-alpha T) in every time T" if continuous else "rho in every step"
-    if isinstance(evidence, ModeQuadratic):
+    if isinstance(evidence, _RULED):
         return (
             "The bound means: for every signal that keeps the rules, the distance from rest "
             f"shrinks by the factor {factor}, up to one constant c in front. So it may grow for a "
@@ -75,12 +89,13 @@ def rules_meaning(system: SwitchedSystem, evidence: AbstractEvidence) -> tuple[s
     """Say which part the declared rules of switching have in a proof."""
     switching = system.switching
     texts = []
-    if isinstance(evidence, ModeQuadratic):
+    if isinstance(evidence, _RULED):
         if switching.dwell_time > 0:
             texts.append(
                 f"The dwell time of {_dwell(system)} is part of the claim: the machine itself must "
                 "refuse to switch earlier."
             )
+        texts += _own_dwell_times(system, evidence)
         if switching.transitions is not None:
             texts.append("The list of allowed switches is part of the claim as well.")
         if switching.resets:
@@ -94,7 +109,8 @@ def rules_meaning(system: SwitchedSystem, evidence: AbstractEvidence) -> tuple[s
         texts.append("The proof does not need the parameter to be constant: it may change freely.")
     # With a constant parameter, the list of transitions only keeps its two ends apart.
     listed = switching.transitions is not None and not switching.fixed_ends
-    if (switching.dwell_time > 0 or listed) and not isinstance(evidence, ModeQuadratic):
+    ruled = switching.dwell_time > 0 or bool(switching.stays) or listed
+    if ruled and not isinstance(evidence, _RULED):
         texts.append(
             "The proof does not need the declared rules of switching: it holds for arbitrary "
             "switching."
@@ -102,13 +118,28 @@ def rules_meaning(system: SwitchedSystem, evidence: AbstractEvidence) -> tuple[s
     return tuple(texts)
 
 
+def _own_dwell_times(
+    system: SwitchedSystem, evidence: ModeQuadratic | ModePolynomial
+) -> Iterator[str]:
+    if any(stay.shortest > 0 for _, stay in system.switching.stays):
+        yield (
+            "The dwell times of single modes are part of the claim: the machine must refuse to "
+            "leave them earlier."
+        )
+    if leaving := _leaving(evidence):
+        yield (
+            f"The longest dwell time of {shortened(leaving, _NAMED)} is part of the "
+            "claim: the machine itself must leave in time. The function may grow there meanwhile."
+        )
+
+
 def decision_meaning(system: SwitchedSystem, evidence: AbstractEvidence) -> str:
     """Say how the decision was made."""
     text = f"The decision is exact: the modes are rational matrices, {_DECIDED[type(evidence)]}"
     exponential = (
-        isinstance(evidence, ModeQuadratic)
+        isinstance(evidence, _RULED)
         and system.time is Time.CONTINUOUS
-        and system.switching.dwell_time > 0
+        and (system.switching.dwell_time > 0 or bool(system.switching.stays))
     )
     if exponential:
         text += "; exponentials over the dwell time are enclosed rigorously, in balls"
@@ -146,13 +177,23 @@ def excluded_signals(system: SwitchedSystem, evidence: AbstractEvidence) -> tupl
     """Say which switching signals and parameters a proof does not cover."""
     switching = system.switching
     texts = []
-    if isinstance(evidence, ModeQuadratic) and switching.dwell_time > 0:
+    if isinstance(evidence, _RULED) and switching.dwell_time > 0:
         texts.append(f"Switching earlier than {_dwell(system)} after the last switch.")
-    if isinstance(evidence, ModeQuadratic) and switching.transitions is not None:
+    if isinstance(evidence, _RULED) and any(s.shortest > 0 for _, s in switching.stays):
+        texts.append("Leaving a mode before its own dwell time is over.")
+    if isinstance(evidence, _RULED) and (leaving := _leaving(evidence)):
+        texts.append(f"Staying longer than declared in {shortened(leaving, _NAMED)}.")
+    if isinstance(evidence, _RULED) and switching.transitions is not None:
         texts.append("Switches that the spec does not list.")
     if isinstance(evidence, ParameterQuadratic):
         texts.append("A parameter that changes while the system moves, however slowly.")
     return tuple(texts)
+
+
+def _leaving(evidence: ModeQuadratic | ModePolynomial) -> tuple[str, ...]:
+    """Return the modes that must be left for the proof to hold."""
+    own = evidence.quadratic if isinstance(evidence, ModePolynomial) else evidence
+    return own.leaving
 
 
 def refutation_meaning(system: SwitchedSystem, evidence: AbstractEvidence) -> tuple[str, ...]:
@@ -238,4 +279,4 @@ def refutation_limits(evidence: AbstractEvidence) -> tuple[str, ...]:
 
 def _dwell(system: SwitchedSystem) -> str:
     unit = "s" if system.time is Time.CONTINUOUS else "steps"
-    return f"{float(system.switching.dwell_time):.10g} {unit}"
+    return rounded_up(system.switching.dwell_time, unit)

@@ -159,7 +159,8 @@ def _what_may_help(certification: Certification) -> Bullets:
     texts = [
         "Narrower parameter ranges or fewer contacts per controller, where the robot allows it; "
         "more damping; modes that are more alike.",
-        "A longer budget of time or a higher degree for the search.",
+        "A longer search: a larger --budget, more --memory or a higher --max-degree, whichever "
+        "the list of rungs says has ended it.",
     ]
     if system.switching.dwell_time == 0 or system.time is Time.DISCRETE:
         texts.append("A dwell time, or fewer transitions, where the machine can enforce them.")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from fractions import Fraction
+from sys import float_info
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -13,11 +14,17 @@ from nrs_design.certificates.evidence import (
     BlockTriangular,
     CommonPolynomial,
     CommonQuadratic,
+    ModePolynomial,
     ModeQuadratic,
     ParameterQuadratic,
 )
 from nrs_design.reporting.document import Illustration, Section
-from nrs_design.reporting.figures.run import draw_mode_levels, draw_phase_plane, draw_run
+from nrs_design.reporting.figures.run import (
+    MOTION_STATES,
+    draw_mode_levels,
+    draw_phase_plane,
+    draw_run,
+)
 from nrs_design.reporting.sections.modes import hardest_modes
 from nrs_design.simulation.admissible import active_norms, admissible_run
 from nrs_design.simulation.margins import parameter_rates
@@ -67,6 +74,7 @@ _RULED = (
     "whichever loses the least of the norm per time. It is a bad run, not the worst one."
 )
 _HOLDS = "The dashed line is the bound of the certificate, which holds for every switching signal."
+PATH = "Path of the state, one color for each active mode."
 _TITLE = "Switching against the proved bound"
 
 
@@ -86,6 +94,8 @@ def run_section(system: SwitchedSystem, evidence: AbstractEvidence | None) -> Se
         figures = _polynomial(system, evidence)
     elif isinstance(evidence, ModeQuadratic):
         figures = _ruled(system, evidence)
+    elif isinstance(evidence, ModePolynomial):
+        figures = _ruled_beside(system, float(evidence.quadratic.rate))
     elif isinstance(evidence, ParameterQuadratic):
         figures = _at_parameter(system, evidence)
     elif isinstance(evidence, BlockTriangular):
@@ -159,7 +169,7 @@ def _ruled(system: SwitchedSystem, evidence: ModeQuadratic) -> tuple[Illustratio
         f"{_RULED} Drawn is the root of V of the active mode, over its start. Where the next mode "
         "takes over, it may jump, but it stays below the dashed bound of the certificate, which "
         "holds for every signal that keeps the rules. In a norm that is the same in all "
-        f"modes, the bound holds with the factor c.{_some(system, hardest)}",
+        f"modes, the bound holds with the factor c.{_rises(evidence)}{_some(system, hardest)}",
         draw_run(
             response,
             active_norms(hardest, response, functions),
@@ -174,11 +184,36 @@ def _ruled(system: SwitchedSystem, evidence: ModeQuadratic) -> tuple[Illustratio
     return run, Illustration(
         "phase-plane",
         "The same run in the plane of the two states",
-        "Path of the state, one color for each active mode, with a level curve of each mode's own "
-        "function, all at one value. While a mode is active, its own function decreases."
+        f"{PATH} {plane_axes(system)} Dashed is a level curve of each mode's own function, all at "
+        "one value. While a mode is active, its own function decreases"
+        + (", except in a mode that must be left." if evidence.leaving else ".")
         + _jumps(system),
         draw_mode_levels(response, hardest, roots),
     )
+
+
+def _ruled_beside(system: SwitchedSystem, rate: float) -> tuple[Illustration, ...]:
+    """Draw a run that keeps the rules in the Euclidean norm, beside the slope of its bound."""
+    hardest = hardest_modes(system, None, _RULED_MODES)
+    functions = {mode.name: np.eye(mode.A.shape[0]) for mode in hardest.modes}
+    step, steps = _horizon(hardest, rate)
+    response = admissible_run(hardest, functions, step, min(steps, _RULED_STEPS))
+    response = _until_small(response, active_norms(hardest, response, functions))
+    run = Illustration(
+        "run",
+        "Switching beside the proved rate",
+        f"{_RULED} The dashed line has the proved rate. The certificate says that every run that "
+        "keeps the rules stays below such a line, up to one constant factor; so this run may lie "
+        f"above the line for a while.{_some(system, hardest)}",
+        draw_run(
+            response,
+            active_norms(hardest, response, functions),
+            _bound(response, rate, system.time, "slope of the proved bound, "),
+            hardest,
+            "|x(t)| / |x(0)|, Euclidean norm [1]",
+        ),
+    )
+    return (run, *_phase_plane(hardest, response, None))
 
 
 def _blocks(system: SwitchedSystem, evidence: BlockTriangular) -> tuple[Illustration, ...]:
@@ -254,6 +289,8 @@ def _until_small(response: TimeResponse, values: Array) -> TimeResponse:
 def _horizon(system: SwitchedSystem, claimed: float) -> tuple[float, int]:
     """Return step and number of steps in which the bound falls by three decades, if few enough."""
     rate = claimed if system.time is Time.CONTINUOUS else -math.log(claimed)
+    # A contraction of 1 - 1e-21 is 1 in floating point.
+    rate = max(rate, float_info.min)
     step = fine_step(system)
     steps = math.ceil(min(_DECAY / (rate * step), float(_STEPS)))
     if system.time is Time.CONTINUOUS and steps < _FEWEST:
@@ -277,14 +314,37 @@ def _phase_plane(
         Illustration(
             "phase-plane",
             "The same run in the plane of the two states",
-            f"Path of the state, one color for each active mode.{inside}{_jumps(system)}",
+            f"{PATH} {plane_axes(system)}{inside}{_jumps(system)}",
             draw_phase_plane(response, system, norm, levels),
         ),
     )
 
 
+def plane_axes(system: SwitchedSystem) -> str:
+    """Say what the axes of a plane of two states are."""
+    first, second = system.states
+    if system.states == MOTION_STATES:
+        return (
+            f"The axes are the two states themselves, no projection: {first} and {second} of the "
+            f"motion loop G in controllable canonical form, {first}' = {second}, which have no "
+            "unit of their own."
+        )
+    return (
+        f"The axes are the two states themselves, no projection: {first} and {second} in the "
+        "coordinates of the matrices that the spec gives."
+    )
+
+
 def _jumps(system: SwitchedSystem) -> str:
     return " A reset is drawn with the step before it." if system.switching.resets else ""
+
+
+def _rises(evidence: ModeQuadratic) -> str:
+    if not evidence.leaving:
+        return ""
+    return (
+        " In a mode that must be left it may rise above the bound; at the next switch it is below."
+    )
 
 
 def _freely(system: SwitchedSystem) -> str:

@@ -21,6 +21,7 @@ from nrs_design.reporting.document import Block, Illustration, Paragraph, Sectio
 from nrs_design.reporting.figures.complex_plane import draw_eigenvalues
 from nrs_design.reporting.figures.run import draw_phase_plane, draw_run
 from nrs_design.reporting.formatting import number, plural, roots
+from nrs_design.reporting.sections.run import PATH, plane_axes
 from nrs_design.simulation.norms import Array
 from nrs_design.simulation.periodic import (
     PeriodicRun,
@@ -30,6 +31,7 @@ from nrs_design.simulation.periodic import (
     steps_of_mixture,
 )
 from nrs_design.simulation.switched import TimeResponse, alone, eigenvalues, unstable_run
+from nrs_design.spec.bounds import nearly
 from nrs_design.switched.constant import system_at
 from nrs_design.switched.system import SwitchedSystem, Time
 
@@ -69,8 +71,8 @@ def _mode(system: SwitchedSystem, evidence: UnstableMode) -> tuple[Block, ...]:
     run = Illustration(
         "run",
         f"Staying in mode {evidence.mode}",
-        f"Simulated from the eigenvector of the eigenvalue {eigenvalue}: the state does not decay. "
-        "No other mode is used, which the switching allows.",
+        f"Simulated from the eigenvector of the eigenvalue (about {eigenvalue}): the state does "
+        "not decay. No other mode is used, which the switching allows.",
         draw_run(response, _norms(response), _growth(single, response), single, _EUCLIDEAN),
     )
     return (run, *_phase_plane(single, response))
@@ -88,7 +90,8 @@ def _growth(system: SwitchedSystem, response: TimeResponse) -> tuple[str, Array]
 
 def _period(system: SwitchedSystem, evidence: UnstablePeriod) -> tuple[Block, ...]:
     index = {mode.name: k for k, mode in enumerate(system.modes)}
-    run = periodic_run(system, [(index[name], float(time)) for name, time in evidence.steps])
+    steps = [(index[name], float(time)) for name, time in evidence.steps]
+    run = periodic_run(system, steps, evidence.edges)
     first = one_period(run)
     periods = round(run.response.time[-1] / run.period)
     line = _line(run)
@@ -102,7 +105,7 @@ def _period(system: SwitchedSystem, evidence: UnstablePeriod) -> tuple[Block, ..
             f"{_rate(run, system.time)}. The certificate shows with rigorous enclosures that the "
             "factor is above one; these digits are floating point."
         ),
-        _steps_table(evidence, unit),
+        _steps_table(system, evidence, unit),
         Illustration(
             "run",
             f"The witness over {plural(periods, 'period')}",
@@ -131,14 +134,29 @@ def _rate(run: PeriodicRun, time: Time) -> str:
     return f", a mean growth rate of {number(rate, 4)} 1/s" if time is Time.CONTINUOUS else ""
 
 
-def _steps_table(evidence: UnstablePeriod, unit: str) -> Table:
+def _steps_table(system: SwitchedSystem, evidence: UnstablePeriod, unit: str) -> Table:
+    names = [name for name, _ in evidence.steps]
+    resets = _resets(system, list(zip(names, (*names[1:], *names[:1]), strict=True)), evidence)
+    head = ("Step", "Mode", f"Time in it [{unit}]", *(("Then",) if any(resets) else ()))
     rows = tuple(
-        (str(k + 1), name, f"{float(time):.6g}")
+        (str(k + 1), name, nearly(time), *((resets[k],) if any(resets) else ()))
         for k, (name, time) in enumerate(evidence.steps[:_LISTED])
     )
     more = len(evidence.steps) - len(rows)
-    title = "One period" + (f", its first {_LISTED} steps" if more else "")
-    return Table(title, ("Step", "Mode", f"Time in it [{unit}]"), rows)
+    return Table("One period" + (f", its first {_LISTED} steps" if more else ""), head, rows)
+
+
+def _resets(
+    system: SwitchedSystem, switches: list[tuple[str, str]], evidence: UnstablePeriod
+) -> list[str]:
+    """Say for each step what its switch does to the state; nothing where it leaves it as it is."""
+    maps, ways = system.switching.maps(), evidence.edges or (0,) * len(switches)
+    texts = []
+    for switch, way in zip(switches, ways, strict=True):
+        count = len(maps.get(switch, ()))
+        which = f"reset {way + 1} of {count}" if count > 1 else "reset"
+        texts.append(f"{which} to {switch[1]}" if count else "")
+    return texts
 
 
 def _mixture(system: SwitchedSystem, evidence: UnstableMixture) -> tuple[Block, ...]:
@@ -199,7 +217,7 @@ def _phase_plane(system: SwitchedSystem, response: TimeResponse) -> tuple[Illust
         Illustration(
             "phase-plane",
             "The same run in the plane of the two states",
-            "Path of the state, one color for each active mode.",
+            f"{PATH} {plane_axes(system)}",
             draw_phase_plane(response, system),
         ),
     )

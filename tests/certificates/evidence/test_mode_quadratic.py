@@ -11,10 +11,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from nrs_design.certificates.certify import Method, Verdict, certify
-from nrs_design.certificates.evidence import ModeQuadratic
-from nrs_design.certificates.evidence.mode_quadratic import _lower_integers
+from nrs_design.certificates.evidence import ModeQuadratic, read_evidence
+from nrs_design.certificates.evidence.flow import _lower_integers
 from nrs_design.certificates.exact import is_positive_definite
-from nrs_design.switched.system import Switching, Time
+from nrs_design.switched.system import Stay, Switching, Time
 from tests.certificates.systems import (
     ando_shih,
     dayawansa_martin,
@@ -22,10 +22,13 @@ from tests.certificates.systems import (
     genuine,
     geromel_colaneri,
     golden,
+    must_leave,
+    must_leave_in_time,
     rectangular,
     resets_between,
     shears,
     slow_switching_in_steps,
+    two_ways,
 )
 from tests.certificates.truth import holds
 
@@ -281,3 +284,100 @@ def test_the_enclosure_is_not_a_point():
 def test_slow_switching_in_steps_is_really_needed():
     fast = replace(slow_switching_in_steps(), switching=Switching())
     assert certify(fast).verdict is Verdict.REFUTED
+
+
+def scalars(*values, **fields):
+    named = tuple((f"m{i}", ((value,),)) for i, value in enumerate(values))
+    return ModeQuadratic(named, 0, **fields)
+
+
+@pytest.mark.parametrize("longest", [1, 2, 3, 4])
+def test_every_stay_in_a_mode_that_must_be_left(longest):
+    # After k steps in m0, 4^k 30 < 960; after one in m1, 960/64 < 30.
+    evidence = scalars(960, 30, rate=Fraction(999, 1000), leaving=("m0",))
+    system = must_leave(longest)
+    assert (evidence.find_fault(system) is None) is (longest <= 2)
+    assert holds(system, evidence) is (longest <= 2)
+
+
+def test_a_mode_that_may_stay_must_decrease():
+    evidence = scalars(960, 30, rate=Fraction(999, 1000), leaving=("m0",))
+    forever = must_leave(2, dwell_time=Fraction(1))
+    forever = replace(forever, switching=replace(forever.switching, stays=()))
+    assert "has no longest dwell time" in evidence.find_fault(forever)
+    assert "does not decrease" in replace(evidence, leaving=()).find_fault(must_leave(2))
+    assert evidence.find_fault(must_leave(2)) is None
+
+
+@pytest.mark.parametrize("leaving", [("m0", "m0"), ("m2",), ("m0", "m1"), ("m1",)])
+def test_modes_that_must_be_left_are_checked(leaving):
+    evidence = scalars(960, 30, rate=Fraction(999, 1000), leaving=leaving)
+    assert evidence.find_fault(must_leave(2)) is not None
+
+
+@pytest.mark.parametrize("pieces", [0, -1, 4097])
+def test_pieces_are_limited(pieces):
+    system, evidence = genuine("mode-quadratic, left in time")
+    assert "pieces" in replace(evidence, pieces=pieces).find_fault(system)
+
+
+@pytest.mark.parametrize(("rest", "stable"), [("1.2", True), ("1.01", True), ("0.99", False)])
+def test_all_times_in_a_mode_that_must_be_left(rest, stable):
+    # exp(2 t) Q1 < Q0 up to t = 1, and exp(-2 rest) Q0 < Q1.
+    evidence = scalars(750, 100, rate=Fraction(1, 1000), leaving=("m0",), pieces=1024)
+    system = must_leave_in_time(rest)
+    assert (evidence.find_fault(system) is None) is stable
+    assert holds(system, evidence) is stable
+    # Numbers that are too small by a little at the end of the stay.
+    late = scalars(738, 100, rate=Fraction(1, 1000), leaving=("m0",), pieces=4096)
+    assert late.find_fault(system) is not None
+
+
+def test_the_middle_of_a_stay_counts():
+    """A turn that is harmless at both ends of a stay, and not in between."""
+    turn = [[0, "3.14159265"], ["-3.14159265", 0]]
+    stays = (("m0", Stay(Fraction(1), Fraction(2))), ("m1", Stay(Fraction(1))))
+    system = family(turn, [[-1, 0], [0, -1]], switching=Switching(stays=stays))
+    Q = (("m0", ((100, 0), (0, 4))), ("m1", ((60, 0), (0, 2))))
+    evidence = ModeQuadratic(Q, 0, Fraction(1, 1000), ("m0",), 256)
+    assert not holds(system, evidence)
+    assert "after some stay" in evidence.find_fault(system)
+    large = replace(evidence, functions=(("m0", ((100, 0), (0, 90))), ("m1", ((60, 0), (0, 59)))))
+    assert large.find_fault(system) is None
+    assert holds(system, large)
+    # Pieces that are too coarse show nothing.
+    assert "after some stay" in replace(large, pieces=1).find_fault(system)
+    ends = [replace(system, switching=Switching(stays=(("m0", Stay(*[Fraction(t)] * 2)), stays[1])))
+            for t in (1, 2)]  # fmt: skip
+    assert [evidence.find_fault(end) for end in ends] == [None, None]
+
+
+def test_the_weakest_of_several_resets_counts():
+    system, evidence = genuine("mode-quadratic, two ways")
+    assert holds(system, evidence)
+    assert "raises the function" in evidence.find_fault(two_ways(5))
+    assert not holds(two_ways(5), evidence)
+
+
+def test_files_name_the_modes_that_must_be_left():
+    for example in ("mode-quadratic, left", "mode-quadratic, left in time"):
+        system, evidence = genuine(example)
+        fields = {"kind": evidence.kind, **evidence.to_fields()}
+        assert fields["leaving"] == ["m0"]
+        assert read_evidence(fields, system) == evidence
+        for key in ("leaving", "pieces"):
+            short = {k: v for k, v in fields.items() if k != key}
+            assert read_evidence(short, system).find_fault(system) is not None or key == "pieces"
+    assert not genuine("mode-quadratic, dwell")[1].to_fields().keys() & {"leaving", "pieces"}
+
+
+def test_contradictory_rules():
+    evidence = scalars(960, 30, rate=Fraction(999, 1000), leaving=("m0",))
+    for stays in (
+        (("m0", Stay(Fraction(3), Fraction(2))),),
+        (("m0", Stay(Fraction(0), Fraction(1, 2))),),
+        (("m0", Stay(Fraction(1), Fraction(2))), ("m0", Stay(Fraction(1), Fraction(1)))),
+        (("m2", Stay(Fraction(1), Fraction(2))),),
+    ):
+        system = replace(must_leave(2), switching=Switching(stays=stays))
+        assert evidence.find_fault(system) is not None

@@ -16,7 +16,7 @@ from nrs_design.certificates.evidence.unstable_mode import (
 )
 from nrs_design.certificates.exact import MAX_SPECTRUM_WORK, spectrum_work
 from nrs_design.errors import TooLargeError
-from nrs_design.switched.system import Reset, Switching, Time
+from nrs_design.switched.system import Reset, Stay, Switching, Time
 from tests.support import dayawansa_martin, family, holds, is_stable_by_lyapunov, matrix
 
 
@@ -101,8 +101,8 @@ def test_words_and_fields():
     assert evidence.shows is Shows.INSTABILITY
     assert evidence.proved_rate(system) is None
     assert evidence.claim(system) == (
-        "Mode m0 is not Hurwitz (eigenvalue 2): staying in it is an admissible switching signal, "
-        "so x' = A x is not uniformly exponentially stable."
+        "Mode m0 is not Hurwitz (eigenvalue about 2): staying in it is an admissible switching "
+        "signal, so x' = A x is not uniformly exponentially stable."
     )
     assert evidence.to_fields() == {"mode": "m0", "eigenvalue": "2"}
     # The eigenvalue of a file is not believed but computed again.
@@ -113,6 +113,16 @@ def test_words_and_fields():
 def test_malformed_fields(fields):
     with pytest.raises((KeyError, TypeError, ValueError)):
         UnstableMode.from_fields(fields, family([[2]]))
+
+
+def test_a_mode_that_must_be_left_refutes_nothing():
+    stays = (("m0", Stay(Fraction(1), Fraction(3))),)
+    system = family([[2]], [["1/8"]], time=Time.DISCRETE)
+    system = replace(system, switching=Switching(stays=stays))
+    evidence = UnstableMode("m0", "2")
+    assert evidence.find_fault(replace(system, switching=Switching(Fraction(3)))) is None
+    assert "does not cover this kind of switching" in evidence.find_fault(system)
+    assert not holds(system, evidence)
 
 
 def long_mode(n: int, bits: int) -> list[list[int]]:

@@ -12,7 +12,7 @@ from flint import ctx
 from nrs_design.certificates.certify import Method, Verdict, certify
 from nrs_design.certificates.evidence import UnstablePeriod, read_evidence
 from nrs_design.certificates.evidence.unstable_period import monodromy
-from nrs_design.switched.system import Switching, Time
+from nrs_design.switched.system import Stay, Switching, Time
 from tests.certificates.systems import (
     branicky,
     dayawansa_martin,
@@ -21,9 +21,11 @@ from tests.certificates.systems import (
     geromel_colaneri,
     golden,
     matrix,
+    must_leave,
     oscillator,
     resets_between,
     robot,
+    two_ways,
 )
 from tests.certificates.truth import exponential, holds
 
@@ -236,9 +238,9 @@ def test_the_precision_of_flint_is_left_as_it_was():
     evidence.find_fault(system)
     assert ctx.prec == before
     with pytest.raises((ValueError, ZeroDivisionError)):
-        UnstablePeriod((("m0", Fraction(1)),), 3).find_fault(
-            family([[1]], switching=Switching(resets=resets_between(("m0", "m1", [[1]]))))
-        ) or read_evidence({"kind": "unstable-period", "steps": [["m0", "1/0"]]}, system)
+        UnstablePeriod((("m0", Fraction(1)),), 3).find_fault(family([[1]])) or read_evidence(
+            {"kind": "unstable-period", "steps": [["m0", "1/0"]]}, system
+        )
     assert ctx.prec == before
 
 
@@ -252,3 +254,61 @@ def test_exponentials_enclose_those_of_numpy():
         ctx.prec = before
     found = np.array([[float(enclosed[i, j].mid()) for j in range(2)] for i in range(2)])
     assert found == pytest.approx(exponential(np.array(A.floats()) * 1.25), rel=1e-9)
+
+
+def test_a_stay_longer_than_the_longest_refutes_nothing():
+    # Four steps in m0 and one in m1 double the state; three leave it as it is.
+    grows = signal((0, 4), (1, 1))
+    assert grows.find_fault(must_leave(4)) is None
+    assert holds(must_leave(4), grows)
+    assert "does not cover" in grows.find_fault(must_leave(3))
+    assert not holds(must_leave(3), grows)
+
+
+@pytest.mark.parametrize(
+    "steps", [[(0, 2), (0, 2), (1, 1)], [(0, 2), (1, 1), (0, 2)], [(0, 1)], [(0, 2), (0, 2)]]
+)
+def test_a_stay_cannot_be_split(steps):
+    # Round the period, two steps of one mode in turn are one stay, and one alone never ends.
+    evidence = signal(*steps)
+    for longest in (3, 4):
+        assert "does not cover" in evidence.find_fault(must_leave(longest))
+        assert not holds(must_leave(longest), evidence)
+
+
+def test_dwell_times_by_mode():
+    stays = (("m1", Stay(Fraction(2))),)
+    pair = [["1/2", 2], [0, "1/2"]], [["1/2", 0], [2, "1/2"]]
+    system = family(*pair, time=Time.DISCRETE, switching=Switching(stays=stays))
+    assert signal((0, 1), (1, 2)).find_fault(system) is None
+    assert "does not cover" in signal((0, 1), (1, 1)).find_fault(system)
+    assert signal((0, 1), (1, 1)).find_fault(family(*pair, time=Time.DISCRETE)) is None
+
+
+def test_which_reset_is_taken_must_be_said():
+    steps = signal((0, 1), (1, 1)).steps
+    system = two_ways(5)
+    assert UnstablePeriod(steps, 6, (1, 0)).find_fault(system) is None
+    # The other reset, none of them, one too many, one that does not exist.
+    wrong = [(0, 0), (), (1,), (1, 0, 0), (2, 0), (-1, 0), (1, 1)]
+    for edges in wrong:
+        evidence = UnstablePeriod(steps, 6, edges)
+        assert evidence.find_fault(system) is not None
+        assert len(edges) != 2 or not holds(system, evidence)
+    assert UnstablePeriod(steps, 6, (1, 0)).find_fault(two_ways("3.9")) is not None
+
+
+def test_the_reset_that_is_taken_is_in_the_file():
+    system, evidence = genuine("unstable-period, two ways")
+    fields = {"kind": evidence.kind, **evidence.to_fields()}
+    assert fields["edges"] == [1, 0]
+    assert "then reset 2 to m1, m1 for 1 steps)" in evidence.claim(system)
+    assert read_evidence(fields, system) == evidence
+    with pytest.raises(ValueError, match="one edge for each step"):
+        read_evidence({**fields, "edges": [1]}, system)
+    assert "edges" not in genuine("unstable-period")[1].to_fields()
+
+
+def test_an_edge_against_the_transitions_refutes_nothing():
+    one_way = must_leave(4, transitions=(("m1", "m0"),))
+    assert "does not cover" in signal((0, 4), (1, 1)).find_fault(one_way)

@@ -1,6 +1,7 @@
 import numpy as np
 import pytest
 
+from nrs_design.certificates.search.allowance import Allowance, NotAffordableError
 from nrs_design.certificates.search.decay import (
     RESOLUTION,
     SMALLEST,
@@ -66,3 +67,21 @@ def test_position_is_bracketed_relative_to_itself(threshold):
 @pytest.mark.parametrize("threshold", [0.0, SMALLEST / 4])
 def test_nothing_feasible_ends(threshold):
     assert bisect_position(lambda s: s <= threshold) == 0.0
+
+
+def test_a_bisection_without_time_keeps_what_it_has():
+    assert largest_position(PAIR, Time.CONTINUOUS, 1.0, Allowance(0.0)) == 0.0
+    # Enough for some of the steps of the bisection only.
+    allowance = Allowance(0.12, clock=lambda: 0.0)
+    some = largest_position(PAIR, Time.CONTINUOUS, 1.0, allowance)
+    assert 0.0 < some < largest_position(PAIR, Time.CONTINUOUS, 1.0)
+
+    tried = []
+
+    def is_feasible(position):
+        tried.append(position)
+        if len(tried) > 2:
+            raise NotAffordableError("no time")
+        return position < 0.6
+
+    assert bisect_position(is_feasible) == 0.5

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from nrs_design.certificates.search.allowance import Allowance, NotAffordableError
 from nrs_design.certificates.search.gradient import iterate_gradient
 
 PAIR = np.array([[[-1.0, -1.0], [1.0, -1.0]], [[-1.0, -5.0], [0.2, -1.0]]])
@@ -37,3 +38,13 @@ def test_gives_up(limit):
     result = iterate_gradient(worse, max_updates=limit)
     assert result.Q is None
     assert result.updates == limit
+
+
+def test_it_stops_when_its_time_is_over():
+    ticks = iter(range(1000))
+    allowance = Allowance(10.0, clock=lambda: float(next(ticks)))
+    worse = PAIR.copy()
+    worse[1] = [[-1.0, -6.0], [1 / 6, -1.0]]
+    with pytest.raises(NotAffordableError, match="stopped"):
+        iterate_gradient(worse, allowance=allowance)
+    assert next(ticks) < 20

@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from nrs_design.certificates.search.interior_point import Cones, maximize_last
+from nrs_design.certificates.search.interior_point import Cones, maximize_last, step_cost
 from nrs_design.certificates.search.sdp import symmetric_basis
 
 # A positive value is good enough within this factor of the largest one.
@@ -112,3 +112,23 @@ def test_a_start_outside_of_the_cones_is_returned():
     singular = Cones(np.diag([1.0, 0.0])[None], np.zeros((1, 1, 2, 2)))
     with pytest.raises(np.linalg.LinAlgError):
         maximize_last(singular, start)
+
+
+def test_it_ends_when_it_is_told_to_with_a_feasible_point():
+    _, cones, start = random_problem(np.random.default_rng(1), 4, 2)
+    values = []
+    for steps in range(4):
+        answers = iter([True] * steps + [False])
+        y = maximize_last(cones, start, lambda answers=answers: next(answers))
+        assert np.linalg.eigvalsh(cones.at(y)).min() > 0
+        values.append(y[-1])
+    assert values[0] == start[-1]
+    assert values == sorted(values)
+
+
+def test_a_step_is_predicted_to_take_more_the_larger_it_is():
+    small, large = step_cost(56, 10, 10), step_cost(2081, 4, 64)
+    # Measured with one thread: 64 states and two modes take seconds a step, and 0.3 GB of images.
+    assert small.seconds < 0.01
+    assert 1 < large.seconds < 60
+    assert large.memory > 8 * 2081 * 4 * 64**2

@@ -5,6 +5,8 @@ import numpy as np
 import pytest
 
 from nrs_design.certificates.search import lmi
+from nrs_design.certificates.search.allowance import Allowance, NotAffordableError
+from nrs_design.certificates.search.interior_point import step_cost
 from nrs_design.certificates.search.lmi import (
     decreases,
     find_common_quadratic,
@@ -84,3 +86,29 @@ def test_useless_answers_end_the_search(monkeypatch, answer):
     monkeypatch.setattr(lmi, "_solve", lambda *arguments: answer)
     with np.errstate(all="ignore"):
         assert find_common_quadratic(-np.eye(2)[None], Time.CONTINUOUS, 0.0) is None
+
+
+@pytest.mark.parametrize("solve", [None, solve_by_clarabel])
+def test_what_does_not_fit_is_not_even_built(monkeypatch, solve):
+    def build(n):
+        raise AssertionError("built")
+
+    monkeypatch.setattr(lmi, "symmetric_basis", build)
+    matrices = -np.broadcast_to(np.eye(64), (2, 64, 64))
+    for allowance, words in (
+        (Allowance(5.0), r"2080 unknowns and 4 blocks would take about .* s, .*--budget"),
+        (Allowance(memory=1e8), "GB of memory, .*--memory"),
+    ):
+        with pytest.raises(NotAffordableError, match=words):
+            find_common_quadratic(matrices, Time.CONTINUOUS, 0.0, solve, allowance)
+
+
+def test_a_search_that_runs_out_of_time_does_not_say_that_there_is_nothing():
+    """It takes more steps than these to see that there is none."""
+    matrices = np.array([[[-1.0, -1.0], [1.0, -1.0]], [[-1.0, -6.0], [1 / 6, -1.0]]])
+    assert find_common_quadratic(matrices, Time.CONTINUOUS, 0.0) is None
+    step = step_cost(4, 4, 2).seconds
+    with pytest.raises(NotAffordableError, match="stopped: the budget"):
+        find_common_quadratic(
+            matrices, Time.CONTINUOUS, 0.0, allowance=Allowance(lmi.FEWEST_STEPS * step)
+        )

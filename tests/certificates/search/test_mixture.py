@@ -3,6 +3,8 @@
 import numpy as np
 import pytest
 
+from nrs_design.certificates.search import mixture
+from nrs_design.certificates.search.allowance import Allowance
 from nrs_design.certificates.search.family import Family
 from nrs_design.certificates.search.mixture import find_unstable_mixture
 from tests.certificates.systems import branicky, dayawansa_martin, family, shears
@@ -45,3 +47,24 @@ def test_matrices_that_lie_give_no_verdict(lie):
     except np.linalg.LinAlgError:
         return
     assert evidence is None
+
+
+@pytest.mark.parametrize("system", [shears(), branicky(), family([[-1]])])
+def test_chunks_change_nothing(monkeypatch, system):
+    whole = search(system)
+    monkeypatch.setattr(mixture, "CHUNK_ENTRIES", 20)
+    assert search(system) == whole
+
+
+def test_many_modes_are_looked_at_a_few_at_a_time(monkeypatch):
+    """200 modes of 40 states made half a gigabyte of averages."""
+    sizes = []
+    for weights in mixture._candidates(200, 1000):
+        sizes.append(len(weights))
+        assert weights.sum(axis=1) == pytest.approx(1.0)
+    assert max(sizes) == 1000
+    assert sum(sizes) == mixture.MAX_PAIRS * (mixture.SHARES - 1) + mixture.RANDOM_MIXTURES
+
+
+def test_without_time_the_first_look_counts():
+    assert find_unstable_mixture(shears(), Family.of(shears()).matrices, Allowance(0.0)) is not None

@@ -1,22 +1,28 @@
 """Search for common polynomials, and rounding so that vanishing forms vanish exactly."""
 
 from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from nrs_design.certificates.evidence.common_polynomial import MAX_DEGREE, MAX_MONOMIALS
 from nrs_design.certificates.lift import monomials, vanishes
 from nrs_design.certificates.search import polynomial
+from nrs_design.certificates.search.allowance import Allowance, NotAffordableError
 from nrs_design.certificates.search.family import Family, floats_in_silence
 from nrs_design.certificates.search.polynomial import (
     Candidate,
     find_common_polynomial,
+    highest_degree,
     lift_family,
+    polynomial_cost,
     products,
     round_polynomial,
 )
+from nrs_design.switched.system import Time
 from tests.certificates.systems import ando_shih, dayawansa_martin, family
 
 
@@ -55,7 +61,7 @@ def test_corrected_forms_vanish_whatever_was_rounded(n, degree, random):
     for i in range(K):
         for j in range(i, K):
             N[i][j] = N[j][i] = random.randint(-(10**20), 10**20)
-    corrected = polynomial._make_vanish(N, products(n, degree))
+    corrected = polynomial.make_vanish(N, products(n, degree))
     assert vanishes(corrected, n, degree)
     assert all(corrected[i][j] == corrected[j][i] for i in range(K) for j in range(K))
 
@@ -85,3 +91,25 @@ def test_candidates_that_lie_give_no_false_evidence(spoil):
         except (np.linalg.LinAlgError, ValueError, OverflowError):
             continue
         assert evidence is None or (system is stable and evidence.find_fault(system) is None)
+
+
+def test_highest_degrees_that_a_certificate_can_hold():
+    assert [highest_degree(n) for n in (1, 2, 3, 4, 14, 15, 64, 200)] == [32, 32, 14, 7, 2, 2, 1, 1]
+    for n in range(2, 20):
+        d = highest_degree(n)
+        assert len(monomials(n, d)) <= MAX_MONOMIALS
+        assert d == MAX_DEGREE // 2 or len(monomials(n, d + 1)) > MAX_MONOMIALS
+
+
+def test_predictions_grow_with_degree_and_modes():
+    costs = [polynomial_cost(2, 2, d)[0] for d in range(2, 33)]
+    assert all(a.seconds < b.seconds and a.memory < b.memory for a, b in pairwise(costs))
+    assert costs[0].seconds < 0.1
+    assert polynomial_cost(2, 4, 8)[0].seconds > polynomial_cost(2, 2, 8)[0].seconds
+
+
+def test_a_program_that_does_not_fit_is_not_built(monkeypatch):
+    _, lift = lifted(dayawansa_martin(6), 2)
+    monkeypatch.setattr(polynomial, "symmetric_basis", lambda n: pytest.fail("built"))
+    with pytest.raises(NotAffordableError, match=r"3 monomials .*--budget"):
+        find_common_polynomial(lift, Time.CONTINUOUS, 0.0, Allowance(1e-4))

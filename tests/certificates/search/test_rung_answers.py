@@ -7,7 +7,9 @@ from functools import partial
 import numpy as np
 import pytest
 
+from nrs_design.certificates.checker import Checker
 from nrs_design.certificates.search import rungs
+from nrs_design.certificates.search.allowance import Allowance, NotAffordableError
 from nrs_design.certificates.search.family import Family, floats_in_silence
 from nrs_design.certificates.search.rungs import (
     examine_every_mode,
@@ -123,9 +125,9 @@ def test_nothing_is_found_against_a_stable_family(search, words):
 
 def test_polynomials_beyond_patience_are_not_tried():
     many = family(*[[[-int(i == j) for j in range(8)] for i in range(8)]] * 9)
-    evidence, outcome = search_polynomial(Family.of(many), degree=4)
-    assert evidence is None
-    assert outcome.startswith("not tried")
+    family_ = Family.checked_by(Checker(many), Allowance(60.0))
+    with pytest.raises(NotAffordableError, match="not tried: a program in 330 monomials"):
+        search_polynomial(family_, degree=4)
 
 
 def test_candidate_that_no_rounding_saves(monkeypatch):

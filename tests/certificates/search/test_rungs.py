@@ -6,8 +6,10 @@ import numpy as np
 import pytest
 
 from nrs_design.certificates.certify import Limits, Method, Verdict, certify
+from nrs_design.certificates.checker import Checker
 from nrs_design.certificates.evidence import UnstablePeriod
 from nrs_design.certificates.search import mode_quadratic, obstruction, polynomial, rungs
+from nrs_design.certificates.search.allowance import Allowance, NotAffordableError
 from nrs_design.certificates.search.family import Family
 from nrs_design.certificates.search.gradient import GradientResult
 from nrs_design.errors import DesignError
@@ -26,7 +28,7 @@ def lying(shape, value):
 
 @pytest.mark.parametrize("value", LIES)
 def test_a_lying_semidefinite_solver_never_decides(monkeypatch, value):
-    def lie(rows, offset, sizes, equalities=0):
+    def lie(rows, offset, sizes, equalities=0, time_limit=0.0):
         return np.full(rows.shape[1], value)
 
     for module in (polynomial, obstruction, mode_quadratic):
@@ -50,7 +52,7 @@ def test_a_lying_quadratic_search_never_decides(monkeypatch, value):
 
 def test_a_function_that_is_not_symmetric_never_decides(monkeypatch):
     skew = np.array([[1.0, 5.0], [-5.0, 1.0]])
-    monkeypatch.setattr(rungs, "find_common_quadratic", lambda *_: skew)
+    monkeypatch.setattr(rungs, "find_common_quadratic", lambda *_, **__: skew)
     found = certify(dayawansa_martin(12), Method.LMI, Limits(optimize_rate=False))
     assert found.verdict is Verdict.INCONCLUSIVE
 
@@ -85,9 +87,9 @@ def test_every_rung_says_how_it_ended():
 def test_a_lift_beyond_patience_is_not_tried():
     n = 12
     system = family([[-(i == j) + (i == j + 1) for j in range(n)] for i in range(n)])
-    evidence, words = rungs.search_polynomial(Family.of(system), degree=4)
-    assert evidence is None
-    assert "not tried" in words
+    family_ = Family.checked_by(Checker(system), Allowance(60.0))
+    with pytest.raises(NotAffordableError, match="not tried"):
+        rungs.search_polynomial(family_, degree=4)
 
 
 @pytest.mark.parametrize("method", list(Method))

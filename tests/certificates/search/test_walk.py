@@ -1,0 +1,210 @@
+"""Growing cycles in discrete time, under rules: against known limits and all short cycles."""
+
+from dataclasses import replace
+from fractions import Fraction
+from itertools import product
+
+import numpy as np
+import pytest
+
+from nrs_design.certificates.certify import Limits, Verdict, certify
+from nrs_design.certificates.evidence import UnstablePeriod
+from nrs_design.certificates.search.family import Family, floats_in_silence
+from nrs_design.certificates.search.period import find_growing_period
+from nrs_design.switched.system import Switching, Time
+from tests.certificates.systems import ando_shih, family, golden, matrix, resets_between
+from tests.certificates.truth import holds
+
+FAST = Limits(max_degree=4, budget=5.0, optimize_rate=False)
+BOTH_WAYS = (("m0", "m1"), ("m1", "m0"))
+
+
+def shears(dwell, **rules):
+    """``A^j B^k`` has the trace ``2^-(j+k) (2 + 16 j k)`` and the determinant ``4^-(j+k)``.
+
+    So it grows iff ``2 + 16 j k > 2^(j+k) + 2^-(j+k)``: for j = k = 4 by 258 to 256, and for no j
+    and k of at least 4 and 5 or more.
+    """
+    pair = [["1/2", 2], [0, "1/2"]], [["1/2", 0], [2, "1/2"]]
+    return family(*pair, time=Time.DISCRETE, switching=Switching(Fraction(dwell), **rules))
+
+
+def search(system):
+    with floats_in_silence():
+        return find_growing_period(system, Family.of(system).matrices)
+
+
+@pytest.mark.parametrize("dwell", range(2, 8))
+def test_known_limit_of_the_dwell_time(dwell):
+    system = shears(dwell)
+    found = certify(system, limits=FAST)
+    assert found.verdict is (Verdict.REFUTED if dwell <= 4 else Verdict.PROVED)
+    assert holds(system, found.evidence)
+    if dwell <= 4:
+        assert isinstance(found.evidence, UnstablePeriod)
+        assert all(steps >= dwell for _, steps in found.evidence.steps)
+
+
+@pytest.mark.parametrize(
+    "steps", [(3, 4), (4, 3), (2, 5), (3, 3), (1, 1)], ids=lambda steps: "-".join(map(str, steps))
+)
+def test_a_cycle_that_breaks_the_dwell_time_refutes_nothing(steps):
+    grows = UnstablePeriod(tuple(zip(("m0", "m1"), map(Fraction, steps), strict=True)), 12)
+    assert grows.find_fault(shears(1)) is None
+    assert grows.find_fault(shears(4)) is not None
+
+
+def test_legs_longer_than_the_dwell_time():
+    """A turn by 5 degrees per step, and a shear: they grow with enough turns, not with 2."""
+    turn = [["0.98623", "-0.08628"], ["0.08628", "0.98623"]]
+    system = family(turn, [["1/2", 2], [0, "1/2"]], time=Time.DISCRETE)
+    system = replace(system, switching=Switching(Fraction(2)))
+    short = UnstablePeriod((("m0", Fraction(2)), ("m1", Fraction(2))), 12)
+    assert short.find_fault(system) is not None
+    found = search(system)
+    assert found.find_fault(system) is None
+    assert holds(system, found)
+    assert max(steps for _, steps in found.steps) > 4
+
+
+def ring(count, gain, **rules):
+    """Each mode passes the state on to the next of a ring and forgets it everywhere else."""
+
+    def step(k):
+        target = (k + 1) % count
+        return [[gain * int(i == target and j == k) for j in range(count)] for i in range(count)]
+
+    return family(*map(step, range(count)), time=Time.DISCRETE, switching=Switching(**rules))
+
+
+@pytest.mark.parametrize(("gain", "grows"), [("1.01", True), ("0.99", False)])
+def test_around_a_ring_of_allowed_switches(gain, grows):
+    around = tuple((f"m{k}", f"m{(k + 1) % 5}") for k in range(5))
+    found = search(ring(5, Fraction(gain), transitions=around))
+    assert (found is not None) is grows
+    if grows:
+        assert {name for name, _ in found.steps} == {f"m{k}" for k in range(5)}
+    against = tuple((b, a) for a, b in around)
+    assert search(ring(5, Fraction(gain), transitions=against)) is None
+    assert search(ring(5, Fraction(gain), transitions=around[:-1])) is None
+
+
+def test_resets_count():
+    """Modes that halve the state, and a reset that trebles it."""
+    half = [["1/2"]]
+    for gain, grows in (("5", True), ("4", True), ("3.9", False)):
+        resets = resets_between(("m0", "m1", [[gain]]))
+        system = family(half, half, time=Time.DISCRETE, switching=Switching(resets=resets))
+        found = search(system)
+        # Two steps and one reset: gain/4.
+        assert (found is not None) is (grows and gain == "5")
+        slow = replace(system, switching=Switching(Fraction(2), resets=resets))
+        assert search(slow) is None
+
+
+def test_resets_in_coordinates_of_the_spec():
+    """Badly scaled states: the search must not mix its own scaling with the resets."""
+    big = Fraction(10) ** 6
+    pair = [["1/2", 2 * big], [0, "1/2"]], [["1/2", 0], [2 / big, "1/2"]]
+    swap = resets_between(("m0", "m1", [["11/10", 0], [0, "11/10"]]))
+    system = family(*pair, time=Time.DISCRETE, switching=Switching(Fraction(3), resets=swap))
+    found = search(system)
+    assert found is not None
+    assert found.find_fault(system) is None
+
+
+def test_both_ends_of_a_constant_parameter_are_never_mixed():
+    c = "0.9"
+    pair = [[c, c], [0, c]], [[c, 0], [c, c]]
+    low = [["1/4", 0], [0, "1/4"]]
+    apart = Switching(fixed_ends=(("m0", "m1"), ("m2", "m3")))
+    system = family(pair[0], low, low, pair[1], time=Time.DISCRETE, switching=apart)
+    assert search(system) is None
+    together = family(pair[0], low, pair[1], low, time=Time.DISCRETE, switching=apart)
+    assert {name for name, _ in search(together).steps} == {"m0", "m2"}
+
+
+def longest_growth(matrices, dwell, allowed, legs, extra):
+    """Return the largest spectral radius per step over all cycles with so many legs."""
+    m, best = len(matrices), 0.0
+    powers = {
+        (i, k): np.linalg.matrix_power(matrices[i], k)
+        for i in range(m)
+        for k in range(dwell, dwell + extra)
+    }
+    for count in range(2, legs + 1):
+        for order in product(range(m), repeat=count):
+            switches = zip(order, (*order[1:], order[0]), strict=True)
+            if not all(switch in allowed for switch in switches):
+                continue
+            for steps in product(range(dwell, dwell + extra), repeat=count):
+                total = np.eye(matrices.shape[1])
+                for leg in zip(order, steps, strict=True):
+                    total = powers[leg] @ total
+                radius = float(np.abs(np.linalg.eigvals(total)).max())
+                best = max(best, radius ** (1 / sum(steps)))
+    return best
+
+
+def random_rules(seed):
+    """Draw two or three modes near the limit for their dwell time and transitions."""
+    rng = np.random.default_rng(seed)
+    m, n, dwell = (int(rng.integers(low, high)) for low, high in ((2, 4), (2, 4), (1, 4)))
+    pairs = [(i, j) for i in range(m) for j in range(m) if i != j]
+    allowed = pairs if rng.integers(2) else [(i, (i + 1) % m) for i in range(m)]
+    matrices = rng.integers(-9, 10, size=(m, n, n)).astype(float)
+    radii = np.abs(np.linalg.eigvals(matrices)).max(axis=1)
+    matrices /= np.maximum(radii, 0.1)[:, None, None]
+    bound = longest_growth(matrices, dwell, set(allowed), 2 if m == 2 else 3, 4)
+    scale = max(bound, 1.0) * rng.uniform(0.85, 1.15)
+    modes = [
+        [[Fraction(round(e * 1000 / scale), 1000) for e in row] for row in A] for A in matrices
+    ]
+    transitions = tuple((f"m{i}", f"m{j}") for i, j in allowed)
+    rules = Switching(Fraction(dwell), None if allowed is pairs else transitions)
+    return family(*modes, time=Time.DISCRETE, switching=rules), dwell, set(allowed)
+
+
+def check_against_all_short_cycles(seeds):
+    refuted = proved = missed = 0
+    for seed in seeds:
+        system, dwell, allowed = random_rules(seed)
+        floats = np.array([mode.A.floats() for mode in system.modes])
+        growth = longest_growth(floats, dwell, allowed, 2 if len(floats) == 2 else 3, 5)
+        found = certify(system, limits=FAST)
+        if found.verdict is Verdict.PROVED:
+            assert growth <= float(found.evidence.proved_rate(system)) * (1 + 1e-9)
+            proved += 1
+        elif found.verdict is Verdict.REFUTED:
+            assert holds(system, found.evidence)
+            refuted += 1
+        missed += growth > 1 + 1e-6 and found.verdict is not Verdict.REFUTED
+    return refuted, proved, missed
+
+
+def test_random_rules():
+    refuted, proved, missed = check_against_all_short_cycles(range(40))
+    assert refuted > 10
+    assert proved > 10
+    # Whatever grows within so few legs is found.
+    assert missed == 0
+
+
+@pytest.mark.slow
+def test_many_more_random_rules():
+    refuted, proved, missed = check_against_all_short_cycles(range(100, 300))
+    assert refuted > 50
+    assert proved > 50
+    assert missed == 0
+
+
+def test_words_are_searched_where_any_mode_may_follow_any():
+    evidence = search(golden("0.6181"))
+    assert all(steps == 1 for _, steps in evidence.steps)
+    assert search(golden("0.618")) is None
+
+
+@pytest.mark.parametrize("dwell", [2, 3])
+def test_stable_families_stay_so(dwell):
+    assert search(ando_shih("0.99", Switching(Fraction(dwell)))) is None
+    assert matrix([["0.99"]]).denominator == 100

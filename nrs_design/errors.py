@@ -131,10 +131,6 @@ class AssemblyError(NrsDesignError):
     rule = "NRS003"
 
 
-class TooLargeError(AssemblyError):
-    """Numbers with so many digits that no exact decision about them ends in reasonable time."""
-
-
 class CertificateError(NrsDesignError):
     """A certificate that is malformed, or does not belong to the spec it is held against."""
 
@@ -185,6 +181,12 @@ class PoseError(NrsDesignError):
         self.leg = leg
         self.excess = excess
         self.pose = pose
+
+
+class TooLargeError(NrsDesignError):
+    """Numbers with so many digits that no exact decision about them ends in reasonable time."""
+
+    rule = "NRS008"
 
 
 class InternalError(Exception):

@@ -100,6 +100,13 @@ POSE = Rule(
     "stretched. The message names the leg and by how much it is overstretched or folded too far.",
     "Choose a pose inside the workspace; `nrs-design robot kinematics SPEC` maps it.",
 )
+SIZE = Rule(
+    "NRS008",
+    "The numbers are small enough to decide exactly",
+    "What is proved or refuted is decided with all digits. The time for it is predicted first, and "
+    "a decision that would take more than some seconds is not begun.",
+    "Write the entries with fewer digits, over fewer different denominators.",
+)
 MODE_STABLE = Rule(
     "NRS101",
     "Every mode is stable",
@@ -192,6 +199,7 @@ RULES: Mapping[str, Rule] = MappingProxyType(
             OUTPUT,
             DATA,
             POSE,
+            SIZE,
             MODE_STABLE,
             SWITCHING_STABLE,
             STIFFNESS_RANGE,

@@ -20,7 +20,7 @@ def lint(session: nox.Session) -> None:
 
 @nox.session
 def types(session: nox.Session) -> None:
-    session.install(".", "mypy", "scipy-stubs", "types-reportlab", *CONSTRAINTS)
+    session.install(".", "mypy", "scipy-stubs", *CONSTRAINTS)
     session.run("mypy")
 
 

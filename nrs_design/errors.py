@@ -2,7 +2,30 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from dataclasses import dataclass
 from pathlib import Path
+from typing import Self
+
+
+@dataclass(frozen=True, slots=True)
+class Fault:
+    """One thing that is wrong with a file.
+
+    Parameters
+    ----------
+    message : str
+        What is wrong, and what was expected.
+    line, column : int or None
+        Where, counted from 1, as far as it is known.
+    remedy : str or None
+        What to do about it.
+    """
+
+    message: str
+    line: int | None = None
+    column: int | None = None
+    remedy: str | None = None
 
 
 class NrsDesignError(Exception):
@@ -18,6 +41,9 @@ class NrsDesignError(Exception):
         Position in that file, counted from 1.
     remedy : str, optional
         What to do about it.
+    at : tuple of str or int
+        What is to blame in a spec, such as ``("controllers", "insertion")``; where the file is
+        known, line and column are found by it.
     """
 
     rule = "NRS000"
@@ -30,6 +56,7 @@ class NrsDesignError(Exception):
         line: int | None = None,
         column: int | None = None,
         remedy: str | None = None,
+        at: tuple[str | int, ...] = (),
     ) -> None:
         super().__init__(message)
         self.message = message
@@ -37,6 +64,7 @@ class NrsDesignError(Exception):
         self.line = line
         self.column = column
         self.remedy = remedy
+        self.at = at
 
     @property
     def location(self) -> str:
@@ -45,6 +73,11 @@ class NrsDesignError(Exception):
         parts += [str(number) for number in (self.line, self.column) if number is not None]
         return ":".join(parts)
 
+    @property
+    def faults(self) -> tuple[Fault, ...]:
+        """Everything that is wrong, in file order."""
+        return (Fault(self.message, self.line, self.column, self.remedy),)
+
     def __str__(self) -> str:
         """One line: place, fault and remedy."""
         text = f"{self.location}: {self.message}" if self.location else self.message
@@ -52,9 +85,38 @@ class NrsDesignError(Exception):
 
 
 class SpecError(NrsDesignError):
-    """A spec that cannot be read or does not say what it must."""
+    """A spec that cannot be read or does not say what it must.
+
+    Message, place and remedy are those of the first fault; ``faults`` holds them all.
+    """
 
     rule = "NRS001"
+    _others: tuple[Fault, ...] = ()
+
+    @classmethod
+    def of(cls, faults: Sequence[Fault], path: Path | None) -> Self:
+        """Make one error of all the faults of a file, of which there is at least one."""
+        first, *others = sorted(faults, key=lambda fault: (fault.line or 0, fault.column or 0))
+        error = cls(
+            first.message,
+            path=path,
+            line=first.line,
+            column=first.column,
+            remedy=first.remedy,
+        )
+        error._others = tuple(others)
+        return error
+
+    @property
+    def faults(self) -> tuple[Fault, ...]:
+        """Everything that is wrong, in file order."""
+        return (*super().faults, *self._others)
+
+    def __str__(self) -> str:
+        """One line: place, fault and remedy of the first, and how many more there are."""
+        count = len(self._others)
+        more = f"; {count} more fault{'s' * (count > 1)} in this file" if count else ""
+        return super().__str__() + more
 
 
 class DesignError(NrsDesignError):
@@ -67,6 +129,10 @@ class AssemblyError(NrsDesignError):
     """Modes that do not make one switched system."""
 
     rule = "NRS003"
+
+
+class TooLargeError(AssemblyError):
+    """Numbers with so many digits that no exact decision about them ends in reasonable time."""
 
 
 class CertificateError(NrsDesignError):

@@ -1,4 +1,4 @@
-"""Writing results: whole or not at all."""
+"""Writing results: whole or not at all, where they were asked for, and over nothing foreign."""
 
 from __future__ import annotations
 
@@ -7,9 +7,18 @@ import tempfile
 from pathlib import Path
 
 from nrs_design.errors import OutputError
+from nrs_design.files import is_device_name
+
+# How the files begin that are replaced by new ones of their kind.
+CERTIFICATE = b'{\n  "schema": "nrs-design/certificate/'
+EXPORT = b'{\n  "schema": "nrs-design/export/'
+LOCK = b'{\n  "schema": "nrs-design/lock/'
+PAGE = b'<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta name="generator" content="nrs-design">\n'
+PDF = b"%PDF-"
+PNG = b"\x89PNG"
 
 
-def write_output(path: Path, content: str | bytes) -> None:
+def write_output(path: Path, content: str | bytes, *, replaces: bytes = b"") -> None:
     """Write a file through a temporary one beside it, so that no half-written file is left.
 
     Parameters
@@ -18,17 +27,21 @@ def write_output(path: Path, content: str | bytes) -> None:
         Its folder is made if it does not exist.
     content : str or bytes
         Text is written as UTF-8.
+    replaces : bytes
+        How a file that is there already must begin for it to be replaced; any file by default.
 
     Raises
     ------
     OutputError
-        If the place cannot be written to, or is a link, a folder or a device.
+        If the place cannot be written to, is a link, a folder or a device (here or on Windows),
+        lies behind a link to a folder, or holds a file of another kind.
     """
-    if path.is_symlink() or (path.exists() and not path.is_file()):
-        kind = "a symbolic link" if path.is_symlink() else "a folder or a device"
-        raise OutputError(f"is {kind}, not a file", path=path, remedy="name another file")
+    if is_device_name(path.name):
+        raise OutputError("names a device on Windows", path=path, remedy="name another file")
     data = content.encode() if isinstance(content, str) else content
     try:
+        _refuse_links(path)
+        check_replaceable(path, replaces)
         path.parent.mkdir(parents=True, exist_ok=True)
         handle, temporary = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.")
         try:
@@ -43,3 +56,44 @@ def write_output(path: Path, content: str | bytes) -> None:
         raise OutputError(
             f"cannot be written ({error.strerror})", path=path, remedy="choose a writable folder"
         ) from error
+
+
+def _refuse_links(path: Path) -> None:
+    """Refuse a link anywhere in a path: a repository could lead a result out of itself.
+
+    Links in the root folder itself, such as ``/tmp`` on some systems, are the system's own.
+    """
+    if path.is_symlink():
+        raise OutputError("is a symbolic link, not a file", path=path, remedy="name another file")
+    for folder in path.parents:
+        of_the_system = folder.is_absolute() and folder.parent == Path(folder.anchor)
+        if folder.is_symlink() and not of_the_system:
+            raise OutputError(
+                f"lies behind the symbolic link {folder}",
+                path=path,
+                remedy="name the folder that it leads to, or remove the link",
+            )
+
+
+def check_replaceable(path: Path, beginning: bytes) -> None:
+    """Refuse a place that holds something else than a file that begins so.
+
+    Raises
+    ------
+    OutputError
+        If it does. Nothing there is fine.
+    """
+    if not path.exists():
+        return
+    if not path.is_file():
+        raise OutputError(
+            "is a folder or a device, not a file", path=path, remedy="name another file"
+        )
+    with path.open("rb") as file:
+        found = file.read(len(beginning))
+    if found != beginning:
+        raise OutputError(
+            "exists already and is no such file of nrs-design, so it is not overwritten",
+            path=path,
+            remedy="name another file, or remove it",
+        )

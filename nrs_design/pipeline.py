@@ -16,6 +16,7 @@ from nrs_design.controllers.gains import gains_of
 from nrs_design.errors import DesignError, NrsDesignError
 from nrs_design.models.plant import build_plant
 from nrs_design.spec import InteractionDesignSpec, LoadedSpec, RobotSpec, Spec, read_spec
+from nrs_design.spec.bounds import nearly
 from nrs_design.switched.assemble import assemble, has_ranges
 from nrs_design.switched.system import SwitchedSystem, Time
 
@@ -61,11 +62,14 @@ class Result:
 
 
 @contextmanager
-def _placed(loaded: LoadedSpec) -> Iterator[None]:
-    """Add the spec's path to errors from stages that know the spec but not its file."""
+def placed(loaded: LoadedSpec) -> Iterator[None]:
+    """Add path, line and column to errors from stages that know the spec but not its file."""
     try:
         yield
     except NrsDesignError as error:
+        if error.path is None and error.at:
+            place = loaded.place(*error.at)
+            error.line, error.column = place.line, place.column
         error.path = error.path or loaded.path
         raise
 
@@ -84,12 +88,21 @@ def run_robot(path: Path) -> tuple[LoadedSpec, RobotSpec, Robot]:
 
     loaded = read_spec(path)
     if not isinstance(loaded.spec, RobotSpec):
-        raise DesignError(
+        raise wrong_kind(
+            loaded,
             f"a spec of kind {loaded.spec.kind} describes no robot",
-            path=path,
-            remedy="name a spec of kind robot; `nrs-design init robot` writes one",
+            "name a spec of kind robot; `nrs-design init robot` writes one",
         )
-    return loaded, loaded.spec, build_robot(loaded.spec)
+    with placed(loaded):
+        return loaded, loaded.spec, build_robot(loaded.spec)
+
+
+def wrong_kind(loaded: LoadedSpec, message: str, remedy: str) -> DesignError:
+    """Return the error that a command raises about a kind of spec that it is not for."""
+    place = loaded.place("kind")
+    return DesignError(
+        message, path=loaded.path, line=place.line, column=place.column, remedy=remedy
+    )
 
 
 def run_design(loaded: LoadedSpec) -> ControllerDesign | None:
@@ -101,16 +114,16 @@ def run_design(loaded: LoadedSpec) -> ControllerDesign | None:
         If a requirement cannot be met within its bounds, or the spec describes a robot only.
     """
     if isinstance(loaded.spec, RobotSpec):
-        raise DesignError(
+        raise wrong_kind(
+            loaded,
             "a robot spec has no controllers that are switched, so there is nothing to certify",
-            path=loaded.path,
-            remedy="use `nrs-design robot check SPEC`, or a spec of kind interaction-design",
+            "use `nrs-design robot check SPEC`, or a spec of kind interaction-design",
         )
     if not isinstance(loaded.spec, InteractionDesignSpec):
         return None
     from nrs_design.design.design import design_controllers
 
-    with _placed(loaded):
+    with placed(loaded):
         return design_controllers(loaded.spec, build_plant(loaded.spec))
 
 
@@ -126,7 +139,8 @@ def run_evidence(loaded: LoadedSpec, design: ControllerDesign) -> DesignEvidence
 
     if not isinstance(loaded.spec, InteractionDesignSpec):
         raise TypeError("given matrices have no design")
-    return examine_design(loaded.spec, build_plant(loaded.spec), design)
+    with placed(loaded):
+        return examine_design(loaded.spec, build_plant(loaded.spec), design)
 
 
 @dataclass(frozen=True, slots=True)
@@ -204,7 +218,7 @@ def run_certification(
     if isinstance(loaded.spec, InteractionDesignSpec):
         coordinates = coordinates or loaded.spec.coordinates
     gains = gains_of(design) if design else {}
-    with _placed(loaded):
+    with placed(loaded):
         system = assemble(loaded.spec, gains, coordinates)
     limits = limits or limits_of(loaded.spec)
     certification = certify(system, method or Methods.AUTO, limits, progress)
@@ -248,20 +262,24 @@ def run_margin(
 
     spec = result.loaded.spec
     if not has_ranges(spec):
-        raise DesignError(
-            "the spec declares no range, so there is no box to stretch",
-            path=result.loaded.path,
-            remedy="give an environment or a parameter a range",
-        )
+        given = "modes" if result.design is None else "environments"
+        with placed(result.loaded):
+            raise DesignError(
+                "the spec declares no range, so there is no box to stretch",
+                remedy="give an environment or a parameter a range",
+                at=(given,),
+            )
     gains = gains_of(result.design) if result.design else {}
     limits = limits or limits_of(result.loaded.spec)
     quick = replace(limits, optimize_rate=False, budget=min(limits.budget, MARGIN_BUDGET))
 
     def assemble_at(scale: Fraction) -> SwitchedSystem:
-        progress(f"box scaled by {float(scale):.4g}")
+        progress(f"box scaled by {nearly(scale)}")
         return assemble(spec, gains, result.coordinates, scale)
 
-    return find_margin(assemble_at, lambda system: certify(system, limits=quick))
+    return find_margin(
+        assemble_at, lambda system: certify(system, limits=quick), result.certification
+    )
 
 
 def run_shortest_dwell(
@@ -281,33 +299,40 @@ def run_shortest_dwell(
     Raises
     ------
     DesignError
-        In discrete time, or if the spec declares ranges: a dwell time holds for fixed parameters.
-        If it declares longest dwell times, which would bound the shortest one.
+        In discrete time, or if something may change between two switches, or if the spec declares
+        longest dwell times, which would bound the shortest one.
     """
     from nrs_design.certificates.certify import certify
     from nrs_design.certificates.margin import find_shortest_dwell
 
-    system = result.certification.system
-    if system.time is not Time.CONTINUOUS or has_ranges(result.loaded.spec):
-        raise DesignError(
-            "a shortest dwell time is for continuous time and fixed parameters",
-            path=result.loaded.path,
-            remedy="give single values instead of ranges",
-        )
+    known = result.certification
+    system = known.system
+    _refuse_dwell(result.loaded, system.time)
     if len(system.lasting_modes()) < len(system.modes):
-        raise DesignError(
-            "a shortest dwell time is not searched beside longest ones",
-            path=result.loaded.path,
-            remedy="leave longest_dwell_time out, or declare the dwell_time and certify that",
-        )
+        with placed(result.loaded):
+            raise DesignError(
+                "a shortest dwell time is not searched beside longest ones",
+                remedy="leave longest_dwell_time out, or declare the dwell_time and certify that",
+                at=("switching", "longest_dwell_time"),
+            )
     limits = limits or limits_of(result.loaded.spec)
     quick = replace(limits, optimize_rate=False, budget=min(limits.budget, MARGIN_BUDGET))
 
     def decide(candidate: SwitchedSystem) -> Certification:
-        progress(f"dwell time {float(candidate.switching.dwell_time):.4g} s")
+        progress(f"dwell time {nearly(candidate.switching.dwell_time, 's')}")
         return certify(candidate, limits=quick)
 
-    largest = max(
-        abs(entry) for mode in system.modes for row in mode.A.fractions() for entry in row
-    )
-    return find_shortest_dwell(system, decide, 1 / largest if largest else Fraction(1))
+    return find_shortest_dwell(system, decide, known)
+
+
+def _refuse_dwell(loaded: LoadedSpec, time: Time) -> None:
+    """Stop where a dwell time would say nothing, by the rule that a spec with one must keep."""
+    if time is not Time.CONTINUOUS:
+        raise DesignError(
+            "a shortest dwell time is for continuous time",
+            path=loaded.path,
+            remedy="in discrete time, declare a dwell_time in steps and certify that",
+        )
+    assert not isinstance(loaded.spec, RobotSpec)  # It has no modes, hence no certification.
+    if obstacle := loaded.spec.find_dwell_obstacle():
+        raise DesignError(obstacle.message, path=loaded.path, remedy=obstacle.remedy)

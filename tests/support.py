@@ -72,6 +72,11 @@ def run(
     return subprocess.run(command, capture_output=True, text=True, cwd=cwd, env=env, check=False)
 
 
+def number_in(text: str) -> Fraction:
+    """Read a number of a claim, such as ``0.25`` or ``1 - 2.5e-22``."""
+    return Fraction(text) if " - " not in text else 1 - Fraction(text.removeprefix("1 - "))
+
+
 def holds(system: SwitchedSystem, evidence: AbstractEvidence) -> bool:
     """Oracle: the definition of a kind of evidence.
 

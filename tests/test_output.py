@@ -1,10 +1,11 @@
 import os
 import stat
+from pathlib import Path
 
 import pytest
 
 from nrs_design.errors import OutputError
-from nrs_design.output import write_output
+from nrs_design.output import CERTIFICATE, PAGE, PDF, PNG, write_output
 
 
 @pytest.mark.parametrize(
@@ -23,6 +24,51 @@ def test_replaces_a_file(tmp_path):
     path.write_text("old")
     write_output(path, "new")
     assert path.read_text() == "new"
+
+
+@pytest.mark.parametrize("place", ["link/out", "link/new/out", "real/link/out", "link/../out"])
+@pytest.mark.parametrize("absolute", [True, False])
+def test_nothing_is_written_behind_a_link_to_a_folder(tmp_path, monkeypatch, place, absolute):
+    """A repository could otherwise lead `reports` to any place."""
+    for name in ("outside", "work", "work/real"):
+        (tmp_path / name).mkdir()
+    for link in ("work/link", "work/real/link"):
+        (tmp_path / link).symlink_to(tmp_path / "outside")
+    (tmp_path / "outside/out").write_text("precious")
+    monkeypatch.chdir(tmp_path / "work")
+    path = tmp_path / "work" / place if absolute else Path(place)
+    with pytest.raises(OutputError, match=r"behind the symbolic link .*link") as caught:
+        write_output(path, "new")
+    assert caught.value.remedy == "name the folder that it leads to, or remove the link"
+    assert [p.name for p in (tmp_path / "outside").iterdir()] == ["out"]
+    assert (tmp_path / "outside/out").read_text() == "precious"
+
+
+def test_a_working_folder_behind_a_link_is_the_users_own_choice(tmp_path, monkeypatch):
+    (tmp_path / "real").mkdir()
+    (tmp_path / "link").symlink_to(tmp_path / "real")
+    monkeypatch.chdir(tmp_path / "link")
+    write_output(Path("reports/out"), "new")
+    assert (tmp_path / "real/reports/out").read_text() == "new"
+
+
+@pytest.mark.parametrize(
+    ("kind", "ours", "foreign"),
+    [
+        (CERTIFICATE, '{\n  "schema": "nrs-design/certificate/9"', '{"schema": "other"}'),
+        (PAGE, f"{PAGE.decode()}<title>", "<!DOCTYPE html>\n<html>"),
+        (PDF, "%PDF-1.4", "kind: switched-system"),
+        (PNG, b"\x89PNG\r\n", ""),
+    ],
+)
+def test_only_a_file_of_its_kind_is_replaced(tmp_path, kind, ours, foreign):
+    path = tmp_path / "out"
+    write_output(path, ours, replaces=kind)
+    write_output(path, ours, replaces=kind)
+    path.write_text(foreign)
+    with pytest.raises(OutputError, match="not overwritten"):
+        write_output(path, ours, replaces=kind)
+    assert path.read_text() == foreign
 
 
 @pytest.mark.parametrize("target", ["there", "nowhere"])

@@ -18,7 +18,9 @@ from nrs_design.certificates.evidence import (
 )
 from nrs_design.switched.system import SwitchedSystem
 
-SCHEMA = "nrs-design/certificate/2"
+SCHEMA = "nrs-design/certificate/3"
+# What says nothing about the claim, so that the id does not cover it.
+UNSIGNED = frozenset({"id", "origin"})
 
 Gains = Mapping[str, Mapping[str, str]]
 
@@ -46,7 +48,7 @@ class Certificate:
     Parameters
     ----------
     spec_name, spec_sha256 : str
-        The spec that it belongs to, and the hash of that file's bytes.
+        The spec that it belongs to, and the hash of what that file says.
     coordinates : str or None
         ``deflection`` or ``force`` for an interaction design, None for given matrices.
     gains : mapping
@@ -141,13 +143,24 @@ def to_document(certificate: Certificate) -> dict[str, Any]:
 
 
 def content_id(document: Mapping[str, Any]) -> str:
-    """Return the SHA-256 over a document in canonical form, its ``id`` left out."""
-    content = {key: value for key, value in document.items() if key != "id"}
+    """Return the SHA-256 over a document in canonical form, its ``id`` and origin left out."""
+    content = {key: value for key, value in document.items() if key not in UNSIGNED}
     canonical = json.dumps(content, sort_keys=True, separators=(",", ":"), ensure_ascii=True)
     return hashlib.sha256(canonical.encode()).hexdigest()
 
 
-def dump(certificate: Certificate) -> str:
-    """Return the text of the certificate file."""
+def dump(certificate: Certificate, origin: str | None = None) -> str:
+    """Return the text of the certificate file.
+
+    Parameters
+    ----------
+    certificate : Certificate
+        What is written.
+    origin : str, optional
+        Where its spec is, seen from the file; see `nrs_design.ownership`.
+    """
     document = to_document(certificate)
-    return json.dumps({**document, "id": content_id(document)}, indent=2, ensure_ascii=True) + "\n"
+    document["id"] = content_id(document)
+    if origin is not None:
+        document["origin"] = origin
+    return json.dumps(document, indent=2, ensure_ascii=True) + "\n"

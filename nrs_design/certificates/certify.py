@@ -22,7 +22,6 @@ from nrs_design.certificates.checker import Checker
 from nrs_design.certificates.evidence import (
     AbstractEvidence,
     BlockTriangular,
-    CommonPolynomial,
     Shows,
 )
 from nrs_design.certificates.evidence.block_triangular import diagonal_block
@@ -41,6 +40,7 @@ from nrs_design.certificates.search.polynomial import highest_degree, polynomial
 from nrs_design.certificates.search.rungs import (
     Finding,
     Rung,
+    decide_one_state,
     examine_every_mode,
     examine_suspicious_modes,
     prove_obstruction,
@@ -59,7 +59,7 @@ from nrs_design.certificates.search.rungs import (
 )
 from nrs_design.certificates.search.structure import merge_equal_modes, triangular_blocks
 from nrs_design.certificates.second_opinion import confirm
-from nrs_design.errors import DesignError, InternalError
+from nrs_design.errors import DesignError, InternalError, TooLargeError
 from nrs_design.switched.system import Mode, SwitchedSystem, Time
 
 Progress = Callable[[str], None]
@@ -209,7 +209,7 @@ def certify(
             for left, block in zip(range(len(blocks), 0, -1), blocks, strict=True)
         ]
         result = _combine(merged, blocks, parts)
-    statements = tuple(spread(statement, merged, system) for statement in result.statements)
+    statements = _spread(result.statements, merged, system)
     for statement in statements:
         if fault := checker.find_fault(statement):
             raise InternalError(f"the search returned evidence that does not hold: {fault}")
@@ -234,7 +234,7 @@ def _certify_block(
     return replace(
         result,
         system=full,
-        statements=tuple(spread(statement, merged, full) for statement in result.statements),
+        statements=_spread(result.statements, merged, full),
     )
 
 
@@ -276,11 +276,13 @@ def _rungs(
     wanted = _applicable(system) if method is Method.AUTO else {method}
     if system.is_uniform:
         yield "suspicious modes", examine_suspicious_modes
-    if Method.LMI in wanted:
+    if Method.LMI in wanted and system.order == 1:
+        yield "one state", decide_one_state
+    elif Method.LMI in wanted:
         yield "lmi", partial(search_by_lmi, optimize_rate=limits.optimize_rate)
     if Method.OBSTRUCTION in wanted:
         yield "obstruction", prove_obstruction
-    if Method.LMI in wanted and not remarks:
+    if Method.LMI in wanted and system.order > 1 and not remarks:
         # The solver may have stalled: other coordinates, before giving up on quadratics.
         yield "lmi, raw", search_raw
         yield "lmi, preconditioned", search_preconditioned
@@ -399,6 +401,8 @@ def _take(rung: Rung, family: Family) -> Finding:
     try:
         with floats_in_silence():
             return rung(family)
+    except TooLargeError as error:
+        return None, f"not tried: {error.message}"
     except NotAffordableError as reason:
         return None, str(reason)
     except (LinAlgError, OverflowError) as error:
@@ -413,6 +417,15 @@ def _conclude(
 ) -> Certification:
     status = common_quadratic_of(system, statements)
     return Certification(system, verdict_of(statements), status, method, statements, attempts)
+
+
+def _spread(
+    statements: tuple[AbstractEvidence, ...], merged: SwitchedSystem, system: SwitchedSystem
+) -> tuple[AbstractEvidence, ...]:
+    """Carry evidence over from merged modes to all modes."""
+    if merged is system:
+        return statements
+    return tuple(statement.spread(merged, system) for statement in statements)
 
 
 def _combine(
@@ -437,30 +450,3 @@ def _combine(
                 statements.append(BlockTriangular(blocks, ((k, statement),)))
     method = "blocks: " + ", ".join(dict.fromkeys(part.method for part in parts))
     return _conclude(system, method, tuple(statements), attempts)
-
-
-def spread(
-    statement: AbstractEvidence, merged: SwitchedSystem, system: SwitchedSystem
-) -> AbstractEvidence:
-    """Carry evidence over from merged modes to all of them.
-
-    Only polynomial functions hold numbers for every mode; names of modes stay valid.
-    """
-    if isinstance(statement, CommonPolynomial) and len(merged.modes) < len(system.modes):
-        forms = {m.A: N for m, N in zip(merged.modes, statement.vanishing, strict=True)}
-        return replace(statement, vanishing=tuple(forms[mode.A] for mode in system.modes))
-    if isinstance(statement, BlockTriangular):
-        return replace(
-            statement,
-            parts=tuple(
-                (k, _spread_part(part, statement.blocks[k], merged, system))
-                for k, part in statement.parts
-            ),
-        )
-    return statement
-
-
-def _spread_part(
-    part: AbstractEvidence, block: tuple[int, ...], merged: SwitchedSystem, system: SwitchedSystem
-) -> AbstractEvidence:
-    return spread(part, diagonal_block(merged, block), diagonal_block(system, block))

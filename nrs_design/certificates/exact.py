@@ -11,16 +11,22 @@ neither definiteness nor the Hurwitz property, so all tests run on integers.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from fractions import Fraction
 from itertools import accumulate, combinations_with_replacement
-from math import gcd
+from math import gcd, lcm
 from operator import mul, sub
 
 IntegerMatrix = Sequence[Sequence[int]]
 
 # Elimination takes about rows^3 steps on numbers that grow with rows times bits: seconds at this.
 MAX_WORK = 10**8
+# The characteristic polynomial takes about n^4 products of numbers with up to n times bits.
+MAX_SPECTRUM_WORK = 10**9
+# From this length on, the time of such a product grows faster than the length.
+LONG_BITS = 3000
+# Modes over a longer common denominator are not added up.
+MAX_DENOMINATOR_BITS = 10**5
 
 # Bits of the smallest diagonal entry in the elimination with rounded numbers: one digit of Python.
 CLEAR_BITS = 28
@@ -33,12 +39,36 @@ def is_symmetric(M: IntegerMatrix) -> bool:
 
 def is_too_large(M: IntegerMatrix) -> bool:
     """Tell whether deciding anything about a matrix would take more than some seconds."""
-    return len(M) ** 3 * _bits(M) > MAX_WORK
+    return len(M) ** 3 * bit_length(M) > MAX_WORK
 
 
-def _bits(M: IntegerMatrix) -> int:
+def spectrum_work(order: int, bits: int) -> int:
+    """Predict what deciding where eigenvalues are takes; `MAX_SPECTRUM_WORK` is some seconds.
+
+    Parameters
+    ----------
+    order : int
+        Rows of the integer matrix.
+    bits : int
+        Its entries, and its denominator if that counts, are smaller in size than ``2^bits``.
+    """
+    longest = order * bits
+    return order**3 * longest * (LONG_BITS + longest) // LONG_BITS
+
+
+def bit_length(M: IntegerMatrix) -> int:
     """Return b such that all entries are smaller in size than ``2^b``."""
     return max((max(map(int.bit_length, row)) for row in M if row), default=0)
+
+
+def common_denominator(denominators: Iterable[int]) -> int | None:
+    """Return the least common multiple, or None where it is too long to work with."""
+    common = 1
+    for denominator in denominators:
+        common = lcm(common, denominator)
+        if common.bit_length() > MAX_DENOMINATOR_BITS:
+            return None
+    return common
 
 
 def add(left: IntegerMatrix, right: IntegerMatrix, weight: int = 1) -> list[list[int]]:
@@ -163,7 +193,7 @@ def multiply(left: IntegerMatrix, right: IntegerMatrix) -> list[list[int]]:
     """
     if any(len(row) != len(right) for row in left):
         raise ValueError("a product needs as many columns on the left as rows on the right")
-    width = _bits(left) + _bits(right) + len(right).bit_length() + 1
+    width = bit_length(left) + bit_length(right) + len(right).bit_length() + 1
     half, mask = 1 << (width - 1), (1 << width) - 1
     shifts = range(0, width * len(right[0]), width)
     long_rows = [sum([a << shift for a, shift in zip(row, shifts, strict=True)]) for row in right]

@@ -8,7 +8,9 @@ from fractions import Fraction
 from typing import TYPE_CHECKING
 
 from nrs_design.certificates.certificate import Verdict
+from nrs_design.certificates.evidence import BlockTriangular, UnstableMode
 from nrs_design.errors import AssemblyError
+from nrs_design.spec.switching import LONGEST_DWELL
 from nrs_design.switched.system import SwitchedSystem
 
 if TYPE_CHECKING:
@@ -20,6 +22,8 @@ DWELL_STEPS = 12
 # A box that is not decided is slow to try: fewer steps for the smallest one that is refuted.
 REFUTED_STEPS = 6
 DOUBLINGS = 3
+# Proofs for ever shorter dwell times, but none for zero: enough of them.
+HALVINGS = 64
 
 Assemble = Callable[[Fraction], SwitchedSystem]
 Certify = Callable[[SwitchedSystem], "Certification"]
@@ -47,7 +51,9 @@ class BoxMargin:
     proof: Certification | None
 
 
-def find_margin(assemble: Assemble, certify: Certify) -> BoxMargin:
+def find_margin(
+    assemble: Assemble, certify: Certify, known: Certification | None = None
+) -> BoxMargin:
     """Bracket the largest provable scale and the smallest refutable one, then bisect both.
 
     A proof for a box is a proof for every smaller one, and a refutation is one for every larger
@@ -60,9 +66,13 @@ def find_margin(assemble: Assemble, certify: Certify) -> BoxMargin:
         Gives the system for a scale; an AssemblyError says that the scale makes no sense.
     certify : callable
         Decides a system.
+    known : Certification, optional
+        What was found at scale 1, perhaps by a longer search: no worse is reported.
     """
     tried = _Tried(lambda scale: _try(scale, assemble, certify))
-    if not tried.is_proved(Fraction(0)):
+    if known is not None:
+        tried.remember(Fraction(1), known)
+    if not tried.that_are(Verdict.PROVED) and not tried.is_proved(Fraction(0)):
         return BoxMargin(None, Fraction(0) if tried.is_refuted(Fraction(0)) else None, None)
     high = Fraction(1)
     while high <= LARGEST_SCALE and tried.is_proved(high):
@@ -114,6 +124,9 @@ class _Tried:
             self._outcomes[number] = self._decide(number)
         return self._outcomes[number]
 
+    def remember(self, number: Fraction, found: Certification) -> None:
+        self._outcomes[number] = found.verdict, found
+
     def is_proved(self, number: Fraction) -> bool:
         return self(number)[0] is Verdict.PROVED
 
@@ -153,35 +166,42 @@ class DwellMargin:
     Parameters
     ----------
     proved : Fraction or None
-        Shortest dwell time that was proved, in s (discrete time: steps); zero if arbitrary
-        switching is stable; None if none was.
+        Shortest dwell time that was proved, in s; zero if arbitrary switching is stable; None if
+        none was.
     refuted : Fraction or None
-        Longest shorter one that was refuted.
+        Longest one that was refuted.
     proof : Certification or None
         At `proved`.
+    longest : Fraction
+        Longest dwell time that the search has decided about, from zero on.
     """
 
     proved: Fraction | None
     refuted: Fraction | None
     proof: Certification | None
+    longest: Fraction
 
 
-def find_shortest_dwell(system: SwitchedSystem, certify: Certify, start: Fraction) -> DwellMargin:
+def find_shortest_dwell(
+    system: SwitchedSystem, certify: Certify, known: Certification | None = None
+) -> DwellMargin:
     """Find the largest switching rate that has a proof: the shortest provable dwell time.
 
     Parameters
     ----------
     system : SwitchedSystem
-        Its own dwell times are left out of account; it has no longest ones.
+        With its own dwell time, perhaps zero; it has no longest ones.
     certify : callable
         Decides a system.
-    start : Fraction
-        A time of the order of the modes' own, in s.
+    known : Certification, optional
+        What was found for the system as it stands, perhaps by a longer search: no worse is
+        reported.
 
     Notes
     -----
-    The bracket is found by doubling, then bisected. A proof for a dwell time is one for every
-    longer one, and a refutation one for every shorter one.
+    A proof for a dwell time is one for every longer one, and a refutation one for every shorter
+    one. The bracket begins at what is known; it is widened by doubling up to the longest dwell
+    time that a spec can declare, or narrowed by halving, and then bisected.
     """
 
     def decide(dwell: Fraction) -> Outcome:
@@ -189,23 +209,57 @@ def find_shortest_dwell(system: SwitchedSystem, certify: Certify, start: Fractio
         found = certify(replace(system, switching=switching))
         return found.verdict, found
 
-    tried = _Tried(decide)
+    tried, longest = _Tried(decide), Fraction(LONGEST_DWELL)
+    if known is not None:
+        tried.remember(system.switching.dwell_time, known)
     if tried.is_proved(Fraction(0)):
-        return DwellMargin(Fraction(0), None, tried.certification(Fraction(0)))
-    high = start
-    while high <= LARGEST_SCALE * start and not tried.is_proved(high):
-        high *= 2
-    if high > LARGEST_SCALE * start:
-        refuted = max(tried.that_are(Verdict.REFUTED), default=None)
-        return DwellMargin(None, refuted, None)
-    low = max(dwell for dwell in tried.all() if dwell < high)
-    high = _sharpen(high, low, DWELL_STEPS, tried.is_proved)
-    return DwellMargin(high, _longest_refuted(tried), tried.certification(high))
+        return DwellMargin(Fraction(0), None, tried.certification(Fraction(0)), tried.largest())
+    if _has_unstable_mode(tried.certification(Fraction(0))):
+        return DwellMargin(None, longest, None, longest)
+    proved = min(tried.that_are(Verdict.PROVED), default=None) or _widen(tried, system)
+    if proved is None:
+        return DwellMargin(None, _longest_refuted(tried), None, longest)
+    for _ in range(HALVINGS):
+        if not tried.is_proved(proved / 2):
+            break
+        proved /= 2
+    low = max(dwell for dwell in tried.all() if dwell < proved)
+    proved = _sharpen(proved, low, DWELL_STEPS, tried.is_proved)
+    return DwellMargin(
+        proved, _longest_refuted(tried), tried.certification(proved), tried.largest()
+    )
+
+
+def _has_unstable_mode(found: Certification | None) -> bool:
+    """Tell whether a refutation holds for every dwell time."""
+    evidence = None if found is None else found.evidence
+    if isinstance(evidence, BlockTriangular):
+        evidence = evidence.parts[0][1]
+    return isinstance(evidence, UnstableMode)
+
+
+def _widen(tried: _Tried, system: SwitchedSystem) -> Fraction | None:
+    """Double the dwell time until it is proved, from the modes' own time or what is refuted."""
+    dwell = max((*tried.that_are(Verdict.REFUTED), _fastest_time(system)))
+    while dwell < LONGEST_DWELL:
+        if tried.is_proved(dwell):
+            return dwell
+        dwell *= 2
+    longest = Fraction(LONGEST_DWELL)
+    return longest if tried.is_proved(longest) else None
+
+
+def _fastest_time(system: SwitchedSystem) -> Fraction:
+    """Return a power of two near one over the largest entry of all modes, in s."""
+    entries = (abs(e) for mode in system.modes for row in mode.A.fractions() for e in row)
+    largest = max(entries, default=Fraction(0)) or Fraction(1)
+    size = largest.denominator.bit_length() - largest.numerator.bit_length()
+    return Fraction(2) ** size
 
 
 def _longest_refuted(tried: _Tried) -> Fraction | None:
     refuted = max(tried.that_are(Verdict.REFUTED), default=None)
-    if refuted is None:
-        return None
-    above = min(dwell for dwell in tried.all() if dwell > refuted)
-    return _sharpen(refuted, above, REFUTED_STEPS, tried.is_refuted)
+    above = [dwell for dwell in tried.all() if refuted is not None and dwell > refuted]
+    if refuted is None or not above:
+        return refuted
+    return _sharpen(refuted, min(above), REFUTED_STEPS, tried.is_refuted)

@@ -14,20 +14,23 @@ from typing import Any, NoReturn
 
 from nrs_design.certificates.certificate import (
     SCHEMA,
+    UNSIGNED,
     Certificate,
     content_id,
     to_document,
 )
-from nrs_design.certificates.evidence import AbstractEvidence, read_evidence
+from nrs_design.certificates.evidence import AbstractEvidence, Shows, read_evidence
 from nrs_design.certificates.evidence.fields import read_text
 from nrs_design.certificates.second_opinion import confirm
 from nrs_design.errors import CertificateError, NrsDesignError
+from nrs_design.files import open_regular
 from nrs_design.spec import LoadedSpec
 from nrs_design.spec.exact import quoted
 from nrs_design.switched.assemble import assemble
 from nrs_design.switched.system import SwitchedSystem
 
 MAX_BYTES = 256 * 2**20
+MAX_VERDICTS = 2
 # What a hostile document can raise before the exact check: all of it means rejection.
 _MALFORMED = (
     LookupError,
@@ -107,6 +110,12 @@ def read_document(path: Path) -> dict[str, Any]:
     except OSError as error:
         raise CertificateError(f"cannot be read ({error.strerror})", path=path) from error
     except (ValueError, RecursionError) as error:
+        if path.name.endswith((".yaml", ".yml")):
+            raise CertificateError(
+                "this is a spec, not a certificate",
+                path=path,
+                remedy="name the certificate first: nrs-design verify CERT SPEC",
+            ) from error
         raise CertificateError(
             f"not a certificate: {error}", path=path, remedy="make it with certify-switching --out"
         ) from error
@@ -119,7 +128,7 @@ def _read_bytes(path: Path) -> bytes:
     """Read a whole file, but never an endless one."""
     if path.exists() and not (path.is_file() or path.is_dir()):
         raise CertificateError("is not a regular file", path=path)
-    with path.open("rb") as file:
+    with open_regular(path) as file:
         content = file.read(MAX_BYTES + 1)
     if len(content) > MAX_BYTES:
         raise CertificateError("larger than any certificate", path=path)
@@ -133,7 +142,7 @@ def _find_foreign(
     if document.get("id") != content_id(document):
         return "its content does not match its id: it was altered"
     if document.get("schema") != SCHEMA:
-        return f"its schema is not {SCHEMA}"
+        return f"its schema is not {SCHEMA}: another version of nrs-design made it, make it anew"
     if document.get("spec") != {"name": spec.spec.name, "sha256": spec.sha256}:
         return "it belongs to another spec, or the spec has changed since"
     wanted = coordinates or getattr(spec.spec, "coordinates", None)
@@ -160,7 +169,12 @@ def _rebuild(document: Mapping[str, Any], spec: LoadedSpec) -> Certificate:
 def _statements(
     document: Mapping[str, Any], system: SwitchedSystem
 ) -> tuple[AbstractEvidence, ...]:
+    # Each may take seconds: a verdict and a remark on every block, said twice, are enough.
+    if len(document["statements"]) > 2 * (1 + system.order):
+        raise ValueError("it makes too many statements")
     statements = tuple(read_evidence(fields, system) for fields in document["statements"])
+    if sum(item.shows is not Shows.NO_COMMON_QUADRATIC for item in statements) > MAX_VERDICTS:
+        raise ValueError("it states its verdict too often")
     if not statements:
         raise ValueError("it states nothing")
     return statements
@@ -168,7 +182,7 @@ def _statements(
 
 def _find_difference(document: Mapping[str, Any], certificate: Certificate) -> str | None:
     expected = to_document(certificate)
-    for key in sorted(expected.keys() | (document.keys() - {"id"})):
+    for key in sorted(expected.keys() | (document.keys() - UNSIGNED)):
         # Membership too: a missing field is not the same as one that is null.
         if (key in document) != (key in expected) or _text_of(document, key) != _text_of(
             expected, key

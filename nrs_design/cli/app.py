@@ -8,13 +8,16 @@ import os
 import sys
 from collections.abc import Iterable
 from importlib import import_module
-from pathlib import Path
 from typing import Annotated
 
 import typer
 
 from nrs_design import __version__
 from nrs_design.cli import exit_codes
+from nrs_design.cli.errors import print_error, summary
+from nrs_design.cli.groups import CommandGroup
+from nrs_design.cli.printing import note, print_json
+from nrs_design.cli.streams import lasting
 from nrs_design.errors import NrsDesignError
 
 # Each is in the module of its name; the help lists them in this order.
@@ -57,6 +60,7 @@ def make_app(names: Iterable[str] = COMMANDS) -> typer.Typer:
     """
     app = typer.Typer(
         name="nrs-design",
+        cls=CommandGroup,
         no_args_is_help=True,
         pretty_exceptions_enable=False,
         context_settings={"help_option_names": ["-h", "--help"]},
@@ -91,27 +95,14 @@ def _root(
     """Hold the options of the program itself."""
 
 
-def _open_closed_streams() -> None:
-    """Give the program the streams that its caller has closed, so that it can print in vain."""
-    nowhere = Path(os.devnull)
-    sys.stdout = sys.stdout or nowhere.open("w")
-    sys.stderr = sys.stderr or nowhere.open("w")
-
-
 def _run() -> None:
-    """Run the commands and flush, so that a verdict that was not delivered is no success.
-
-    Click ends with exit code 1 when the reader of the output has gone: not our "refuted".
-    """
+    """Run the commands and flush, so that a verdict that was not delivered is no success."""
     named = sys.argv[1:2]
     app = make_app(named if set(named) & set(COMMANDS) else COMMANDS)
     try:
         app()
-    except SystemExit as end:
-        if isinstance(end.__context__, BrokenPipeError):
-            raise end.__context__ from None
+    finally:
         sys.stdout.flush()
-        raise
 
 
 def main() -> None:
@@ -121,27 +112,27 @@ def main() -> None:
     gc.set_threshold(COLLECT_AFTER)
     # Nor is what is left at the end worth a search for garbage.
     atexit.register(gc.freeze)
-    _open_closed_streams()
+    sys.stdout, sys.stderr = lasting(sys.stdout), lasting(sys.stderr)
     try:
         _run()
     except NrsDesignError as error:
-        print(f"error[{error.rule}]: {error}", file=sys.stderr)
+        if "--json" in sys.argv:
+            print_json("error", summary(error))
+        print_error(error)
         sys.exit(exit_codes.USAGE)
     except OSError as error:
         # What could not be written must not be tried again at exit.
         os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
-        # Where the reader of our output has gone, there is nobody left to tell.
-        if not isinstance(error, BrokenPipeError):
-            print(f"error: the output cannot be written ({error.strerror})", file=sys.stderr)
+        note(f"error: the output cannot be written ({error.strerror})")
         sys.exit(exit_codes.USAGE)
     except Exception as error:
         if "-v" in sys.argv or "--verbose" in sys.argv:
             import traceback
 
-            traceback.print_exc()
-        print(
+            for line in traceback.format_exc().split("\n"):
+                note(line)
+        note(
             f"internal error: {type(error).__name__}: {error} (a defect of nrs-design, not a "
-            "verdict; run again with -v and report what it prints)",
-            file=sys.stderr,
+            "verdict; run again with -v and report what it prints)"
         )
         sys.exit(exit_codes.INTERNAL)

@@ -19,9 +19,11 @@ from nrs_design.cli.options import (
     SpecFile,
     Verbose,
 )
-from nrs_design.cli.printing import note, print_json, progress
+from nrs_design.cli.printing import note, print_json, progress, say
 
 if TYPE_CHECKING:
+    from fractions import Fraction
+
     from nrs_design.certificates.margin import BoxMargin, DwellMargin
     from nrs_design.pipeline import Result
 
@@ -79,7 +81,8 @@ def certify_switching(
     """
     from nrs_design.certificates.certificate import dump
     from nrs_design.certificates.certify import Method
-    from nrs_design.output import write_output
+    from nrs_design.output import CERTIFICATE, write_output
+    from nrs_design.ownership import check_certificate, origin_of
     from nrs_design.pipeline import (
         Overrides,
         limits_of,
@@ -90,6 +93,8 @@ def certify_switching(
     from nrs_design.spec import read_spec
 
     loaded = read_spec(spec)
+    path = out or Path("reports") / f"{loaded.spec.name}.cert.json"
+    check_certificate(spec, path)
     limits = limits_of(loaded.spec, Overrides(max_degree, budget, memory), optimize_rate)
     with progress(f"certifying {loaded.spec.name}", quiet=quiet) as step:
         result = run_certification(
@@ -101,14 +106,13 @@ def certify_switching(
         )
         box = run_margin(result, limits, step) if margin else None
         dwell = run_shortest_dwell(result, limits, step) if shortest_dwell else None
-    path = None
     if result.certificate is not None:
-        path = out or Path("reports") / f"{loaded.spec.name}.cert.json"
-        write_output(path, dump(result.certificate))
+        write_output(path, dump(result.certificate, origin_of(spec, path)), replaces=CERTIFICATE)
+    written = None if result.certificate is None else path
     if as_json:
-        print_json("certify-switching", summary(result, path) | margins_summary(box, dwell))
-    else:
-        _print(result, path, quiet=quiet, verbose=verbose)
+        print_json("certify-switching", summary(result, written) | margins_summary(box, dwell))
+    elif not quiet:
+        _print(result, written, verbose=verbose)
         _print_margin(box)
         _print_dwell(dwell)
     raise typer.Exit(exit_codes.OF_VERDICT[str(result.certification.verdict)])
@@ -130,7 +134,7 @@ def summary(result: Result, path: Path | None) -> dict[str, Any]:
             for statement in certification.statements
         ],
         "method": certification.method,
-        "decay_rate": None if rate is None else float(rate),
+        "decay_rate": None if rate is None else _safe_float(rate, certification.system.time),
         "decay_rate_exact": None if rate is None else str(rate),
         "decay_rate_limit": certification.rate_limit,
         "decay_rate_unit": "1/s" if certification.system.time == "continuous" else "1 per step",
@@ -149,19 +153,36 @@ def summary(result: Result, path: Path | None) -> dict[str, Any]:
     }
 
 
+def _safe_float(rate: Fraction, time: str) -> float:
+    """Return a double on the side of slower decay."""
+    from nrs_design.spec.bounds import lower_float, upper_float
+
+    return lower_float(rate) if time == "continuous" else upper_float(rate)
+
+
 def margins_summary(box: BoxMargin | None, dwell: DwellMargin | None) -> dict[str, Any]:
-    """Return what ``--json`` prints about the margins that were asked for."""
+    """Return what ``--json`` prints about the margins that were asked for.
+
+    Every double is on the side that stays true; beside it is the exact number.
+    """
+    from nrs_design.spec.bounds import lower_float, upper_float
+
     content: dict[str, Any] = {}
     if box is not None:
         content["margin"] = {
-            "proved_scale": None if box.proved is None else float(box.proved),
-            "refuted_scale": None if box.refuted is None else float(box.refuted),
+            "proved_scale": None if box.proved is None else lower_float(box.proved),
+            "proved_scale_exact": None if box.proved is None else str(box.proved),
+            "refuted_scale": None if box.refuted is None else upper_float(box.refuted),
+            "refuted_scale_exact": None if box.refuted is None else str(box.refuted),
             "method": box.proof.method if box.proof else None,
         }
     if dwell is not None:
         content["shortest_dwell"] = {
-            "proved": None if dwell.proved is None else float(dwell.proved),
-            "refuted": None if dwell.refuted is None else float(dwell.refuted),
+            "proved": None if dwell.proved is None else upper_float(dwell.proved),
+            "proved_exact": None if dwell.proved is None else str(dwell.proved),
+            "refuted": None if dwell.refuted is None else lower_float(dwell.refuted),
+            "refuted_exact": None if dwell.refuted is None else str(dwell.refuted),
+            "longest_tried": lower_float(dwell.longest),
             "unit": "s",
             "method": dwell.proof.method if dwell.proof else None,
         }
@@ -169,51 +190,53 @@ def margins_summary(box: BoxMargin | None, dwell: DwellMargin | None) -> dict[st
 
 
 def _print_margin(box: BoxMargin | None) -> None:
+    from nrs_design.spec.bounds import rounded_down, rounded_up
+
     if box is None:
         return
     if box.proved is None or box.proof is None:
-        print("  largest box: not even the nominal values are proved")
+        say("  largest box: not even the nominal values are proved")
         return
-    beyond = (
-        f"; scaled by {float(box.refuted):.6g} they are refuted" if box.refuted is not None else ""
-    )
-    print(
-        f"  largest box: scaled by {float(box.proved):.6g} about their nominal values, all ranges "
-        f"are proved ({box.proof.method}){beyond}"
+    beyond = ""
+    if box.refuted is not None:
+        beyond = f"; scaled by {rounded_up(box.refuted)} they are refuted"
+    say(
+        f"  largest box: scaled by {rounded_down(box.proved)} about their nominal values, all "
+        f"ranges are proved ({box.proof.method}){beyond}"
     )
 
 
 def _print_dwell(dwell: DwellMargin | None) -> None:
+    from nrs_design.spec.bounds import rounded_down, rounded_up
+
     if dwell is None:
         return
-    if dwell.proved is None or dwell.proof is None:
-        print("  shortest dwell time: none was proved")
-        return
-    below = f"; {float(dwell.refuted):.6g} s is refuted" if dwell.refuted is not None else ""
-    proved = f"{float(dwell.proved):.6g} s is proved ({dwell.proof.method})"
-    print(f"  shortest dwell time: {proved}{below}")
+    proved = f"none was proved up to {rounded_down(dwell.longest, 's')}, where the search ended"
+    if dwell.proved is not None and dwell.proof is not None:
+        proved = f"{rounded_up(dwell.proved, 's')} is proved ({dwell.proof.method})"
+    refuted = "" if dwell.proved == 0 else "; none was refuted"
+    if dwell.refuted is not None:
+        refuted = f"; {rounded_down(dwell.refuted, 's')} and all shorter ones are refuted"
+    say(f"  shortest dwell time: {proved}{refuted}")
 
 
-def _print(result: Result, path: Path | None, *, quiet: bool, verbose: bool) -> None:
+def _print(result: Result, path: Path | None, *, verbose: bool) -> None:
     certification = result.certification
     name = result.loaded.spec.name
-    print(
-        f"{name}: {str(certification.verdict).upper()} "
-        f"(common quadratic function: {certification.common_quadratic})"
-    )
-    if quiet:
-        return
+    verdict = str(certification.verdict)
+    exists = f"(common quadratic function: {certification.common_quadratic})"
+    say(f"{name}: {verdict.upper()} {exists}", verdict=verdict)
     for statement in certification.statements:
-        print(f"  {statement.claim(certification.system)}")
+        say(f"  {statement.claim(certification.system)}")
     if certification.evidence is None:
-        print("  Neither a proof nor a refutation was found; this is not a statement of stability.")
+        say("  Neither a proof nor a refutation was found; this is not a statement of stability.")
     if verbose or certification.evidence is None:
         for attempt in certification.attempts:
-            print(f"  {attempt.step}: {attempt.outcome} ({attempt.seconds * 1e3:.1f} ms)")
-    print("  modes: " + ", ".join(_shortened([m.name for m in certification.system.modes])))
-    print("  taken for granted:")
+            say(f"  {attempt.step}: {attempt.outcome} ({attempt.seconds * 1e3:.1f} ms)")
+    say("  modes: " + ", ".join(_shortened([m.name for m in certification.system.modes])))
+    say("  taken for granted:")
     for assumption in certification.system.assumptions:
-        print(f"    - {assumption}")
+        say(f"    - {assumption}")
     if path is not None:
         note(f"certificate written to {path}")
 

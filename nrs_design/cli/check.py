@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-import sys
 from pathlib import Path
 from typing import Annotated, Any
 
 import typer
 
 from nrs_design.cli import exit_codes
+from nrs_design.cli.errors import print_error, summary
 from nrs_design.cli.options import Json, Quiet
-from nrs_design.cli.printing import print_json, print_table
+from nrs_design.cli.printing import note, print_json
+from nrs_design.cli.tables import print_table
 from nrs_design.errors import NrsDesignError
 
 
@@ -28,12 +29,15 @@ def check(
         try:
             results.append(_understood(path))
         except NrsDesignError as error:
-            results.append(_fault(path, error))
+            results.append({"valid": False, **summary(error), "path": str(path)})
             if not as_json:
-                print(f"error[{error.rule}]: {error}", file=sys.stderr)
+                print_error(error)
             continue
         if not as_json and not quiet:
             _print(results[-1])
+        if not as_json:
+            for text in results[-1]["warnings"]:
+                note(f"warning: {text}", quiet=quiet)
     if as_json:
         print_json("check", {"specs": results})
     valid = all(result["valid"] for result in results)
@@ -41,10 +45,12 @@ def check(
 
 
 def _understood(path: Path) -> dict[str, Any]:
-    from nrs_design.spec import read_spec
+    from nrs_design.gating.places import Places
+    from nrs_design.spec import doubt_spec, read_spec
     from nrs_design.spec.describe import describe
 
     loaded = read_spec(path)
+    places = Places(loaded)
     return {
         "path": str(path),
         "valid": True,
@@ -55,18 +61,11 @@ def _understood(path: Path) -> dict[str, Any]:
             {"name": row.name, "written": row.written, "si": row.value, "unit": row.unit}
             for row in describe(loaded.spec)
         ],
-    }
-
-
-def _fault(path: Path, error: NrsDesignError) -> dict[str, Any]:
-    return {
-        "path": str(path),
-        "valid": False,
-        "rule": error.rule,
-        "message": error.message,
-        "line": error.line,
-        "column": error.column,
-        "remedy": error.remedy,
+        "warnings": [
+            f"{path}:{place.line}:{place.column}: {doubt}"
+            for doubt in doubt_spec(loaded.spec)
+            for place in [places.at(*doubt.at)]
+        ],
     }
 
 

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import shutil
 import textwrap
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from nrs_design.cli.options import Json
-from nrs_design.cli.printing import print_json
+from nrs_design.cli.options import Json, Quiet
+from nrs_design.cli.printing import print_json, say
 from nrs_design.errors import NrsDesignError
 
 if TYPE_CHECKING:
@@ -22,6 +23,7 @@ def explain(
         str | None, typer.Argument(metavar="[RULE]", help="A rule (NRS102) or verdict (refuted).")
     ] = None,
     as_json: Json = False,
+    quiet: Quiet = False,
 ) -> None:
     """Explain a rule or a verdict; without one, list them all.
 
@@ -29,18 +31,20 @@ def explain(
     """
     from nrs_design.gating.rules import RULES, WORDS
 
+    if rule is not None and rule.upper() not in RULES and rule.lower() not in WORDS:
+        raise NrsDesignError(
+            f"there is no rule or verdict {rule!r}",
+            remedy="`nrs-design explain` without one lists them",
+        )
+    if quiet and not as_json:
+        return
     if rule is None:
         _list(list(RULES.values()), list(WORDS.values()), as_json=as_json)
     elif rule.upper() in RULES:
         entry = RULES[rule.upper()]
         _explain(f"{entry.id}: {entry.title}", entry, as_json=as_json)
-    elif rule.lower() in WORDS:
-        _explain(rule.lower(), WORDS[rule.lower()], as_json=as_json)
     else:
-        raise NrsDesignError(
-            f"there is no rule or verdict {rule!r}",
-            remedy="`nrs-design explain` without one lists them",
-        )
+        _explain(rule.lower(), WORDS[rule.lower()], as_json=as_json)
 
 
 def _list(rules: list[Rule], words: list[Word], *, as_json: bool) -> None:
@@ -50,9 +54,10 @@ def _list(rules: list[Rule], words: list[Word], *, as_json: bool) -> None:
         print_json("explain", {"rules": [*map(asdict, rules)], "verdicts": [*map(asdict, words)]})
         return
     for rule in rules:
-        print(f"{rule.id}  {rule.title}")
-    print("\nVerdicts: " + ", ".join(word.word for word in words))
-    print("nrs-design explain RULE says what one of them means, and what to do.")
+        say(f"{rule.id}  {rule.title}")
+    say()
+    say("Verdicts: " + ", ".join(word.word for word in words))
+    say("nrs-design explain RULE says what one of them means, and what to do.")
 
 
 def _explain(title: str, entry: Rule | Word, *, as_json: bool) -> None:
@@ -61,7 +66,10 @@ def _explain(title: str, entry: Rule | Word, *, as_json: bool) -> None:
     if as_json:
         print_json("explain", asdict(entry))
         return
-    print(title)
+    say(title)
     for heading, text in (("Meaning", entry.explanation), ("What to do", entry.remedy)):
-        print(f"\n{heading}")
-        print(textwrap.fill(text, WIDTH, initial_indent="  ", subsequent_indent="  "))
+        say()
+        say(heading)
+        width = min(WIDTH, shutil.get_terminal_size((WIDTH, 24)).columns)
+        for line in textwrap.wrap(text, width, initial_indent="  ", subsequent_indent="  "):
+            say(line)

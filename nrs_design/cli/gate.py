@@ -13,7 +13,7 @@ import typer
 from nrs_design.cli import exit_codes
 from nrs_design.cli.options import Budget, Json, MaxDegree, Memory, Quiet
 from nrs_design.cli.printing import note, progress
-from nrs_design.errors import NrsDesignError
+from nrs_design.errors import NrsDesignError, OutputError
 
 if TYPE_CHECKING:
     from nrs_design.gating.obligations import GateOutcome
@@ -29,6 +29,9 @@ OF_SEVERITY = (
     exit_codes.USAGE,
     exit_codes.INTERNAL,
 )
+
+# Folders that a note lists by name.
+SHOWN = 5
 
 
 class FormatOption(StrEnum):
@@ -54,8 +57,14 @@ def gate(
         typer.Option("--locked", help="Only re-check what is locked: no solver, nothing written."),
     ] = False,
     lock: Annotated[Path, typer.Option(help="Lock file.")] = Path("nrs.lock"),
+    prune: Annotated[
+        bool, typer.Option("--prune", help="Drop what is locked for specs that no longer exist.")
+    ] = False,
     reports: Annotated[
-        Path, typer.Option("--reports", help="Folder for certificates and HTML reports.")
+        Path,
+        typer.Option(
+            "--reports", help="Folder for certificates and HTML reports, below that of --lock."
+        ),
     ] = Path("reports"),
     no_reports: Annotated[
         bool, typer.Option("--no-reports", help="Write certificates, but no HTML reports.")
@@ -68,12 +77,15 @@ def gate(
 ) -> None:
     """Certify every spec, write certificates, reports and the lock file, and fail closed.
 
+    The lock file keeps its entries for other specs, and no file of another spec is overwritten.
+
     The exit code is that of the worst obligation: 4 before 2 before 1 before 3 before 0.
 
     Example: nrs-design gate specs
 
     Example: nrs-design gate --locked --format github specs
     """
+    from nrs_design.gating.find_specs import SUFFIXES
     from nrs_design.gating.formats import FORMATS
     from nrs_design.output import write_output
 
@@ -81,13 +93,20 @@ def gate(
         raise NrsDesignError(
             f"--json and --format {format_} exclude each other", remedy="keep one of them"
         )
+    if prune and locked:
+        raise NrsDesignError(
+            "--prune and --locked exclude each other: --locked writes nothing",
+            remedy="keep one of them",
+        )
+    if out is not None and out.name.lower().endswith(SUFFIXES):
+        raise OutputError("is the name of a spec", path=out, remedy="choose another --out")
     chosen = FormatOption.JSON if as_json else format_
     search = (max_degree, budget, memory)
     start = perf_counter()
     outcome = (
         _re_check(paths, lock, quiet=quiet)
         if locked
-        else _certify(paths, lock, reports, search, html=not no_reports, quiet=quiet)
+        else _certify(paths, lock, reports, search, html=not no_reports, prune=prune, quiet=quiet)
     )
     document = FORMATS[chosen](outcome)
     if out is not None:
@@ -95,7 +114,10 @@ def gate(
     else:
         sys.stdout.write(document)
     if out is not None or chosen is not FormatOption.TEXT:
-        note(FORMATS["text"](outcome), quiet=quiet)
+        for line in FORMATS["text"](outcome).split("\n"):
+            note(line, quiet=quiet)
+    for item in (caution for spec in outcome.specs for caution in spec.cautions):
+        note(f"warning: {item.path}:{item.line}:{item.column}: {item.message}", quiet=quiet)
     for text in outcome.notes:
         note(f"note: {text}", quiet=quiet)
     note(f"{perf_counter() - start:.1f} s", quiet=quiet)
@@ -103,17 +125,28 @@ def gate(
 
 
 def _certify(
-    paths: list[Path], lock: Path, reports: Path, search: Search, *, html: bool, quiet: bool
+    paths: list[Path],
+    lock: Path,
+    reports: Path,
+    search: Search,
+    *,
+    html: bool,
+    prune: bool,
+    quiet: bool,
 ) -> GateOutcome:
     from nrs_design.gating.find_specs import find_specs
-    from nrs_design.gating.lock import write_lock
+    from nrs_design.gating.lock import read_lock_if_any
+    from nrs_design.gating.renew import certificates_of, check_folder, write_lock
     from nrs_design.gating.run import Files, run_gate
     from nrs_design.pipeline import Overrides
 
     specs = find_specs(paths)
+    check_folder(reports, lock)
+    locked = certificates_of(read_lock_if_any(lock), lock)
     with progress("gate", quiet=quiet) as step:
-        outcome = run_gate(specs, Files(reports, html=html), step, Overrides(*search))
-    return write_lock(outcome, lock)
+        files = Files(reports, html=html, locked=locked)
+        outcome = run_gate(specs, files, step, Overrides(*search))
+    return _with_passed_over(write_lock(outcome, lock, prune=prune), paths)
 
 
 def _re_check(paths: list[Path], lock: Path, *, quiet: bool) -> GateOutcome:
@@ -123,4 +156,16 @@ def _re_check(paths: list[Path], lock: Path, *, quiet: bool) -> GateOutcome:
 
     specs, content = find_specs(paths), read_lock(lock)
     with progress("gate", quiet=quiet) as step:
-        return run_locked(specs, content, lock, step)
+        outcome = run_locked(specs, content, lock, step, named=paths)
+    return _with_passed_over(outcome, paths)
+
+
+def _with_passed_over(outcome: GateOutcome, paths: list[Path]) -> GateOutcome:
+    from nrs_design.gating.find_specs import find_passed_over
+
+    folders = find_passed_over(paths)
+    if not folders:
+        return outcome
+    listed = ", ".join(path.as_posix() for path in folders[:SHOWN])
+    more = f" and {len(folders) - SHOWN} more" if len(folders) > SHOWN else ""
+    return outcome.with_note(f"not looked into (hidden, or a link): {listed}{more}")

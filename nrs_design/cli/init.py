@@ -2,14 +2,19 @@
 
 from __future__ import annotations
 
+import re
 from enum import StrEnum
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
+from nrs_design.cli.options import Quiet
 from nrs_design.cli.printing import note
 from nrs_design.errors import OutputError
+
+# As the first line of every template says.
+SCHEMA = "nrs.schema.json"
 
 
 class TemplateOption(StrEnum):
@@ -27,8 +32,12 @@ def init(
         Path | None, typer.Option(help="File to write; default TEMPLATE.nrs.yaml.")
     ] = None,
     force: Annotated[bool, typer.Option("--force", help="Overwrite an existing file.")] = False,
+    quiet: Quiet = False,
 ) -> None:
     """Write a commented spec (interaction-design, hybrid-force, switched-system or robot).
+
+    The spec is named after its file, so that several can stand in one folder. The schema that its
+    first line names for editors is written beside it, unless it is there.
 
     Example: nrs-design init interaction-design --out my-robot.nrs.yaml
     """
@@ -38,5 +47,28 @@ def init(
     path = out or Path(f"{template}.nrs.yaml")
     if path.exists() and not force:
         raise OutputError("exists already", path=path, remedy="name another file, or add --force")
-    write_output(path, TEMPLATES[str(template)])
-    note(f"{path} written; for help in your editor: nrs-design schema --out nrs.schema.json")
+    write_output(path, named_after(path, TEMPLATES[str(template)]))
+    note(f"{path} written", quiet=quiet)
+    _write_schema(path.with_name(SCHEMA), quiet=quiet)
+
+
+def named_after(path: Path, template: str) -> str:
+    """Name a spec after its file, as far as the file's name can be a spec's."""
+    stem = path.name.removesuffix(".yaml").removesuffix(".yml").removesuffix(".nrs").lower()
+    name = re.sub("[^a-z0-9._-]+", "-", stem).strip("._-")[:64]
+    if not name:
+        return template
+    # The comment beside it stays in its column.
+    line = re.compile("^name: ([^ ]+)( *)", re.MULTILINE)
+    return line.sub(lambda m: f"name: {name} ".ljust(len(m[0])), template, count=1)
+
+
+def _write_schema(path: Path, *, quiet: bool) -> None:
+    from nrs_design.output import write_output
+    from nrs_design.spec.schema import schema_text
+
+    if not path.exists():
+        write_output(path, schema_text())
+        note(f"{path} written, for help in your editor", quiet=quiet)
+    elif path.read_text(encoding="utf-8", errors="replace") != schema_text():
+        note(f"{path} is that of another version: `nrs-design schema --out {path}` renews it")

@@ -5,9 +5,12 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Any
 
+import typer
+
+from nrs_design.cli.goals import exit_code, goals_summary, print_goals, print_warnings, warnings_of
 from nrs_design.cli.options import Json, Quiet, SpecFile
-from nrs_design.cli.printing import note, print_json, print_table, progress
-from nrs_design.errors import DesignError
+from nrs_design.cli.printing import note, print_json, progress, say
+from nrs_design.cli.tables import print_table
 
 if TYPE_CHECKING:
     from nrs_design.design.evidence import DesignEvidence, ImpedanceEvidence
@@ -16,9 +19,11 @@ if TYPE_CHECKING:
 def optimize(spec: SpecFile, as_json: Json = False, quiet: Quiet = False) -> None:
     """Optimize virtual mass Mt and damping Bt for displayed impedance and sensitivity.
 
+    Goals of the spec are respected; the exit code is 1 if gains that are given miss one.
+
     Example: nrs-design optimize specs/neuroboscope/soft-tissue.nrs.yaml
     """
-    from nrs_design.pipeline import run_design, run_evidence
+    from nrs_design.pipeline import run_design, run_evidence, wrong_kind
     from nrs_design.spec import read_spec
 
     loaded = read_spec(spec)
@@ -26,13 +31,14 @@ def optimize(spec: SpecFile, as_json: Json = False, quiet: Quiet = False) -> Non
         step("cost")
         design = run_design(loaded)
         if design is None:
-            raise DesignError(
+            raise wrong_kind(
+                loaded,
                 "a switched-system spec has nothing to design",
-                path=spec,
-                remedy="use certify-switching, or a spec of kind interaction-design",
+                "use certify-switching, or a spec of kind interaction-design",
             )
         step("margins")
         evidence = run_evidence(loaded, design)
+    warnings = warnings_of(loaded.spec, evidence)
     if as_json:
         print_json(
             "optimize",
@@ -41,12 +47,16 @@ def optimize(spec: SpecFile, as_json: Json = False, quiet: Quiet = False) -> Non
                 "spec_sha256": loaded.sha256,
                 "motion_loop": motion_summary(evidence),
                 "controllers": [_summary(item) for item in evidence.impedance],
+                "warnings": warnings,
             },
         )
-        return
-    if not evidence.impedance:
-        note("no impedance controllers in this spec; see nrs-design tune for the others")
-    _print(loaded.spec.name, evidence)
+    elif not quiet:
+        if not evidence.impedance:
+            note("no impedance controllers in this spec; see nrs-design tune for the others")
+        _print(loaded.spec.name, evidence)
+        print_goals(loaded.spec.name, evidence.impedance)
+        print_warnings(warnings, quiet=quiet)
+    raise typer.Exit(exit_code(evidence.impedance))
 
 
 def motion_summary(evidence: DesignEvidence) -> dict[str, Any]:
@@ -74,6 +84,7 @@ def _summary(item: ImpedanceEvidence) -> dict[str, Any]:
         "delay_margin_s": finite(margins.delay_margin),
         "disk_margin": finite(margins.disk_margin),
         "stiffness_limit": finite(margins.stiffness_limit),
+        "goals": goals_summary(item),
         "units": {
             "Mt": "kg*m^2",
             "Bt": "N*m*s/rad",
@@ -93,7 +104,7 @@ def _print(name: str, evidence: DesignEvidence) -> None:
     source = (
         "designed by root locus" if evidence.motion_source == "designed" else "given in the spec"
     )
-    print(f"{name}: G(s) = ({_polynomial(G.numerator)}) / ({_polynomial(G.denominator)}), {source}")
+    say(f"{name}: G(s) = ({_polynomial(G.numerator)}) / ({_polynomial(G.denominator)}), {source}")
     columns = [
         "controller",
         "Zdes\nN m s/rad",

@@ -1,42 +1,54 @@
-"""Printing: results on stdout, progress and notes on stderr."""
+"""Printing: results on stdout, progress and notes on stderr.
+
+Here text leaves the program, and nowhere else in the command line: names and messages may come
+from files that strangers wrote, so every line and every cell is made `printable`.
+"""
 
 from __future__ import annotations
 
-import json
+import shutil
 import sys
-from collections.abc import Callable, Iterator, Sequence
+import textwrap
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from typing import Any
+from typing import Any, TextIO
 
-# Output into a file or a pipe: wide enough that no table is folded.
-WIDE = 160
+from nrs_design.cli.colour import OF_VERDICT, painted
+from nrs_design.printable import json_text, printable
 
 
 def print_json(command: str, content: dict[str, Any]) -> None:
     """Print the versioned envelope of a command."""
     envelope = {"schema": f"nrs-design/{command}/1", **content}
-    print(json.dumps(envelope, indent=2, ensure_ascii=True, allow_nan=False))
+    print(json_text(envelope, allow_nan=False))
 
 
-def print_table(title: str, columns: Sequence[str], rows: Sequence[Sequence[str]]) -> None:
-    """Print a plain table; a cell is never cut, only folded where the terminal is narrow."""
-    from rich.box import SIMPLE_HEAD
-    from rich.console import Console
-    from rich.table import Table
-
-    table = Table(title=title or None, title_justify="left", box=SIMPLE_HEAD, pad_edge=False)
-    for column in columns:
-        table.add_column(column, overflow="fold")
-    for row in rows:
-        table.add_row(*row)
-    width = None if sys.stdout.isatty() else WIDE
-    Console(width=width, markup=False, highlight=False).print(table)
+def say(line: str = "", *, verdict: str = "") -> None:
+    """Print one line of the result; the verdict in it, in capitals, is coloured on a terminal."""
+    text = wrapped(printable(line), sys.stdout)
+    word = verdict.upper()
+    print(text.replace(word, painted(word, OF_VERDICT[verdict], sys.stdout), 1) if word else text)
 
 
-def note(text: str, *, quiet: bool = False) -> None:
-    """Print a note on stderr."""
+def note(line: str, *, quiet: bool = False) -> None:
+    """Print one line on stderr."""
     if not quiet:
-        print(text, file=sys.stderr)
+        print(wrapped(printable(line), sys.stderr), file=sys.stderr)
+
+
+def wrapped(line: str, stream: TextIO, hanging: int = 2) -> str:
+    """Break a line between words, as wide as the terminal is; a pipe gets it whole."""
+    if not stream.isatty():
+        return line
+    indent = " " * (len(line) - len(line.lstrip(" ")))
+    return textwrap.fill(
+        line.strip(),
+        shutil.get_terminal_size().columns,
+        initial_indent=indent,
+        subsequent_indent=indent + " " * hanging,
+        break_long_words=False,
+        break_on_hyphens=False,
+    )
 
 
 @contextmanager
@@ -52,6 +64,7 @@ def progress(title: str, *, quiet: bool = False) -> Iterator[Callable[[str], Non
         yield lambda step: None
         return
     from rich.console import Console
+    from rich.markup import escape
 
     with Console(stderr=True).status(title) as status:
-        yield lambda step: status.update(f"{title}: {step}")
+        yield lambda step: status.update(f"{title}: {escape(printable(step))}")

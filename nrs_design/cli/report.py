@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from datetime import datetime
 from enum import StrEnum
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -10,13 +11,15 @@ import typer
 
 from nrs_design.cli import exit_codes
 from nrs_design.cli.options import Budget, Json, MaxDegree, Memory, Quiet, SpecFile
-from nrs_design.cli.printing import note, print_json, progress
+from nrs_design.cli.printing import note, print_json, progress, say
 from nrs_design.errors import DesignError
 
 if TYPE_CHECKING:
     from nrs_design.design.evidence import DesignEvidence
     from nrs_design.pipeline import Result
     from nrs_design.reporting import Report
+
+REPORTS = Path("reports")
 
 
 class FormatOption(StrEnum):
@@ -42,6 +45,14 @@ def report(
         bool,
         typer.Option("--times", help="Add the time of every rung; pages then differ each time."),
     ] = False,
+    date: Annotated[
+        datetime | None,
+        typer.Option(
+            formats=["%Y-%m-%d"],
+            metavar="YYYY-MM-DD",
+            help="Write this date on the page or document; without it there is none.",
+        ),
+    ] = None,
     max_degree: MaxDegree = None,
     budget: Budget = None,
     memory: Memory = None,
@@ -52,17 +63,21 @@ def report(
 
     Example: nrs-design report specs/neuroboscope/soft-tissue.nrs.yaml --format pdf
     """
+    from nrs_design.ownership import check_owner
     from nrs_design.pipeline import Overrides, limits_of, run_certification
     from nrs_design.reporting import build_report
     from nrs_design.spec import read_spec
 
     loaded = read_spec(spec)
+    if out is None:
+        check_owner(spec, loaded.spec.name, REPORTS)
     with progress(f"reporting {loaded.spec.name}", quiet=quiet) as step:
         limits = limits_of(loaded.spec, Overrides(max_degree, budget, memory))
         result = run_certification(loaded, limits=limits, progress=step)
         step("figures")
-        page = build_report(result, _evidence(result, quiet=quiet), times=times)
-        files = _write(page, file_format, out)
+        day = date.date() if date else None
+        page = build_report(result, _evidence(result, quiet=quiet), times=times, date=day)
+        files = _write(page, file_format, out, spec)
     verdict = str(result.certification.verdict)
     if as_json:
         print_json(
@@ -75,10 +90,10 @@ def report(
                 "files": [str(path) for path in files],
             },
         )
-    else:
-        print(f"{loaded.spec.name}: {verdict.upper()}")
+    elif not quiet:
+        say(f"{loaded.spec.name}: {verdict.upper()}", verdict=verdict)
         for path in files:
-            note(f"written to {path}", quiet=quiet)
+            note(f"written to {path}")
     raise typer.Exit(exit_codes.OF_VERDICT[verdict])
 
 
@@ -95,19 +110,20 @@ def _evidence(result: Result, *, quiet: bool) -> DesignEvidence | None:
         return None
 
 
-def _write(report: Report, file_format: FormatOption, out: Path | None) -> list[Path]:
-    from nrs_design.output import write_output
+def _write(report: Report, file_format: FormatOption, out: Path | None, spec: Path) -> list[Path]:
+    from nrs_design.output import PAGE, PDF, PNG, write_output
+    from nrs_design.ownership import origin_of
     from nrs_design.reporting import render_html, render_pdf, render_png
 
-    folder = Path("reports")
     if file_format is FormatOption.PNG:
-        folder = out or folder / report.name
+        folder = out or REPORTS / report.name
         images = {folder / f"{name}.png": data for name, data in render_png(report).items()}
         for path, data in images.items():
-            write_output(path, data)
+            write_output(path, data, replaces=PNG)
         return list(images)
-    path = out or folder / f"{report.name}.{file_format}"
-    write_output(
-        path, render_pdf(report) if file_format is FormatOption.PDF else render_html(report)
-    )
+    path = out or REPORTS / f"{report.name}.{file_format}"
+    if file_format is FormatOption.PDF:
+        write_output(path, render_pdf(report), replaces=PDF)
+    else:
+        write_output(path, render_html(report, origin_of(spec, path)), replaces=PAGE)
     return [path]

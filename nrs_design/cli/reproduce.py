@@ -9,7 +9,8 @@ import typer
 
 from nrs_design.cli import exit_codes
 from nrs_design.cli.options import Json, Quiet
-from nrs_design.cli.printing import note, print_json, print_table, progress
+from nrs_design.cli.printing import note, print_json, progress, say
+from nrs_design.cli.tables import print_table
 
 if TYPE_CHECKING:
     from nrs_design.reproduction.row import Row
@@ -28,7 +29,7 @@ def reproduce(
 
     Example: nrs-design reproduce --html reports/reproduce.html
     """
-    from nrs_design.output import write_output
+    from nrs_design.output import PAGE, write_output
     from nrs_design.reproduction.page import render_page
     from nrs_design.reproduction.row import drifted
     from nrs_design.reproduction.table import reproduce as recompute
@@ -36,11 +37,11 @@ def reproduce(
     with progress("recomputing", quiet=quiet) as step:
         table = recompute(step)
     if html is not None:
-        write_output(html, render_page(table))
+        write_output(html, render_page(table), replaces=PAGE)
     if as_json:
         print_json("reproduce", _summary(table))
-    else:
-        _print(table, quiet=quiet)
+    elif not quiet:
+        _print(table)
     if html is not None:
         note(f"page written to {html}", quiet=quiet)
     for row in drifted(table):
@@ -61,28 +62,27 @@ def _summary(table: tuple[Row, ...]) -> dict[str, Any]:
     }
 
 
-def _print(table: tuple[Row, ...], *, quiet: bool) -> None:
+def _print(table: tuple[Row, ...]) -> None:
     from nrs_design.reproduction.page import format_deviation
     from nrs_design.reproduction.table import count_verdicts
 
-    if not quiet:
-        cells = [
-            [
-                row.section,
-                row.name,
-                row.printed,
-                row.value or "",
-                row.unit,
-                format_deviation(row.deviation),
-                str(row.verdict),
-            ]
-            for row in table
+    cells = [
+        [
+            row.section,
+            row.name,
+            row.printed,
+            row.value or "",
+            row.unit,
+            format_deviation(row.deviation),
+            str(row.verdict),
         ]
-        columns = ["section", "quantity", "printed", "recomputed", "unit", "deviation", "verdict"]
-        print_table("", columns, cells)
-        for row in table:
-            if row.note:
-                print(f"{row.section} {row.name}: {row.note}")
-        print()
+        for row in table
+    ]
+    columns = ["section", "quantity", "printed", "recomputed", "unit", "deviation", "verdict"]
+    print_table("", columns, cells)
+    for row in table:
+        if row.note:
+            say(f"{row.section} {row.name}: {row.note}")
+    say()
     counts = count_verdicts(table)
-    print(", ".join(f"{count} {verdict}" for verdict, count in counts.items()))
+    say(", ".join(f"{count} {verdict}" for verdict, count in counts.items()))

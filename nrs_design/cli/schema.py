@@ -2,28 +2,30 @@
 
 from __future__ import annotations
 
-import json
+import sys
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
+from nrs_design.cli.options import Quiet
 from nrs_design.cli.printing import note
 
 
 def schema(
     out: Annotated[Path | None, typer.Option(help="Write to a file instead of stdout.")] = None,
+    quiet: Quiet = False,
 ) -> None:
     """Print the JSON Schema (draft-07) of spec files.
 
     Example: nrs-design schema --out nrs.schema.json
     """
     from nrs_design.output import write_output
-    from nrs_design.spec.schema import json_schema
+    from nrs_design.spec.schema import schema_text
 
-    text = json.dumps(json_schema(), indent=2) + "\n"
+    text = schema_text()
     if out is None:
-        print(text, end="")
+        sys.stdout.write(text)
         return
     write_output(out, text)
-    note(f"schema written to {out}")
+    note(f"schema written to {out}", quiet=quiet)

@@ -5,10 +5,13 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Any
 
+import typer
+
+from nrs_design.cli.goals import exit_code, goals_summary, print_goals, print_warnings, warnings_of
 from nrs_design.cli.optimize import motion_summary
 from nrs_design.cli.options import Json, Quiet, SpecFile
-from nrs_design.cli.printing import print_json, print_table, progress
-from nrs_design.errors import DesignError
+from nrs_design.cli.printing import print_json, progress, say
+from nrs_design.cli.tables import print_table
 
 if TYPE_CHECKING:
     from nrs_design.controllers.controller_design import ControllerDesign
@@ -37,26 +40,32 @@ FORCE_COLUMNS = (
 def tune(spec: SpecFile, as_json: Json = False, quiet: Quiet = False) -> None:
     """Tune the motion PD by root locus and the force gain, and print the poles that result.
 
+    The exit code is 1 if a force controller misses a goal of the spec.
+
     Example: nrs-design tune specs/neuroboscope/force-limit.nrs.yaml
     """
-    from nrs_design.pipeline import run_design, run_evidence
+    from nrs_design.pipeline import run_design, run_evidence, wrong_kind
     from nrs_design.spec import read_spec
 
     loaded = read_spec(spec)
     with progress(f"tuning {loaded.spec.name}", quiet=quiet):
         design = run_design(loaded)
         if design is None:
-            raise DesignError(
+            raise wrong_kind(
+                loaded,
                 "a switched-system spec has nothing to tune",
-                path=spec,
-                remedy="use certify-switching, or a spec of kind interaction-design",
+                "use certify-switching, or a spec of kind interaction-design",
             )
         evidence = run_evidence(loaded, design)
+    warnings = warnings_of(loaded.spec, evidence)
     if as_json:
         content = {"spec": loaded.spec.name, "spec_sha256": loaded.sha256}
-        print_json("tune", content | _summary(design, evidence))
-    else:
+        print_json("tune", content | _summary(design, evidence) | {"warnings": warnings})
+    elif not quiet:
         _print(loaded.spec.name, design, evidence)
+        print_goals(loaded.spec.name, evidence.force)
+        print_warnings(warnings, quiet=quiet)
+    raise typer.Exit(exit_code(evidence.force))
 
 
 def _summary(design: ControllerDesign, evidence: DesignEvidence) -> dict[str, Any]:
@@ -83,6 +92,7 @@ def _summary(design: ControllerDesign, evidence: DesignEvidence) -> dict[str, An
                 "damping_ratio": item.loop.damping_ratio,
                 "natural_frequency": item.loop.natural_frequency,
                 "steady_state_ratio": item.loop.steady_state_ratio,
+                "goals": goals_summary(item),
                 "units": {"Kp": "rad/(N*m)", "stiffness": "N*m/rad", "poles": "1/s"},
             }
             for item in evidence.force
@@ -93,7 +103,7 @@ def _summary(design: ControllerDesign, evidence: DesignEvidence) -> dict[str, An
 def _print(name: str, design: ControllerDesign, evidence: DesignEvidence) -> None:
     print_table(f"{name}: motion loop", MOTION_COLUMNS, _motion_rows(design, evidence))
     if evidence.motion_source == "given":
-        print("The spec states G itself: the poles are those of that G, not of the PD gains.")
+        say("The spec states G itself: the poles are those of that G, not of the PD gains.")
     if evidence.force:
         print_table(f"{name}: force loop", FORCE_COLUMNS, _force_rows(evidence))
 

@@ -10,7 +10,7 @@ import typer
 
 from nrs_design.cli import exit_codes
 from nrs_design.cli.options import CoordinatesOption, Json, Quiet, SpecFile
-from nrs_design.cli.printing import print_json
+from nrs_design.cli.printing import print_json, say
 
 if TYPE_CHECKING:
     from nrs_design.certificates.certificate import Certificate
@@ -57,25 +57,24 @@ def verify(
             },
         )
     elif checked is None:
-        print(f"REJECTED: {outcome.fault}")
-    else:
-        _print(checked, loaded.spec, quiet=quiet)
+        say(f"REJECTED: {outcome.fault}", verdict="rejected")
+    elif not quiet:
+        _print(checked, loaded.spec)
     raise typer.Exit(exit_codes.OF_VERDICT.get(verdict, exit_codes.REFUTED))
 
 
-def _print(certificate: Certificate, spec: Spec, *, quiet: bool) -> None:
-    print(f"{certificate.verdict.upper()}: the certificate holds, checked exactly.")
-    if quiet:
-        return
+def _print(certificate: Certificate, spec: Spec) -> None:
+    verdict = certificate.verdict
+    say(f"{verdict.upper()}: the certificate holds, checked exactly.", verdict=verdict)
     for statement in certificate.statements:
-        print(f"  {statement.claim(certificate.system)}")
+        say(f"  {statement.claim(certificate.system)}")
     if certificate.coordinates:
-        print(f"  coordinates: {certificate.coordinates}")
+        say(f"  coordinates: {certificate.coordinates}")
     for name, gains in certificate.gains.items():
         if gains:
-            print(f"  {name}: " + ", ".join(f"{k} = {v}" for k, v in gains.items()))
+            say(f"  {name}: " + ", ".join(f"{k} = {v}" for k, v in gains.items()))
             for gain, low, high in _ranges(spec, name):
-                print(f"  {name}: {gain} anywhere in [{low}, {high}]")
+                say(f"  {name}: {gain} anywhere in [{low}, {high}]")
 
 
 def _ranges(spec: Spec, name: str) -> Iterator[tuple[str, str, str]]:

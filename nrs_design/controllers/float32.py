@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from fractions import Fraction
 
 from nrs_design.errors import DesignError
@@ -60,3 +61,11 @@ def exact_decimal(value: Fraction) -> str:
 def round_significant(value: float, digits: int) -> Fraction:
     """Round to so many significant decimal digits, returned as the exact decimal."""
     return Fraction(f"{value:.{digits - 1}e}")
+
+
+def neighbors(value: float, digits: int) -> tuple[float, float, float]:
+    """Return a positive value or zero, and values one step of its last significant digit away."""
+    if value == 0:
+        return (value, value, value)
+    step = 10.0 ** (math.floor(math.log10(value)) + 1 - digits)
+    return (value - step, value, value + step)

@@ -37,8 +37,8 @@ def gain_interval(gain: GainSpec, shipped: Fraction) -> Interval:
 
 def faults_of_ranges(
     controller: ImpedanceControllerSpec, gains: dict[str, Fraction]
-) -> Iterator[str]:
-    """Say which designed gains are outside the range that the proof would cover.
+) -> Iterator[tuple[str, str]]:
+    """Name the designed gains outside the range that the proof would cover, and say how far.
 
     Parameters
     ----------
@@ -54,4 +54,5 @@ def faults_of_ranges(
         low, high = (end.exact for end in gain.range)
         if not min(low, to_float32(low)) <= shipped <= max(high, to_float32(high)):
             ends = ", ".join(end.text for end in gain.range)
-            yield f"the designed {name}, {exact_decimal(shipped)}, is outside its range [{ends}]"
+            designed = f"the designed {name}, {exact_decimal(shipped)}"
+            yield name, f"{designed}, is outside its range [{ends}]"

@@ -97,7 +97,7 @@ def _controller(
         low, high = to_float32(bounds.min.exact), to_float32(bounds.max.exact)
         if not low <= values[gain] <= high:
             raise CertificateError(f"gain {gain} of controller {name} is outside its bounds")
-    for outside in faults_of_ranges(spec, values):
+    for _, outside in faults_of_ranges(spec, values):
         raise CertificateError(f"controller {name}: {outside}")
     return Controller(name, Admittance(**values), spec.environment, spec.contacts)
 

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from fractions import Fraction
 
 from nrs_design.controllers.controller_design import Controller, ControllerDesign
-from nrs_design.controllers.float32 import round_significant, to_float32
+from nrs_design.controllers.float32 import neighbors, round_significant, to_float32
 from nrs_design.controllers.gain_range import faults_of_ranges
 from nrs_design.controllers.laws import (
     Admittance,
@@ -13,8 +15,11 @@ from nrs_design.controllers.laws import (
     ProportionalDerivative,
     ProportionalForce,
 )
+from nrs_design.design.constrained import best_rounding, meets, optimize_with_goals
 from nrs_design.design.force_loop import design_force_gain
-from nrs_design.design.impedance import ImpedanceLoop, ImpedanceProblem, optimize_impedance
+from nrs_design.design.goals import Requirement
+from nrs_design.design.impedance import ImpedanceLoop, ImpedanceOptimum, ImpedanceProblem
+from nrs_design.design.requirements import desired_impedance, requirement_of
 from nrs_design.design.root_locus import PdDesign, design_pd
 from nrs_design.design.transfer import TransferFunction
 from nrs_design.errors import DesignError
@@ -49,12 +54,20 @@ def design_controllers(spec: InteractionDesignSpec, plant: Plant) -> ControllerD
     loop = motion_loop(spec, motion)
     controllers = []
     for name, controller in spec.controllers.items():
-        try:
+        with naming(name):
             controllers.append(_controller(spec, plant, loop, name, controller))
-        except DesignError as error:
-            message = f"controller {name}: {error.message}"
-            raise DesignError(message, remedy=error.remedy) from error
     return ControllerDesign(motion, tuple(controllers))
+
+
+@contextmanager
+def naming(controller: str) -> Iterator[None]:
+    """Say in an error which controller it is about."""
+    try:
+        yield
+    except DesignError as error:
+        message = f"controller {controller}: {error.message}"
+        at = ("controllers", controller, *error.at)
+        raise DesignError(message, remedy=error.remedy, at=at) from error
 
 
 def root_locus_design(spec: InteractionDesignSpec) -> PdDesign:
@@ -90,16 +103,6 @@ def impedance_problem(
     )
 
 
-def desired_impedance(spec: InteractionDesignSpec, controller: ImpedanceControllerSpec) -> float:
-    """Return the desired impedance in N m s/rad, by default torque over velocity (thesis 6.2)."""
-    if controller.desired_impedance is not None:
-        return controller.desired_impedance.si
-    ratio = controller.desired_impedance_ratio
-    return (
-        spec.limits.torque.si / spec.limits.velocity.si * (1.0 if ratio is None else float(ratio))
-    )
-
-
 def _motion(spec: InteractionDesignSpec) -> ProportionalDerivative:
     given, digits = spec.motion_loop, spec.design.significant_digits
     wanted = root_locus_design(spec)
@@ -128,13 +131,48 @@ def _controller(
         law = Admittance(to_float32(controller.Mt.min.exact), to_float32(controller.Bt.min.exact))
         _check_ranges(controller, law)
     else:
-        optimum = optimize_impedance(impedance_problem(spec, plant, loop, controller))
-        law = Admittance(
-            Mt=_shipped(optimum.Mt, controller.Mt, digits),
-            Bt=_shipped(optimum.Bt, controller.Bt, digits),
-        )
+        law = _admittance(spec, plant, loop, controller)
         _check_ranges(controller, law)
     return Controller(name, law, controller.environment, controller.contacts)
+
+
+def _admittance(
+    spec: InteractionDesignSpec, plant: Plant, loop: MotionLoop, controller: ImpedanceControllerSpec
+) -> Admittance:
+    """Optimize an admittance under its goals, and round it so that they are still met."""
+    problem = impedance_problem(spec, plant, loop, controller)
+    requirement = requirement_of(spec, plant, problem.loop.motion, controller)
+    optimum = optimize_with_goals(problem, requirement)
+    digits = spec.design.significant_digits
+    law = Admittance(
+        Mt=_shipped(optimum.Mt, controller.Mt, digits),
+        Bt=_shipped(optimum.Bt, controller.Bt, digits),
+    )
+    if meets(requirement, float(law.Mt), float(law.Bt)):
+        return law
+    return _rounded_within(problem, requirement, optimum, controller, digits)
+
+
+def _rounded_within(
+    problem: ImpedanceProblem,
+    requirement: Requirement,
+    optimum: ImpedanceOptimum,
+    controller: ImpedanceControllerSpec,
+    digits: int,
+) -> Admittance:
+    """Round an optimum at the edge of what its goals allow: a gain may have to go the other way."""
+    candidates = tuple(
+        {float(_shipped(near, bounds, digits)) for near in neighbors(value, digits)}
+        for value, bounds in ((optimum.Mt, controller.Mt), (optimum.Bt, controller.Bt))
+    )
+    pair = best_rounding(problem, requirement, (candidates[0], candidates[1]))
+    if pair is None:
+        raise DesignError(
+            f"no gains of {digits} significant digits near Mt = {optimum.Mt:.6g} kg m^2 and "
+            f"Bt = {optimum.Bt:.6g} N m s/rad meet the goals",
+            remedy="raise design.significant_digits (at most 7), or relax a goal",
+        )
+    return Admittance(*map(Fraction, pair))
 
 
 def _force_gain(
@@ -149,8 +187,9 @@ def _force_gain(
 
 
 def _check_ranges(controller: ImpedanceControllerSpec, law: Admittance) -> None:
-    for outside in faults_of_ranges(controller, {"Mt": law.Mt, "Bt": law.Bt}):
-        raise DesignError(outside, remedy="move the range, or let min and max lie inside it")
+    for gain, outside in faults_of_ranges(controller, {"Mt": law.Mt, "Bt": law.Bt}):
+        remedy = "move the range, or let min and max lie inside it"
+        raise DesignError(outside, remedy=remedy, at=(gain, "range"))
 
 
 def _shipped(value: float, bounds: GainSpec, digits: int) -> Fraction:

@@ -2,18 +2,23 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import product
 
 from nrs_design.controllers.controller_design import Controller, ControllerDesign
 from nrs_design.controllers.gain_range import gain_interval
 from nrs_design.controllers.laws import Admittance, ProportionalForce
+from nrs_design.design.constrained import optimize_with_goals
 from nrs_design.design.design import (
     impedance_problem,
+    naming,
     root_locus_design,
     to_transfer_function,
 )
+from nrs_design.design.doubts import doubt_bounds, doubt_values
 from nrs_design.design.force_loop import ForceLoop, force_loop_response
+from nrs_design.design.goals import Achieved, Requirement, achieve_force, achieve_impedance
 from nrs_design.design.impedance import (
     ImpedanceOptimum,
     ImpedanceProblem,
@@ -21,11 +26,18 @@ from nrs_design.design.impedance import (
     optimize_impedance,
 )
 from nrs_design.design.margins import LoopMargins, loop_margins, stiffness_limit
+from nrs_design.design.measures import FORCE_MEASURES, IMPEDANCE_MEASURES
+from nrs_design.design.requirements import requirement_of
 from nrs_design.design.root_locus import MotionLoopResponse, PdDesign, motion_loop_response
 from nrs_design.design.transfer import TransferFunction
 from nrs_design.models.motion_loop import MotionLoop
 from nrs_design.models.plant import Plant
-from nrs_design.spec import ImpedanceControllerSpec, InteractionDesignSpec
+from nrs_design.spec import (
+    Doubt,
+    ForceControllerSpec,
+    ImpedanceControllerSpec,
+    InteractionDesignSpec,
+)
 from nrs_design.switched.assemble import motion_loop
 
 
@@ -50,6 +62,8 @@ class ImpedanceEvidence:
     lowest_limit : float
         Smallest stiffness limit in N m/rad, of the shipped gains and of the corners of their
         declared ranges.
+    achieved : tuple of Achieved
+        The worst values over the contacts, beside the goals.
     """
 
     name: str
@@ -60,15 +74,29 @@ class ImpedanceEvidence:
     cost: float
     margins: LoopMargins
     lowest_limit: float
+    achieved: tuple[Achieved, ...]
 
 
 @dataclass(frozen=True, slots=True)
 class ForceEvidence:
-    """One force controller: its name, and the closed force loop in nominal contact."""
+    """One force controller.
+
+    Parameters
+    ----------
+    name : str
+        Of the controller.
+    stiffness : float
+        Of nominal contact, in N m/rad.
+    loop : ForceLoop
+        Closed in nominal contact.
+    achieved : tuple of Achieved
+        The worst values over the contacts, beside the goals.
+    """
 
     name: str
     stiffness: float
     loop: ForceLoop
+    achieved: tuple[Achieved, ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -89,6 +117,8 @@ class DesignEvidence:
         One for each impedance controller.
     force : tuple of ForceEvidence
         One for each force controller.
+    warnings : tuple of Doubt
+        What is doubtful about the design, and no goal speaks of it.
     """
 
     wanted: PdDesign
@@ -97,6 +127,12 @@ class DesignEvidence:
     reached: MotionLoopResponse
     impedance: tuple[ImpedanceEvidence, ...]
     force: tuple[ForceEvidence, ...]
+    warnings: tuple[Doubt, ...]
+
+    @property
+    def measured(self) -> tuple[ImpedanceEvidence | ForceEvidence, ...]:
+        """All controllers that goals are for."""
+        return (*self.impedance, *self.force)
 
 
 def examine_design(
@@ -105,22 +141,43 @@ def examine_design(
     """Compute poles, costs and margins of a design."""
     loop = motion_loop(spec, design.motion)
     motion = to_transfer_function(loop)
+    impedance = tuple(
+        _impedance(spec, plant, loop, controller, controller.law)
+        for controller in design.controllers
+        if isinstance(controller.law, Admittance)
+    )
+    force = tuple(
+        _force(spec, plant, motion, controller, controller.law)
+        for controller in design.controllers
+        if isinstance(controller.law, ProportionalForce)
+    )
     return DesignEvidence(
         wanted=root_locus_design(spec),
         motion=motion,
         motion_source="designed" if spec.motion_loop.transfer_function is None else "given",
         reached=motion_loop_response(motion),
-        impedance=tuple(
-            _impedance(spec, plant, loop, controller, controller.law)
-            for controller in design.controllers
-            if isinstance(controller.law, Admittance)
-        ),
-        force=tuple(
-            _force(plant, motion, controller, controller.law)
-            for controller in design.controllers
-            if isinstance(controller.law, ProportionalForce)
-        ),
+        impedance=impedance,
+        force=force,
+        warnings=tuple(_warnings(spec, impedance, force)),
     )
+
+
+def _warnings(
+    spec: InteractionDesignSpec,
+    impedance: tuple[ImpedanceEvidence, ...],
+    force: tuple[ForceEvidence, ...],
+) -> Iterator[Doubt]:
+    for item in impedance:
+        yield from doubt_values(item.name, item.achieved)
+        yield from doubt_bounds(item.name, _impedance_spec(spec, item.name), item.optimum)
+    for loop in force:
+        yield from doubt_values(loop.name, loop.achieved)
+
+
+def _impedance_spec(spec: InteractionDesignSpec, name: str) -> ImpedanceControllerSpec:
+    controller = spec.controllers[name]
+    assert isinstance(controller, ImpedanceControllerSpec)
+    return controller
 
 
 def _impedance(
@@ -130,14 +187,13 @@ def _impedance(
     controller: Controller,
     law: Admittance,
 ) -> ImpedanceEvidence:
-    requirement = spec.controllers[controller.name]
-    assert isinstance(requirement, ImpedanceControllerSpec)
-    problem = impedance_problem(spec, plant, loop, requirement)
+    given = _impedance_spec(spec, controller.name)
+    problem = impedance_problem(spec, plant, loop, given)
+    requirement = requirement_of(spec, plant, problem.loop.motion, given)
     Mt, Bt = float(law.Mt), float(law.Bt)
-    margins = loop_margins(problem.loop, Mt, Bt)
-    corners = product(
-        gain_interval(requirement.Mt, law.Mt).ends, gain_interval(requirement.Bt, law.Bt).ends
-    )
+    with naming(controller.name):
+        margins = loop_margins(problem.loop, Mt, Bt)
+    corners = product(gain_interval(given.Mt, law.Mt).ends, gain_interval(given.Bt, law.Bt).ends)
     limits = (
         stiffness_limit(problem.loop, float(mass), float(damping))
         for (_, mass), (_, damping) in corners
@@ -145,18 +201,34 @@ def _impedance(
     return ImpedanceEvidence(
         name=controller.name,
         problem=problem,
-        optimum=optimize_impedance(problem),
+        optimum=_optimum(problem, requirement),
         Mt=Mt,
         Bt=Bt,
         cost=float(impedance_cost(problem, Mt, Bt)),
         margins=margins,
         lowest_limit=min(margins.stiffness_limit, *limits),
+        achieved=achieve_impedance(requirement, IMPEDANCE_MEASURES, Mt, Bt),
     )
 
 
+def _optimum(problem: ImpedanceProblem, requirement: Requirement) -> ImpedanceOptimum:
+    """Return the optimum before rounding; gains that are given are their own."""
+    fixed = all(low == high for low, high in (problem.mass_bounds, problem.damping_bounds))
+    return optimize_impedance(problem) if fixed else optimize_with_goals(problem, requirement)
+
+
 def _force(
-    plant: Plant, motion: TransferFunction, controller: Controller, law: ProportionalForce
+    spec: InteractionDesignSpec,
+    plant: Plant,
+    motion: TransferFunction,
+    controller: Controller,
+    law: ProportionalForce,
 ) -> ForceEvidence:
+    given = spec.controllers[controller.name]
+    assert isinstance(given, ForceControllerSpec)
+    requirement = requirement_of(spec, plant, motion, given)
     stiffness = float(plant.environment(controller.environment or "").nominal.stiffness)
-    loop = force_loop_response(motion, stiffness, float(law.Kp))
-    return ForceEvidence(controller.name, stiffness, loop)
+    with naming(controller.name):
+        loop = force_loop_response(motion, stiffness, float(law.Kp))
+    achieved = achieve_force(requirement, FORCE_MEASURES, float(law.Kp))
+    return ForceEvidence(controller.name, stiffness, loop, achieved)

@@ -73,6 +73,7 @@ def force_loop_response(motion: TransferFunction, stiffness: float, gain: float)
         raise DesignError(
             f"the force loop is unstable with Kp = {gain:.6g} rad/(N m) at {stiffness:.6g} N m/rad",
             remedy="lower the proportional gain",
+            at=("proportional_gain",),
         )
     roots = poles(closed)
     zeta, wn = dominant_pair(roots)
@@ -121,6 +122,7 @@ def design_force_gain(motion: TransferFunction, stiffness: float, damping_ratio:
     raise DesignError(
         f"no force gain gives the damping ratio {damping_ratio:.6g}",
         remedy=f"gains reach {_reachable(motion)}",
+        at=("damping_ratio",),
     )
 
 

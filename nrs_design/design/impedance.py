@@ -249,11 +249,11 @@ def optimize_impedance(problem: ImpedanceProblem) -> ImpedanceOptimum:
     DesignError
         If no scanned admittance within the bounds gives a stable loop.
     """
-    objective = _objective(problem, NODES)
+    objective = objective_of(problem, NODES)
     found = refine(objective, _scan(problem), _STEP_TOLERANCE)
     u, v, costs = snap(objective, found.u, found.v)
     best = int(np.argmin(costs))
-    Mt, Bt = _admittance(problem, u[best : best + 1], v[best : best + 1])
+    Mt, Bt = admittance_at(problem, u[best : best + 1], v[best : best + 1])
     return ImpedanceOptimum(
         Mt=float(Mt[0]),
         Bt=float(Bt[0]),
@@ -324,10 +324,10 @@ def _over_characteristic(
     return frequency_response(ratio, omega)
 
 
-def _admittance(
+def admittance_at(
     problem: ImpedanceProblem, u: FloatArray, v: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
-    """Map the unit square onto the bounds, corners exactly onto corners.
+    """Map the unit square onto the bounds of Mt and Bt, corners exactly onto corners.
 
     A u below the search's tolerance counts as the bound itself.
     """
@@ -338,7 +338,8 @@ def _admittance(
     return Mt, Bt
 
 
-def _objective(problem: ImpedanceProblem, nodes: int) -> Objective:
+def objective_of(problem: ImpedanceProblem, nodes: int) -> Objective:
+    """Return the cost over the unit square; infinite where the nominal loop is not stable."""
     return partial(_stable_cost, problem, _sample(problem, nodes), _basis(problem.loop))
 
 
@@ -346,7 +347,7 @@ def _stable_cost(
     problem: ImpedanceProblem, samples: _Samples, basis: FloatArray, u: FloatArray, v: FloatArray
 ) -> FloatArray:
     """Evaluate the cost at points of the unit square, infinite where the loop is not Hurwitz."""
-    Mt, Bt = _admittance(problem, u, v)
+    Mt, Bt = admittance_at(problem, u, v)
     stable = hurwitz(_characteristics(basis, Mt, Bt))
     if stable.all():
         return samples.cost(Mt, Bt)
@@ -365,7 +366,7 @@ def _scan(problem: ImpedanceProblem) -> Points:
     """Return the starts of the search: local minima of a scan, and those along its valley."""
     shape = _scan_shape(problem)
     u, v = np.meshgrid(*(np.linspace(0, 1, count) for count in shape), indexing="ij")
-    costs = _objective(problem, _SCAN_NODES)(u.ravel(), v.ravel()).reshape(shape)
+    costs = objective_of(problem, _SCAN_NODES)(u.ravel(), v.ravel()).reshape(shape)
     rows = np.flatnonzero(np.isfinite(costs).any(axis=1))
     if not len(rows):
         raise DesignError(
@@ -373,6 +374,7 @@ def _scan(problem: ImpedanceProblem) -> Points:
             f"{list(problem.damping_bounds)} N m s/rad keeps the loop stable at "
             f"{problem.loop.stiffness:.6g} N m/rad",
             remedy="raise the upper bound of Bt or lower the lower bound of Mt",
+            at=("Bt",),
         )
     spacing = [1 / (count - 1) if count > 1 else 0.0 for count in shape]
     valley = _sharpen(problem, u[rows, 0], v[0, np.argmin(costs[rows], axis=1)], spacing[1])
@@ -391,7 +393,7 @@ def _scan(problem: ImpedanceProblem) -> Points:
 
 def _sharpen(problem: ImpedanceProblem, u: FloatArray, v: FloatArray, spacing: float) -> Points:
     """Refine the valley ``Bt(Mt)`` of the scan and pick its lowest local minima."""
-    objective = _objective(problem, _VALLEY_NODES)
+    objective = objective_of(problem, _VALLEY_NODES)
     step = np.array([0.0, spacing])
     valley = refine(objective, Points(u, v, step, np.zeros(len(u)), 0), _VALLEY_TOLERANCE)
     costs = objective(valley.u, valley.v)

@@ -21,6 +21,7 @@ from nrs_design.design.transfer import (
     to_control,
 )
 from nrs_design.errors import DesignError
+from nrs_design.plotting import load_matplotlib
 
 
 @dataclass(frozen=True)
@@ -91,6 +92,7 @@ def loop_margins(loop: ImpedanceLoop, Mt: float, Bt: float) -> LoopMargins:
             f"the loop with Mt = {Mt:.6g} kg m^2 and Bt = {Bt:.6g} N m s/rad is unstable at "
             f"{loop.stiffness:.6g} N m/rad",
             remedy=f"it is stable below {limit:.6g} N m/rad; raise Bt or lower Mt",
+            at=("Bt",),
         )
     peak, frequency = _sensitivity_peak(tf)
     low, high, phase, delay = _crossover_margins(tf)
@@ -162,6 +164,7 @@ def _stationary_frequencies(numerator: Sequence[float], denominator: Sequence[fl
 
 def _crossover_margins(tf: TransferFunction) -> tuple[float, float, float, float]:
     """Return the low and high gain margin, the phase margin (rad) and the delay margin (s)."""
+    load_matplotlib()
     import control
 
     gains, degrees, _, at_gain, at_phase, _ = control.stability_margins(
@@ -187,6 +190,7 @@ def _disk_margin(tf: TransferFunction) -> float:
     python-control evaluates on a grid, which overstates the margin between two points: it is
     given the stationary frequencies themselves.
     """
+    load_matplotlib()
     import control
 
     difference = np.polysub(tf.denominator, tf.numerator).tolist()

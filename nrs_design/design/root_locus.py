@@ -24,6 +24,9 @@ from nrs_design.errors import DesignError
 
 _LOCUS_MOTION = 0.02
 _LOCUS_LIMIT = 4000
+# A branch is drawn until it is this near to its zero, as a share of the extent.
+_LOCUS_END = 0.002
+_LOCUS_DECADES = 9
 
 
 @dataclass(frozen=True)
@@ -112,6 +115,7 @@ def design_pd(
         raise DesignError(
             f"no positive gain reaches a settling time of {settling_time:.6g} s",
             remedy=f"ask for less than 8 time constants, {8 * time_constant:.6g} s",
+            at=("motion_loop", "settling_time"),
         )
     zero = pole.imag / math.tan(angle) - pole.real
     magnitude = abs(gain * (pole + zero) / (pole * (time_constant * pole + 1)))
@@ -326,10 +330,11 @@ def root_locus(open_loop: TransferFunction, gains: ArrayLike) -> ComplexArray:
 
 
 def locus_gains(open_loop: TransferFunction, gain: float) -> FloatArray:
-    """Choose gains from 0 to 100 times `gain` at which a drawn locus looks smooth.
+    """Choose gains from 0 on at which a drawn locus looks smooth and its branches end.
 
-    The grid holds 0, `gain` itself and every breakaway gain, and is halved where a pole moves by
-    more than 2 % of the locus's extent at the chosen gain.
+    The grid holds 0, `gain` itself and every breakaway gain up to its end: at least 100 times
+    `gain`, and as far as it takes for a pole to come near every zero. It is halved where a pole
+    near the poles and zeros moves by more than 2 % of their extent.
 
     Parameters
     ----------
@@ -341,7 +346,7 @@ def locus_gains(open_loop: TransferFunction, gain: float) -> FloatArray:
     Returns
     -------
     ndarray
-        Ascending gains, a few hundred as a rule and never above 4000.
+        Ascending gains, a few hundred as a rule and never more than 4000.
 
     Raises
     ------
@@ -349,18 +354,37 @@ def locus_gains(open_loop: TransferFunction, gain: float) -> FloatArray:
         If the gain is not positive.
     """
     _check_positive(gain=gain)
+    zeros = np.roots(open_loop.numerator).astype(np.complex128)
+    points = np.concatenate([zeros, *(_closed_poles(open_loop, k) for k in (0.0, gain))])
+    extent = 2 * float(np.abs(points).max())
+    last = _last_gain(open_loop, gain, zeros, extent)
+    count = 20 * round(math.log10(last / gain) + 1)
     gains = np.unique(
-        [0.0, gain, *np.geomspace(gain / 1000, 100 * gain, 60), *_breakaway(open_loop, gain)]
+        [0.0, gain, *np.geomspace(gain / 1000, last, count), *_breakaway(open_loop, last)]
     )
-    extent = 2 * max(np.abs(_closed_poles(open_loop, k)).max() for k in (0.0, gain))
     for _ in range(8):
-        moved = np.abs(np.diff(root_locus(open_loop, gains), axis=0)).max(axis=1)
-        coarse = np.flatnonzero((moved > _LOCUS_MOTION * extent) & (gains[1:] <= 10 * gain))
+        branches = root_locus(open_loop, gains)
+        near = np.minimum(np.abs(branches[1:]), np.abs(branches[:-1])) <= extent
+        moved = np.where(near, np.abs(np.diff(branches, axis=0)), 0.0).max(axis=1)
+        coarse = np.flatnonzero(moved > _LOCUS_MOTION * extent)
         if not len(coarse) or len(gains) + len(coarse) > _LOCUS_LIMIT:
             break
         middle = (gains[coarse] + gains[coarse + 1]) / 2
         gains = np.unique(np.concatenate([gains, middle]))
     return gains
+
+
+def _last_gain(
+    open_loop: TransferFunction, gain: float, zeros: ComplexArray, extent: float
+) -> float:
+    """Return the first of 100, 1000, … times `gain` at which every zero has a pole beside it."""
+    last = 100 * gain
+    for _ in range(_LOCUS_DECADES):
+        distance = np.abs(zeros[:, None] - _closed_poles(open_loop, last)[None, :])
+        if (distance.min(axis=1, initial=math.inf) <= _LOCUS_END * extent).all():
+            break
+        last *= 10
+    return last
 
 
 def _closed_poles(open_loop: TransferFunction, gain: float) -> ComplexArray:
@@ -370,14 +394,14 @@ def _closed_poles(open_loop: TransferFunction, gain: float) -> ComplexArray:
     return poles(TransferFunction((1.0,), tuple(closed.tolist())))
 
 
-def _breakaway(open_loop: TransferFunction, gain: float) -> FloatArray:
-    """Return the gains up to 100 times `gain` where two real poles meet."""
+def _breakaway(open_loop: TransferFunction, last: float) -> FloatArray:
+    """Return the gains up to the last one where two real poles meet."""
     num, den = open_loop.numerator, open_loop.denominator
     points = np.roots(ratio_slope(den, num))
     points = points.real[np.abs(points.imag) <= 1e-7 * np.abs(points)]
     below = np.polyval(num, points)
     gains = -np.polyval(den, points[below != 0]) / below[below != 0]
-    return np.asarray(gains[(gains > 0) & (gains < 100 * gain)])
+    return np.asarray(gains[(gains > 0) & (gains < last)])
 
 
 def _check_positive(**values: float) -> None:

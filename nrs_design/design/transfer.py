@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from nrs_design.errors import DesignError
+from nrs_design.plotting import load_matplotlib
 
 FloatArray = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
@@ -98,6 +99,7 @@ def static_gain(tf: TransferFunction) -> float:
 
 def to_control(tf: TransferFunction) -> Any:
     """Return the function as python-control's own ``TransferFunction``."""
+    load_matplotlib()
     import control
 
     return control.TransferFunction(list(trim(tf.numerator)), list(tf.denominator))

@@ -9,9 +9,8 @@ from pathlib import Path
 from nrs_design.certificates.certificate import Certificate
 from nrs_design.certificates.verify import verify
 from nrs_design.controllers.controller_design import ControllerDesign
-from nrs_design.errors import DesignError
 from nrs_design.exporters.record import ExportRecord, build_record, find_mismatch
-from nrs_design.pipeline import run_certification, run_design
+from nrs_design.pipeline import run_certification, run_design, wrong_kind
 from nrs_design.spec import InteractionDesignSpec, LoadedSpec
 
 Progress = Callable[[str], None]
@@ -61,10 +60,10 @@ def export_design(
         If the given file is not a certificate at all.
     """
     if not isinstance(loaded.spec, InteractionDesignSpec):
-        raise DesignError(
+        raise wrong_kind(
+            loaded,
             f"a spec of kind {loaded.spec.kind} has no gains to export",
-            path=loaded.path,
-            remedy="use a spec of kind interaction-design",
+            "use a spec of kind interaction-design",
         )
     if certificate is None:
         return _certified_afresh(loaded, progress)

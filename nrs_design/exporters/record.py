@@ -91,7 +91,7 @@ class SpecReference(_Frozen):
 
 
 class DecayRate(_Frozen):
-    """The certified rate: exactly, and with six digits rounded to its safe side."""
+    """The certified rate: exactly, and as a short decimal on its safe side."""
 
     exact: str
     rounded: str

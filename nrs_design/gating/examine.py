@@ -10,19 +10,24 @@ from typing import TYPE_CHECKING
 from nrs_design.certificates.certificate import Certificate
 from nrs_design.certificates.evidence import AbstractEvidence, Shows
 from nrs_design.certificates.evidence.fields import rate_text
-from nrs_design.certificates.evidence.unstable_mode import is_stable, worst_eigenvalue
+from nrs_design.certificates.evidence.unstable_mode import (
+    affordable,
+    is_stable,
+    worst_eigenvalue,
+)
 from nrs_design.errors import DesignError
-from nrs_design.gating.obligations import Obligation, SpecOutcome, Status
+from nrs_design.gating.obligations import Caution, Obligation, SpecOutcome, Status
 from nrs_design.gating.places import Places
 from nrs_design.gating.rules import (
     CERTIFICATE_HOLDS,
+    GOAL,
     MODE_STABLE,
     SPEC,
     STIFFNESS_RANGE,
     SWITCHING_STABLE,
     Rule,
 )
-from nrs_design.spec import InteractionDesignSpec, LoadedSpec
+from nrs_design.spec import InteractionDesignSpec, LoadedSpec, doubt_spec
 from nrs_design.spec.document import Position
 from nrs_design.switched.system import Mode, SwitchedSystem, Time
 
@@ -74,10 +79,10 @@ class Examiner:
         proved = evidence is not None and evidence.shows is Shows.STABILITY
         lasting = {mode.name for mode in system.lasting_modes()}
         modes = tuple(
-            self._mode(mode, system.time, proved=proved)
+            self._mode(mode, system.time, proved=proved, affordable=fits)
             if mode.name in lasting
-            else self._left_mode(mode, system.time)
-            for mode in system.modes
+            else self._left_mode(mode, system.time, affordable=fits)
+            for mode, fits in affordable(system.modes)
         )
         if evidence is None:
             status = Status.INCONCLUSIVE
@@ -88,24 +93,29 @@ class Examiner:
         place = self.places.at("switching")
         return (*modes, self.obligation(SWITCHING_STABLE, "system", status, message, place))
 
-    def _mode(self, mode: Mode, time: Time, *, proved: bool) -> Obligation:
+    def _mode(self, mode: Mode, time: Time, *, proved: bool, affordable: bool) -> Obligation:
         region = "Hurwitz" if time is Time.CONTINUOUS else "Schur"
         # Staying in a mode is a switching signal: a proof covers it, no need to decide again.
-        if proved or is_stable(mode.A, time):
+        if not (proved or affordable):
+            status = Status.INCONCLUSIVE
+            message = f"the numbers of mode {mode.name} are too large to decide"
+        elif proved or is_stable(mode.A, time):
             status, message = Status.PROVED, f"mode {mode.name} is {region}"
         else:
             status = Status.REFUTED
             eigenvalue = worst_eigenvalue(mode.A, time)
-            message = f"mode {mode.name} is not {region} (eigenvalue {eigenvalue})"
+            message = f"mode {mode.name} is not {region} (eigenvalue about {eigenvalue})"
         return self.obligation(MODE_STABLE, mode.name, status, message, self.places.mode(mode.name))
 
-    def _left_mode(self, mode: Mode, time: Time) -> Obligation:
+    def _left_mode(self, mode: Mode, time: Time, *, affordable: bool) -> Obligation:
         """Say of a mode with a longest dwell time whether it is stable, which it need not be."""
         region = "Hurwitz" if time is Time.CONTINUOUS else "Schur"
-        status, message = Status.PROVED, f"mode {mode.name} is {region}"
-        if not is_stable(mode.A, time):
-            status = Status.MET
-            message = f"mode {mode.name} is not {region}, but it must be left in time"
+        status, message = Status.MET, f"mode {mode.name} must be left in time, stable or not"
+        if affordable:
+            status, message = Status.PROVED, f"mode {mode.name} is {region}"
+            if not is_stable(mode.A, time):
+                status = Status.MET
+                message = f"mode {mode.name} is not {region}, but it must be left in time"
         return self.obligation(MODE_STABLE, mode.name, status, message, self.places.mode(mode.name))
 
     def nothing_to_certify(self) -> SpecOutcome:
@@ -158,6 +168,28 @@ class Examiner:
                 message,
                 self.places.at("controllers", item.name),
             )
+
+    def goals(self, evidence: DesignEvidence) -> Iterator[Obligation]:
+        """Yield NRS106 for every goal of every controller."""
+        for item in evidence.measured:
+            for found in item.achieved:
+                if found.goal is None:
+                    continue
+                measure = found.measure
+                message = (
+                    f"design goal: {measure.title} of controller {item.name} is "
+                    f"{measure.text(found.value)} at worst, in {found.where}; "
+                    f"{measure.goal_text(found.goal)} is wanted (floating point, not a proof)"
+                )
+                status = Status.MET if found.met else Status.MISSED
+                place = self.places.goal(item.name, measure.goal)
+                yield self.obligation(GOAL, f"{item.name}: {measure.goal}", status, message, place)
+
+    def cautions(self, evidence: DesignEvidence | None) -> Iterator[Caution]:
+        """Yield what is doubtful about the spec and its design."""
+        for doubt in (*doubt_spec(self.loaded.spec), *(evidence.warnings if evidence else ())):
+            place = self.places.at(*doubt.at)
+            yield Caution(self.loaded.path, str(doubt), place.line, place.column)
 
 
 def rate_of(certificate: Certificate | None) -> tuple[str | None, str | None]:

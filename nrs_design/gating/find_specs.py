@@ -8,15 +8,15 @@ from pathlib import Path
 
 from nrs_design.errors import NrsDesignError, SpecError
 
-SUFFIX = ".nrs.yaml"
+SUFFIXES = (".nrs.yaml", ".nrs.yml")
 
 
 def find_specs(paths: Iterable[Path]) -> tuple[Path, ...]:
     """List the spec files of files and folders, sorted, each once.
 
-    A folder stands for all ``*.nrs.yaml`` below it, hidden folders left out. Links to folders
-    are not followed. A file is taken as it is named, whether it exists or not: reading it is
-    where that shows.
+    A folder stands for all ``*.nrs.yaml`` and ``*.nrs.yml`` below it, in capitals too. Hidden
+    folders and links to folders are passed over; `find_passed_over` lists them. A file is taken
+    as it is named, whether it exists or not: reading it is where that shows.
 
     Raises
     ------
@@ -32,13 +32,26 @@ def find_specs(paths: Iterable[Path]) -> tuple[Path, ...]:
     return tuple(sorted(found.values()))
 
 
+def find_passed_over(paths: Iterable[Path]) -> tuple[Path, ...]:
+    """List the hidden folders and the links to folders below folders, which nobody looks into."""
+    return tuple(
+        sorted(
+            Path(folder, name)
+            for path in filter(os.path.isdir, paths)
+            for folder, subfolders, _ in _walk(path)
+            for name in subfolders
+            if name.startswith(".") or os.path.islink(os.path.join(folder, name))
+        )
+    )
+
+
 def _specs_of(path: Path) -> list[Path]:
     if not os.path.isdir(path):
         return [path]
     specs = sorted(_specs_below(path))
     if not specs:
         raise NrsDesignError(
-            f"there is no *{SUFFIX} in this folder",
+            f"there is no *{SUFFIXES[0]} in this folder",
             path=path,
             remedy="name a spec file or a folder with specs",
         )
@@ -47,10 +60,9 @@ def _specs_of(path: Path) -> list[Path]:
 
 def _specs_below(root: Path) -> Iterator[Path]:
     inside = os.path.realpath(root)
-    for folder, subfolders, files in os.walk(root, onerror=_refuse):
-        subfolders[:] = [name for name in subfolders if not name.startswith(".")]
+    for folder, _, files in _walk(root):
         for name in files:
-            if name.endswith(SUFFIX):
+            if name.lower().endswith(SUFFIXES):
                 spec = Path(folder, name)
                 if os.path.commonpath([inside, os.path.realpath(spec)]) != inside:
                     raise SpecError(
@@ -59,6 +71,12 @@ def _specs_below(root: Path) -> Iterator[Path]:
                         remedy="name the spec itself, or remove the link",
                     )
                 yield spec
+
+
+def _walk(root: Path) -> Iterator[tuple[str, list[str], list[str]]]:
+    for folder, subfolders, files in os.walk(root, onerror=_refuse):
+        yield folder, list(subfolders), files
+        subfolders[:] = [name for name in subfolders if not name.startswith(".")]
 
 
 def _refuse(error: OSError) -> None:

@@ -1,23 +1,49 @@
-"""``nrs.lock``: which specs were examined, with which verdict and which certificate."""
+"""``nrs.lock``: which specs were examined, and how every obligation that needs a design ended."""
 
 from __future__ import annotations
 
 import json
 import os
-from collections.abc import Iterable
+import posixpath
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
-from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationError, model_validator
 
-from nrs_design import __version__
 from nrs_design.errors import CertificateError
-from nrs_design.gating.obligations import GateOutcome, SpecOutcome
-from nrs_design.output import write_output
+from nrs_design.files import open_regular
+from nrs_design.gating.rules import (
+    CERTIFICATE_HOLDS,
+    LOCKED,
+    MODE_STABLE,
+    RULES,
+    SPEC,
+    SWITCHING_STABLE,
+)
 
-MAX_BYTES = 64 * 2**20
+SCHEMA: Literal["nrs-design/lock/2"] = "nrs-design/lock/2"
+MAX_BYTES = 32 * 2**20
+MAX_SPECS = 10_000
+# What --locked decides itself; every other obligation is locked as it ended.
+DECIDED_AGAIN = frozenset({SPEC, MODE_STABLE, SWITCHING_STABLE, CERTIFICATE_HOLDS, LOCKED})
+
+
+def _check_path(text: str) -> str:
+    absolute = posixpath.isabs(text) or os.path.isabs(text) or os.path.splitdrive(text)[0]
+    if absolute or "\0" in text or text != posixpath.normpath(text):
+        raise ValueError("a path must be relative to the lock file and in its shortest form")
+    return text
+
+
+def _check_below(text: str) -> str:
+    if text.partition("/")[0] == "..":
+        raise ValueError("a certificate must be below the folder of the lock file")
+    return text
+
 
 Sha256 = Annotated[str, Field(pattern="^[0-9a-f]{64}$")]
+RelativePath = Annotated[str, Field(max_length=4096), AfterValidator(_check_path)]
+PathBelow = Annotated[RelativePath, AfterValidator(_check_below)]
 
 
 class _Frozen(BaseModel):
@@ -25,20 +51,42 @@ class _Frozen(BaseModel):
 
 
 class LockedCertificate(_Frozen):
-    """A certificate: its file, relative to the lock file, and its id."""
+    """A certificate: its file, relative to the lock file and below it, and its id."""
 
-    file: str = Field(min_length=1)
+    file: PathBelow
     id: Sha256
 
 
-class LockedSpec(_Frozen):
-    """One spec: its file, relative to the lock file, the hash of its bytes, and its verdict."""
+class LockedGoal(_Frozen):
+    """An obligation that only a design can decide, such as a design goal: how it ended."""
 
-    path: str = Field(min_length=1)
+    rule: str
+    subject: str
+    # What no exact check decides is never proved or refuted; see `Status`.
+    status: Literal["met", "inconclusive", "missed", "error"]
+    message: str
+
+    @model_validator(mode="after")
+    def _check_rule(self) -> LockedGoal:
+        if self.rule not in RULES or RULES[self.rule] in DECIDED_AGAIN:
+            raise ValueError("this rule is not one that is locked")
+        return self
+
+
+class LockedSpec(_Frozen):
+    """One spec: its file, relative to the lock file, the hash of what it says, and what was found.
+
+    ``version`` is that of the nrs-design which designed the gains.
+    """
+
+    path: RelativePath
     sha256: Sha256
+    version: str
     verdict: Literal["proved", "refuted", "inconclusive"]
     rate: str | None
     certificate: LockedCertificate | None
+    gains: dict[str, dict[str, str]]
+    goals: list[LockedGoal]
 
     @model_validator(mode="after")
     def _check_certificate(self) -> LockedSpec:
@@ -49,18 +97,10 @@ class LockedSpec(_Frozen):
         return self
 
 
-class Package(_Frozen):
-    """What wrote the lock file."""
-
-    name: Literal["nrs-design"] = "nrs-design"
-    version: str = __version__
-
-
 class Lock(_Frozen):
     """The whole file."""
 
-    schema_id: Literal["nrs-design/lock/1"] = Field(default="nrs-design/lock/1", alias="schema")
-    package: Package = Field(default_factory=Package)
+    schema_id: Literal["nrs-design/lock/2"] = Field(default=SCHEMA, alias="schema")
     specs: list[LockedSpec]
 
     @model_validator(mode="after")
@@ -68,30 +108,10 @@ class Lock(_Frozen):
         paths = [spec.path for spec in self.specs]
         if len(set(paths)) != len(paths):
             raise ValueError("a spec is locked twice")
+        files = [spec.certificate.file for spec in self.specs if spec.certificate is not None]
+        if len(set(files)) != len(files):
+            raise ValueError("two specs have the same certificate file")
         return self
-
-
-def make_lock(specs: Iterable[SpecOutcome], file: Path) -> Lock:
-    """Return the lock of specs, for a lock file at a place; those that can be certified have one.
-
-    What makes no claim about switching is left out.
-    """
-    entries = [_entry(spec, file) for spec in specs if spec.certifiable]
-    return Lock(specs=sorted(entries, key=lambda entry: entry.path))
-
-
-def write_lock(outcome: GateOutcome, file: Path) -> GateOutcome:
-    """Write the lock file, and note it; where a spec has no verdict, leave the file as it is.
-
-    Raises
-    ------
-    OutputError
-        If it cannot be written.
-    """
-    if any(spec.verdict is None and spec.certifiable for spec in outcome.specs):
-        return outcome.with_note(f"{file} not written: not every spec has a verdict")
-    write_output(file, dump_lock(make_lock(outcome.specs, file)))
-    return outcome.with_note(f"{file} written")
 
 
 def dump_lock(lock: Lock) -> str:
@@ -100,17 +120,23 @@ def dump_lock(lock: Lock) -> str:
     return json.dumps(document, indent=2, ensure_ascii=True) + "\n"
 
 
+def read_lock_if_any(file: Path) -> Lock:
+    """Read a lock file; an empty lock if there is none."""
+    return read_lock(file) if os.path.lexists(file) else Lock(specs=[])
+
+
 def read_lock(file: Path) -> Lock:
     """Read a lock file.
 
     Raises
     ------
     CertificateError
-        If it is missing or is not a lock file.
+        If it is missing, is not a lock file, or is larger than any.
     """
     remedy = "make it with nrs-design gate, without --locked"
     try:
         document = json.loads(_read_bytes(file).decode(), object_pairs_hook=_unique)
+        _check_format(document, file)
         return Lock.model_validate(document)
     except OSError as error:
         raise CertificateError(
@@ -119,44 +145,52 @@ def read_lock(file: Path) -> Lock:
     except ValidationError as error:
         first = error.errors()[0]
         where = ".".join(map(str, first["loc"])) or "the file"
+        message = first["msg"].removeprefix("Value error, ")
         raise CertificateError(
-            f"not a lock file: {where}: {first['msg']}", path=file, remedy=remedy
+            f"not a lock file: {where}: {message}", path=file, remedy=remedy
         ) from error
     except (ValueError, RecursionError) as error:
         raise CertificateError(f"not a lock file: {error}", path=file, remedy=remedy) from error
+
+
+def _check_format(document: object, file: Path) -> None:
+    """Refuse other versions, and what is too large, before anything is built from it."""
+    if not isinstance(document, dict):
+        return
+    schema = document.get("schema")
+    if isinstance(schema, str) and schema.startswith("nrs-design/lock/") and schema != SCHEMA:
+        raise CertificateError(
+            f"was written by another version of nrs-design (not {SCHEMA})",
+            path=file,
+            remedy="remove it, then run nrs-design gate over all specs",
+        )
+    specs = document.get("specs")
+    if isinstance(specs, list) and len(specs) > MAX_SPECS:
+        raise CertificateError(
+            f"holds {len(specs)} specs, and no lock file holds more than {MAX_SPECS}",
+            path=file,
+            remedy="split it: one --lock for each part of the project",
+        )
 
 
 def _read_bytes(file: Path) -> bytes:
     """Read a whole file, but never an endless one."""
     if file.exists() and not file.is_file():
         raise CertificateError("is not a regular file", path=file)
-    with file.open("rb") as stream:
+    with open_regular(file) as stream:
         content = stream.read(MAX_BYTES + 1)
     if len(content) > MAX_BYTES:
-        raise CertificateError("larger than any lock file", path=file)
+        raise CertificateError(
+            f"is larger than any lock file ({MAX_BYTES >> 20} MiB)",
+            path=file,
+            remedy="make it anew with nrs-design gate",
+        )
     return content
 
 
 def relative_to_lock(path: Path, lock: Path) -> str:
     """Return a path as it stands in a lock file, with forward slashes."""
     return Path(os.path.relpath(path, lock.parent)).as_posix()
-
-
-def _entry(spec: SpecOutcome, file: Path) -> LockedSpec:
-    certificate = None
-    if spec.certificate is not None and spec.certificate_id is not None:
-        certificate = LockedCertificate(
-            file=relative_to_lock(spec.certificate, file), id=spec.certificate_id
-        )
-    return LockedSpec.model_validate(
-        {
-            "path": relative_to_lock(spec.path, file),
-            "sha256": spec.sha256,
-            "verdict": spec.verdict,
-            "rate": spec.rate,
-            "certificate": certificate,
-        }
-    )
 
 
 def _unique(pairs: list[tuple[str, Any]]) -> dict[str, Any]:

@@ -3,23 +3,30 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 
+from nrs_design import __version__
 from nrs_design.certificates.certificate import Certificate
 from nrs_design.certificates.verify import verify
 from nrs_design.gating.examine import Examiner, common_quadratic_of, rate_of
 from nrs_design.gating.lock import Lock, LockedSpec, relative_to_lock
 from nrs_design.gating.obligations import GateOutcome, Obligation, SpecOutcome, Status, failed
-from nrs_design.gating.rules import LOCKED, SWITCHING_STABLE
+from nrs_design.gating.rules import LOCKED, RULES, SWITCHING_STABLE
 from nrs_design.spec import InteractionDesignSpec, LoadedSpec, RobotSpec, read_spec
 
 Progress = Callable[[str], None]
 RENEW = "run nrs-design gate without --locked"
+PRUNE = "run nrs-design gate with --prune"
 
 
 def run_locked(
-    specs: Sequence[Path], lock: Lock, file: Path, progress: Progress = lambda step: None
+    specs: Sequence[Path],
+    lock: Lock,
+    file: Path,
+    progress: Progress = lambda step: None,
+    *,
+    named: Sequence[Path] = (),
 ) -> GateOutcome:
     """Re-check every spec against the lock file, exactly and without any solver.
 
@@ -33,12 +40,14 @@ def run_locked(
         Where the lock file is; paths in it are relative to it.
     progress : callable
         Told the name of each step.
+    named : sequence of Path
+        The files and folders that were to be examined.
 
     Returns
     -------
     GateOutcome
-        Locked specs that no longer exist are part of it. Those that exist but were not named
-        are only noted.
+        Locked specs that no longer exist are part of it, and so are those below a named folder
+        that were not examined. Those that exist elsewhere are only noted.
     """
     entries = {entry.path: entry for entry in lock.specs}
     outcomes = []
@@ -46,11 +55,35 @@ def run_locked(
         progress(f"spec {number} of {len(specs)}")
         entry = entries.pop(relative_to_lock(path, file), None)
         outcomes.append(_examine_safely(path, entry, file))
-    rest = {entry.path: file.parent / entry.path for entry in entries.values()}
-    gone = [_gone(path, file) for path in rest.values() if not os.path.isfile(path)]
-    unnamed = sorted(name for name, path in rest.items() if os.path.isfile(path))
+    below = _Below(named)
+    unnamed = []
+    for name in sorted(entries):
+        path = file.parent / name
+        if not os.path.isfile(path):
+            outcomes.append(_absent(path, f"is in {file.name}, but no longer exists ({PRUNE})"))
+        elif below.has(path):
+            message = f"is in {file.name}, but was not examined: it lies behind a link to a folder "
+            outcomes.append(_absent(path, message + "or in a hidden folder (name it, or move it)"))
+        else:
+            unnamed.append(name)
     notes = (f"locked, but not among the given paths: {', '.join(unnamed)}",) if unnamed else ()
-    return GateOutcome(tuple(outcomes + gone), notes)
+    return GateOutcome(tuple(outcomes), notes)
+
+
+class _Below:
+    """Tells whether a file is below one of the named paths, by its name or really."""
+
+    def __init__(self, named: Sequence[Path]) -> None:
+        self._roots = {form for path in named for form in _forms(path)}
+
+    def has(self, path: Path) -> bool:
+        return any(
+            form in self._roots or not self._roots.isdisjoint(form.parents) for form in _forms(path)
+        )
+
+
+def _forms(path: Path) -> tuple[Path, Path]:
+    return Path(os.path.abspath(path)), Path(os.path.realpath(path))
 
 
 def _examine_safely(path: Path, entry: LockedSpec | None, file: Path) -> SpecOutcome:
@@ -69,9 +102,14 @@ def _examine(loaded: LoadedSpec, entry: LockedSpec | None, file: Path) -> SpecOu
         return _missed(examiner, f"this spec is not in {file.name} ({RENEW})")
     if entry.sha256 != loaded.sha256:
         return _missed(examiner, f"this spec has changed since it was locked ({RENEW})")
+    if entry.gains and entry.version != __version__:
+        message = f"this spec was designed by nrs-design {entry.version}, and this is {__version__}"
+        return _missed(examiner, f"{message}, which may design other gains ({RENEW})")
     if entry.certificate is None:
-        return _inconclusive(examiner, file)
+        return _inconclusive(examiner, entry, file)
     place = Path(os.path.normpath(file.parent / entry.certificate.file))
+    if not _Below([Path(os.path.realpath(file.parent))]).has(Path(os.path.realpath(place))):
+        return _missed(examiner, f"{place.as_posix()} lies behind a link that leads elsewhere")
     checked = verify(place, loaded)
     if checked.certificate is None or checked.fault is not None:
         obligation = examiner.certificate(place, checked.fault or "it holds no claim")
@@ -79,11 +117,11 @@ def _examine(loaded: LoadedSpec, entry: LockedSpec | None, file: Path) -> SpecOu
     certificate = checked.certificate
     if difference := _find_difference(certificate, entry, loaded):
         return _missed(examiner, f"{place.as_posix()} {difference} ({RENEW})")
-    return _confirmed(examiner, certificate, place, file)
+    return _confirmed(examiner, certificate, entry, place, file)
 
 
 def _confirmed(
-    examiner: Examiner, certificate: Certificate, place: Path, file: Path
+    examiner: Examiner, certificate: Certificate, entry: LockedSpec, place: Path, file: Path
 ) -> SpecOutcome:
     rate, rate_name = rate_of(certificate)
     return SpecOutcome(
@@ -91,6 +129,7 @@ def _confirmed(
         obligations=(
             *examiner.stability(certificate.system, certificate.evidence, ""),
             examiner.certificate(place, None),
+            *_goals(examiner, entry),
             _agrees(examiner, file),
         ),
         sha256=examiner.loaded.sha256,
@@ -101,7 +140,21 @@ def _confirmed(
         modes=len(certificate.system.modes),
         certificate=place,
         certificate_id=certificate.id,
+        gains=certificate.gains,
+        cautions=tuple(examiner.cautions(None)),
     )
+
+
+def _goals(examiner: Examiner, entry: LockedSpec) -> Iterator[Obligation]:
+    """Yield what only a design can decide, as it ended when it was locked."""
+    for goal in entry.goals:
+        yield examiner.obligation(
+            RULES[goal.rule],
+            goal.subject,
+            Status(goal.status),
+            f"{goal.message} (as locked; not computed again)",
+            examiner.places.at("controllers", goal.subject),
+        )
 
 
 def _find_difference(certificate: Certificate, entry: LockedSpec, loaded: LoadedSpec) -> str | None:
@@ -110,13 +163,15 @@ def _find_difference(certificate: Certificate, entry: LockedSpec, loaded: Loaded
         return "is not the certificate that was locked"
     if (certificate.verdict, rate_of(certificate)[0]) != (entry.verdict, entry.rate):
         return "has another verdict or rate than the lock file says"
+    if certificate.gains != entry.gains:
+        return "is about other gains than the lock file says"
     spec = loaded.spec
     if isinstance(spec, InteractionDesignSpec) and certificate.coordinates != spec.coordinates:
         return f"is about {certificate.coordinates} coordinates, not those of the spec"
     return None
 
 
-def _inconclusive(examiner: Examiner, file: Path) -> SpecOutcome:
+def _inconclusive(examiner: Examiner, entry: LockedSpec, file: Path) -> SpecOutcome:
     obligation = examiner.obligation(
         SWITCHING_STABLE,
         "system",
@@ -126,7 +181,7 @@ def _inconclusive(examiner: Examiner, file: Path) -> SpecOutcome:
     )
     return SpecOutcome(
         path=examiner.loaded.path,
-        obligations=(obligation, _agrees(examiner, file)),
+        obligations=(obligation, *_goals(examiner, entry), _agrees(examiner, file)),
         sha256=examiner.loaded.sha256,
         verdict="inconclusive",
         common_quadratic="unknown",
@@ -146,7 +201,7 @@ def _missed(examiner: Examiner, message: str) -> SpecOutcome:
     return SpecOutcome(examiner.loaded.path, (obligation,), examiner.loaded.sha256)
 
 
-def _gone(path: Path, file: Path) -> SpecOutcome:
+def _absent(path: Path, message: str) -> SpecOutcome:
     shown = Path(os.path.relpath(path))
-    message = f"this spec is in {file.name}, but no longer exists ({RENEW})"
-    return SpecOutcome(shown, (Obligation(LOCKED, shown, "lock", Status.MISSED, message),))
+    obligation = Obligation(LOCKED, shown, "lock", Status.MISSED, f"this spec {message}")
+    return SpecOutcome(shown, (obligation,))

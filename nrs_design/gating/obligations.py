@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from dataclasses import dataclass, replace
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field, replace
 from enum import StrEnum
 from pathlib import Path
 
@@ -67,6 +67,26 @@ class Obligation:
         return _SEVERITY[self.status]
 
 
+@dataclass(frozen=True, slots=True)
+class Caution:
+    """Something doubtful that does not keep the gate from passing.
+
+    Parameters
+    ----------
+    path : Path
+        The spec, as it was named.
+    message : str
+        What is doubtful; one line.
+    line, column : int
+        Place in the spec, counted from 1.
+    """
+
+    path: Path
+    message: str
+    line: int
+    column: int
+
+
 _SEVERITY = {
     Status.PROVED: 0,
     Status.MET: 0,
@@ -101,9 +121,14 @@ class SpecOutcome:
         Its file.
     certificate_id : str or None
         Its id.
+    gains : mapping
+        What the obligations are about: designed gains (float32, as exact decimals) by controller;
+        empty for given matrices.
     certifiable : bool
         False for a spec that is valid and makes no claim about switching, such as a robot: there
         is no verdict, and nothing to lock.
+    cautions : tuple of Caution
+        What is doubtful, and breaks no obligation.
     """
 
     path: Path
@@ -116,7 +141,9 @@ class SpecOutcome:
     modes: int | None = None
     certificate: Path | None = None
     certificate_id: str | None = None
+    gains: Mapping[str, Mapping[str, str]] = field(default_factory=dict)
     certifiable: bool = True
+    cautions: tuple[Caution, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)

@@ -16,12 +16,6 @@ def is_utf8(path: PurePath) -> bool:
     return True
 
 
-def printable(text: str | PurePath) -> str:
-    """Escape what would break a line or steer a terminal, as Python does in a string."""
-    raw = text.as_posix() if isinstance(text, PurePath) else text
-    return "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in raw)
-
-
 def from_here(path: Path) -> str:
     """Return a path relative to the working folder, with forward slashes.
 

@@ -29,6 +29,17 @@ class Places:
             return self.at("modes", self._indices[label])
         return self.at("controllers", label)
 
+    def goal(self, controller: str, key: str) -> Position:
+        """Where a goal of a controller stands: its own, or that of the whole spec."""
+        own = ("controllers", controller, "goals", key)
+        return self.at(*own) if self._has(*own) else self.at("goals", key)
+
+    def _has(self, *keys: str) -> bool:
+        node: Node | None = self._root
+        for key in keys:
+            node = node.entries.get(key) if isinstance(node, Mapping) else None
+        return node is not None
+
     def at(self, *keys: str | int) -> Position:
         """Where a key or an item stands; what holds it, if it is not written out."""
         node: Node = self._root

@@ -80,8 +80,10 @@ CERTIFICATE = Rule(
 OUTPUT = Rule(
     "NRS005",
     "The results can be written",
-    "Results are written whole or not at all, and never through a symbolic link.",
-    "Choose another place with --out or --reports, or make the folder writable.",
+    "Results are written whole or not at all, never through a symbolic link, and never over a "
+    "file of another spec or one that is no result of nrs-design.",
+    "Choose another place with --out or --reports, give the spec a name of its own, or make the "
+    "folder writable.",
 )
 DATA = Rule(
     "NRS006",
@@ -140,6 +142,17 @@ STIFFNESS_RANGE = Rule(
     "NRS102, at every corner of the parameter box and so inside it.",
     "Raise Bt or its upper bound, or narrow the stiffness range to what really occurs.",
 )
+GOAL = Rule(
+    "NRS106",
+    "The design meets its goal",
+    "Every goal that the spec sets for a controller is met by the gains that ship: a margin at the "
+    "nominal values and at every corner of the ranges of all contacts and gains; the error of the "
+    "displayed impedance or of the steady force at the nominal values and at every corner of the "
+    "ranges of the environment that it is designed for. Values between corners are not looked at. "
+    "Computed in floating point: not a proof. docs/design/goals.md defines every goal.",
+    "Let `nrs-design optimize` choose gains that are given, widen their bounds, narrow the ranges, "
+    "or relax the goal.",
+)
 CERTIFICATE_HOLDS = Rule(
     "NRS104",
     "The certificate holds for its spec",
@@ -151,10 +164,13 @@ CERTIFICATE_HOLDS = Rule(
 LOCKED = Rule(
     "NRS105",
     "The lock file agrees with the specs",
-    "With --locked, every spec must have an entry with the hash of its present content and with "
-    "the certificate that was locked, and every locked spec must still exist.",
+    "With --locked, every spec must have an entry with the hash of what it says now (comments and "
+    "layout do not count), with the certificate and the gains that were locked, and designed by "
+    "this version of nrs-design; and every locked spec must still exist and be examined. Goals "
+    "that only a design can decide, such as NRS103, end as they are locked: they are not computed "
+    "again.",
     "Run `nrs-design gate` without --locked, look at what changed, and commit the new lock file "
-    "together with its certificates.",
+    "together with its certificates; with --prune for specs that were removed.",
 )
 INTERNAL = Rule(
     "NRS900",
@@ -181,6 +197,7 @@ RULES: Mapping[str, Rule] = MappingProxyType(
             STIFFNESS_RANGE,
             CERTIFICATE_HOLDS,
             LOCKED,
+            GOAL,
             INTERNAL,
         )
     }

@@ -2,20 +2,29 @@
 
 from __future__ import annotations
 
+import os
 from collections import Counter
-from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from nrs_design.certificates.certificate import dump
 from nrs_design.certificates.verify import verify
-from nrs_design.errors import DesignError, SpecError
+from nrs_design.controllers.gains import gains_of
+from nrs_design.errors import DesignError, OutputError, SpecError
 from nrs_design.gating.examine import Examiner, rate_of
-from nrs_design.gating.obligations import GateOutcome, Obligation, SpecOutcome, failed
+from nrs_design.gating.obligations import (
+    Caution,
+    GateOutcome,
+    Obligation,
+    SpecOutcome,
+    failed,
+)
 from nrs_design.gating.paths import is_utf8
 from nrs_design.gating.places import Places
-from nrs_design.output import write_output
+from nrs_design.output import CERTIFICATE, PAGE, write_output
+from nrs_design.ownership import REMEDY, check_owner, origin_of
 from nrs_design.pipeline import (
     Overrides,
     Result,
@@ -33,10 +42,21 @@ Progress = Callable[[str], None]
 
 @dataclass(frozen=True, slots=True)
 class Files:
-    """Where the files of a spec go: ``NAME.cert.json`` and, if asked for, ``NAME.html``."""
+    """Where the files of a spec go: ``NAME.cert.json`` and, if asked for, ``NAME.html``.
+
+    Parameters
+    ----------
+    folder : Path
+        For all of them.
+    html : bool
+        Whether reports are asked for.
+    locked : mapping of Path to Path
+        Which spec a certificate file is locked for, as real paths.
+    """
 
     folder: Path
     html: bool = True
+    locked: Mapping[Path, Path] = field(default_factory=dict)
 
     def certificate(self, name: str) -> Path:
         """Return the certificate file of the spec of that name."""
@@ -45,6 +65,20 @@ class Files:
     def report(self, name: str) -> Path:
         """Return the report file of the spec of that name."""
         return self.folder / f"{name}.html"
+
+    def check_owner(self, spec: Path, name: str) -> None:
+        """Refuse to write files of that name where they are those of another spec.
+
+        Raises
+        ------
+        OutputError
+            If they are.
+        """
+        check_owner(spec, name, self.folder)
+        file = self.certificate(name)
+        owner = self.locked.get(Path(os.path.realpath(file)))
+        if owner is not None and owner.is_file() and owner != Path(os.path.realpath(spec)):
+            raise OutputError(f"is locked for {os.path.relpath(owner)}", path=file, remedy=REMEDY)
 
 
 def run_gate(
@@ -77,7 +111,9 @@ def run_gate(
         tuple(
             item
             if isinstance(item, SpecOutcome)
-            else _examine_safely(item, item.spec.name in shared, files, progress, overrides)
+            else _examine_safely(
+                item, item.spec.name.casefold() in shared, files, progress, overrides
+            )
             for item in read
         )
     )
@@ -93,7 +129,8 @@ def _read(path: Path) -> LoadedSpec | SpecOutcome:
 
 
 def _shared_names(specs: Iterable[LoadedSpec]) -> set[str]:
-    counts = Counter(loaded.spec.name for loaded in specs)
+    # Some file systems do not tell capitals from small letters.
+    counts = Counter(loaded.spec.name.casefold() for loaded in specs)
     return {name for name, count in counts.items() if count > 1}
 
 
@@ -132,6 +169,7 @@ def _examine(
 ) -> SpecOutcome:
     if isinstance(loaded.spec, RobotSpec):
         return Examiner.of(loaded).nothing_to_certify()
+    files.check_owner(loaded.path, loaded.spec.name)
     limits = limits_of(loaded.spec, overrides)
     result = run_certification(loaded, limits=limits, progress=progress)
     certification, certificate = result.certification, result.certificate
@@ -141,14 +179,15 @@ def _examine(
     file = None
     if certificate is not None:
         file = files.certificate(loaded.spec.name)
-        write_output(file, dump(certificate))
+        text = dump(certificate, origin_of(loaded.path, file))
+        write_output(file, text, replaces=CERTIFICATE)
         progress("re-check")
         obligations += (examiner.certificate(file, verify(file, loaded).fault),)
-    obligations += _goals_and_report(result, examiner, files, progress)
+    goals, cautions = _goals_and_report(result, examiner, files, progress)
     rate, rate_name = rate_of(certificate)
     return SpecOutcome(
         path=loaded.path,
-        obligations=obligations,
+        obligations=obligations + goals,
         sha256=loaded.sha256,
         verdict=str(certification.verdict),
         common_quadratic=str(certification.common_quadratic),
@@ -157,12 +196,14 @@ def _examine(
         modes=len(certification.system.modes),
         certificate=file,
         certificate_id=None if certificate is None else certificate.id,
+        gains=gains_of(result.design) if result.design else {},
+        cautions=cautions,
     )
 
 
 def _goals_and_report(
     result: Result, examiner: Examiner, files: Files, progress: Progress
-) -> tuple[Obligation, ...]:
+) -> tuple[tuple[Obligation, ...], tuple[Caution, ...]]:
     evidence: DesignEvidence | None = None
     missed: tuple[Obligation, ...] = ()
     if result.design is not None:
@@ -176,6 +217,11 @@ def _goals_and_report(
         # Drawing costs seconds to import; a run without reports must not pay for it.
         from nrs_design.reporting import build_report, render_html
 
-        html = render_html(build_report(result, evidence))
-        write_output(files.report(result.loaded.spec.name), html)
-    return missed if evidence is None else tuple(examiner.stiffness_ranges(evidence))
+        page = files.report(result.loaded.spec.name)
+        origin = origin_of(result.loaded.path, page)
+        html = render_html(build_report(result, evidence), origin)
+        write_output(page, html, replaces=PAGE)
+    cautions = tuple(examiner.cautions(evidence))
+    if evidence is None:
+        return missed, cautions
+    return (*examiner.stiffness_ranges(evidence), *examiner.goals(evidence)), cautions

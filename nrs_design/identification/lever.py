@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from nrs_design.errors import DataError
+from nrs_design.errors import DataError, SpecError
 from nrs_design.models.tissue import AbstractTissueLaw, HuntCrossley
 from nrs_design.models.tissue.law import DAMPING, STIFFNESS
 from nrs_design.spec.kinds import LEVER_ARM
@@ -17,14 +17,15 @@ def parse_arm(text: str | None, *, rotational: bool) -> float | None:
 
     Raises
     ------
-    SpecError
-        If it is no length.
     DataError
-        If it is not positive, or the records are rotational and need none.
+        If it is no length, is not positive, or the records are rotational and need none.
     """
     if text is None:
         return None
-    arm = parse_quantity(text, LEVER_ARM).si
+    try:
+        arm = parse_quantity(text, LEVER_ARM).si
+    except SpecError as error:
+        raise DataError(f"--lever-arm: {error.message}", remedy=error.remedy) from None
     if rotational:
         raise DataError(
             "the records are rotational, and a lever arm is given", remedy="remove --lever-arm"

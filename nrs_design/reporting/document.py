@@ -5,6 +5,7 @@ Every number is already text. The HTML and the PDF are two renderings of the sam
 
 from __future__ import annotations
 
+import datetime
 from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
@@ -101,6 +102,9 @@ class Report:
         In reading order.
     footer : str
         Last line of the page.
+    date : datetime.date, optional
+        As the reader gave it. Without one the report has no date, and the same spec gives the
+        same report on any day.
     """
 
     name: str
@@ -114,6 +118,7 @@ class Report:
         "Report of nrs-design. Figures are floating-point illustrations; the certificate is the "
         "proof."
     )
+    date: datetime.date | None = None
 
     @property
     def illustrations(self) -> Iterator[Illustration]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -181,9 +181,9 @@ def _tissue_figures(found: TissueIdentification) -> Iterator[Illustration]:
         ("Torque [N m]", "Angle [rad]") if found.rotational else ("Force [N]", "Deflection [m]")
     )
     note = _label(found.synthetic)
-    for fit in found.chosen.fits[:_DRAWN]:
+    drawn = found.chosen.fits[:_DRAWN]
+    for fit, name in zip(drawn, _ids([fit.record.name for fit in drawn]), strict=True):
         fitted = fit.law.simulate(fit.record.motion)
-        name = _id(fit.record.name)
         yield Illustration(
             f"fit-{name}",
             fit.record.name,
@@ -235,19 +235,23 @@ def _actuator_records(found: ActuatorIdentification) -> tuple[Section, ...]:
         return ()
     by_frequency = np.argsort(found.frequency)
     ends = dict.fromkeys([int(by_frequency[0]), int(by_frequency[-1])])
-    blocks = tuple(_angle_figure(found, found.records[i], found.frequency[i]) for i in ends)
+    names = _ids([found.records[i].name for i in ends])
+    blocks = tuple(
+        _angle_figure(found, found.records[i], found.frequency[i], name)
+        for i, name in zip(ends, names, strict=True)
+    )
     return (Section("Slowest and fastest record", blocks),)
 
 
 def _angle_figure(
-    found: ActuatorIdentification, record: SinusoidRecord, frequency: float
+    found: ActuatorIdentification, record: SinusoidRecord, frequency: float, name: str
 ) -> Illustration:
     fit = found.chosen
     friction = fit.friction.value if fit.friction else 0.0
     fitted = simulate_angle(record, fit.gain.value, fit.time_constant.value, friction)
     hertz = number(frequency / (2 * math.pi), 3)
     return Illustration(
-        f"angle-{_id(record.name)}",
+        f"angle-{name}",
         f"{record.name}: {hertz} Hz",
         f"{_label(found.synthetic)}The chosen fit; only initial angle and velocity are adapted "
         "to this record.",
@@ -285,5 +289,9 @@ def _short(value: float) -> str:
     return number(value, 5) if value >= 1e-3 or value == 0 else f"{value:.4e}"
 
 
-def _id(name: str) -> str:
-    return re.sub(r"[^A-Za-z0-9-]+", "-", name)
+def _ids(names: Sequence[str]) -> list[str]:
+    """Turn names of records into names of figures, no two alike."""
+    plain = [re.sub(r"[^A-Za-z0-9-]+", "-", name) for name in names]
+    if len(set(plain)) == len(plain):
+        return plain
+    return [f"{index}-{name}" for index, name in enumerate(plain, 1)]

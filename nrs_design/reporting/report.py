@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 from nrs_design.reporting.document import Report, Section
 from nrs_design.reporting.sections.design import design_sections
 from nrs_design.reporting.sections.evidence import evidence_sections
+from nrs_design.reporting.sections.goals import goal_facts
 from nrs_design.reporting.sections.head import claim_of, facts, proved_rate, remarks_of
 from nrs_design.reporting.sections.modes import modes_section
 from nrs_design.reporting.sections.proof import proof_section
@@ -15,12 +16,18 @@ from nrs_design.reporting.sections.search import assumptions_section, rungs_sect
 from nrs_design.spec import InteractionDesignSpec
 
 if TYPE_CHECKING:
+    import datetime
+
     from nrs_design.design.evidence import DesignEvidence
     from nrs_design.pipeline import Result
 
 
 def build_report(
-    result: Result, evidence: DesignEvidence | None = None, *, times: bool = False
+    result: Result,
+    evidence: DesignEvidence | None = None,
+    *,
+    times: bool = False,
+    date: datetime.date | None = None,
 ) -> Report:
     """Say and draw everything about one spec.
 
@@ -34,6 +41,8 @@ def build_report(
     times : bool
         Add how long every rung of the search took. The same spec then gives another page each
         time.
+    date : datetime.date, optional
+        To write on it.
 
     Returns
     -------
@@ -48,7 +57,7 @@ def build_report(
         verdict=str(certification.verdict),
         claim=claim_of(certification),
         remarks=remarks_of(certification),
-        facts=facts(result),
+        facts=(*facts(result), *goal_facts(evidence)),
         sections=(
             proof_section(result),
             *_design(result, evidence),
@@ -58,6 +67,7 @@ def build_report(
             rungs_section(certification, times=times),
             recheck_section(result),
         ),
+        date=date,
     )
 
 

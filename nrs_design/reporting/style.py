@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from functools import wraps
-from typing import TYPE_CHECKING, ParamSpec
+from typing import TYPE_CHECKING, Any, ParamSpec
+
+from nrs_design.plotting import load_matplotlib
+from nrs_design.reporting.text import wrapped
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -23,13 +26,22 @@ BLUE, VERMILLION, GREEN, PURPLE, SKY, ORANGE = (
 )
 CYCLE = (BLUE, VERMILLION, GREEN, PURPLE, SKY, ORANGE)
 MARKERS = ("o", "s", "^", "D", "v", "P", "X", "*")
+DASHES = ("-", (0, (6, 2)), (0, (2, 1.5)), (0, (6, 2, 1.5, 2)))
+# So many series differ in color or marker; more than these are drawn alike.
+TOLD_APART = 24
 ALARM = "#a00000"
 INK, MUTED, GRID = "#1b1f24", "#5a6472", "#dfe3e8"
+
+# In inches: the text of a figure this wide is read on a telephone, where it is as wide as the page.
+_WIDTH = 5.4
+_LEGEND_LETTERS, _LEGEND_LINE, _LEGEND_GAP = 46, 0.175, 0.055
 
 _SETTINGS = {
     "svg.hashsalt": "nrs-design",
     # Outlines look the same on every reader's machine and need no font there.
     "svg.fonttype": "path",
+    # A name with two dollars is no formula; the axes' own numbers need none either.
+    "text.parse_math": False,
     "font.family": ["DejaVu Sans"],
     "font.size": 10.0,
     "axes.edgecolor": MUTED,
@@ -42,7 +54,7 @@ _SETTINGS = {
     "grid.linewidth": 0.7,
     "lines.linewidth": 1.8,
     "legend.frameon": False,
-    "legend.fontsize": 9.0,
+    "legend.fontsize": 9.5,
     "xtick.color": INK,
     "ytick.color": INK,
     "text.color": INK,
@@ -53,7 +65,8 @@ P = ParamSpec("P")
 
 @contextmanager
 def figure_style() -> Iterator[None]:
-    """Use the report's settings whatever the reader's own matplotlib file says."""
+    """Use the report's settings whatever any matplotlib file says."""
+    load_matplotlib()
     from matplotlib import style
 
     with style.context(["default", _SETTINGS]):
@@ -69,8 +82,11 @@ def styled(draw: Callable[P, Figure]) -> Callable[P, Figure]:
 
     @wraps(draw)
     def drawn(*args: P.args, **kwargs: P.kwargs) -> Figure:
+        from nrs_design.reporting.ticks import write_ticks_in_full
+
         with figure_style():
             figure = draw(*args, **kwargs)
+            write_ticks_in_full(figure)
             figure.draw_without_rendering()
             figure.set_layout_engine("none")
             return figure
@@ -79,10 +95,10 @@ def styled(draw: Callable[P, Figure]) -> Callable[P, Figure]:
 
 
 def new_figure(height: float = 3.9) -> Figure:
-    """Return an empty figure of the report's width (6.6 inches) and a height in inches."""
+    """Return an empty figure of the report's width and a height in inches."""
     from matplotlib.figure import Figure
 
-    return Figure(figsize=(6.6, height), layout="constrained")
+    return Figure(figsize=(_WIDTH, height), layout="constrained")
 
 
 def new_axes(height: float = 3.9) -> tuple[Figure, Axes]:
@@ -101,17 +117,49 @@ def marker(index: int) -> str:
     return MARKERS[index % len(MARKERS)]
 
 
-def short(name: str, limit: int = 26) -> str:
-    """Shorten a name for a label in a figure; the tables have it in full."""
-    if len(name) <= limit:
-        return name
-    head = limit // 2
-    return f"{name[:head]}…{name[head + 1 - limit :]}"
+def curve(index: int, count: int, points: int) -> dict[str, Any]:
+    """Return the look of one of several curves, which shows also where they coincide.
+
+    Each has a marker of its own at places of its own, so that curves on top of each other show
+    the markers of all in turn.
+
+    Parameters
+    ----------
+    index, count : int
+        Which of how many curves.
+    points : int
+        Of each curve.
+    """
+    step = max(points // 8, 1)
+    return {
+        "color": color(index),
+        "marker": marker(index),
+        "markersize": 5.0,
+        "markevery": (step * index // max(count, 1) % step, step),
+        "linestyle": DASHES[index // len(CYCLE) % len(DASHES)],
+    }
+
+
+def row_labels(names: Sequence[str], width: int = 24) -> tuple[list[str], float]:
+    """Return names in full as labels of rows, and the height in inches that one row needs."""
+    labels = [wrapped(name, width) for name in names]
+    lines = max((label.count("\n") for label in labels), default=0) + 1
+    return labels, 0.11 + 0.16 * lines
 
 
 def legend(figure: Figure, axes: Axes, columns: int = 2) -> None:
-    """Put a legend below the axes, where it hides no data; none for a single series."""
+    """Put a legend below the axes, where it hides no data, and make the figure higher for it.
+
+    A single series has none. Names are written in full, on several lines where they are long.
+    """
     handles, labels = axes.get_legend_handles_labels()
-    if len(handles) > 1:
-        columns = min(columns, len(handles))
-        figure.legend(handles, labels, loc="outside lower center", ncols=columns)
+    if len(handles) < 2:
+        return
+    texts = [wrapped(label, _LEGEND_LETTERS) for label in labels]
+    longest = max(len(line) for text in texts for line in text.splitlines())
+    columns = max(1, min(columns, len(handles), 66 // (longest + 6)))
+    rows = -(-len(handles) // columns)
+    lines = rows + sum(text.count("\n") for text in texts) / columns
+    more = _LEGEND_LINE * (lines - 1) + _LEGEND_GAP * (rows - 1)
+    figure.set_figheight(figure.get_figheight() + more)
+    figure.legend(handles, texts, loc="outside lower center", ncols=columns)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from nrs_design.certificates.certify import Certification, certify
 from nrs_design.certificates.evidence import CommonQuadratic
-from nrs_design.certificates.evidence.fields import rate_text
+from nrs_design.certificates.evidence.fields import rate_words
 from nrs_design.reproduction import thesis
 from nrs_design.reproduction.matrices import family, hybrid_rows, impedance_rows, printed_rows
 from nrs_design.reproduction.row import Row, Verdict, claim
@@ -79,4 +79,4 @@ def _withdrawal(Mt: str) -> SwitchedSystem:
 def _describe(found: Certification) -> str:
     if not isinstance(found.evidence, CommonQuadratic):
         return str(found.verdict)
-    return f"{found.verdict}, alpha = {rate_text(found.evidence.rate, found.system.time)} 1/s"
+    return f"{found.verdict}, {rate_words(found.evidence.rate, found.system.time)}"

@@ -7,8 +7,8 @@ from fractions import Fraction
 import numpy as np
 
 from nrs_design.certificates.evidence import CommonPolynomial, ParameterQuadratic
-from nrs_design.certificates.evidence.common_polynomial import lifted_decrease
-from nrs_design.certificates.exact import IntegerMatrix, add
+from nrs_design.certificates.evidence.common_polynomial import lifted_decrease, lifted_factor
+from nrs_design.certificates.exact import add
 from nrs_design.simulation.norms import (
     Array,
     diagonal_exponents,
@@ -16,7 +16,7 @@ from nrs_design.simulation.norms import (
     modes_at,
     scaled_form,
 )
-from nrs_design.switched.system import Mode, SwitchedSystem, Time
+from nrs_design.switched.system import SwitchedSystem, Time
 
 
 def mode_rates(system: SwitchedSystem, Q: Array) -> Array:
@@ -55,8 +55,9 @@ def polynomial_rates(system: SwitchedSystem, evidence: CommonPolynomial) -> Arra
     d, rate = evidence.degree, float(evidence.rate)
     slack = []
     for mode, N in zip(system.modes, evidence.vanishing, strict=True):
-        form, scale = _decrease(mode, evidence, N, system.time)
-        relative = inverse @ scaled_form(form, exponents, scale) @ inverse.T
+        form = add(lifted_decrease(mode, d, evidence.Q, evidence.rate, system.time), N)
+        factor = lifted_factor(mode, d, evidence.rate, system.time)
+        relative = inverse @ scaled_form(form, exponents, factor) @ inverse.T
         slack.append(float(np.linalg.eigvalsh(relative)[0]))
     if system.time is Time.CONTINUOUS:
         return rate + np.array(slack) / (2 * d)
@@ -96,14 +97,3 @@ def drift(system: SwitchedSystem, Q: Array) -> list[Array]:
     if system.time is Time.DISCRETE:
         return [A.T @ Q @ A for A in matrices]
     return [A.T @ Q + Q @ A for A in matrices]
-
-
-def _decrease(
-    mode: Mode, evidence: CommonPolynomial, vanishing: IntegerMatrix, time: Time
-) -> tuple[IntegerMatrix, int]:
-    """Return the form that the certificate shows to be positive, and its positive factor."""
-    d, rate = evidence.degree, evidence.rate
-    form = add(lifted_decrease(mode, d, evidence.Q, rate, time), vanishing)
-    if time is Time.CONTINUOUS:
-        return form, mode.A.denominator * (d * rate).denominator
-    return form, (mode.A.denominator * rate.denominator) ** (2 * d)

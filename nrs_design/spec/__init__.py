@@ -8,9 +8,11 @@ from nrs_design.spec.controllers import (
     ImpedanceControllerSpec,
     PositionControllerSpec,
 )
+from nrs_design.spec.doubts import Doubt, doubt_spec
 from nrs_design.spec.environment import ElasticSpec, EnvironmentSpec, KelvinVoigtSpec
 from nrs_design.spec.exact import parse_exact
 from nrs_design.spec.gain_fields import GainSpec
+from nrs_design.spec.goals import GoalsSpec
 from nrs_design.spec.interaction import DesignSpec, InteractionDesignSpec
 from nrs_design.spec.load import LoadedSpec, Spec, load_spec, parse_spec, read_spec
 from nrs_design.spec.motion import (
@@ -47,12 +49,14 @@ __all__ = [
     "ControllerSpec",
     "CostWeights",
     "DesignSpec",
+    "Doubt",
     "DriveSpec",
     "DwellTime",
     "ElasticSpec",
     "EnvironmentSpec",
     "ForceControllerSpec",
     "GainSpec",
+    "GoalsSpec",
     "ImpedanceControllerSpec",
     "InteractionDesignSpec",
     "KelvinVoigtSpec",
@@ -73,6 +77,7 @@ __all__ = [
     "SwitchedSystemSpec",
     "SwitchingSpec",
     "TransferFunctionSpec",
+    "doubt_spec",
     "load_spec",
     "parse_exact",
     "parse_spec",

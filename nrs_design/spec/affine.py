@@ -33,6 +33,11 @@ class Affine:
         return tuple(name for name, _ in self.slopes)
 
     @property
+    def numbers(self) -> tuple[Fraction, ...]:
+        """The constant and the factors."""
+        return (self.constant, *(slope for _, slope in self.slopes))
+
+    @property
     def is_constant(self) -> bool:
         """Whether it depends on no parameter."""
         return not self.slopes

@@ -10,11 +10,14 @@ from pydantic import Discriminator, Field, field_validator, model_validator
 from nrs_design.spec.faults import fault
 from nrs_design.spec.fields import Label, Positive, UnitFraction, Weight
 from nrs_design.spec.gain_fields import DampingGain, InertiaGain
+from nrs_design.spec.goals import GoalsSpec
 from nrs_design.spec.model import SpecModel
 from nrs_design.spec.quantity_fields import ForceGain, Impedance
 
 _ENVIRONMENT = "name of the environment that the gains are designed for"
 _CONTACTS = "names of all environments touched while this controller is active; default: its own"
+
+_GOALS = "goals of this controller; they replace the spec's own, key by key"
 
 _GAIN_RANGE = (
     "range: [lowest, highest] beside them is what the proof covers if the gain is retuned while "
@@ -75,6 +78,7 @@ class ImpedanceControllerSpec(SpecModel):
     weights: CostWeights = Field(
         default_factory=CostWeights, description="weights of the design cost, no unit"
     )
+    goals: GoalsSpec | None = Field(default=None, description=_GOALS)
 
     _contacts = field_validator("contacts")(_distinct)
 
@@ -107,6 +111,7 @@ class ForceControllerSpec(SpecModel):
         default=None,
         description="wanted damping ratio of the dominant poles, in (0, 1), no unit; chooses Kp",
     )
+    goals: GoalsSpec | None = Field(default=None, description=_GOALS)
 
     _contacts = field_validator("contacts")(_distinct)
 

@@ -11,6 +11,7 @@ from nrs_design.spec.controllers import ControllerSpec, ImpedanceControllerSpec
 from nrs_design.spec.environment import EnvironmentSpec, KelvinVoigtSpec
 from nrs_design.spec.exact import exact_text
 from nrs_design.spec.gain_fields import GainSpec
+from nrs_design.spec.goals import GoalsSpec
 from nrs_design.spec.interaction import InteractionDesignSpec
 from nrs_design.spec.load import Spec
 from nrs_design.spec.model import SpecModel
@@ -107,6 +108,7 @@ def _interaction(spec: InteractionDesignSpec) -> Iterator[Row]:
         yield from _environment(f"environments.{name}", environment)
     for name, controller in spec.controllers.items():
         yield from _controller(f"controllers.{name}", controller, spec.limits)
+    yield from _goals("goals", spec.goals)
     yield Row("design.significant_digits", str(spec.design.significant_digits), "", "")
     yield Row("coordinates", spec.coordinates, "", "")
     yield from _switching(spec.switching)
@@ -169,6 +171,12 @@ def _controller(name: str, controller: ControllerSpec, limits: LimitsSpec) -> It
         yield _row(f"{name}.proportional_gain", controller.proportional_gain, kinds.FORCE_GAIN)
     elif controller.damping_ratio is not None:
         yield _number(f"{name}.damping_ratio", controller.damping_ratio)
+    yield from _goals(f"{name}.goals", controller.goals)
+
+
+def _goals(name: str, goals: GoalsSpec | None) -> Iterator[Row]:
+    if goals is not None:
+        yield from describe_model(goals, name)
 
 
 def _desired_impedance(name: str, controller: ImpedanceControllerSpec, limits: LimitsSpec) -> Row:

@@ -26,21 +26,29 @@ from ruamel.yaml.events import (
     SequenceStartEvent,
 )
 
-from nrs_design.errors import SpecError
+from nrs_design.errors import Fault, SpecError
+from nrs_design.files import open_regular
 from nrs_design.spec.exact import quoted
 from nrs_design.spec.syntax import explain_syntax, fault_mark
 
 MAX_BYTES = 1024 * 1024
 MAX_DEPTH = 20
+# So many faults of syntax are enough to mend: a hostile file is not read further.
+MAX_FAULTS = 100
+# Keys and values; the parser takes some ten microseconds for each.
+MAX_NODES = 150_000
+# Longer texts are no names, numbers or titles; what follows need not fear them.
+MAX_SCALAR = 1000
 
 # Escapes such as "\ud800" can produce them; they cannot be printed or encoded.
 _SURROGATE = re.compile("[\ud800-\udfff]")
+_WORD = re.compile(r"[^\s,\[\]{}]+")
 _NULL = re.compile(r"|~|null|Null|NULL")
 # What YAML 1.2 reads as a truth value or a number, when it is not quoted.
 _NOT_TEXT = re.compile(
     r"true|True|TRUE|false|False|FALSE"
     r"|[+-]?[0-9]+|0o[0-7]+|0x[0-9a-fA-F]+"
-    r"|[+-]?(?:\.[0-9]+|[0-9]+\.?[0-9]*)(?:[eE][+-]?[0-9]+)?"
+    r"|[+-]?(?:\.[0-9]+|[0-9]+(?:\.[0-9]*)?)(?:[eE][+-]?[0-9]+)?"
     r"|[+-]?\.(?:inf|Inf|INF)|\.(?:nan|NaN|NAN)"
 )
 
@@ -123,7 +131,7 @@ def _read_bytes(path: Path) -> bytes:
             raise SpecError(
                 "this is not a regular file", path=path, remedy="name a *.nrs.yaml file"
             )
-        with path.open("rb") as file:
+        with open_regular(path) as file:
             return file.read(MAX_BYTES + 1)
     except FileNotFoundError:
         raise SpecError("there is no such file", path=path, remedy="check the path") from None
@@ -152,10 +160,32 @@ def parse_document(text: str, path: Path | None = None) -> Node:
     Raises
     ------
     SpecError
-        With line and column, for syntax errors, nesting deeper than 20, anchors, aliases, tags,
-        merge keys, duplicate keys, keys that are not text, missing values and several documents.
+        With line and column, for syntax errors, nesting deeper than 20, more than 150,000 keys
+        and values, one longer than 1000 characters, anchors, aliases, tags, merge keys, duplicate
+        keys, keys that are not text, missing values and several documents.
     """
-    return _Builder(text, path).build()
+    root, faults = read_document(text, path)
+    if faults:
+        raise SpecError.of(faults, path)
+    return root
+
+
+def read_document(text: str, path: Path | None = None) -> tuple[Node, tuple[Fault, ...]]:
+    """Parse a document as `parse_document` does, past all faults that leave the rest readable.
+
+    Returns
+    -------
+    node, tuple of Fault
+        The tree, in which an empty text stands where a value could not be read, and what is wrong
+        with its syntax.
+
+    Raises
+    ------
+    SpecError
+        If the rest of the file cannot be read; it holds the faults before, too.
+    """
+    builder = _Builder(text, path)
+    return builder.build(), tuple(builder.faults)
 
 
 def to_data(node: Node) -> Data:
@@ -193,6 +223,7 @@ class _Builder:
         self._path = path
         self._places = _Places(text)
         self._events = self._checked_events()
+        self.faults: list[Fault] = []
 
     def build(self) -> Node:
         root: Node | None = None
@@ -203,11 +234,17 @@ class _Builder:
             self._fail("the file holds no document", 0, "start from `nrs-design init`")
         return root
 
-    def _fail(self, message: str, index: int | Position, remedy: str) -> NoReturn:
+    def _note(self, message: str, index: int | Position, remedy: str) -> None:
+        """Note a fault behind which the file can be read on."""
         place = index if isinstance(index, Position) else self._places.at(index)
-        raise SpecError(
-            message, path=self._path, line=place.line, column=place.column, remedy=remedy
-        )
+        self.faults.append(Fault(message, place.line, place.column, remedy))
+        if len(self.faults) >= MAX_FAULTS:
+            raise SpecError.of(self.faults, self._path)
+
+    def _fail(self, message: str, index: int | Position, remedy: str) -> NoReturn:
+        """Give up; an indentation that does not fit, for instance, leaves the rest unreadable."""
+        self._note(message, index, remedy)
+        raise SpecError.of(self.faults, self._path)
 
     def _raw_events(self) -> Iterator[Event]:
         """Parser events; every way in which the parser gives up becomes a SpecError."""
@@ -222,17 +259,20 @@ class _Builder:
                 index = mark.index if mark else index
             else:
                 index = getattr(error, "position", index)
-            message, remedy = explain_syntax(error)
+            message, remedy, index = explain_syntax(error, self._text, index)
             self._fail(message, index, remedy)
         except (ValueError, ArithmeticError, LookupError):
             # Escapes beyond unicode and absurd version directives end so in the parser.
             self._fail("this is not valid YAML", index, "check escapes and directives")
 
     def _checked_events(self) -> Iterator[Event]:
-        depth = 0
-        documents = 0
+        self._check_size()
+        depth = documents = nodes = 0
         for event in self._raw_events():
             index = event.start_mark.index
+            nodes += isinstance(event, NodeEvent)
+            if nodes > MAX_NODES:
+                self._fail_large(index)
             if isinstance(event, DocumentStartEvent):
                 documents += 1
                 if documents > 1:
@@ -245,21 +285,48 @@ class _Builder:
                 self._fail(f"nested deeper than {MAX_DEPTH} levels", index, "flatten the spec")
             yield event
 
+    def _check_size(self) -> None:
+        """Refuse, before the parser sees it, what would keep it busy for long.
+
+        Its time grows with the square of the length of a tag; every comma and every line may be
+        followed by one more node.
+        """
+        for word in _WORD.finditer(self._text):
+            if word.end() - word.start() > MAX_SCALAR:
+                self._fail_long(word.end() - word.start(), word.start())
+        if self._text.count(",") + self._text.count("\n") > MAX_NODES:
+            self._fail_large(0)
+
+    def _fail_large(self, index: int) -> NoReturn:
+        remedy = "split it into several specs"
+        self._fail(f"the file holds more than {MAX_NODES} keys, values or lines", index, remedy)
+
+    def _fail_long(self, length: int, index: int) -> NoReturn:
+        self._fail(
+            f"a text of {length} characters stands here, at most {MAX_SCALAR} are read",
+            index,
+            "shorten it",
+        )
+
     def _check_node(self, event: NodeEvent, index: int) -> None:
+        if isinstance(event, ScalarEvent) and len(event.value) > MAX_SCALAR:
+            self._fail_long(len(event.value), index)
         if isinstance(event, AliasEvent):
-            self._fail("aliases (*name) are not read", index, "write the value out")
+            self._note("aliases (*name) are not read", index, "write the value out")
         if event.anchor is not None:
-            self._fail("anchors (&name) are not read", index, "remove the anchor")
+            self._note("anchors (&name) are not read", index, "remove the anchor")
         if getattr(event, "tag", None) is not None:
-            self._fail("tags (!name) are not read", index, "remove the tag")
+            self._note("tags (!name) are not read", index, "remove the tag")
         if isinstance(event, ScalarEvent) and _SURROGATE.search(event.value):
-            self._fail("a lone surrogate is not text", index, "remove the escape")
+            self._note("a lone surrogate is not text", index, "remove the escape")
 
     def _node(self, event: NodeEvent) -> Node:
         place = self._places.at(event.start_mark.index)
+        if isinstance(event, AliasEvent):
+            return Scalar("", place)
         if isinstance(event, ScalarEvent):
             if event.style is None and _NULL.fullmatch(event.value):
-                self._fail("a value is missing here", place, "write a value or remove the key")
+                self._note("a value is missing here", place, "write a value or remove the key")
             return Scalar(event.value, place)
         if isinstance(event, SequenceStartEvent):
             return Sequence(tuple(self._node(item) for item in self._children()), place)
@@ -281,13 +348,14 @@ class _Builder:
             key_place = self._places.at(event.start_mark.index)
             key = self._key(event, key_place)
             if key in keys:
-                self._fail(
+                self._note(
                     f"the key {quoted(key)} is there twice, first in line {keys[key].line}",
                     key_place,
                     "keep one of them",
                 )
-            keys[key] = key_place
-            entries[key] = self._value(key, key_place, next(children))
+            value = self._value(key, key_place, next(children))
+            if key not in keys:
+                keys[key], entries[key] = key_place, value
         return Mapping(entries, keys, place)
 
     def _key(self, event: NodeEvent, place: Position) -> str:
@@ -297,15 +365,16 @@ class _Builder:
         if event.style is not None:
             return key
         if key == "<<":
-            self._fail("merge keys (<<) are not read", place, "write the keys out")
-        if _NULL.fullmatch(key) or _NOT_TEXT.fullmatch(key):
-            self._fail(f"the key {quoted(key)} is not text", place, "put it in quotes or rename it")
+            self._note("merge keys (<<) are not read", place, "write the keys out")
+        elif _NULL.fullmatch(key) or _NOT_TEXT.fullmatch(key):
+            self._note(f"the key {quoted(key)} is not text", place, "put it in quotes or rename it")
         return key
 
     def _value(self, key: str, key_place: Position, event: NodeEvent) -> Node:
         """Read the value of a key; a missing one is reported where the key stands."""
         if isinstance(event, ScalarEvent) and event.style is None and _NULL.fullmatch(event.value):
-            self._fail(
+            self._note(
                 f"the key {quoted(key)} has no value", key_place, "write a value or remove the key"
             )
+            return Scalar("", key_place)
         return self._node(event)

@@ -109,7 +109,12 @@ def _refuse_huge_exponent(text: str) -> None:
 
 
 def number_fault(text: str) -> SpecError | None:
-    """Recognize a number that is written in a way that is not read, and say why; else None."""
+    """Recognize a number that is written in a way that is not read, and say why; else None.
+
+    Long texts are none, and are not looked at: some patterns take long for them.
+    """
+    if len(text) > 2 * MAX_LENGTH:
+        return None
     for pattern, message, remedy in _FAULTS:
         if pattern.fullmatch(text):
             return SpecError(f"the number {quoted(text)} {message}{_named(text)}", remedy=remedy)

@@ -1,17 +1,16 @@
-"""From what validation reports to one error with the place in the file and the remedy."""
+"""From what validation reports to faults with their place in the file and the remedy."""
 
 from __future__ import annotations
 
 import difflib
-from collections.abc import Callable, Collection, Iterable
+from collections.abc import Callable, Collection, Iterable, Iterator
 from itertools import islice
-from pathlib import Path
 from typing import Any, TypeVar, get_args, get_origin
 
 from pydantic import BaseModel, ValidationError
 from pydantic_core import ErrorDetails, PydanticCustomError
 
-from nrs_design.errors import SpecError
+from nrs_design.errors import Fault, SpecError
 from nrs_design.spec.document import Mapping, Node, Position, Sequence
 from nrs_design.spec.exact import quoted
 
@@ -22,14 +21,7 @@ MAX_LISTED = 20
 _FAULT = "spec_fault"
 # Below a choice between models, validation inserts the tag of the chosen one.
 _CHOICES = {"environments": "model", "controllers": "type"}
-_EXPECTED = {
-    "model_type": "expected a mapping of keys",
-    "model_attributes_type": "expected a mapping of keys",
-    "dict_type": "expected a mapping of names",
-    "tuple_type": "expected a list",
-    "too_short": "must not be empty",
-    "too_long": "is too long",
-}
+_MAPPINGS = ("model_type", "model_attributes_type", "dict_type")
 
 
 def fault(message: str, remedy: str, *at: int | str) -> PydanticCustomError:
@@ -61,6 +53,21 @@ def reported(read: Callable[[], _T], *at: int | str) -> _T:
         raise fault(error.message, error.remedy or "", *at) from None
 
 
+def all_of(*reads: Callable[[], _T]) -> list[_T]:
+    """Call every reader or check, and report the faults of all of them, not of the first only."""
+    results: list[_T] = []
+    found: list[dict[str, Any]] = []
+    for read in reads:
+        try:
+            results.append(read())
+        except PydanticCustomError as error:
+            context = error.context or {}
+            found += context.get("all", [context])
+    if found:
+        raise PydanticCustomError(_FAULT, "{message}", {**found[0], "all": found})
+    return results
+
+
 def did_you_mean(word: str, choices: Collection[str], noun: str = "write one of") -> str:
     """Suggest the nearest choice, and list them all if they are few."""
     alike = [choice for choice in choices if choice.lower() == word.lower()]
@@ -70,10 +77,8 @@ def did_you_mean(word: str, choices: Collection[str], noun: str = "write one of"
     return f"did you mean {near[0]}? {listing}" if near else listing
 
 
-def spec_error(
-    error: ValidationError, model: type[BaseModel], root: Node, path: Path | None
-) -> SpecError:
-    """Report the first fault in file order, and how many more there are.
+def file_faults(error: ValidationError, model: type[BaseModel], root: Node) -> tuple[Fault, ...]:
+    """Return what validation reports as faults of the file, each with its place, in file order.
 
     Parameters
     ----------
@@ -83,13 +88,13 @@ def spec_error(
         The model that validated the file.
     root : Node
         The parsed file, for the positions.
-    path : Path or None
-        Named in the error.
     """
-    known = sorted({_resolve(details, model, root) for details in _genuine(error)})
-    (line, column, message, remedy), others = known[0], len(known) - 1
-    more = f"; {others} more fault{'s' * (others > 1)} in this file" if others else ""
-    return SpecError(message + more, path=path, line=line, column=column, remedy=remedy)
+    return tuple(
+        Fault(message, line, column, remedy)
+        for line, column, message, remedy in sorted(
+            {resolved for details in _genuine(error) for resolved in _resolve(details, model, root)}
+        )
+    )
 
 
 def _genuine(error: ValidationError) -> list[ErrorDetails]:
@@ -120,12 +125,22 @@ def _is_mistyped(location: Location, mistyped: dict[Location, list[str]]) -> boo
 
 def _resolve(
     details: ErrorDetails, model: type[BaseModel], root: Node
+) -> Iterator[tuple[int, int, str, str]]:
+    for context in details.get("ctx", {}).get("all", [details.get("ctx", {})]):
+        yield _resolve_one(details | {"ctx": context}, model, root)
+
+
+def _resolve_one(
+    details: ErrorDetails, model: type[BaseModel], root: Node
 ) -> tuple[int, int, str, str]:
     kind, context = details["type"], details.get("ctx", {})
     location = _without_tag(details["loc"])
     at_key = kind == "extra_forbidden" or (bool(location) and location[-1] == "[key]")
     location += tuple(context.get("at", ()))
-    place = _place(root, tuple(p for p in location if p != "[key]"), at_key)
+    if kind == "union_tag_invalid":
+        place = place_of(root, (*location, _CHOICES[str(location[0])]), at_key=False)
+        return place.line, place.column, *_words(details, location, model)
+    place = place_of(root, tuple(p for p in location if p != "[key]"), at_key)
     message, remedy = _words(details, location, model)
     return place.line, place.column, message, remedy
 
@@ -136,7 +151,7 @@ def _without_tag(location: Location) -> Location:
     return location
 
 
-def _place(root: Node, location: Location, at_key: bool) -> Position:
+def place_of(root: Node, location: Location, at_key: bool) -> Position:
     """Position of the node, or of the nearest one above it that the file holds."""
     node, place = root, root.position
     for depth, part in enumerate(location):
@@ -168,15 +183,35 @@ def _words(details: ErrorDetails, location: Location, model: type[BaseModel]) ->
         return f"unknown key `{where}`", did_you_mean(str(location[-1]), fields, "keys here are")
     if kind in ("union_tag_not_found", "union_tag_invalid"):
         return _tag_words(where, _CHOICES[str(location[0])], context)
+    value, where = details["input"], where or "the file"
     if kind == "literal_error":
+        if not isinstance(value, str):
+            return f"{where}: expected a single value, not {_shape(value)}", "write one value"
+        remedy = f"write {context['expected']}"
+        return f"{where}: {quoted(value)} is not known", remedy
+    if kind in _MAPPINGS:
+        keys = fields_at(model, details["loc"]) if kind != "dict_type" else {"name": ""}
+        listing = ", ".join(f"{key}: ..." for key in keys)
         return (
-            f"{where}: {quoted(str(details['input']))} is not known",
-            f"write {context['expected']}",
+            f"{where}: expected a mapping, not {_shape(value)}",
+            f"write {location[-1] if location else 'the file'}: {{{listing}}}",
         )
-    return (
-        f"{where or 'the file'}: {_EXPECTED.get(kind, details['msg'])}",
-        "see `nrs-design schema`",
-    )
+    if kind == "tuple_type":
+        return f"{where}: expected a list, not {_shape(value)}", "write [..., ...]"
+    if kind == "too_short":
+        return f"{where}: must not be empty", "add at least one entry"
+    if kind == "too_long":
+        return f"{where}: more than {context['max_length']} entries are not read", "remove some"
+    # What a type says in its own words.
+    message = str(context["error"]) if kind == "value_error" else details["msg"]
+    return f"{where}: {message}", "see `nrs-design schema` for what belongs here"
+
+
+def _shape(value: object) -> str:
+    """Name what was found, in the words of the file."""
+    if isinstance(value, dict):
+        return "a mapping"
+    return "a list" if isinstance(value, tuple | list) else quoted(str(value))
 
 
 def _tag_words(where: str, key: str, context: dict[str, Any]) -> tuple[str, str]:
@@ -206,6 +241,8 @@ def fields_at(model: type[BaseModel], location: Location) -> dict[str, str]:
     rest = location[1:]
     if location[0] in _CHOICES:
         key = _CHOICES[str(location[0])]
+        if len(rest) < 2:
+            return {key: ""}
         arms = [arm for arm in arms if rest[1] in get_args(arm.model_fields[key].annotation)]
         rest = rest[2:]
     elif field and get_origin(field.annotation) is dict:

@@ -9,6 +9,7 @@ from typing import Annotated, Any
 
 from pydantic import PlainValidator, WithJsonSchema
 
+from nrs_design.files import is_device_name
 from nrs_design.spec.exact import DECIMAL_PATTERN, RATIO_PATTERN, parse_exact, quoted
 from nrs_design.spec.faults import as_text, fault, reported
 
@@ -56,6 +57,11 @@ def _text(pattern: str) -> PlainValidator:
                 f"{quoted(text)} is not a name",
                 f"use 1 to 64 letters, digits, '.', '_' and '-', as in {pattern}",
             )
+        if is_device_name(text):
+            raise fault(
+                f"{quoted(text)} names a device on Windows, and files are named by it",
+                "choose another name",
+            )
         return text
 
     return PlainValidator(read)
@@ -95,6 +101,10 @@ Weight = Annotated[
     Fraction, _number(lambda x: x >= 0, "zero or positive"), WithJsonSchema(NUMBER_SCHEMA)
 ]
 Positive = Annotated[Fraction, _number(lambda x: x > 0, "positive"), WithJsonSchema(NUMBER_SCHEMA)]
+AboveOne = Annotated[Fraction, _number(lambda x: x > 1, "above 1"), WithJsonSchema(NUMBER_SCHEMA)]
+BelowTwo = Annotated[
+    Fraction, _number(lambda x: 0 < x < 2, "between 0 and 2"), WithJsonSchema(NUMBER_SCHEMA)
+]
 Digits = Annotated[
     int,
     PlainValidator(read_digits),

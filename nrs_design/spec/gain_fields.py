@@ -101,16 +101,15 @@ def _gain(kind: QuantityKind, *, positive: bool) -> BeforeValidator:
                 entries["range"] = read_range(entries["range"], end)
         return entries
 
-    def reader(value: object, *at: int | str) -> Quantity:
-        return read_quantity(value, kind, *at, positive=positive)
+    def reader(value: object) -> Quantity:
+        return read_quantity(value, kind, positive=positive)
 
-    def end(value: object, *at: int | str) -> Quantity:
-        quantity = read_quantity(value, kind, *at, positive=False)
+    def end(value: object) -> Quantity:
+        quantity = read_quantity(value, kind, positive=False)
         if quantity.value == 0:
             raise fault(
                 f"a range cannot reach {quoted(quantity.text)}: {_AT_ZERO[kind.name]}",
                 "give positive ends, or one value instead of a range",
-                *at,
             )
         return quantity
 

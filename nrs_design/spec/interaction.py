@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from functools import partial
 from typing import Annotated, Literal
 
 from pydantic import Field, model_validator
@@ -9,13 +11,13 @@ from pydantic import Field, model_validator
 from nrs_design.spec.certification import CertificationSpec
 from nrs_design.spec.controllers import (
     ControllerSpec,
-    ForceControllerSpec,
-    ImpedanceControllerSpec,
     PositionControllerSpec,
 )
+from nrs_design.spec.dwell import DwellObstacle, find_changing_contact
 from nrs_design.spec.environment import EnvironmentSpec
-from nrs_design.spec.faults import did_you_mean, fault
+from nrs_design.spec.faults import all_of, did_you_mean, fault
 from nrs_design.spec.fields import Digits, Label, Name, Title
+from nrs_design.spec.goals import GoalsSpec, check_applicable
 from nrs_design.spec.model import SpecModel
 from nrs_design.spec.motion import ActuatorSpec, LimitsSpec, MotionLoopSpec
 from nrs_design.spec.switching import DwellTime, Switching, check_names
@@ -47,6 +49,10 @@ class InteractionDesignSpec(SpecModel):
     controllers: Annotated[
         dict[Label, ControllerSpec], Field(min_length=1, max_length=MAX_ENTRIES)
     ] = Field(description="what the robot switches between: name -> controller")
+    goals: GoalsSpec | None = Field(
+        default=None,
+        description="what every impedance and force controller must achieve; the gate enforces it",
+    )
     design: DesignSpec = Field(default_factory=DesignSpec, description="how gains are written down")
     coordinates: Literal["deflection", "force"] = Field(
         default="deflection",
@@ -63,14 +69,32 @@ class InteractionDesignSpec(SpecModel):
 
     @model_validator(mode="after")
     def _check_controllers(self) -> InteractionDesignSpec:
-        _check_mixture(self.controllers)
-        for name, controller in self.controllers.items():
-            if not isinstance(controller, PositionControllerSpec):
-                _check_references(name, controller, self.environments)
-        check_names(self.switching, self.controllers, "controller")
-        for at, dwell in self.switching.dwell_times():
-            _check_dwell_time(dwell, self, ("switching", *at))
+        dwell_times = self.switching.dwell_times()
+        all_of(
+            lambda: _check_mixture(self.controllers),
+            *(
+                partial(_check_references, *item, self.environments)
+                for item in self.controllers.items()
+            ),
+            *(
+                partial(check_applicable, c.goals, {c.type}, "controllers", name, "goals")
+                for name, c in self.controllers.items()
+                if not isinstance(c, PositionControllerSpec)
+            ),
+            lambda: check_applicable(
+                self.goals, {c.type for c in self.controllers.values()}, "goals"
+            ),
+            lambda: check_names(self.switching, self.controllers, "controller"),
+            *(
+                partial(_check_dwell_time, dwell, self.find_dwell_obstacle, ("switching", *at))
+                for at, dwell in dwell_times
+            ),
+        )
         return self
+
+    def find_dwell_obstacle(self) -> DwellObstacle | None:
+        """Say why no dwell time can be claimed for this spec, or None."""
+        return find_changing_contact(self.controllers, self.environments)
 
 
 def _check_mixture(controllers: dict[str, ControllerSpec]) -> None:
@@ -90,12 +114,13 @@ def _check_mixture(controllers: dict[str, ControllerSpec]) -> None:
 
 def _check_references(
     name: str,
-    controller: ImpedanceControllerSpec | ForceControllerSpec,
+    controller: ControllerSpec,
     environments: dict[str, EnvironmentSpec],
 ) -> None:
-    places: list[tuple[str, tuple[str | int, ...]]] = [(controller.environment, ("environment",))]
-    places += [(contact, ("contacts", i)) for i, contact in enumerate(controller.contacts)]
-    for environment, at in places:
+    if isinstance(controller, PositionControllerSpec):
+        return
+
+    def check(environment: str, *at: int | str) -> None:
         if environment not in environments:
             raise fault(
                 f"there is no environment {environment!r}",
@@ -105,40 +130,32 @@ def _check_references(
                 *at,
             )
 
+    all_of(
+        partial(check, controller.environment, "environment"),
+        # By default the contact is the environment itself.
+        *(
+            partial(check, contact, "contacts", index)
+            for index, contact in enumerate(controller.contacts)
+            if "contacts" in controller.model_fields_set
+        ),
+    )
+    if controller.environment not in controller.contacts:
+        raise fault(
+            f"{name!r} is designed for {controller.environment!r}, but that is not among its "
+            "contacts: nothing would be proved about it there",
+            f"add {controller.environment} to contacts, or design it for one of them",
+            "controllers",
+            name,
+            "contacts",
+        )
 
-def _check_dwell_time(dwell: DwellTime, spec: InteractionDesignSpec, at: tuple[str, ...]) -> None:
-    """Check that nothing changes during a dwell time: the environment obeys no rule of ours."""
+
+def _check_dwell_time(
+    dwell: DwellTime, find_obstacle: Callable[[], DwellObstacle | None], at: tuple[str, ...]
+) -> None:
+    """Check that nothing changes during a dwell time."""
     if dwell.unit != "s":
         raise fault(f"{dwell.text!r} is not a time", "write seconds, such as '2.76 s'", *at)
-    for name, controller in spec.controllers.items():
-        contacts = () if isinstance(controller, PositionControllerSpec) else controller.contacts
-        if len(contacts) > 1:
-            raise fault(
-                f"a dwell time and several contacts of {name!r} exclude each other: the contact "
-                "may change at any time, whatever the controller",
-                f"leave {at[1]} out, or write a spec for each environment",
-                *at,
-            )
-        if isinstance(controller, ImpedanceControllerSpec):
-            _check_constant_gains(name, controller, at)
-        for contact in contacts:
-            if not spec.environments[contact].fixed:
-                raise fault(
-                    f"a dwell time and the range of environment {contact!r} exclude each other: "
-                    "its parameters may move during the dwell time, and the proof would not hold",
-                    f"leave {at[1]} out, or give the environment its nominal values only",
-                    *at,
-                )
-
-
-def _check_constant_gains(
-    name: str, controller: ImpedanceControllerSpec, at: tuple[str, ...]
-) -> None:
-    for gain in ("Mt", "Bt"):
-        if getattr(controller, gain).ranged:
-            raise fault(
-                f"a dwell time and the range of {gain} of {name!r} exclude each other: the gain "
-                "may move during the dwell time, and the proof would not hold",
-                f"leave {at[1]} out, or give the gain one value only",
-                *at,
-            )
+    obstacle = find_obstacle()
+    if obstacle is not None:
+        raise fault(obstacle.message, f"leave {at[1]} out, or {obstacle.remedy}", *at)

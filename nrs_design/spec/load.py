@@ -3,16 +3,26 @@
 from __future__ import annotations
 
 import hashlib
+import json
 import os
 from dataclasses import dataclass
 from pathlib import Path
 
 from pydantic import ValidationError
 
-from nrs_design.errors import SpecError
-from nrs_design.spec.document import Mapping, Node, Scalar, parse_document, read_text, to_data
+from nrs_design.errors import Fault, SpecError
+from nrs_design.spec.document import (
+    Mapping,
+    Node,
+    Position,
+    Scalar,
+    parse_document,
+    read_document,
+    read_text,
+    to_data,
+)
 from nrs_design.spec.exact import quoted
-from nrs_design.spec.faults import did_you_mean, spec_error
+from nrs_design.spec.faults import did_you_mean, file_faults, place_of
 from nrs_design.spec.interaction import InteractionDesignSpec
 from nrs_design.spec.robot import RobotSpec
 from nrs_design.spec.switched_system import SwitchedSystemSpec
@@ -35,7 +45,7 @@ class LoadedSpec:
     path : Path
         The file, as it was named.
     sha256 : str
-        Hash of the file's bytes, in hexadecimal.
+        Hash of what the file says, in hexadecimal; see `hash_meaning`.
     text : str
         The file's text.
     spec : InteractionDesignSpec, SwitchedSystemSpec or RobotSpec
@@ -46,6 +56,10 @@ class LoadedSpec:
     sha256: str
     text: str
     spec: Spec
+
+    def place(self, *at: str | int) -> Position:
+        """Line and column of a key or an item, or of what holds it if it is not written out."""
+        return place_of(parse_document(self.text, self.path), at, at_key=True)
 
 
 def read_spec(path: str | os.PathLike[str]) -> LoadedSpec:
@@ -59,7 +73,7 @@ def read_spec(path: str | os.PathLike[str]) -> LoadedSpec:
     Returns
     -------
     LoadedSpec
-        The spec, its text and the hash of its bytes.
+        The spec, its text and the hash of what it says.
 
     Raises
     ------
@@ -67,8 +81,10 @@ def read_spec(path: str | os.PathLike[str]) -> LoadedSpec:
         With path, line, column, message and remedy, if anything about the file is wrong.
     """
     file = Path(path)
-    content, text = read_text(file)
-    return LoadedSpec(file, hashlib.sha256(content).hexdigest(), text, parse_spec(text, file))
+    _, text = read_text(file)
+    root, syntax = read_document(text, file)
+    spec = _validate(root, syntax, file)
+    return LoadedSpec(file, hash_meaning(root), text, spec)
 
 
 def load_spec(path: str | os.PathLike[str]) -> Spec:
@@ -91,29 +107,60 @@ def parse_spec(text: str, path: Path | None = None) -> Spec:
     SpecError
         With line, column, message and remedy.
     """
-    root = parse_document(text, path)
-    model = KINDS[_kind_of(root, path)]
+    return _validate(*read_document(text, path), path)
+
+
+def hash_meaning(root: Node) -> str:
+    """Return the SHA-256 of what a document says, in hexadecimal.
+
+    Two documents share it exactly if they have the same keys in the same order and the same
+    texts: comments, line ends, quotes and layout do not count. A spec is read from these texts and
+    from nothing else. Order counts because modes are numbered in the order of the controllers.
+    """
+    canonical = json.dumps(to_data(root), separators=(",", ":"), ensure_ascii=True)
+    return hashlib.sha256(canonical.encode()).hexdigest()
+
+
+def _validate(root: Node, syntax: tuple[Fault, ...], path: Path | None) -> Spec:
+    found: tuple[Fault, ...] = ()
+    model = KINDS[_kind_of(root, path, syntax)]
     try:
-        return model.model_validate(to_data(root))
+        spec = model.model_validate(to_data(root))
     except ValidationError as error:
-        raise spec_error(error, model, root, path) from None
+        found = file_faults(error, model, root)
+    if syntax or found:
+        raise _refusal(syntax, found, path)
+    return spec
 
 
-def _kind_of(root: Node, path: Path | None) -> str:
+def _refusal(syntax: tuple[Fault, ...], found: tuple[Fault, ...], path: Path | None) -> SpecError:
+    """Join the faults; what cannot be read as YAML is wrong in itself, and reported once."""
+    known = {(fault.line, fault.column) for fault in syntax}
+    others = (fault for fault in found if (fault.line, fault.column) not in known)
+    return SpecError.of((*syntax, *others), path)
+
+
+def _kind_of(root: Node, path: Path | None, syntax: tuple[Fault, ...]) -> str:
+    """Return the kind of a spec, without which nothing else in the file can be judged."""
+
+    def refuse(message: str, remedy: str, node: Node) -> SpecError:
+        place = node.position
+        return _refusal(syntax, (Fault(message, place.line, place.column, remedy),), path)
+
     if not isinstance(root, Mapping):
-        raise _kind_error("a spec is a mapping of keys", "start with `kind: ...`", root, path)
+        raise refuse("a spec is a mapping of keys", "start with `kind: ...`", root)
     kind = root.entries.get("kind")
     if kind is None:
-        remedy = f"add `kind: ` with one of {', '.join(KINDS)}"
-        raise _kind_error("`kind` is missing", remedy, root, path)
+        if {"schema", "verdict"} <= root.entries.keys():
+            raise SpecError(
+                "this is a certificate, not a spec",
+                path=path,
+                remedy="name the spec that it is for",
+            )
+        raise refuse("`kind` is missing", f"add `kind: ` with one of {', '.join(KINDS)}", root)
     if not isinstance(kind, Scalar):
-        raise _kind_error("kind: expected a single text", "write one value", kind, path)
+        raise refuse("kind: expected a single text", "write one value", kind)
     if kind.text not in KINDS:
         message = f"kind: {quoted(kind.text)} is not known"
-        raise _kind_error(message, did_you_mean(kind.text, KINDS), kind, path)
+        raise refuse(message, did_you_mean(kind.text, KINDS), kind)
     return kind.text
-
-
-def _kind_error(message: str, remedy: str, node: Node, path: Path | None) -> SpecError:
-    place = node.position
-    return SpecError(message, path=path, line=place.line, column=place.column, remedy=remedy)

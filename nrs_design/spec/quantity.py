@@ -9,7 +9,13 @@ from dataclasses import dataclass, field
 from fractions import Fraction
 
 from nrs_design.errors import SpecError
-from nrs_design.spec.exact import DECIMAL_PATTERN, RATIO_PATTERN, parse_exact, quoted
+from nrs_design.spec.exact import (
+    DECIMAL_PATTERN,
+    MAX_LENGTH,
+    RATIO_PATTERN,
+    parse_exact,
+    quoted,
+)
 from nrs_design.spec.units import MAX_UNIT_LENGTH, Unit, parse_unit
 
 # Beyond these a number is a slip of the pen, and products of such numbers leave the floats.
@@ -186,17 +192,19 @@ def _irrational(quantity: Quantity, kind: QuantityKind) -> SpecError:
 
 
 def _without_unit(text: str, kind: QuantityKind) -> SpecError:
-    glued = _GLUED.fullmatch(text)
+    glued = len(text) <= MAX_LENGTH and _GLUED.fullmatch(text)
     if glued:
         return SpecError(
             f"{quoted(text)} has no space between number and unit",
             remedy=f"write '{glued[1]} {glued[2]}'",
         )
     parse_exact(text)
-    return SpecError(
-        f"{quoted(text)} has no unit, expected {' or '.join(kind.units)}",
-        remedy=f"write '{text} {kind.example.partition(' ')[2]}' if that is the unit meant",
-    )
+    unit = kind.example.partition(" ")[2]
+    remedy = f"write '{text} {unit}' if that is the unit meant"
+    if kind.units == ("m",):
+        remedy = f"write '{text} mm' or '{text} m', whichever is meant"
+    expected = " or ".join(kind.units)
+    return SpecError(f"{quoted(text)} has no unit, expected {expected}", remedy=remedy)
 
 
 def is_less(a: Quantity, b: Quantity) -> bool:

@@ -6,6 +6,7 @@ from collections.abc import Callable
 from typing import Annotated, Any
 
 from pydantic import BeforeValidator, Field, PlainValidator, WithJsonSchema, model_validator
+from pydantic_core import PydanticCustomError
 
 from nrs_design.errors import SpecError
 from nrs_design.spec import kinds
@@ -34,7 +35,12 @@ def read_quantity(
             quantity = parse_quantity(as_text(value, *at), kind)
         if not signed and (quantity.value < 0 or (positive and quantity.value == 0)):
             bound = "positive" if positive else "zero or positive"
-            raise SpecError(f"{quoted(quantity.text)} must be {bound}", remedy="check the sign")
+            raise SpecError(
+                f"{quoted(quantity.text)} must be {bound}",
+                remedy="check the sign"
+                if quantity.value
+                else f"write a number above zero, such as {kind.example!r}",
+            )
         return quantity
 
     return reported(read, *at)
@@ -56,6 +62,8 @@ def _schema(kind: QuantityKind) -> WithJsonSchema:
 
 
 def _as_is(value: object) -> Quantity:
+    if isinstance(value, PydanticCustomError):
+        raise value
     if not isinstance(value, Quantity):
         raise fault("expected a quantity", "write a number, a space and a unit")
     return value
@@ -136,8 +144,8 @@ def _bounds(kind: QuantityKind, *, positive: bool) -> BeforeValidator:
             return {"min": quantity, "max": quantity}
         return read_entries(value, ("min", "max"), reader)
 
-    def reader(value: object, *at: int | str) -> Quantity:
-        return read_quantity(value, kind, *at, positive=positive)
+    def reader(value: object) -> Quantity:
+        return read_quantity(value, kind, positive=positive)
 
     return BeforeValidator(read)
 
@@ -151,25 +159,36 @@ def _ranged(kind: QuantityKind, *, positive: bool) -> BeforeValidator:
             entries["range"] = read_range(entries["range"], reader)
         return entries
 
-    def reader(value: object, *at: int | str) -> Quantity:
-        return read_quantity(value, kind, *at, positive=positive)
+    def reader(value: object) -> Quantity:
+        return read_quantity(value, kind, positive=positive)
 
     return BeforeValidator(read)
 
 
-def read_entries(value: object, keys: tuple[str, ...], reader: Callable[..., Quantity]) -> object:
+Reader = Callable[[object], Quantity]
+# A fault stands in for its quantity until the model reports it together with the others.
+Attempt = Quantity | PydanticCustomError
+
+
+def read_entries(value: object, keys: tuple[str, ...], reader: Reader) -> object:
     """Read the entries that are quantities; what else is wrong is left to the model."""
     if not isinstance(value, dict):
         return value
-    read = {key: reader(value[key], key) for key in value if key in keys}
-    return value | read
+    return value | {key: _attempt(reader, value[key]) for key in value if key in keys}
 
 
-def read_range(value: object, reader: Callable[..., Quantity]) -> tuple[Quantity, ...]:
+def read_range(value: object, reader: Reader) -> tuple[Attempt, ...]:
     """Read both ends of a range."""
     if not isinstance(value, tuple | list) or len(value) != 2:
         raise fault("expected two quantities", "write [lowest, highest]", "range")
-    return tuple(reader(end, "range", index) for index, end in enumerate(value))
+    return tuple(_attempt(reader, end) for end in value)
+
+
+def _attempt(reader: Reader, value: object) -> Attempt:
+    try:
+        return reader(value)
+    except PydanticCustomError as error:
+        return error
 
 
 def _pair_schema(kind: QuantityKind, keys: dict[str, str], required: list[str]) -> dict[str, Any]:

@@ -6,6 +6,7 @@ from typing import Any
 
 from pydantic import BaseModel
 
+from nrs_design.printable import json_text
 from nrs_design.spec.load import KINDS
 
 DIALECT = "http://json-schema.org/draft-07/schema#"
@@ -19,6 +20,11 @@ _EXCLUSIVE = {
 }
 # What only Python knows of a model: class names, null for an absent key, defaults that are objects.
 _INTERNAL = ("title", "default", "discriminator")
+
+
+def schema_text() -> str:
+    """Return the JSON Schema as the text of a file."""
+    return json_text(json_schema()) + "\n"
 
 
 def json_schema() -> dict[str, Any]:

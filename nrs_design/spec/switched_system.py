@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from fractions import Fraction
+from functools import partial
 from typing import Annotated, Literal
 
 from pydantic import Field, model_validator
 
 from nrs_design.spec.certification import CertificationSpec
-from nrs_design.spec.faults import did_you_mean, fault
+from nrs_design.spec.dwell import DwellObstacle, find_changing_parameter
+from nrs_design.spec.faults import all_of, did_you_mean, fault
 from nrs_design.spec.fields import Label, Name, Title
 from nrs_design.spec.model import SpecModel
 from nrs_design.spec.parameters import MAX_PARAMETERS, Entry, ParameterName, ParameterSpec
@@ -19,11 +21,13 @@ from nrs_design.spec.switching import (
     ResetSpec,
     Switching,
     Transition,
+    check_denominators,
     check_names,
     check_rows,
 )
 
 MAX_MODES = 20_000
+MAX_ENTRIES = 1_000_000
 
 _Row = Annotated[tuple[Entry, ...], Field(min_length=1, max_length=MAX_DIMENSION)]
 _Matrix = Annotated[tuple[_Row, ...], Field(min_length=1, max_length=MAX_DIMENSION)]
@@ -62,6 +66,7 @@ class ModeSpec(SpecModel):
     @model_validator(mode="after")
     def _check_square(self) -> ModeSpec:
         check_rows(self.A, "A")
+        check_denominators((number for row in self.A for e in row for number in e.numbers), "A")
         n = len(self.A[0])
         if len(self.A) != n:
             raise fault(
@@ -107,12 +112,18 @@ class SwitchedSystemSpec(SpecModel):
         """Number of states n of the largest mode."""
         return max(mode.dimension for mode in self.modes)
 
+    def find_dwell_obstacle(self) -> DwellObstacle | None:
+        """Say why no dwell time can be claimed for this spec, or None."""
+        return find_changing_parameter(self.parameters)
+
     @model_validator(mode="after")
     def _check(self) -> SwitchedSystemSpec:
         modes = _modes_by_name(self.modes)
-        _check_parameters(self)
-        check_names(self.switching, modes, "mode")
-        _check_dwell_times(self)
+        all_of(
+            lambda: _check_parameters(self),
+            lambda: check_names(self.switching, modes, "mode"),
+            lambda: _check_dwell_times(self),
+        )
         _check_resets(self, modes)
         _check_sizes(self, modes)
         return self
@@ -128,11 +139,8 @@ def _modes_by_name(modes: tuple[ModeSpec, ...]) -> dict[str, ModeSpec]:
 
 
 def _check_parameters(spec: SwitchedSystemSpec) -> None:
-    used: set[str] = set()
-    for index, mode in enumerate(spec.modes):
-        used |= mode.parameters
-        if not mode.parameters <= spec.parameters.keys():
-            _report_unknown(spec, index)
+    all_of(*(partial(_check_known, spec, index) for index in range(len(spec.modes))))
+    used = frozenset[str]().union(*(mode.parameters for mode in spec.modes))
     constant = [name for name, parameter in spec.parameters.items() if not parameter.varies]
     if len(constant) > 1:
         raise fault(
@@ -147,7 +155,17 @@ def _check_parameters(spec: SwitchedSystemSpec) -> None:
             raise fault(
                 "no matrix depends on this parameter", "remove it or use it", "parameters", name
             )
+    values = (v for p in spec.parameters.values() for v in (p.nominal, *p.range))
+    check_denominators(values, "parameters")
     corners = sum(2 ** len(mode.parameters) for mode in spec.modes)
+    entries = sum(2 ** len(mode.parameters) * mode.dimension**2 for mode in spec.modes)
+    if entries > MAX_ENTRIES:
+        raise fault(
+            f"the corners of the modes have {entries} entries in all, at most {MAX_ENTRIES} are "
+            "read",
+            "declare fewer parameters",
+            "parameters",
+        )
     if corners > MAX_MODES:
         raise fault(
             f"the modes have {corners} corners in all, at most {MAX_MODES} are read",
@@ -156,22 +174,35 @@ def _check_parameters(spec: SwitchedSystemSpec) -> None:
         )
 
 
-def _report_unknown(spec: SwitchedSystemSpec, index: int) -> None:
-    for i, row in enumerate(spec.modes[index].A):
-        for j, entry in enumerate(row):
-            for name in entry.names:
-                if name not in spec.parameters:
-                    known = did_you_mean(name, spec.parameters, "parameters here are")
-                    raise fault(
-                        f"{name!r} is not a number, and there is no parameter of that name",
-                        known if spec.parameters else "write a number, or declare parameters",
-                        *("modes", index, "A", i, j),
-                    )
+def _check_known(spec: SwitchedSystemSpec, index: int) -> None:
+    if spec.modes[index].parameters <= spec.parameters.keys():
+        return
+
+    def check(name: str, *at: int) -> None:
+        if name not in spec.parameters:
+            known = did_you_mean(name, spec.parameters, "parameters here are")
+            raise fault(
+                f"{name!r} is not a number, and there is no parameter of that name",
+                known if spec.parameters else "write a number, or declare parameters",
+                "modes",
+                index,
+                "A",
+                *at,
+            )
+
+    all_of(
+        *(
+            partial(check, name, i, j)
+            for i, row in enumerate(spec.modes[index].A)
+            for j, entry in enumerate(row)
+            for name in sorted(entry.names)
+        )
+    )
 
 
 def _check_dwell_times(spec: SwitchedSystemSpec) -> None:
     unit, example = ("s", "2.76 s") if spec.time == "continuous" else ("steps", "3 steps")
-    ranged = next((name for name, p in spec.parameters.items() if not p.fixed), None)
+    obstacle = spec.find_dwell_obstacle()
     for at, dwell in spec.switching.dwell_times():
         if dwell.unit != unit:
             raise fault(
@@ -179,12 +210,9 @@ def _check_dwell_times(spec: SwitchedSystemSpec) -> None:
                 f"such as {example!r}",
                 *("switching", *at),
             )
-        if ranged is not None:
+        if obstacle is not None:
             raise fault(
-                f"a dwell time and the range of parameter {ranged!r} exclude each other: the proof "
-                "with a dwell time holds for constant matrices only",
-                f"leave {at[0]} out, or give the parameter its nominal value only",
-                *("switching", *at),
+                obstacle.message, f"leave {at[0]} out, or {obstacle.remedy}", *("switching", *at)
             )
 
 

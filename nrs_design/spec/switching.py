@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
+from functools import partial
+from math import lcm
 from typing import Annotated, Any
 
 from pydantic import BeforeValidator, Field, PlainValidator, WithJsonSchema, model_validator
@@ -12,13 +14,15 @@ from pydantic import BeforeValidator, Field, PlainValidator, WithJsonSchema, mod
 from nrs_design.errors import SpecError
 from nrs_design.spec import kinds
 from nrs_design.spec.exact import parse_exact, quoted
-from nrs_design.spec.faults import as_text, did_you_mean, fault, reported
+from nrs_design.spec.faults import all_of, as_text, did_you_mean, fault, reported
 from nrs_design.spec.fields import Exact, Label
 from nrs_design.spec.model import SpecModel
 from nrs_design.spec.quantity import QUANTITY_PATTERN, parse_quantity
 
 MAX_TRANSITIONS = 20_000
 MAX_DIMENSION = 64
+# Of a matrix, or of the parameters; decimals and common ratios stay far below.
+MAX_DENOMINATOR_BITS = 1024
 # Seconds or steps; a system with slower modes is better written in another unit of time.
 LONGEST_DWELL = 4096
 
@@ -238,6 +242,7 @@ class ResetSpec(SpecModel):
     @model_validator(mode="after")
     def _check_rows(self) -> ResetSpec:
         check_rows(self.map, "map")
+        check_denominators((entry for row in self.map for entry in row), "map")
         return self
 
 
@@ -254,16 +259,34 @@ def check_rows(rows: Collection[Collection[object]], *at: int | str) -> None:
             )
 
 
+def check_denominators(numbers: Iterable[Fraction], *at: int | str) -> None:
+    """Report a fault if numbers that are to be written over one denominator have a long one.
+
+    A hundred coprime denominators of a hundred digits make one of ten thousand, in every entry.
+    """
+    common = 1
+    for number in numbers:
+        common = lcm(common, number.denominator)
+        if common.bit_length() > MAX_DENOMINATOR_BITS:
+            raise fault(
+                f"the least common denominator has more than {MAX_DENOMINATOR_BITS} binary digits",
+                "write the numbers as decimals, or with fewer different denominators",
+                *at,
+            )
+
+
 def check_names(switching: SwitchingSpec, names: Collection[str], noun: str) -> None:
     """Report a fault if a rule names something that does not exist, or cannot be kept."""
-    for at, _ in switching.dwell_times():
-        for name in at[1:]:
-            _check_name(name, names, noun, *at)
-    for index, transition in enumerate(switching.transitions or ()):
-        for side, name in enumerate(transition):
-            _check_name(name, names, noun, "transitions", index, side)
-    for name in names:
-        _check_stay(switching, name, names, noun)
+    places = [at for at, _ in switching.dwell_times()]
+    all_of(
+        *(partial(_check_name, name, names, noun, *at) for at in places for name in at[1:]),
+        *(
+            partial(_check_name, name, names, noun, "transitions", index, side)
+            for index, transition in enumerate(switching.transitions or ())
+            for side, name in enumerate(transition)
+        ),
+        *(partial(_check_stay, switching, name, names, noun) for name in names),
+    )
 
 
 def _check_name(name: str, names: Collection[str], noun: str, *at: int | str) -> None:

@@ -5,43 +5,79 @@ from __future__ import annotations
 from ruamel.yaml.error import MarkedYAMLError, StringMark, YAMLError
 from ruamel.yaml.reader import ReaderError
 
+from nrs_design.spec.exact import quoted
+
 # The first fragment that occurs in the parser's report decides.
 _EXPLANATIONS: tuple[tuple[str, str, str], ...] = (
     ("character '\\t'", "a tab is used where YAML wants spaces", "indent with spaces"),
-    ("mapping values are not allowed", "a second ': ' stands on this line", "quote the text"),
     ("while scanning a quoted scalar", "a quoted text is not closed or malformed", "close it"),
     ("while parsing a flow sequence", "a list [...] is not closed", "check commas and brackets"),
     ("while parsing a flow mapping", "a mapping {...} is not closed", "check commas and braces"),
     ("while parsing a flow node", "a bracket or brace is not closed", "check brackets and commas"),
     ("could not find expected ':'", "a key has no ':'", "write `key: value`"),
     ("while scanning a simple key", "a key has no ':'", "write `key: value`"),
-    ("expected <block end>", "the indentation does not fit the lines above", "align the keys"),
     ("block sequence entries are not allowed", "a list item '- ' cannot stand here", "indent it"),
     ("that cannot start any token", "a text starts with a reserved character", "put it in quotes"),
     ("incompatible YAML document", "the file asks for another YAML version", "remove the line"),
 )
 
 
-def explain_syntax(error: YAMLError) -> tuple[str, str]:
+def explain_syntax(error: YAMLError, text: str, index: int) -> tuple[str, str, int]:
     """Translate a parser error.
 
     Parameters
     ----------
     error : YAMLError
         As raised by ruamel.yaml.
+    text : str
+        The file.
+    index : int
+        Where the parser saw the fault, counted in characters from 0.
 
     Returns
     -------
-    tuple of str
-        What is wrong, and the remedy.
+    str, str, int
+        What is wrong, the remedy, and where a reader sees the fault.
     """
     if isinstance(error, ReaderError):
-        return "a control character is not allowed here", "remove it"
+        return "a control character is not allowed here", "remove it", index
     report = _report(error)
+    if "mapping values are not allowed" in report:
+        return _second_colon(text, index)
+    if "expected <block end>" in report:
+        indent = _spaces(index - _line_start(text, index))
+        return (
+            f"indented by {indent}, which fits nothing above",
+            "align it with the keys that it belongs to",
+            index,
+        )
     for fragment, message, remedy in _EXPLANATIONS:
         if fragment in report:
-            return message, remedy
-    return "this is not valid YAML", "check indentation, colons and quotes"
+            return message, remedy, index
+    return "this is not valid YAML", "check indentation, colons and quotes", index
+
+
+def _second_colon(text: str, index: int) -> tuple[str, str, int]:
+    """Tell `a: b: c` from a key that is indented too far, so that it goes on the line above."""
+    start = _line_start(text, index)
+    before = text[start:index]
+    key = before.strip()
+    if before[:1] != " " or ": " in before or key.startswith(("-", "[", "{", "?")):
+        return "a second ': ' stands on this line", "quote the text", index
+    indent = len(before) - len(before.lstrip(" "))
+    return (
+        f"{quoted(key)} is indented by {_spaces(indent)}, so that it goes on the value above",
+        "give it the indentation of the keys that it belongs to",
+        start + indent,
+    )
+
+
+def _line_start(text: str, index: int) -> int:
+    return max(text.rfind(end, 0, index) for end in "\n\r") + 1
+
+
+def _spaces(count: int) -> str:
+    return f"{count} space{'s' * (count != 1)}"
 
 
 def fault_mark(error: MarkedYAMLError) -> StringMark | None:

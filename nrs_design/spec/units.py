@@ -198,7 +198,8 @@ def _atom(tokens: list[str], text: str) -> Unit:
 
 
 def _unknown(symbol: str, text: str) -> SpecError:
-    near = difflib.get_close_matches(symbol, UNITS, n=1)
+    alike = [unit for unit in UNITS if unit.lower() == symbol.lower()]
+    near = alike or difflib.get_close_matches(symbol, UNITS, n=1)
     guess = _LIKELY.get(symbol) or (near[0] if near else None)
     known = "known units are " + " ".join(UNITS)
     remedy = f"did you mean {guess}? {known}" if guess else known

@@ -121,6 +121,7 @@ def close_loop(
         raise AssemblyError(
             f"the modes have {' and '.join(map(str, sizes))} states, so they share no state",
             remedy="give all impedance controllers a virtual inertia Mt > 0, or none of them",
+            at=("controllers",),
         )
     states = _state_names(motion.order, sizes[0], coordinates)
     assumptions = _assumptions(design, coordinates, rules, boxes, given=loop.given)
@@ -213,6 +214,7 @@ def force_mode(motion: Realization, law: ProportionalForce, contact: Contact) ->
         raise AssemblyError(
             f"force control in contact with {contact.label}, which has damping, is not modelled",
             remedy="use an elastic environment for force controllers",
+            at=("environments", contact.label, "damping"),
         )
     rows = [list(row) for row in motion.A]
     gain = law.Kp * contact.stiffness

@@ -88,5 +88,6 @@ def _limited(found: Iterator[T]) -> tuple[T, ...]:
         raise AssemblyError(
             f"the rules make more than {MAX_ASSEMBLED} switches between corners",
             remedy="declare fewer transitions, resets, parameters or ranges",
+            at=("switching",),
         )
     return kept

@@ -6,6 +6,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from math import inf, lcm
+from operator import index
 
 Rows = Sequence[Sequence[Fraction | int]]
 
@@ -28,10 +29,34 @@ class RationalMatrix:
     numerators: tuple[tuple[int, ...], ...]
     denominator: int = 1
 
+    def __post_init__(self) -> None:
+        """Take integers of any kind as those of Python, which never overflow.
+
+        Raises
+        ------
+        TypeError
+            If an entry is no integer.
+        """
+        rows = tuple(tuple(map(index, row)) for row in self.numerators)
+        object.__setattr__(self, "numerators", rows)
+        object.__setattr__(self, "denominator", index(self.denominator))
+
     @classmethod
     def from_rows(cls, rows: Rows) -> RationalMatrix:
-        """Bring rational rows over their least common denominator."""
-        fractions = [[Fraction(entry) for entry in row] for row in rows]
+        """Bring rational rows over their least common denominator.
+
+        Parameters
+        ----------
+        rows : sequence of sequence of number
+            Integers of Python or NumPy, fractions, or floats, which are taken for the binary
+            fractions that they are.
+
+        Raises
+        ------
+        TypeError, ValueError, OverflowError
+            If an entry is none of these, or not finite.
+        """
+        fractions = [[exact_fraction(entry) for entry in row] for row in rows]
         denominator = lcm(*(entry.denominator for row in fractions for entry in row))
         numerators = tuple(
             tuple(entry.numerator * (denominator // entry.denominator) for entry in row)
@@ -51,6 +76,12 @@ class RationalMatrix:
     def floats(self) -> list[list[float]]:
         """Return the entries, each rounded once to the nearest double (infinite beyond them)."""
         return [[_to_float(entry, self.denominator) for entry in row] for row in self.numerators]
+
+
+def exact_fraction(number: Fraction | float) -> Fraction:
+    """Return a number as a fraction of Python integers; those of NumPy would overflow."""
+    fraction = Fraction(number)
+    return Fraction(index(fraction.numerator), index(fraction.denominator))
 
 
 def multiply(left: Rows, right: Rows) -> list[list[Fraction]]:

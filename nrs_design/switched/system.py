@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 from enum import StrEnum
 from fractions import Fraction
 
-from nrs_design.switched.matrix import RationalMatrix
+from nrs_design.switched.matrix import RationalMatrix, exact_fraction
 
 
 class Time(StrEnum):
@@ -128,6 +128,10 @@ class Switching:
         for reset in self.resets:
             maps.setdefault((reset.source, reset.target), []).append(reset.map)
         return maps
+
+    def __post_init__(self) -> None:
+        """Take a dwell time of any exact kind as a fraction of Python integers."""
+        object.__setattr__(self, "dwell_time", exact_fraction(self.dwell_time))
 
     @property
     def is_arbitrary(self) -> bool:

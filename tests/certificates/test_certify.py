@@ -5,9 +5,12 @@ The verdict may be inconclusive where numbers are extreme. It may never be wrong
 
 from dataclasses import replace
 from fractions import Fraction
+from itertools import product
 
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from nrs_design.certificates.certify import (
     CommonQuadraticStatus,
@@ -35,7 +38,46 @@ SHEARS = family([[-1, 10], [0, -1]], [[-1, 0], [10, -1]])
 SLOW = replace(dayawansa_martin(12), switching=Switching(dwell_time=Fraction(10)))
 CONSTANT = replace(dayawansa_martin(12), switching=Switching(fixed_ends=(("m0", "m1"),)))
 DISCRETE = family([["1/2", 1], [0, "1/2"]], [["1/2", 0], [0, "-1/2"]], time=Time.DISCRETE)
+DISCRETE_METHODS = [
+    Method.LMI,
+    Method.OBSTRUCTION,
+    Method.MODE_QUADRATIC,
+    Method.PERIOD,
+    Method.POLYNOMIAL,
+]
 UNSTABLE_BLOCK = [[-1, 0, 0], [0, -1, 0], [0, 0, 1]]
+
+
+def ando_shih(c):
+    """Joint spectral radius c, but no quadratic function beyond 0.7071 (Ando and Shih 1998)."""
+    return [[c, 0], [c, 0]], [[0, c], [0, f"-{c}"]]
+
+
+@st.composite
+def merging_families(draw):
+    """Discrete time: few different blocks, coupled in some modes, and some modes twice."""
+    entry = st.integers(-3, 3).map(lambda n: Fraction(n, 4))
+    blocks = []
+    for size in draw(st.lists(st.integers(1, 2), min_size=1, max_size=2)):
+        square = st.lists(
+            st.lists(entry, min_size=size, max_size=size), min_size=size, max_size=size
+        )
+        blocks.append(draw(st.lists(square, min_size=1, max_size=2)))
+    modes = []
+    for _ in range(draw(st.integers(1, 3))):
+        modes.append(_stacked([draw(st.sampled_from(block)) for block in blocks], draw(entry)))
+    repeated = draw(st.lists(st.sampled_from(modes), max_size=2))
+    return family(*modes, *repeated, time=Time.DISCRETE)
+
+
+def _stacked(blocks, coupling):
+    """Put blocks on the diagonal, with one number everywhere above them."""
+    order, rows = sum(map(len, blocks)), []
+    for block in blocks:
+        before, n = len(rows), len(block)
+        right = [coupling] * (order - before - n)
+        rows += [[*[0] * before, *row, *right] for row in block]
+    return rows
 
 
 ANY_RATE = Limits(optimize_rate=False)
@@ -162,6 +204,20 @@ class TestModes:
         result = settle(family(A, time=Time.DISCRETE), limits=Limits(optimize_rate=optimize_rate))
         assert result.verdict is Verdict.PROVED
 
+    @pytest.mark.parametrize("sign", [1, -1])
+    @pytest.mark.parametrize("digits", [3, 17, 21, 300, 1900])
+    def test_one_state_nearer_to_the_limit_than_floats_are(self, digits, sign):
+        """Decided exactly, alone and with others; so are the blocks of larger modes."""
+        tiny = Fraction(1, 10**digits)
+        below, above = sign * (1 - tiny), sign * (1 + tiny)
+        for near, verdict in ((below, Verdict.PROVED), (above, Verdict.REFUTED)):
+            assert settle(family([[near]], time=Time.DISCRETE)).verdict is verdict
+            assert settle(family([[near]], [[-near]], time=Time.DISCRETE)).verdict is verdict
+            coupled = [[near, 1], [0, -near]]
+            assert settle(family(coupled, time=Time.DISCRETE)).verdict is verdict
+        assert settle(family([[-tiny]], [[-1]])).verdict is Verdict.PROVED
+        assert settle(family([[tiny]], [[-1]])).verdict is Verdict.REFUTED
+
     def test_identical_modes(self):
         pair = family(*[[[-1, 4], [-4, -2]]] * 5)
         assert settle(pair).verdict is Verdict.PROVED
@@ -232,7 +288,7 @@ class TestScales:
         huge = 10**400
         assert settle(family([[-huge, 1], [1, -1]])).verdict is Verdict.INCONCLUSIVE
         assert settle(family([[huge, 1], [1, -1]])).verdict is Verdict.REFUTED
-        assert settle(family([[-huge, 0], [0, -1]])).verdict is Verdict.INCONCLUSIVE
+        assert settle(family([[-huge, 0], [0, -1]])).verdict is Verdict.PROVED
         assert certify(family([[huge, 0], [0, -1]])).verdict is Verdict.REFUTED
 
 
@@ -365,6 +421,29 @@ class TestMethods:
         ]
         assert outcome(family(*blocks, *blocks)) == ("proved", "impossible")
         assert outcome(family(*blocks, *blocks, UNSTABLE_BLOCK)) == ("refuted", "impossible")
+
+    @pytest.mark.parametrize("c", ["0.72", "0.99"])
+    def test_equal_modes_in_discrete_time(self, c):
+        """Proved by a function for each mode, or by polynomials: both repeat what equals share."""
+        assert outcome(family(*ando_shih(c), ando_shih(c)[1], time=Time.DISCRETE))[0] == "proved"
+
+    @pytest.mark.parametrize("method", [Method.AUTO, Method.POLYNOMIAL, Method.MODE_QUADRATIC])
+    def test_a_parameter_that_does_not_reach_the_diagonal(self, method):
+        """Two corners with the same two blocks: every statement about a block is for both."""
+        modes = [
+            [[*row, coupling, 0] for row in top] + [[0, 0, *row] for row in bottom]
+            for coupling in (1, 2)
+            for top, bottom in product(ando_shih("0.72"), repeat=2)
+        ]
+        system = family(*modes, time=Time.DISCRETE)
+        limits = Limits(max_degree=4, optimize_rate=False)
+        assert settle(system, method, limits).verdict is Verdict.PROVED
+
+    @settings(deadline=None, max_examples=60)
+    @given(merging_families(), st.sampled_from([Method.AUTO, *DISCRETE_METHODS]))
+    def test_merged_modes_and_blocks_always_end_in_a_verdict(self, system, method):
+        """Whatever a search returns holds for all modes, equal ones and those of blocks too."""
+        settle(system, method, Limits(max_degree=4, budget=1.0, optimize_rate=False))
 
     def test_rate_limit_is_never_beaten(self):
         for system in (STABLE, NOT_QUADRATIC, DISCRETE):

@@ -22,18 +22,21 @@ from nrs_design.certificates.margin import (
     REFUTED_STEPS,
     STEPS,
     BoxMargin,
+    DwellMargin,
     find_margin,
     find_shortest_dwell,
 )
 from nrs_design.errors import AssemblyError, DesignError
 from nrs_design.pipeline import run_certification, run_margin, run_shortest_dwell
 from nrs_design.spec import read_spec
+from nrs_design.spec.switching import LONGEST_DWELL
 from nrs_design.switched.system import Switching
 from tests.support import COMMUTING, ROOT, SOFT_TISSUE, dayawansa_martin, family, holds
 
 EXAMPLES = ROOT / "specs" / "examples"
 QUICK = Limits(max_degree=6, budget=2.0, optimize_rate=False)
 ANY = family([[-1]])
+GEROMEL_COLANERI = family([[0, 1], [-10, -1]], [[0, 1], ["-0.1", "-0.5"]])
 
 
 def oscillator(stretch):
@@ -58,6 +61,27 @@ def deciding_by(rule):
         return Certification(system, verdict, CommonQuadraticStatus.UNKNOWN, "rule", (), ())
 
     return assemble, decide, seen
+
+
+def verdict_at(system, rule):
+    """Certify by a rule for the dwell time."""
+    verdict = rule(system.switching.dwell_time)
+    return Certification(system, verdict, CommonQuadraticStatus.UNKNOWN, "rule", (), ())
+
+
+def undecided(system):
+    return verdict_at(system, lambda time: Verdict.INCONCLUSIVE)
+
+
+def bracket_rule(proved, refuted):
+    """Dwell times from one on are proved, up to another one refuted."""
+
+    def rule(time):
+        if time >= proved:
+            return Verdict.PROVED
+        return Verdict.REFUTED if time <= refuted else Verdict.INCONCLUSIVE
+
+    return rule
 
 
 def between(proved, refuted):
@@ -109,6 +133,15 @@ class TestBox:
             assert find_margin(assemble, decide) == BoxMargin(None, refuted, None)
             assert seen == [0]
 
+    @pytest.mark.parametrize("known", list(Verdict))
+    def test_never_contradicts_what_is_known_of_the_declared_ranges(self, known):
+        """A longer search has settled what the quick one does not find."""
+        assemble, decide, seen = deciding_by(lambda stretch: Verdict.INCONCLUSIVE)
+        found = Certification(ANY, known, CommonQuadraticStatus.UNKNOWN, "long", (), ())
+        box = find_margin(assemble, decide, found)
+        assert box.proved == (1 if known is Verdict.PROVED else None)
+        assert 1 not in seen
+
     def test_no_limit_in_sight(self):
         assemble, decide, seen = deciding_by(lambda stretch: Verdict.PROVED)
         box = find_margin(assemble, decide)
@@ -138,10 +171,7 @@ class TestBox:
 class TestDwell:
     def test_published_bounds(self):
         """Geromel and Colaneri 2006: proofs above 2.75084 s, refuted up to 2.70775 s."""
-        system = family([[0, 1], [-10, -1]], [[0, 1], ["-0.1", "-0.5"]])
-        # The dwell time that it declares itself is left out of account.
-        system = replace(system, switching=Switching(dwell_time=Fraction(100)))
-        dwell = find_shortest_dwell(system, quick, Fraction(1, 10))
+        dwell = find_shortest_dwell(GEROMEL_COLANERI, quick)
         assert 2.75084 < dwell.proved < 2.7525
         assert 2.7 < dwell.refuted < 2.70776
         proof = dwell.proof
@@ -149,32 +179,61 @@ class TestDwell:
         assert all(holds(proof.system, item) for item in proof.statements)
 
     def test_none_is_needed(self):
-        dwell = find_shortest_dwell(dayawansa_martin(5), quick, Fraction(1))
+        dwell = find_shortest_dwell(dayawansa_martin(5), quick)
         assert (dwell.proved, dwell.refuted, dwell.proof.verdict) == (0, None, "proved")
 
-    def test_none_is_long_enough(self):
-        dwell = find_shortest_dwell(family([[1]], [[-1]]), quick, Fraction(1))
-        assert (dwell.proved, dwell.proof) == (None, None)
-        assert dwell.refuted == LARGEST_SCALE
+    @pytest.mark.parametrize("other", [[[-1]], [[2]]])
+    def test_none_is_long_enough_for_an_unstable_mode(self, other):
+        dwell = find_shortest_dwell(family([[1]], other), quick)
+        assert dwell == DwellMargin(None, LONGEST_DWELL, None, LONGEST_DWELL)
+
+    def test_slow_modes_need_a_long_one(self):
+        """Far beyond 64 times the modes' fastest time, where the search once ended."""
+        slow = family([["-0.01", 1], [-1, "-0.01"]], [["-0.01", 10], ["-0.1", "-0.01"]])
+        dwell = find_shortest_dwell(slow, quick)
+        assert 100 < dwell.refuted < dwell.proved < 1.01 * dwell.refuted
 
     @settings(deadline=None)
-    @given(st.fractions("1/100", 60), st.fractions(0, 1))
-    def test_bracket_is_true_and_narrow(self, proved, share):
+    @given(st.fractions("1/100", 4000), st.fractions(0, 1), st.fractions(0, 4096))
+    def test_bracket_is_true_and_narrow(self, proved, share, own):
         refuted, asked = proved * share * Fraction(99, 100), []
 
         def decide(system):
             time = system.switching.dwell_time
             asked.append(time)
-            verdict = Verdict.PROVED if time >= proved else Verdict.INCONCLUSIVE
-            verdict = Verdict.REFUTED if time <= refuted else verdict
-            return Certification(system, verdict, CommonQuadraticStatus.UNKNOWN, "rule", (), ())
+            return verdict_at(system, bracket_rule(proved, refuted))
 
-        dwell = find_shortest_dwell(ANY, decide, Fraction(1))
+        system = replace(ANY, switching=Switching(own))
+        known = verdict_at(system, bracket_rule(proved, refuted))
+        dwell = find_shortest_dwell(system, decide, known)
         assert dwell.proved >= proved
         assert dwell.refuted is not None
-        assert 0 <= refuted - dwell.refuted <= max(proved, 1) * Fraction(1, 2**REFUTED_STEPS)
-        assert dwell.proved in asked
-        assert dwell.proved - proved <= max(proved, 1) * Fraction(1, 2**DWELL_STEPS)
+        size = max(proved, 1)
+        assert 0 <= refuted - dwell.refuted <= 2 * size * Fraction(1, 2**REFUTED_STEPS)
+        assert dwell.proved - proved <= 2 * size * Fraction(1, 2**DWELL_STEPS)
+        assert {dwell.proved, dwell.refuted} <= {*asked, own}
+        assert own not in asked
+        assert len(set(asked)) == len(asked)
+
+    @settings(deadline=None)
+    @given(st.fractions("1/100", 4096))
+    def test_never_contradicts_what_is_known(self, own):
+        """A longer search has proved what the quick one does not find."""
+        system = replace(ANY, switching=Switching(own))
+        known = verdict_at(system, lambda time: Verdict.PROVED)
+        dwell = find_shortest_dwell(system, undecided, known)
+        assert (dwell.proved, dwell.proof) == (own, known)
+
+    def test_the_range_searched_is_told(self):
+        asked = []
+
+        def decide(system):
+            asked.append(system.switching.dwell_time)
+            return undecided(system)
+
+        dwell = find_shortest_dwell(ANY, decide)
+        assert dwell == DwellMargin(None, None, None, LONGEST_DWELL)
+        assert max(asked) == LONGEST_DWELL
 
 
 class TestOfSpecs:
@@ -184,7 +243,8 @@ class TestOfSpecs:
         told = []
         box = run_margin(result, Limits(max_degree=2), told.append)
         assert box.proved >= 1
-        assert told[0] == "box scaled by 0"
+        # What is proved as declared is not tried again.
+        assert told[0] == "box scaled by 2"
         assert holds(box.proof.system, box.proof.evidence)
 
     def test_box_that_is_too_large_is_shrunk(self):
@@ -200,10 +260,13 @@ class TestOfSpecs:
         assert caught.value.path == COMMUTING
         assert caught.value.remedy
 
-    @pytest.mark.parametrize("name", ["oscillator-range", "ando-shih"])
-    def test_no_dwell_time_for_ranges_and_discrete_time(self, name):
+    @pytest.mark.parametrize(
+        ("name", "said"),
+        [("oscillator-range", "constant matrices only"), ("ando-shih", "continuous time")],
+    )
+    def test_no_dwell_time_for_ranges_and_discrete_time(self, name, said):
         result = run_certification(read_spec(EXAMPLES / f"{name}.nrs.yaml"), limits=QUICK)
-        with pytest.raises(DesignError, match="continuous time and fixed parameters"):
+        with pytest.raises(DesignError, match=said):
             run_shortest_dwell(result)
 
     @pytest.mark.slow

@@ -356,12 +356,19 @@ class TestForgery:
         moved = {**document, "spec": {"name": "given", "sha256": unstable.sha256}}
         self.reject(moved, unstable, "does not decrease")
 
-    def test_one_more_blank_line_is_another_spec(self, tmp_path):
+    def test_comments_and_line_ends_are_no_other_spec(self, tmp_path):
         path = tmp_path / "a.yaml"
         spec = write_spec(path, [[-1, 0], [0, -1]])
         document = json.loads(dump(run_certification(spec).certificate))
-        path.write_text(path.read_text() + "\n")
+        path.write_bytes(b"# mine\n" + path.read_bytes().replace(b"\n", b"\r\n"))
+        assert verify_document(document, read_spec(path)).fault is None
+        path.write_text(path.read_text().replace('"-1"', '"-1.0"', 1))
         assert "another spec" in verify_document(document, read_spec(path)).fault
+
+    @pytest.mark.parametrize("origin", ["a.yaml", "../../nowhere", 7, None, ["a"]])
+    def test_where_the_spec_was_says_nothing(self, given, origin):
+        document, spec = given
+        assert verify_document({**document, "origin": origin}, spec).fault is None
 
     def test_refutation_of_a_stable_system(self, given):
         document, spec = given
@@ -488,7 +495,7 @@ class TestForgery:
         document, spec = given
         self.reject({**document, "gains": gains}, spec, "")
 
-    @pytest.mark.parametrize("schema", ["nrs-design/certificate/1", "nrs-design/certificate/3", 2])
+    @pytest.mark.parametrize("schema", ["nrs-design/certificate/2", "nrs-design/certificate/4", 2])
     def test_other_schema(self, given, schema):
         document, spec = given
         self.reject({**document, "schema": schema}, spec, "schema")

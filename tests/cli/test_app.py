@@ -117,3 +117,68 @@ def test_as_a_module_and_as_a_program():
         check=False,
     )
     assert result.stdout.startswith("nrs-design ")
+
+
+def start(tmp_path, *command, **environment):
+    """Run Python in a folder; its process."""
+    return subprocess.run(
+        [sys.executable, *map(str, command)],
+        capture_output=True,
+        text=True,
+        errors="surrogateescape",
+        cwd=tmp_path,
+        check=False,
+        env=os.environ | {"PYTHONPATH": str(ROOT), **environment},
+    )
+
+
+@pytest.mark.parametrize("name", ["typer", "rich", "ruamel", "json", "pydantic", "numpy"])
+def test_as_a_module_it_imports_nothing_from_the_working_folder(tmp_path, name):
+    (tmp_path / f"{name}.py").write_text("raise SystemExit('taken over')")
+    result = start(tmp_path, "-m", "nrs_design", "certify-switching", COMMUTING)
+    assert result.returncode == 0, result.stderr
+    assert "taken over" not in result.stderr
+
+
+def test_what_cannot_be_loaded_is_exit_code_4(tmp_path):
+    broken = tmp_path / "broken"
+    broken.mkdir()
+    (broken / "typer.py").write_text("raise ImportError('half\\ninstalled')")
+    path = f"{broken}{os.pathsep}{ROOT}"
+    result = start(tmp_path, "-m", "nrs_design", "--version", PYTHONPATH=path)
+    assert result.returncode == 4
+    assert result.stderr.count("\n") == 1
+    assert "cannot be loaded" in result.stderr
+
+
+@pytest.mark.parametrize("how", [["-W", "error"], ["-W", "error::DeprecationWarning"]])
+def test_a_warning_of_a_library_is_no_verdict(tmp_path, how):
+    program = (
+        "import warnings, nrs_design.spec as s\n"
+        "read = s.read_spec\n"
+        "def noisy(path): warnings.warn('old', DeprecationWarning); return read(path)\n"
+        "s.read_spec = noisy\n"
+        "from nrs_design.cli import main; main()"
+    )
+    result = start(tmp_path, *how, "-c", program, "certify-switching", COMMUTING)
+    assert result.returncode == 0, result.stderr
+
+
+@pytest.mark.parametrize("spec", ["a\udcff.nrs.yaml", "::error::\u202e\x1b[31m\n.nrs.yaml"])
+@pytest.mark.parametrize("encoding", ["ascii", "utf-8"])
+def test_a_hostile_file_name_is_shown_and_changes_no_exit_code(tmp_path, spec, encoding):
+    (tmp_path / spec).write_bytes(COMMUTING.read_bytes())
+    program = ("-m", "nrs_design")
+    for command, expected in (("check", 0), ("certify-switching", 0), ("verify", 2)):
+        arguments = [spec] * (2 if command == "verify" else 1)
+        result = start(tmp_path, *program, command, *arguments, PYTHONIOENCODING=encoding)
+        assert result.returncode == expected, result.stderr
+        for line in (result.stdout + result.stderr).split("\n"):
+            assert line.isprintable()
+            assert not line.strip().startswith("::")
+
+
+def test_wrong_usage_shows_no_control_character(tmp_path):
+    result = start(tmp_path, "-m", "nrs_design", "check", "--a\u202e\x1b[31m\u200b")
+    assert result.returncode == 2
+    assert all(line.isprintable() for line in result.stderr.split("\n"))

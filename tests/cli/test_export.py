@@ -62,6 +62,19 @@ def test_json(export, capsys):
     assert document["record"] == json.loads(Path(document["file"]).read_text())
 
 
+def test_the_files_of_another_spec_are_not_overwritten(export, capsys, certificate):
+    for name in ("a.nrs.yaml", "b.nrs.yaml"):
+        Path(name).write_bytes(SPEC.read_bytes())
+    Path("mine.json").write_text(certificate)
+    assert export("a.nrs.yaml") == 0
+    before = {name: Path(name).read_bytes() for name in files()}
+    assert export("b.nrs.yaml") == 2
+    assert export("b.nrs.yaml", "--certificate", "mine.json") == 2
+    assert "belongs to a.nrs.yaml" in capsys.readouterr().err
+    assert export("a.nrs.yaml", "--out", "a.nrs.yaml") == 2
+    assert {name: Path(name).read_bytes() for name in files()} == before
+
+
 def test_given_certificate_is_used_and_not_written_again(export, certificate):
     Path("mine.json").write_text(certificate)
     assert export(SPEC, "--certificate", "mine.json") == 0
@@ -89,7 +102,7 @@ def test_certificate_that_does_not_cover_the_design(export, certificate, capsys,
     Path("mine.json").write_text(signed(certificate, edit))
     assert export(SPEC, "--certificate", "mine.json") == 1
     assert files() == ["mine.json"]
-    assert "not exported" in capsys.readouterr().out
+    assert "not exported" in capsys.readouterr().err
 
 
 def test_valid_certificate_of_other_gains(export, tmp_path, capsys):
@@ -108,7 +121,7 @@ def test_valid_certificate_of_other_gains(export, tmp_path, capsys):
     Path("mine.json").write_text(dump(other))
     assert verify(Path("mine.json"), loaded).fault is None
     assert export(SPEC, "--certificate", "mine.json") == 1
-    assert "other gains of insertion" in capsys.readouterr().out
+    assert "other gains of insertion" in capsys.readouterr().err
     assert files() == ["mine.json"]
 
 
@@ -116,7 +129,7 @@ def test_certificate_in_other_coordinates(export, capsys):
     other = run_certification(read_spec(SPEC), coordinates="force").certificate
     Path("mine.json").write_text(dump(other))
     assert export(SPEC, "--certificate", "mine.json") == 1
-    assert "other coordinates" in capsys.readouterr().out
+    assert "other coordinates" in capsys.readouterr().err
 
 
 def test_certificate_that_is_none(export):
@@ -130,7 +143,7 @@ def test_refuted_design_is_not_exported(export, capsys):
     text = SPEC.read_text().replace("768.17 N/m]}", "90000 N/m]}")
     Path("stiff.nrs.yaml").write_text(text)
     assert export("stiff.nrs.yaml") == 1
-    assert "not exported: the design is not proved: refuted" in capsys.readouterr().out
+    assert "not exported: the design is not proved: refuted" in capsys.readouterr().err
     assert files() == ["stiff.nrs.yaml"]
     refuting = run_certification(read_spec("stiff.nrs.yaml")).certificate
     Path("mine.json").write_text(dump(refuting))

@@ -106,8 +106,10 @@ def test_broken_spec_is_worse_than_a_refuted_one(gate, capsys):
     out, err = capsys.readouterr()
     assert "specs/broken.nrs.yaml:5:18: NRS001 error" in out
     assert "thesis-print-error" in out
-    assert "nrs.lock not written" in err
-    assert not Path("nrs.lock").exists()
+    assert "not in nrs.lock, for want of a verdict: specs/broken.nrs.yaml" in err
+    locked = [spec["path"] for spec in json.loads(Path("nrs.lock").read_text())["specs"]]
+    assert "specs/stable.nrs.yaml" in locked
+    assert "specs/broken.nrs.yaml" not in locked
 
 
 def test_inconclusive_is_exit_3_and_refuted_is_worse(gate, monkeypatch):
@@ -193,12 +195,86 @@ def test_locked_without_a_lock(gate, capsys):
 
 
 def test_locked_with_other_folders(gate):
-    assert gate("specs", "--no-reports", "--reports", "certs", "--lock", "ci/a.lock") == 0
+    assert gate("specs", "--no-reports", "--reports", "certs", "--lock", "ci/a.lock") == 2
+    assert not Path("certs").exists()
+    assert gate("specs", "--no-reports", "--reports", "ci/certs", "--lock", "ci/a.lock") == 0
     assert gate("specs", "--locked", "--lock", "ci/a.lock") == 0
-    Path("certs/stable.cert.json").unlink()
+    Path("ci/certs/stable.cert.json").unlink()
     assert gate("specs", "--locked", "--lock", "ci/a.lock") == 2
 
 
 def test_reports_are_written_by_default(gate):
     assert gate("specs") == 0
     assert "<html" in Path("reports/stable.html").read_text()
+
+
+def copied(gate):
+    """A project with a lock, and a copy of its spec that says something else."""
+    assert gate("specs", "--no-reports") == 0
+    Path("mine.nrs.yaml").write_text(STABLE.replace("[[-1,", "[[-2,"))
+    return {path: path.read_bytes() for path in (Path("nrs.lock"), *Path("reports").iterdir())}
+
+
+def test_a_copied_spec_destroys_nothing(gate, capsys):
+    before = copied(gate)
+    assert gate("mine.nrs.yaml") == 2
+    out = capsys.readouterr().out
+    assert "NRS005 error: reports/stable.cert.json: belongs to specs/stable.nrs.yaml" in out
+    assert {path: path.read_bytes() for path in before} == before
+    assert not Path("reports/stable.html").exists()
+    assert gate("specs", "--locked") == 0
+
+
+def test_a_copied_spec_with_a_name_of_its_own_is_added(gate):
+    before = copied(gate)
+    text = Path("mine.nrs.yaml").read_text()
+    Path("mine.nrs.yaml").write_text(text.replace("name: stable", "name: mine"))
+    assert gate("mine.nrs.yaml", "--no-reports") == 0
+    assert gate(".", "--locked") == 0
+    certificate = Path("reports/stable.cert.json")
+    assert certificate.read_bytes() == before[certificate]
+
+
+def test_pruning(gate, capsys):
+    assert gate("specs", "--no-reports") == 0
+    Path("specs/stable.nrs.yaml").rename("specs/other.nrs.yaml")
+    text = Path("specs/other.nrs.yaml").read_text().replace("name: stable", "name: other")
+    Path("specs/other.nrs.yaml").write_text(text)
+    assert gate("specs", "--no-reports") == 0
+    assert "--prune" in capsys.readouterr().err
+    assert gate("specs", "--locked") == 1
+    assert gate("specs", "--no-reports", "--prune") == 0
+    assert gate("specs", "--locked") == 0
+    assert gate("specs", "--locked", "--prune") == 2
+
+
+def test_nothing_is_written_through_a_link(gate, capsys):
+    Path("outside").mkdir()
+    Path("reports").symlink_to("outside")
+    assert gate("specs") == 2
+    assert "lies behind the symbolic link reports" in capsys.readouterr().out
+    assert not list(Path("outside").iterdir())
+
+
+def test_what_is_not_looked_into_is_said(gate, capsys):
+    Path("specs/.hidden").mkdir()
+    Path("specs/link").symlink_to("..")
+    for arguments in (["--no-reports"], ["--locked"]):
+        assert gate("specs", *arguments) == 0
+        err = capsys.readouterr().err
+        assert "not looked into (hidden, or a link): specs/.hidden, specs/link" in err
+
+
+def test_a_missed_goal_is_missed_when_locked_and_gains_are_shown(gate, capsys):
+    text = (ROOT / "specs/neuroboscope/soft-tissue.nrs.yaml").read_text()
+    Path("specs/stable.nrs.yaml").write_text(text.replace("768.17 N/m]}", "1500 N/m]}"))
+    for arguments in (["--no-reports"], ["--locked"]):
+        assert gate("specs", *arguments) == 1
+        out = capsys.readouterr().out
+        assert "NRS103 missed: design goal: the stiffness of soft" in out
+        assert "insertion Mt 0.01, Bt 2.15" in out
+
+
+def test_the_document_may_not_replace_a_spec(gate):
+    assert gate("specs", "--no-reports", "--out", "specs/stable.nrs.yaml") == 2
+    assert Path("specs/stable.nrs.yaml").read_text() == STABLE

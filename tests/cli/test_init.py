@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import json
 import subprocess
 import sys
 from pathlib import Path
 
 import pytest
+
+from nrs_design.cli.init import named_after
 
 
 def run(*arguments: str | Path, cwd: Path) -> subprocess.CompletedProcess[str]:
@@ -37,3 +40,32 @@ def test_init_names_the_templates_when_one_is_unknown(tmp_path: Path) -> None:
     assert result.returncode == 2
     assert "interaction-design" in result.stderr
     assert list(tmp_path.iterdir()) == []
+
+
+def test_two_kinds_in_one_folder_pass_the_gate(tmp_path: Path) -> None:
+    for template in ("interaction-design", "switched-system", "robot"):
+        assert run("init", template, "-q", cwd=tmp_path).stderr == ""
+    result = run("gate", ".", "--no-reports", cwd=tmp_path)
+    assert result.returncode == 0, result.stdout + result.stderr
+    assert "3 specs" in result.stdout
+
+
+def test_a_spec_is_named_after_its_file() -> None:
+    template = "kind: robot\nname: my-robot     # name\n"
+    assert named_after(Path("a/Left Arm.nrs.yaml"), template) == (
+        "kind: robot\nname: left-arm     # name\n"
+    )
+    assert "name: very-long-name # name" in named_after(Path("very-long-name.yml"), template)
+    assert named_after(Path("---.nrs.yaml"), template) == template
+
+
+def test_the_schema_that_editors_look_for_is_there(tmp_path: Path) -> None:
+    done = run("init", "robot", "--out", "specs/arm.nrs.yaml", cwd=tmp_path)
+    first = (tmp_path / "specs/arm.nrs.yaml").read_text().splitlines()[0]
+    schema = tmp_path / "specs" / first.partition("$schema=")[2]
+    assert json.loads(schema.read_text())["$schema"].startswith("http://json-schema.org/")
+    assert "nrs.schema.json written" in done.stderr
+    schema.write_text("{}")
+    done = run("init", "switched-system", "--out", "specs/b.nrs.yaml", cwd=tmp_path)
+    assert "is that of another version" in done.stderr
+    assert schema.read_text() == "{}"

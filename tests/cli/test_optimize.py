@@ -26,7 +26,7 @@ def test_optimum_of_the_thesis(tmp_path):
 
 
 def test_table(tmp_path):
-    result = run("optimize", SOFT_TISSUE, "-q", cwd=tmp_path)
+    result = run("optimize", SOFT_TISSUE, cwd=tmp_path)
     assert result.returncode == 0
     lines = result.stdout.splitlines()
     assert lines[0].startswith("soft-tissue: G(s) = (0.99739 s + 56.822)")
@@ -51,3 +51,61 @@ def test_given_matrices(tmp_path):
 
 def test_missing_spec(tmp_path):
     assert run("optimize", "none.nrs.yaml", cwd=tmp_path).returncode == 2
+
+
+def spec_with(tmp_path, goals, *replacements):
+    text = SOFT_TISSUE.read_text()
+    for old, new in (("switching: arb", f"goals: {goals}\nswitching: arb"), *replacements):
+        assert old in text
+        text = text.replace(old, new)
+    (tmp_path / "goals.nrs.yaml").write_text(text)
+    return "goals.nrs.yaml"
+
+
+GIVEN = (
+    ("Mt: {min: 0.01 kg*m^2, max: 1 kg*m^2}", "Mt: 0.01 kg*m^2"),
+    ("Bt: {min: 0.1 N*m*s/rad, max: 20 N*m*s/rad}", "Bt: 1.04 N*m*s/rad"),
+)
+
+
+def test_goals_are_respected_and_shown(tmp_path):
+    result = run("optimize", spec_with(tmp_path, "{max_sensitivity_peak: 2}"), cwd=tmp_path)
+    assert result.returncode == 0, result.stderr
+    rows = [line for line in result.stdout.splitlines() if "sensitivity peak Ms" in line]
+    assert len(rows) == 2
+    assert all("at most 2" in row and row.rstrip().endswith("met") for row in rows)
+    assert "Computed in floating point, not a proof" in result.stdout
+
+
+def test_gains_that_are_given_and_miss_a_goal_end_with_1(tmp_path):
+    path = spec_with(tmp_path, "{max_sensitivity_peak: 2}", *GIVEN)
+    result = run("optimize", path, cwd=tmp_path)
+    assert result.returncode == 1
+    assert result.stdout.count("MISSED") == 2
+    result = run("optimize", path, "--json", cwd=tmp_path)
+    assert result.returncode == 1
+    goals = json.loads(result.stdout)["controllers"][1]["goals"]
+    peak = next(goal for goal in goals if goal["goal"] == "max_sensitivity_peak")
+    assert (peak["status"], peak["wanted"]) == ("missed", 2.0)
+    assert peak["worst"] == pytest.approx(3.753, abs=1e-3)
+    assert peak["at"] == "soft, k = 44.2466 N*m/rad"
+    assert [goal["status"] for goal in goals].count(None) == 5
+
+
+def test_a_goal_out_of_reach_is_an_error_with_the_best_value(tmp_path):
+    result = run("optimize", spec_with(tmp_path, "{min_gain_margin: 1e6}"), cwd=tmp_path)
+    assert result.returncode == 2
+    assert "error[NRS002]: goals.nrs.yaml: controller insertion: the goal min_gain_margin" in (
+        result.stderr
+    )
+    assert "the best is" in result.stderr
+
+
+def test_without_goals_a_doubtful_design_is_warned_of_and_the_exit_code_stays(tmp_path):
+    result = run("optimize", SOFT_TISSUE, cwd=tmp_path)
+    assert result.returncode == 0
+    assert "warning: withdrawal: sensitivity peak Ms 3.753 (usual: at most 2)" in result.stderr
+    assert "warning: insertion: Mt is on its lower bound 0.01 kg*m^2" in result.stderr
+    warnings = json.loads(run("optimize", SOFT_TISSUE, "--json", cwd=tmp_path).stdout)["warnings"]
+    assert [f"warning: {text}" for text in warnings] == result.stderr.splitlines()
+    assert run("optimize", SOFT_TISSUE, "-q", cwd=tmp_path).stderr == ""

@@ -37,10 +37,52 @@ def test_default_is_a_page_in_reports(tmp_path, monkeypatch):
     assert page.startswith("<!DOCTYPE html>")
 
 
+@pytest.mark.parametrize("format_", ["html", "pdf", "png"])
+def test_the_page_of_another_spec_is_not_overwritten(tmp_path, monkeypatch, format_):
+    monkeypatch.chdir(tmp_path)
+    for name in ("a.nrs.yaml", "b.nrs.yaml"):
+        Path(name).write_text(Path(COMMUTING).read_text())
+    assert run("a.nrs.yaml").exit_code == 0
+    page = Path("reports/commuting.html").read_bytes()
+    refused = run("b.nrs.yaml", "--format", format_)
+    assert isinstance(refused.exception, OutputError)
+    assert "belongs to a.nrs.yaml" in str(refused.exception)
+    assert [path.name for path in Path("reports").iterdir()] == ["commuting.html"]
+    assert run("a.nrs.yaml").exit_code == 0
+    assert Path("reports/commuting.html").read_bytes() == page
+
+
+@pytest.mark.parametrize("format_", ["html", "pdf"])
+def test_a_file_that_is_no_report_is_not_overwritten(tmp_path, monkeypatch, format_):
+    monkeypatch.chdir(tmp_path)
+    Path("notes").write_text("precious")
+    refused = run(COMMUTING, "--format", format_, "--out", "notes")
+    assert "not overwritten" in str(refused.exception)
+    assert Path("notes").read_text() == "precious"
+
+
 def test_pdf_and_its_default_name(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     assert run(COMMUTING, "--format", "pdf").exit_code == 0
     assert (tmp_path / "reports/commuting.pdf").read_bytes().startswith(b"%PDF-")
+
+
+@pytest.mark.parametrize("name", ["c.html", "c.pdf"])
+def test_a_date_is_written_only_if_given(tmp_path, name):
+    out = tmp_path / name
+    pages = []
+    for dates in ([], ["--date", "2026-03-01"], ["--date", "2026-03-01"]):
+        kind = ["--format", out.suffix[1:]]
+        assert run(COMMUTING, "--out", str(out), *kind, *dates).exit_code == 0
+        pages.append(out.read_bytes())
+    assert pages[0] != pages[1] == pages[2]
+    assert b"2026-03-01" not in pages[0]
+
+
+def test_a_wrong_date_is_refused():
+    done = run(COMMUTING, "--date", "1.3.2026")
+    assert done.exit_code == 2
+    assert "%Y-%m-%d" in done.stderr
 
 
 def test_png_writes_one_file_per_figure(tmp_path):

@@ -37,7 +37,7 @@ def test_force_loop_of_the_thesis(tmp_path):
 
 
 def test_tables(tmp_path):
-    result = run("tune", FORCE_LIMIT, "-q", cwd=tmp_path)
+    result = run("tune", FORCE_LIMIT, cwd=tmp_path)
     assert result.returncode == 0
     assert "force-limit: motion loop" in result.stdout
     assert "force-limit: force loop" in result.stdout
@@ -65,3 +65,23 @@ def test_gains_beyond_single_precision(tmp_path):
     result = run("tune", "huge.nrs.yaml", cwd=tmp_path)
     assert result.returncode == 2
     assert "single precision" in result.stderr
+
+
+@pytest.mark.parametrize(("goal", "code", "word"), [("0.55", 0, "met"), ("0.5", 1, "MISSED")])
+def test_goal_of_the_force_error(tmp_path, goal, code, word):
+    """Kp = 0.02 leaves 1/(1 + 0.02 * 41.5043) of the command at the softest tissue."""
+    goals = f"goals: {{max_force_error: {goal}}}\nswitching:"
+    (tmp_path / "goals.nrs.yaml").write_text(FORCE_LIMIT.read_text().replace("switching:", goals))
+    result = run("tune", "goals.nrs.yaml", cwd=tmp_path)
+    assert result.returncode == code, result.stderr
+    row = next(line for line in result.stdout.splitlines() if "steady force error" in line)
+    assert "0.5465" in row
+    assert "k = 41.5043 N*m/rad" in row
+    assert row.rstrip().endswith(word)
+    assert "warning" not in result.stderr
+
+
+def test_a_force_error_without_goal_is_warned_of(tmp_path):
+    result = run("tune", FORCE_LIMIT, cwd=tmp_path)
+    assert result.returncode == 0
+    assert "warning: force: steady force error over command 0.5465" in result.stderr

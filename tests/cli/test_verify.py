@@ -11,7 +11,7 @@ import pytest
 from nrs_design.certificates.certificate import content_id
 from tests.support import COMMUTING, HARD, PRINT_ERROR, ROOT, SOFT_TISSUE, run, write_spec
 
-HEAVY = ("control", "cvxpy", "scipy", "matplotlib", "clarabel", "numpy", "reportlab", "jinja2")
+HEAVY = ("control", "cvxpy", "scipy", "matplotlib", "clarabel", "numpy", "typst", "jinja2")
 
 
 @pytest.fixture(scope="module")
@@ -38,7 +38,7 @@ def test_refutation_holds(certified):
 
 def test_quiet(certified):
     result = run("verify", "-q", "commuting.json", COMMUTING, cwd=certified)
-    assert result.stdout == "PROVED: the certificate holds, checked exactly.\n"
+    assert (result.returncode, result.stdout, result.stderr) == (0, "", "")
 
 
 def test_json(certified):

@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 from nrs_design.controllers.float32 import (
     exact_decimal,
     is_float32,
+    neighbors,
     round_significant,
     to_float32,
 )
@@ -119,3 +120,11 @@ def test_no_terminating_expansion():
 )
 def test_round_significant(value, digits, rounded):
     assert round_significant(value, digits) == Fraction(rounded)
+
+
+@pytest.mark.parametrize(
+    ("value", "digits", "expected"),
+    [(1.2345, 3, (1.2245, 1.2345, 1.2445)), (0.01, 3, (0.0099, 0.01, 0.0101)), (0.0, 3, (0, 0, 0))],
+)
+def test_neighbors_are_one_step_of_the_last_digit_away(value, digits, expected):
+    assert neighbors(value, digits) == pytest.approx(expected)

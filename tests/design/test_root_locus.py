@@ -164,6 +164,17 @@ def test_locus_gains_hold_the_chosen_and_the_breakaway_gain():
         assert np.abs(gains - c / KM).min() < 1e-6 * c / KM
 
 
+@pytest.mark.parametrize("gain", [2.060, 2060.0])
+def test_locus_branches_end_at_the_zeros(gain):
+    """Also from a gain so small that the poles meet only beyond 100 times it."""
+    gains = locus_gains(OPEN_LOOP, gain)
+    branches = root_locus(OPEN_LOOP, gains)
+    assert np.abs(branches[-1] + 56.9706).min() < 0.25
+    real = np.abs(branches.imag).max(axis=1) < 1e-9
+    beyond = branches[real].real[branches[real].real < -56]
+    assert np.diff(np.sort(beyond[beyond > -80])).max() < 2.5
+
+
 def test_locus_branches_are_continuous():
     motion = TransferFunction((1.0,), (1.0, 7.0, 14.0, 8.0))  # poles -1, -2, -4
     gains = locus_gains(motion, 20.0)

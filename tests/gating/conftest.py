@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from nrs_design.gating.find_specs import find_specs
-from nrs_design.gating.lock import make_lock, write_lock
+from nrs_design.gating.renew import make_lock, write_lock
 from nrs_design.gating.run import Files, run_gate
 
 STABLE = """\

@@ -1,42 +1,121 @@
-"""The files that other projects copy or refer to name commands and options that exist."""
+"""The files that other projects copy or refer to work in a repository as it is."""
 
 import re
+import shlex
+import tomllib
 from pathlib import Path
 
 import pytest
 from ruamel.yaml import YAML
 from typer.main import get_command
 
+from nrs_design.cli import main
 from nrs_design.cli.app import make_app
 
+from .conftest import STABLE
+
 ROOT = Path(__file__).parents[2]
+WORKFLOW = ROOT / "docs/ci/github-actions.yml"
+HOOKS = ROOT / ".pre-commit-hooks.yaml"
+GUIDE = ROOT / "docs/ci/README.md"
 
 
-def commands_in(path):
-    text = "\n".join(line.partition("#")[0] for line in path.read_text().splitlines())
-    return re.findall(r"nrs-design ((?:check|gate)\b.*)", text)
+def parse(text):
+    return YAML(typ="safe").load(text)
 
 
-@pytest.mark.parametrize("name", [".pre-commit-hooks.yaml", "docs/ci/github-actions.yml"])
-def test_commands_and_options_exist(name):
+def steps():
+    return [step for job in parse(WORKFLOW)["jobs"].values() for step in job["steps"]]
+
+
+def local_hooks():
+    (block,) = re.findall(r"```yaml\n(.*?)```", GUIDE.read_text(), re.DOTALL)
+    (repository,) = parse(block)["repos"]
+    assert repository["repo"] == "local"
+    return repository["hooks"]
+
+
+def commands():
+    """Every command line of nrs-design in these files, as words without the program."""
+    lines = [step["run"] for step in steps() if "run" in step]
+    lines += [" ".join([hook["entry"], *hook.get("args", [])]) for hook in parse(HOOKS)]
+    lines += [hook["entry"] for hook in local_hooks()]
+    lines += re.findall(r"#\s+(nrs-design .*)", WORKFLOW.read_text())
+    return [shlex.split(line)[1:] for line in lines if line.startswith("nrs-design ")]
+
+
+def test_commands_and_options_exist():
     known = get_command(make_app()).commands
-    found = commands_in(ROOT / name)
-    assert found
-    for words in map(str.split, found):
-        options = {option for p in known[words[0]].params for option in p.opts}
-        assert {word for word in words[1:] if word.startswith("-")} <= options
+    assert len(commands()) == 7
+    for name, *words in commands():
+        options = {option for p in known[name].params for option in p.opts}
+        assert {word for word in words if word.startswith("-")} <= options
 
 
-def test_hooks():
-    hooks = {hook["id"]: hook for hook in YAML(typ="safe").load(ROOT / ".pre-commit-hooks.yaml")}
-    assert set(hooks) == {"nrs-design-check", "nrs-design-gate"}
-    for hook in hooks.values():
-        assert hook["language"] == "python"
-        assert re.search(hook["files"], "specs/a.nrs.yaml")
+def test_commands_work_in_a_project(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    Path("specs").mkdir()
+    Path("specs/a.nrs.yaml").write_text(STABLE)
+    # Those that make the lock file come first, as in a project.
+    for words in sorted(commands(), key=lambda words: ("--locked" in words, "--lock" in words)):
+        arguments = [*words, "specs/a.nrs.yaml"] if words[0] == "check" else words
+        monkeypatch.setattr("sys.argv", ["nrs-design", *arguments])
+        with pytest.raises(SystemExit) as caught:
+            main()
+        assert not caught.value.code, arguments
+    assert Path("gate/gate.sarif").is_file()
+
+
+@pytest.mark.parametrize("hooks", [parse(HOOKS), local_hooks()], ids=["here", "local"])
+def test_hooks(hooks):
+    by_id = {hook["id"]: hook for hook in hooks}
+    assert set(by_id) == {"nrs-design-check", "nrs-design-gate"}
+    scripts = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]["scripts"]
+    for hook in hooks:
+        assert hook["entry"].split()[0] in scripts
+        assert hook["language"] in ("python", "system")
+        for name in ("specs/a.nrs.yaml", "a.nrs.yml", "A.NRS.YAML"):
+            assert re.search(hook["files"], name)
         assert not re.search(hook["files"], "specs/a.yaml")
-    assert hooks["nrs-design-gate"]["pass_filenames"] is False
+    assert by_id["nrs-design-gate"]["pass_filenames"] is False
 
 
-def test_workflow_is_yaml_with_two_jobs():
-    workflow = YAML(typ="safe").load(ROOT / "docs/ci/github-actions.yml")
+def test_actions_are_pinned_by_commit():
+    used = [step["uses"] for step in steps() if "uses" in step]
+    assert len(used) == 6
+    assert all(re.fullmatch(r"[\w./-]+@[0-9a-f]{40}", action) for action in used)
+
+
+def test_what_is_installed_is_pinned_by_hash():
+    installs = [step["run"] for step in steps() if "pip install" in step.get("run", "")]
+    assert {line.partition("--no-deps ")[2] for line in installs} == {
+        "--require-hashes -r ci/requirements.txt",
+        "--no-index ci/nrs_design-*.whl",
+    }
+
+
+def test_required_versions_are_those_that_are_tested():
+    lines = (ROOT / "docs/ci/requirements.txt").read_text().splitlines()
+    pinned = [line for line in lines if not line.startswith("#")]
+    assert all(re.fullmatch(r"[a-z0-9.-]+==\S+ --hash=sha256:[0-9a-f]{64}", x) for x in pinned)
+    constraints = (ROOT / "constraints.txt").read_text().splitlines()
+    assert {line.split()[0] for line in pinned} <= set(constraints)
+    names = {line.partition("==")[0] for line in pinned}
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
+    needed = {re.split("[>=]", text)[0].replace(".", "-") for text in project["dependencies"]}
+    assert needed <= names
+
+
+def test_a_fork_may_only_read():
+    workflow = parse(WORKFLOW)
     assert set(workflow["jobs"]) == {"locked", "gate"}
+    assert "pull_request_target" not in workflow["on"]
+    assert workflow["permissions"] == {"contents": "read"}
+    (upload,) = [step for step in steps() if "upload-sarif" in step.get("uses", "")]
+    assert "head.repo.full_name == github.repository" in upload["if"]
+
+
+def test_the_licence_is_that_of_the_project():
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
+    assert project["license"] == {"text": "MIT"}
+    assert (ROOT / "LICENSE").read_text().startswith("MIT License\n")

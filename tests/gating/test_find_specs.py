@@ -3,7 +3,7 @@ from pathlib import Path
 import pytest
 
 from nrs_design.errors import NrsDesignError, SpecError
-from nrs_design.gating.find_specs import find_specs
+from nrs_design.gating.find_specs import find_passed_over, find_specs
 
 
 @pytest.fixture
@@ -57,3 +57,19 @@ def test_a_link_to_a_spec_inside_is_the_same_spec(folder):
 
 def test_a_name_that_no_file_can_have_is_left_to_reading(tmp_path):
     assert find_specs([tmp_path / ("x" * 5000)])
+
+
+@pytest.mark.parametrize("name", ["c.nrs.yml", "C.NRS.YAML", "c.Nrs.Yml", ".c.nrs.yaml"])
+def test_other_endings_are_specs_too(folder, name):
+    (folder / name).touch()
+    assert folder / name in find_specs([folder])
+
+
+def test_what_is_passed_over(folder, tmp_path):
+    (tmp_path / "outside").mkdir()
+    (folder / "link").symlink_to(tmp_path / "outside")
+    (folder / ".venv/.deeper").mkdir()
+    (folder / "a/.hidden").mkdir()
+    expected = (folder / ".venv", folder / "a/.hidden", folder / "link")
+    assert find_passed_over([folder]) == expected
+    assert find_passed_over([folder / "b.nrs.yaml", folder / "missing"]) == ()

@@ -9,9 +9,21 @@ from hypothesis import strategies as st
 
 from nrs_design.gating.formats import FORMATS, to_github, to_json, to_junit, to_sarif, to_text
 from nrs_design.gating.formats.sarif import fingerprint
-from nrs_design.gating.obligations import GateOutcome, Obligation, SpecOutcome, Status, failed
+from nrs_design.gating.obligations import (
+    Caution,
+    GateOutcome,
+    Obligation,
+    SpecOutcome,
+    Status,
+    failed,
+)
 from nrs_design.gating.rules import RULES, SWITCHING_STABLE
 
+GAINS = {
+    "motion": {"Kp": "117359.4375", "Kd": "2060"},
+    "hand": {},
+    "tissue": {"Mt": "0.00999999977648258209228515625"},
+}
 STATUSES = [Status.INCONCLUSIVE, Status.ERROR, Status.REFUTED, Status.PROVED, Status.MISSED]
 HOSTILE = "a: 100%,\r\nb\x1b[31m\x00<&>\"'::error::"
 
@@ -65,11 +77,17 @@ class TestText:
         (good,) = (line for line in lines if line.startswith("specs/good"))
         assert good.split() == [
             "specs/good.nrs.yaml",
-            *["proved", "exists", "alpha", "=", "1.5", "1/s", "2", "abcdef012345"],
+            *["proved", "exists", "alpha", ">=", "1.5", "1/s", "2", "abcdef012345"],
         ]
         assert "specs/a.nrs.yaml:7:3: NRS102 refuted: it grows" in lines
         assert "specs/c.nrs.yaml: NRS900 error: RuntimeError: unforeseen and long" in lines
         assert "1 refuted, 1 proved, 1 without verdict; 7 obligations, 5 not" in to_text(mixed)
+
+    def test_gains_are_shown_by_their_shortest_single_precision_decimals(self):
+        text = to_text(outcome_of(obligation(), gains=GAINS))
+        assert "specs/a.nrs.yaml: motion Kp 117359.44, Kd 2060; tissue Mt 0.01\n" in text
+        assert "single-precision" in text
+        assert "gains" not in to_text(outcome_of(obligation()))
 
     def test_one_of_a_kind(self):
         assert "1 spec: " in to_text(outcome_of(obligation()))
@@ -79,6 +97,12 @@ class TestText:
         text = to_text(outcome_of(obligation(path=f"specs/{HOSTILE}", message=HOSTILE)))
         assert all(line.isprintable() for line in text.split("\n"))
         assert text.count("\n") == to_text(outcome_of(obligation())).count("\n")
+
+
+def test_json_has_the_warnings_of_each_spec():
+    caution = Caution(Path("specs/a.nrs.yaml"), "Mt is on its bound", 3, 5)
+    (spec,) = json.loads(to_json(outcome_of(obligation(), cautions=(caution,))))["specs"]
+    assert spec["warnings"] == [{"message": "Mt is on its bound", "line": 3, "column": 5}]
 
 
 class TestGitHub:
@@ -91,9 +115,9 @@ class TestGitHub:
     def test_escapes(self):
         line = to_github(outcome_of(obligation(path="a: 100%,\r\nb.yaml", message="50%\r\n::x")))
         assert line.startswith(
-            "::error file=a%3A 100%25%2C%0D%0Ab.yaml,line=7,col=3,title=NRS102::"
+            "::error file=a%3A 100%25%2C\\r\\nb.yaml,line=7,col=3,title=NRS102::"
         )
-        assert line.endswith("50%25%0D%0A::x\n")
+        assert line.endswith("50%25\\r\\n::x\n")
 
     def test_at_most_ten_and_a_notice(self):
         items = [obligation(Status.INCONCLUSIVE)] * 9 + [obligation()] * 3
@@ -104,6 +128,15 @@ class TestGitHub:
 
     def test_ten_need_no_notice(self):
         assert "notice" not in to_github(outcome_of(*[obligation()] * 10))
+
+    def test_warnings_come_after_errors(self):
+        caution = Caution(Path("specs/a,b.nrs.yaml"), "Mt is on its bound, 50%", 3, 5)
+        document = to_github(outcome_of(obligation(), cautions=(caution,)))
+        assert document.splitlines()[1] == (
+            "::warning file=specs/a%2Cb.nrs.yaml,line=3,col=5,title=nrs-design::"
+            "Mt is on its bound, 50%25"
+        )
+        assert to_github(outcome_of(cautions=(caution,) * 12)).count("::warning") == 10
 
     def test_place_that_is_not_known(self):
         line = to_github(outcome_of(obligation(line=None, column=None)))
@@ -304,6 +337,7 @@ class TestJson:
         assert document["notes"] == ["a note"]
         assert [spec["verdict"] for spec in document["specs"]] == ["refuted", "proved", None]
         assert document["specs"][1]["certificate"] == "reports/good.cert.json"
+        assert document["specs"][0]["gains"] == {}
         assert document["specs"][0]["obligations"][2] == {
             "rule": "NRS102",
             "subject": "system",
@@ -312,3 +346,7 @@ class TestJson:
             "line": 7,
             "column": 3,
         }
+
+    def test_gains_are_exact(self):
+        (spec,) = json.loads(to_json(outcome_of(obligation(), gains=GAINS)))["specs"]
+        assert spec["gains"] == GAINS

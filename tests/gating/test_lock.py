@@ -2,12 +2,8 @@ import json
 
 import pytest
 
-from nrs_design.errors import CertificateError, OutputError
-from nrs_design.gating.find_specs import find_specs
-from nrs_design.gating.lock import Lock, dump_lock, make_lock, read_lock, write_lock
-from nrs_design.gating.run import Files, run_gate
-
-from .conftest import BROKEN
+from nrs_design.errors import CertificateError
+from nrs_design.gating.lock import MAX_BYTES, MAX_SPECS, Lock, dump_lock, read_lock
 
 
 def test_lock_names_specs_and_certificates_relative_to_itself(project):
@@ -22,51 +18,26 @@ def test_lock_names_specs_and_certificates_relative_to_itself(project):
         assert certificate["spec"]["sha256"] == spec.sha256
 
 
-def test_lock_is_the_same_on_repeat(project):
-    before = (project / "nrs.lock").read_bytes()
-    outcome = run_gate(find_specs([project / "specs"]), Files(project / "reports", html=False))
-    write_lock(outcome, project / "nrs.lock")
-    assert (project / "nrs.lock").read_bytes() == before
-
-
-def test_lock_elsewhere_names_the_same_files(project):
-    outcome = run_gate(find_specs([project / "specs"]), Files(project / "reports", html=False))
-    lock = make_lock(outcome.specs, project / "ci/nrs.lock")
-    assert lock.specs[0].path == "../specs/soft-tissue.nrs.yaml"
-
-
 def test_lock_reads_back(project):
     lock = read_lock(project / "nrs.lock")
     assert Lock.model_validate(json.loads(dump_lock(lock))) == lock
 
 
-def test_lock_is_left_alone_where_a_spec_has_no_verdict(project):
-    before = (project / "nrs.lock").read_bytes()
-    (project / "specs/stable.nrs.yaml").write_text(BROKEN)
-    outcome = run_gate(find_specs([project / "specs"]), Files(project / "reports", html=False))
-    noted = write_lock(outcome, project / "nrs.lock")
-    assert "not written" in noted.notes[0]
-    assert (project / "nrs.lock").read_bytes() == before
-
-
-def test_unwritable_lock(project):
-    outcome = run_gate([project / "specs/stable.nrs.yaml"], Files(project, html=False))
-    with pytest.raises(OutputError):
-        write_lock(outcome, project / "specs/stable.nrs.yaml/nrs.lock")
-
-
+GOAL = {"rule": "NRS103", "subject": "tissue", "status": "met", "message": "reached"}
 ENTRY = {
     "path": "a.nrs.yaml",
     "sha256": "0" * 64,
+    "version": "0",
     "verdict": "proved",
     "rate": "1",
     "certificate": {"file": "a.cert.json", "id": "1" * 64},
+    "gains": {"tissue": {"Mt": "0.25"}},
+    "goals": [GOAL],
 }
 
 
 def document(*entries, **changes):
-    package = {"name": "nrs-design", "version": "0"}
-    base = {"schema": "nrs-design/lock/1", "package": package, "specs": list(entries)}
+    base = {"schema": "nrs-design/lock/2", "specs": list(entries)}
     return json.dumps({**base, **changes})
 
 
@@ -90,7 +61,8 @@ def test_an_inconclusive_spec_may_have_the_certificate_of_a_remark(tmp_path, cer
         "{",
         "[" * 100_000,
         "\x00",
-        document(schema="nrs-design/lock/2"),
+        document(schema="nrs-design/other/2"),
+        document(schema=2),
         document(extra=1),
         document(specs=None),
         document(ENTRY, ENTRY),
@@ -99,6 +71,20 @@ def test_an_inconclusive_spec_may_have_the_certificate_of_a_remark(tmp_path, cer
         document({**ENTRY, "certificate": None}),
         document({**ENTRY, "verdict": "inconclusive"}),
         document({**ENTRY, "path": 1}),
+        document({**ENTRY, "path": "/a.nrs.yaml"}),
+        document({**ENTRY, "path": "./a.nrs.yaml"}),
+        document({**ENTRY, "path": "b/../a.nrs.yaml"}),
+        document({**ENTRY, "path": "a\0.nrs.yaml"}),
+        document({**ENTRY, "path": "a" * 5000}),
+        document(ENTRY, {**ENTRY, "path": "b.nrs.yaml"}),
+        document({**ENTRY, "certificate": {"file": "/dev/zero", "id": "1" * 64}}),
+        document({**ENTRY, "certificate": {"file": "../a.cert.json", "id": "1" * 64}}),
+        document({**ENTRY, "certificate": {"file": "..", "id": "1" * 64}}),
+        document({**ENTRY, "goals": [{**GOAL, "rule": "NRS102"}]}),
+        document({**ENTRY, "goals": [{**GOAL, "rule": "NRS999"}]}),
+        document({**ENTRY, "goals": [{**GOAL, "status": "fine"}]}),
+        document({**ENTRY, "goals": [{**GOAL, "status": "proved"}]}),
+        document({**ENTRY, "gains": {"tissue": {"Mt": 0.25}}}),
         document({**ENTRY, "unknown": 1}),
         document(ENTRY).replace('"rate"', '"path"'),
     ],
@@ -121,3 +107,24 @@ def test_bytes_that_are_no_text_are_refused(tmp_path):
 def test_a_lock_that_cannot_be_read(tmp_path, name):
     with pytest.raises(CertificateError):
         read_lock(tmp_path / name)
+
+
+def test_a_lock_of_another_version_says_what_to_do(tmp_path):
+    (tmp_path / "nrs.lock").write_text(document(schema="nrs-design/lock/1"))
+    with pytest.raises(CertificateError, match="another version") as caught:
+        read_lock(tmp_path / "nrs.lock")
+    assert "remove it" in caught.value.remedy
+
+
+def test_a_lock_of_too_many_specs_is_refused_before_they_are_looked_at(tmp_path):
+    entries = ",".join(["{}"] * (MAX_SPECS + 1))
+    (tmp_path / "nrs.lock").write_text(document().replace("[]", f"[{entries}]"))
+    with pytest.raises(CertificateError, match="no lock file holds more than 10000"):
+        read_lock(tmp_path / "nrs.lock")
+
+
+def test_a_lock_that_is_too_large_is_not_read(tmp_path):
+    with (tmp_path / "nrs.lock").open("wb") as file:
+        file.truncate(MAX_BYTES + 1)
+    with pytest.raises(CertificateError, match="larger than any lock file"):
+        read_lock(tmp_path / "nrs.lock")

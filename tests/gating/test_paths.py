@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from nrs_design.gating.paths import from_here, is_utf8, printable, relative_uri
+from nrs_design.gating.paths import from_here, is_utf8, relative_uri
 
 NAMES = st.text(st.characters(exclude_characters="/\0", codec="utf-8"), min_size=1).filter(
     lambda name: name not in (".", "..")
@@ -19,13 +19,6 @@ def test_uri_reads_back_as_the_name(name):
     assert unquote(uri) == f"specs/{name}"
     assert set(uri).isdisjoint(' "<>?#\n')
     assert uri.isascii()
-
-
-@given(st.text())
-def test_printable_text_stays_on_its_line_and_steers_no_terminal(text):
-    shown = printable(text)
-    assert shown.isprintable()
-    assert shown == text or not text.isprintable()
 
 
 def test_paths_are_relative_to_the_working_folder(tmp_path, monkeypatch):
@@ -41,4 +34,3 @@ def test_a_name_that_is_not_utf8_can_be_told_and_shown(raw):
     assert is_utf8(Path("ä.nrs.yaml"))
     assert from_here(path).encode() == b"a\\xff.nrs.yaml"
     assert relative_uri(path) == "a%FF.nrs.yaml"
-    assert printable(path).isprintable()

@@ -61,6 +61,23 @@ def test_page_renders(browser, report, page, tmp_path, case, width):
     assert browser.execute_script(overflow) == 0
 
 
+@pytest.mark.parametrize("case", ALL)
+def test_a_telephone_shows_all_of_it_legibly(browser, page, tmp_path, case):
+    """Letters of figures are 8 px high or more; no table hides a column to the right."""
+    open_page(browser, page(case), tmp_path, 390)
+    scales = browser.execute_script(
+        "return [...document.querySelectorAll('figure svg')].map(s => "
+        "s.getBoundingClientRect().width / s.viewBox.baseVal.width)"
+    )
+    # Figures are in points, and their smallest letters have 9.
+    assert min(scales) * 9 >= 8
+    hidden = browser.execute_script(
+        "return [...document.querySelectorAll('.table')]"
+        ".filter(t => t.scrollWidth > t.clientWidth + 1).map(t => t.ariaLabel)"
+    )
+    assert hidden == []
+
+
 @pytest.mark.parametrize("width", [375, 1280])
 def test_blocks_do_not_overlap(browser, page, tmp_path, width):
     open_page(browser, page("proved"), tmp_path, width)

@@ -1,6 +1,7 @@
 """The page of an identification."""
 
 import re
+import shutil
 
 import pytest
 
@@ -60,6 +61,27 @@ def test_same_bytes_and_unique_ids(actuator):
     assert page == render_html(actuator)
     ids = re.findall(r'\bid="([^"]+)"', page)
     assert len(ids) == len(set(ids))
+
+
+def test_names_of_records_are_text(tmp_path):
+    """Not formulas, not markup, not marks that turn the direction of writing."""
+    names = ["a$\\frac{$", 'b<i>&"$x$', "c\u202efdp", "a%\\frac{%", "שלום 中"]
+    paths = [tmp_path / f"{name}.csv" for name in names]
+    for i, path in enumerate(paths, 1):
+        shutil.copy(DATA / f"concha-{i}.csv", path)
+    report = tissue_report(identify_tissue([read_tissue(path) for path in paths]))
+    ids = [item.name for item in report.illustrations]
+    assert len(set(ids)) == len(ids)
+    page = render_html(report)
+    assert "b&lt;i&gt;&amp;&#34;$x$" in page
+    assert "c\\u202efdp" in page
+    assert "\u202e" not in page
+    assert render_pdf(report).startswith(b"%PDF")
+    rows = next(report.illustrations).figure.axes[0].get_yticklabels()
+    assert [row.get_text() for row in rows] == [
+        *("a$\\frac{$", 'b<i>&"$x$', "c\\u202efdp", "a%\\frac{%", "שלום \\u4e2d"),
+        "pooled",
+    ]
 
 
 def test_other_formats(actuator):

@@ -11,6 +11,8 @@ from nrs_design.errors import DesignError
 from nrs_design.pipeline import run_certification, run_evidence
 from nrs_design.reporting import build_report
 from nrs_design.reporting.document import Bullets, Paragraph, Table
+from nrs_design.reporting.figures.run import draw_phase_plane, draw_run
+from nrs_design.simulation.switched import TimeResponse
 from nrs_design.spec import read_spec
 from tests.reporting.conftest import KINDS, ROOT, report_of
 
@@ -122,6 +124,28 @@ def test_published_values(report, case, section, label, published, tolerance):
     table = next(block for block in part.blocks if isinstance(block, Table))
     row = next(row for row in table.rows if row[0] == label)
     assert [float(cell) for cell in row[1:]] == pytest.approx(published, abs=tolerance)
+
+
+def test_worst_values_stand_beside_the_goals(tmp_path):
+    text = (ROOT / "specs/neuroboscope/soft-tissue.nrs.yaml").read_text()
+    goals = "goals: {max_sensitivity_peak: 2, min_delay_margin: 5 ms}\nswitching:"
+    text = text.replace("Bt: {min: 0.1 N*m*s/rad, max: 20 N*m*s/rad}", "Bt: 1.04 N*m*s/rad")
+    text = text.replace("Mt: {min: 0.01 kg*m^2, max: 1 kg*m^2}", "Mt: 0.01 kg*m^2")
+    path = tmp_path / "goals.nrs.yaml"
+    path.write_text(text.replace("switching:", goals))
+    result = run_certification(read_spec(path), method=Method.LMI)
+    found = build_report(result, run_evidence(result.loaded, result.design))
+    section = next(part for part in found.sections if part.title == "Design goals")
+    table = next(block for block in section.blocks if isinstance(block, Table))
+    rows = {row[:2]: row[2:] for row in table.rows}
+    where = "soft, k = 44.2466 N·m/rad"
+    assert rows["insertion", "sensitivity peak Ms"] == ("at most 2", "3.753", where, "MISSED")
+    assert rows["insertion", "delay margin"] == ("at least 5 ms", "9.89 ms", where, "met")
+    assert rows["insertion", "disk margin"][0] == "–"
+    assert ("Design goals", "2 of 4 MISSED") in found.facts
+    text = words(found)
+    assert "not a proof; values between corners are not looked at" in text
+    assert "insertion: factor off the desired impedance 2.066 (usual: at most 2)" in text
 
 
 def test_source_of_the_motion_loop_is_named(report):
@@ -487,3 +511,91 @@ def test_ranges_under_a_polynomial_in_discrete_time(tmp_path):
         text = words(build_report(run_certification(read_spec(path), method=method)))
         assert "all values between the corners are covered as well" in text
         assert ("Between the corners, the bound holds up to a constant factor." in text) is constant
+
+
+MANY = """\
+kind: interaction-design
+name: many
+actuator: {gain: 4.8417e-4 rad/s/rpm, time_constant: 0.0351 s}
+motion_loop:
+  damping_ratio: 0.707
+  settling_time: 0.1404 s
+  derivative_gain: 2060 rpm*s/rad
+  zero: 56.9706 1/s
+limits: {velocity: 8 deg/s, torque: 0.3 N*m, bandwidth: 2 Hz}
+environments:
+  silicone-soft-phantom: {model: elastic, stiffness: 747.1461 N/m, lever_arm: 0.24 m}
+  nasal-concha: {model: elastic, stiffness: 500 N/m, lever_arm: 0.24 m}
+controllers:
+"""
+
+
+@pytest.fixture(scope="module")
+def many(tmp_path_factory):
+    """A robot with 14 modes: 7 controllers, of which the first two are alike."""
+    path = tmp_path_factory.mktemp("many") / "many.nrs.yaml"
+    lines = [
+        f"  insertion-{i}: {{type: impedance, environment: nasal-concha, "
+        "contacts: [silicone-soft-phantom, nasal-concha], "
+        f"Mt: 0.01 kg*m^2, Bt: {2 + max(i, 1) / 10} N*m*s/rad}}"
+        for i in range(7)
+    ]
+    path.write_text(MANY + "\n".join([*lines, "switching: arbitrary", ""]))
+    return report_of(path)
+
+
+def test_fourteen_modes_have_their_full_names_and_their_own_look(many):
+    names = [
+        f"insertion-{i}/{e}" for i in range(7) for e in ("nasal-concha", "silicone-soft-phantom")
+    ]
+    curves = lines(figure(many, "eigenvalues"))
+    assert set(names) <= set(curves)
+    assert len({(curves[n].get_color(), curves[n].get_marker()) for n in names}) == 14
+    rates = figure(many, "mode-rates").figure.axes[0].get_yticklabels()
+    assert sorted("".join(row.get_text().splitlines()) for row in rates) == sorted(names)
+
+
+def test_curves_that_coincide_are_told_apart(many):
+    (axes,) = figure(many, "displayed-impedance").figure.axes
+    curves = {line.get_label(): line for line in axes.get_lines()}
+    first, second = (curves[f"insertion-{i}, displayed"] for i in (0, 1))
+    assert (first.get_ydata() == second.get_ydata()).all()
+    assert first.get_marker() != second.get_marker()
+    (a, step), (b, _) = first.get_markevery(), second.get_markevery()
+    assert (a - b) % step != 0
+    # All ask for the same impedance: one line, which says so.
+    assert [label for label in curves if label.endswith("desired")] == ["desired"]
+
+
+def test_modes_without_a_row_of_their_own_are_named_together(tmp_path):
+    """A cycle through 30 modes, of which none is stable alone."""
+    system = "".join(f"  - {{name: m{i}, A: [[{-1 - i}, 1], [-1, {-1 - i}]]}}\n" for i in range(30))
+    path = tmp_path / "cycle.nrs.yaml"
+    path.write_text(
+        "kind: switched-system\nname: cycle\ntime: continuous\nmodes:\n"
+        + system
+        + "switching: arbitrary\n"
+    )
+    loaded = run_certification(read_spec(path)).certification.system
+    count = len(loaded.modes)
+    response = TimeResponse(np.arange(count + 1.0), np.ones((count + 1, 2)), np.arange(count))
+    drawn = draw_run(response, np.ones(count + 1), None, loaded, "norm [1]")
+    rows = [row.get_text() for row in drawn.axes[1].get_yticklabels()]
+    assert rows == [*(f"m{i}" for i in range(23)), "7 other modes"]
+    plane = draw_phase_plane(response, loaded)
+    labels = [line.get_label() for line in plane.axes[0].get_lines()]
+    assert "7 other modes" in labels
+
+
+@pytest.mark.parametrize("case", ["dwell", "polynomial", "period", "mixture", "inconclusive"])
+def test_phase_plane_says_what_its_axes_are(report, case):
+    item = figure(report(case), "phase-plane")
+    assert "no projection: x1 and x2 in the coordinates of the matrices" in item.caption
+    (axes,) = item.figure.axes
+    assert axes.get_xlabel() == "State x1 [no unit given]"
+
+
+def test_phase_plane_of_the_motion_loop_names_its_form(report):
+    item = figure(report("force"), "phase-plane")
+    assert "xp1 and xp2 of the motion loop G in controllable canonical form" in item.caption
+    assert item.figure.axes[0].get_ylabel() == "State xp2 of G, canonical form [no unit]"

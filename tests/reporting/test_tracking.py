@@ -45,3 +45,11 @@ def test_one_motion_without_measurements():
     assert len(figure.axes) == 2
     labels = [text.get_text() for text in figure.legends[0].get_texts()]
     assert labels == ["one, simulated", "wanted"]
+
+
+def test_controllers_that_track_alike_are_told_apart(figure):
+    _, first, second = sorted(figure.axes[0].lines, key=lambda line: -line.get_zorder())
+    assert first.get_linestyle() != second.get_linestyle()
+    box = figure.legends[0].get_window_extent()
+    assert box.x0 >= 0
+    assert box.x1 <= figure.bbox.width

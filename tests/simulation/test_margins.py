@@ -1,5 +1,7 @@
 from __future__ import annotations
 
+from fractions import Fraction
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -47,6 +49,17 @@ def test_polynomial_rates_in_discrete_time():
     rates = polynomial_rates(discrete, found.evidence)
     assert (rates <= float(found.evidence.rate)).all()
     assert (rates >= np.array([0.5, 0.25]) - 1e-9).all()
+
+
+@pytest.mark.parametrize("time", Time)
+@given(n=st.integers(1, 60), q=st.integers(1, 60), rate=st.fractions("1/64", "1/4"))
+def test_quadratic_written_as_a_polynomial_has_the_rates_of_the_quadratic(time, n, q, rate):
+    """Whatever denominators the modes and the claimed rate have."""
+    family = system([[Fraction(-n, q), 1], [0, Fraction(-q, n)]], [[-2, 0], [0, -3]], time=time)
+    Q, zero = ((3, 1), (1, 2)), ((0, 0), (0, 0))
+    polynomial = CommonPolynomial(1, Q, 0, (zero, zero), rate)
+    expected = mode_rates(family, np.array(Q, dtype=float))
+    assert polynomial_rates(family, polynomial) == pytest.approx(expected, rel=1e-6, abs=1e-6)
 
 
 def test_parameter_rates_at_the_ends_are_those_of_the_modes():

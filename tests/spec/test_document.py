@@ -1,5 +1,7 @@
+import contextlib
 import os
 import time
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -10,6 +12,8 @@ from nrs_design.errors import SpecError
 from nrs_design.spec.document import (
     MAX_BYTES,
     MAX_DEPTH,
+    MAX_NODES,
+    MAX_SCALAR,
     Mapping,
     Scalar,
     Sequence,
@@ -87,15 +91,15 @@ def test_unicode_separators_are_not_lines() -> None:
         ('a: "x\n', (1, 4), "quoted text"),
         ("a: [1, 2\nb: 3\n", (2, 2), "not closed"),
         ("a: {b: 1\n", (2, 1), "not closed"),
-        ("a: 1\n  b: 2\n", (2, 4), "a second ': '"),
-        ("a:\n    b: 1\n  c: 2\n", (3, 3), "indentation"),
+        ("a: 1\n  b: 2\n", (2, 3), "'b' is indented by 2 spaces"),
+        ("a:\n    b: 1\n  c: 2\n", (3, 3), "indented by 2 spaces, which fits nothing above"),
         ("a: 1\nb\n", (2, 1), "no ':'"),
         ("a: @b\n", (1, 4), "reserved character"),
         ("a: x\x01y\n", (1, 5), "control character"),
         ('a: "\\ud800"\n', (1, 4), "surrogate"),
         ('a: "\\UFFFFFFFF"\n', (1, 1), "not valid YAML"),
         ("%YAML 9.1\n---\na: 1\n", (1, 1), "another YAML version"),
-        ("%YAML " + "1" * 5000 + ".1\n---\na: 1\n", (1, 1), "not valid YAML"),
+        ("%YAML " + "1" * 5000 + ".1\n---\na: 1\n", (1, 7), "5002 characters"),
         ("# nothing\n", (1, 1), "no document"),
     ],
 )
@@ -207,6 +211,59 @@ def test_refuses_unreadable_files(tmp_path: Path, monkeypatch: pytest.MonkeyPatc
         raise PermissionError(13, "Permission denied")
 
     # Permission bits do not bind the superuser, under whom tests may run.
-    monkeypatch.setattr(Path, "open", refuse)
+    monkeypatch.setattr("nrs_design.spec.document.open_regular", refuse)
     with pytest.raises(SpecError, match="cannot be read: Permission denied"):
         read_text(path)
+
+
+def seconds(text: str) -> float:
+    """Time that a text takes to be parsed or refused, the best of three."""
+    times = []
+    for _ in range(3):
+        start = time.process_time()
+        with contextlib.suppress(SpecError):
+            parse_document(text)
+        times.append(time.process_time() - start)
+    return min(times)
+
+
+# Each grows with the square of the length in some parser, or did in this one.
+GROWING = {
+    "a key of digits": lambda n: "? " + "0" * n + "x\n: 1\n",
+    "keys of digits": lambda n: "".join(f"? {'0' * 900}{i}x\n: 1\n" for i in range(n // 900)),
+    "a tag": lambda n: "a: " + "!" * n,
+    "words": lambda n: "a: " + "a " * (n // 2),
+    "spaces": lambda n: "a:" + " " * n + "1",
+    "empty lines": lambda n: "\n" * n + "a: 1",
+    "items": lambda n: "a: [" + "a," * (n // 8) + "a]",
+}
+
+
+@pytest.mark.parametrize("make", GROWING.values(), ids=GROWING)
+def test_time_grows_no_faster_than_the_text(make: Callable[[int], str]) -> None:
+    # Eight times the text: eight times the time, or sixty-four if it grew with the square.
+    assert seconds(make(2**17)) < 30 * max(seconds(make(2**14)), 1e-3)
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("a: " + "x" * (MAX_SCALAR + 1), "a text of 1001 characters"),
+        ("a: '" + "x " * MAX_SCALAR + "'", "a text of 2000 characters"),
+        ("? " + "x" * (MAX_SCALAR + 1) + "\n: 1", "a text of 1001 characters"),
+        ("a: [" + "," * (MAX_NODES + 1), "more than 150000 keys, values or lines"),
+        ("\n" * (MAX_NODES + 1) + "a: 1", "more than 150000"),
+    ],
+)
+def test_length_and_number_are_limited(text: str, said: str) -> None:
+    assert said in refused(text).message
+
+
+def test_nodes_are_counted_where_no_comma_or_line_tells(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("nrs_design.spec.document.MAX_NODES", 4)
+    assert to_data(parse_document("- - - a")) == ((("a",),),)
+    assert "more than 4 keys" in refused("- - - - a").message
+
+
+def test_the_longest_text_is_read() -> None:
+    assert to_data(parse_document("a: " + "x" * MAX_SCALAR)) == {"a": "x" * MAX_SCALAR}

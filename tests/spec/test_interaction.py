@@ -153,7 +153,7 @@ IMPEDANCE_FAULTS = [
     ("limits: {", "limits: [", "[velocity", "not closed"),
     ("8 deg/s", "8 rpm", "8 rpm", "never converted"),
     ("2 Hz", "2 1/s", "2 1/s", "write '2 Hz'"),
-    ("model: elastic", "model: elastc", "soft", "did you mean elastic?"),
+    ("model: elastic", "model: elastc", "elastc", "did you mean elastic?"),
     ("    model: elastic\n", "", "soft", "`environments.soft.model` is missing"),
     ("747.1461 N/m", "43 N*m/rad", "43 N*m/rad", "remove lever_arm"),
     ("747.1461 N/m", "43 N*m", "43 N*m", "write '43 N*m/rad'"),
@@ -179,7 +179,7 @@ IMPEDANCE_FAULTS = [
     ("  soft:", "  1:", "1:", "not text"),
     ("  soft:", "  'so ft':", "'so ft'", "not a name"),
     ("  hand:", "  soft:", "soft:\n    model: kelvin", "there twice"),
-    ("type: impedance", "type: impedence", "insertion", "did you mean impedance?"),
+    ("type: impedance", "type: impedence", "impedence", "did you mean impedance?"),
     ("environment: soft", "environment: sofd", "sofd", "did you mean soft?"),
     ("environment: soft", "environment: soft\n    contacts: []", "[]", "must not be empty"),
     (
@@ -194,6 +194,12 @@ IMPEDANCE_FAULTS = [
         "environment: soft\n    contacts: [soft, bone]",
         "bone",
         "no environment",
+    ),
+    (
+        "environment: soft",
+        "environment: soft\n    contacts: [hand]",
+        "[hand]\n",
+        "'insertion' is designed for 'soft', but that is not among its contacts",
     ),
     ("    environment: soft\n", "", "insertion", "environment` is missing"),
     ("Mt: 0.01 kg*m^2", "Mt: -0.01 kg*m^2", "-0.01", "zero or positive"),
@@ -288,9 +294,14 @@ def test_reports_the_first_fault_and_counts_the_others() -> None:
     text = spoiled(text, "747.1461 N/m", "nan N/m")
     error = refusal(text)
     assert "actuator.time_constant" in error.message
-    assert error.message.endswith("; 2 more faults in this file")
+    assert [(f.line, f.column) for f in error.faults] == [
+        place_of(text, "0.0351 m"),
+        place_of(text, "8 m"),
+        place_of(text, "nan N/m"),
+    ]
+    assert str(error).endswith("; 2 more faults in this file")
     one = refusal(spoiled(spoiled(IMPEDANCE, "0.0351 s", "0.0351 m"), "8 deg/s", "8 m"))
-    assert one.message.endswith("; 1 more fault in this file")
+    assert str(one).endswith("; 1 more fault in this file")
 
 
 def test_names_may_equal_keys() -> None:
@@ -303,4 +314,4 @@ def test_names_may_equal_keys() -> None:
 def test_entries_are_limited() -> None:
     many = "".join(f"  e{i}: {{model: elastic, stiffness: 1 N*m/rad}}\n" for i in range(65))
     error = refusal(spoiled(IMPEDANCE, "  soft:\n", many + "  soft:\n"))
-    assert "environments: is too long" in error.message
+    assert "environments: more than 64 entries are not read" in error.message

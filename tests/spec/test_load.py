@@ -1,4 +1,4 @@
-import hashlib
+import json
 import random
 import subprocess
 import sys
@@ -16,6 +16,8 @@ from nrs_design.spec import (
     parse_spec,
     read_spec,
 )
+from nrs_design.spec.document import Node, parse_document
+from nrs_design.spec.load import hash_meaning
 
 from .samples import FORCE, IMPEDANCE, SWITCHED, assert_inside, refusal
 
@@ -26,10 +28,61 @@ def test_read_spec_keeps_text_and_hash(tmp_path: Path) -> None:
     path.write_bytes(content)
     loaded = read_spec(path)
     assert loaded.path == path
-    assert loaded.sha256 == hashlib.sha256(content).hexdigest()
+    assert loaded.sha256 == hash_meaning(parse_document(SWITCHED))
     assert loaded.text == content.decode()
     assert isinstance(loaded.spec, SwitchedSystemSpec)
     assert load_spec(str(path)) == loaded.spec
+
+
+SAID = "kind: a\nb: [1, 'two', {c: d}]\n"
+SAME = [
+    "# c\nkind: a # c\n\nb: [1, 'two', {c: d}]\n",
+    SAID.replace("\n", "\r\n"),
+    "\ufeff".encode().decode("utf-8-sig") + SAID,
+    "{kind: a, b: [1, two, {c: d}]}",
+    "kind: 'a'\nb:\n- \"1\"\n- two\n- c: d\n",
+    "kind: a\nb: [!r, two, {c: d}]\n".replace("!r", '"\\x31"'),
+]
+OTHER = [
+    SAID.replace("1", "1.0"),
+    SAID.replace("1", "01"),
+    SAID.replace("'two'", "' two'"),
+    SAID.replace("1, 'two'", "'two', 1"),
+    SAID.replace("{c: d}", "[c, d]"),
+    SAID.replace("{c: d}", "'{c: d}'"),
+    SAID.replace("{c: d}", "c"),
+    SAID.replace("{c: d}", "{c: [d]}"),
+    SAID.replace("1, 'two'", "'1, two'"),
+    SAID.replace("1, 'two'", "[1, 'two']"),
+    "b: [1, 'two', {c: d}]\nkind: a\n",
+]
+
+
+@pytest.mark.parametrize("text", SAME)
+def test_the_hash_does_not_depend_on_how_it_is_written(text: str) -> None:
+    assert hash_meaning(parse_document(text)) == hash_meaning(parse_document(SAID))
+
+
+def test_what_differs_has_another_hash() -> None:
+    hashes = {hash_meaning(parse_document(text)) for text in [SAID, *OTHER]}
+    assert len(hashes) == 1 + len(OTHER)
+
+
+TREES = st.recursive(
+    st.text(st.characters(codec="ascii", min_codepoint=32), min_size=1, max_size=4),
+    lambda inner: st.lists(inner, max_size=3) | st.dictionaries(st.text("ab:", min_size=1), inner),
+    max_leaves=6,
+)
+
+
+@given(TREES, TREES)
+def test_equal_hashes_mean_equal_documents(one: object, other: object) -> None:
+    def written(tree: object) -> Node:
+        return parse_document(json.dumps(tree, indent=1))
+
+    same = hash_meaning(written(one)) == hash_meaning(written(other))
+    # The order of keys counts, as it does in the text.
+    assert same is (json.dumps(one) == json.dumps(other))
 
 
 def test_kinds(tmp_path: Path) -> None:
@@ -101,7 +154,8 @@ def test_many_faults_are_counted_quickly() -> None:
     modes = "".join("  - {nam: a, A: [[1 1]]}\n" for _ in range(2000))
     error = refusal(f"kind: switched-system\nname: a\ntime: discrete\nmodes:\n{modes}")
     assert "`switching` is missing" in error.message
-    assert "4000 more faults" in error.message
+    assert "4000 more faults" in str(error)
+    assert len(error.faults) == 4001
 
 
 def test_import_is_light() -> None:

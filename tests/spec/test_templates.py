@@ -51,7 +51,8 @@ def test_hybrid_template_has_both_modes() -> None:
 def uncommented(name: str) -> str:
     """Text of a template with the rules that it shows in comments instead of `arbitrary`."""
     lines = [line for line in TEMPLATES[name].splitlines() if not line.startswith("switching:")]
-    shown = [re.sub("^# (?=  |parameters:$|switching:$|resets:$)", "", line) for line in lines]
+    rules = "^# (?=  |parameters:$|goals:$|switching:$|resets:$)"
+    shown = [re.sub(rules, "", line) for line in lines]
     # A dwell time goes with neither ranges nor several contacts.
     return "\n".join(line for line in shown if "dwell_time:" not in line)
 
@@ -71,6 +72,14 @@ def test_rules_between_controllers_are_right(name: str) -> None:
     assert isinstance(spec, InteractionDesignSpec)
     a, b = spec.controllers
     assert spec.switching.transitions == ((a, b), (b, a))
+
+
+def test_goals_of_the_templates_are_right() -> None:
+    for name, count in (("interaction-design", 6), ("hybrid-force", 3)):
+        spec = parse_spec(uncommented(name))
+        assert isinstance(spec, InteractionDesignSpec)
+        assert spec.goals is not None
+        assert len(dict(spec.goals.given())) == count
 
 
 @pytest.mark.parametrize("name", [name for name in TEMPLATES if name != "robot"])

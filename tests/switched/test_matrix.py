@@ -1,6 +1,7 @@
 from fractions import Fraction
 from math import inf
 
+import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -30,6 +31,30 @@ def test_nothing_is_lost(rows):
 def test_product_with_the_identity(rows):
     identity = [[int(i == j) for j in range(len(rows))] for i in range(len(rows))]
     assert multiply(rows, identity) == rows == multiply(identity, rows)
+
+
+def test_integers_of_numpy_become_those_of_python():
+    """They overflow without a word: 2^62 times 4 is 0 to NumPy."""
+    A = RationalMatrix.from_rows(np.array([[2**62, 1], [-3, 0]]))
+    assert RationalMatrix(((2**62, 1), (-3, 0))) == A
+    B = RationalMatrix.from_rows([[Fraction(np.int64(1), np.int64(3)), np.int8(100)]])
+    assert RationalMatrix(((1, 300),), 3) == B
+    direct = RationalMatrix(((np.int64(2**62),),), np.int64(4))
+    for M in (A, B, direct):
+        assert {type(entry) for row in M.numerators for entry in row} == {int}
+        assert type(M.denominator) is int
+
+
+@pytest.mark.parametrize("entry", [0.5, Fraction(1, 2), "1", None])
+def test_numerators_are_integers(entry):
+    with pytest.raises(TypeError):
+        RationalMatrix(((entry,),))
+
+
+@pytest.mark.parametrize("entry", [float("nan"), float("inf"), None, np.float32(0.5), 1j])
+def test_entries_are_finite_numbers(entry):
+    with pytest.raises((TypeError, ValueError, OverflowError)):
+        RationalMatrix.from_rows([[entry]])
 
 
 def test_known_product():

@@ -1,8 +1,10 @@
 from dataclasses import FrozenInstanceError
+from fractions import Fraction
 
+import numpy as np
 import pytest
 
-from nrs_design.switched.system import Time
+from nrs_design.switched.system import Switching, Time
 from tests.support import family
 
 
@@ -20,3 +22,9 @@ def test_frozen():
         system.modes = ()
     with pytest.raises(FrozenInstanceError):
         system.modes[0].A = None
+
+
+def test_dwell_time_of_numpy_becomes_one_of_python():
+    switching = Switching(np.int64(3))
+    assert switching == Switching(Fraction(3))
+    assert type(switching.dwell_time.numerator) is int

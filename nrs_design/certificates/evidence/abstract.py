@@ -8,12 +8,14 @@ from enum import StrEnum
 from fractions import Fraction
 from typing import Any, ClassVar, Self
 
+from nrs_design.certificates.evidence.fields import find_unreadable
 from nrs_design.certificates.exact import (
     IntegerMatrix,
     is_positive_definite,
     is_symmetric,
     is_too_large,
 )
+from nrs_design.errors import TooLargeError
 from nrs_design.switched.matrix import RationalMatrix
 from nrs_design.switched.system import SwitchedSystem, Switching
 
@@ -81,6 +83,21 @@ class AbstractEvidence(ABC):
         """
         return not switching.resets
 
+    def spread(self, merged: SwitchedSystem, system: SwitchedSystem) -> AbstractEvidence:
+        """Carry evidence over from modes of which no two are equal to all modes of a system.
+
+        By default nothing changes: names of modes stay valid, and what holds for a mode holds for
+        its equals. A kind with numbers for every mode repeats them.
+
+        Parameters
+        ----------
+        merged : SwitchedSystem
+            What this is evidence for: the first of every set of equal modes.
+        system : SwitchedSystem
+            The same with all modes.
+        """
+        return self
+
     def find_fault(self, system: SwitchedSystem) -> str | None:
         """TRUSTED: say why the evidence does not hold for the system, or None if it holds."""
         if not system.modes:
@@ -90,13 +107,19 @@ class AbstractEvidence(ABC):
         for mode in system.modes:
             if not _is_well_formed(mode.A):
                 return f"mode {mode.name} is not a square matrix over a positive denominator"
+        if (unreadable := find_unreadable(self)) is not None:
+            return unreadable
         if (contradiction := system.find_contradiction()) is not None:
             return contradiction
         if not self.fits(system.switching):
             return f"evidence of kind {self.kind} does not cover this kind of switching"
         if not system.is_uniform and not self.allows_unequal_modes:
             return f"evidence of kind {self.kind} needs modes of equal size"
-        if (misfit := self.find_misfit(system)) is not None:
+        try:
+            misfit = self.find_misfit(system)
+        except TooLargeError as error:
+            return error.message
+        if misfit is not None:
             return misfit
         for failure, form in self.forms(system):
             if is_too_large(form):

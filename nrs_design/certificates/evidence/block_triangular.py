@@ -97,6 +97,14 @@ class BlockTriangular(AbstractEvidence):
             f"{len(self.blocks)} diagonal blocks. {parts} Together: {conclusion}."
         )
 
+    def spread(self, merged: SwitchedSystem, system: SwitchedSystem) -> Self:
+        """Spread every part within its block."""
+        parts = []
+        for index, part in self.parts:
+            inner, outer = (diagonal_block(s, self.blocks[index]) for s in (merged, system))
+            parts.append((index, part.spread(inner, outer)))
+        return replace(self, parts=tuple(parts))
+
     def to_fields(self) -> dict[str, Any]:
         """Return the blocks and the fields of every part."""
         return {

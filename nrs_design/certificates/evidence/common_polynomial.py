@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from math import comb
 from typing import Any, ClassVar, Self
@@ -23,8 +23,10 @@ from nrs_design.certificates.evidence.fields import (
     read_ratio,
 )
 from nrs_design.certificates.exact import (
+    MAX_WORK,
     IntegerMatrix,
     add,
+    bit_length,
     lyapunov_decrease,
     lyapunov_factor,
     stein_decrease,
@@ -89,6 +91,8 @@ class CommonPolynomial(AbstractEvidence):
             return "there is not one vanishing form for each mode"
         if not all(is_square(M, size) for M in (self.Q, *self.vanishing)):
             return f"a form is not a {size} x {size} matrix"
+        if any(_is_too_long(mode, d, self.Q, system.time) for mode in system.modes):
+            return "its numbers are too large to check"
         if not all(vanishes(N, n, d) for N in self.vanishing):
             return "a form that must vanish does not"
         return find_rate_misfit(self.rate, system.time)
@@ -106,6 +110,11 @@ class CommonPolynomial(AbstractEvidence):
         degree = 2 * self.degree
         norm = f"where |x|^{degree} is a positive definite form of degree {degree} in x"
         return decay_claim(system, self.rate, norm)
+
+    def spread(self, merged: SwitchedSystem, system: SwitchedSystem) -> Self:
+        """Repeat the vanishing form of every mode for its equals."""
+        forms = {mode.A: N for mode, N in zip(merged.modes, self.vanishing, strict=True)}
+        return replace(self, vanishing=tuple(forms[mode.A] for mode in system.modes))
 
     def to_fields(self) -> dict[str, Any]:
         """Return the degree, Q, the vanishing forms and the rate."""
@@ -125,6 +134,13 @@ class CommonPolynomial(AbstractEvidence):
         Q, denominator_log2 = read_matrix(fields["Q"])
         vanishing = tuple(read_integers(N) for N in fields["vanishing"])
         return cls(half, Q, denominator_log2, vanishing, read_ratio(fields["rate"]))
+
+
+def _is_too_long(mode: Mode, degree: int, Q: IntegerMatrix, time: Time) -> bool:
+    """Tell whether the numbers of the decrease are too large, before they are formed."""
+    factors = 1 if time is Time.CONTINUOUS else 2 * degree
+    bits = bit_length(Q) + factors * bit_length(mode.A.numerators)
+    return len(Q) ** 3 * bits > MAX_WORK
 
 
 def lifted_decrease(

@@ -10,7 +10,7 @@ from typing import Any, ClassVar, Self
 from nrs_design.certificates.evidence.abstract import AbstractEvidence, Shows
 from nrs_design.certificates.evidence.fields import (
     matrix_fields,
-    rate_text,
+    rate_words,
     read_matrix,
     read_ratio,
 )
@@ -98,11 +98,9 @@ def decay_claim(system: SwitchedSystem, rate: Fraction, norm: str) -> str:
     continuous = system.time is Time.CONTINUOUS
     law = "x' = A x" if continuous else "x+ = A x"
     bound = "exp(-alpha t) |x(0)|" if continuous else "rho^t |x(0)|"
-    value = rate_text(rate, system.time)
-    rate_words = f"alpha = {value} 1/s" if continuous else f"rho = {value}"
     count = len(system.modes)
     among = "its one mode" if count == 1 else f"the {count} modes"
     return (
         f"Every solution of {law}, switching arbitrarily among {among}, satisfies "
-        f"|x(t)| <= {bound} with {rate_words}, {norm}."
+        f"|x(t)| <= {bound} with {rate_words(rate, system.time)}, {norm}."
     )

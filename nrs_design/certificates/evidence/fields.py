@@ -4,15 +4,21 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
-from decimal import ROUND_DOWN, ROUND_UP, Context, Decimal
+from dataclasses import fields, is_dataclass
 from fractions import Fraction
 from typing import Any
 
 from nrs_design.certificates.exact import is_too_large
+from nrs_design.spec.bounds import at_least, at_most, lower, upper
 from nrs_design.spec.exact import quoted
 from nrs_design.switched.system import Time
 
 Matrix = tuple[tuple[int, ...], ...]
+
+# Python reads and writes integers of at most 4300 decimal digits, `read_ratio` of at most 2000.
+MAX_INTEGER_BITS = 14_000
+MAX_RATIO_BITS = 6_640
+MAX_ENTRIES = 100_000
 
 
 def matrix_fields(Q: Matrix, denominator_log2: int) -> dict[str, Any]:
@@ -58,8 +64,42 @@ def read_ratio(value: object) -> Fraction:
     return Fraction(text)
 
 
+def find_unreadable(value: object) -> str | None:
+    """TRUSTED: say why a certificate file could not hold the numbers of evidence, or None.
+
+    An integer of NumPy overflows without a word, so it is refused as floats are.
+    """
+    if value is None or isinstance(value, str):
+        return None
+    if isinstance(value, Fraction):
+        return _find_long((value.numerator, value.denominator), MAX_RATIO_BITS)
+    if isinstance(value, tuple | list):
+        parts = tuple(value)
+        if len(parts) > MAX_ENTRIES:
+            return f"a list has {len(parts)} entries, more than {MAX_ENTRIES} are not read"
+    elif is_dataclass(value):
+        parts = tuple(getattr(value, field.name) for field in fields(value))
+    else:
+        return _find_long((value,), MAX_INTEGER_BITS)
+    return next((fault for part in parts if (fault := find_unreadable(part)) is not None), None)
+
+
+def _find_long(numbers: tuple[object, ...], bits: int) -> str | None:
+    for number in numbers:
+        if type(number) is not int:
+            return f"a number is of type {type(number).__name__}, not an exact integer"
+        if number.bit_length() > bits:
+            return f"a number has {number.bit_length()} bits, more than {bits} are not read"
+    return None
+
+
 def rate_text(rate: Fraction, time: Time) -> str:
-    """Write a rate with six digits, rounded to its safe side (slower decay)."""
-    rounding = ROUND_DOWN if time is Time.CONTINUOUS else ROUND_UP
-    context = Context(prec=6, rounding=rounding)
-    return str(context.divide(Decimal(rate.numerator), Decimal(rate.denominator)))
+    """Write a rate: exactly if that is short, else rounded to its safe side (slower decay)."""
+    return lower(rate) if time is Time.CONTINUOUS else upper(rate)
+
+
+def rate_words(rate: Fraction, time: Time) -> str:
+    """Write which rate is shown, such as ``alpha = 0.5 1/s``, ``>=`` and ``<=`` where rounded."""
+    if time is Time.CONTINUOUS:
+        return f"alpha {at_least(rate, '1/s')}"
+    return f"rho {at_most(rate)}"

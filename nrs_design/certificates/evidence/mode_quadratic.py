@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Any, ClassVar, Self
 
@@ -12,7 +12,7 @@ from nrs_design.certificates.evidence.common_quadratic import find_rate_misfit, 
 from nrs_design.certificates.evidence.fields import (
     Matrix,
     matrix_fields,
-    rate_text,
+    rate_words,
     read_integer,
     read_matrix,
     read_ratio,
@@ -30,7 +30,7 @@ from nrs_design.certificates.exact import (
     lyapunov_decrease,
     stein_decrease,
 )
-from nrs_design.spec.exact import exact_text
+from nrs_design.spec.bounds import rounded_down, rounded_up
 from nrs_design.switched.matrix import RationalMatrix, multiply
 from nrs_design.switched.system import Edge, Mode, Stay, SwitchedSystem, Switching, Time
 
@@ -214,6 +214,11 @@ class ModeQuadratic(AbstractEvidence):
         """State the bound on every solution."""
         return bound_claim(system, self.rate)
 
+    def spread(self, merged: SwitchedSystem, system: SwitchedSystem) -> Self:
+        """Repeat the function of every mode for its equals, between which nothing changes."""
+        forms = {mode.A: Q for mode, (_, Q) in zip(merged.modes, self.functions, strict=True)}
+        return replace(self, functions=tuple((mode.name, forms[mode.A]) for mode in system.modes))
+
     def to_fields(self) -> dict[str, Any]:
         """Return the functions, the rate, and what is known of modes that must be left."""
         leaving = {"leaving": list(self.leaving), "pieces": self.pieces} if self.leaving else {}
@@ -254,12 +259,10 @@ def bound_claim(system: SwitchedSystem, rate: Fraction) -> str:
     """State a bound, up to a constant factor, on every solution that keeps the rules."""
     continuous = system.time is Time.CONTINUOUS
     law, bound = ("x' = A x", "exp(-alpha t)") if continuous else ("x+ = A x", "rho^t")
-    value = rate_text(rate, system.time)
-    rate_words = f"alpha = {value} 1/s" if continuous else f"rho = {value}"
     return (
         f"Every solution of {law} under the declared switching ({describe(system)}) satisfies "
-        f"|x(t)| <= c {bound} |x(0)| with {rate_words} and some constant c that is the same for "
-        "all signals."
+        f"|x(t)| <= c {bound} |x(0)| with {rate_words(rate, system.time)} and some constant c "
+        "that is the same for all signals."
     )
 
 
@@ -282,11 +285,15 @@ def describe(system: SwitchedSystem) -> str:
 
 
 def _time_words(stay: Stay, unit: str) -> str:
-    last = stay.shortest if stay.longest is None else stay.longest
-    end = f"{exact_text(last)} {'step' if unit == 'steps' and last == 1 else unit}"
+    """Say how long a mode stays, rounded so that no other stay is claimed to be covered."""
     if stay.longest is None:
-        return f"at least {end}"
-    return f"{exact_text(stay.shortest)} to {end}" if stay.shortest > 0 else f"at most {end}"
+        return f"at least {rounded_up(stay.shortest, _unit(unit, stay.shortest))}"
+    last = rounded_down(stay.longest, _unit(unit, stay.longest))
+    return f"{rounded_up(stay.shortest)} to {last}" if stay.shortest > 0 else f"at most {last}"
+
+
+def _unit(unit: str, time: Fraction) -> str:
+    return "step" if unit == "steps" and time == 1 else unit
 
 
 def _words(edge: Edge) -> str:

@@ -4,13 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from math import lcm
 from operator import mul
 from typing import Any, ClassVar, Self
 
 from nrs_design.certificates.evidence.abstract import AbstractEvidence, Shows
 from nrs_design.certificates.evidence.fields import Matrix, read_integers, read_text
-from nrs_design.certificates.exact import IntegerMatrix, add
+from nrs_design.certificates.exact import IntegerMatrix, add, common_denominator
 from nrs_design.switched.system import Mode, SwitchedSystem, Switching, Time
 
 
@@ -47,14 +46,21 @@ class NoCommonQuadratic(AbstractEvidence):
             return "the factors are not those of modes"
         if any(len(L) != system.order or len(set(map(len, L))) != 1 for _, L in self.factors):
             return f"a factor does not have {system.order} rows of one length"
+        if self._common(system) is None:
+            return "the numbers of the modes are too large to check"
         return None
+
+    def _common(self, system: SwitchedSystem) -> int | None:
+        modes = {mode.name: mode.A.denominator**2 for mode in system.modes}
+        return common_denominator(modes[name] for name, _ in self.factors)
 
     def forms(self, system: SwitchedSystem) -> Iterator[tuple[str, IntegerMatrix]]:
         """Yield the sum."""
         n = system.order
         modes = {mode.name: mode for mode in system.modes}
         total = [[0] * n for _ in range(n)]
-        common = lcm(*(modes[name].A.denominator ** 2 for name, _ in self.factors))
+        common = self._common(system)
+        assert common is not None
         for name, L in self.factors:
             term = _term(modes[name], L, system.time)
             weight = common // modes[name].A.denominator ** 2

@@ -16,7 +16,7 @@ from nrs_design.certificates.evidence.common_quadratic import (
 from nrs_design.certificates.evidence.fields import (
     Matrix,
     matrix_fields,
-    rate_text,
+    rate_words,
     read_matrix,
     read_ratio,
 )
@@ -101,7 +101,7 @@ class ParameterQuadratic(AbstractEvidence):
         return (
             f"For every constant value of the parameter in its range, every solution of x' = A x, "
             f"switching arbitrarily among {among} at that value, satisfies |x(t)| <= exp(-alpha t) "
-            f"|x(0)| with alpha = {rate_text(self.rate, system.time)} 1/s, in a norm "
+            f"|x(0)| with {rate_words(self.rate, system.time)}, in a norm "
             "|x| = sqrt(x' Q x) with Q affine in the parameter."
         )
 

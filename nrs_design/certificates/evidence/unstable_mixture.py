@@ -10,8 +10,12 @@ from typing import Any, ClassVar, Self
 
 from nrs_design.certificates.evidence.abstract import AbstractEvidence, Shows
 from nrs_design.certificates.evidence.fields import read_ratio, read_text
-from nrs_design.certificates.evidence.unstable_mode import is_stable, worst_eigenvalue
-from nrs_design.certificates.exact import IntegerMatrix
+from nrs_design.certificates.evidence.unstable_mode import (
+    is_stable,
+    is_too_large,
+    worst_eigenvalue,
+)
+from nrs_design.certificates.exact import IntegerMatrix, common_denominator
 from nrs_design.switched.matrix import RationalMatrix
 from nrs_design.switched.system import SwitchedSystem, Switching, Time
 
@@ -60,7 +64,12 @@ class UnstableMixture(AbstractEvidence):
         names = [name for name, _ in self.weights]
         if len(set(names)) < len(names) or not set(names) <= {m.name for m in system.modes}:
             return "the weights are not those of modes"
-        if is_stable(mixture(system, self.weights), system.time):
+        if not _is_short_mixture(system, self.weights):
+            return "the numbers of the combination are too large to check"
+        combined = mixture(system, self.weights)
+        if is_too_large(combined):
+            return "the numbers of the combination are too large to check"
+        if is_stable(combined, system.time):
             return "the combination of the modes is stable"
         return None
 
@@ -72,9 +81,9 @@ class UnstableMixture(AbstractEvidence):
         """State the combination and what follows."""
         shares = " + ".join(f"{weight} {name}" for name, weight in self.weights)
         return (
-            f"The average {shares} of modes is not Hurwitz (eigenvalue {self.eigenvalue}): fast "
-            "switching with these shares follows it, so x' = A x is not uniformly exponentially "
-            "stable under arbitrary switching."
+            f"The average {shares} of modes is not Hurwitz (eigenvalue about {self.eigenvalue}): "
+            "fast switching with these shares follows it, so x' = A x is not uniformly "
+            "exponentially stable under arbitrary switching."
         )
 
     def to_fields(self) -> dict[str, Any]:
@@ -90,12 +99,21 @@ class UnstableMixture(AbstractEvidence):
         weights = tuple((read_text(name), read_ratio(w)) for name, w in fields["weights"])
         if len(weights) > len(system.modes) or not _are_short(weights):
             raise ValueError("there are too many weights, or they have too many digits")
+        if not _is_short_mixture(system, weights):
+            raise ValueError("the numbers of the combination are too large to check")
         return cls(weights, worst_eigenvalue(mixture(system, weights), system.time))
 
 
 def _are_short(weights: tuple[tuple[str, Fraction], ...]) -> bool:
     denominator = lcm(*(weight.denominator for _, weight in weights))
     return denominator <= MAX_DENOMINATOR and all(weight <= 1 for _, weight in weights)
+
+
+def _is_short_mixture(system: SwitchedSystem, weights: tuple[tuple[str, Fraction], ...]) -> bool:
+    """Tell whether the modes have a common denominator that is worth working with."""
+    denominators = {mode.name: mode.A.denominator for mode in system.modes}
+    common = common_denominator(denominators.get(name, 1) for name, _ in weights)
+    return common is not None
 
 
 def mixture(system: SwitchedSystem, weights: tuple[tuple[str, Fraction], ...]) -> RationalMatrix:

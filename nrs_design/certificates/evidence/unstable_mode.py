@@ -2,15 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any, ClassVar, Self
 
 from nrs_design.certificates.evidence.abstract import AbstractEvidence, Shows
 from nrs_design.certificates.evidence.fields import read_text
-from nrs_design.certificates.exact import IntegerMatrix, is_hurwitz, is_schur
+from nrs_design.certificates.exact import (
+    MAX_SPECTRUM_WORK,
+    IntegerMatrix,
+    bit_length,
+    is_hurwitz,
+    is_schur,
+    spectrum_work,
+)
+from nrs_design.errors import TooLargeError
 from nrs_design.switched.matrix import RationalMatrix
-from nrs_design.switched.system import SwitchedSystem, Switching, Time
+from nrs_design.switched.system import Mode, SwitchedSystem, Switching, Time
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,6 +55,8 @@ class UnstableMode(AbstractEvidence):
         named = [mode for mode in system.modes if mode.name == self.mode]
         if len(named) != 1:
             return f"there is no single mode named {self.mode}"
+        if is_too_large(named[0].A):
+            return f"the numbers of mode {self.mode} are too large to check"
         return f"mode {self.mode} is stable" if is_stable(named[0].A, system.time) else None
 
     def forms(self, system: SwitchedSystem) -> Iterator[tuple[str, IntegerMatrix]]:
@@ -59,7 +69,7 @@ class UnstableMode(AbstractEvidence):
         region = "Hurwitz" if continuous else "Schur"
         law = "x' = A x" if continuous else "x+ = A x"
         return (
-            f"Mode {self.mode} is not {region} (eigenvalue {self.eigenvalue}): staying in "
+            f"Mode {self.mode} is not {region} (eigenvalue about {self.eigenvalue}): staying in "
             f"it is an admissible switching signal, so {law} is not uniformly exponentially stable."
         )
 
@@ -77,20 +87,63 @@ class UnstableMode(AbstractEvidence):
         return cls(name, worst_eigenvalue(matrix, system.time))
 
 
+def is_too_large(A: RationalMatrix) -> bool:
+    """Tell whether `is_stable` would take more than some seconds."""
+    return _work(A) > MAX_SPECTRUM_WORK
+
+
+def affordable(modes: Iterable[Mode]) -> Iterator[tuple[Mode, bool]]:
+    """Yield modes, each with whether it can be decided within some seconds for all of them."""
+    spent = 0
+    for mode in modes:
+        work = _work(mode.A)
+        fits = spent + work <= MAX_SPECTRUM_WORK
+        spent += work * fits
+        yield mode, fits
+
+
+def _work(A: RationalMatrix) -> int:
+    return spectrum_work(
+        len(A.numerators), max(bit_length(A.numerators), A.denominator.bit_length())
+    )
+
+
 def is_stable(A: RationalMatrix, time: Time) -> bool:
-    """TRUSTED: decide whether a matrix is Hurwitz (continuous time) or Schur (discrete time)."""
+    """TRUSTED: decide whether a matrix is Hurwitz (continuous time) or Schur (discrete time).
+
+    Raises
+    ------
+    TooLargeError
+        If that would take more than some seconds.
+    """
+    _check_size(A)
     if time is Time.CONTINUOUS:
         return is_hurwitz(A.numerators)
     return is_schur(A.numerators, A.denominator)
 
 
 def worst_eigenvalue(A: RationalMatrix, time: Time) -> str:
-    """Return the eigenvalue nearest to or farthest beyond the stability limit, to six digits."""
+    """Return the eigenvalue nearest to or farthest beyond the stability limit, to six digits.
+
+    Raises
+    ------
+    TooLargeError
+        If that would take more than some seconds.
+    """
     from flint import fmpz_mat
 
+    _check_size(A)
     roots: list[Any] = fmpz_mat([list(row) for row in A.numerators]).charpoly().complex_roots()
     centers = [complex(root / A.denominator) for root, _ in roots]
     z = max(centers, key=lambda z: z.real if time is Time.CONTINUOUS else abs(z))
     if abs(z.imag) <= 1e-14 * abs(z):
         return f"{z.real:.6g}"
     return f"{z.real:.6g} +- {abs(z.imag):.6g}j"
+
+
+def _check_size(A: RationalMatrix) -> None:
+    if is_too_large(A):
+        raise TooLargeError(
+            "the numbers of a mode are too large to decide exactly whether it is stable",
+            remedy="write the entries with fewer digits",
+        )

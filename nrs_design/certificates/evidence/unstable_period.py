@@ -10,6 +10,7 @@ from typing import Any, ClassVar, Self
 from nrs_design.certificates.evidence.abstract import AbstractEvidence, Shows
 from nrs_design.certificates.evidence.fields import read_integer, read_ratio, read_text
 from nrs_design.certificates.exact import IntegerMatrix
+from nrs_design.spec.bounds import nearly
 from nrs_design.switched.matrix import RationalMatrix
 from nrs_design.switched.system import SwitchedSystem, Switching, Time
 
@@ -101,7 +102,7 @@ class UnstablePeriod(AbstractEvidence):
     def claim(self, system: SwitchedSystem) -> str:
         """State the signal and what follows."""
         continuous = system.time is Time.CONTINUOUS
-        law, unit = ("x' = A x", " s") if continuous else ("x+ = A x", " steps")
+        law, unit = ("x' = A x", "s") if continuous else ("x+ = A x", "steps")
         maps, switches = system.switching.maps(), _switches([name for name, _ in self.steps])
         choices = [len(maps.get(switch, ())) > 1 for switch in switches]
         ways = self.edges or (0,) * len(switches)
@@ -109,10 +110,13 @@ class UnstablePeriod(AbstractEvidence):
             f", then reset {way + 1} to {switch[1]}" if choice else ""
             for way, choice, switch in zip(ways, choices, switches, strict=True)
         ]
+        times = [nearly(dwell, unit) for _, dwell in self.steps]
         signal = ", ".join(
-            f"{name} for {float(dwell):.6g}{unit}{reset}"
-            for (name, dwell), reset in zip(self.steps, then, strict=True)
+            f"{name} for {time}{reset}"
+            for (name, _), time, reset in zip(self.steps, times, then, strict=True)
         )
+        if any(time.startswith("about") for time in times):
+            signal += "; the certificate holds the exact times"
         return (
             f"Repeating the signal ({signal}) makes some solution grow without bound: the spectral "
             f"radius over one period is above 1, so {law} is unstable under this switching."

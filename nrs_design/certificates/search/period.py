@@ -25,6 +25,7 @@ Candidate = tuple[Cycle, Array]
 GREEDY_STEPS = 3000
 GREEDY_PERIODS = (2, 3, 4, 6, 8)
 TIME_BITS = (8, 12, 16, 24, 40)
+WALKS = 4
 # Longer cycles are not tried with other times in a second round.
 MAX_DOUBLED = 8
 CHANGES = (1, 2, 4, 8, -1, -2, -4, -8)
@@ -80,9 +81,7 @@ def _find_word(
 
 def _candidates(system: SwitchedSystem, graph: Graph, allowance: Allowance) -> Iterator[Candidate]:
     """Yield signals that grow in floating point."""
-    longer = growing_walks(graph, allowance)
-    if system.switching.is_arbitrary:
-        longer = _greedy_signals(graph)
+    longer = _longer_signals(system, graph, allowance)
     refine = _refined if system.time is Time.CONTINUOUS else _refined_steps
     for cycle, start in chain(_twice(growing_cycles(graph, allowance)), longer):
         times = graph.admissible(cycle, start)
@@ -92,6 +91,19 @@ def _candidates(system: SwitchedSystem, graph: Graph, allowance: Allowance) -> I
         better = refine(graph, cycle, times)
         if graph.growth(cycle, better) > 0:
             yield cycle, better
+
+
+def _longer_signals(
+    system: SwitchedSystem, graph: Graph, allowance: Allowance
+) -> Iterator[Candidate]:
+    """Yield signals that may come back to a mode; in continuous time few, for refining is slow."""
+    if system.switching.is_arbitrary:
+        yield from _greedy_signals(graph)
+    elif system.time is Time.DISCRETE:
+        yield from growing_walks(graph, allowance)
+    else:
+        walks = growing_walks(graph, allowance)
+        yield from sorted(walks, key=lambda walk: -float(graph.growth(*walk)))[:WALKS]
 
 
 def _twice(cycles: Iterator[Candidate]) -> Iterator[Candidate]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from fractions import Fraction
-from math import floor, frexp, gcd
+from math import floor, gcd
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,8 +15,6 @@ from nrs_design.switched.system import Time
 
 BITS = (4, 6, 8, 10, 12, 16, 20, 24, 32, 40, 50, 60)
 RATE_BITS = 16
-# Python reads and writes integers of at most 4300 decimal digits, so a certificate has no longer.
-MAX_ENTRY_BITS = 14_000
 
 Screen = Callable[[NDArray[np.float64]], bool]
 
@@ -52,12 +50,12 @@ def round_to_evidence(
         if bits < BITS[-1] and not passes(rounded):
             continue
         evidence = _evidence(unit, exponents, bits, rate)
-        if _is_printable(evidence) and checker.find_fault(evidence) is None:
+        if checker.find_fault(evidence) is None:
             return evidence
     return None
 
 
-def round_rate(rate: float, time: Time) -> Fraction:
+def round_rate(rate: float | Fraction, time: Time) -> Fraction:
     """Round a rate to a short dyadic number on its safe side (slower decay)."""
     if time is Time.DISCRETE:
         return 1 - _round_down(1 - Fraction(rate))
@@ -65,12 +63,11 @@ def round_rate(rate: float, time: Time) -> Fraction:
 
 
 def _round_down(value: Fraction) -> Fraction:
-    shift = RATE_BITS - frexp(value)[1]
-    return Fraction(floor(value * Fraction(2) ** shift)) / Fraction(2) ** shift
-
-
-def _is_printable(evidence: CommonQuadratic) -> bool:
-    return all(abs(q).bit_length() <= MAX_ENTRY_BITS for row in evidence.Q for q in row)
+    size = value.numerator.bit_length() - value.denominator.bit_length()
+    if value >= Fraction(2) ** size:
+        size += 1
+    unit = Fraction(2) ** (size - RATE_BITS)
+    return floor(value / unit) * unit
 
 
 def unscale(

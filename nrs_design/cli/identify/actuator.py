@@ -21,7 +21,8 @@ from nrs_design.cli.identify.common import (
     write_spec,
 )
 from nrs_design.cli.options import Json, Quiet
-from nrs_design.cli.printing import note, print_json, print_table, progress
+from nrs_design.cli.printing import note, print_json, progress, say
+from nrs_design.cli.tables import print_table
 
 if TYPE_CHECKING:
     from nrs_design.identification.actuator import ActuatorFit, ActuatorIdentification
@@ -72,7 +73,7 @@ def actuator(
         write_spec(write, merged, quiet=quiet)
     if as_json:
         print_json("identify-actuator", _summary(found))
-    else:
+    elif not quiet:
         _print(found)
     if report is not None:
         note(f"page written to {report}", quiet=quiet)
@@ -80,7 +81,7 @@ def actuator(
 
 def _print(found: ActuatorIdentification) -> None:
     if found.synthetic:
-        print(SYNTHETIC)
+        say(SYNTHETIC)
     rows = [
         [
             fit.method,
@@ -92,9 +93,9 @@ def _print(found: ActuatorIdentification) -> None:
     ]
     columns = ["fit [95 %]", "gain (rad/s)/rpm", "time constant s", "friction rpm"]
     print_table("", columns, rows)
-    print(f"chosen: {found.chosen.method}. {found.reason}")
-    print(f"R = {interval(found.figures.resistance)} ohm")
-    print(f"speed over torque = {interval(found.figures.gradient)} rpm/(N m)")
+    say(f"chosen: {found.chosen.method}. {found.reason}")
+    say(f"R = {interval(found.figures.resistance)} ohm")
+    say(f"speed over torque = {interval(found.figures.gradient)} rpm/(N m)")
 
 
 def _summary(found: ActuatorIdentification) -> dict[str, Any]:

@@ -13,6 +13,7 @@ import typer
 
 from nrs_design.cli.printing import note
 from nrs_design.errors import OutputError
+from nrs_design.printable import printable
 
 if TYPE_CHECKING:
     from nrs_design.identification.datasets import Source
@@ -58,12 +59,13 @@ def _bar(*, quiet: bool) -> Iterator[Callable[[str], Callable[[float], None]]]:
         yield lambda name: lambda fraction: None
         return
     from rich.console import Console
+    from rich.markup import escape
     from rich.progress import Progress
 
     with Progress(console=Console(stderr=True), transient=True) as bars:
 
         def begin(name: str) -> Callable[[float], None]:
-            task = bars.add_task(f"reading {name}", total=1.0)
+            task = bars.add_task(f"reading {escape(printable(name))}", total=1.0)
             return lambda fraction: bars.update(task, completed=fraction)
 
         yield begin
@@ -81,11 +83,13 @@ def check_report(path: Path | None) -> None:
 
 def write_report(path: Path, report: Report) -> None:
     """Write a report in the format that the name of the file says."""
-    from nrs_design.output import write_output
+    from nrs_design.output import PAGE, PDF, write_output
     from nrs_design.reporting import render_html, render_pdf
 
-    pdf = path.suffix.lower() == ".pdf"
-    write_output(path, render_pdf(report) if pdf else render_html(report))
+    if path.suffix.lower() == ".pdf":
+        write_output(path, render_pdf(report), replaces=PDF)
+    else:
+        write_output(path, render_html(report), replaces=PAGE)
 
 
 def write_spec(path: Path, text: str, *, quiet: bool) -> None:

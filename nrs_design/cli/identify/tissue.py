@@ -22,7 +22,8 @@ from nrs_design.cli.identify.common import (
     write_spec,
 )
 from nrs_design.cli.options import Json, Quiet
-from nrs_design.cli.printing import note, print_json, print_table, progress
+from nrs_design.cli.printing import note, print_json, progress, say
+from nrs_design.cli.tables import print_table
 
 if TYPE_CHECKING:
     from nrs_design.identification.tissue import ModelFit, TissueIdentification
@@ -90,7 +91,7 @@ def tissue(
             note(f"warning: {caveat}")
     if as_json:
         print_json("identify-tissue", _summary(found, arm))
-    else:
+    elif not quiet:
         _print(found, arm)
     if report is not None:
         note(f"page written to {report}", quiet=quiet)
@@ -100,7 +101,7 @@ def _print(found: TissueIdentification, arm: float | None) -> None:
     from nrs_design.identification.lever import units_of
 
     if found.synthetic:
-        print(SYNTHETIC)
+        say(SYNTHETIC)
     least = min(model.bic for model in found.models)
     unit = "N m" if found.rotational else "N"
     rows = [
@@ -115,16 +116,16 @@ def _print(found: TissueIdentification, arm: float | None) -> None:
     ]
     columns = ["law", "pooled parameters [95 %]", f"RMSE {unit}", "BIC - least", "doubts"]
     print_table("", columns, rows)
-    print(found.reason)
+    say(found.reason)
     law = found.chosen.law
     units = units_of(law, found.rotational)
     ranges = zip(law.parameters(), found.chosen.ranges, units, strict=True)
     for name, estimate, unit in ranges:
-        print(f"{name} = {interval(estimate)} {unit} covers the pooled interval and every record")
+        say(f"{name} = {interval(estimate)} {unit} covers the pooled interval and every record")
     if arm is not None:
         turned = law.at_pivot(arm)
         values = zip(law.parameters(), turned.values, units_of(law, True), strict=True)
-        print(f"at the pivot: {', '.join(f'{n} = {v:.6g} {u}' for n, v, u in values)}")
+        say(f"at the pivot: {', '.join(f'{n} = {v:.6g} {u}' for n, v, u in values)}")
 
 
 def _parameters(model: ModelFit, units: tuple[str, ...]) -> list[str]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import typer
 
+from nrs_design.cli.groups import CommandGroup
 from nrs_design.cli.robot.balance import balance
 from nrs_design.cli.robot.check import check
 from nrs_design.cli.robot.correction import correction
@@ -13,6 +14,7 @@ from nrs_design.cli.robot.track import track
 
 robot = typer.Typer(
     name="robot",
+    cls=CommandGroup,
     no_args_is_help=True,
     help="Kinematics, dynamics, balance and motion control of a robot (specs of kind robot).",
 )

@@ -6,8 +6,9 @@ from dataclasses import asdict
 from typing import Any
 
 from nrs_design.cli.options import Json, Quiet, SpecFile
-from nrs_design.cli.printing import print_json, print_table
+from nrs_design.cli.printing import print_json
 from nrs_design.cli.robot.options import Figures, write_figures
+from nrs_design.cli.tables import print_table
 
 _COLUMNS = {
     "arm_mass": ("M_c [g]", 1e3),
@@ -49,6 +50,7 @@ def balance(
     if as_json:
         head = {"spec": loaded.spec.name, "spec_sha256": loaded.sha256}
         print_json("robot-balance", head | content)
+    if as_json or quiet:
         return
     print_table(
         "",

@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from nrs_design.cli.options import Json, Quiet, SpecFile
-from nrs_design.cli.printing import note, print_json, print_table
+from nrs_design.cli.printing import note, print_json
 from nrs_design.cli.robot.options import Figures, write_figures
+from nrs_design.cli.tables import print_table
 
 if TYPE_CHECKING:
     from nrs_design.models.robot import Correction, Sine, TiltTable
@@ -53,7 +54,7 @@ def correction(
     if as_json:
         head = {"spec": loaded.spec.name, "spec_sha256": loaded.sha256}
         print_json("robot-correction", head | _document(rows, tilts) | {"files": files})
-    else:
+    elif not quiet:
         _print(rows, tilts)
 
 

@@ -14,13 +14,30 @@ from nrs_design.cli.robot.options import (
     Pose,
     Tilt,
     Velocity,
+    read_pose,
     three_numbers,
     write_figures,
 )
-from nrs_design.cli.robot.printing import print_quantities
+from nrs_design.cli.robot.printing import JOINTS, ONE, POSE, Tables, print_quantities
 
 if TYPE_CHECKING:
     from nrs_design.models.robot import Robot
+
+TABLES: Tables = {
+    POSE: {"pose": "pose [rad, rad, m]"},
+    JOINTS: {
+        "velocity": "velocity [rad/s]",
+        "acceleration": "acceleration [rad/s^2]",
+        "M": ("M [kg m^2]", JOINTS),
+        "C": ("C [N m s/rad]", JOINTS),
+        "G": "G [N m]",
+        "Ms": ("Ms [kg m^2]", JOINTS),
+        "Gs": "Gs [N m]",
+        "torque": "torque [N m]",
+        "shares_by_joint": "share of the torque [1]",
+    },
+    ONE: {"base_tilt": "tilt of the base [rad]", "mean_shares": "mean share of the torque [1]"},
+}
 
 
 def dynamics(
@@ -52,7 +69,7 @@ def dynamics(
     else:
         content |= _at_pose(
             robot,
-            three_numbers(pose, "--pose"),
+            read_pose(pose, robot),
             three_numbers(velocity or "0,0,0", "--velocity"),
             three_numbers(acceleration or "0,0,0", "--acceleration"),
         )
@@ -65,8 +82,8 @@ def dynamics(
     if as_json:
         head = {"spec": loaded.spec.name, "spec_sha256": loaded.sha256}
         print_json("robot-dynamics", head | content)
-    else:
-        print_quantities(content)
+    elif not quiet:
+        print_quantities(content, TABLES)
 
 
 def _at_pose(

@@ -8,11 +8,32 @@ import typer
 
 from nrs_design.cli.options import Json, Quiet, SpecFile
 from nrs_design.cli.printing import print_json
-from nrs_design.cli.robot.options import Figures, Pose, three_numbers, write_figures
-from nrs_design.cli.robot.printing import print_quantities
+from nrs_design.cli.robot.options import Figures, Pose, read_pose, three_numbers, write_figures
+from nrs_design.cli.robot.printing import JOINTS, LEGS, ONE, POSE, Tables, print_quantities
 
 if TYPE_CHECKING:
     from nrs_design.models.robot import Robot
+
+TABLES: Tables = {
+    POSE: {
+        "pose": "pose [rad, rad, m]",
+        "inverse_jacobian": ("inverse Jacobian", JOINTS),
+    },
+    ("theta_x", "theta_y", "d"): {"theta_xy_d": "orientation [rad, rad, m]"},
+    JOINTS: {
+        "joints": "joint angles [rad]",
+        "jacobian": ("Jacobian", POSE),
+        "joint_low": "lowest angle [rad]",
+        "joint_high": "highest angle [rad]",
+        "largest_joint_velocity": "largest velocity [rad/s]",
+        "largest_joint_acceleration": "largest acceleration [rad/s^2]",
+    },
+    LEGS: {
+        "reach_margin": "reach margin [m]",
+        "coupler_margin": "coupler margin [1]",
+    },
+    ONE: {"reachable_share": "reachable share of the workspace [1]"},
+}
 
 
 def kinematics(
@@ -40,7 +61,7 @@ def kinematics(
         found = direct_kinematics(robot, three_numbers(joints, "--joints"))
         content = _at_pose(robot, tuple(map(float, found)))
     elif pose is not None:
-        content = _at_pose(robot, three_numbers(pose, "--pose"))
+        content = _at_pose(robot, read_pose(pose, robot))
     else:
         content = _workspace(robot)
     if figures is not None:
@@ -50,8 +71,8 @@ def kinematics(
     if as_json:
         head = {"spec": loaded.spec.name, "spec_sha256": loaded.sha256}
         print_json("robot-kinematics", head | content)
-    else:
-        print_quantities(content)
+    elif not quiet:
+        print_quantities(content, TABLES)
 
 
 def _at_pose(robot: Robot, pose: tuple[float, ...]) -> dict[str, Any]:

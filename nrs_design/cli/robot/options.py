@@ -9,11 +9,14 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from nrs_design.cli.printing import note
+from nrs_design.errors import PoseError
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from matplotlib.figure import Figure
+
+    from nrs_design.models.robot import Robot
 
 Figures = Annotated[
     Path | None,
@@ -36,6 +39,9 @@ Tilt = Annotated[
     typer.Option("--tilt", metavar="DEG", help="Tilt of the base in degrees, not the spec's."),
 ]
 
+# So many times the depth of the workspace, and another unit is meant.
+DOUBTFUL = 10
+
 
 def three_numbers(text: str, option: str) -> tuple[float, float, float]:
     """Read ``1,2,3``.
@@ -55,6 +61,30 @@ def three_numbers(text: str, option: str) -> tuple[float, float, float]:
             param_hint=option,
         )
     return numbers[0], numbers[1], numbers[2]
+
+
+def read_pose(text: str, robot: Robot) -> tuple[float, float, float]:
+    """Read a pose, and doubt one that is in other units than rad and m.
+
+    Raises
+    ------
+    PoseError
+        If an angle is beyond a right angle, or the depth ten times that of the workspace.
+    """
+    phi, psi, d = three_numbers(text, "--pose")
+    for name, angle in (("phi", phi), ("psi", psi)):
+        if abs(angle) > math.pi / 2:
+            raise PoseError(
+                f"--pose: {name} = {angle:g} rad is beyond a right angle",
+                remedy=f"angles are in rad: {angle:g} deg are {math.radians(angle):.6g}",
+            )
+    deepest = robot.workspace.d[1]
+    if abs(d) > DOUBTFUL * deepest:
+        raise PoseError(
+            f"--pose: d = {d:g} m is far beyond the workspace, which ends at {deepest:g} m",
+            remedy=f"depths are in m: {d:g} mm are {d / 1e3:g}",
+        )
+    return phi, psi, d
 
 
 def write_figures(folder: Path, figures: Mapping[str, Figure], *, quiet: bool) -> list[str]:

@@ -1,31 +1,50 @@
-"""Numbers, vectors and matrices as one table."""
+"""Numbers, vectors and matrices as tables with named columns."""
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
-from nrs_design.cli.printing import print_table
+from nrs_design.cli.tables import print_table
 
-_UNPRINTED = ("units", "files")
+# What the numbers of a row belong to.
+POSE = ("phi", "psi", "d")
+JOINTS = ("theta1", "theta2", "theta3")
+LEGS = ("left leg", "right leg", "middle leg")
+ONE = ("value",)
 
-
-def print_quantities(content: dict[str, Any]) -> None:
-    """Print named numbers, rows of three and matrices, all in SI units."""
-    rows: list[list[str]] = []
-    for name, value in content.items():
-        if name not in _UNPRINTED:
-            rows += _rows(name.replace("_", " "), value)
-    print_table("", ["SI units", "1", "2", "3"], rows)
-
-
-def _rows(name: str, value: Any) -> list[list[str]]:
-    if isinstance(value, dict):
-        return [row for key, inner in value.items() for row in _rows(f"{name}: {key}", inner)]
-    if isinstance(value, list) and isinstance(value[0], list):
-        return [_row(name if index == 0 else "", line) for index, line in enumerate(value)]
-    return [_row(name, value if isinstance(value, list) else [value])]
+# What stands in a row: a name with its unit, and for a matrix what each of its rows belongs to.
+Label = str | tuple[str, Sequence[str]]
+# For the headings of some columns, the names whose numbers stand below them.
+Tables = Mapping[Sequence[str], Mapping[str, Label]]
 
 
-def _row(name: str, numbers: list[float]) -> list[str]:
-    cells = [f"{number:.8g}" for number in numbers]
-    return [name, *cells, *[""] * (3 - len(cells))]
+def print_quantities(content: Mapping[str, Any], tables: Tables) -> None:
+    """Print numbers, rows of three and matrices, all in SI units.
+
+    Parameters
+    ----------
+    content : mapping
+        Values by name.
+    tables : mapping
+        Those of the command; names that are not in the content are left out.
+    """
+    for columns, labels in tables.items():
+        rows = [
+            [title, *(f"{number:.8g}" for number in numbers)]
+            for name, label in labels.items()
+            if name in content
+            for title, numbers in _rows(label, content[name])
+        ]
+        if rows:
+            print_table("", ["SI units", *columns], rows)
+
+
+def _rows(label: Label, value: Any) -> Iterator[tuple[str, Sequence[float]]]:
+    if isinstance(label, tuple):
+        yield from ((f"{label[0]}: {name}", row) for name, row in zip(label[1], value, strict=True))
+    elif isinstance(value, dict):
+        for key, inner in value.items():
+            yield from _rows(f"{label}: {key}", inner)
+    else:
+        yield label, value if isinstance(value, list) else [value]

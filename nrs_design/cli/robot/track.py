@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from nrs_design.cli.options import Json, Quiet, SpecFile
-from nrs_design.cli.printing import print_json, print_table, progress
+from nrs_design.cli.printing import print_json, progress, say
 from nrs_design.cli.robot.options import Figures, Tilt, write_figures
+from nrs_design.cli.tables import print_table
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -92,12 +93,12 @@ def track(
     if as_json:
         head = {"spec": loaded.spec.name, "spec_sha256": loaded.sha256}
         print_json("robot-track", head | _document(robot, runs, changes) | {"files": files})
+    if as_json or quiet:
         return
     _print_runs(runs)
     if ablation:
         _print_ablation(changes)
-    if not quiet:
-        _print_left_out()
+    _print_left_out()
 
 
 def _on_base(spec: RobotSpec, robot: Robot, tilt: float | None) -> Robot:
@@ -204,6 +205,6 @@ def _print_ablation(changes: list[dict[str, Any]]) -> None:
 def _print_left_out() -> None:
     from nrs_design.simulation.tracking import LEFT_OUT
 
-    print("not modelled:")
+    say("not modelled:")
     for line in LEFT_OUT:
-        print(f"  - {line}")
+        say(f"  - {line}")

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from nrs_design.gating.obligations import GateOutcome, Obligation
+from nrs_design.gating.obligations import Caution, GateOutcome, Obligation
 from nrs_design.gating.paths import from_here
+from nrs_design.printable import printable
 
 # GitHub shows no more than ten annotations of each type per step, whichever come first.
 MAX_ANNOTATIONS = 10
@@ -15,6 +16,8 @@ def to_github(outcome: GateOutcome) -> str:
     more = len(outcome.broken) - len(lines)
     if more > 0:
         lines.append(f"::notice title=nrs-design::{more} more not shown; see the log of this step")
+    cautions = [item for spec in outcome.specs for item in spec.cautions]
+    lines += [_warning(item) for item in cautions[:MAX_ANNOTATIONS]]
     return "".join(f"{line}\n" for line in lines)
 
 
@@ -29,9 +32,13 @@ def _annotation(item: Obligation) -> str:
     return f"::error {listed}::{_data(f'{item.rule.title}: {item.status}. {item.message}')}"
 
 
+def _warning(item: Caution) -> str:
+    place = f"file={_property(from_here(item.path))},line={item.line},col={item.column}"
+    return f"::warning {place},title=nrs-design::{_data(item.message)}"
+
+
 def _data(text: str) -> str:
-    encodable = text.encode(errors="backslashreplace").decode()
-    return encodable.replace("%", "%25").replace("\r", "%0D").replace("\n", "%0A")
+    return printable(text).replace("%", "%25")
 
 
 def _property(text: str) -> str:

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import json
 from typing import Any
 
 from nrs_design.gating.obligations import GateOutcome, Obligation, SpecOutcome
 from nrs_design.gating.paths import from_here
+from nrs_design.printable import json_text
 
 
 def to_json(outcome: GateOutcome) -> str:
@@ -17,7 +17,7 @@ def to_json(outcome: GateOutcome) -> str:
         "specs": [_spec(spec) for spec in outcome.specs],
         "notes": list(outcome.notes),
     }
-    return json.dumps(document, indent=2, ensure_ascii=True) + "\n"
+    return json_text(document) + "\n"
 
 
 def _spec(spec: SpecOutcome) -> dict[str, Any]:
@@ -31,6 +31,11 @@ def _spec(spec: SpecOutcome) -> dict[str, Any]:
         "modes": spec.modes,
         "certificate": None if spec.certificate is None else from_here(spec.certificate),
         "certificate_id": spec.certificate_id,
+        "gains": {name: dict(gains) for name, gains in spec.gains.items()},
+        "warnings": [
+            {"message": item.message, "line": item.line, "column": item.column}
+            for item in spec.cautions
+        ],
         "obligations": [_obligation(item) for item in spec.obligations],
     }
 

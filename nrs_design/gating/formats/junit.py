@@ -2,15 +2,12 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Sequence
 from xml.etree import ElementTree
 
 from nrs_design.gating.obligations import GateOutcome, Obligation, SpecOutcome, Status
 from nrs_design.gating.paths import from_here
-
-# Everything that XML 1.0 does not allow, even escaped.
-_NOT_XML = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
+from nrs_design.printable import printable
 
 
 def to_junit(outcome: GateOutcome) -> str:
@@ -25,14 +22,14 @@ def to_junit(outcome: GateOutcome) -> str:
 
 
 def _add_suite(root: ElementTree.Element, spec: SpecOutcome) -> None:
-    name = _xml(from_here(spec.path))
+    name = printable(from_here(spec.path))
     suite = ElementTree.SubElement(root, "testsuite", {"name": name, **_counts(spec.obligations)})
     for item in spec.obligations:
         case = ElementTree.SubElement(
             suite,
             "testcase",
             classname=name,
-            name=_xml(f"{item.rule.id} {item.rule.title}: {item.subject}"),
+            name=printable(f"{item.rule.id} {item.rule.title}: {item.subject}"),
             file=name,
         )
         if item.line is not None:
@@ -47,16 +44,12 @@ def _add_failure(case: ElementTree.Element, item: Obligation) -> None:
         case,
         "error" if is_error else "failure",
         type=item.rule.id if is_error else str(item.status),
-        message=_xml(item.message),
+        message=printable(item.message),
     )
-    failure.text = _xml(item.rule.remedy)
+    failure.text = printable(item.rule.remedy)
 
 
 def _counts(items: Sequence[Obligation]) -> dict[str, str]:
     broken = [item.status for item in items if not item.fulfilled]
     errors = broken.count(Status.ERROR)
     return {"tests": str(len(items)), "failures": str(len(broken) - errors), "errors": str(errors)}
-
-
-def _xml(text: str) -> str:
-    return _NOT_XML.sub(lambda found: found[0].encode("unicode_escape").decode(), text)

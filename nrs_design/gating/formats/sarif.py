@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import hashlib
-import json
 from typing import Any
 
 from nrs_design import __version__
 from nrs_design.gating.obligations import GateOutcome, Obligation
 from nrs_design.gating.paths import relative_uri
 from nrs_design.gating.rules import RULES, Rule
+from nrs_design.printable import json_text
 
 SCHEMA = "https://json.schemastore.org/sarif-2.1.0.json"
 FINGERPRINT = "nrsDesignObligation/v1"
@@ -34,7 +34,7 @@ def to_sarif(outcome: GateOutcome) -> str:
             }
         ],
     }
-    return json.dumps(log, indent=2, ensure_ascii=True) + "\n"
+    return json_text(log) + "\n"
 
 
 def _rule(rule: Rule) -> dict[str, Any]:

@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from decimal import Decimal
+from fractions import Fraction
 
+from nrs_design.controllers.float32 import to_float32
 from nrs_design.gating.obligations import (
     GateOutcome,
     Obligation,
     SpecOutcome,
     count_by_verdict,
 )
-from nrs_design.gating.paths import printable
+from nrs_design.printable import printable
 
 COLUMNS = ("spec", "verdict", "common quadratic", "decay rate", "modes", "certificate")
 SHORT_ID = 12
@@ -19,18 +22,22 @@ SHORT_ID = 12
 def to_text(outcome: GateOutcome) -> str:
     """Return the table, the failures worst first, and a line that sums up."""
     parts = [*_table([COLUMNS, *map(_row, outcome.specs)])]
+    designed = [_gains(spec) for spec in outcome.specs if spec.gains]
+    if designed:
+        parts += ["", "gains (single-precision numbers, by their shortest decimals):", *designed]
     if outcome.broken:
         parts += ["", *map(_line, outcome.broken)]
     return "\n".join([*parts, "", _summary(outcome)]) + "\n"
 
 
 def _row(spec: SpecOutcome) -> Sequence[str]:
-    unit = " 1/s" if spec.rate_name == "alpha" else ""
+    # What is proved holds for slower decay too, so the relation is true of a rounded rate as well.
+    sign, unit = (">=", " 1/s") if spec.rate_name == "alpha" else ("<=", "")
     return (
-        printable(spec.path),
+        printable(spec.path.as_posix()),
         spec.verdict or "-",
         spec.common_quadratic or "-",
-        f"{spec.rate_name} = {spec.rate}{unit}" if spec.rate else "-",
+        f"{spec.rate_name} {sign} {spec.rate}{unit}" if spec.rate else "-",
         "-" if spec.modes is None else str(spec.modes),
         (spec.certificate_id or "-")[:SHORT_ID],
     )
@@ -45,9 +52,26 @@ def _table(rows: Sequence[Sequence[str]]) -> list[str]:
     return [lines[0], "-" * (sum(widths) + 2 * (len(widths) - 1)), *lines[1:]]
 
 
+def _gains(spec: SpecOutcome) -> str:
+    listed = (
+        f"{printable(name)} " + ", ".join(f"{key} {_shortest(text)}" for key, text in gains.items())
+        for name, gains in spec.gains.items()
+        if gains
+    )
+    return f"{printable(spec.path)}: {'; '.join(listed)}"
+
+
+def _shortest(text: str) -> str:
+    """Return the shortest decimal that rounds to this single-precision number."""
+    value = Fraction(text)
+    candidates = (f"{float(value):.{digits}g}" for digits in range(1, 10))
+    found = next(short for short in candidates if to_float32(Fraction(short)) == value)
+    return f"{Decimal(found):f}"
+
+
 def _line(item: Obligation) -> str:
-    place = [printable(item.path), *(str(n) for n in (item.line, item.column) if n is not None)]
-    return f"{':'.join(place)}: {item.rule.id} {item.status}: {printable(item.message)}"
+    place = [item.path.as_posix(), *(str(n) for n in (item.line, item.column) if n is not None)]
+    return printable(f"{':'.join(place)}: {item.rule.id} {item.status}: {item.message}")
 
 
 def _summary(outcome: GateOutcome) -> str:

@@ -13,12 +13,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from nrs_design.errors import DataError
+from nrs_design.files import open_regular
 from nrs_design.identification.datasets.columns import Column, find_columns
+from nrs_design.spec.exact import quoted
 
 Array = NDArray[np.float64]
 Progress = Callable[[float], None]
 
 BLOCK = 1 << 20
+MAX_COLUMNS = 1000
+MAX_NAME = 100
 MAX_ROWS = 10_000_000
 MAX_PREAMBLE = 100
 SYNTHETIC = "synthetic"
@@ -104,7 +108,7 @@ def read_table(
         size = max(path.stat().st_size, 1)
         if path.is_dir():
             raise DataError("is a folder", path=path, remedy="name CSV files")
-        with path.open("rb") as file:
+        with open_regular(path) as file:
             return _read(file, path, layouts, mapping, lambda done: progress(done / size))
     except OSError as error:
         raise DataError(
@@ -166,6 +170,13 @@ def _read_header(file: BinaryIO, path: Path, seen: Callable[[bytes], None]) -> _
 
 
 def _names(text: str, path: Path, line: int) -> list[str]:
+    if text.count(",") >= MAX_COLUMNS or max(map(len, text.split(","))) > MAX_NAME:
+        raise DataError(
+            f"has more than {MAX_COLUMNS} columns, or one with a name of over {MAX_NAME} letters",
+            path=path,
+            line=line,
+            remedy="save the columns that are needed, under short names",
+        )
     names = [name.strip() for name in next(csv.reader([text]))]
     if len(names) == 1:
         for separator, word in ((";", "semicolons"), ("\t", "tabs")):
@@ -247,10 +258,11 @@ class _Parser:
         if not cell:
             self._fail(f"{name} is missing", line, "end the record before it, or fill the gap")
         if not _is_number(cell):
-            shown = cell if len(cell) <= 30 else cell[:27] + "..."
-            self._fail(f"{name} is {shown!r}, not a number", line, "write decimal numbers")
+            self._fail(f"{name} is {quoted(cell)}, not a number", line, "write decimal numbers")
         if not np.isfinite(float(cell)):
-            self._fail(f"{name} is {cell}", line, "cut the record so that all values are finite")
+            self._fail(
+                f"{name} is {cell[:30]}", line, "cut the record so that all values are finite"
+            )
 
     def _fail(self, message: str, line: int, remedy: str) -> NoReturn:
         raise DataError(message, path=self.path, line=line, remedy=remedy)

@@ -82,6 +82,7 @@ def build_drive(spec: DriveSpec) -> JointDrive:
             f"give a time constant of {expected:.4g} s, the spec says {spec.time_constant.si:.4g} "
             "s",
             remedy="correct one of the four",
+            at=("drive",),
         )
     return JointDrive(
         ratio=ratio,

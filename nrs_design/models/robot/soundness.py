@@ -39,5 +39,6 @@ def examine_inertia(robot: Robot) -> Array:
             "the mass matrix in the middle of the workspace is singular: some motion of the robot "
             "moves no mass",
             remedy="check the masses of legs and platform",
+            at=("legs",),
         )
     return np.asarray(eigenvalues, dtype=np.float64)

@@ -8,6 +8,7 @@ from itertools import product
 import numpy as np
 from numpy.typing import ArrayLike
 
+from nrs_design.errors import PoseError
 from nrs_design.models.robot.geometry import is_reachable, posture, unreachable
 from nrs_design.models.robot.kinematics import (
     inverse_jacobian,
@@ -87,6 +88,8 @@ class WorkspaceSurvey:
     deepest : tuple of tuple of float
         (phi, psi, d) for each corner of the angles: the largest reachable d of the range, None
         where no depth of the range is reachable.
+    obstacle : PoseError or None
+        What keeps the robot from the farthest pose of the grid; None if all are reachable.
     """
 
     reachable: float
@@ -95,6 +98,7 @@ class WorkspaceSurvey:
     reach_margin: Array
     coupler_margin: Array
     deepest: tuple[tuple[float, float, float | None], ...]
+    obstacle: PoseError | None
 
 
 def survey_workspace(robot: Robot, angles: int = 31, depths: int = 21) -> WorkspaceSurvey:
@@ -131,6 +135,7 @@ def survey_workspace(robot: Robot, angles: int = 31, depths: int = 21) -> Worksp
         reach_margin=margins.reach.min(axis=0),
         coupler_margin=margins.coupler.min(axis=0),
         deepest=tuple((phi, psi, _deepest(robot, phi, psi)) for phi, psi in corners),
+        obstacle=None if np.all(inside) else unreachable(robot, poses[~inside]),
     )
 
 

@@ -4,23 +4,26 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from fractions import Fraction
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from nrs_design.certificates.evidence.fields import rate_words
 from nrs_design.design.root_locus import locus_gains, root_locus
 from nrs_design.design.transfer import TransferFunction, poles
+from nrs_design.reporting.figures.view import View, disk, half_plane
 from nrs_design.reporting.style import (
     ALARM,
     BLUE,
     INK,
     MUTED,
+    TOLD_APART,
     VERMILLION,
     color,
     legend,
     marker,
     new_axes,
-    short,
     styled,
 )
 from nrs_design.switched.system import Time
@@ -48,11 +51,11 @@ def draw_root_locus(
     wanted, reached : sequence of complex
         Poles to mark, in rad/s; `wanted` may be empty.
     """
-    figure, axes = new_axes(4.4)
+    figure, axes = new_axes(4.0)
     start = poles(open_loop)
     zeros = np.roots(open_loop.numerator)
     points = np.concatenate([start, zeros, np.asarray(wanted), np.asarray(reached)])
-    _limit(axes, points, room=0.35)
+    view = half_plane(points, room=0.35)
     for branch in root_locus(open_loop, locus_gains(open_loop, gain)).T:
         axes.plot(branch.real, branch.imag, color=BLUE, zorder=2)
     axes.plot(start.real, start.imag, "x", color=INK, markersize=8, label="open-loop poles")
@@ -61,8 +64,8 @@ def draw_root_locus(
     if wanted:
         _mark(axes, wanted, "s", VERMILLION, "wanted poles", size=11, filled=False)
     _mark(axes, reached, "D", VERMILLION, "poles reached", size=5.5, filled=True)
-    _finish(axes)
-    legend(figure, axes, 4)
+    view.set(axes, "rad/s")
+    legend(figure, axes, 2)
     return figure
 
 
@@ -71,35 +74,42 @@ def draw_eigenvalues(
     names: Sequence[str],
     values: Sequence[NDArray[np.complex128]],
     time: Time,
-    rate: float | None,
+    rate: Fraction | None,
 ) -> Figure:
     """Draw the eigenvalues of all modes with the border of stability.
 
     Parameters
     ----------
     names : sequence of str
-        Of the modes; more than eight are drawn alike.
+        Of the modes; more than 24 are drawn alike.
     values : sequence of ndarray of complex
         Eigenvalues of each mode, in 1/s in continuous time.
     time : Time
         Decides the border: imaginary axis or unit circle.
-    rate : float or None
+    rate : Fraction or None
         The proved rate, drawn as a second border.
     """
-    figure, axes = new_axes(4.6)
+    figure, axes = new_axes(4.2)
     together = np.concatenate(list(values))
-    _border(axes, together, time, rate)
+    view = _border(axes, together, time, rate)
     for index, (name, row) in enumerate(zip(names, values, strict=True)):
-        many = len(names) > 8
-        tint, shape = (BLUE, "o") if many else (color(index), marker(index))
-        label = None if many else short(name)
-        axes.plot(row.real, row.imag, shape, color=tint, mfc="none", label=label)
+        label, look = _look(index, name, len(names))
+        axes.plot(row.real, row.imag, mfc="none", label=label, linestyle="none", **look)
     unstable = together[_outside(together, time)]
     if len(unstable):
-        _mark(axes, unstable.tolist(), "o", ALARM, "not in the stable region", 15, filled=False)
-    _finish(axes, "1/s" if time is Time.CONTINUOUS else "1")
+        _mark(axes, unstable.tolist(), "o", ALARM, "not in the stable region", 17, filled=False)
+    view.set(axes, "1/s" if time is Time.CONTINUOUS else "1")
     legend(figure, axes, 2)
     return figure
+
+
+def _look(index: int, name: str, count: int) -> tuple[str | None, dict[str, Any]]:
+    """Return label and look of a mode; markers of several sizes show where modes coincide."""
+    if count > TOLD_APART:
+        label = f"eigenvalues of {count} modes, drawn alike" if index == 0 else None
+        return label, {"color": BLUE, "marker": "o"}
+    size = 5.0 + 1.8 * (index % 3)
+    return name, {"color": color(index), "marker": marker(index), "markersize": size}
 
 
 def _outside(values: NDArray[np.complex128], time: Time) -> NDArray[np.bool_]:
@@ -108,22 +118,20 @@ def _outside(values: NDArray[np.complex128], time: Time) -> NDArray[np.bool_]:
     return np.asarray(np.abs(values) >= 1 - 1e-9)
 
 
-def _border(axes: Axes, values: NDArray[np.complex128], time: Time, rate: float | None) -> None:
+def _border(axes: Axes, values: NDArray[np.complex128], time: Time, rate: Fraction | None) -> View:
     if time is Time.CONTINUOUS:
-        _limit(axes, np.append(values, 0.0))
-        right = axes.get_xlim()[1]
-        axes.axvspan(0.0, right, color="#f6e3da", zorder=0, linewidth=0)
         axes.axvline(0.0, color=INK, linewidth=1.0)
         if rate is not None:
-            label = f"-alpha = {-rate:.4g} 1/s"
-            axes.axvline(-rate, color=MUTED, linewidth=1.2, linestyle="--", label=label)
-        return
+            label = f"-alpha, {rate_words(rate, time)}"
+            axes.axvline(-float(rate), color=MUTED, linewidth=1.2, linestyle="--", label=label)
+        return half_plane(values, shade=True)
     angle = np.linspace(0, 2 * math.pi, 361)
     axes.plot(np.cos(angle), np.sin(angle), color=INK, linewidth=1.0, label="unit circle")
     if rate is not None:
-        x, y = rate * np.cos(angle), rate * np.sin(angle)
-        axes.plot(x, y, color=MUTED, linewidth=1.2, linestyle="--", label=f"rho = {rate:.6g}")
-    axes.set_aspect("equal", adjustable="datalim")
+        x, y = float(rate) * np.cos(angle), float(rate) * np.sin(angle)
+        label = rate_words(rate, time)
+        axes.plot(x, y, color=MUTED, linewidth=1.2, linestyle="--", label=label)
+    return disk(values)
 
 
 def _mark(
@@ -132,19 +140,3 @@ def _mark(
     x, y = [z.real for z in values], [z.imag for z in values]
     fill = tint if filled else "none"
     axes.plot(x, y, shape, color=tint, mfc=fill, markersize=size, label=label, zorder=4)
-
-
-def _limit(axes: Axes, points: NDArray[np.complex128], room: float = 0.12) -> None:
-    """Show all points with some room around them, as a fraction of their extent."""
-    size = float(np.abs(points).max()) or 1.0
-    left, right = float(points.real.min()), float(points.real.max())
-    height = max(float(np.abs(points.imag).max()), 0.15 * size)
-    side = max(right - left, 0.3 * size)
-    axes.set_xlim(left - room * side, max(right, 0.0) + 0.12 * side)
-    axes.set_ylim(-(1.2 + room) * height, (1.2 + room) * height)
-
-
-def _finish(axes: Axes, unit: str = "rad/s") -> None:
-    axes.axhline(0.0, color=MUTED, linewidth=0.8, zorder=1)
-    axes.set_xlabel(f"Real part [{unit}]")
-    axes.set_ylabel(f"Imaginary part [{unit}]")

@@ -16,7 +16,7 @@ from nrs_design.reporting.style import (
     legend,
     new_axes,
     new_figure,
-    short,
+    row_labels,
     styled,
 )
 
@@ -103,15 +103,16 @@ def draw_intervals(
     label : str
         Name of the parameter, with the unit.
     """
-    figure, axes = new_axes(1.5 + 0.28 * (len(names) + 1))
+    labels, height = row_labels([*names, "pooled"])
+    figure, axes = new_axes(1.1 + height * len(labels))
     axes.axvspan(wide.low, wide.high, color="#dcebf5", linewidth=0, label="range over all records")
     for row, estimate in enumerate([*single, pooled]):
         tint, shape = (INK, "D") if row == len(single) else (BLUE, "o")
         axes.plot([estimate.low, estimate.high], [row, row], color=tint, linewidth=2.0)
         axes.plot(estimate.value, row, shape, color=tint, markersize=5)
-    axes.set_yticks(range(len(names) + 1), [*(short(name) for name in names), "pooled"])
+    axes.set_yticks(range(len(labels)), labels, fontsize=9)
     axes.set_ylim(len(names) + 0.6, -0.6)
-    axes.set_xlabel(f"{label}, 95 % intervals; shaded: range over all records")
+    axes.set_xlabel(f"{label}\n95 % intervals; shaded: range over all records")
     axes.grid(visible=False, axis="y")
     return figure
 

@@ -9,7 +9,16 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from nrs_design.design.impedance import displayed_impedance, sensitivity
-from nrs_design.reporting.style import INK, MUTED, color, legend, marker, new_axes, short, styled
+from nrs_design.reporting.style import (
+    INK,
+    MUTED,
+    color,
+    curve,
+    legend,
+    marker,
+    new_axes,
+    styled,
+)
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -30,17 +39,20 @@ def draw_displayed_impedance(items: Sequence[ImpedanceEvidence]) -> Figure:
     items : sequence of ImpedanceEvidence
         One curve for each controller, in nominal contact.
     """
-    figure, axes = new_axes(4.3)
+    figure, axes = new_axes(3.9)
     omega = _frequencies(items)
     for index, item in enumerate(items):
         shown = np.abs(displayed_impedance(item.problem.loop, item.Mt, item.Bt, omega))
-        axes.loglog(omega, shown, color=color(index), label=f"{short(item.name)}, displayed")
+        look = curve(index, len(items), len(omega))
+        axes.loglog(omega, shown, label=f"{item.name}, displayed", **look)
+    for desired, names in _wanted(items).items():
+        index = next(i for i, item in enumerate(items) if item.name == names[0])
         axes.axhline(
-            item.problem.desired,
-            color=color(index),
+            desired,
+            color=color(index) if len(names) == 1 else INK,
             linestyle=(0, (5, 3)),
             linewidth=1.3,
-            label=f"{short(item.name)}, desired",
+            label=f"{' and '.join(names)}, desired" if len(names) < len(items) else "desired",
         )
     _finish(axes, items, "Impedance magnitude [N·m·s/rad]")
     legend(figure, axes)
@@ -50,19 +62,29 @@ def draw_displayed_impedance(items: Sequence[ImpedanceEvidence]) -> Figure:
 @styled
 def draw_sensitivity(items: Sequence[ImpedanceEvidence]) -> Figure:
     """Draw the magnitude of the sensitivity with its peak Ms, one curve for each controller."""
-    figure, axes = new_axes(4.3)
+    figure, axes = new_axes(3.9)
     omega = _frequencies(items)
     for index, item in enumerate(items):
         magnitude = np.abs(sensitivity(item.problem.loop, item.Mt, item.Bt, omega))
         peak, at = item.margins.sensitivity_peak, item.margins.sensitivity_peak_frequency
-        label = f"{short(item.name)}, Ms = {peak:.3f}"
-        axes.loglog(omega, magnitude, color=color(index), label=label)
+        label = f"{item.name}, Ms = {peak:.3f}"
+        axes.loglog(omega, magnitude, label=label, **curve(index, len(items), len(omega)))
         if math.isfinite(at):
-            axes.plot(at, peak, marker(index), color=color(index), markeredgecolor=INK)
+            axes.plot(
+                at, peak, marker(index), color=color(index), markeredgecolor=INK, markersize=8
+            )
     axes.axhline(1.0, color=MUTED, linewidth=1.0)
     _finish(axes, items, "Sensitivity magnitude |L| [1]")
     legend(figure, axes)
     return figure
+
+
+def _wanted(items: Sequence[ImpedanceEvidence]) -> dict[float, list[str]]:
+    """Return the controllers that ask for each impedance: lines that coincide are one line."""
+    found: dict[float, list[str]] = {}
+    for item in items:
+        found.setdefault(float(item.problem.desired), []).append(item.name)
+    return found
 
 
 def _frequencies(items: Sequence[ImpedanceEvidence]) -> FloatArray:

@@ -3,21 +3,24 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from fractions import Fraction
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from nrs_design.certificates.evidence.fields import rate_words
 from nrs_design.reporting.style import (
     BLUE,
     INK,
     VERMILLION,
-    color,
+    curve,
     legend,
     new_axes,
     new_figure,
-    short,
+    row_labels,
     styled,
 )
+from nrs_design.reporting.text import wrapped
 from nrs_design.switched.system import Time
 
 if TYPE_CHECKING:
@@ -45,8 +48,8 @@ def draw_quadratic(Q: Array, states: Sequence[str]) -> Figure:
     figure, axes = new_axes(2.6 + 0.2 * min(n, _WRITTEN))
     image = _heat_map(axes, Q, written=n <= _WRITTEN)
     if n <= _WRITTEN:
-        labels = [short(name, 14) for name in states]
-        axes.set_xticks(range(n), labels, rotation=0 if n <= 4 else 35)
+        labels = [wrapped(name, 14) for name in states]
+        axes.set_xticks(range(n), labels, rotation=0 if n <= 4 else 60)
         axes.set_yticks(range(n), labels)
     axes.set_xlabel("State j")
     axes.set_ylabel("State i")
@@ -77,7 +80,7 @@ def draw_quadratics(functions: Mapping[str, Array], states: Sequence[str]) -> Fi
         numbers = [str(i + 1) for i in range(n)] if n <= 2 * _WRITTEN else []
         axes.set_xticks(range(len(numbers)), numbers)
         axes.set_yticks(range(len(numbers)), numbers)
-        axes.set_title(short(name, 20), fontsize=9.5)
+        axes.set_title(wrapped(name, 18), fontsize=9)
     for axes in grid[:, 0]:
         axes.set_ylabel("State i")
     for column, axes in enumerate(grid[-1]):
@@ -89,7 +92,7 @@ def draw_quadratics(functions: Mapping[str, Array], states: Sequence[str]) -> Fi
 
 @styled
 def draw_parameter_rates(
-    names: Sequence[str], values: Array, rates: Array, claimed: float
+    names: Sequence[str], values: Array, rates: Array, claimed: Fraction
 ) -> Figure:
     """Draw every mode's decay rate over a constant parameter beside the claimed one.
 
@@ -101,14 +104,14 @@ def draw_parameter_rates(
         From 0 (low end) to 1 (high end).
     rates : ndarray, shape (k, m)
         Decay rates in 1/s.
-    claimed : float
+    claimed : Fraction
         What the certificate claims for all, in 1/s.
     """
     figure, axes = new_axes(3.9)
     for index, name in enumerate(names):
-        axes.plot(values, rates[:, index], color=color(index), label=short(name))
-    label = f"claimed for all: {claimed:.6g} 1/s"
-    axes.axhline(claimed, color=INK, linestyle="--", linewidth=1.3, label=label)
+        axes.plot(values, rates[:, index], label=name, **curve(index, len(names), len(values)))
+    label = f"claimed for all: {rate_words(claimed, Time.CONTINUOUS)}"
+    axes.axhline(float(claimed), color=INK, linestyle="--", linewidth=1.3, label=label)
     axes.set_xlabel("Place in the parameter's range, 0 low end, 1 high end [1]")
     axes.set_ylabel("Decay rate in the norm of Q [1/s]")
     axes.set_xlim(0, 1)
@@ -132,7 +135,7 @@ def _heat_map(axes: Axes, Q: Array, *, written: bool) -> AxesImage:
 
 @styled
 def draw_mode_rates(
-    names: Sequence[str], rates: Array, claimed: float, time: Time, norm: str
+    names: Sequence[str], rates: Array, claimed: Fraction, time: Time, norm: str
 ) -> Figure:
     """Draw every mode's own rate in a norm beside the claimed one.
 
@@ -142,7 +145,7 @@ def draw_mode_rates(
         Of the modes shown.
     rates : ndarray, shape (m,)
         Decay rates in 1/s, or contractions per step.
-    claimed : float
+    claimed : Fraction
         What the certificate claims for all.
     time : Time
         Continuous or discrete.
@@ -150,18 +153,19 @@ def draw_mode_rates(
         Which norm it is, such as ``the norm of Q``.
     """
     continuous = time is Time.CONTINUOUS
-    figure, axes = new_axes(1.5 + 0.27 * len(names))
+    labels, row = row_labels(names)
+    figure, axes = new_axes(1.0 + row * len(names))
     rows = np.arange(len(names))
     axes.plot(rates, rows, "o", color=BLUE, label="this mode alone")
-    label = f"claimed for all: {claimed:.6g}" + (" 1/s" if continuous else "")
-    axes.axvline(claimed, color=VERMILLION, linestyle="--", label=label)
-    axes.set_yticks(rows, [short(name) for name in names])
+    bound, label = float(claimed), f"claimed for all: {rate_words(claimed, time)}"
+    axes.axvline(bound, color=VERMILLION, linestyle="--", label=label)
+    axes.set_yticks(rows, labels, fontsize=9)
     axes.set_ylim(len(names) - 0.5, -0.5)
-    low, high = min(float(rates.min()), claimed), max(float(rates.max()), claimed)
+    low, high = min(float(rates.min()), bound), max(float(rates.max()), bound)
     room = 0.08 * (high - low) or 0.1 * abs(high)
     axes.set_xlim(low - room, high + room)
     quantity = f"Decay rate in {norm} [1/s]" if continuous else "Contraction per step [1]"
-    axes.locator_params(axis="x", nbins=5)
+    axes.locator_params(axis="x", nbins=4)
     axes.set_xlabel(quantity)
     axes.set_ylabel("Mode")
     legend(figure, axes)

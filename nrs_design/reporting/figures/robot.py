@@ -123,7 +123,8 @@ def draw_correction(depth: TiltTable, every: TiltTable) -> Figure:
             depth.mean_ratio[:, joint],
             color=color(joint),
             marker=marker(joint),
-            markevery=step,
+            # At places of its own, so that curves on top of each other show both markers.
+            markevery=(joint * step // len(JOINTS), step),
             markersize=5,
             label=f"{name}, depth only, mean ratio",
         )

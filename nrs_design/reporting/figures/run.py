@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from nrs_design.reporting.style import (
     BLUE,
+    CYCLE,
+    DASHES,
     INK,
     MUTED,
     VERMILLION,
@@ -17,9 +19,10 @@ from nrs_design.reporting.style import (
     legend,
     new_axes,
     new_figure,
-    short,
+    row_labels,
     styled,
 )
+from nrs_design.reporting.text import wrapped
 from nrs_design.simulation.norms import Norm, level_curve
 from nrs_design.switched.system import SwitchedSystem, Time
 
@@ -30,7 +33,10 @@ if TYPE_CHECKING:
     from nrs_design.simulation.norms import Array
     from nrs_design.simulation.switched import TimeResponse
 
-_ROWS = 10
+# States of a family that is nothing but its motion loop.
+MOTION_STATES = ("xp1", "xp2")
+# More modes than these share a row, and a color.
+_ROWS = 24
 
 
 @styled
@@ -56,9 +62,11 @@ def draw_run(
     label : str
         Which norm it is.
     """
-    used = list(dict.fromkeys(response.mode.tolist()))[:_ROWS]
-    figure = new_figure(4.2 + 0.22 * len(used))
-    above, below = figure.subplots(2, 1, sharex=True, height_ratios=[4.0, 0.2 + 0.3 * len(used)])
+    groups = _groups(response, system)
+    labels, height = row_labels([group.name for group in groups])
+    rows = height * len(groups)
+    figure = new_figure(3.6 + rows)
+    above, below = figure.subplots(2, 1, sharex=True, height_ratios=[2.6, rows])
     discrete = system.time is Time.DISCRETE
     shape = {"marker": "o", "markersize": 2.5} if discrete and len(norm) <= 80 else {}
     above.semilogy(
@@ -67,10 +75,9 @@ def draw_run(
     if bound is not None:
         above.semilogy(response.time, bound[1], "--", color=VERMILLION, label=bound[0])
     above.set_ylabel(label)
-    _write_plainly(above)
     if discrete:
         below.locator_params(axis="x", integer=True)
-    _draw_modes(below, response, used, [system.modes[i].name for i in used])
+    _draw_modes(below, response, groups, labels)
     below.set_xlabel("Time [steps]" if discrete else "Time [s]")
     legend(figure, above)
     return figure
@@ -92,18 +99,18 @@ def draw_mode_levels(
         Root of the function of each mode by its name; all at the value of the first active one at
         the start.
     """
-    figure, axes = new_axes(5.2)
-    line = "o-" if system.time is Time.DISCRETE else "-"
-    used = list(dict.fromkeys(response.mode.tolist()))[:_ROWS]
-    start = float(norms[system.modes[used[0]].name](response.state[0]))
-    names = [system.modes[mode].name for mode in used]
-    for row, (mode, name) in enumerate(zip(used, names, strict=True)):
-        path = _path_in(response, mode)
-        axes.plot(*path.T, line, color=color(row), markersize=3, label=f"mode {short(name)}")
-    for row, name in enumerate(names):
-        x, y = level_curve(norms[name], start)
-        axes.plot(x, y, "--", color=color(row), linewidth=1.2, label=f"level of V, {short(name)}")
-    _finish_plane(figure, axes, response, system, 3)
+    figure, axes = new_axes(4.6)
+    groups = _groups(response, system)
+    start = float(norms[system.modes[int(response.mode[0])].name](response.state[0]))
+    _draw_paths(axes, response, system, groups)
+    named = [group for group in groups if len(group.modes) == 1]
+    for row, group in enumerate(named):
+        x, y = level_curve(norms[group.name], start)
+        # Dashes in turn, so that level curves on top of each other show all their colors.
+        dashes = (5.0 * row, (5.0, 5.0 * max(min(len(named), 3) - 1, 1)))
+        label = f"level of V, {group.name}"
+        axes.plot(x, y, linestyle=dashes, color=group.tint, linewidth=1.2, label=label)
+    _finish_plane(figure, axes, response, system)
     return figure
 
 
@@ -127,77 +134,94 @@ def draw_phase_plane(
     levels : sequence of float
         Level curves to draw, relative to the start; the first is named.
     """
-    figure, axes = new_axes(5.0)
-    # In discrete time only the points are states; the lines lead from one to the next.
-    line = "o-" if system.time is Time.DISCRETE else "-"
+    figure, axes = new_axes(4.4)
     if norm is not None:
         _draw_levels(axes, norm, float(norm(response.state[0])), levels)
-    for row, mode in enumerate(list(dict.fromkeys(response.mode.tolist()))[:_ROWS]):
-        path = _path_in(response, mode)
-        name = f"mode {short(system.modes[mode].name)}"
-        axes.plot(path[:, 0], path[:, 1], line, color=color(row), markersize=3, label=name)
-    _finish_plane(figure, axes, response, system, 3)
+    _draw_paths(axes, response, system, _groups(response, system))
+    _finish_plane(figure, axes, response, system)
     return figure
 
 
+@dataclass(frozen=True)
+class _Group:
+    """Modes that are drawn alike: one, or all that there is no room for."""
+
+    name: str
+    modes: tuple[int, ...]
+    tint: str
+
+
+def _groups(response: TimeResponse, system: SwitchedSystem) -> list[_Group]:
+    """Return the modes of a run in the order of their first use, the last ones together."""
+    used = list(dict.fromkeys(response.mode.tolist()))
+    single = used if len(used) <= _ROWS else used[: _ROWS - 1]
+    groups = [_Group(system.modes[m].name, (m,), color(i)) for i, m in enumerate(single)]
+    if len(used) > len(single):
+        rest = tuple(used[len(single) :])
+        groups.append(_Group(f"{len(rest)} other modes", rest, MUTED))
+    return groups
+
+
+def _draw_paths(
+    axes: Axes, response: TimeResponse, system: SwitchedSystem, groups: Sequence[_Group]
+) -> None:
+    # In discrete time only the points are states; the lines lead from one to the next.
+    shape = "o" if system.time is Time.DISCRETE else "None"
+    for row, group in enumerate(groups):
+        path = _path_in(response, group.modes)
+        label = f"mode {group.name}" if len(group.modes) == 1 else group.name
+        dashes = DASHES[row // len(CYCLE) % len(DASHES)]
+        axes.plot(
+            *path.T, marker=shape, linestyle=dashes, color=group.tint, markersize=3, label=label
+        )
+
+
 def _finish_plane(
-    figure: Figure, axes: Axes, response: TimeResponse, system: SwitchedSystem, columns: int
+    figure: Figure, axes: Axes, response: TimeResponse, system: SwitchedSystem
 ) -> None:
     axes.plot(*response.state[0], "o", color=INK, label="start")
     axes.plot(0, 0, "+", color=MUTED, markersize=11, label="rest")
-    axes.set_xlabel(_with_unit(system.states[0]))
-    axes.set_ylabel(_with_unit(system.states[1]))
-    legend(figure, axes, columns)
+    axes.set_xlabel(_axis_label(system.states, 0))
+    axes.set_ylabel(_axis_label(system.states, 1))
+    legend(figure, axes, 3)
 
 
-def _write_plainly(axes: Axes) -> None:
-    """Write 0.6 rather than 6 times a power of ten where the axis spans few decades."""
-    low, high = axes.get_ylim()
-    if high > 200 * low:
-        return
-    digits = (1, 3) if high > 30 * low else (1, 2, 3, 4, 6)
-
-    def text(value: float, position: float) -> str:
-        digit = value / 10.0 ** math.floor(math.log10(value) + 1e-9)
-        # On a short axis, the ticks are chosen as on a linear one, and all are written.
-        wanted = high < 3 * low or min(abs(digit - d) for d in digits) < 0.01
-        return f"{value:.4g}" if wanted else ""
-
-    axes.yaxis.set_major_formatter(text)
-    axes.yaxis.set_minor_formatter(text)
+def _axis_label(states: tuple[str, ...], index: int) -> str:
+    """Label a state; given matrices and the canonical form of G come without units."""
+    name = wrapped(states[index], 40)
+    if states == MOTION_STATES:
+        return f"State {name} of G, canonical form [no unit]"
+    return f"State {name}" if "[" in name else f"State {name} [no unit given]"
 
 
-def _with_unit(state: str) -> str:
-    """Label a state; given matrices and the canonical form come without units."""
-    return f"State {state}" if "[" in state else f"State {state} [no unit given]"
-
-
-def _draw_modes(axes: Axes, response: TimeResponse, used: list[int], names: list[str]) -> None:
+def _draw_modes(
+    axes: Axes, response: TimeResponse, groups: Sequence[_Group], labels: Sequence[str]
+) -> None:
     """Draw one bar for each time that a mode is active, one row per mode."""
     edges = np.flatnonzero(np.diff(response.mode)) + 1
     starts = np.concatenate([[0], edges])
     ends = np.concatenate([edges, [len(response.mode)]])
-    for row, mode in enumerate(used):
+    for row, group in enumerate(groups):
         spans = [
             (response.time[a], response.time[b] - response.time[a])
             for a, b in zip(starts, ends, strict=True)
-            if response.mode[a] == mode
+            if response.mode[a] in group.modes
         ]
-        axes.broken_barh(spans, (row - 0.35, 0.7), color=color(row), linewidth=0)
-    axes.set_yticks(range(len(used)), [short(name) for name in names])
-    axes.set_ylim(len(used) - 0.4, -0.6)
+        axes.broken_barh(spans, (row - 0.35, 0.7), color=group.tint, linewidth=0)
+    axes.set_yticks(range(len(groups)), labels, fontsize=9)
+    axes.set_ylim(len(groups) - 0.4, -0.6)
     axes.set_title("Active mode", loc="left", fontsize=9.5)
     axes.grid(visible=False, axis="y")
 
 
-def _path_in(response: TimeResponse, mode: int) -> Array:
+def _path_in(response: TimeResponse, modes: tuple[int, ...]) -> Array:
     """Return the states with every step of another mode cut out by NaN."""
     ends = response.state[1:].copy()
     begins = response.state[:-1].copy()
-    other = response.mode != mode
-    ends[other], begins[other] = np.nan, np.nan
+    inside = np.isin(response.mode, modes)
+    ends[~inside], begins[~inside] = np.nan, np.nan
     gaps = np.full_like(begins, np.nan)
-    gaps[:-1][response.mode[1:] == mode] = begins[1:][response.mode[1:] == mode]
+    gaps[:-1][inside[1:]] = begins[1:][inside[1:]]
     return np.stack([begins, ends, gaps], axis=1).reshape(-1, 2)
 
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from nrs_design.reporting.style import CYCLE, INK, color, marker, new_figure, styled
+from nrs_design.reporting.style import CYCLE, DASHES, INK, color, marker, new_figure, styled
 from nrs_design.simulation.tracking import COORDINATE, MOTIONS, Record
 from nrs_design.simulation.tracking.record import DISPLAY
 
@@ -67,7 +67,9 @@ def _draw_motion(axes: Axes, records: Sequence[Record], controllers: list[str]) 
             axes.plot(phase[shown], wanted, color=INK, linestyle=(0, (1, 2)), zorder=5)
         place = controllers.index(record.controller)
         values = DISPLAY[index] * record.measured[shown, index]
-        axes.plot(phase[shown], values, color=color(place), linewidth=1.4)
+        # Controllers that track well lie on top of each other: the later ones have gaps.
+        dashes = DASHES[place % len(DASHES)]
+        axes.plot(phase[shown], values, color=color(place), linestyle=dashes, linewidth=1.4)
     axes.set_title(f"{_NAMES[index]} moves", fontsize=10)
     axes.set_xlabel("Periods")
     axes.set_ylabel(f"{_NAMES[index]} [{_UNITS[index]}]")
@@ -102,4 +104,4 @@ def _legend(figure: Figure, controllers: list[str], on_robot: bool) -> None:
         handles.append(
             Line2D([], [], color=INK, marker=marker(3), ls="none", ms=4.5, label="on the robot")
         )
-    figure.legend(handles=handles, loc="outside lower center", ncols=3)
+    figure.legend(handles=handles, loc="outside lower center", ncols=2)

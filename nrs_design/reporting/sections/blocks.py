@@ -10,11 +10,11 @@ from nrs_design.certificates.evidence import (
     Shows,
 )
 from nrs_design.certificates.evidence.block_triangular import diagonal_block
-from nrs_design.certificates.evidence.fields import rate_text
 from nrs_design.reporting.document import Block, Bullets, Illustration, Paragraph, Section, Table
 from nrs_design.reporting.figures.blocks import draw_blocks
 from nrs_design.reporting.formatting import shortened
 from nrs_design.reporting.sections.no_common_quadratic import obstruction_blocks
+from nrs_design.spec.bounds import rounded_down, rounded_up
 from nrs_design.switched.system import SwitchedSystem, Time
 
 _LISTED = 32
@@ -24,6 +24,7 @@ _STRUCTURE = (
 )
 _NAMES = {
     "common-quadratic": "common quadratic function",
+    "mode-quadratic": "quadratic function of each mode",
     "no-common-quadratic": "no common quadratic function exists",
     "unstable-mode": "a mode that is not stable",
     "unstable-mixture": "an average that is not stable",
@@ -107,4 +108,6 @@ def _kind(part: AbstractEvidence) -> str:
 
 def _rate(system: SwitchedSystem, part: AbstractEvidence) -> str:
     rate = part.proved_rate(system)
-    return "" if rate is None else rate_text(rate, system.time)
+    if rate is None:
+        return ""
+    return rounded_down(rate) if system.time is Time.CONTINUOUS else rounded_up(rate)

@@ -16,6 +16,7 @@ from nrs_design.reporting.document import Block, Illustration, Paragraph, Sectio
 from nrs_design.reporting.figures.complex_plane import draw_root_locus
 from nrs_design.reporting.figures.impedance import draw_displayed_impedance, draw_sensitivity
 from nrs_design.reporting.formatting import number, polynomial, root, roots
+from nrs_design.reporting.sections.goals import goals_section
 from nrs_design.spec import ImpedanceControllerSpec, InteractionDesignSpec
 
 if TYPE_CHECKING:
@@ -72,6 +73,8 @@ def design_sections(
         parts.append(_impedance_section(evidence.impedance))
     if evidence.force:
         parts.append(_force_section(evidence))
+    if evidence.impedance or evidence.force:
+        parts.append(goals_section(spec, evidence))
     return tuple(parts)
 
 

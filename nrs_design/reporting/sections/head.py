@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from fractions import Fraction
 from typing import TYPE_CHECKING
 
 from nrs_design import __version__
 from nrs_design.certificates.evidence import AbstractEvidence, ModePolynomial, ModeQuadratic, Shows
-from nrs_design.certificates.evidence.fields import rate_text
-from nrs_design.reporting.formatting import number, plural, shortened
+from nrs_design.reporting.formatting import plural, shortened
 from nrs_design.spec import InteractionDesignSpec, RobotSpec
+from nrs_design.spec.bounds import at_least, at_most, lower, upper
 from nrs_design.switched.system import SwitchedSystem, Time
 
 if TYPE_CHECKING:
@@ -78,31 +79,28 @@ def switching_words(result: Result) -> str:
     return "; ".join(words)
 
 
-def proved_rate(system: SwitchedSystem, evidence: AbstractEvidence | None) -> float | None:
-    """Return the proved rate in floating point, or None where no decay is proved."""
+def proved_rate(system: SwitchedSystem, evidence: AbstractEvidence | None) -> Fraction | None:
+    """Return the proved rate, or None where no decay is proved."""
     if evidence is None or evidence.shows is not Shows.STABILITY:
         return None
-    rate = evidence.proved_rate(system)
-    return None if rate is None else float(rate)
+    return evidence.proved_rate(system)
 
 
 def _rate(system: SwitchedSystem, evidence: AbstractEvidence | None) -> list[tuple[str, str]]:
-    if evidence is None or evidence.shows is not Shows.STABILITY:
+    rate = proved_rate(system, evidence)
+    if evidence is None or rate is None:
         return []
-    rate = evidence.proved_rate(system)
-    if rate is None:
-        return []
-    text = rate_text(rate, system.time)
-    constant = (
-        ", up to a constant factor" if isinstance(evidence, ModeQuadratic | ModePolynomial) else ""
-    )
+    up_to_a_constant = isinstance(evidence, ModeQuadratic | ModePolynomial)
+    constant = ", up to a constant factor" if up_to_a_constant else ""
     open_end = ", and any slower one" if evidence.kind == "block-triangular" else ""
     if open_end:
         # The slowest block's rate itself is not reached where blocks are coupled.
         constant = ", not attained, up to a constant factor"
     if system.time is Time.CONTINUOUS:
-        return [("Proved decay rate alpha", f"{text} 1/s{constant}")]
-    return [("Proved contraction rho", f"{text} per step{constant}")]
+        text = at_least(rate, "1/s").removeprefix("= ")
+        return [("Proved decay rate alpha", f"{text}{constant}")]
+    text = at_most(rate, "per step").removeprefix("= ")
+    return [("Proved contraction rho", f"{text}{constant}")]
 
 
 def _limit(certification: Certification) -> list[tuple[str, str]]:
@@ -110,9 +108,10 @@ def _limit(certification: Certification) -> list[tuple[str, str]]:
     limit, evidence = certification.rate_limit, certification.evidence
     if limit is None or evidence is None or evidence.shows is not Shows.STABILITY:
         return []
+    attained = ", which one solution attains (floating point)"
     if certification.system.time is Time.CONTINUOUS:
-        return [("No proof can exceed", f"{number(limit, 6)} 1/s, which one solution attains")]
-    return [("No proof can go below", f"{number(limit, 6)} per step, which one solution attains")]
+        return [("No proof can exceed", f"{upper(Fraction(limit))} 1/s{attained}")]
+    return [("No proof can go below", f"{lower(Fraction(limit))} per step{attained}")]
 
 
 def _provenance(result: Result) -> Iterator[tuple[str, str]]:

@@ -18,6 +18,7 @@ from nrs_design.certificates.evidence import (
     UnstableValue,
 )
 from nrs_design.reporting.formatting import shortened
+from nrs_design.spec.bounds import rounded_up
 from nrs_design.switched.constant import system_at
 from nrs_design.switched.system import SwitchedSystem, Time
 
@@ -278,4 +279,4 @@ def refutation_limits(evidence: AbstractEvidence) -> tuple[str, ...]:
 
 def _dwell(system: SwitchedSystem) -> str:
     unit = "s" if system.time is Time.CONTINUOUS else "steps"
-    return f"{float(system.switching.dwell_time):.10g} {unit}"
+    return rounded_up(system.switching.dwell_time, unit)

@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+import math
+from fractions import Fraction
+
 from nrs_design.certificates.evidence import ModeQuadratic
 from nrs_design.reporting.document import Block, Illustration, Paragraph, Section
 from nrs_design.reporting.figures.lyapunov import draw_quadratics
-from nrs_design.reporting.formatting import number, shortened
+from nrs_design.reporting.formatting import shortened
 from nrs_design.reporting.sections.quadratic import SCALED, matrix_table
 from nrs_design.simulation.admissible import norm_ratio
 from nrs_design.simulation.norms import mode_functions
+from nrs_design.spec.bounds import at_most
 from nrs_design.switched.system import SwitchedSystem, Time
 
 _TABLES = 4
@@ -27,6 +31,8 @@ def mode_quadratic_section(system: SwitchedSystem, evidence: ModeQuadratic) -> S
     """Show the matrix of every mode."""
     functions = mode_functions(evidence)
     decay = "exp(-alpha t)" if system.time is Time.CONTINUOUS else "rho^t"
+    c = norm_ratio(functions)
+    size = f"{at_most(Fraction(c))} (floating point)" if math.isfinite(c) else "beyond floats"
     text = (
         "The certificate holds one matrix Q for each mode. While a mode is active, its function "
         f"x' Q x decreases at the claimed rate{except_left(evidence)}; when the next mode takes "
@@ -38,7 +44,7 @@ def mode_quadratic_section(system: SwitchedSystem, evidence: ModeQuadratic) -> S
     if not evidence.leaving:
         text += (
             " In the Euclidean norm of the states, in their units, the bound is c "
-            f"{decay} with c = {number(norm_ratio(functions), 3)}."
+            f"{decay} with c {size}."
         )
     blocks: list[Block] = [Paragraph(text)]
     for name, Q in list(functions.items())[:_TABLES]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+from fractions import Fraction
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -28,14 +29,14 @@ _DRAWN = 256
 _MANY_STATES = 6
 
 
-def modes_section(system: SwitchedSystem, rate: float | None) -> Section:
+def modes_section(system: SwitchedSystem, rate: Fraction | None) -> Section:
     """List the modes with their eigenvalues.
 
     Parameters
     ----------
     system : SwitchedSystem
         Modes.
-    rate : float or None
+    rate : Fraction or None
         The proved rate; None where nothing is proved.
     """
     values = eigenvalues(system)
@@ -95,7 +96,7 @@ def _table(system: SwitchedSystem, values: Spectra, listed: NDArray[np.int64]) -
     return Table(title, ("Mode", f"Eigenvalues{unit}", size), tuple(rows))
 
 
-def _caption(system: SwitchedSystem, drawn: int, rate: float | None) -> str:
+def _caption(system: SwitchedSystem, drawn: int, rate: Fraction | None) -> str:
     some = "" if drawn == len(system.modes) else f" The {drawn} slowest modes are drawn."
     lasting = len(system.lasting_modes())
     which = "all" if lasting == len(system.modes) else "those of modes that may last"

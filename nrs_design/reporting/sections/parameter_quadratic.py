@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from nrs_design.certificates.evidence import ParameterQuadratic
-from nrs_design.certificates.evidence.fields import rate_text
+from nrs_design.certificates.evidence.fields import rate_words
 from nrs_design.reporting.document import Illustration, Paragraph, Section, Table
 from nrs_design.reporting.figures.lyapunov import draw_parameter_rates, draw_quadratics
 from nrs_design.reporting.formatting import number
@@ -40,7 +40,7 @@ def parameter_quadratic_section(system: SwitchedSystem, evidence: ParameterQuadr
             Illustration(
                 "quadratics", "Matrices at both ends", SCALED, draw_quadratics(ends, system.states)
             ),
-            _table(names, values, rates, rate_text(evidence.rate, system.time)),
+            _table(names, values, rates, rate_words(evidence.rate, system.time)),
             Illustration(
                 "parameter-rates",
                 "Decrease over the parameter",
@@ -48,7 +48,7 @@ def parameter_quadratic_section(system: SwitchedSystem, evidence: ParameterQuadr
                 "value of the parameter: the rate at which the norm of Q decays at least. All "
                 f"curves lie above the claimed rate, over the whole range.{some}",
                 draw_parameter_rates(
-                    [names[i] for i in hardest], values, rates[:, hardest], float(evidence.rate)
+                    [names[i] for i in hardest], values, rates[:, hardest], evidence.rate
                 ),
             ),
         ),
@@ -66,4 +66,4 @@ def _table(names: list[str], values: Array, rates: Array, claimed: str) -> Table
         for i in order
     )
     columns = ("Mode", "Smallest decay rate [1/s]", "At the parameter [0 low, 1 high]")
-    return Table(f"Slowest decay over the parameter; claimed: {claimed} 1/s", columns, rows)
+    return Table(f"Slowest decay over the parameter; claimed: {claimed}", columns, rows)

@@ -6,7 +6,7 @@ from fractions import Fraction
 
 import numpy as np
 
-from nrs_design.certificates.evidence.fields import rate_text
+from nrs_design.certificates.evidence.fields import rate_words
 from nrs_design.reporting.document import Block, Illustration, Table
 from nrs_design.reporting.figures.lyapunov import draw_mode_rates
 from nrs_design.reporting.formatting import number
@@ -41,7 +41,7 @@ def rate_blocks(
     border = "right of the claimed rate" if continuous else "left of the claimed contraction"
     some = "" if len(names) == len(rates) else f" The {len(names)} modes with the least slack."
     quantity = "Decay rate" if continuous else "Contraction"
-    figure = draw_mode_rates(names, rates[order], float(claimed), system.time, norm)
+    figure = draw_mode_rates(names, rates[order], claimed, system.time, norm)
     return (
         _table(system, rates[order], names, claimed, f"{quantity} in {norm}"),
         Illustration(
@@ -63,6 +63,5 @@ def _table(
         rows.append((name, number(rate, 6), number(slack, 3)))
     unit = " [1/s]" if continuous else " [1]"
     some = "" if len(rows) == len(system.modes) else f" ({len(rows)} with the least slack)"
-    text = rate_text(claimed, system.time) + (" 1/s" if continuous else "")
-    title = f"Rate of every mode alone{some}; claimed for all: {text}"
+    title = f"Rate of every mode alone{some}; claimed for all: {rate_words(claimed, system.time)}"
     return Table(title, ("Mode", f"{heading}{unit}", f"Slack{unit}"), tuple(rows))

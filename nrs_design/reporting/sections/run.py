@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from fractions import Fraction
+from sys import float_info
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -18,7 +19,12 @@ from nrs_design.certificates.evidence import (
     ParameterQuadratic,
 )
 from nrs_design.reporting.document import Illustration, Section
-from nrs_design.reporting.figures.run import draw_mode_levels, draw_phase_plane, draw_run
+from nrs_design.reporting.figures.run import (
+    MOTION_STATES,
+    draw_mode_levels,
+    draw_phase_plane,
+    draw_run,
+)
 from nrs_design.reporting.sections.modes import hardest_modes
 from nrs_design.simulation.admissible import active_norms, admissible_run
 from nrs_design.simulation.margins import parameter_rates
@@ -68,6 +74,7 @@ _RULED = (
     "whichever loses the least of the norm per time. It is a bad run, not the worst one."
 )
 _HOLDS = "The dashed line is the bound of the certificate, which holds for every switching signal."
+PATH = "Path of the state, one color for each active mode."
 _TITLE = "Switching against the proved bound"
 
 
@@ -177,8 +184,8 @@ def _ruled(system: SwitchedSystem, evidence: ModeQuadratic) -> tuple[Illustratio
     return run, Illustration(
         "phase-plane",
         "The same run in the plane of the two states",
-        "Path of the state, one color for each active mode, with a level curve of each mode's own "
-        "function, all at one value. While a mode is active, its own function decreases"
+        f"{PATH} {plane_axes(system)} Dashed is a level curve of each mode's own function, all at "
+        "one value. While a mode is active, its own function decreases"
         + (", except in a mode that must be left." if evidence.leaving else ".")
         + _jumps(system),
         draw_mode_levels(response, hardest, roots),
@@ -282,6 +289,8 @@ def _until_small(response: TimeResponse, values: Array) -> TimeResponse:
 def _horizon(system: SwitchedSystem, claimed: float) -> tuple[float, int]:
     """Return step and number of steps in which the bound falls by three decades, if few enough."""
     rate = claimed if system.time is Time.CONTINUOUS else -math.log(claimed)
+    # A contraction of 1 - 1e-21 is 1 in floating point.
+    rate = max(rate, float_info.min)
     step = fine_step(system)
     steps = math.ceil(min(_DECAY / (rate * step), float(_STEPS)))
     if system.time is Time.CONTINUOUS and steps < _FEWEST:
@@ -305,9 +314,24 @@ def _phase_plane(
         Illustration(
             "phase-plane",
             "The same run in the plane of the two states",
-            f"Path of the state, one color for each active mode.{inside}{_jumps(system)}",
+            f"{PATH} {plane_axes(system)}{inside}{_jumps(system)}",
             draw_phase_plane(response, system, norm, levels),
         ),
+    )
+
+
+def plane_axes(system: SwitchedSystem) -> str:
+    """Say what the axes of a plane of two states are."""
+    first, second = system.states
+    if system.states == MOTION_STATES:
+        return (
+            f"The axes are the two states themselves, no projection: {first} and {second} of the "
+            f"motion loop G in controllable canonical form, {first}' = {second}, which have no "
+            "unit of their own."
+        )
+    return (
+        f"The axes are the two states themselves, no projection: {first} and {second} in the "
+        "coordinates of the matrices that the spec gives."
     )
 
 

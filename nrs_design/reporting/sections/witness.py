@@ -21,6 +21,7 @@ from nrs_design.reporting.document import Block, Illustration, Paragraph, Sectio
 from nrs_design.reporting.figures.complex_plane import draw_eigenvalues
 from nrs_design.reporting.figures.run import draw_phase_plane, draw_run
 from nrs_design.reporting.formatting import number, plural, roots
+from nrs_design.reporting.sections.run import PATH, plane_axes
 from nrs_design.simulation.norms import Array
 from nrs_design.simulation.periodic import (
     PeriodicRun,
@@ -30,6 +31,7 @@ from nrs_design.simulation.periodic import (
     steps_of_mixture,
 )
 from nrs_design.simulation.switched import TimeResponse, alone, eigenvalues, unstable_run
+from nrs_design.spec.bounds import nearly
 from nrs_design.switched.constant import system_at
 from nrs_design.switched.system import SwitchedSystem, Time
 
@@ -69,8 +71,8 @@ def _mode(system: SwitchedSystem, evidence: UnstableMode) -> tuple[Block, ...]:
     run = Illustration(
         "run",
         f"Staying in mode {evidence.mode}",
-        f"Simulated from the eigenvector of the eigenvalue {eigenvalue}: the state does not decay. "
-        "No other mode is used, which the switching allows.",
+        f"Simulated from the eigenvector of the eigenvalue (about {eigenvalue}): the state does "
+        "not decay. No other mode is used, which the switching allows.",
         draw_run(response, _norms(response), _growth(single, response), single, _EUCLIDEAN),
     )
     return (run, *_phase_plane(single, response))
@@ -137,7 +139,7 @@ def _steps_table(system: SwitchedSystem, evidence: UnstablePeriod, unit: str) ->
     resets = _resets(system, list(zip(names, (*names[1:], *names[:1]), strict=True)), evidence)
     head = ("Step", "Mode", f"Time in it [{unit}]", *(("Then",) if any(resets) else ()))
     rows = tuple(
-        (str(k + 1), name, f"{float(time):.6g}", *((resets[k],) if any(resets) else ()))
+        (str(k + 1), name, nearly(time), *((resets[k],) if any(resets) else ()))
         for k, (name, time) in enumerate(evidence.steps[:_LISTED])
     )
     more = len(evidence.steps) - len(rows)
@@ -215,7 +217,7 @@ def _phase_plane(system: SwitchedSystem, response: TimeResponse) -> tuple[Illust
         Illustration(
             "phase-plane",
             "The same run in the plane of the two states",
-            "Path of the state, one color for each active mode.",
+            f"{PATH} {plane_axes(system)}",
             draw_phase_plane(response, system),
         ),
     )

@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass, replace
 
+import numpy as np
 import pytest
 
 from nrs_design.certificates.evidence import AbstractEvidence, Shows
@@ -20,6 +21,7 @@ class Claimed(AbstractEvidence):
     kind = "claimed"
     matrices: tuple = ()
     misfit: str | None = None
+    shift: int = 0
 
     @property
     def shows(self):
@@ -29,7 +31,8 @@ class Claimed(AbstractEvidence):
         return self.misfit
 
     def forms(self, system):
-        return (("it fails", form) for form in self.matrices)
+        for form in self.matrices:
+            yield "it fails", tuple(tuple(v << self.shift for v in row) for row in form)
 
     def claim(self, system):
         return ""
@@ -62,8 +65,18 @@ def test_one_bad_form_among_good_ones_is_found(form):
 
 
 def test_a_form_too_large_is_no_proof():
-    fault = Claimed((((1 << MAX_WORK,),),)).find_fault(SYSTEM)
+    fault = Claimed((((1,),),), shift=MAX_WORK).find_fault(SYSTEM)
     assert "too large to check" in fault
+
+
+@pytest.mark.parametrize(
+    ("number", "said"),
+    [(10**4300, "14285 bits"), (np.int64(3), "int64"), (3.0, "float")],
+    ids=["long", "NumPy", "float"],
+)
+def test_numbers_that_no_file_can_hold_are_no_proof(number, said):
+    """Integers of NumPy overflow without a word, long ones cannot be written."""
+    assert said in Claimed((((number,),),)).find_fault(SYSTEM)
 
 
 def test_a_misfit_comes_before_the_forms():

@@ -1,15 +1,20 @@
 """Numbers in certificate files: nothing but exact integers and ratios gets in."""
 
+import json
 from decimal import Decimal
 from fractions import Fraction
 
+import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from nrs_design.certificates.evidence import BlockTriangular, CommonQuadratic
 from nrs_design.certificates.evidence.fields import (
+    find_unreadable,
     matrix_fields,
     rate_text,
+    rate_words,
     read_integer,
     read_integers,
     read_matrix,
@@ -18,6 +23,7 @@ from nrs_design.certificates.evidence.fields import (
 )
 from nrs_design.certificates.exact import MAX_WORK
 from nrs_design.switched.system import Time
+from tests.support import number_in
 
 WHOLE = st.integers(-(2**70), 2**70)
 
@@ -76,6 +82,54 @@ def test_a_ratio_over_zero_is_no_number():
 @given(st.fractions(min_value="1/1000000", max_value=10**6))
 def test_a_printed_rate_never_promises_more_than_the_proof(rate):
     # Decay of a continuous system is faster the larger alpha is, of a discrete one the smaller rho.
-    assert Fraction(rate_text(rate, Time.CONTINUOUS)) <= rate
-    assert Fraction(rate_text(rate, Time.DISCRETE)) >= rate
-    assert abs(Fraction(rate_text(rate, Time.CONTINUOUS)) / rate - 1) < Fraction(1, 10**5)
+    slower, larger = (number_in(rate_text(rate, time)) for time in Time)
+    assert slower <= rate <= larger
+    assert abs(slower / rate - 1) < Fraction(1, 10**5)
+
+
+@pytest.mark.parametrize(
+    ("rate", "continuous", "discrete"),
+    [
+        (Fraction(1, 2), "alpha = 0.5 1/s", "rho = 0.5"),
+        (Fraction("42.60546875"), "alpha = 42.60546875 1/s", "rho = 42.60546875"),
+        (Fraction(2, 3), "alpha >= 0.666666 1/s", "rho <= 0.666667"),
+        (1 - Fraction(1, 3 * 10**21), "alpha >= 0.999999 1/s", "rho <= 1 - 3.33333e-22"),
+    ],
+)
+def test_words_of_a_rate_say_whether_it_is_rounded(rate, continuous, discrete):
+    assert rate_words(rate, Time.CONTINUOUS) == continuous
+    assert rate_words(rate, Time.DISCRETE) == discrete
+
+
+LONG = Fraction(1, 10**2000)
+
+
+@pytest.mark.parametrize(
+    ("value", "said"),
+    [
+        (10**4300, "14285 bits"),
+        (((1, 2), (3, -(10**4300))), "14285 bits"),
+        (LONG, "more than 6640"),
+        ((("m0", LONG),), "more than 6640"),
+        (np.int64(3), "type int64"),
+        (((1, np.int64(2)),), "type int64"),
+        (0.5, "type float"),
+        (True, "type bool"),
+        (CommonQuadratic(((np.int8(1),),), 0, Fraction(1, 2)), "type int8"),
+        (BlockTriangular(((0,),), ((0, CommonQuadratic(((1.0,),), 0, LONG)),)), "type float"),
+        (((),) * 100_001, "100001 entries"),
+    ],
+    ids=lambda value: type(value).__name__,
+)
+def test_numbers_that_no_file_can_hold(value, said):
+    assert said in find_unreadable(value)
+
+
+@given(
+    st.integers(-(10**4000), 10**4000),
+    st.builds(Fraction, st.integers(0, 10**1900), st.integers(1, 10**1900)),
+)
+def test_numbers_that_a_file_can_hold(number, ratio):
+    assert find_unreadable((number, ("m0", ratio), None)) is None
+    assert read_integer(json.loads(json.dumps(number))) == number
+    assert read_ratio(str(ratio)) == ratio

@@ -9,7 +9,13 @@ from hypothesis import strategies as st
 
 from nrs_design.certificates.certify import certify
 from nrs_design.certificates.evidence import Shows, UnstableMode
-from nrs_design.certificates.evidence.unstable_mode import is_stable, worst_eigenvalue
+from nrs_design.certificates.evidence.unstable_mode import (
+    affordable,
+    is_stable,
+    worst_eigenvalue,
+)
+from nrs_design.certificates.exact import MAX_SPECTRUM_WORK, spectrum_work
+from nrs_design.errors import TooLargeError
 from nrs_design.switched.system import Reset, Stay, Switching, Time
 from tests.support import dayawansa_martin, family, holds, is_stable_by_lyapunov, matrix
 
@@ -95,8 +101,8 @@ def test_words_and_fields():
     assert evidence.shows is Shows.INSTABILITY
     assert evidence.proved_rate(system) is None
     assert evidence.claim(system) == (
-        "Mode m0 is not Hurwitz (eigenvalue 2): staying in it is an admissible switching signal, "
-        "so x' = A x is not uniformly exponentially stable."
+        "Mode m0 is not Hurwitz (eigenvalue about 2): staying in it is an admissible switching "
+        "signal, so x' = A x is not uniformly exponentially stable."
     )
     assert evidence.to_fields() == {"mode": "m0", "eigenvalue": "2"}
     # The eigenvalue of a file is not believed but computed again.
@@ -117,3 +123,39 @@ def test_a_mode_that_must_be_left_refutes_nothing():
     assert evidence.find_fault(replace(system, switching=Switching(Fraction(3)))) is None
     assert "does not cover this kind of switching" in evidence.find_fault(system)
     assert not holds(system, evidence)
+
+
+def long_mode(n: int, bits: int) -> list[list[int]]:
+    """Return a dense matrix with entries of so many bits, none of them structured."""
+    return [
+        [(-1) ** (i * j) * (2**bits - 1) // (i + 2 * j + 1) for j in range(n)] for i in range(n)
+    ]
+
+
+@pytest.mark.parametrize("time", Time)
+def test_what_would_take_minutes_is_not_decided(time):
+    system = family(long_mode(30, 40_000), time=time)
+    with pytest.raises(TooLargeError, match="too large"):
+        is_stable(system.modes[0].A, time)
+    with pytest.raises(TooLargeError, match="too large"):
+        worst_eigenvalue(system.modes[0].A, time)
+    assert "too large to check" in UnstableMode("m0", "1").find_fault(system)
+    certification = certify(system)
+    assert str(certification.verdict) == "inconclusive"
+    assert any("too large" in attempt.outcome for attempt in certification.attempts)
+
+
+def test_many_modes_share_what_is_affordable():
+    system = family(*[long_mode(16, 1000)] * 4)
+    decided = [fits for _, fits in affordable(system.modes)]
+    assert decided == sorted(decided, reverse=True)
+    assert decided[0]
+    assert not decided[-1]
+    work = spectrum_work(16, 1000)
+    assert sum(decided) == MAX_SPECTRUM_WORK // work
+
+
+def test_the_predicted_work_is_that_of_long_numbers():
+    # Twice the rows of long numbers: n^5 times the work; of short ones n^4.
+    assert 31 < spectrum_work(32, 10**6) / spectrum_work(16, 10**6) < 33
+    assert 16 <= spectrum_work(32, 4) / spectrum_work(16, 4) < 20

@@ -6,8 +6,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from nrs_design.certificates.checker import Checker
+from nrs_design.certificates.evidence.fields import MAX_INTEGER_BITS
 from nrs_design.certificates.search.rounding import (
-    MAX_ENTRY_BITS,
     RATE_BITS,
     round_rate,
     round_to_evidence,
@@ -90,10 +90,18 @@ def test_candidates_at_the_ends_of_the_range(factor):
     assert holds(SYSTEM, evidence)
 
 
+@given(st.integers(20, 1900))
+def test_rates_beyond_floating_point(digits):
+    tiny = Fraction(1, 10**digits)
+    rounded = round_rate(tiny, Time.CONTINUOUS)
+    assert tiny * (1 - Fraction(1, 2 ** (RATE_BITS - 1))) <= rounded <= tiny
+    assert round_rate(1 - tiny, Time.DISCRETE) == 1 - rounded
+
+
 def test_integers_too_long_for_a_file_are_not_evidence():
     """A certificate is JSON, of which Python reads integers of at most 4300 digits."""
     still = family([[-1, 0], [0, -1]])
-    near, far = np.array([0, MAX_ENTRY_BITS // 2 - 100]), np.array([0, MAX_ENTRY_BITS])
+    near, far = np.array([0, MAX_INTEGER_BITS // 2 - 100]), np.array([0, MAX_INTEGER_BITS])
     assert round_to_evidence(Checker(still), np.eye(2), near, Fraction(1, 2)) is not None
     assert round_to_evidence(Checker(still), np.eye(2), far, Fraction(1, 2)) is None
-    assert len(str(2**MAX_ENTRY_BITS)) < 4300
+    assert len(str(2**MAX_INTEGER_BITS)) < 4300

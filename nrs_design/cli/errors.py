@@ -1,0 +1,131 @@
+"""What an error looks like: as compilers show it, with the line of the file and a caret."""
+
+from __future__ import annotations
+
+import shutil
+import sys
+from itertools import islice
+from pathlib import Path
+from typing import Any
+
+from nrs_design.cli.colour import painted
+from nrs_design.cli.printing import wrapped
+from nrs_design.errors import Fault, NrsDesignError
+from nrs_design.printable import printable
+
+# More than a user mends at once.
+MAX_SHOWN = 20
+# Of a line of the file; narrower on a narrow terminal.
+WIDEST_LINE = 100
+# A file beyond this is data, not text that is read by line.
+LARGEST_FILE = 16 * 1024 * 1024
+
+
+def print_error(error: NrsDesignError) -> None:
+    """Write every fault to stderr, each with its place and its remedy."""
+    faults = error.faults
+    blocks = [
+        _block(error.rule, fault, error.path) if fault.line else _line(error)
+        for fault in faults[:MAX_SHOWN]
+    ]
+    if len(faults) > 1:
+        more = f" and {len(faults) - MAX_SHOWN} more" if len(faults) > MAX_SHOWN else ""
+        where = f" in {printable(error.path)}" if error.path else ""
+        blocks = [f"{block}\n" for block in blocks] + [f"{len(blocks)} faults{more}{where}"]
+    sys.stderr.write("\n".join(blocks) + "\n")
+
+
+def summary(error: NrsDesignError) -> dict[str, Any]:
+    """Return what ``--json`` prints about an error: all of its faults, in file order."""
+    return {
+        "rule": error.rule,
+        "path": None if error.path is None else str(error.path),
+        "faults": [
+            {
+                "message": fault.message,
+                "line": fault.line,
+                "column": fault.column,
+                "remedy": fault.remedy,
+            }
+            for fault in error.faults
+        ],
+    }
+
+
+def _line(error: NrsDesignError) -> str:
+    return _headed(error.rule, str(error))
+
+
+def _headed(rule: str, message: str) -> str:
+    head = f"error[{rule}]"
+    text = wrapped(f"{head}: {printable(message)}", sys.stderr)
+    return painted(head, "red", sys.stderr) + text.removeprefix(head)
+
+
+def _block(rule: str, fault: Fault, path: Path | None) -> str:
+    gutter = " " * len(str(fault.line))
+    arrow, bar, equals = (painted(mark, "blue", sys.stderr) for mark in ("-->", "|", "="))
+    place = ":".join(str(part) for part in (path or "spec", fault.line, fault.column) if part)
+    lines = [_headed(rule, fault.message), f"{gutter}{arrow} {printable(place)}"]
+    source = None if path is None else _source(path, fault.line or 1)
+    if source is not None:
+        shown, before = excerpt(source, fault.column or 1, max(_width() - len(gutter) - 3, 20))
+        number = painted(str(fault.line), "blue", sys.stderr)
+        lines += [f"{gutter} {bar}", f"{number} {bar} {shown}"]
+        if fault.column:
+            lines.append(f"{gutter} {bar} {' ' * before}{painted('^', 'red', sys.stderr)}")
+    if fault.remedy:
+        helped = wrapped(f"{gutter} = help: {printable(fault.remedy)}", sys.stderr, hanging=8)
+        lines.append(helped.replace("=", equals, 1))
+    return "\n".join(lines)
+
+
+def _width() -> int:
+    terminal = shutil.get_terminal_size().columns if sys.stderr.isatty() else WIDEST_LINE
+    return min(terminal, WIDEST_LINE)
+
+
+def _source(path: Path, line: int) -> str | None:
+    """Return a line of a file, if it still can be read."""
+    try:
+        if not path.is_file() or path.stat().st_size > LARGEST_FILE:
+            return None
+        with path.open(encoding="utf-8-sig", errors="replace") as file:
+            found = next(islice(file, line - 1, None), None)
+    except (OSError, ValueError):
+        return None
+    return None if found is None else found.rstrip("\n")
+
+
+def excerpt(line: str, column: int, width: int) -> tuple[str, int]:
+    """Cut a line to what is around a column, with escapes for what cannot be shown.
+
+    Parameters
+    ----------
+    line : str
+        The line of the file.
+    column : int
+        Counted from 1.
+    width : int
+        Of what is returned, in columns of a terminal.
+
+    Returns
+    -------
+    str, int
+        The text, and how many columns of it stand before the one that was asked for.
+    """
+    from rich.cells import cell_len, set_cell_size
+
+    before = printable(line[: column - 1][-2 * width :])
+    after = printable(line[column - 1 :][: 2 * width])
+    if cell_len(before + after) <= width:
+        return before + after, cell_len(before)
+    room = width * 2 // 3
+    if cell_len(before) > room:
+        while cell_len(before) > room - 3:
+            before = before[1:]
+        before = f"...{before}"
+    room = width - cell_len(before)
+    if cell_len(after) > room:
+        after = set_cell_size(after, room - 3).rstrip() + "..."
+    return before + after, cell_len(before)

@@ -1,0 +1,79 @@
+"""What `optimize` and `tune` say about goals."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+from typing import TYPE_CHECKING, Any
+
+from nrs_design.cli import exit_codes
+from nrs_design.cli.printing import note, say
+from nrs_design.cli.tables import print_table
+
+if TYPE_CHECKING:
+    from nrs_design.design.evidence import DesignEvidence, ForceEvidence, ImpedanceEvidence
+    from nrs_design.design.goals import Achieved
+    from nrs_design.spec import Spec
+
+    Item = ImpedanceEvidence | ForceEvidence
+
+
+def print_goals(name: str, items: Iterable[Item]) -> None:
+    """Print what the spec asks for beside what is achieved at worst; nothing without goals."""
+    from nrs_design.design.goals import MEANING
+
+    rows = [
+        [
+            item.name,
+            found.measure.title,
+            found.measure.goal_text(found.goal),
+            found.measure.text(found.value),
+            found.where,
+            "met" if found.met else "MISSED",
+        ]
+        for item in items
+        for found in item.achieved
+        if found.goal is not None
+    ]
+    if rows:
+        columns = ["controller", "goal", "wanted", "worst", "at", ""]
+        print_table(f"{name}: goals", columns, rows)
+        for line in MEANING:
+            say(line)
+
+
+def print_warnings(warnings: Iterable[str], *, quiet: bool) -> None:
+    """Print on stderr what is doubtful."""
+    for text in warnings:
+        note(f"warning: {text}", quiet=quiet)
+
+
+def warnings_of(spec: Spec, evidence: DesignEvidence) -> list[str]:
+    """Say what is doubtful about a spec and its design, and no goal speaks of it."""
+    from nrs_design.spec import doubt_spec
+
+    return [str(doubt) for doubt in (*doubt_spec(spec), *evidence.warnings)]
+
+
+def exit_code(items: Iterable[Item]) -> int:
+    """Return 1 if a goal is missed."""
+    met = all(found.met for item in items for found in item.achieved)
+    return exit_codes.PROVED if met else exit_codes.REFUTED
+
+
+def goals_summary(item: Item) -> list[dict[str, Any]]:
+    """Return everything that was measured, with its goal if there is one, in SI units."""
+    return [_summary(found) for found in item.achieved]
+
+
+def _summary(found: Achieved) -> dict[str, Any]:
+    measure = found.measure
+    return {
+        "goal": measure.goal,
+        "wanted": found.goal,
+        # JSON has no infinity: null is a margin that nothing limits, or an error without bound.
+        "worst": found.value if math.isfinite(found.value) else None,
+        "unit": {"deg": "rad", "ms": "s"}.get(measure.unit, ""),
+        "at": found.where,
+        "status": None if found.goal is None else "met" if found.met else "missed",
+    }

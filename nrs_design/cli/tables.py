@@ -1,0 +1,91 @@
+"""Tables on stdout: turned, where the terminal is too narrow, rather than folded."""
+
+from __future__ import annotations
+
+import shutil
+import sys
+from collections.abc import Iterator, Sequence
+
+from nrs_design.printable import printable
+
+Row = Sequence[str]
+
+# In a pipe no table is folded.
+ENDLESS = 10_000
+# Longer cells are sentences, which may go over several lines; shorter ones are never broken.
+SENTENCE = 40
+# Between two columns; at both edges together there is one less.
+_GAP = 3
+
+
+def print_table(title: str, columns: Row, rows: Sequence[Row]) -> None:
+    """Print a plain table, as wide as it needs to be in a pipe.
+
+    Where a terminal is too narrow for it, rows become columns, side by side as far as they fit; a
+    number is never broken.
+
+    Parameters
+    ----------
+    title : str
+        Above the table; may be empty.
+    columns : sequence of str
+        Headings; a second line of one is its unit.
+    rows : sequence of sequence of str
+        Cells, as many in each row as there are headings.
+    """
+    rows = [["\n".join(map(printable, cell.split("\n"))) for cell in row] for row in rows]
+    width = shutil.get_terminal_size().columns if sys.stdout.isatty() else None
+    if width is None or _least_width([columns, *rows]) <= width:
+        _print(title, columns, rows, width)
+        return
+    for index, (head, *body) in enumerate(_turned(columns, rows, width)):
+        _print("" if index else title, head, body, width)
+
+
+def _turned(columns: Row, rows: Sequence[Row], width: int) -> Iterator[list[Row]]:
+    """Yield tables whose first column are the headings, with as many of the rows as fit."""
+    headings = [" ".join(column.split("\n")) for column in columns]
+    beside: list[Row] = []
+    for row in rows:
+        if beside and _least_width(_transpose([headings, *beside, row])) > width:
+            yield _transpose([headings, *beside])
+            beside = []
+        beside.append(row)
+    yield _transpose([headings, *beside])
+
+
+def _transpose(rows: Sequence[Row]) -> list[Row]:
+    return [list(cells) for cells in zip(*rows, strict=True)]
+
+
+def _least_width(rows: Sequence[Row]) -> int:
+    return sum(_least_widths(rows)) + _GAP * len(rows[0]) - 1
+
+
+def _least_widths(rows: Sequence[Row]) -> list[int]:
+    return [max(map(_least, cells)) for cells in zip(*rows, strict=True)]
+
+
+def _least(cell: str) -> int:
+    from rich.cells import cell_len
+
+    widest = max(map(cell_len, cell.split("\n")))
+    if widest <= SENTENCE:
+        return widest
+    return max(SENTENCE // 2, *map(cell_len, cell.split()))
+
+
+def _print(title: str, columns: Row, rows: Sequence[Row], width: int | None) -> None:
+    from rich.box import SIMPLE_HEAD
+    from rich.console import Console
+    from rich.table import Table
+
+    table = Table(title_justify="left", box=SIMPLE_HEAD, pad_edge=False)
+    table.title = printable(title) or None
+    least = _least_widths([columns, *rows])
+    fits = width is None or sum(least) + _GAP * len(least) - 1 <= width
+    for column, narrowest in zip(columns, least, strict=True):
+        table.add_column(column, overflow="fold", min_width=narrowest if fits else None)
+    for row in rows:
+        table.add_row(*row)
+    Console(width=width or ENDLESS, markup=False, emoji=False, highlight=False).print(table)

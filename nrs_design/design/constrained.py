@@ -1,0 +1,147 @@
+"""The best admittance that meets the goals of its controller, and the gains that ship then."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import replace
+from itertools import product
+
+import numpy as np
+
+from nrs_design.design.goals import Requirement
+from nrs_design.design.impedance import (
+    NODES,
+    ImpedanceOptimum,
+    ImpedanceProblem,
+    admittance_at,
+    impedance_cost,
+    objective_of,
+    optimize_impedance,
+)
+from nrs_design.design.measures import Measure
+from nrs_design.design.nested_search import search_square
+from nrs_design.design.pattern_search import Objective
+from nrs_design.design.transfer import FloatArray
+from nrs_design.errors import DesignError
+
+# Above every cost: what misses a goal is worse than all that meets it.
+_MISSED = 1e6
+
+
+def optimize_with_goals(problem: ImpedanceProblem, requirement: Requirement) -> ImpedanceOptimum:
+    """Find the global minimum of the cost over the admittances that meet all goals.
+
+    Where the minimum without goals meets them, it is the answer.
+
+    Parameters
+    ----------
+    problem : ImpedanceProblem
+        Cost and bounds.
+    requirement : Requirement
+        Goals of this controller.
+
+    Raises
+    ------
+    DesignError
+        If no admittance within the bounds is stable, or none meets the goals; the message names
+        the goal and the best value within the bounds.
+    """
+    optimum = optimize_impedance(problem)
+    if meets(requirement, optimum.Mt, optimum.Bt):
+        return optimum
+    search = _Search(problem, requirement)
+    Mt, Bt, value = search.run()
+    if value >= _MISSED:
+        raise _unreachable(problem, requirement, Mt, Bt)
+    return ImpedanceOptimum(Mt, Bt, value, optimum.evaluations + search.evaluations)
+
+
+def meets(requirement: Requirement, Mt: float, Bt: float) -> bool:
+    """Tell whether an admittance meets all goals."""
+    return bool(requirement.violation(np.array([Mt]), np.array([Bt]))[0] <= 0)
+
+
+def best_rounding(
+    problem: ImpedanceProblem,
+    requirement: Requirement,
+    candidates: tuple[Iterable[float], Iterable[float]],
+) -> tuple[float, float] | None:
+    """Return the cheapest pair of rounded gains that meets all goals; None if there is none.
+
+    Parameters
+    ----------
+    problem : ImpedanceProblem
+        Cost.
+    requirement : Requirement
+        Goals.
+    candidates : tuple of iterables
+        Values of Mt and of Bt.
+    """
+    pairs = [pair for pair in product(*candidates) if meets(requirement, *pair)]
+    return min(pairs, key=lambda pair: float(impedance_cost(problem, *pair)), default=None)
+
+
+class _Search:
+    """Minimizes the cost where all goals are met, else the violation of the worst goal."""
+
+    def __init__(self, problem: ImpedanceProblem, requirement: Requirement) -> None:
+        self._problem, self._requirement = problem, requirement
+        self._cost: Objective = objective_of(problem, NODES)
+        self.evaluations = 0
+
+    def run(self) -> tuple[float, float, float]:
+        """Return Mt, Bt and the objective there."""
+        mass, damping = self._problem.mass_bounds, self._problem.damping_bounds
+        free = (mass[0] != mass[1], damping[0] != damping[1])
+        u, v, value = search_square(self._objective, free)
+        Mt, Bt = admittance_at(self._problem, np.array([u]), np.array([v]))
+        return float(Mt[0]), float(Bt[0]), value
+
+    def _objective(self, u: FloatArray, v: FloatArray) -> FloatArray:
+        self.evaluations += len(u)
+        values = self._cost(u, v)
+        stable = np.flatnonzero(np.isfinite(values))
+        missed = self._requirement.violation(*admittance_at(self._problem, u[stable], v[stable]))
+        # From 0 to 1, also where a corner is unstable and the violation is infinite.
+        part = 1 - 1 / (1 + np.maximum(missed, 0))
+        values[stable] = np.where(missed > 0, _MISSED + part, values[stable])
+        return values
+
+
+def _unreachable(
+    problem: ImpedanceProblem, requirement: Requirement, Mt: float, Bt: float
+) -> DesignError:
+    """Name a goal that no admittance meets, or those that none meets together."""
+    (least, most), (low, high) = problem.mass_bounds, problem.damping_bounds
+    bounds = f"Mt in [{least:.6g}, {most:.6g}] kg m^2 and Bt in [{low:.6g}, {high:.6g}] N m s/rad"
+    for measure, goal in requirement.goals:
+        alone = replace(requirement, goals=((measure, goal),))
+        best_Mt, best_Bt, value = _Search(problem, alone).run()
+        if value >= _MISSED:
+            return DesignError(
+                f"the goal {measure.goal}, {measure.goal_text(goal)}, cannot be met with {bounds}: "
+                f"the best is {_reached(alone, measure, best_Mt, best_Bt)}",
+                remedy="relax this goal, widen the bounds, or narrow the ranges of the contacts",
+            )
+    values = requirement.goals
+    missed = [
+        f"{measure.title} {_reached(requirement, measure, Mt, Bt)}"
+        for measure, goal in values
+        if measure.violation(_value(requirement, measure, Mt, Bt)[0], goal) > 0
+    ]
+    wanted = ", ".join(f"{measure.goal} {measure.goal_text(goal)}" for measure, goal in values)
+    return DesignError(
+        f"the goals cannot be met together ({wanted}) with {bounds}: the nearest gains, "
+        f"Mt = {Mt:.4g} kg m^2 and Bt = {Bt:.4g} N m s/rad, have {', '.join(missed)}",
+        remedy="relax one of these goals, widen the bounds, or narrow the ranges of the contacts",
+    )
+
+
+def _reached(requirement: Requirement, measure: Measure, Mt: float, Bt: float) -> str:
+    value, where = _value(requirement, measure, Mt, Bt)
+    return f"{measure.text(value)} ({where})"
+
+
+def _value(requirement: Requirement, measure: Measure, Mt: float, Bt: float) -> tuple[float, str]:
+    (value,), (where,) = requirement.values(measure, np.array([Mt]), np.array([Bt]))
+    return float(value), where

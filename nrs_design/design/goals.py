@@ -1,0 +1,253 @@
+"""What a controller achieves at worst, beside what the spec asks for.
+
+Margins are taken in every contact: at the nominal values of the environment that the controller is
+designed for, and at all corners of the declared ranges of all its contacts and of its gains.
+Displayed impedance and force error are what the design is for: they are taken with the designed
+gains, in the environment that it is designed for, at its nominal values and at all corners of its
+ranges. Values between corners are not looked at. All of it is floating point, and no proof.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from itertools import product
+
+import numpy as np
+
+from nrs_design.design.loops import Loops, extremes, multiply
+from nrs_design.design.measures import (
+    DELAY_MARGIN,
+    DISK_MARGIN,
+    FORCE_ERROR,
+    GAIN_MARGIN,
+    IMPEDANCE_ERROR,
+    PHASE_MARGIN,
+    SENSITIVITY_PEAK,
+    Measure,
+)
+from nrs_design.design.transfer import FloatArray, TransferFunction, static_gain
+from nrs_design.models.environment import Environment
+
+MEANING = (
+    "Margins: the worst at the nominal values and at every corner of the ranges of all contacts "
+    "and gains.",
+    "Errors: the worst with the designed gains, in the environment that the controller is designed "
+    "for, at its nominal values and every corner of its ranges.",
+    "Computed in floating point, not a proof; values between corners are not looked at.",
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Achieved:
+    """The worst value of one measure.
+
+    Parameters
+    ----------
+    measure : Measure
+        What is measured.
+    value : float
+        The worst value, in SI units.
+    where : str
+        The corner at which it is taken, such as ``soft, k = 44.2466 N*m/rad``.
+    goal : float or None
+        What the spec asks for, in SI units.
+    """
+
+    measure: Measure
+    value: float
+    where: str
+    goal: float | None = None
+
+    @property
+    def met(self) -> bool:
+        """Whether there is no goal, or the value reaches it."""
+        return self.goal is None or self.measure.violation(self.value, self.goal) <= 0
+
+
+@dataclass(frozen=True, slots=True)
+class Corner:
+    """One contact that a controller is measured in, and where its gains are then.
+
+    Parameters
+    ----------
+    label : str
+        For people.
+    stiffness, damping : float
+        Of the environment, in N m/rad and N m s/rad.
+    home : bool
+        Whether this is the environment that the controller is designed for, with the designed
+        gains.
+    Mt, Bt : float or None
+        End of a declared range of the gain; None is the designed gain.
+    """
+
+    label: str
+    stiffness: float
+    damping: float
+    home: bool
+    Mt: float | None = None
+    Bt: float | None = None
+
+
+@dataclass(frozen=True)
+class Requirement:
+    """Goals of one controller, and all that is needed to measure it.
+
+    Parameters
+    ----------
+    motion : TransferFunction
+        Closed motion loop G.
+    corners : tuple of Corner
+        As `corners_of` gives them.
+    goals : tuple of (Measure, float)
+        Goals in SI units.
+    desired : float
+        Desired impedance, N m s/rad; impedance controllers only.
+    bandwidth : float
+        Highest frequency of the command, rad/s; impedance controllers only.
+    """
+
+    motion: TransferFunction
+    corners: tuple[Corner, ...]
+    goals: tuple[tuple[Measure, float], ...] = ()
+    desired: float = 0.0
+    bandwidth: float = 0.0
+
+    def violation(self, Mt: FloatArray, Bt: FloatArray) -> FloatArray:
+        """Return by which part the worst goal is missed; not positive where all are met."""
+        worst = np.full(len(Mt), -np.inf)
+        for measure, goal in self.goals:
+            values = self.values(measure, Mt, Bt)[0]
+            missed = [measure.violation(float(value), goal) for value in values]
+            worst = np.maximum(worst, missed)
+        return worst
+
+    def values(
+        self, measure: Measure, Mt: FloatArray, Bt: FloatArray
+    ) -> tuple[FloatArray, list[str]]:
+        """Return the worst value of a measure for every admittance, and at which corner."""
+        corners = [c for c in self.corners if c.home or measure is not IMPEDANCE_ERROR]
+        table = np.array([self._at(corner, measure, Mt, Bt) for corner in corners])
+        worst = table.argmax(axis=0) if measure.upper else table.argmin(axis=0)
+        values = np.take_along_axis(table, worst[None, :], axis=0)[0]
+        return values, [corners[index].label for index in worst]
+
+    def _at(self, corner: Corner, measure: Measure, Mt: FloatArray, Bt: FloatArray) -> FloatArray:
+        Mt = Mt if corner.Mt is None else np.full_like(Mt, corner.Mt)
+        Bt = Bt if corner.Bt is None else np.full_like(Bt, corner.Bt)
+        loops = _impedance_loops(self.motion, corner, Mt, Bt)
+        if measure is not IMPEDANCE_ERROR:
+            return _margin(loops, measure)
+        displayed = multiply(loops.numerator, np.stack([Mt, Bt], axis=1))
+        low, high = extremes(displayed, loops.closed, self.bandwidth)
+        error = np.maximum(high / self.desired, self.desired / low)
+        return np.where(loops.stable, error, np.inf)
+
+
+def achieve_impedance(
+    requirement: Requirement, measures: tuple[Measure, ...], Mt: float, Bt: float
+) -> tuple[Achieved, ...]:
+    """Return the worst value of every measure of one admittance."""
+    goals = dict(requirement.goals)
+    found = []
+    for measure in measures:
+        (value,), (where,) = requirement.values(measure, np.array([Mt]), np.array([Bt]))
+        found.append(Achieved(measure, float(value), where, goals.get(measure)))
+    return tuple(found)
+
+
+def achieve_force(
+    requirement: Requirement, measures: tuple[Measure, ...], gain: float
+) -> tuple[Achieved, ...]:
+    """Return the worst value of every measure of one force gain."""
+    goals = dict(requirement.goals)
+    found = []
+    for measure in measures:
+        values = {
+            corner.label: _force_value(requirement.motion, corner, measure, gain)
+            for corner in requirement.corners
+            if corner.home or measure is not FORCE_ERROR
+        }
+        where = (max if measure.upper else min)(values, key=values.__getitem__)
+        found.append(Achieved(measure, values[where], where, goals.get(measure)))
+    return tuple(found)
+
+
+def corners_of(
+    environments: tuple[Environment, ...],
+    home: str,
+    gains: Mapping[str, tuple[float, ...]],
+) -> tuple[Corner, ...]:
+    """List where a controller is measured.
+
+    Parameters
+    ----------
+    environments : tuple of Environment
+        All contacts of the controller.
+    home : str
+        The one that it is designed for.
+    gains : mapping
+        Ends of the declared ranges of ``Mt`` and ``Bt``, empty for a gain without a range.
+    """
+    return tuple(
+        corner for environment in environments for corner in _corners(environment, home, gains)
+    )
+
+
+def _corners(
+    environment: Environment, home: str, gains: Mapping[str, tuple[float, ...]]
+) -> Iterator[Corner]:
+    points = list(
+        product(
+            [float(value) for _, value in environment.stiffness.ends],
+            [float(value) for _, value in environment.damping.ends],
+        )
+    )
+    nominal = (float(environment.stiffness.nominal), float(environment.damping.nominal))
+    if nominal not in points:
+        points.insert(0, nominal)
+    retuned = [*product(gains.get("Mt") or (None,), gains.get("Bt") or (None,))]
+    for (stiffness, damping), (Mt, Bt) in product(points, dict.fromkeys([(None, None), *retuned])):
+        at = [f"k = {stiffness:.6g} N*m/rad"]
+        at += [f"b = {damping:.6g} N*m*s/rad"] if damping else []
+        at += [f"Mt = {Mt:.6g} kg*m^2"] if Mt is not None else []
+        at += [f"Bt = {Bt:.6g} N*m*s/rad"] if Bt is not None else []
+        designed = environment.name == home and Mt is None and Bt is None
+        label = f"{environment.name}, {', '.join(at)}"
+        yield Corner(label, stiffness, damping, designed, Mt, Bt)
+
+
+def _impedance_loops(
+    motion: TransferFunction, corner: Corner, Mt: FloatArray, Bt: FloatArray
+) -> Loops:
+    """Return ``G Ze Y`` of many admittances (thesis fig. 6.13)."""
+    width = len(motion.denominator) + 2
+    contact = np.convolve(motion.numerator, (corner.damping, corner.stiffness))
+    numerator = np.zeros((len(Mt), width))
+    numerator[:, width - len(contact) :] = contact
+    denominator = np.zeros((len(Mt), width))
+    denominator[:, :-2] += np.outer(Mt, motion.denominator)
+    denominator[:, 1:-1] += np.outer(Bt, motion.denominator)
+    return Loops(numerator, denominator)
+
+
+def _force_value(motion: TransferFunction, corner: Corner, measure: Measure, gain: float) -> float:
+    """Return a measure of the force loop ``Kp k G`` (thesis 6.33) in one contact."""
+    loop_gain = gain * corner.stiffness
+    numerator = np.zeros((1, len(motion.denominator)))
+    numerator[0, -len(motion.numerator) :] = loop_gain * np.asarray(motion.numerator)
+    loops = Loops(numerator, np.array([motion.denominator]))
+    if measure is not FORCE_ERROR:
+        return float(_margin(loops, measure)[0])
+    return 1 / (1 + loop_gain * static_gain(motion)) if loops.stable[0] else np.inf
+
+
+def _margin(loops: Loops, measure: Measure) -> FloatArray:
+    return {
+        SENSITIVITY_PEAK: Loops.sensitivity_peak,
+        GAIN_MARGIN: Loops.gain_margin,
+        PHASE_MARGIN: Loops.phase_margin,
+        DELAY_MARGIN: Loops.delay_margin,
+        DISK_MARGIN: Loops.disk_margin,
+    }[measure](loops)

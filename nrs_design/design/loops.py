@@ -1,0 +1,201 @@
+"""Margins of many open loops at once, for a search that must respect them.
+
+Each margin is taken at the exact stationary or crossover frequencies of its loop, which are roots
+of a polynomial in ``x = omega^2``; there is no frequency grid.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from nrs_design.design.transfer import BoolArray, ComplexArray, FloatArray, hurwitz
+
+# A leading coefficient this small beside the others counts as zero; its root is out of any band.
+_NEGLIGIBLE = 1e-60
+# How near to the axis a root counts as real, relative to its size; see `positive_roots`.
+_REAL = 1e-7
+
+
+@dataclass(frozen=True, eq=False)
+class Loops:
+    """Many open loops ``N/D``.
+
+    Parameters
+    ----------
+    numerator, denominator : ndarray, shape (n, m + 1)
+        One polynomial in s per row, highest power first, padded to one length.
+
+    Notes
+    -----
+    Every margin of a loop that is not stable when it is closed is the worst possible: infinite
+    where it should be small, 0 where it should be large. A margin that nothing limits is infinite.
+    """
+
+    numerator: FloatArray
+    denominator: FloatArray
+
+    @property
+    def closed(self) -> FloatArray:
+        """The characteristic polynomials."""
+        return self.numerator + self.denominator
+
+    @property
+    def stable(self) -> BoolArray:
+        """Which closed loops are Hurwitz."""
+        return hurwitz(self.closed)
+
+    def sensitivity_peak(self) -> FloatArray:
+        """Return ``Ms = max |1/(1 + N/D)|``, at least 1, its limit at high frequency."""
+        peak = np.maximum(1.0, _peak(self.denominator, self.closed))
+        return np.where(self.stable, peak, np.inf)
+
+    def disk_margin(self) -> FloatArray:
+        """Return ``1/max |S - 1/2|``, at most 2."""
+        peak = np.maximum(1.0, _peak(self.denominator - self.numerator, self.closed))
+        return np.where(self.stable, 2 / peak, 0.0)
+
+    def gain_margin(self) -> FloatArray:
+        """Return the smallest factor above 1 on the loop gain that destabilizes."""
+        _, imaginary = _product(self.numerator, self.denominator)
+        omega = _frequencies(imaginary)
+        response = self._at(omega).real
+        inside = (response < 0) & (response > -1)
+        gain = -1 / np.where(inside, response, np.nan)
+        return np.where(self.stable, _smallest(gain), 0.0)
+
+    def phase_margin(self) -> FloatArray:
+        """Return the smallest phase, of either sign, that destabilizes, in rad."""
+        phase, _ = self._crossovers()
+        return np.where(self.stable, _smallest(np.abs(phase)), 0.0)
+
+    def delay_margin(self) -> FloatArray:
+        """Return the smallest dead time that destabilizes, in s."""
+        phase, omega = self._crossovers()
+        return np.where(self.stable, _smallest(phase % (2 * math.pi) / omega), 0.0)
+
+    def _crossovers(self) -> tuple[FloatArray, FloatArray]:
+        """Return the phase over -180 degrees, and the frequency, of every gain crossover."""
+        excess = _squared(self.numerator) - _squared(self.denominator)
+        omega = _frequencies(excess)
+        return np.angle(-self._at(omega)), omega
+
+    def _at(self, omega: FloatArray) -> ComplexArray:
+        return _ratio(self.numerator, self.denominator, omega)
+
+
+def extremes(
+    numerator: FloatArray, denominator: FloatArray, bandwidth: float
+) -> tuple[FloatArray, FloatArray]:
+    """Return the smallest and largest ``|numerator/denominator|`` on 0 to `bandwidth`.
+
+    Parameters
+    ----------
+    numerator, denominator : ndarray, shape (n, m + 1)
+        Polynomials in s, highest power first; no denominator vanishes on the axis.
+    bandwidth : float
+        Highest frequency, rad/s.
+    """
+    omega = _stationary(numerator, denominator)
+    omega = np.where(omega < bandwidth, omega, np.nan)
+    ends = np.broadcast_to([0.0, bandwidth], (len(omega), 2))
+    omega = np.concatenate([omega, ends], axis=1)
+    magnitude = np.abs(_ratio(numerator, denominator, omega))
+    return np.fmin.reduce(magnitude, axis=1), np.fmax.reduce(magnitude, axis=1)
+
+
+def _ratio(numerator: FloatArray, denominator: FloatArray, omega: FloatArray) -> ComplexArray:
+    with np.errstate(invalid="ignore"):  # NaN stands for no frequency
+        return _evaluate(numerator, omega) / _evaluate(denominator, omega)
+
+
+def _evaluate(polynomials: FloatArray, omega: FloatArray) -> ComplexArray:
+    """Evaluate polynomials in s at ``j omega``: row i at all frequencies of row i."""
+    s = np.asarray(1j * omega, dtype=np.complex128)
+    value = np.zeros(omega.shape, dtype=np.complex128)
+    for coefficient in polynomials.T:
+        value = value * s + coefficient[:, None]
+    return value
+
+
+def multiply(a: FloatArray, b: FloatArray) -> FloatArray:
+    """Multiply polynomials row by row."""
+    product = np.zeros((len(a), a.shape[1] + b.shape[1] - 1))
+    for i in range(a.shape[1]):
+        product[:, i : i + b.shape[1]] += a[:, i : i + 1] * b
+    return product
+
+
+def _peak(numerator: FloatArray, denominator: FloatArray) -> FloatArray:
+    omega = _stationary(numerator, denominator)
+    magnitude = np.abs(_ratio(numerator, denominator, omega))
+    return np.asarray(np.fmax.reduce(magnitude, axis=1, initial=0.0))
+
+
+def _smallest(values: FloatArray) -> FloatArray:
+    return np.asarray(np.fmin.reduce(values, axis=1, initial=np.inf))
+
+
+def _stationary(numerator: FloatArray, denominator: FloatArray) -> FloatArray:
+    """Return where ``|numerator/denominator|`` is stationary; NaN fills the rows."""
+    n, d = _squared(numerator), _squared(denominator)
+    return _frequencies(multiply(_derivative(n), d) - multiply(n, _derivative(d)))
+
+
+def _derivative(polynomials: FloatArray) -> FloatArray:
+    return polynomials[:, :-1] * np.arange(polynomials.shape[1] - 1, 0, -1)
+
+
+def _even_odd(polynomials: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Split ``p(j omega) = E(x) + j omega O(x)``, highest power of x first."""
+    ascending = polynomials[:, ::-1]
+    even, odd = ascending[:, 0::2], ascending[:, 1::2]
+    signs = (-1.0) ** np.arange(even.shape[1])
+    return (even * signs)[:, ::-1], (odd * signs[: odd.shape[1]])[:, ::-1]
+
+
+def _product(a: FloatArray, b: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Split ``a conj(b) = R(x) + j omega I(x)`` on the imaginary axis."""
+    (a_even, a_odd), (b_even, b_odd) = _even_odd(a), _even_odd(b)
+    odd = multiply(a_odd, b_odd)
+    shifted = np.concatenate([odd, np.zeros((len(odd), 1))], axis=1)
+    imaginary = multiply(a_odd, b_even) - multiply(a_even, b_odd)
+    return _sum(multiply(a_even, b_even), shifted), imaginary
+
+
+def _sum(a: FloatArray, b: FloatArray) -> FloatArray:
+    width = max(a.shape[1], b.shape[1])
+    total = np.zeros((len(a), width))
+    total[:, width - a.shape[1] :] += a
+    total[:, width - b.shape[1] :] += b
+    return total
+
+
+def _squared(polynomials: FloatArray) -> FloatArray:
+    return _product(polynomials, polynomials)[0]
+
+
+def _frequencies(polynomials: FloatArray) -> FloatArray:
+    """Return the square roots of the positive roots of polynomials in x; NaN fills the rows."""
+    roots = _roots(polynomials)
+    real = (np.abs(roots.imag) <= _REAL * np.abs(roots)) & (roots.real > 0)
+    return np.sqrt(np.where(real, roots.real, np.nan))
+
+
+def _roots(polynomials: FloatArray) -> ComplexArray:
+    """Return all roots as eigenvalues of companion matrices; NaN fills the rows."""
+    count, degree = len(polynomials), polynomials.shape[1] - 1
+    roots = np.full((count, degree), np.nan, dtype=np.complex128)
+    size = np.abs(polynomials)
+    known = size > _NEGLIGIBLE * size.max(axis=1, keepdims=True)
+    leading = np.where(known.any(axis=1), known.argmax(axis=1), degree)
+    for first in np.unique(leading[leading < degree]):
+        rows = np.flatnonzero(leading == first)
+        order = degree - int(first)
+        companion = np.zeros((len(rows), order, order))
+        companion[:, 1:, :-1] = np.eye(order - 1)
+        companion[:, 0, :] = -polynomials[rows, first + 1 :] / polynomials[rows, first : first + 1]
+        roots[rows, :order] = np.linalg.eigvals(companion)
+    return roots

@@ -1,0 +1,83 @@
+"""What a design is measured by, and from where on its value is doubtful."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from decimal import ROUND_CEILING, ROUND_FLOOR, Context, Decimal
+
+_DIGITS = 4
+
+
+@dataclass(frozen=True, slots=True)
+class Measure:
+    """One measure of a controller.
+
+    Parameters
+    ----------
+    goal : str
+        Key of the goal in a spec.
+    title : str
+        In a few words, such as ``phase margin``.
+    unit : str
+        In which it is shown; empty for a number.
+    scale : float
+        Shown value over SI value.
+    upper : bool
+        Whether a goal is the largest value that is accepted; else it is the smallest.
+    doubtful : float or None
+        SI value beyond which a design without a goal is doubted.
+    """
+
+    goal: str
+    title: str
+    unit: str = ""
+    scale: float = 1.0
+    upper: bool = False
+    doubtful: float | None = None
+
+    def text(self, value: float) -> str:
+        """Write a value with four digits, rounded to its unfavorable side."""
+        if not math.isfinite(value):
+            return "unbounded" if self.upper else "unlimited"
+        rounding = ROUND_CEILING if self.upper else ROUND_FLOOR
+        context = Context(prec=_DIGITS, rounding=rounding)
+        rounded = context.create_decimal(Decimal(value * self.scale))
+        return f"{rounded.normalize():f} {self.unit}".rstrip()
+
+    def goal_text(self, value: float) -> str:
+        """Write a goal, such as ``at most 2``."""
+        shown = f"{value * self.scale:.6g} {self.unit}".rstrip()
+        return f"{'at most' if self.upper else 'at least'} {shown}"
+
+    def violation(self, value: float, goal: float) -> float:
+        """Return by which part a value misses a goal; not positive where it is met."""
+        better, worse = (goal, value) if self.upper else (value, goal)
+        return worse / better - 1 if better else math.inf
+
+
+# Limits: stability margin 0.5 to 0.8 (1/Ms), gain margin 2 to 5 and phase margin 30 to 60 degrees
+# are called reasonable by Astrom and Murray, Feedback Systems, 2nd ed., section 10.3; Ms of 1.2 to
+# 2.0 is usual in Astrom and Hagglund, Advanced PID Control (2006). The two errors have limits of
+# ours, see docs/design/goals.md; a delay margin is to be held against the delay that there is.
+SENSITIVITY_PEAK = Measure("max_sensitivity_peak", "sensitivity peak Ms", upper=True, doubtful=2.0)
+GAIN_MARGIN = Measure("min_gain_margin", "gain margin", doubtful=2.0)
+PHASE_MARGIN = Measure(
+    "min_phase_margin",
+    "phase margin",
+    unit="deg",
+    scale=180 / math.pi,
+    doubtful=math.radians(30),
+)
+DELAY_MARGIN = Measure("min_delay_margin", "delay margin", unit="ms", scale=1e3)
+DISK_MARGIN = Measure("min_disk_margin", "disk margin")
+IMPEDANCE_ERROR = Measure(
+    "max_impedance_error", "factor off the desired impedance", upper=True, doubtful=2.0
+)
+FORCE_ERROR = Measure(
+    "max_force_error", "steady force error over command", upper=True, doubtful=0.5
+)
+
+MARGINS = (SENSITIVITY_PEAK, GAIN_MARGIN, PHASE_MARGIN, DELAY_MARGIN, DISK_MARGIN)
+IMPEDANCE_MEASURES = (*MARGINS, IMPEDANCE_ERROR)
+FORCE_MEASURES = (*MARGINS, FORCE_ERROR)

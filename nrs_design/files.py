@@ -1,0 +1,34 @@
+"""What is a file, and what only looks like one: pipes and devices, on this system or another."""
+
+from __future__ import annotations
+
+import errno
+import os
+import stat
+from pathlib import Path
+from typing import BinaryIO
+
+# Windows takes a file of one of these names, with any ending, for a device.
+DEVICES = frozenset(
+    ["con", "prn", "aux", "nul", *(f"{port}{k}" for port in ("com", "lpt") for k in range(10))]
+)
+
+
+def is_device_name(name: str) -> bool:
+    """Tell whether a file of this name, with or without an ending, is a device on Windows."""
+    return name.partition(".")[0].strip(" ").lower() in DEVICES
+
+
+def open_regular(path: Path) -> BinaryIO:
+    """Open a regular file to read it; never wait for a pipe, nor read from a device.
+
+    Raises
+    ------
+    OSError
+        If the file cannot be opened, or is not a regular one.
+    """
+    handle = os.open(path, os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0))
+    if not stat.S_ISREG(os.fstat(handle).st_mode):
+        os.close(handle)
+        raise OSError(errno.EINVAL, "it is not a regular file", str(path))
+    return os.fdopen(handle, "rb")

@@ -1,0 +1,142 @@
+"""Renewing ``nrs.lock`` from what the gate found, and keeping what it holds of other specs."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable, Mapping
+from pathlib import Path
+
+from nrs_design import __version__
+from nrs_design.errors import OutputError
+from nrs_design.gating.lock import (
+    DECIDED_AGAIN,
+    Lock,
+    LockedCertificate,
+    LockedGoal,
+    LockedSpec,
+    dump_lock,
+    read_lock_if_any,
+    relative_to_lock,
+)
+from nrs_design.gating.obligations import GateOutcome, Obligation, SpecOutcome
+from nrs_design.output import LOCK, write_output
+
+
+def make_lock(specs: Iterable[SpecOutcome], file: Path) -> Lock:
+    """Return the lock of specs, for a lock file at a place.
+
+    What makes no claim about switching is left out, and so is what has no verdict: a spec without
+    an entry fails ``--locked``.
+    """
+    entries = [_entry(spec, file) for spec in specs if spec.verdict is not None]
+    return Lock(specs=sorted(entries, key=lambda entry: entry.path))
+
+
+def write_lock(outcome: GateOutcome, file: Path, *, prune: bool = False) -> GateOutcome:
+    """Renew the entries of the specs that were examined, keep the others, and note it.
+
+    Parameters
+    ----------
+    outcome : GateOutcome
+        What was found now.
+    file : Path
+        Lock file; made if it does not exist.
+    prune : bool
+        Drop the entries of specs that no longer exist.
+
+    Raises
+    ------
+    OutputError
+        If it cannot be written.
+    CertificateError
+        If the file that is there is not a lock file.
+    """
+    for spec in outcome.specs:
+        if spec.certificate is not None:
+            check_folder(spec.certificate.parent, file)
+    fresh = make_lock(outcome.specs, file).specs
+    examined = {relative_to_lock(spec.path, file) for spec in outcome.specs if _is_there(spec)}
+    old = [entry for entry in read_lock_if_any(file).specs if entry.path not in examined]
+    gone = {entry.path for entry in old if not os.path.isfile(file.parent / entry.path)}
+    written = {entry.certificate.file for entry in fresh if entry.certificate is not None}
+    # A spec that was renamed: its certificate is now found under the new name of the file.
+    dropped = {e.path for e in old if e.certificate is not None and e.certificate.file in written}
+    if prune:
+        dropped |= gone
+    kept = [entry for entry in old if entry.path not in dropped]
+    if kept or fresh or file.exists():
+        entries = sorted([*kept, *fresh], key=lambda entry: entry.path)
+        write_output(file, dump_lock(Lock(specs=entries)), replaces=LOCK)
+        outcome = outcome.with_note(f"{file} written")
+    missing = [str(s.path) for s in outcome.specs if s.certifiable and s.verdict is None]
+    for text, paths in (
+        (f"not in {file}, for want of a verdict", missing),
+        (f"removed from {file}", dropped),
+        (f"no longer there, but in {file} (--prune removes it)", gone - dropped),
+    ):
+        if paths:
+            outcome = outcome.with_note(f"{text}: {', '.join(sorted(paths))}")
+    return outcome
+
+
+def _is_there(spec: SpecOutcome) -> bool:
+    """Tell whether the outcome is about a file: one that is gone keeps its entry."""
+    return os.path.isfile(spec.path)
+
+
+def certificates_of(lock: Lock, file: Path) -> Mapping[Path, Path]:
+    """Return which spec every locked certificate file belongs to, as real paths."""
+    return {
+        Path(os.path.realpath(file.parent / entry.certificate.file)): Path(
+            os.path.realpath(file.parent / entry.path)
+        )
+        for entry in lock.specs
+        if entry.certificate is not None
+    }
+
+
+def check_folder(folder: Path, file: Path) -> None:
+    """Refuse a folder for certificates that a lock file could not name.
+
+    Raises
+    ------
+    OutputError
+        If it is not below the folder of the lock file.
+    """
+    if relative_to_lock(folder, file).partition("/")[0] == "..":
+        raise OutputError(
+            f"certificates must be below the folder of the lock file {file}",
+            path=folder,
+            remedy="choose another --reports or --lock",
+        )
+
+
+def _entry(spec: SpecOutcome, file: Path) -> LockedSpec:
+    certificate = None
+    if spec.certificate is not None and spec.certificate_id is not None:
+        certificate = LockedCertificate(
+            file=relative_to_lock(spec.certificate, file), id=spec.certificate_id
+        )
+    return LockedSpec.model_validate(
+        {
+            "path": relative_to_lock(spec.path, file),
+            "sha256": spec.sha256,
+            "version": __version__,
+            "verdict": spec.verdict,
+            "rate": spec.rate,
+            "certificate": certificate,
+            "gains": {name: dict(gains) for name, gains in spec.gains.items()},
+            "goals": [_goal(item) for item in spec.obligations if item.rule not in DECIDED_AGAIN],
+        }
+    )
+
+
+def _goal(item: Obligation) -> LockedGoal:
+    return LockedGoal.model_validate(
+        {
+            "rule": item.rule.id,
+            "subject": item.subject,
+            "status": str(item.status),
+            "message": item.message,
+        }
+    )

@@ -1,0 +1,78 @@
+"""Whose the files in an output folder are: a spec never overwrites those of another.
+
+Files are named after the ``name:`` of their spec, and a copied spec has the same. Certificates and
+pages therefore say where their spec was, relative to themselves. This is no part of any claim:
+it is not checked, and a certificate holds wherever its spec is.
+"""
+
+from __future__ import annotations
+
+import html
+import os
+import re
+from pathlib import Path
+
+from nrs_design.errors import CertificateError, OutputError
+from nrs_design.output import PAGE
+
+REMEDY = "give this spec a `name` of its own, choose another place, or remove that file"
+# As the template of the page writes it, near its beginning.
+_PAGE_ORIGIN = re.compile(re.escape(PAGE) + rb'<meta name="spec" content="([^"]{1,4096})">')
+
+
+def origin_of(spec: Path, file: Path) -> str:
+    """Return where a spec is, seen from the folder of a file, with forward slashes."""
+    relative = os.path.relpath(os.path.realpath(spec), os.path.realpath(file.parent))
+    text = Path(relative).as_posix()
+    return text.encode(errors="surrogateescape").decode(errors="backslashreplace")
+
+
+def check_owner(spec: Path, name: str, folder: Path) -> None:
+    """Refuse to go on where the files of that name in a folder are those of another spec.
+
+    Parameters
+    ----------
+    spec : Path
+        Whose files would be written.
+    name : str
+        That they are named after.
+    folder : Path
+        Where they would be written.
+
+    Raises
+    ------
+    OutputError
+        If a certificate or a page of that name was made for another spec that still exists, or
+        what is there is no certificate at all.
+    """
+    check_certificate(spec, folder / f"{name}.cert.json")
+    page = folder / f"{name}.html"
+    if page.is_file():
+        with page.open("rb") as file:
+            found = _PAGE_ORIGIN.match(file.read(8192))
+        if found:
+            _refuse_other(spec, html.unescape(found[1].decode(errors="replace")), page)
+
+
+def check_certificate(spec: Path, file: Path) -> None:
+    """Refuse to overwrite the certificate of another spec; see `check_owner`."""
+    from nrs_design.certificates.verify import read_document
+
+    if not os.path.lexists(file):
+        return
+    try:
+        document = read_document(file)
+    except CertificateError:
+        document = {}
+    if not str(document.get("schema")).startswith("nrs-design/certificate/"):
+        raise OutputError("exists already and is not a certificate", path=file, remedy=REMEDY)
+    origin = document.get("origin")
+    if isinstance(origin, str):
+        _refuse_other(spec, origin, file)
+
+
+def _refuse_other(spec: Path, origin: str, file: Path) -> None:
+    """Refuse if another spec owns a file; one that no longer exists owns nothing."""
+    owner = file.parent / origin
+    if os.path.isfile(owner) and os.path.realpath(owner) != os.path.realpath(spec):
+        raise OutputError(f"belongs to {os.path.relpath(owner)}", path=file, remedy=REMEDY)

@@ -1,0 +1,57 @@
+"""Text that others wrote, as text that can be shown: on a terminal, in a log, in a table."""
+
+from __future__ import annotations
+
+import json
+import re
+from typing import Any
+
+# Letters and marks that are drawn as nothing; all other invisible characters are not printable.
+_UNSEEN = (
+    "\u034f\u115f\u1160\u17b4\u17b5\u180b-\u180f\u3164\ufe00-\ufe0f\uffa0\U000e0100-\U000e01ef"
+)
+# What a line of a GitHub log begins with, or holds anywhere, to be taken for a command.
+_COMMAND = re.compile(r"\A\s*:(?=:)|#(?=#\[)")
+_STRANGE = re.compile(f"[{_UNSEEN}]")
+
+
+def printable(text: object) -> str:
+    r"""Write a text on one line, with escapes for all that could deceive or steer the reader.
+
+    Line breaks, control characters, terminal escapes, marks that change the direction of writing,
+    invisible characters and lone surrogates are written as Python does in a string (``\x1b``);
+    what a build server takes for a command is broken up. All else stays as it is.
+
+    Parameters
+    ----------
+    text : object
+        A text, or what ``str`` makes one of: a path, an error.
+    """
+    raw = str(text)
+    if not raw.isprintable():
+        raw = "".join(c if c.isprintable() else _escape(c) for c in raw)
+    if not raw.isascii():
+        raw = _STRANGE.sub(lambda found: _escape(found[0]), raw)
+    return _COMMAND.sub(lambda found: found[0][:-1] + _hex(found[0][-1]), raw)
+
+
+def json_text(document: object, **options: Any) -> str:
+    """Write a JSON document so that its text is safe to show, too: ASCII, no control character.
+
+    Parameters
+    ----------
+    document : object
+        What the ``json`` module can write.
+    **options
+        Passed on to it.
+    """
+    text = json.dumps(document, indent=2, ensure_ascii=True, **options)
+    return text.replace("\x7f", "\\u007f").replace("##[", "#\\u0023[")
+
+
+def _escape(character: str) -> str:
+    return character.encode("unicode_escape").decode()
+
+
+def _hex(character: str) -> str:
+    return f"\\x{ord(character):02x}"

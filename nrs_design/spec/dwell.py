@@ -1,0 +1,67 @@
+"""What no dwell time can hold still: whoever claims a dwell time must ask here first.
+
+A proof with a dwell time rests on one constant matrix from each switch to the next.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from nrs_design.spec.controllers import (
+    ControllerSpec,
+    ImpedanceControllerSpec,
+    PositionControllerSpec,
+)
+from nrs_design.spec.environment import EnvironmentSpec
+from nrs_design.spec.parameters import ParameterSpec
+
+
+@dataclass(frozen=True, slots=True)
+class DwellObstacle:
+    """Why a spec and a dwell time exclude each other, and what to change in the spec."""
+
+    message: str
+    remedy: str
+
+
+def find_changing_parameter(parameters: Mapping[str, ParameterSpec]) -> DwellObstacle | None:
+    """Find a parameter of given matrices that is not known."""
+    for name, parameter in parameters.items():
+        if not parameter.fixed:
+            return DwellObstacle(
+                f"a dwell time and the range of parameter {name!r} exclude each other: the proof "
+                "with a dwell time holds for constant matrices only",
+                "give the parameter its nominal value only",
+            )
+    return None
+
+
+def find_changing_contact(
+    controllers: Mapping[str, ControllerSpec], environments: Mapping[str, EnvironmentSpec]
+) -> DwellObstacle | None:
+    """Find what changes while one controller is active: the environment obeys no rule of ours."""
+    for name, controller in controllers.items():
+        contacts = () if isinstance(controller, PositionControllerSpec) else controller.contacts
+        if len(contacts) > 1:
+            return DwellObstacle(
+                f"a dwell time and several contacts of {name!r} exclude each other: the contact "
+                "may change at any time, whatever the controller",
+                "write a spec for each environment",
+            )
+        if isinstance(controller, ImpedanceControllerSpec):
+            for gain in ("Mt", "Bt"):
+                if getattr(controller, gain).ranged:
+                    return DwellObstacle(
+                        f"a dwell time and the range of {gain} of {name!r} exclude each other: "
+                        "the gain may move during the dwell time, and the proof would not hold",
+                        "give the gain one value only",
+                    )
+        for contact in contacts:
+            if not environments[contact].fixed:
+                return DwellObstacle(
+                    f"a dwell time and the range of environment {contact!r} exclude each other: "
+                    "its parameters may move during the dwell time, and the proof would not hold",
+                    "give the environment its nominal values only",
+                )
+    return None

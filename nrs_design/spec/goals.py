@@ -1,0 +1,80 @@
+"""Design goals: what a design must achieve beside being stable."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from fractions import Fraction
+from typing import Annotated
+
+from pydantic import AfterValidator, Field, model_validator
+
+from nrs_design.spec.faults import fault
+from nrs_design.spec.fields import AboveOne, BelowTwo, UnitFraction
+from nrs_design.spec.model import SpecModel
+from nrs_design.spec.quantity import Quantity
+from nrs_design.spec.quantity_fields import Angle, Duration
+
+# What only one type of controller has.
+ONLY_FOR = {"max_impedance_error": "impedance", "max_force_error": "force"}
+
+
+def _below_half_turn(angle: Quantity) -> Quantity:
+    if angle.si >= math.pi:
+        raise fault(f"{angle.text!r} is out of reach", "write a phase margin below 180 deg")
+    return angle
+
+
+class GoalsSpec(SpecModel):
+    """Goals of the design; docs/design/goals.md defines each, and where it is evaluated."""
+
+    max_sensitivity_peak: AboveOne | None = Field(
+        default=None, description="largest Ms = max |1/(1 + L)|, above 1, no unit"
+    )
+    min_gain_margin: AboveOne | None = Field(
+        default=None, description="smallest factor on the loop gain that destabilizes, above 1"
+    )
+    min_phase_margin: Annotated[Angle, AfterValidator(_below_half_turn)] | None = Field(
+        default=None, description="smallest phase margin, such as 30 deg"
+    )
+    min_delay_margin: Duration | None = Field(
+        default=None, description="smallest dead time that destabilizes, such as 5 ms"
+    )
+    min_disk_margin: BelowTwo | None = Field(
+        default=None, description="smallest balanced disk margin, between 0 and 2, no unit"
+    )
+    max_impedance_error: AboveOne | None = Field(
+        default=None,
+        description="largest factor between displayed and desired impedance up to the bandwidth, "
+        "above 1, no unit; impedance controllers only",
+    )
+    max_force_error: UnitFraction | None = Field(
+        default=None,
+        description="largest steady force error over the commanded force, between 0 and 1, no "
+        "unit; force controllers only",
+    )
+
+    @model_validator(mode="after")
+    def _check_any(self) -> GoalsSpec:
+        if not dict(self.given()):
+            raise fault("no goal is given", "add one, such as `max_sensitivity_peak: 2`")
+        return self
+
+    def given(self) -> Iterator[tuple[str, Quantity | Fraction]]:
+        """Yield the goals that are set, by key."""
+        return ((key, value) for key, value in self if value is not None)
+
+
+def check_applicable(goals: GoalsSpec | None, types: set[str], *at: str) -> None:
+    """Report a fault if a goal is for another type of controller than there is."""
+    if goals is None:
+        return
+    if types <= {"position"}:
+        raise fault(
+            "there is no controller that a goal applies to: position control has no contact",
+            "remove goals",
+            *at,
+        )
+    for key, _ in goals.given():
+        if ONLY_FOR.get(key, "") not in {"", *types}:
+            raise fault(f"{key} is for {ONLY_FOR[key]} controllers", "remove it", *at, key)

@@ -1,0 +1,47 @@
+"""A reader that goes away changes nothing."""
+
+import subprocess
+import sys
+
+import pytest
+
+from tests.support import COMMUTING, PRINT_ERROR, SOFT_TISSUE, run
+from tests.terminal import run_on_terminal
+
+COMMUTING, PRINT_ERROR, SOFT_TISSUE = map(str, (COMMUTING, PRINT_ERROR, SOFT_TISSUE))
+
+
+@pytest.mark.parametrize(
+    ("arguments", "code"),
+    [
+        (("schema",), 0),
+        (("check", SOFT_TISSUE), 0),
+        (("certify-switching", PRINT_ERROR, "-v"), 1),
+        (("explain",), 0),
+        (("--help",), 0),
+        (("check", "missing.nrs.yaml"), 2),
+    ],
+)
+def test_head_does_not_change_the_exit_code(tmp_path, arguments, code):
+    program = f'"{sys.executable}" -m nrs_design "$@" 2>&1'
+    command = program + " | head -n 1 >/dev/null; echo ${PIPESTATUS[0]}"
+    done = subprocess.run(
+        ["bash", "-c", command, "bash", *arguments],
+        capture_output=True,
+        text=True,
+        cwd=tmp_path,
+        check=False,
+    )
+    assert done.stdout == f"{code}\n"
+    assert done.stderr == ""
+
+
+@pytest.mark.parametrize(
+    ("spec", "code", "word"),
+    [(COMMUTING, 0, "\x1b[1;32mPROVED"), (PRINT_ERROR, 1, "\x1b[1;31mREFUTED")],
+)
+def test_verdicts_in_colour(tmp_path, spec, code, word):
+    shown, ended = run_on_terminal(80, "certify-switching", spec, cwd=tmp_path)
+    assert word in shown
+    assert ended == code
+    assert "\x1b" not in run("certify-switching", spec, cwd=tmp_path).stdout

@@ -1,0 +1,74 @@
+"""What a design without goals is doubted for."""
+
+import pytest
+
+from nrs_design.pipeline import run_design, run_evidence
+from nrs_design.spec import read_spec
+from tests.support import FORCE_LIMIT, SOFT_TISSUE
+
+
+def warnings(path):
+    loaded = read_spec(path)
+    return [str(doubt) for doubt in run_evidence(loaded, run_design(loaded)).warnings]
+
+
+def changed(tmp_path, *replacements, source=SOFT_TISSUE):
+    text = source.read_text()
+    for old, new in replacements:
+        assert old in text
+        text = text.replace(old, new)
+    path = tmp_path / "changed.nrs.yaml"
+    path.write_text(text)
+    return path
+
+
+def about(found, name):
+    return [text for text in found if text.startswith(f"{name}: ") and " is on its " not in text]
+
+
+def test_the_withdrawal_of_the_thesis_is_doubted_and_its_bounds_are_named(tmp_path):
+    """Mt = 0.01, Bt = 1.04: Ms 3.58 at the nominal stiffness, more at the stiffest tissue."""
+    found = warnings(SOFT_TISSUE)
+    assert about(found, "insertion") == []
+    (text,) = about(found, "withdrawal")
+    assert "sensitivity peak Ms 3.753 (usual: at most 2)" in text
+    assert "gain margin 1.716 (usual: at least 2)" in text
+    assert text.endswith("max_sensitivity_peak, min_gain_margin, min_phase_margin")
+    assert "insertion: Mt is on its lower bound 0.01 kg*m^2" in found
+    assert not any("Bt is on" in text for text in found)
+
+
+def test_a_goal_for_the_peak_speaks_of_gain_and_phase_too(tmp_path):
+    path = changed(tmp_path, ("switching:", "goals: {max_sensitivity_peak: 4}\nswitching:"))
+    assert about(warnings(path), "withdrawal") == []
+
+
+def test_a_goal_for_the_phase_does_not_speak_of_the_gain(tmp_path):
+    path = changed(tmp_path, ("switching:", "goals: {min_phase_margin: 20 deg}\nswitching:"))
+    (text,) = about(warnings(path), "withdrawal")
+    assert "phase margin" not in text
+    assert "gain margin" in text
+
+
+def test_an_impedance_ten_times_off_and_an_upper_bound(tmp_path):
+    """3 N m over 8 deg/s are 21.5 N m s/rad, and Bt is at most 2."""
+    replacements = (("max: 20 N*m*s/rad", "max: 2 N*m*s/rad"), ("0.3 N*m", "3 N*m"))
+    found = warnings(changed(tmp_path, *replacements))
+    (text,) = about(found, "insertion")
+    assert "factor off the desired impedance 10." in text
+    assert "insertion: Bt is on its upper bound 2 N*m*s/rad" in found
+
+
+@pytest.mark.parametrize("goal", [None, "max_force_error: 0.6"])
+def test_a_steady_force_error_of_half_the_command(tmp_path, goal):
+    """Thesis 6.3.3.1: Kp = 0.02 leaves 0.537 of the command at the nominal stiffness."""
+    replacements = [("switching:", f"goals: {{{goal}}}\nswitching:")] if goal else []
+    found = warnings(changed(tmp_path, *replacements, source=FORCE_LIMIT))
+    assert len(found) == (goal is None)
+    if goal is None:
+        assert "steady force error over command 0.5465 (usual: at most 0.5)" in found[0]
+
+
+def test_given_gains_are_on_no_bound(tmp_path):
+    path = changed(tmp_path, ("Mt: {min: 0.01 kg*m^2, max: 1 kg*m^2}", "Mt: 0.01 kg*m^2"))
+    assert not any(" is on its " in text for text in warnings(path))

@@ -1,0 +1,136 @@
+"""What a controller achieves at worst, and in which corner."""
+
+import math
+from fractions import Fraction
+from itertools import product
+
+import numpy as np
+import pytest
+
+from nrs_design.design.goals import (
+    Requirement,
+    achieve_force,
+    achieve_impedance,
+    corners_of,
+)
+from nrs_design.design.impedance import ImpedanceLoop, displayed_impedance
+from nrs_design.design.margins import loop_margins
+from nrs_design.design.measures import (
+    DELAY_MARGIN,
+    FORCE_ERROR,
+    FORCE_MEASURES,
+    IMPEDANCE_ERROR,
+    IMPEDANCE_MEASURES,
+    SENSITIVITY_PEAK,
+)
+from nrs_design.design.transfer import TransferFunction
+from nrs_design.models.environment import Environment, Interval
+
+EXACT = TransferFunction((0.9974, 56.822), (0.0351, 1.9974, 56.822))
+
+
+def interval(nominal, low, high):
+    return Interval(*(Fraction(value) for value in (nominal, low, high)))
+
+
+ZERO = Interval.point(Fraction(0))
+SOFT = Environment("soft", interval("43", "41.5", "44.25"), ZERO)
+HAND = Environment("hand", interval("55", "50", "60"), interval("0.2", "0.1", "0.3"))
+
+
+def impedance(environments, goals=(), desired=2.15, gains=None):
+    corners = corners_of(environments, "soft", gains or {})
+    return Requirement(EXACT, corners, goals, desired, 4 * math.pi)
+
+
+def worst(requirement, Mt=0.01, Bt=2.15):
+    found = achieve_impedance(requirement, IMPEDANCE_MEASURES, Mt, Bt)
+    return {item.measure: item for item in found}
+
+
+def test_margins_are_taken_at_every_corner_of_every_contact():
+    found = worst(impedance((SOFT, HAND)))
+    points = [(float(k), 0.0) for k in ("43", "41.5", "44.25")]
+    points += [(k, b) for k, b in product((50.0, 60.0), (0.1, 0.3))]
+    peaks = {
+        point: loop_margins(ImpedanceLoop(EXACT, *point), 0.01, 2.15).sensitivity_peak
+        for point in points
+    }
+    at = max(peaks, key=peaks.__getitem__)
+    assert found[SENSITIVITY_PEAK].value == pytest.approx(peaks[at], rel=1e-6)
+    assert found[SENSITIVITY_PEAK].where == f"hand, k = {at[0]:g} N*m/rad, b = {at[1]:g} N*m*s/rad"
+
+
+def test_the_impedance_error_is_taken_in_the_environment_of_the_design_only():
+    found = worst(impedance((SOFT, HAND)))[IMPEDANCE_ERROR]
+    omega = np.linspace(0, 4 * math.pi, 20_001)
+    errors = []
+    for k in (43.0, 41.5, 44.25):
+        Z = np.abs(displayed_impedance(ImpedanceLoop(EXACT, k, 0.0), 0.01, 2.15, omega))
+        errors.append(max(Z.max() / 2.15, 2.15 / Z.min()))
+    assert found.value == pytest.approx(max(errors), rel=1e-6)
+    assert found.where.startswith("soft, ")
+    assert worst(impedance((SOFT,)))[IMPEDANCE_ERROR] == found
+
+
+def test_the_impedance_error_leaves_the_retuning_of_gains_out():
+    """Whoever retunes Bt wants another impedance; the margins must hold all the same."""
+    designed, retuned = (
+        worst(impedance((SOFT,))),
+        worst(impedance((SOFT,), gains={"Bt": (1.7, 2.6)})),
+    )
+    assert retuned[IMPEDANCE_ERROR] == designed[IMPEDANCE_ERROR]
+    assert retuned[SENSITIVITY_PEAK].value > designed[SENSITIVITY_PEAK].value
+    assert "Bt = 1.7 N*m*s/rad" in retuned[SENSITIVITY_PEAK].where
+
+
+@pytest.mark.parametrize(("desired", "factor"), [(0.215, 10), (21.5, 10)])
+def test_an_impedance_ten_times_off_is_called_so(desired, factor):
+    found = worst(impedance((SOFT,), desired=desired))[IMPEDANCE_ERROR]
+    assert found.value >= factor * 0.95
+
+
+def test_an_unstable_corner_is_the_worst():
+    """Mt = 0.01, Bt = 1.04: stable up to 75.9 N m/rad."""
+    stiff = Environment("stiff", interval("60", "50", "90"), ZERO)
+    found = worst(impedance((SOFT, stiff), ((SENSITIVITY_PEAK, 100.0),)), Bt=1.04)
+    assert found[SENSITIVITY_PEAK].value == math.inf
+    assert found[SENSITIVITY_PEAK].where == "stiff, k = 90 N*m/rad"
+    assert not found[SENSITIVITY_PEAK].met
+    assert found[DELAY_MARGIN].value == 0
+
+
+def test_corners_name_gains_and_hold_the_designed_ones_too():
+    corners = corners_of((SOFT,), "soft", {"Mt": (0.008, 0.012), "Bt": (1.7, 2.6)})
+    assert len(corners) == 3 * 5
+    assert sum(corner.home for corner in corners) == 3
+    assert corners[0].label == "soft, k = 43 N*m/rad"
+    assert {(c.Mt, c.Bt) for c in corners} == {
+        (None, None),
+        (0.008, 1.7),
+        (0.008, 2.6),
+        (0.012, 1.7),
+        (0.012, 2.6),
+    }
+
+
+def test_the_force_error_is_worst_in_the_softest_contact():
+    """Thesis 6.3.3.1: Kp = 0.02 at 43.0356 N m/rad; G(0) = 1."""
+    requirement = Requirement(EXACT, corners_of((SOFT,), "soft", {}), ((FORCE_ERROR, 0.6),))
+    found = {item.measure: item for item in achieve_force(requirement, FORCE_MEASURES, 0.02)}
+    assert found[FORCE_ERROR].value == pytest.approx(1 / (1 + 0.02 * 41.5))
+    assert found[FORCE_ERROR].where == "soft, k = 41.5 N*m/rad"
+    assert found[FORCE_ERROR].met
+    assert found[SENSITIVITY_PEAK].goal is None
+
+
+def test_force_margins_are_those_of_the_force_loop():
+    """Peak of |1/(1 + Kp k G)| on a frequency grid, at the stiffest contact."""
+    motion = TransferFunction((1.0,), (4e-4, 0.02, 1.0))
+    requirement = Requirement(motion, corners_of((SOFT,), "soft", {}))
+    found = {item.measure: item for item in achieve_force(requirement, FORCE_MEASURES, 0.2)}
+    s = 1j * np.geomspace(0.1, 1e4, 100_001)
+    G = np.polyval(motion.numerator, s) / np.polyval(motion.denominator, s)
+    peaks = [np.abs(1 / (1 + 0.2 * k * G)).max() for k in (43, 41.5, 44.25)]
+    assert found[SENSITIVITY_PEAK].value == pytest.approx(max(peaks), rel=1e-5)
+    assert found[SENSITIVITY_PEAK].where == "soft, k = 44.25 N*m/rad"

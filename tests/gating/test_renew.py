@@ -1,0 +1,167 @@
+import json
+import shutil
+
+import pytest
+
+from nrs_design.errors import CertificateError, OutputError
+from nrs_design.gating.find_specs import find_specs
+from nrs_design.gating.lock import read_lock
+from nrs_design.gating.locked import run_locked
+from nrs_design.gating.renew import certificates_of, check_folder, make_lock, write_lock
+from nrs_design.gating.run import Files, run_gate
+
+from .conftest import BROKEN, STABLE
+
+
+def gate(project, *names, prune=False):
+    specs = find_specs([project / name for name in names])
+    file = project / "nrs.lock"
+    outcome = run_gate(specs, Files(project / "reports", html=False))
+    return write_lock(outcome, file, prune=prune)
+
+
+def locked(project):
+    return [entry.path for entry in read_lock(project / "nrs.lock").specs]
+
+
+def re_check(project):
+    file, specs = project / "nrs.lock", find_specs([project / "specs"])
+    return run_locked(specs, read_lock(file), file, named=[project / "specs"])
+
+
+def test_lock_is_the_same_on_repeat(project):
+    before = (project / "nrs.lock").read_bytes()
+    outcome = run_gate(find_specs([project / "specs"]), Files(project / "reports", html=False))
+    write_lock(outcome, project / "nrs.lock")
+    assert (project / "nrs.lock").read_bytes() == before
+
+
+def test_lock_elsewhere_names_the_same_files(project):
+    outcome = run_gate(find_specs([project / "specs"]), Files(project / "reports", html=False))
+    lock = make_lock(outcome.specs, project / "reports/nrs.lock")
+    assert lock.specs[0].path == "../specs/soft-tissue.nrs.yaml"
+    assert lock.specs[0].certificate.file == "soft-tissue.cert.json"
+
+
+def test_one_part_after_the_other_keeps_both(project):
+    whole = (project / "nrs.lock").read_bytes()
+    (project / "nrs.lock").unlink()
+    gate(project, "specs/stable.nrs.yaml")
+    gate(project, "specs/soft-tissue.nrs.yaml")
+    assert (project / "nrs.lock").read_bytes() == whole
+
+
+def test_a_new_spec_is_added(project):
+    (project / "mine.nrs.yaml").write_text(STABLE.replace("name: stable", "name: mine"))
+    gate(project, "mine.nrs.yaml")
+    assert locked(project) == [
+        "mine.nrs.yaml",
+        "specs/soft-tissue.nrs.yaml",
+        "specs/stable.nrs.yaml",
+    ]
+
+
+def test_a_spec_without_a_verdict_has_no_entry_so_that_locked_fails(project):
+    (project / "specs/stable.nrs.yaml").write_text(BROKEN)
+    outcome = gate(project, "specs")
+    assert locked(project) == ["specs/soft-tissue.nrs.yaml"]
+    assert any("for want of a verdict: " in note for note in outcome.notes)
+    (project / "specs/stable.nrs.yaml").write_text(STABLE)
+    (broken,) = re_check(project).broken
+    assert "is not in nrs.lock" in broken.message
+
+
+def test_a_spec_that_is_gone_stays_locked_until_it_is_pruned(project):
+    (project / "specs/stable.nrs.yaml").unlink()
+    outcome = gate(project, "specs")
+    assert len(locked(project)) == 2
+    assert "--prune removes it): specs/stable.nrs.yaml" in outcome.notes[-1]
+    assert re_check(project).severity == 2
+    outcome = gate(project, "specs", prune=True)
+    assert locked(project) == ["specs/soft-tissue.nrs.yaml"]
+    assert outcome.notes[-1].endswith("nrs.lock: specs/stable.nrs.yaml")
+    assert re_check(project).severity == 0
+
+
+def test_a_spec_that_is_gone_and_named_stays_locked(project):
+    (project / "specs/stable.nrs.yaml").unlink()
+    gate(project, "specs/stable.nrs.yaml")
+    assert "specs/stable.nrs.yaml" in locked(project)
+
+
+def test_pruning_keeps_what_was_not_named(project):
+    gate(project, "specs/stable.nrs.yaml", prune=True)
+    assert len(locked(project)) == 2
+
+
+def test_a_renamed_spec_takes_its_certificate_along(project):
+    (project / "specs/stable.nrs.yaml").rename(project / "specs/other.nrs.yaml")
+    gate(project, "specs")
+    assert locked(project) == ["specs/other.nrs.yaml", "specs/soft-tissue.nrs.yaml"]
+    assert re_check(project).severity == 0
+
+
+def test_missed_goals_and_gains_are_locked(project):
+    entry = read_lock(project / "nrs.lock").specs[0]
+    assert entry.gains["insertion"]["Bt"] == "2.150000095367431640625"
+    assert [(goal.rule, goal.subject, goal.status) for goal in entry.goals] == [
+        ("NRS103", "insertion", "met"),
+        ("NRS103", "withdrawal", "met"),
+    ]
+
+
+@pytest.mark.parametrize("text", ["", "precious", '{"schema": "nrs-design/lock/1"}'])
+def test_what_is_no_lock_is_not_overwritten(project, text):
+    outcome = run_gate([project / "specs/stable.nrs.yaml"], Files(project / "reports", html=False))
+    (project / "nrs.lock").write_text(text)
+    with pytest.raises(CertificateError):
+        write_lock(outcome, project / "nrs.lock")
+    assert (project / "nrs.lock").read_text() == text
+
+
+def test_unwritable_lock(project):
+    outcome = run_gate([project / "specs/stable.nrs.yaml"], Files(project / "ci", html=False))
+    with pytest.raises(OutputError, match="below the folder of the lock"):
+        write_lock(outcome, project / "reports/nrs.lock")
+    with pytest.raises(CertificateError, match="not a regular file"):
+        write_lock(outcome, project)
+
+
+@pytest.mark.parametrize(
+    ("folder", "lock"), [("certs", "ci/a.lock"), ("..", "nrs.lock"), ("/tmp", "nrs.lock")]
+)
+def test_certificates_that_a_lock_could_not_name(project, folder, lock):
+    with pytest.raises(OutputError, match="below the folder of the lock"):
+        check_folder(project / folder, project / lock)
+
+
+@pytest.mark.parametrize("folder", [".", "certs", "a/b"])
+def test_certificates_below_the_lock(project, folder):
+    check_folder(project / folder, project / "nrs.lock")
+
+
+def test_whose_a_locked_certificate_is(project):
+    found = certificates_of(read_lock(project / "nrs.lock"), project / "nrs.lock")
+    name = project / "reports/stable.cert.json"
+    assert found[name.resolve()] == (project / "specs/stable.nrs.yaml").resolve()
+
+
+def test_the_certificate_of_a_locked_spec_is_not_overwritten_even_where_it_is_missing(project):
+    """Only the lock file says whose it is."""
+    (project / "reports/stable.cert.json").unlink()
+    shutil.copy(project / "specs/stable.nrs.yaml", project / "mine.nrs.yaml")
+    owners = certificates_of(read_lock(project / "nrs.lock"), project / "nrs.lock")
+    files = Files(project / "reports", html=False, locked=owners)
+    (broken,) = run_gate([project / "mine.nrs.yaml"], files).broken
+    assert broken.rule.id == "NRS005"
+    assert "is locked for specs/stable.nrs.yaml" in broken.message
+    assert not (project / "reports/stable.cert.json").exists()
+
+
+def test_the_lock_does_not_change_with_comments_and_line_ends(project):
+    before = (project / "nrs.lock").read_bytes()
+    for spec in (project / "specs").iterdir():
+        spec.write_bytes(b"# new\r\n" + spec.read_bytes().replace(b"\n", b"\r\n"))
+    gate(project, "specs")
+    assert (project / "nrs.lock").read_bytes() == before
+    assert json.loads(before)["schema"] == "nrs-design/lock/2"

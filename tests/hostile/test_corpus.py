@@ -1,0 +1,147 @@
+"""Every command on every hostile input: its exit code, time, memory, words, and what it touches."""
+
+import json
+import os
+from pathlib import Path
+
+import pytest
+
+from tests.hostile.corpus import CERTIFICATES, LARGE_SPECS, LOCKS, NAMES, RECORDS, SPECS, write
+from tests.hostile.running import check
+from tests.support import COMMUTING
+
+SPEC_COMMANDS = (
+    ("check", "--json"),
+    ("certify-switching", "--budget", "2"),
+    ("certify-switching", "--budget", "2", "--margin"),
+    ("optimize",),
+    ("tune",),
+    ("report",),
+    ("export",),
+    ("robot", "check"),
+    ("robot", "kinematics"),
+    ("gate",),
+    ("gate", "--format", "github", "--no-reports"),
+    ("gate", "--format", "junit", "--no-reports"),
+    ("gate", "--locked"),
+)
+
+
+@pytest.fixture
+def place(tmp_path, monkeypatch):
+    for name in ("work", "home", "outside"):
+        (tmp_path / name).mkdir()
+    (tmp_path / "outside" / "precious.html").write_text("mine")
+    monkeypatch.chdir(tmp_path / "work")
+    return tmp_path
+
+
+@pytest.mark.parametrize("case", SPECS)
+def test_a_spec_is_checked(place, case):
+    write(place / "work/spec.nrs.yaml", SPECS[case]())
+    check(place, "check", "spec.nrs.yaml")
+
+
+@pytest.mark.parametrize("case", ["coprime 12", "coprime 30", "digits 12", "digits 24"])
+def test_the_decision_about_a_mode_is_bounded(place, case):
+    write(place / "work/spec.nrs.yaml", SPECS[case]())
+    check(place, "gate", "--no-reports", "spec.nrs.yaml")
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("command", SPEC_COMMANDS, ids=" ".join)
+@pytest.mark.parametrize("case", SPECS)
+def test_a_spec_in_every_command(place, case, command):
+    write(place / "work/spec.nrs.yaml", SPECS[case]())
+    write(place / "work/nrs.lock", json.dumps({"schema": "nrs-design/lock/1", "specs": []}))
+    check(place, *command, "spec.nrs.yaml")
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("command", SPEC_COMMANDS[1:3], ids=" ".join)
+@pytest.mark.parametrize("case", LARGE_SPECS)
+def test_a_large_spec_ends_within_the_budget(place, case, command):
+    write(place / "work/spec.nrs.yaml", LARGE_SPECS[case]())
+    check(place, *command, "spec.nrs.yaml")
+
+
+@pytest.mark.parametrize("case", RECORDS)
+@pytest.mark.parametrize(
+    "command",
+    [
+        pytest.param(("identify", "tissue", "--json"), marks=pytest.mark.slow),
+        ("identify", "tissue", "--report", "page.html"),
+        pytest.param(("identify", "actuator"), marks=pytest.mark.slow),
+    ],
+    ids=" ".join,
+)
+def test_a_record(place, case, command):
+    write(place / "work/data.csv", RECORDS[case]())
+    check(place, *command, "data.csv", codes=(2,))
+
+
+@pytest.mark.parametrize("case", CERTIFICATES)
+def test_a_certificate(place, case):
+    write(place / "work/spec.nrs.yaml", COMMUTING.read_bytes())
+    write(place / "work/bogus.cert.json", CERTIFICATES[case]())
+    check(place, "verify", "bogus.cert.json", "spec.nrs.yaml", codes=(1, 2))
+
+
+@pytest.mark.parametrize("case", LOCKS)
+def test_a_lock(place, case):
+    write(place / "work/spec.nrs.yaml", COMMUTING.read_bytes())
+    write(place / "work/nrs.lock", LOCKS[case]())
+    check(place, "gate", "--locked", "spec.nrs.yaml", codes=(1, 2))
+
+
+@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize(
+    "command",
+    [
+        ("check",),
+        ("gate", "--format", "github", "--no-reports"),
+        *(pytest.param(c, marks=pytest.mark.slow) for c in SPEC_COMMANDS),
+    ],
+    ids=" ".join,
+)
+def test_a_file_name(place, name, command):
+    write(place / "work" / name, COMMUTING.read_bytes())
+    check(place, *command, "--", name)
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="this system has no pipes in folders")
+@pytest.mark.parametrize("kind", ["pipe", "device"])
+@pytest.mark.parametrize(
+    "command",
+    [
+        ("check", "x"),
+        ("gate", "x"),
+        ("identify", "tissue", "x"),
+        ("identify", "actuator", "x"),
+        ("verify", "x", str(COMMUTING)),
+        ("gate", "--locked", "--lock", "x", str(COMMUTING)),
+    ],
+    ids=" ".join,
+)
+def test_what_is_no_file(place, command, kind):
+    path = place / "work/x"
+    if kind == "pipe":
+        os.mkfifo(path)
+    else:
+        path.symlink_to("/dev/zero")
+    check(place, *command, codes=(2,))
+
+
+@pytest.mark.parametrize("name", ["nul.cert.json", "AUX", "com1.html"])
+def test_no_file_is_written_under_the_name_of_a_device(place, name):
+    write(place / "work/spec.nrs.yaml", COMMUTING.read_bytes())
+    check(place, "certify-switching", "--out", name, "spec.nrs.yaml", codes=(2,))
+    assert not Path(name).exists()
+
+
+@pytest.mark.parametrize("option", ["--reports", "--lock"])
+def test_a_link_out_of_the_working_folder(place, option):
+    write(place / "work/spec.nrs.yaml", COMMUTING.read_bytes())
+    (place / "work/link").symlink_to(place / "outside")
+    target = "link" if option == "--reports" else "link/nrs.lock"
+    check(place, "gate", option, target, "spec.nrs.yaml")

@@ -1,0 +1,66 @@
+import numpy as np
+import pytest
+
+from nrs_design.reporting.style import new_axes, styled
+from nrs_design.reporting.ticks import in_full, power_of_ten
+
+
+@pytest.mark.parametrize(
+    ("value", "step", "text"),
+    [
+        (0.0, 1.0, "0"),
+        (1e-18, 0.1, "0"),
+        (2.5, 0.5, "2.5"),
+        (-20.0, 10.0, "−20"),
+        (1000.0002, 0.0001, "1000.0002"),
+        (2e7, 1e7, "2·10⁷"),
+        (-1e-9, 1e-9, "−10⁻⁹"),
+        (1.00001e8, 1e3, "1.00001·10⁸"),
+        (0.00025, 0.00005, "0.00025"),
+    ],
+)
+def test_ticks_are_written_in_full(value, step, text):
+    assert in_full(value, step) == text
+
+
+def test_powers_of_ten():
+    assert [power_of_ten(10.0**k) for k in (-5, -2, 0, 3, 4)] == [
+        "10⁻⁵",
+        "0.01",
+        "1",
+        "1000",
+        "10⁴",
+    ]
+
+
+@styled
+def drawn(values, scale="linear"):
+    figure, axes = new_axes()
+    axes.plot(values, values)
+    axes.set_xscale(scale)
+    axes.set_yscale(scale)
+    return figure
+
+
+@pytest.mark.parametrize(
+    "values", [1000 + np.array([1e-4, 3e-4]), np.array([1e-9, 4e-9]), np.array([2e8, 9e8])]
+)
+def test_no_axis_has_an_offset_or_a_common_factor(values):
+    (axes,) = drawn(values).axes
+    for axis in (axes.xaxis, axes.yaxis):
+        assert axis.get_offset_text().get_text() == ""
+        labels = [label.get_text() for label in axis.get_ticklabels()]
+        assert len(set(labels)) == len(labels) > 2
+
+
+def test_labels_of_a_logarithmic_axis_are_no_formulas():
+    (axes,) = drawn(np.array([1e-6, 1e6]), "log").axes
+    labels = [label.get_text() for label in axes.get_xticklabels()]
+    assert "10⁻⁶" in labels
+    assert not any("$" in label for label in labels)
+
+
+def test_a_short_logarithmic_axis_has_labels_between_the_powers():
+    (axes,) = drawn(np.array([1.5, 7.0]), "log").axes
+    shown = [t.get_text() for t in axes.get_xticklabels(which="both") if t.get_text()]
+    assert sorted(set(shown) - {"1", "10"}) == ["2", "3", "4", "6"]

@@ -1,0 +1,79 @@
+"""Goals in a spec: what is read, and what is refused with its place."""
+
+import pytest
+
+from nrs_design.spec.describe import describe
+from tests.spec.samples import FORCE, IMPEDANCE, interaction, place_of, refusal, spoiled
+
+ALL = (
+    "goals: {max_sensitivity_peak: 2, min_gain_margin: '5/2', min_phase_margin: 30 deg, "
+    "min_delay_margin: 5 ms, min_disk_margin: 0.7, max_impedance_error: 1.5}\n"
+)
+
+
+def with_goals(text, sample=IMPEDANCE):
+    return spoiled(sample, "switching: arbitrary", f"{text}switching: arbitrary")
+
+
+def own(text):
+    return spoiled(IMPEDANCE, "    environment: soft\n", f"    environment: soft\n    {text}\n")
+
+
+def test_goals_are_read_with_their_units():
+    goals = interaction(with_goals(ALL)).goals
+    assert goals.max_sensitivity_peak == 2
+    assert float(goals.min_gain_margin) == 2.5
+    assert goals.min_phase_margin.si == pytest.approx(0.5235988)
+    assert float(goals.min_delay_margin.exact) == 0.005
+    assert goals.max_force_error is None
+    assert len(dict(goals.given())) == 6
+
+
+def test_check_shows_goals_and_those_of_a_controller():
+    text = own("goals: {max_sensitivity_peak: 3}")
+    rows = {row.name: row for row in describe(interaction(with_goals(ALL, sample=text)))}
+    assert rows["goals.min_delay_margin"].written == "5 ms"
+    assert (rows["goals.min_delay_margin"].value, rows["goals.min_delay_margin"].unit) == (
+        "0.005",
+        "s",
+    )
+    assert rows["controllers.insertion.goals.max_sensitivity_peak"].written == "3"
+
+
+@pytest.mark.parametrize(
+    ("text", "piece", "message"),
+    [
+        ("goals: {max_sensitivity_peak: 1}", "1}", "above 1"),
+        ("goals: {min_gain_margin: 0.5}", "0.5}", "above 1"),
+        ("goals: {min_disk_margin: 2}", "2}", "between 0 and 2"),
+        ("goals: {min_phase_margin: 30}", "30}", "no unit"),
+        ("goals: {min_phase_margin: 180 deg}", "180", "out of reach"),
+        ("goals: {min_phase_margin: -5 deg}", "-5", "positive"),
+        ("goals: {min_delay_margin: 5 deg}", "5 deg", "duration"),
+        ("goals: {max_impedance_error: 0.1}", "0.1}", "above 1"),
+        ("goals: {max_ms: 2}", "max_ms", "unknown key"),
+        ("goals: {max_force_error: 0.1}", "max_force_error", "for force controllers"),
+        ("goals: {}", "goals", "no goal"),
+    ],
+)
+def test_a_wrong_goal_is_refused_at_its_place(text, piece, message):
+    for spoiled_text in (with_goals(f"{text}\n"), own(text)):
+        error = refusal(spoiled_text)
+        assert message in error.message
+        line, _ = place_of(spoiled_text, text)
+        assert error.line == line
+
+
+def test_a_goal_of_the_impedance_is_refused_for_force_control():
+    text = with_goals("goals: {max_impedance_error: 2}\n", sample=FORCE)
+    error = refusal(text)
+    assert "for impedance controllers" in error.message
+    assert (error.line, error.column) == place_of(text, "2}\nswitching")
+    assert interaction(with_goals("goals: {max_force_error: 0.6}\n", sample=FORCE)).goals
+
+
+def test_goals_without_a_controller_in_contact_are_refused():
+    text = IMPEDANCE.partition("controllers:")[0]
+    text += "controllers: {position: {type: position}}\ngoals: {min_gain_margin: 2}\n"
+    error = refusal(text + "switching: arbitrary\n")
+    assert "no controller that a goal applies to" in error.message

@@ -1,0 +1,59 @@
+"""A settings file of matplotlib in the working directory, as a stranger may leave one there."""
+
+import os
+import shutil
+import subprocess
+import sys
+
+import pytest
+
+from tests.support import COMMUTING, ROOT, SOFT_TISSUE, run
+
+HOSTILE = "figure.dpi: 7\naxes.facecolor: red\ntimezone: Nowhere\nbackend: module://evil\n"
+LOOK = """\
+from nrs_design.plotting import load_matplotlib
+load_matplotlib()
+import os, matplotlib
+print(matplotlib.rcParams["timezone"], matplotlib.rcParamsOrig["figure.dpi"], os.getcwd())
+"""
+
+
+def test_settings_of_the_working_directory_are_not_read(tmp_path):
+    (tmp_path / "matplotlibrc").write_text(HOSTILE)
+    (tmp_path / "evil.py").write_text("raise SystemExit('evil was imported')\n")
+    environment = {**os.environ, "PYTHONPATH": str(ROOT), "MATPLOTLIBRC": str(tmp_path)}
+    done = subprocess.run(
+        [sys.executable, "-c", LOOK], cwd=tmp_path, env=environment, capture_output=True, text=True
+    )
+    assert done.stdout.split() == ["UTC", "100.0", str(tmp_path)], done.stderr
+
+
+def test_figures_are_the_same_beside_hostile_settings(tmp_path):
+    pages = []
+    for name in ("clean", "hostile"):
+        folder = tmp_path / name
+        folder.mkdir()
+        if name == "hostile":
+            (folder / "matplotlibrc").write_text(HOSTILE)
+        shutil.copy(COMMUTING, folder / "c.nrs.yaml")
+        done = run("report", "c.nrs.yaml", "--out", "c.html", cwd=folder)
+        assert done.returncode == 0, done.stderr
+        pages.append((folder / "c.html").read_bytes())
+    assert pages[0] == pages[1]
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="this system has no pipes with a name")
+@pytest.mark.parametrize("command", ["optimize", "report"])
+def test_a_pipe_is_not_waited_for(tmp_path, command):
+    """Whoever opens it waits until somebody writes; python-control imports matplotlib, too."""
+    os.mkfifo(tmp_path / "matplotlibrc")
+    shutil.copy(SOFT_TISSUE, tmp_path / "s.nrs.yaml")
+    assert run(command, "s.nrs.yaml", cwd=tmp_path).returncode == 0
+
+
+def test_every_import_of_matplotlib_comes_after_its_settings():
+    """Of matplotlib and of python-control, which brings it along."""
+    for path in (ROOT / "nrs_design").rglob("*.py"):
+        text = path.read_text(encoding="utf-8")
+        imports = text.count("\n    import control\n")
+        assert imports == text.count("    load_matplotlib()\n    import control\n"), path

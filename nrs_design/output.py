@@ -38,7 +38,8 @@ def write_output(path: Path, content: str | bytes, *, replaces: bytes = b"") -> 
     """
     if is_device_name(path.name):
         raise OutputError("names a device on Windows", path=path, remedy="name another file")
-    data = content.encode() if isinstance(content, str) else content
+    # A file name that is no text may have got in; it is shown with escapes.
+    data = content.encode(errors="backslashreplace") if isinstance(content, str) else content
     try:
         _refuse_links(path)
         check_replaceable(path, replaces)

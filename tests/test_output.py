@@ -122,3 +122,15 @@ def test_interruption_leaves_nothing(tmp_path, monkeypatch):
     with pytest.raises(KeyboardInterrupt):
         write_output(tmp_path / "out", "new")
     assert not list(tmp_path.iterdir())
+
+
+def test_a_file_name_that_is_no_text_is_written_with_escapes(tmp_path):
+    write_output(tmp_path / "a", "from b\udcff")
+    assert (tmp_path / "a").read_bytes() == rb"from b\udcff"
+
+
+@pytest.mark.parametrize("name", ["nul", "AUX.html", "com1.cert.json"])
+def test_the_name_of_a_device_is_refused(tmp_path, name):
+    with pytest.raises(OutputError, match="device on Windows"):
+        write_output(tmp_path / name, "x")
+    assert list(tmp_path.iterdir()) == []

@@ -71,5 +71,8 @@ def _explain(title: str, entry: Rule | Word, *, as_json: bool) -> None:
         say()
         say(heading)
         width = min(WIDTH, shutil.get_terminal_size((WIDTH, 24)).columns)
-        for line in textwrap.wrap(text, width, initial_indent="  ", subsequent_indent="  "):
+        # An option such as --max-degree is never broken in two.
+        wrap = textwrap.TextWrapper(width, break_on_hyphens=False)
+        wrap.initial_indent = wrap.subsequent_indent = "  "
+        for line in wrap.wrap(text):
             say(line)

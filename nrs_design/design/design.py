@@ -32,7 +32,6 @@ from nrs_design.spec import (
     InteractionDesignSpec,
     PositionControllerSpec,
 )
-from nrs_design.switched.assemble import motion_loop
 
 
 def design_controllers(spec: InteractionDesignSpec, plant: Plant) -> ControllerDesign:
@@ -51,7 +50,7 @@ def design_controllers(spec: InteractionDesignSpec, plant: Plant) -> ControllerD
         If a requirement cannot be met within its bounds.
     """
     motion = _motion(spec)
-    loop = motion_loop(spec, motion)
+    loop = plant.motion_loop(motion.Kp, motion.Kd)
     controllers = []
     for name, controller in spec.controllers.items():
         with naming(name):

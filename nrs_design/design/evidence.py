@@ -38,7 +38,6 @@ from nrs_design.spec import (
     ImpedanceControllerSpec,
     InteractionDesignSpec,
 )
-from nrs_design.switched.assemble import motion_loop
 
 
 @dataclass(frozen=True, slots=True)
@@ -139,7 +138,7 @@ def examine_design(
     spec: InteractionDesignSpec, plant: Plant, design: ControllerDesign
 ) -> DesignEvidence:
     """Compute poles, costs and margins of a design."""
-    loop = motion_loop(spec, design.motion)
+    loop = plant.motion_loop(design.motion.Kp, design.motion.Kd)
     motion = to_transfer_function(loop)
     impedance = tuple(
         _impedance(spec, plant, loop, controller, controller.law)

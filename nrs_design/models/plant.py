@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Collection
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 
 from nrs_design.models.actuator import Actuator
 from nrs_design.models.environment import Environment, Interval
+from nrs_design.models.motion_loop import MotionLoop, close_motion_loop
 from nrs_design.spec import (
     ElasticSpec,
     InteractionDesignSpec,
@@ -26,10 +27,23 @@ class Plant:
         Identified model.
     environments : tuple of Environment
         In the order of the spec.
+    given_loop : MotionLoop or None
+        The closed motion loop, if the spec states it.
     """
 
     actuator: Actuator
     environments: tuple[Environment, ...]
+    given_loop: MotionLoop | None = None
+
+    def motion_loop(self, Kp: Fraction, Kd: Fraction) -> MotionLoop:
+        """Return G: the one that the spec states, else the one that the PD gains make.
+
+        Parameters
+        ----------
+        Kp, Kd : Fraction
+            In rpm/rad and rpm s/rad.
+        """
+        return self.given_loop or close_motion_loop(self.actuator, Kp, Kd)
 
     def environment(self, name: str) -> Environment:
         """Return the environment of that name; the spec guarantees that it exists."""
@@ -46,7 +60,7 @@ class Plant:
             If a stiffness would not stay positive, or a damping would become negative.
         """
         environments = (e.scaled(scale) if e.name in touched else e for e in self.environments)
-        return Plant(self.actuator, tuple(environments))
+        return replace(self, environments=tuple(environments))
 
 
 def build_plant(spec: InteractionDesignSpec) -> Plant:
@@ -59,7 +73,11 @@ def build_plant(spec: InteractionDesignSpec) -> Plant:
     environments = tuple(
         _environment(name, environment) for name, environment in spec.environments.items()
     )
-    return Plant(actuator, environments)
+    stated = spec.motion_loop.transfer_function
+    loop = None
+    if stated is not None:
+        loop = MotionLoop(stated.numerator, stated.denominator, given=True)
+    return Plant(actuator, environments, loop)
 
 
 def _environment(name: str, spec: ElasticSpec | KelvinVoigtSpec) -> Environment:

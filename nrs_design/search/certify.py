@@ -26,7 +26,7 @@ from nrs_design.proof.evidence import (
 )
 from nrs_design.proof.evidence.block_triangular import diagonal_block
 from nrs_design.proof.evidence.common_polynomial import MAX_DEGREE, MAX_MONOMIALS
-from nrs_design.proof.evidence.unstable_mode import is_stable
+from nrs_design.proof.evidence.unstable_mode import affordable, is_stable
 from nrs_design.proof.exact import TooLargeError
 from nrs_design.proof.second_opinion import agrees
 from nrs_design.proof.system import Mode, SwitchedSystem, Time
@@ -374,7 +374,8 @@ def _applicable(system: SwitchedSystem) -> set[Method]:
     wanted = {Method.MODE_QUADRATIC}
     if system.time is Time.DISCRETE and not (switching.is_arbitrary or switching.fixed_ends):
         wanted |= {Method.MODE_POLYNOMIAL}
-    if any(not is_stable(mode.A, system.time) for mode in _left_modes(system)):
+    left = affordable(_left_modes(system))
+    if any(not (fits and is_stable(mode.A, system.time)) for mode, fits in left):
         return wanted | ({Method.PERIOD} if system.is_uniform else set())
     if system.is_uniform and not switching.resets:
         wanted |= {Method.LMI, Method.OBSTRUCTION, Method.POLYNOMIAL}

@@ -29,12 +29,16 @@ def growing_cycles(graph: Graph, allowance: Allowance) -> Iterator[tuple[Cycle, 
     tuple
         The jumps of the cycle, and the best times found before each of them.
     """
-    scanned = []
+    scanned: list[tuple[float, Cycle, Array]] = []
     for cycle in islice(elementary_cycles(graph.jumps), MAX_CYCLES):
+        counts = [len(graph.times[mode]) for mode in graph.modes(cycle)]
+        looks = counts[0] * counts[1] if len(cycle) == 2 else SWEEPS * sum(counts)
+        cost = graph.cost(looks * len(cycle))
+        if scanned and not allowance.affords(cost):
+            break
+        allowance.take(cost, f"looking at a cycle of {len(cycle)} modes")
         times = _best_pair(graph, cycle) if len(cycle) == 2 else _best_times(graph, cycle)
         scanned.append((float(graph.growth(cycle, times)), cycle, times))
-        if not allowance.goes_on():
-            break
     scanned.sort(key=lambda item: -item[0])
     yield from ((cycle, times) for _, cycle, times in scanned[:STARTS])
 

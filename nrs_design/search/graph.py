@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from nrs_design.proof.system import SwitchedSystem, Time
+from nrs_design.search.allowance import Cost
 from nrs_design.search.flows import ComplexArray, Flows, spectral_radii
 
 Array = NDArray[np.float64]
@@ -16,6 +17,9 @@ Array = NDArray[np.float64]
 Cycle = tuple[int, ...]
 
 TIMES = 48
+# Seconds for the eigenvalues of a product, and per multiplication in them.
+PER_PRODUCT = 2e-6
+PER_OPERATION = 3e-8
 # Entries of the products that are looked at together.
 CHUNK_ENTRIES = 2_000_000
 # Steps beyond the dwell time that a stay may have: few, and then up to where a mode has decayed.
@@ -86,6 +90,10 @@ class Graph:
             times = np.round(times)
         modes = self.modes(cycle)
         return np.asarray(np.clip(times, self.shortest[modes], self.longest[modes]))
+
+    def cost(self, products: int) -> Cost:
+        """Predict what looking at the growth of so many products takes."""
+        return Cost(products * (PER_PRODUCT + PER_OPERATION * self.flows.matrices[0].size ** 1.5))
 
     def growth(self, cycle: Cycle, times: Array) -> Array:
         """Return the growth per time of periodic signals; times of shape (..., legs)."""

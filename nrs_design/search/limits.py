@@ -12,6 +12,8 @@ from nrs_design.search.decay import limit_rate
 from nrs_design.search.family import to_floats
 
 MAX_WORDS = 3000
+# Multiplications in the eigenvalues of all words of a length.
+MAX_WORK = 30_000_000
 
 
 def rate_limit(system: SwitchedSystem) -> float | None:
@@ -47,7 +49,8 @@ def rate_limit(system: SwitchedSystem) -> float | None:
 
 def _cycle_growth(matrices: np.ndarray[tuple[int, ...], np.dtype[np.float64]]) -> float:
     m, length, best = len(matrices), 1, 0.0
-    while m > 1 and m ** (length + 1) <= MAX_WORDS:
+    words_at_most = min(MAX_WORDS, MAX_WORK // len(matrices[0]) ** 3)
+    while m > 1 and m ** (length + 1) <= words_at_most:
         length += 1
         words = np.array(list(product(range(m), repeat=length)))
         products = matrices[words[:, 0]]

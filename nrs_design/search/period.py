@@ -31,6 +31,8 @@ MAX_DOUBLED = 8
 CHANGES = (1, 2, 4, 8, -1, -2, -4, -8)
 ROUNDS = 40
 LONGEST_STEPS = 2000
+# About so many times are looked at to refine those of one cycle.
+LOOKS = 600
 
 
 def find_growing_period(
@@ -83,9 +85,9 @@ def _candidates(system: SwitchedSystem, graph: Graph, allowance: Allowance) -> I
     refine = _refined if system.time is Time.CONTINUOUS else _refined_steps
     for cycle, start in chain(_twice(growing_cycles(graph, allowance)), longer):
         times = graph.admissible(cycle, start)
-        allowance.check()
         if graph.growth(cycle, times) > 0:
             yield cycle, times
+        allowance.take(graph.cost(LOOKS * len(cycle)), "refining a cycle")
         better = refine(graph, cycle, times)
         if graph.growth(cycle, better) > 0:
             yield cycle, better

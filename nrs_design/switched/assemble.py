@@ -8,10 +8,7 @@ from fractions import Fraction
 
 from nrs_design.controllers.controller_design import ControllerDesign
 from nrs_design.controllers.gains import design_from_gains
-from nrs_design.controllers.laws import ProportionalDerivative
 from nrs_design.errors import AssemblyError
-from nrs_design.models.actuator import Actuator
-from nrs_design.models.motion_loop import MotionLoop, close_motion_loop
 from nrs_design.models.plant import build_plant
 from nrs_design.proof.system import Mode, SwitchedSystem, Time
 from nrs_design.spec import (
@@ -123,17 +120,8 @@ def from_design(
     """Return the closed loop of an interaction design, one mode for each corner of its boxes."""
     if coordinates not in ("deflection", "force"):
         raise AssemblyError(f"unknown coordinates {coordinates!r}: deflection or force")
-    loop = motion_loop(spec, design.motion)
     plant = build_plant(spec).scaled(scale, _touched(spec))
+    loop = plant.motion_loop(design.motion.Kp, design.motion.Kd)
     boxes = gain_boxes(spec, design, scale)
     system = close_loop(spec.name, plant, loop, design, coordinates, spec.switching, boxes)
     return replace(system, assumptions=(*system.assumptions, *scale_texts(scale)))
-
-
-def motion_loop(spec: InteractionDesignSpec, motion: ProportionalDerivative) -> MotionLoop:
-    """Return G: the one that the spec gives, else the one that actuator and PD make."""
-    given = spec.motion_loop.transfer_function
-    if given is not None:
-        return MotionLoop(given.numerator, given.denominator, given=True)
-    actuator = Actuator(spec.actuator.gain.exact, spec.actuator.time_constant.exact)
-    return close_motion_loop(actuator, motion.Kp, motion.Kd)

@@ -360,7 +360,7 @@ def test_the_default_degree_follows_the_budget(tmp_path):
     write_spec(tmp_path / "high.nrs.yaml", *pair)
     result = run("certify-switching", "high.nrs.yaml", "--json", cwd=tmp_path)
     assert result.returncode == 0
-    assert "polynomial of degree 18" in json.loads(result.stdout)["method"]
+    assert int(json.loads(result.stdout)["method"].removeprefix("polynomial of degree ")) > 12
 
 
 def test_a_spec_says_how_far_the_search_goes_and_options_override_it(tmp_path):

@@ -3,10 +3,12 @@
 Fractions and NumPy only: no lift, no elimination and no enclosure of the package is used.
 """
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from fractions import Fraction
-from itertools import product
+from itertools import combinations_with_replacement, product
+from math import prod
+from random import Random
 
 import numpy as np
 
@@ -15,6 +17,7 @@ from nrs_design.proof.evidence import (
     BlockTriangular,
     CommonPolynomial,
     CommonQuadratic,
+    ModePolynomial,
     ModeQuadratic,
     NoCommonQuadratic,
     ParameterQuadratic,
@@ -85,6 +88,48 @@ def decrease(A: Rows, Q: Rows, rate: Fraction, time: Time) -> Rows:
 
 def is_rate(rate: Fraction, time: Time) -> bool:
     return rate > 0 and (time is Time.CONTINUOUS or rate < 1)
+
+
+def _mode_polynomials_decrease(system: SwitchedSystem, evidence: ModePolynomial) -> bool:
+    """Evaluate the polynomials where the definition says that they decrease, at many states."""
+    d, rate = evidence.degree, evidence.quadratic.rate
+    functions = dict(evidence.quadratic.functions)
+    if not is_rate(rate, system.time) or list(functions) != [m.name for m in system.modes]:
+        return False
+
+    def value(name: str, x: Sequence[Fraction]) -> Fraction:
+        z = [prod(powers) for powers in combinations_with_replacement(x, d)]
+        Q = functions[name]
+        return sum((a * Q[i][j] * b for i, a in enumerate(z) for j, b in enumerate(z)), Fraction(0))
+
+    def image(A: RationalMatrix, x: Sequence[Fraction]) -> list[Fraction]:
+        rows = A.fractions()
+        return [sum((a * b for a, b in zip(row, x, strict=True)), Fraction(0)) for row in rows]
+
+    random = Random(0)
+    stays = system.stays()
+    for _ in range(40):
+        for mode in system.modes:
+            x = [Fraction(random.randint(-99, 99)) for _ in mode.A.fractions()]
+            if not any(x):
+                continue
+            before, stay, y, steps = value(mode.name, x), stays[mode.name], x, 0
+            left = mode.name in evidence.quadratic.leaving
+            if before <= 0:
+                return False
+            if not left and value(mode.name, image(mode.A, x)) >= rate ** (2 * d) * before:
+                return False
+            last = stay.longest if left and stay.longest is not None else stay.shortest
+            while steps < last:
+                y, steps = image(mode.A, y), steps + 1
+                if steps < stay.shortest:
+                    continue
+                for edge in system.edges():
+                    if edge.source is mode:
+                        after = y if edge.map is None else image(edge.map, y)
+                        if value(edge.target.name, after) >= rate ** (2 * d * steps) * before:
+                            return False
+    return True
 
 
 def holds(system: SwitchedSystem, evidence: AbstractEvidence) -> bool:
@@ -424,6 +469,7 @@ _ORACLES = {
     CommonPolynomial: _common_polynomial,
     NoCommonQuadratic: _no_common_quadratic,
     ParameterQuadratic: _parameter_quadratic,
+    ModePolynomial: _mode_polynomials_decrease,
     ModeQuadratic: _mode_quadratic,
     UnstableMode: _unstable_mode,
     UnstableMixture: _unstable_mixture,

@@ -4,10 +4,11 @@ import pytest
 
 from nrs_design.controllers.gains import gains_of
 from nrs_design.errors import AssemblyError, CertificateError
+from nrs_design.models.plant import build_plant
 from nrs_design.pipeline import run_design
 from nrs_design.proof.system import Time
 from nrs_design.spec import load_spec, parse_spec, read_spec
-from nrs_design.switched.assemble import GIVEN_MATRICES, assemble, motion_loop
+from nrs_design.switched.assemble import GIVEN_MATRICES, assemble
 from tests.support import COMMUTING, FORCE_LIMIT, SOFT_TISSUE
 
 GIVEN_LOOP = """motion_loop:
@@ -79,7 +80,7 @@ def test_missing_gains():
 def test_motion_loop_from_the_gains_that_ship():
     """Thesis 6.1 with Kd = 2060 and z = 56.9706: 0.9974, 56.82 over 0.0351, 1.9974, 56.82."""
     spec, design, _ = design_of(SOFT_TISSUE)
-    loop = motion_loop(spec, design.motion)
+    loop = build_plant(spec).motion_loop(design.motion.Kp, design.motion.Kd)
     assert loop.numerator == (
         2060 * Fraction("4.8417e-4"),
         Fraction("117359.4375") * Fraction("4.8417e-4"),
@@ -91,6 +92,6 @@ def test_motion_loop_that_the_spec_states():
     text = SOFT_TISSUE.read_text().replace("motion_loop:\n", GIVEN_LOOP)
     spec = parse_spec(text)
     _, design, _ = design_of(SOFT_TISSUE)
-    loop = motion_loop(spec, design.motion)
+    loop = build_plant(spec).motion_loop(design.motion.Kp, design.motion.Kd)
     assert loop.numerator == (Fraction("28.416"), Fraction("1618.80"))
     assert loop.denominator == (Fraction(1), Fraction("56.89"), Fraction("1618.80"))

@@ -11,11 +11,12 @@ from nrs_design.controllers.gains import gains_of
 from nrs_design.controllers.laws import Admittance
 from nrs_design.errors import AssemblyError
 from nrs_design.models.environment import Contact, Interval
+from nrs_design.models.plant import build_plant
 from nrs_design.pipeline import run_design
 from nrs_design.proof.evidence import CommonQuadratic, UnstableMode
 from nrs_design.search.certify import Limits, Verdict, certify
 from nrs_design.spec import LoadedSpec, parse_spec, read_spec
-from nrs_design.switched.assemble import DECLARED, assemble, has_ranges, motion_loop
+from nrs_design.switched.assemble import DECLARED, assemble, has_ranges
 from nrs_design.switched.close_loop import impedance_mode, realize, to_force_coordinates
 from nrs_design.switched.gain_box import GainBox
 from tests.proof.truth import combine, decrease, is_definite
@@ -139,8 +140,9 @@ SYSTEMS = {
     for coordinates in ("deflection", "force")
 }
 MOTIONS = {
-    massless: realize(motion_loop(spec.spec, run_design(spec).motion))
+    massless: realize(build_plant(spec.spec).motion_loop(motion.Kp, motion.Kd))
     for massless, spec in CASES.items()
+    for motion in (run_design(spec).motion,)
 }
 
 

@@ -1,0 +1,33 @@
+import os
+
+import pytest
+
+from nrs_design.files import is_device_name, open_regular
+
+
+@pytest.mark.parametrize("name", ["nul", "NUL", "aux.csv", "com1.a.b", "lpt9", "con", "prn "])
+def test_devices_of_windows(name):
+    assert is_device_name(name)
+
+
+@pytest.mark.parametrize("name", ["null", "console", "com", "com10", "a.nul", ".nul", ""])
+def test_other_names(name):
+    assert not is_device_name(name)
+
+
+def test_a_regular_file_is_read(tmp_path):
+    (tmp_path / "a").write_bytes(b"a\r\n\x1a")
+    with open_regular(tmp_path / "a") as file:
+        assert file.read() == b"a\r\n\x1a"
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="this system has no pipes in folders")
+def test_a_pipe_is_refused_and_not_waited_for(tmp_path):
+    os.mkfifo(tmp_path / "pipe")
+    with pytest.raises(OSError, match="not a regular file"):
+        open_regular(tmp_path / "pipe")
+
+
+def test_a_device_is_refused():
+    with pytest.raises(OSError, match="not a regular file"):
+        open_regular(os.devnull)

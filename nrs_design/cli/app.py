@@ -30,6 +30,7 @@ COMMANDS = (
     "tune",
     "certify-switching",
     "verify",
+    "check-lyapunov",
     "report",
     "reproduce",
     "export",

@@ -1,0 +1,408 @@
+"""The library at the door: what ``import nrs_design as nrs`` offers."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from html import escape
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from nrs_design import pipeline
+from nrs_design.certificates.certificate import dump
+from nrs_design.certificates.verify import Verification
+from nrs_design.certificates.verify import verify as verify_file
+from nrs_design.errors import DesignError, NrsDesignError, OutputError
+from nrs_design.given.matrices import read_matrix, read_number, read_rows, time_of
+from nrs_design.given.system import spec_of_matrices
+from nrs_design.output import write_output
+from nrs_design.proof.lyapunov import LyapunovCheck, check_quadratic
+from nrs_design.proof.matrix import RationalMatrix
+from nrs_design.proof.system import Mode
+from nrs_design.search.certify import Attempt, Limits, Method
+from nrs_design.spec import LoadedSpec, read_spec
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+    from nrs_design.controllers.controller_design import ControllerDesign
+    from nrs_design.exporters.export import Export
+    from nrs_design.proof.evidence import AbstractEvidence
+    from nrs_design.reporting import Report
+
+DEFAULT_NAME = "switched-system"
+
+
+@dataclass(frozen=True)
+class Decision:
+    """A verdict on stability under switching, with all that carries it.
+
+    Parameters
+    ----------
+    result : nrs_design.pipeline.Result
+        The spec with its design, its exact modes, every attempt and the certificate.
+    """
+
+    result: pipeline.Result
+
+    @property
+    def verdict(self) -> str:
+        """``proved``, ``refuted`` or ``inconclusive``."""
+        return str(self.result.certification.verdict)
+
+    @property
+    def common_quadratic(self) -> str:
+        """Whether a common quadratic function exists: ``exists``, ``impossible``, ``unknown``."""
+        return str(self.result.certification.common_quadratic)
+
+    @property
+    def decay_rate(self) -> Fraction | None:
+        """The proved rate: alpha in 1/s, in discrete time rho per step; None without a proof."""
+        evidence = self.evidence
+        return evidence.proved_rate(self.result.certification.system) if evidence else None
+
+    @property
+    def evidence(self) -> AbstractEvidence | None:
+        """The statement that decides the verdict; None if it is inconclusive."""
+        return self.result.certification.evidence
+
+    @property
+    def claim(self) -> str:
+        """What is claimed about stability, in words."""
+        from nrs_design.reporting.sections.head import claim_of
+
+        return claim_of(self.result.certification)
+
+    @property
+    def assumptions(self) -> tuple[str, ...]:
+        """What the claim takes for granted."""
+        return self.result.certification.system.assumptions
+
+    @property
+    def attempts(self) -> tuple[Attempt, ...]:
+        """Every step of the search: what was tried, how it ended, and its time in s."""
+        return self.result.certification.attempts
+
+    def plot(self, name: str | None = None) -> Figure:
+        """Return a figure of the report: the run beside its bound, or another one by name.
+
+        Raises
+        ------
+        DesignError
+            If there is no figure of that name; the message lists those that there are.
+        """
+        figures = {item.name: item.figure for item in self._page().illustrations}
+        default = "run" if "run" in figures else next(iter(figures), None)
+        chosen = default if name is None else name
+        if chosen is None or chosen not in figures:
+            raise DesignError(
+                f"there is no figure {chosen!r}", remedy=f"figures here: {', '.join(figures)}"
+            )
+        return figures[chosen]
+
+    def report(self, file: str | Path | None = None) -> str:
+        """Return the report as one HTML page, and write it if a file is named.
+
+        Raises
+        ------
+        OutputError
+            If the file cannot be written.
+        """
+        from nrs_design.reporting import render_html
+
+        page = render_html(self._page())
+        if file is not None:
+            write_output(Path(file), page)
+        return page
+
+    def save(self, folder: str | Path) -> Path:
+        """Write ``NAME.cert.json``, and ``NAME.nrs.yaml`` beside it if the spec is no file yet.
+
+        Returns
+        -------
+        Path
+            The certificate, which `nrs_design.verify` checks against the spec.
+
+        Raises
+        ------
+        OutputError
+            If nothing was shown, so that there is no certificate, or a file cannot be written.
+        """
+        place, loaded = Path(folder), self.result.loaded
+        if self.result.certificate is None:
+            raise OutputError(
+                "nothing was proved or refuted, so there is no certificate",
+                path=place,
+                remedy="search longer, with a larger budget or max_degree",
+            )
+        if not loaded.path.exists():
+            write_output(place / loaded.path.name, loaded.text)
+        file = place / f"{loaded.spec.name}.cert.json"
+        write_output(file, dump(self.result.certificate))
+        return file
+
+    def _page(self) -> Report:
+        from nrs_design.reporting import build_report
+
+        evidence = None
+        if self.result.design is not None:
+            try:
+                evidence = pipeline.run_evidence(self.result.loaded, self.result.design)
+            except DesignError:
+                # Where a nominal loop has no margins, the page has none.
+                evidence = None
+        return build_report(self.result, evidence)
+
+    def __str__(self) -> str:
+        """Say verdict and claim."""
+        return f"{self.result.loaded.spec.name}: {self.verdict.upper()}\n{self.claim}"
+
+    def _repr_html_(self) -> str:
+        """Show verdict, claim and assumptions in a notebook."""
+        items = "".join(f"<li>{escape(text)}</li>" for text in self.assumptions)
+        return (
+            f"<p><strong>{escape(self.result.loaded.spec.name)}: {self.verdict.upper()}</strong>"
+            f"</p><p>{escape(self.claim)}</p>"
+            f"<details><summary>taken for granted</summary><ul>{items}</ul></details>"
+        )
+
+
+@dataclass(frozen=True)
+class Study:
+    """One spec file and what can be done with it.
+
+    Parameters
+    ----------
+    loaded : LoadedSpec
+        The spec with its text and hash.
+    """
+
+    loaded: LoadedSpec
+
+    def design(self) -> ControllerDesign | None:
+        """Design the controllers; None where the spec gives matrices.
+
+        Raises
+        ------
+        DesignError
+            If a requirement cannot be met within its bounds.
+        """
+        return pipeline.run_design(self.loaded)
+
+    def certify(
+        self,
+        *,
+        method: str = "auto",
+        coordinates: str | None = None,
+        budget: float | None = None,
+        max_degree: int | None = None,
+    ) -> Decision:
+        """Design, assemble and decide; see `certify` for the options.
+
+        Raises
+        ------
+        DesignError, AssemblyError
+            If the spec has no design, or its modes make no switched system.
+        """
+        limits = _limits(budget, max_degree)
+        result = pipeline.run_certification(
+            self.loaded, method=Method(method), coordinates=coordinates, limits=limits
+        )
+        return Decision(result)
+
+    def export(self, certificate: str | Path | None = None) -> Export:
+        """Return the gains that ship with their proof, or why there are none.
+
+        Parameters
+        ----------
+        certificate : path-like, optional
+            A certificate to be re-checked; without it the design is certified afresh.
+
+        Raises
+        ------
+        DesignError
+            If the spec has no gains.
+        CertificateError
+            If the given file is not a certificate.
+        """
+        from nrs_design.exporters.export import export_design
+
+        return export_design(self.loaded, None if certificate is None else Path(certificate))
+
+
+def load(path: str | Path) -> Study:
+    """Read and validate a spec file.
+
+    Raises
+    ------
+    SpecError
+        With path, line, column, message and remedy.
+
+    Examples
+    --------
+    >>> import nrs_design as nrs
+    >>> study = nrs.load("specs/neuroboscope/soft-tissue.nrs.yaml")
+    >>> study.certify().verdict
+    'proved'
+    """
+    return Study(read_spec(path))
+
+
+def certify(
+    modes: Sequence[object] | Mapping[str, object],
+    *,
+    time: str | None = None,
+    dwell_time: object = None,
+    transitions: Sequence[tuple[str, str]] | None = None,
+    resets: Mapping[tuple[str, str], object] | None = None,
+    parameters: Mapping[str, object] | None = None,
+    name: str = DEFAULT_NAME,
+    method: str = "auto",
+    budget: float | None = None,
+    max_degree: int | None = None,
+) -> Decision:
+    """Prove or refute that a switched linear system is uniformly exponentially stable.
+
+    Parameters
+    ----------
+    modes : sequence or mapping of matrices
+        ``x' = A x`` each, shape (n, n), in 1/s, or ``x+ = A x``: NumPy arrays, nested lists of
+        numbers, fractions or texts such as ``"0.1"`` and ``"1/3"``, or state spaces of
+        python-control, whose A is taken. A float is the binary number that it is. The keys of a
+        mapping name the modes; otherwise they are m1, m2, ...
+    time : {"continuous", "discrete"}, optional
+        By default what the dt of the state spaces says, else continuous.
+    dwell_time : number or str, optional
+        Shortest time in a mode, in s, or a number of steps; by default, switching is arbitrary.
+    transitions : sequence of (str, str), optional
+        Allowed switches; by default all.
+    resets : mapping from (str, str) to matrix, optional
+        ``x+ = G x`` at these switches; others leave the state as it is.
+    parameters : mapping from str to (low, high), optional
+        Uncertain numbers that move at will in their ranges; entries of modes may then be texts that
+        are affine in them, such as ``"-1 - k"``. A mapping with nominal, range and varies says
+        more, as in a spec.
+    name : str
+        Of the files that the result saves.
+    method : str
+        One rung of the ladder, or all of them in turn.
+    budget : float, optional
+        Seconds that the search may take.
+    max_degree : int, optional
+        Highest degree of a polynomial function.
+
+    Returns
+    -------
+    Decision
+        With verdict, decay rate, evidence, assumptions and attempts.
+
+    Raises
+    ------
+    SpecError
+        If the input is wrong.
+
+    Examples
+    --------
+    >>> import nrs_design as nrs
+    >>> decision = nrs.certify([[[-1, -1], [1, -1]], [[-1, -5], ["1/5", -1]]])
+    >>> decision.verdict, decision.common_quadratic
+    ('proved', 'exists')
+    """
+    loaded = spec_of_matrices(
+        modes,
+        name=name,
+        time=time,
+        dwell_time=dwell_time,
+        transitions=transitions,
+        resets=resets,
+        parameters=parameters,
+    )
+    return Study(loaded).certify(method=method, budget=budget, max_degree=max_degree)
+
+
+def check_lyapunov(
+    modes: Sequence[object] | Mapping[str, object],
+    P: object,
+    rate: object = None,
+    *,
+    time: str | None = None,
+) -> LyapunovCheck:
+    """Decide exactly whether ``x' P x`` is a common Lyapunov function, whoever proposes it.
+
+    Parameters
+    ----------
+    modes : sequence or mapping of matrices, shape (n, n)
+        As for `certify`.
+    P : matrix, shape (n, n)
+        From a solver, say. Only its symmetric part counts in ``x' P x``, so that part is taken.
+    rate : number or str, optional
+        Decide at this rate: alpha in 1/s, or rho per step in discrete time. Without it, decide
+        whether V decreases at all, and find at what rate.
+    time : {"continuous", "discrete"}, optional
+        By default what the dt of the state spaces says, else continuous.
+
+    Returns
+    -------
+    LyapunovCheck
+        Strict, weak or neither; a proved rate; the failing mode with a vector that shows it.
+
+    Raises
+    ------
+    SpecError
+        If the input is wrong.
+
+    Examples
+    --------
+    >>> import nrs_design as nrs
+    >>> nrs.check_lyapunov([[[0, 1], [-2, -3]]], [[5, 1], [1, 1]]).holds
+    True
+    """
+    named = (
+        dict(modes)
+        if isinstance(modes, Mapping)
+        else {f"m{index + 1}": mode for index, mode in enumerate(modes)}
+    )
+    axis = time_of(list(named.values()), time)
+    exact = [Mode(label, read_matrix(A, f"mode {label}")) for label, A in named.items()]
+    alpha = None if rate is None else read_number(rate, "rate")
+    try:
+        return check_quadratic(exact, _symmetric_part(P), axis, alpha)
+    except ValueError as error:
+        raise NrsDesignError(str(error), remedy="correct the matrices or the rate") from None
+
+
+def verify(certificate: str | Path, spec: str | Path) -> Verification:
+    """Re-check a certificate file against its spec, exactly and without a solver.
+
+    Returns
+    -------
+    Verification
+        Its fault is None if the certificate holds.
+
+    Raises
+    ------
+    SpecError, CertificateError
+        If a file cannot be read at all.
+    """
+    return verify_file(Path(certificate), read_spec(spec))
+
+
+def _symmetric_part(P: object) -> RationalMatrix:
+    rows = read_rows(P, "P")
+    if len(rows) != len(rows[0]):
+        raise NrsDesignError(
+            f"P is {len(rows)} x {len(rows[0])}, not square", remedy="give P as n x n"
+        )
+    n = len(rows)
+    half = Fraction(1, 2)
+    return RationalMatrix.from_rows(
+        [[half * (rows[i][j] + rows[j][i]) for j in range(n)] for i in range(n)]
+    )
+
+
+def _limits(budget: float | None, max_degree: int | None) -> Limits:
+    limits = Limits()
+    if budget is not None:
+        limits = replace(limits, budget=budget)
+    return limits if max_degree is None else replace(limits, max_degree=max_degree)

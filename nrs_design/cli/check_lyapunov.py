@@ -1,0 +1,95 @@
+"""``nrs-design check-lyapunov``: the exact verdict on anybody's P."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from nrs_design.cli import exit_codes
+from nrs_design.cli.options import Json
+from nrs_design.cli.printing import print_json
+
+if TYPE_CHECKING:
+    from nrs_design.proof.lyapunov import LyapunovCheck
+
+
+def check_lyapunov(
+    file: Annotated[
+        Path, typer.Argument(metavar="FILE", help="Modes and P: a .npz, .mat or .json file.")
+    ],
+    rate: Annotated[
+        str | None,
+        typer.Option(help="Decide at this rate: alpha in 1/s, in discrete time rho per step."),
+    ] = None,
+    discrete: Annotated[
+        bool, typer.Option("--discrete", help="The modes are x+ = A x, not x' = A x.")
+    ] = False,
+    as_json: Json = False,
+) -> None:
+    """Decide exactly whether x' P x is a common Lyapunov function, whichever program found P.
+
+    The file holds P and the modes as A (one matrix, a stack, or A1, A2, ...), and may hold rate and
+    time. Exit code 0 if V decreases strictly in every mode, 1 if it does not.
+
+    Example: nrs-design check-lyapunov docs/examples/lyapunov.json
+    """
+    from nrs_design.api import check_lyapunov as check
+    from nrs_design.given.files import read_proposal
+
+    proposal = read_proposal(file)
+    time = "discrete" if discrete else proposal.time
+    wanted = proposal.rate if rate is None else rate
+    found = check(proposal.modes, proposal.P, wanted, time=time)
+    if as_json:
+        print_json("check-lyapunov", _document(file, found, time or "continuous", wanted))
+    else:
+        _show(found, time or "continuous", asked=wanted is not None)
+    raise typer.Exit(exit_codes.PROVED if found.holds else exit_codes.REFUTED)
+
+
+def _document(file: Path, found: LyapunovCheck, time: str, asked: object) -> dict[str, Any]:
+    failing = found.counterexample
+    return {
+        "file": str(file),
+        "time": time,
+        "holds": found.holds,
+        "weak": found.weak,
+        "rate_asked": None if asked is None else str(asked),
+        "rate": None if found.rate is None else str(found.rate),
+        "counterexample": failing
+        and {
+            "mode": failing.mode,
+            "vector": [str(entry) for entry in failing.vector],
+            "value": str(failing.value),
+        },
+    }
+
+
+def _show(found: LyapunovCheck, time: str, *, asked: bool) -> None:
+    from nrs_design.proof.evidence.fields import rate_text
+    from nrs_design.proof.system import Time
+
+    if found.holds and found.rate is not None:
+        word, unit = ("alpha", " 1/s") if time == "continuous" else ("rho", " per step")
+        print("HOLDS: x' P x is positive definite and decreases strictly in every mode.")
+        kind = "the rate asked for" if asked else "proved"
+        print(f"  {kind}: {word} = {rate_text(found.rate, Time(time))}{unit}")
+        return
+    print(
+        "DOES NOT HOLD: x' P x is no common Lyapunov function" + (" at this rate." * asked or ".")
+    )
+    if found.counterexample is not None:
+        _show_counterexample(found.counterexample)
+    if found.weak:
+        print("  It increases in no mode, which shows stability but no decay.")
+
+
+def _show_counterexample(failing: Any) -> None:
+    vector = ", ".join(map(str, failing.vector))
+    if failing.mode is None:
+        print(f"  P is not positive definite: x' P x = {failing.value}")
+    else:
+        print(f"  in mode {failing.mode} it does not decrease: its change is {failing.value}")
+    print(f"  at x = ({vector}), exactly")

@@ -1,0 +1,116 @@
+"""Matrices as users hold them, read exactly: a float is the binary number that it is."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from fractions import Fraction
+from math import isfinite
+from numbers import Rational, Real
+from typing import Any
+
+from nrs_design.errors import SpecError
+from nrs_design.proof.matrix import RationalMatrix
+from nrs_design.proof.system import Time
+from nrs_design.spec.exact import parse_exact, quoted
+
+
+def read_rows(matrix: object, name: str = "the matrix") -> list[list[Fraction]]:
+    """Read a matrix as exact rows.
+
+    Parameters
+    ----------
+    matrix : array-like or object with an attribute ``A``
+        A NumPy array of two dimensions, nested lists of integers, floats, fractions or texts such
+        as ``"0.1"`` and ``"1/3"``, or a state space of python-control, whose A is taken.
+    name : str
+        For messages.
+
+    Raises
+    ------
+    SpecError
+        If it is no matrix of finite numbers.
+    """
+    held = getattr(matrix, "A", matrix) if is_state_space(matrix) else matrix
+    rows = held.tolist() if hasattr(held, "tolist") else held
+    if not isinstance(rows, Sequence) or isinstance(rows, str) or not rows:
+        raise _no_matrix(name)
+    if any(not isinstance(row, Sequence) or isinstance(row, str) for row in rows):
+        raise _no_matrix(name)
+    if any(len(row) != len(rows[0]) or not row for row in rows):
+        raise SpecError(
+            f"{name} has rows of different lengths", remedy="give all rows the same length"
+        )
+    return [[read_number(entry, name) for entry in row] for row in rows]
+
+
+def read_matrix(matrix: object, name: str = "the matrix") -> RationalMatrix:
+    """Read a matrix over its least common denominator; see `read_rows`."""
+    return RationalMatrix.from_rows(read_rows(matrix, name))
+
+
+def read_number(value: object, name: str = "the value") -> Fraction:
+    """Read a number exactly: text as it is written, a float as the binary number that it is.
+
+    Raises
+    ------
+    SpecError
+        If it is not a finite real number.
+    """
+    if isinstance(value, str):
+        return parse_exact(value)
+    if isinstance(value, bool) or not isinstance(value, Real):
+        raise SpecError(
+            f"{name} holds {quoted(repr(value))}, which is not a real number",
+            remedy='give integers, floats, fractions or texts such as "0.1" and "1/3"',
+        )
+    if isinstance(value, Rational):
+        return Fraction(int(value.numerator), int(value.denominator))
+    number = float(value)
+    if not isfinite(number) or number != value:
+        raise SpecError(
+            f"{name} holds {value}, which is no finite double-precision number",
+            remedy="give a finite float, or the exact number as text",
+        )
+    return Fraction(number)
+
+
+def is_state_space(value: object) -> bool:
+    """Tell whether an object is a state space as python-control has them: with A and dt."""
+    return hasattr(value, "A") and hasattr(value, "dt")
+
+
+def time_of(modes: Sequence[object], time: str | None) -> Time:
+    """Return the time of some modes: as said, or as the state spaces among them say.
+
+    Parameters
+    ----------
+    modes : sequence of object
+        State spaces say it by their dt: zero is continuous, None undetermined, a period or True
+        discrete.
+    time : {"continuous", "discrete"} or None
+        As said.
+
+    Raises
+    ------
+    SpecError
+        If the word is not known, or two sources disagree.
+    """
+    if time not in (None, "continuous", "discrete"):
+        raise SpecError(
+            f"the time {quoted(str(time))} is not known", remedy="continuous or discrete"
+        )
+    periods: list[Any] = [getattr(mode, "dt", None) for mode in modes if is_state_space(mode)]
+    known = {period for period in periods if period is not None}
+    said = {Time.CONTINUOUS if period == 0 else Time.DISCRETE for period in known}
+    if time is not None:
+        said.add(Time(time))
+    if len(said) > 1 or len(known - {0, True}) > 1:
+        raise SpecError(
+            "the modes are not of one time axis",
+            remedy="give state spaces of one sample time dt, and the same time if it is given too",
+        )
+    return said.pop() if said else Time.CONTINUOUS
+
+
+def _no_matrix(name: str) -> SpecError:
+    return SpecError(f"{name} is not a matrix", remedy="give rows of numbers")

@@ -1,0 +1,132 @@
+"""A spec from matrices that live in a program: the same spec that a file would give."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Mapping, Sequence
+from fractions import Fraction
+from pathlib import Path
+from typing import Any
+
+from pydantic import ValidationError
+
+from nrs_design.errors import SpecError
+from nrs_design.given.matrices import is_state_space, read_number, read_rows, time_of
+from nrs_design.spec import LoadedSpec, SwitchedSystemSpec
+from nrs_design.spec.document import parse_document
+from nrs_design.spec.exact import exact_text
+from nrs_design.spec.faults import spec_error
+
+Document = dict[str, Any]
+
+
+def spec_of_matrices(
+    modes: Sequence[object] | Mapping[str, object],
+    *,
+    name: str,
+    time: str | None = None,
+    dwell_time: object = None,
+    transitions: Sequence[tuple[str, str]] | None = None,
+    resets: Mapping[tuple[str, str], object] | None = None,
+    parameters: Mapping[str, object] | None = None,
+) -> LoadedSpec:
+    """Return the spec of a switched system whose matrices are given; see `nrs_design.certify`.
+
+    Raises
+    ------
+    SpecError
+        If anything about it is wrong, in the words of a spec.
+    """
+    named = dict(modes) if isinstance(modes, Mapping) else _numbered(modes)
+    if not named:
+        raise SpecError("no modes are given", remedy="give at least one matrix")
+    axis = time_of(list(named.values()), time)
+    uncertain = bool(parameters)
+    document: Document = {
+        "kind": "switched-system",
+        "name": name,
+        "time": str(axis),
+        "modes": [
+            {"name": label, "A": _entries(A, label, uncertain)} for label, A in named.items()
+        ],
+        "switching": _switching(dwell_time, transitions, "s" if axis == "continuous" else "steps"),
+    }
+    if parameters:
+        document["parameters"] = {key: _parameter(value) for key, value in parameters.items()}
+    if resets:
+        document["resets"] = [
+            {
+                "from": source,
+                "to": target,
+                "map": _texts(read_rows(G, f"the reset {source}-{target}")),
+            }
+            for (source, target), G in resets.items()
+        ]
+    return _validated(document, name)
+
+
+def _numbered(modes: Sequence[object]) -> dict[str, object]:
+    """Name modes that have no names; state spaces of python-control bring some."""
+    return {f"m{index + 1}": mode for index, mode in enumerate(modes)}
+
+
+def _entries(matrix: object, label: str, uncertain: bool) -> list[list[str]]:
+    """Return entries as the texts of a spec; with parameters, texts may be expressions."""
+    if uncertain and isinstance(matrix, list | tuple) and not is_state_space(matrix):
+        return [[_entry(entry, label) for entry in row] for row in matrix]
+    return _texts(read_rows(matrix, f"mode {label}"))
+
+
+def _entry(entry: object, label: str) -> str:
+    return entry if isinstance(entry, str) else _text(read_number(entry, f"mode {label}"))
+
+
+def _texts(rows: Sequence[Sequence[Fraction]]) -> list[list[str]]:
+    return [[_text(entry) for entry in row] for row in rows]
+
+
+def _text(number: Fraction) -> str:
+    """Write a number in full: a decimal only where that is exact."""
+    return exact_text(number)
+
+
+def _switching(dwell_time: object, transitions: object, unit: str) -> object:
+    rules: Document = {}
+    if dwell_time is not None:
+        is_text = isinstance(dwell_time, str) and " " in dwell_time
+        text = dwell_time if is_text else f"{_text(read_number(dwell_time, 'dwell_time'))} {unit}"
+        rules["dwell_time"] = text
+    if transitions is not None:
+        rules["transitions"] = [list(pair) for pair in transitions]  # type: ignore[attr-defined]
+    return rules or "arbitrary"
+
+
+def _parameter(value: object) -> Document:
+    """Return what a spec says of a parameter that is given as such, or by its two ends."""
+    if isinstance(value, Mapping):
+        return {
+            key: [_text(read_number(end)) for end in entry]
+            if key == "range"
+            else (entry if key == "varies" else _text(read_number(entry)))
+            for key, entry in value.items()
+        }
+    if not isinstance(value, Sequence) or isinstance(value, str) or len(value) != 2:
+        raise SpecError(
+            "a parameter is given by two ends", remedy="write parameters={'k': (lowest, highest)}"
+        )
+    low, high = (read_number(end) for end in value)
+    return {"nominal": _text((low + high) / 2), "range": [_text(low), _text(high)]}
+
+
+def _validated(document: Document, name: str) -> LoadedSpec:
+    """Validate a document; JSON is YAML, so its text is a spec file, too."""
+    text = json.dumps(document, indent=1) + "\n"
+    try:
+        spec = SwitchedSystemSpec.model_validate(document)
+    except ValidationError as error:
+        fault = spec_error(error, SwitchedSystemSpec, parse_document(text), None)
+        # Lines of a file that nobody has seen would mislead.
+        raise SpecError(fault.message, remedy=fault.remedy) from None
+    digest = hashlib.sha256(text.encode()).hexdigest()
+    return LoadedSpec(Path(f"{name}.nrs.yaml"), digest, text, spec)

@@ -1,0 +1,227 @@
+"""TRUSTED: the exact verdict on a quadratic function that anybody proposes.
+
+``V(x) = x' P x`` decreases in every mode iff P and the decreases ``-(A'P + PA)`` (discrete time:
+``P - A'PA``) are positive definite. Where one is not, elimination itself yields a vector that shows
+it: the test is a proof in either direction, and no eigenvalue is computed.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+
+from nrs_design.proof.exact import (
+    IntegerMatrix,
+    is_positive_definite,
+    is_positive_semidefinite,
+    lyapunov_decrease,
+    stein_decrease,
+)
+from nrs_design.proof.matrix import RationalMatrix
+from nrs_design.proof.system import Mode, Time
+
+# A rate is sharpened to one part in two to this power of the range that it may lie in.
+RATE_BITS = 20
+# A counterexample is written with as few of these decimal digits as show it.
+DIGITS = (1, 2, 4, 8, 16)
+
+
+@dataclass(frozen=True, slots=True)
+class Counterexample:
+    """A vector at which a condition on the function fails.
+
+    Parameters
+    ----------
+    mode : str or None
+        The mode in which the function does not decrease; None if it is not positive.
+    vector : tuple of Fraction
+        A nonzero x, exactly.
+    value : Fraction
+        ``x' P x`` if `mode` is None, which is not positive; otherwise the derivative
+        ``x' (A'P + PA + 2 alpha P) x`` along the mode at the rate that was asked for (discrete
+        time: ``x' (A'PA - rho^2 P) x``), which is not negative.
+    """
+
+    mode: str | None
+    vector: tuple[Fraction, ...]
+    value: Fraction
+
+
+@dataclass(frozen=True, slots=True)
+class LyapunovCheck:
+    """What a quadratic function shows about a family of modes, decided exactly.
+
+    Parameters
+    ----------
+    holds : bool
+        P is positive definite, and V decreases strictly in every mode at the rate asked for.
+    weak : bool
+        P is positive definite, and V increases in no mode: stability, but no decay, is shown.
+    rate : Fraction or None
+        A rate at which V decreases: alpha in 1/s, or rho per step in discrete time. What was asked
+        for, or else the best one on a fine grid, rounded to the side that is proved. None if V does
+        not decrease strictly.
+    counterexample : Counterexample or None
+        Why it does not hold.
+    """
+
+    holds: bool
+    weak: bool
+    rate: Fraction | None
+    counterexample: Counterexample | None
+
+
+def check_quadratic(
+    modes: Sequence[Mode], P: RationalMatrix, time: Time, rate: Fraction | None = None
+) -> LyapunovCheck:
+    """Decide whether ``x' P x`` is a common Lyapunov function of all modes.
+
+    Parameters
+    ----------
+    modes : sequence of Mode
+        With n states each.
+    P : RationalMatrix, shape (n, n)
+        Symmetric.
+    time : Time
+        Continuous or discrete.
+    rate : Fraction, optional
+        Decide at this rate: alpha in 1/s, or rho per step. Without it, at any rate of decay, and
+        the best rate is looked for.
+
+    Raises
+    ------
+    ValueError
+        If P is not symmetric or a mode is of another size, or the rate is not one of decay.
+    """
+    n = len(P.numerators)
+    if any(mode.A.shape != (n, n) for mode in modes) or P.shape != (n, n):
+        raise ValueError(f"P is {n} x {P.shape[1]}, and not every mode is {n} x {n}")
+    still = Fraction(int(time is Time.DISCRETE))
+    if rate is not None and (rate < 0 or (time is Time.DISCRETE and not 0 < rate <= 1)):
+        raise ValueError("a rate of decay is not negative, and in discrete time in (0, 1]")
+    asked = still if rate is None else rate
+    for mode, form in _forms(modes, P, time, asked):
+        if not is_positive_definite(form):
+            weak = _is_weak(modes, P, time)
+            return LyapunovCheck(False, weak, None, _counterexample(mode, form, P, asked, time))
+    best = _best_rate(modes, P, time) if rate is None else rate
+    return LyapunovCheck(True, True, best, None)
+
+
+def _forms(
+    modes: Sequence[Mode], P: RationalMatrix, time: Time, rate: Fraction
+) -> Iterator[tuple[Mode | None, IntegerMatrix]]:
+    """Yield P, and the decrease in every mode: what must be positive definite."""
+    yield None, P.numerators
+    form = lyapunov_decrease if time is Time.CONTINUOUS else stein_decrease
+    for mode in modes:
+        yield mode, form(mode.A.numerators, mode.A.denominator, P.numerators, rate)
+
+
+def _is_weak(modes: Sequence[Mode], P: RationalMatrix, time: Time) -> bool:
+    still = Fraction(int(time is Time.DISCRETE))
+    (_, first), *decreases = _forms(modes, P, time, still)
+    return is_positive_definite(first) and all(is_positive_semidefinite(M) for _, M in decreases)
+
+
+def _best_rate(modes: Sequence[Mode], P: RationalMatrix, time: Time) -> Fraction:
+    """Bisect the largest alpha, or ``1 - rho``; the rate that is returned has been decided.
+
+    V decreases strictly in finitely many modes, so halving ends at a rate that is proved.
+    """
+
+    def rate_at(decay: Fraction) -> Fraction:
+        return decay if time is Time.CONTINUOUS else 1 - decay
+
+    def is_proved(decay: Fraction) -> bool:
+        return all(is_positive_definite(M) for _, M in _forms(modes, P, time, rate_at(decay)))
+
+    low = _decay_bound(modes, P) if time is Time.CONTINUOUS else Fraction(1, 2)
+    while not is_proved(low):
+        low /= 2
+    high = 2 * low if time is Time.CONTINUOUS or low < Fraction(1, 2) else Fraction(1)
+    for _ in range(RATE_BITS):
+        middle = (low + high) / 2
+        low, high = (middle, high) if is_proved(middle) else (low, middle)
+    return rate_at(low)
+
+
+def _decay_bound(modes: Sequence[Mode], P: RationalMatrix) -> Fraction:
+    """Return a power of two above every provable alpha: above ``-x'PAx / x'Px`` at one x."""
+    Q, A = P.numerators, modes[0].A
+    first = sum(Q[0][k] * A.numerators[k][0] for k in range(len(Q)))
+    bound = -Fraction(first, Q[0][0] * A.denominator)
+    return Fraction(2) ** (bound.numerator.bit_length() - bound.denominator.bit_length() + 1)
+
+
+def _counterexample(
+    mode: Mode | None, form: IntegerMatrix, P: RationalMatrix, rate: Fraction, time: Time
+) -> Counterexample:
+    vector = _shortened(indefinite_vector(form), form)
+    rows = P.fractions()
+    if mode is None:
+        return Counterexample(None, vector, _value(rows, vector, vector))
+    A = mode.A.fractions()
+    Ax = [sum((a * x for a, x in zip(row, vector, strict=True)), Fraction(0)) for row in A]
+    if time is Time.CONTINUOUS:
+        value = 2 * _value(rows, vector, Ax) + 2 * rate * _value(rows, vector, vector)
+    else:
+        value = _value(rows, Ax, Ax) - rate**2 * _value(rows, vector, vector)
+    return Counterexample(mode.name, vector, value)
+
+
+def _shortened(vector: tuple[Fraction, ...], M: IntegerMatrix) -> tuple[Fraction, ...]:
+    """Return a vector of few digits that shows the same, if there is one near the given."""
+    largest = max(map(abs, vector))
+    for digits in DIGITS:
+        unit = 10**digits
+        short = tuple(Fraction(round(entry / largest * unit), unit) for entry in vector)
+        if _value(M, short, short) <= 0:
+            return short
+    return vector
+
+
+def _value(
+    rows: Sequence[Sequence[Fraction | int]], left: Sequence[Fraction], right: Sequence[Fraction]
+) -> Fraction:
+    """Return ``left' M right``."""
+    return sum(
+        (
+            u * m * v
+            for u, row in zip(left, rows, strict=True)
+            for m, v in zip(row, right, strict=True)
+        ),
+        Fraction(0),
+    )
+
+
+def indefinite_vector(M: IntegerMatrix) -> tuple[Fraction, ...]:
+    """Return a nonzero x with ``x' M x <= 0`` for a symmetric M that is not positive definite.
+
+    Elimination goes on until a pivot is not positive. With the block above and left of it called
+    B, and c the column beside that block, ``x = (-B^-1 c, 1, 0)`` gives that pivot as ``x' M x``.
+
+    Raises
+    ------
+    ValueError
+        If M is positive definite.
+    """
+    n = len(M)
+    rows = [[Fraction(entry) for entry in row] for row in M]
+    for k in range(n):
+        if rows[k][k] <= 0:
+            return _solved(rows, k, n)
+        for i in range(k + 1, n):
+            factor = rows[i][k] / rows[k][k]
+            rows[i] = [a - factor * b for a, b in zip(rows[i], rows[k], strict=True)]
+    raise ValueError("the matrix is positive definite")
+
+
+def _solved(rows: Sequence[Sequence[Fraction]], k: int, n: int) -> tuple[Fraction, ...]:
+    """Solve ``U x = -c`` backwards, with the first k rows after elimination."""
+    x = [Fraction(0)] * n
+    x[k] = Fraction(1)
+    for i in reversed(range(k)):
+        x[i] = -sum((rows[i][j] * x[j] for j in range(i + 1, k + 1)), Fraction(0)) / rows[i][i]
+    return tuple(x)

@@ -1,0 +1,54 @@
+"""``nrs-design check-lyapunov`` as a user types it."""
+
+import json
+
+import numpy as np
+
+from tests.support import ROOT, run
+
+EXAMPLE = ROOT / "docs" / "examples" / "lyapunov.json"
+
+
+def test_holds(tmp_path):
+    done = run("check-lyapunov", EXAMPLE, cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    assert done.stdout.startswith("HOLDS")
+    assert "alpha = 0.105572 1/s" in done.stdout
+
+
+def test_rate_that_is_too_fast(tmp_path):
+    done = run("check-lyapunov", EXAMPLE, "--rate", "0.11", "--json", cwd=tmp_path)
+    assert done.returncode == 1, done.stderr
+    document = json.loads(done.stdout)
+    assert document["schema"] == "nrs-design/check-lyapunov/1"
+    assert (document["holds"], document["weak"]) == (False, True)
+    assert document["counterexample"]["mode"] in ("a", "b")
+
+
+def test_failing_mode_and_vector(tmp_path):
+    file = tmp_path / "a.npz"
+    np.savez(file, A=np.array([[[-1.0, -5.0], [0.2, -1.0]]]), P=np.eye(2))
+    done = run("check-lyapunov", file, cwd=tmp_path)
+    assert done.returncode == 1
+    assert "in mode A1 it does not decrease" in done.stdout
+    assert "at x = (" in done.stdout
+
+
+def test_discrete(tmp_path):
+    file = tmp_path / "a.json"
+    file.write_text('{"A": [[0.5]], "P": [[1]]}')
+    done = run("check-lyapunov", file, "--discrete", cwd=tmp_path)
+    assert done.returncode == 0
+    assert "rho = 0.500001 per step" in done.stdout
+
+
+def test_wrong_input(tmp_path):
+    for name in ("missing.mat", "missing.txt"):
+        done = run("check-lyapunov", name, cwd=tmp_path)
+        assert done.returncode == 2
+        assert done.stderr.startswith("error[NRS006]")
+    file = tmp_path / "a.json"
+    file.write_text('{"A": [[0.5]], "P": [[1]]}')
+    for rate in ("-1", "fast", "nan"):
+        done = run("check-lyapunov", file, f"--rate={rate}", cwd=tmp_path)
+        assert done.returncode == 2, done.stdout

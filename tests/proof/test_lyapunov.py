@@ -1,0 +1,127 @@
+"""The exact verdict on a proposed quadratic function."""
+
+from fractions import Fraction
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from nrs_design.proof.lyapunov import check_quadratic, indefinite_vector
+from nrs_design.proof.matrix import RationalMatrix
+from nrs_design.proof.system import Mode, Time
+from tests.support import is_definite_by_ldl, matrix
+
+F = Fraction
+entries = st.integers(-6, 6)
+symmetric = st.integers(1, 4).flatmap(
+    lambda n: st.lists(entries, min_size=n * n, max_size=n * n).map(
+        lambda flat: [[flat[min(i, j) * n + max(i, j)] for j in range(n)] for i in range(n)]
+    )
+)
+
+
+def modes(*matrices):
+    return [Mode(f"m{k}", matrix(A)) for k, A in enumerate(matrices)]
+
+
+# Dayawansa and Martin 1999, a = 5, below 3 + 2 sqrt(2).
+PAIR = modes([[-1, -1], [1, -1]], [[-1, -5], ["1/5", -1]])
+
+
+def test_holds_at_a_rate_that_is_decided():
+    P = matrix([[1, 0], [0, 5]])
+    found = check_quadratic(PAIR, P, Time.CONTINUOUS)
+    assert found.holds
+    assert found.weak
+    assert found.counterexample is None
+    # By hand: in mode 1 the decrease at alpha is [[2-2a, -4], [-4, 10-10a]], singular at
+    # (1-a)^2 = 4/5.
+    limit = 1 - (F(4) / 5).numerator ** 0.5 / (F(4) / 5).denominator ** 0.5
+    assert found.rate is not None
+    assert float(found.rate) <= limit
+    assert float(found.rate) == pytest.approx(limit, rel=1e-4)
+    assert check_quadratic(PAIR, P, Time.CONTINUOUS, found.rate).holds
+
+
+def test_a_rate_beyond_the_limit_does_not_hold_and_is_shown():
+    found = check_quadratic(PAIR, matrix([[1, 0], [0, 5]]), Time.CONTINUOUS, F(1, 9))
+    assert not found.holds
+    assert found.weak
+    assert found.rate is None
+    assert found.counterexample is not None
+    x = found.counterexample.vector
+    assert found.counterexample.mode == "m0"
+    # x'(A'P + PA + 2 alpha P)x by hand for the first mode.
+    quadratic = -2 * x[0] ** 2 + 8 * x[0] * x[1] - 10 * x[1] ** 2
+    assert found.counterexample.value == quadratic + F(2, 9) * (x[0] ** 2 + 5 * x[1] ** 2) >= 0
+
+
+def test_undamped_oscillation_is_weak():
+    found = check_quadratic(modes([[0, 1], [-1, 0]]), matrix([[1, 0], [0, 1]]), Time.CONTINUOUS)
+    assert (found.holds, found.weak) == (False, True)
+
+
+def test_indefinite_p_names_no_mode():
+    found = check_quadratic(PAIR, matrix([[1, 2], [2, 1]]), Time.CONTINUOUS)
+    assert (found.holds, found.weak) == (False, False)
+    assert found.counterexample is not None
+    assert found.counterexample.mode is None
+    a, b = found.counterexample.vector
+    assert found.counterexample.value == a * a + 4 * a * b + b * b <= 0
+
+
+def test_discrete_rate_is_rounded_up():
+    found = check_quadratic(
+        modes([["0.7", 0], [0, "0.1"]]), matrix([[1, 0], [0, 1]]), Time.DISCRETE
+    )
+    assert found.holds
+    assert found.rate is not None
+    assert F(7, 10) < found.rate < F(7, 10) + F(1, 10**5)
+
+
+def test_a_tiny_rate_is_still_found():
+    found = check_quadratic(modes([["-1e-30"]]), matrix([[1]]), Time.CONTINUOUS)
+    assert found.rate is not None
+    assert 0 < found.rate < F(1, 10**30)
+
+
+@pytest.mark.parametrize("rate", [F(-1), F(-1, 10**9)])
+def test_no_rate_of_growth(rate):
+    with pytest.raises(ValueError, match="rate of decay"):
+        check_quadratic(PAIR, matrix([[1, 0], [0, 5]]), Time.CONTINUOUS, rate)
+
+
+def test_sizes_must_agree():
+    with pytest.raises(ValueError, match="3 x 3"):
+        check_quadratic(PAIR, matrix([[1, 0, 0], [0, 5, 0], [0, 0, 1]]), Time.CONTINUOUS)
+
+
+def test_asymmetric_p_is_refused():
+    with pytest.raises(ValueError, match="symmetric"):
+        check_quadratic(PAIR, matrix([[1, 1], [0, 5]]), Time.CONTINUOUS)
+
+
+@given(symmetric)
+def test_a_vector_is_found_exactly_where_a_matrix_is_not_definite(M):
+    if is_definite_by_ldl(M):
+        with pytest.raises(ValueError, match="positive definite"):
+            indefinite_vector(M)
+        return
+    x = indefinite_vector(M)
+    assert any(x)
+    assert (
+        sum(u * m * v for u, row in zip(x, M, strict=True) for m, v in zip(row, x, strict=True))
+        <= 0
+    )
+
+
+@given(symmetric, symmetric, st.sampled_from(list(Time)))
+def test_the_verdict_comes_with_its_reason(A, P, time):
+    if len(A) != len(P):
+        A = [[int(i == j) * -1 for j in range(len(P))] for i in range(len(P))]
+    found = check_quadratic(modes(A), RationalMatrix.from_rows(P), time)
+    assert found.holds == (found.counterexample is None) == (found.rate is not None)
+    if found.counterexample is not None and found.counterexample.mode is not None:
+        assert found.counterexample.value >= 0
+    if found.rate is not None:
+        assert check_quadratic(modes(A), RationalMatrix.from_rows(P), time, found.rate).holds

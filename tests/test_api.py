@@ -1,0 +1,176 @@
+"""The library at the door."""
+
+import doctest
+import subprocess
+import sys
+from fractions import Fraction
+
+import control
+import numpy as np
+import pytest
+
+import nrs_design as nrs
+from nrs_design import api
+from nrs_design.errors import DesignError, OutputError, SpecError
+from tests.support import FORCE_LIMIT, ROOT, SOFT_TISSUE
+
+# Dayawansa and Martin 1999: a = 5 has a common quadratic function, a = 6 has none and is stable,
+# a = 12 is not stable.
+ROTATION = [[-1, -1], [1, -1]]
+
+
+def pair(a):
+    return [ROTATION, [[-1, -a], [Fraction(1, a), -1]]]
+
+
+@pytest.mark.parametrize(
+    ("a", "verdict", "common_quadratic"),
+    [
+        (5, "proved", "exists"),
+        (6, "proved", "impossible"),
+        (12, "refuted", "impossible"),
+    ],
+)
+def test_known_answers(a, verdict, common_quadratic):
+    decision = nrs.certify(pair(a))
+    assert (decision.verdict, decision.common_quadratic) == (verdict, common_quadratic)
+    assert (decision.decay_rate is not None) == (verdict == "proved")
+    assert decision.claim in str(decision)
+    assert decision.attempts
+    assert decision.assumptions[0].startswith("The modes are the matrices")
+
+
+def test_ways_to_give_the_same_modes():
+    texts = nrs.certify([[["-1", "-1"], ["1", "-1"]], [["-1", "-5"], ["1/5", "-1"]]])
+    exact = nrs.certify({"m1": ROTATION, "m2": pair(5)[1]})
+    assert texts.decay_rate == exact.decay_rate
+    floats = nrs.certify([np.array(ROTATION), np.array([[-1, -5], [0.2, -1]])])
+    (_, second) = floats.result.certification.system.modes
+    assert second.A.fractions()[1][0] == Fraction(0.2) != Fraction(1, 5)
+
+
+def test_state_spaces_decide_the_time():
+    # Ando and Shih 1998, scale 0.7: stable in discrete time.
+    matrices = ([[0.7, 0], [0.7, 0]], [[0, 0.7], [0, -0.7]])
+    sampled = [control.ss(A, [[0], [0]], [[0, 0]], 0, 0.002) for A in matrices]
+    decision = nrs.certify(sampled)
+    assert decision.verdict == "proved"
+    assert 0 < decision.decay_rate < 1
+    assert "x+ = A x" in decision.claim
+
+
+def test_constrained_switching():
+    # Geromel and Colaneri 2006: stable from a dwell time of about 2.75 s on.
+    modes = {"a": [[0, 1], [-10, -1]], "b": [[0, 1], ["-0.1", "-0.5"]]}
+    assert nrs.certify(modes, dwell_time="2.76 s").verdict == "proved"
+    assert nrs.certify(modes, dwell_time=2).verdict == "refuted"
+    assert nrs.certify(modes, transitions=[]).verdict == "proved"
+
+
+def test_resets_and_parameters():
+    decay = {"a": [[-1]], "b": [[-2]]}
+    halves = {("a", "b"): [[0.5]], ("b", "a"): [[0.5]]}
+    assert nrs.certify(decay, resets=halves).verdict == "proved"
+    stretched = nrs.certify([[["-1 - k", 0], [0, -1]]], parameters={"k": (0, 1)})
+    assert stretched.verdict == "proved"
+    nominal = {"nominal": 0, "range": (0, "1/3"), "varies": "false"}
+    assert nrs.certify([[["-1 - k"]]], parameters={"k": nominal}).verdict == "proved"
+
+
+def test_save_and_verify(tmp_path):
+    file = nrs.certify(pair(6), name="pair").save(tmp_path)
+    assert file == tmp_path / "pair.cert.json"
+    assert nrs.verify(file, tmp_path / "pair.nrs.yaml").fault is None
+    other = nrs.certify(pair(5), name="pair")
+    other.save(tmp_path / "other")
+    assert nrs.verify(file, tmp_path / "other" / "pair.nrs.yaml").fault is not None
+
+
+def test_nothing_shown_is_not_saved(tmp_path):
+    inconclusive = nrs.certify(pair(6), method="lmi")
+    assert inconclusive.verdict == "inconclusive"
+    with pytest.raises(OutputError, match="no certificate"):
+        inconclusive.save(tmp_path)
+    assert not list(tmp_path.iterdir())
+
+
+def test_figures_and_page(tmp_path):
+    decision = nrs.certify(pair(5))
+    assert decision.plot().axes
+    with pytest.raises(DesignError, match="no figure 'nope'"):
+        decision.plot("nope")
+    page = decision.report(tmp_path / "page.html")
+    assert (tmp_path / "page.html").read_text() == page
+    assert "PROVED" in decision._repr_html_()
+    assert "<script" not in decision._repr_html_()
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (([],), "no modes"),
+        (([[[1, 2]]],), "not square"),
+        (([[[1, 2], [3]]],), "different lengths"),
+        (([[[float("nan")]]],), "no finite"),
+        (([[[1]], [[1, 0], [0, 1]]],), "states"),
+        (({"a b": [[1]]},), "not a name"),
+    ],
+)
+def test_wrong_input_is_told_in_words(arguments, said):
+    with pytest.raises(SpecError, match=said) as caught:
+        nrs.certify(*arguments)
+    assert caught.value.line is None
+
+
+def test_wrong_options():
+    with pytest.raises(SpecError, match="two ends"):
+        nrs.certify([[["k"]]], parameters={"k": 3})
+    with pytest.raises(SpecError, match="time"):
+        nrs.certify([[[-1]]], time="now")
+    with pytest.raises(SpecError, match="there is no mode"):
+        nrs.certify([[[-1]], [[-2]]], transitions=[("m1", "m9")])
+
+
+def test_check_lyapunov_says_where_it_fails():
+    good = nrs.check_lyapunov(pair(5), [[1, 0], [0, 5]])
+    assert good.holds
+    bad = nrs.check_lyapunov(pair(5), np.eye(2))
+    assert bad.counterexample.mode == "m2"
+    # Only the symmetric part of P counts.
+    assert nrs.check_lyapunov(pair(5), [[1, 1], [-1, 5]]) == good
+    with pytest.raises(SpecError, match="P is not a matrix"):
+        nrs.check_lyapunov(pair(5), 3)
+    for P in ([[1, 0]], [[1]]):
+        with pytest.raises(Exception, match="x") as caught:
+            nrs.check_lyapunov(pair(5), P)
+        assert isinstance(caught.value, nrs.api.NrsDesignError)
+
+
+def test_a_study_of_a_spec(tmp_path):
+    study = nrs.load(SOFT_TISSUE)
+    assert [c.name for c in study.design().controllers] == ["insertion", "withdrawal"]
+    decision = study.certify(coordinates="deflection")
+    assert decision.verdict == "proved"
+    decision.save(tmp_path)
+    # The spec is a file already, so no second copy is made.
+    assert [file.name for file in tmp_path.iterdir()] == ["soft-tissue.cert.json"]
+    assert study.export(tmp_path / "soft-tissue.cert.json").verdict == "proved"
+    assert nrs.verify(tmp_path / "soft-tissue.cert.json", FORCE_LIMIT).fault is not None
+
+
+def test_import_loads_nothing_heavy():
+    code = (
+        "import sys, nrs_design; print(sorted({'numpy', 'pydantic', 'scipy'} & set(sys.modules)))"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.strip() == "[]"
+    assert set(nrs.__all__) <= set(dir(nrs))
+    with pytest.raises(AttributeError, match="no attribute 'nope'"):
+        _ = nrs.nope
+
+
+def test_examples_in_docstrings(monkeypatch):
+    monkeypatch.chdir(ROOT)
+    found = doctest.testmod(api)
+    assert found.attempted >= 6
+    assert found.failed == 0

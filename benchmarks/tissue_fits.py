@@ -14,10 +14,10 @@ from scipy.optimize import least_squares
 
 from benchmarks.measure import Comparison
 from nrs_design.identification.datasets import Source, TissueRecord
-from nrs_design.identification.synthetic import CONCHA, pressing, tissue_record
 from nrs_design.identification.tissue.output_error import RecordFit, fit_record, rmse
 from nrs_design.identification.tissue.starts import box, scan
 from nrs_design.models.tissue import LAWS, AbstractTissueLaw, KelvinBoltzmann, Maxwell
+from tests.identification.synthetic import CONCHA, pressing, tissue_record
 
 Array = NDArray[np.float64]
 T = TypeVar("T")

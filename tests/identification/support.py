@@ -6,10 +6,10 @@ from pathlib import Path
 
 import numpy as np
 
-from nrs_design.identification import synthetic
 from nrs_design.identification.datasets import SinusoidRecord, Source, TissueRecord
 from nrs_design.models.actuator import MotorConstants
 from nrs_design.models.tissue import AbstractTissueLaw, Motion
+from tests.identification import synthetic
 
 # Thesis table 4.1.
 MOTOR = MotorConstants(

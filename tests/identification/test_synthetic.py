@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from nrs_design.identification import synthetic
 from nrs_design.identification.datasets import read_actuator, read_tissue
+from tests.identification import synthetic
 from tests.support import ROOT
 
 DATA = ROOT / "specs" / "data"

@@ -5,12 +5,12 @@ from fractions import Fraction
 import pytest
 
 from nrs_design.errors import DataError, SpecError
-from nrs_design.identification import synthetic
 from nrs_design.identification.actuator import identify_actuator
 from nrs_design.identification.tissue import identify_tissue
 from nrs_design.identification.write_spec import merge_actuator, merge_tissue
 from nrs_design.models.tissue import Elastic, KelvinVoigt
 from nrs_design.spec import parse_spec, read_spec
+from tests.identification import synthetic
 from tests.identification.support import MOTOR, quick, record, sinusoids, slow
 from tests.support import COMMUTING, FORCE_LIMIT, ROBOT, SOFT_TISSUE
 

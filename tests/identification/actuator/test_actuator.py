@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 
 from nrs_design.errors import DataError
-from nrs_design.identification import synthetic
 from nrs_design.identification.actuator import identify_actuator
 from nrs_design.identification.actuator.friction import friction_shape
 from nrs_design.identification.actuator.phasors import phasors_of
 from nrs_design.identification.actuator.time_fit import simulate_angle
 from nrs_design.identification.datasets import FrequencyResponse
+from tests.identification import synthetic
 from tests.identification.support import MOTOR, sinusoids, source
 
 FEW = (1.2, 2.0, 3.0, 5.0, 8.0, 14.0)

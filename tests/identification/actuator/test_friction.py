@@ -5,8 +5,8 @@ import pytest
 
 from nrs_design.identification.actuator.friction import friction_shape
 from nrs_design.identification.datasets import SinusoidRecord
-from nrs_design.identification.synthetic import FRICTION, GAIN, TIME_CONSTANT
 from tests.identification.support import source
+from tests.identification.synthetic import FRICTION, GAIN, TIME_CONSTANT
 
 
 def held(command, step=2e-3):

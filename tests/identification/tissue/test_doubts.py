@@ -2,7 +2,6 @@
 
 import numpy as np
 
-from nrs_design.identification import synthetic
 from nrs_design.identification.tissue import fit_record
 from nrs_design.models.tissue import (
     Elastic,
@@ -12,6 +11,7 @@ from nrs_design.models.tissue import (
     Maxwell,
     Motion,
 )
+from tests.identification import synthetic
 from tests.identification.support import quick, record, slow
 
 

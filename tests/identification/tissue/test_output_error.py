@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from nrs_design.identification import synthetic
 from nrs_design.identification.tissue import fit_record, output_error
 from nrs_design.identification.tissue.output_error import rmse
 from nrs_design.models.tissue import LAWS, Elastic, HuntCrossley, KelvinVoigt, Maxwell
+from tests.identification import synthetic
 from tests.identification.support import quick, record, slow
 
 # Thesis 6.1, and tables 2.4 and 2.5 (a Maxwell law that relaxes within the record).

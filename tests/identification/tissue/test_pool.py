@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from nrs_design.identification import synthetic
 from nrs_design.identification.statistics import student_quantile
 from nrs_design.identification.tissue import fit_model
 from nrs_design.models.tissue import Elastic
+from tests.identification import synthetic
 from tests.identification.support import quick, record
 
 

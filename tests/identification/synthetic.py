@@ -10,7 +10,7 @@ tables suggest, and the resolution of its sensors:
 - actuator (4.1): sinusoidal commands to a motor with Coulomb friction that sticks at reversals,
   angle from a 14 bit encoder.
 
-``python -m nrs_design.identification.synthetic FOLDER`` writes the samples of ``specs/data``.
+``python -m tests.identification.synthetic FOLDER`` writes the samples of ``specs/data``.
 """
 
 from __future__ import annotations
@@ -42,7 +42,7 @@ FREQUENCIES = (0.5, 0.8, 1.2, 2.0, 3.0, 4.5, 6.0, 8.0, 11.0, 15.0)
 
 COUNT = 0.1 * 2 * math.pi / 4096
 ENCODER = 2 * math.pi / 2**14
-_LABEL = "# synthetic record, made by nrs_design.identification.synthetic: not a measurement"
+_LABEL = "# synthetic record, made by tests.identification.synthetic: not a measurement"
 
 
 def pressing(duration: float, rate: float, depth: float, period: float, seed: int) -> Motion:

@@ -16,7 +16,8 @@ from nrs_design.certificates.verify import verify as verify_file
 from nrs_design.errors import DesignError, NrsDesignError, OutputError
 from nrs_design.given.matrices import read_matrix, read_number, read_rows, time_of
 from nrs_design.given.system import spec_of_matrices
-from nrs_design.output import write_output
+from nrs_design.output import CERTIFICATE, write_output
+from nrs_design.ownership import check_certificate, origin_of
 from nrs_design.proof.lyapunov import LyapunovCheck, check_quadratic
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.system import Mode
@@ -136,10 +137,14 @@ class Decision:
                 path=place,
                 remedy="search longer, with a larger budget or max_degree",
             )
-        if not loaded.path.exists():
-            write_output(place / loaded.path.name, loaded.text)
-        file = place / f"{loaded.spec.name}.cert.json"
-        write_output(file, dump(self.result.certificate))
+        file, spec = place / f"{loaded.spec.name}.cert.json", loaded.path
+        if not spec.exists():
+            spec = place / loaded.path.name
+            check_certificate(spec, file)
+            write_output(spec, loaded.text)
+        origin = origin_of(spec, file)
+        check_certificate(spec, file)
+        write_output(file, dump(self.result.certificate, origin), replaces=CERTIFICATE)
         return file
 
     def _page(self) -> Report:

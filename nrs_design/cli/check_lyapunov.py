@@ -9,7 +9,7 @@ import typer
 
 from nrs_design.cli import exit_codes
 from nrs_design.cli.options import Json
-from nrs_design.cli.printing import print_json
+from nrs_design.cli.printing import print_json, say
 
 if TYPE_CHECKING:
     from nrs_design.proof.lyapunov import LyapunovCheck
@@ -73,23 +73,21 @@ def _show(found: LyapunovCheck, time: str, *, asked: bool) -> None:
 
     if found.holds and found.rate is not None:
         word, unit = ("alpha", " 1/s") if time == "continuous" else ("rho", " per step")
-        print("HOLDS: x' P x is positive definite and decreases strictly in every mode.")
+        say("HOLDS: x' P x is positive definite and decreases strictly in every mode.")
         kind = "the rate asked for" if asked else "proved"
-        print(f"  {kind}: {word} = {rate_text(found.rate, Time(time))}{unit}")
+        say(f"  {kind}: {word} = {rate_text(found.rate, Time(time))}{unit}")
         return
-    print(
-        "DOES NOT HOLD: x' P x is no common Lyapunov function" + (" at this rate." * asked or ".")
-    )
+    say("DOES NOT HOLD: x' P x is no common Lyapunov function" + (" at this rate." * asked or "."))
     if found.counterexample is not None:
         _show_counterexample(found.counterexample)
     if found.weak:
-        print("  It increases in no mode, which shows stability but no decay.")
+        say("  It increases in no mode, which shows stability but no decay.")
 
 
 def _show_counterexample(failing: Any) -> None:
     vector = ", ".join(map(str, failing.vector))
     if failing.mode is None:
-        print(f"  P is not positive definite: x' P x = {failing.value}")
+        say(f"  P is not positive definite: x' P x = {failing.value}")
     else:
-        print(f"  in mode {failing.mode} it does not decrease: its change is {failing.value}")
-    print(f"  at x = ({vector}), exactly")
+        say(f"  in mode {failing.mode} it does not decrease: its change is {failing.value}")
+    say(f"  at x = ({vector}), exactly")

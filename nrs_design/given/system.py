@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-import hashlib
 import json
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
 from typing import Any
@@ -13,10 +13,11 @@ from pydantic import ValidationError
 
 from nrs_design.errors import SpecError
 from nrs_design.given.matrices import is_state_space, read_number, read_rows, time_of
+from nrs_design.proof.text import exact_text
 from nrs_design.spec import LoadedSpec, SwitchedSystemSpec
 from nrs_design.spec.document import parse_document
-from nrs_design.spec.exact import exact_text
-from nrs_design.spec.faults import spec_error
+from nrs_design.spec.faults import file_faults
+from nrs_design.spec.load import hash_meaning
 
 Document = dict[str, Any]
 
@@ -125,8 +126,8 @@ def _validated(document: Document, name: str) -> LoadedSpec:
     try:
         spec = SwitchedSystemSpec.model_validate(document)
     except ValidationError as error:
-        fault = spec_error(error, SwitchedSystemSpec, parse_document(text), None)
+        found = file_faults(error, SwitchedSystemSpec, parse_document(text))
         # Lines of a file that nobody has seen would mislead.
-        raise SpecError(fault.message, remedy=fault.remedy) from None
-    digest = hashlib.sha256(text.encode()).hexdigest()
-    return LoadedSpec(Path(f"{name}.nrs.yaml"), digest, text, spec)
+        faults = tuple(replace(fault, line=None, column=None) for fault in found)
+        raise SpecError.of(faults, None) from None
+    return LoadedSpec(Path(f"{name}.nrs.yaml"), hash_meaning(document), text, spec)

@@ -13,6 +13,7 @@ from pydantic import ValidationError
 from nrs_design.errors import Fault, SpecError
 from nrs_design.proof.text import quoted
 from nrs_design.spec.document import (
+    Data,
     Mapping,
     Node,
     Position,
@@ -84,7 +85,7 @@ def read_spec(path: str | os.PathLike[str]) -> LoadedSpec:
     _, text = read_text(file)
     root, syntax = read_document(text, file)
     spec = _validate(root, syntax, file)
-    return LoadedSpec(file, hash_meaning(root), text, spec)
+    return LoadedSpec(file, hash_meaning(to_data(root)), text, spec)
 
 
 def load_spec(path: str | os.PathLike[str]) -> Spec:
@@ -110,14 +111,14 @@ def parse_spec(text: str, path: Path | None = None) -> Spec:
     return _validate(*read_document(text, path), path)
 
 
-def hash_meaning(root: Node) -> str:
-    """Return the SHA-256 of what a document says, in hexadecimal.
+def hash_meaning(said: Data) -> str:
+    """Return the SHA-256 of what a document says (as `to_data` gives it), in hexadecimal.
 
     Two documents share it exactly if they have the same keys in the same order and the same
     texts: comments, line ends, quotes and layout do not count. A spec is read from these texts and
     from nothing else. Order counts because modes are numbered in the order of the controllers.
     """
-    canonical = json.dumps(to_data(root), separators=(",", ":"), ensure_ascii=True)
+    canonical = json.dumps(said, separators=(",", ":"), ensure_ascii=True)
     return hashlib.sha256(canonical.encode()).hexdigest()
 
 

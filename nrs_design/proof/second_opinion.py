@@ -15,6 +15,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from nrs_design.proof.constant import system_at
+from nrs_design.proof.enclosure import eigenvalues
 from nrs_design.proof.evidence import (
     AbstractEvidence,
     BlockTriangular,
@@ -79,7 +80,7 @@ def _has_positive_spectrum(M: Any) -> bool:
 
 def _is_surely_stable(A: RationalMatrix, time: Time) -> bool:
     """Tell whether rigorous enclosures of all eigenvalues lie in the stable region."""
-    roots: list[Any] = _matrix(A.numerators).charpoly().complex_roots()
+    balls = eigenvalues(A)
     if time is Time.CONTINUOUS:
-        return all(root.real < 0 for root, _ in roots)
-    return all(abs(root / A.denominator) < 1 for root, _ in roots)
+        return all(ball.real < 0 for ball in balls)
+    return all(abs(ball) < 1 for ball in balls)

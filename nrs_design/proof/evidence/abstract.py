@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from enum import StrEnum
 from fractions import Fraction
 from typing import Any, ClassVar, Self
@@ -100,6 +100,11 @@ class AbstractEvidence(ABC):
 
     def find_fault(self, system: SwitchedSystem) -> str | None:
         """TRUSTED: say why the evidence does not hold for the system, or None if it holds."""
+        unfit = self.find_unfit(system)
+        return find_indefinite(self.forms(system)) if unfit is None else unfit
+
+    def find_unfit(self, system: SwitchedSystem) -> str | None:
+        """TRUSTED: say what, other than a form, keeps the evidence from holding, or None."""
         if not system.modes:
             return "the system has no modes"
         if len({mode.name for mode in system.modes}) < len(system.modes):
@@ -116,17 +121,19 @@ class AbstractEvidence(ABC):
         if not system.is_uniform and not self.allows_unequal_modes:
             return f"evidence of kind {self.kind} needs modes of equal size"
         try:
-            misfit = self.find_misfit(system)
+            return self.find_misfit(system)
         except TooLargeError as error:
             return str(error)
-        if misfit is not None:
-            return misfit
-        for failure, form in self.forms(system):
-            if is_too_large(form):
-                return f"{failure}, or it does but its numbers are too large to check"
-            if not is_symmetric(form) or not is_positive_definite(form):
-                return failure
-        return None
+
+
+def find_indefinite(forms: Iterable[tuple[str, IntegerMatrix]]) -> str | None:
+    """TRUSTED: name the failure of the first form that is not positive definite, or None."""
+    for failure, form in forms:
+        if is_too_large(form):
+            return f"{failure}, or it does but its numbers are too large to check"
+        if not is_symmetric(form) or not is_positive_definite(form):
+            return failure
+    return None
 
 
 def _is_well_formed(A: RationalMatrix) -> bool:

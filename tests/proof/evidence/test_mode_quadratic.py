@@ -4,15 +4,9 @@ from dataclasses import replace
 from fractions import Fraction
 from time import process_time
 
-import numpy as np
 import pytest
-from flint import arb, arb_mat, ctx
-from hypothesis import given
-from hypothesis import strategies as st
 
 from nrs_design.proof.evidence import ModeQuadratic, read_evidence
-from nrs_design.proof.evidence.flow import _lower_integers
-from nrs_design.proof.exact import is_positive_definite
 from nrs_design.proof.system import Stay, Switching, Time
 from nrs_design.search.certify import Method, Verdict, certify
 from tests.proof.systems import (
@@ -227,58 +221,6 @@ def test_four_thousand_steps_of_a_small_system_are_checked():
     start = process_time()
     assert evidence.find_fault(system) is None
     assert process_time() - start < 2
-
-
-@given(
-    st.lists(st.floats(-1, 1), min_size=3, max_size=3),
-    st.floats(0, 1e-3),
-    st.integers(-200, 200),
-)
-def test_rounded_balls_stay_below_every_matrix_in_them(entries, radius, exponent):
-    """If the rounded matrix is definite, so are all corners of the ball matrix."""
-    a, b, c = entries
-    mids = np.array([[1 + abs(a), b], [b, 1 + abs(c)]])
-    scale = arb(2) ** exponent
-    balls = [[arb(float(m), radius) * scale for m in row] for row in mids]
-    corners = [
-        mids + radius * np.array([[s, t], [t, u]])
-        for s in (-1, 1)
-        for t in (-1, 1)
-        for u in (-1, 1)
-    ]
-    smallest = min(np.linalg.eigvalsh(corner).min() for corner in corners)
-    if is_positive_definite(_lower_integers(balls)):
-        assert smallest > -1e-12
-    else:
-        assert smallest < 4 * radius + 1e-12
-
-
-@pytest.mark.parametrize(
-    "ball", [arb("nan"), arb("inf"), arb(1, float("inf")), arb(2) ** (10**15), arb(0, 2)]
-)
-def test_balls_that_say_nothing_prove_nothing(ball):
-    start = process_time()
-    form = [[ball, arb(0)], [arb(0), arb(1)]]
-    assert not is_positive_definite(_lower_integers(form))
-    assert not is_positive_definite(_lower_integers([[arb(1), ball], [ball, arb(1)]]))
-    assert process_time() - start < 1
-
-
-def test_tiny_balls_count_as_their_bound_and_not_as_nothing():
-    tiny = arb(2) ** -(10**15)
-    # [[0, t], [t, 1]] is not definite for any t > 0, however tiny.
-    assert not is_positive_definite(_lower_integers([[arb(0), tiny], [tiny, arb(1)]]))
-    assert not is_positive_definite(_lower_integers([[tiny, arb(0)], [arb(0), tiny]]))
-    assert is_positive_definite(_lower_integers([[arb(1), tiny], [tiny, arb(1)]]))
-
-
-def test_the_enclosure_is_not_a_point():
-    before, ctx.prec = ctx.prec, 64
-    try:
-        E = arb_mat([[arb(1), arb(2)], [arb(3), arb(4)]]).exp()
-        assert not E[0, 0].is_exact()
-    finally:
-        ctx.prec = before
 
 
 def test_slow_switching_in_steps_is_really_needed():

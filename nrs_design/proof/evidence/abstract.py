@@ -16,7 +16,6 @@ from nrs_design.proof.exact import (
     is_symmetric,
     is_too_large,
 )
-from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.system import SwitchedSystem, Switching
 
 
@@ -110,7 +109,7 @@ class AbstractEvidence(ABC):
         if len({mode.name for mode in system.modes}) < len(system.modes):
             return "two modes of the system have the same name"
         for mode in system.modes:
-            if not _is_well_formed(mode.A):
+            if not mode.A.is_well_formed or mode.A.shape[0] != mode.A.shape[1]:
                 return f"mode {mode.name} is not a square matrix over a positive denominator"
         if (unreadable := find_unreadable(self)) is not None:
             return unreadable
@@ -134,9 +133,3 @@ def find_indefinite(forms: Iterable[tuple[str, IntegerMatrix]]) -> str | None:
         if not is_symmetric(form) or not is_positive_definite(form):
             return failure
     return None
-
-
-def _is_well_formed(A: RationalMatrix) -> bool:
-    """Tell whether a matrix is square, and its denominator keeps the signs of its numerators."""
-    rows = A.numerators
-    return A.denominator > 0 and len(rows) > 0 and all(len(row) == len(rows) for row in rows)

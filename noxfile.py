@@ -8,7 +8,7 @@ nox.options.sessions = ["lint", "types", "tests"]
 nox.options.default_venv_backend = "venv"
 
 CONSTRAINTS = ("-c", "constraints.txt")
-SOURCES = ("nrs_design", "tests", "benchmarks", "noxfile.py")
+SOURCES = ("nrs_design", "tests", "benchmarks", "docs", "noxfile.py")
 
 
 @nox.session

@@ -22,7 +22,7 @@ def verify(
     spec: Annotated[
         Path | None,
         typer.Argument(
-            metavar="[SPEC]",
+            metavar="SPEC",
             show_default=False,
             help="The spec whose modes they must be; without it, only the proof is checked.",
         ),
@@ -48,7 +48,7 @@ def verify(
     from nrs_design.spec import read_spec
 
     if spec is None and coordinates is not None:
-        raise typer.BadParameter("--coordinates needs a spec to compare with")
+        raise typer.BadParameter("needs a SPEC to compare with", param_hint="--coordinates")
     loaded = None if spec is None else read_spec(spec)
     outcome = verify_file(certificate, loaded, None if coordinates is None else str(coordinates))
     checked = outcome.certificate if outcome.fault is None else None
@@ -79,9 +79,7 @@ def _print(certificate: Certificate, spec: Spec | None) -> None:
     verdict = certificate.verdict
     if spec is None:
         say(f"{verdict.upper()} for the modes in the file, checked exactly.", verdict=verdict)
-        say(
-            "  NOT COMPARED with a spec: whose modes, gains and assumptions they are is not checked"
-        )
+        say("  not compared with a spec: name it to check that these are its modes and assumptions")
     else:
         say(f"{verdict.upper()}: the certificate holds, checked exactly.", verdict=verdict)
     for statement in certificate.statements:

@@ -1,7 +1,7 @@
-"""Re-check a certificate of nrs-design, schema 4: python check_elsewhere.py CERTIFICATE.json
+"""Re-check a certificate of nrs-design, schema 4, with nothing but Python's own fractions.
 
-Nothing but Python's own fractions. Whose modes the file holds is what `nrs-design verify` adds.
-Exit code: 0 if every statement holds, 1 if one does not, 3 if one is not checked here.
+Usage: python check_elsewhere.py CERTIFICATE.json. Exit code: 0 if every statement holds, 1 if one
+does not, 3 if one is not checked here. Whose modes the file holds is what `nrs-design verify` adds.
 """
 
 import hashlib
@@ -95,7 +95,7 @@ def holds(statement, modes, free, discrete):
         return False
     forms = statement.get("vanishing", [[[0] * len(Q)] * len(Q)] * len(modes))
     pairs = zip(modes.values(), forms, strict=True)
-    return all([falls(*mode, N, Q, d // 2, rate, discrete) for mode, N in pairs])
+    return all(falls(*mode, N, Q, d // 2, rate, discrete) for mode, N in pairs)
 
 
 with open(sys.argv[1], encoding="utf-8") as file:

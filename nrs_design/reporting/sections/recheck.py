@@ -26,8 +26,9 @@ def recheck_section(result: Result) -> Section:
             Bullets("", (f"nrs-design verify {name}.cert.json {spec}",)),
             Paragraph(
                 "This decides everything in exact arithmetic for the modes in the certificate, and "
-                "compares them with those of the spec; it runs no solver and uses no number of this page. The id of the "
-                "certificate and the hash of the spec must be those at the head of this report. "
+                "compares them with those of the spec; it runs no solver and uses no number of "
+                "this page. The id of the certificate and the hash of the spec must be those at "
+                "the head of this report. "
                 f"The certificate is the file that nrs-design certify-switching {spec} writes."
             ),
         ),

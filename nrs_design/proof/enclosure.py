@@ -56,6 +56,17 @@ def exponential(A: RationalMatrix, begin: Fraction, end: Fraction) -> Any:
     return E
 
 
+def meets(enclosed: Any, M: RationalMatrix, error: Fraction) -> bool:
+    """Tell whether balls overlap, entry by entry, those of one radius around a rational matrix."""
+    from flint import arb, fmpq
+
+    radius, ours = arb(fmpq(error.numerator, error.denominator)), balls(M)
+    around, (rows, columns) = (-radius).union(radius), M.shape
+    return all(
+        (ours[i, j] + around).overlaps(enclosed[i, j]) for i in range(rows) for j in range(columns)
+    )
+
+
 def eigenvalues(A: RationalMatrix) -> list[Any]:
     """Return complex balls that contain all eigenvalues, each as often as it occurs."""
     from flint import fmpz_mat

@@ -32,6 +32,14 @@ def tests(session: nox.Session) -> None:
 
 
 @nox.session
+def coverage(session: nox.Session) -> None:
+    """Every line and every branch of what decides is run by its own tests."""
+    session.install(".[test]", *CONSTRAINTS)
+    session.run("coverage", "run", "-m", "pytest", "-m", "not slow", "tests/proof")
+    session.run("coverage", "report")
+
+
+@nox.session
 def slow(session: nox.Session) -> None:
     """Run the exhaustive tests that the default session leaves out."""
     session.install(".[test]", *CONSTRAINTS)

@@ -15,6 +15,7 @@ from nrs_design.proof.exact import (
     is_hurwitz,
     is_hurwitz_polynomial,
     is_positive_definite,
+    is_positive_semidefinite,
     is_schur,
     is_symmetric,
     lyapunov_decrease,
@@ -460,3 +461,9 @@ def test_large_matrices(n):
     assert is_schur(T, 4)
     T[0][0] += 2  # then the largest eigenvalue is positive
     assert not is_hurwitz(T)
+
+
+@pytest.mark.parametrize("M", [[], [[1, 2], [3, 1]], [[1, 0]]])
+def test_semidefinite_needs_a_symmetric_matrix(M):
+    with pytest.raises(ValueError, match=r"symmetric|zip"):
+        is_positive_semidefinite(M)

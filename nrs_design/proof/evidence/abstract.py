@@ -11,7 +11,6 @@ from typing import Any, ClassVar, Self
 from nrs_design.proof.evidence.fields import find_unreadable
 from nrs_design.proof.exact import (
     IntegerMatrix,
-    TooLargeError,
     is_positive_definite,
     is_symmetric,
     is_too_large,
@@ -119,10 +118,7 @@ class AbstractEvidence(ABC):
             return f"evidence of kind {self.kind} does not cover this kind of switching"
         if not system.is_uniform and not self.allows_unequal_modes:
             return f"evidence of kind {self.kind} needs modes of equal size"
-        try:
-            return self.find_misfit(system)
-        except TooLargeError as error:
-            return str(error)
+        return self.find_misfit(system)
 
 
 def find_indefinite(forms: Iterable[tuple[str, IntegerMatrix]]) -> str | None:

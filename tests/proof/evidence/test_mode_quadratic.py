@@ -7,7 +7,8 @@ from time import process_time
 import pytest
 
 from nrs_design.proof.evidence import ModeQuadratic, read_evidence
-from nrs_design.proof.system import Stay, Switching, Time
+from nrs_design.proof.matrix import RationalMatrix
+from nrs_design.proof.system import Mode, Reset, Stay, Switching, Time
 from nrs_design.search.certify import Method, Verdict, certify
 from tests.proof.systems import (
     ando_shih,
@@ -323,3 +324,28 @@ def test_contradictory_rules():
     ):
         system = replace(must_leave(2), switching=Switching(stays=stays))
         assert evidence.find_fault(system) is not None
+
+
+def test_a_switch_with_numbers_that_would_take_minutes_is_refused():
+    n = 20
+    A = [[-int(i == j) for j in range(n)] for i in range(n)]
+    tiny = RationalMatrix(tuple(tuple(int(i == j) for j in range(n)) for i in range(n)), 2**7000)
+    system = family(A, A, switching=Switching(resets=(Reset("m0", "m1", tiny),)))
+    identity = tuple(tuple(int(i == j) for j in range(n)) for i in range(n))
+    fault = functions(identity, identity, rate="1/2").find_fault(system)
+    assert fault == "the numbers at the switch from m0 are too large to check"
+
+
+def test_more_switches_than_can_be_checked_are_refused():
+    modes = tuple(Mode(f"m{i}", RationalMatrix(((-1,),))) for i in range(1200))
+    system = replace(family([[-1]]), modes=modes)
+    start = process_time()
+    assert "too many switches" in functions(*[((1,),)] * 1200, rate="1/2").find_fault(system)
+    assert process_time() - start < 2
+
+
+def test_many_dwell_times_are_counted_and_not_listed():
+    stays = tuple((f"m{i}", Stay(Fraction(1), None)) for i in range(9))
+    system = family(*[[[-1]]] * 9, switching=Switching(stays=stays))
+    claim = functions(*[((1,),)] * 9, rate="1/2").claim(system)
+    assert "9 modes with dwell times of their own" in claim

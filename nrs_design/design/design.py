@@ -88,11 +88,9 @@ def impedance_problem(
     spec: InteractionDesignSpec, plant: Plant, loop: MotionLoop, controller: ImpedanceControllerSpec
 ) -> ImpedanceProblem:
     """State the choice of one controller's virtual mass and damping as an optimization."""
-    environment = plant.environment(controller.environment).nominal
+    contact = plant.environment(controller.environment).nominal
     return ImpedanceProblem(
-        loop=ImpedanceLoop(
-            to_transfer_function(loop), float(environment.stiffness), float(environment.damping)
-        ),
+        loop=ImpedanceLoop(to_transfer_function(loop), contact),
         desired=desired_impedance(spec, controller),
         bandwidth=spec.limits.bandwidth.si,
         mass_bounds=(controller.Mt.min.si, controller.Mt.max.si),
@@ -179,7 +177,7 @@ def _force_gain(
 ) -> Fraction:
     if controller.proportional_gain is not None:
         return to_float32(controller.proportional_gain.exact)
-    stiffness = float(plant.environment(controller.environment).nominal.stiffness)
+    stiffness = plant.environment(controller.environment).nominal.stiffness
     wanted = float(controller.damping_ratio or 0)
     gain = design_force_gain(to_transfer_function(loop), stiffness, wanted)
     return to_float32(round_significant(gain, digits))

@@ -150,7 +150,9 @@ class Examiner:
         for item in evidence.impedance:
             controller = spec.controllers[item.name]
             assert controller.type == "impedance"
-            highest = float(plant.environment(controller.environment).stiffness.high)
+            environment = plant.environment(controller.environment)
+            highest = float(environment.stiffness.high)
+            held = ", all parameters in proportion" if environment.law.remembers else ""
             limit = item.lowest_limit
             ranged = controller.Mt.ranged or controller.Bt.ranged
             where = f"{item.name}, in the corners of its gain ranges" if ranged else item.name
@@ -158,7 +160,7 @@ class Examiner:
             verb = "stays below" if reached else "reaches"
             message = (
                 f"design goal: the stiffness of {controller.environment}, up to {highest:.6g} "
-                f"N*m/rad, {verb} the limit {limit:.6g} N*m/rad of controller {where} "
+                f"N*m/rad, {verb} the limit {limit:.6g} N*m/rad of controller {where}{held} "
                 "(floating point, not a proof)"
             )
             yield self.obligation(

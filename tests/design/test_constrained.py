@@ -28,7 +28,7 @@ from nrs_design.design.measures import (
 )
 from nrs_design.design.transfer import TransferFunction, frequency_response
 from nrs_design.errors import DesignError
-from nrs_design.models.environment import Environment, Interval
+from nrs_design.models.contact.environment import Environment, Interval
 
 EXACT = TransferFunction((0.9974, 56.822), (0.0351, 1.9974, 56.822))
 # Thesis 6.2 and 6.3.1: half the impedance of 0.3 N m over 8 deg/s; 2 Hz; k_soft and its range.

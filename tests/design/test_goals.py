@@ -24,7 +24,7 @@ from nrs_design.design.measures import (
     SENSITIVITY_PEAK,
 )
 from nrs_design.design.transfer import TransferFunction
-from nrs_design.models.environment import Environment, Interval
+from nrs_design.models.contact.environment import Environment, Interval
 
 EXACT = TransferFunction((0.9974, 56.822), (0.0351, 1.9974, 56.822))
 

@@ -8,7 +8,7 @@ from nrs_design.errors import DataError, SpecError
 from nrs_design.identification.actuator import identify_actuator
 from nrs_design.identification.tissue import identify_tissue
 from nrs_design.identification.write_spec import merge_actuator, merge_tissue
-from nrs_design.models.tissue import Elastic, KelvinVoigt
+from nrs_design.models.contact import Elastic, KelvinVoigt
 from nrs_design.spec import parse_spec, read_spec
 from tests.identification import synthetic
 from tests.identification.support import MOTOR, quick, record, sinusoids, slow

@@ -7,7 +7,7 @@ from pathlib import Path
 from ruamel.yaml import YAML
 
 from nrs_design.controllers.laws import Admittance
-from nrs_design.models.environment import Contact
+from nrs_design.models.contact.environment import Contact
 from nrs_design.models.motion_loop import MotionLoop
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.system import Mode, SwitchedSystem, Time

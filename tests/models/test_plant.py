@@ -2,7 +2,7 @@ from fractions import Fraction
 
 import pytest
 
-from nrs_design.models.environment import Interval
+from nrs_design.models.interval import Interval
 from nrs_design.models.plant import build_plant
 from nrs_design.spec import load_spec, parse_spec
 from tests.support import SOFT_TISSUE

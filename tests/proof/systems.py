@@ -5,7 +5,7 @@ from fractions import Fraction
 from functools import cache
 
 from nrs_design.controllers.laws import Admittance
-from nrs_design.models.environment import Contact
+from nrs_design.models.contact.environment import Contact
 from nrs_design.proof.evidence import AbstractEvidence
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.system import ARBITRARY, Mode, Reset, Stay, SwitchedSystem, Switching, Time

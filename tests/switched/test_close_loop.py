@@ -20,7 +20,7 @@ from nrs_design.design.margins import stiffness_limit
 from nrs_design.design.transfer import TransferFunction
 from nrs_design.errors import AssemblyError
 from nrs_design.models.actuator import Actuator
-from nrs_design.models.environment import Contact, Environment, Interval
+from nrs_design.models.contact.environment import Contact, Environment, Interval
 from nrs_design.models.motion_loop import MotionLoop
 from nrs_design.models.plant import Plant
 from nrs_design.proof.exact import characteristic_polynomial, is_hurwitz

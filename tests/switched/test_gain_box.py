@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from nrs_design.controllers.gains import gains_of
 from nrs_design.controllers.laws import Admittance
 from nrs_design.errors import AssemblyError
-from nrs_design.models.environment import Contact, Interval
+from nrs_design.models.contact.environment import Contact, Interval
 from nrs_design.models.plant import build_plant
 from nrs_design.pipeline import run_design
 from nrs_design.proof.evidence import CommonQuadratic, UnstableMode

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from nrs_design.controllers.gains import gains_of
 from nrs_design.errors import AssemblyError
-from nrs_design.models.environment import Environment, Interval
+from nrs_design.models.contact.environment import Environment, Interval
 from nrs_design.pipeline import run_design
 from nrs_design.spec import LoadedSpec, parse_spec
 from nrs_design.switched.assemble import assemble, has_ranges

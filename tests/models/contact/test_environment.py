@@ -1,6 +1,6 @@
 from fractions import Fraction
 
-from nrs_design.models.environment import Contact, Environment, Interval
+from nrs_design.models.contact.environment import Contact, Environment, Interval
 
 F = Fraction
 

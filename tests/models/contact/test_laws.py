@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
 
-from nrs_design.models.tissue import (
+from nrs_design.models.contact import (
     LAWS,
     Elastic,
     HuntCrossley,

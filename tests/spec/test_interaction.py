@@ -45,10 +45,10 @@ def test_linear_stiffness_is_converted_at_the_lever_arm() -> None:
     # Thesis 6.3.1: 747.1461 N/m at 0.24 m is 43.0356 N*m/rad.
     soft = interaction(IMPEDANCE).environments["soft"]
     assert isinstance(soft, ElasticSpec)
-    nominal = soft.rotational_stiffness.nominal
+    nominal = soft.at_pivot()["stiffness"].nominal
     assert nominal.exact == Fraction("747.1461") * Fraction("0.24") ** 2
     assert nominal.text == "43.0356 N*m/rad"
-    assert soft.rotational_stiffness.fixed
+    assert soft.at_pivot()["stiffness"].fixed
 
 
 def test_stiff_specimen_of_the_thesis() -> None:
@@ -58,7 +58,7 @@ def test_stiff_specimen_of_the_thesis() -> None:
         "stiffness: 747.1461 N/m",
         "stiffness: {nominal: 1070.5 N/m, range: [1055.4 N/m, 1079.6 N/m]}",
     )
-    stiffness = interaction(text).environments["soft"].rotational_stiffness
+    stiffness = interaction(text).environments["soft"].at_pivot()["stiffness"]
     assert stiffness.nominal.si == pytest.approx(61.6608, rel=1e-5)
     assert not stiffness.fixed
     assert [q.exact for q in stiffness.range] == [
@@ -70,8 +70,8 @@ def test_stiff_specimen_of_the_thesis() -> None:
 def test_kelvin_voigt() -> None:
     hand = interaction(IMPEDANCE).environments["hand"]
     assert isinstance(hand, KelvinVoigtSpec)
-    assert hand.rotational_stiffness.nominal.exact == 43
-    assert hand.rotational_damping.nominal.exact == Fraction(1, 2)
+    assert hand.at_pivot()["stiffness"].nominal.exact == 43
+    assert hand.at_pivot()["damping"].nominal.exact == Fraction(1, 2)
     linear = interaction(
         spoiled(
             IMPEDANCE,
@@ -80,9 +80,9 @@ def test_kelvin_voigt() -> None:
         )
     ).environments["hand"]
     assert isinstance(linear, KelvinVoigtSpec)
-    assert linear.rotational_stiffness.nominal.exact == Fraction("57.6")
-    assert linear.rotational_damping.nominal.exact == Fraction("0.576")
-    assert linear.rotational_damping.nominal.unit == "N*m*s/rad"
+    assert linear.at_pivot()["stiffness"].nominal.exact == Fraction("57.6")
+    assert linear.at_pivot()["damping"].nominal.exact == Fraction("0.576")
+    assert linear.at_pivot()["damping"].nominal.unit == "N*m*s/rad"
 
 
 def test_position_and_force() -> None:

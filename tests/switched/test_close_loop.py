@@ -20,7 +20,9 @@ from nrs_design.design.margins import stiffness_limit
 from nrs_design.design.transfer import TransferFunction
 from nrs_design.errors import AssemblyError
 from nrs_design.models.actuator import Actuator
-from nrs_design.models.contact.environment import Contact, Environment, Interval
+from nrs_design.models.contact import Elastic, KelvinVoigt
+from nrs_design.models.contact.environment import Environment
+from nrs_design.models.interval import Interval
 from nrs_design.models.motion_loop import MotionLoop
 from nrs_design.models.plant import Plant
 from nrs_design.proof.exact import characteristic_polynomial, is_hurwitz
@@ -38,8 +40,8 @@ F = Fraction
 LOOP = MotionLoop((F("28.416"), F("1618.80")), (F(1), F("56.89"), F("1618.80")))
 MOTION = realize(LOOP)
 # 752.69 N/m at 0.24 m, the stiffness in the printed matrices (43.355 N m/rad).
-PRINTED = Contact("soft", F("752.69") * F("0.24") ** 2, F(0))
-SOFT = Contact("soft", F("43.0356"), F(0))
+PRINTED = KelvinVoigt(F("752.69") * F("0.24") ** 2, F(0))
+SOFT = KelvinVoigt(F("43.0356"), F(0))
 NO_DAMPING = F(0)
 positive = st.fractions("1/100", 100, max_denominator=1000)
 
@@ -100,14 +102,16 @@ class TestPublished:
         law = Admittance(F("0.01"), F(Bt))
         while high - low > F(1, 1000):
             middle = (low + high) / 2
-            if stable(impedance_mode(MOTION, law, Contact("x", middle, F(damping)))):
+            if stable(impedance_mode(MOTION, law, KelvinVoigt(middle, F(damping)))):
                 low = middle
             else:
                 high = middle
         motion = TransferFunction(
             tuple(map(float, LOOP.numerator)), tuple(map(float, LOOP.denominator))
         )
-        limit = stiffness_limit(ImpedanceLoop(motion, 1.0, float(F(damping))), 0.01, float(F(Bt)))
+        limit = stiffness_limit(
+            ImpedanceLoop(motion, KelvinVoigt(1.0, float(F(damping)))), 0.01, float(F(Bt))
+        )
         assert float(low) == pytest.approx(limit, abs=2e-3)
 
     def test_known_stiffness_limits(self):
@@ -115,8 +119,8 @@ class TestPublished:
         for Bt, limit in (("1.04", "75.9"), ("2.15", "232.3")):
             law = Admittance(F("0.01"), F(Bt))
             margin = F("0.5")
-            assert stable(impedance_mode(MOTION, law, Contact("x", F(limit) - margin, F(0))))
-            assert not stable(impedance_mode(MOTION, law, Contact("x", F(limit) + margin, F(0))))
+            assert stable(impedance_mode(MOTION, law, KelvinVoigt(F(limit) - margin, F(0))))
+            assert not stable(impedance_mode(MOTION, law, KelvinVoigt(F(limit) + margin, F(0))))
 
 
 class TestImpedance:
@@ -124,7 +128,7 @@ class TestImpedance:
     def test_characteristic_polynomial(self, Mt, Bt, k, b, massless):
         """s den(s)(Mt s + Bt) + num(s)(b s + k), over its leading coefficient."""
         law = Admittance(F(0) if massless else Mt, Bt)
-        rows = impedance_mode(MOTION, law, Contact("x", k, b))
+        rows = impedance_mode(MOTION, law, KelvinVoigt(k, b))
         num, den = LOOP.numerator, LOOP.denominator
         free = np.polymul(
             np.array([*den, 0], dtype=object), np.array([law.Mt, law.Bt], dtype=object)
@@ -135,7 +139,7 @@ class TestImpedance:
 
     @given(positive, positive, positive, st.fractions(0, 10, max_denominator=100), st.booleans())
     def test_coordinates_are_similar(self, Mt, Bt, k, b, massless):
-        law, contact = Admittance(F(0) if massless else Mt, Bt), Contact("x", k, b)
+        law, contact = Admittance(F(0) if massless else Mt, Bt), KelvinVoigt(k, b)
         rows = impedance_mode(MOTION, law, contact)
         assert polynomial(to_force_coordinates(rows, MOTION, contact)) == polynomial(rows)
 
@@ -148,7 +152,7 @@ class TestImpedance:
         """What makes the corners of a parameter box enough, in either coordinates."""
         law = Admittance(F(0) if massless else F("0.01"), F(2))
         middle = tuple((a + b) / 2 for a, b in zip(one, other, strict=True))
-        contacts = [Contact("x", *point) for point in (one, middle, other)]
+        contacts = [KelvinVoigt(*point) for point in (one, middle, other)]
         for force in (False, True):
             first, half, last = (self.rows(law, contact, force) for contact in contacts)
             for a, m, b in zip(first, half, last, strict=True):
@@ -159,7 +163,7 @@ class TestImpedance:
         return to_force_coordinates(rows, MOTION, contact) if force else rows
 
     def test_without_inertia(self):
-        rows = impedance_mode(MOTION, Admittance(F(0), F(2)), Contact("x", F(43), F(0)))
+        rows = impedance_mode(MOTION, Admittance(F(0), F(2)), KelvinVoigt(F(43), F(0)))
         assert rows == [
             [0, 1, 0],
             [F("-1618.80"), F("-56.89"), F(-43, 2)],
@@ -167,14 +171,14 @@ class TestImpedance:
         ]
 
     def test_damped_contact(self):
-        rows = impedance_mode(MOTION, Admittance(F(1, 100), F(2)), Contact("x", F(43), F(3)))
+        rows = impedance_mode(MOTION, Admittance(F(1, 100), F(2)), KelvinVoigt(F(43), F(3)))
         assert rows[2] == [300 * F("1618.80"), 300 * F("28.416"), -200, 4300]
 
 
 class TestForce:
     @given(st.fractions(0, 1), positive)
     def test_state_feedback_of_thesis_646(self, Kp, k):
-        rows = force_mode(MOTION, ProportionalForce(Kp), Contact("x", k, F(0)))
+        rows = force_mode(MOTION, ProportionalForce(Kp), Elastic(k), "soft")
         assert rows == [
             [0, 1],
             [F("-1618.80") * (1 + Kp * k), F("-56.89") - Kp * k * F("28.416")],
@@ -182,7 +186,7 @@ class TestForce:
 
     def test_damping_is_not_modelled(self):
         with pytest.raises(AssemblyError, match="damping") as caught:
-            force_mode(MOTION, ProportionalForce(F(1)), Contact("jelly", F(1), F(1)))
+            force_mode(MOTION, ProportionalForce(F(1)), KelvinVoigt(F(1), F(1)), "jelly")
         assert "jelly" in caught.value.message
         assert "elastic" in caught.value.remedy
 
@@ -213,8 +217,10 @@ def impedance(name, Mt, contacts=("soft",)):
 
 
 def assembled(*controllers, coordinates="deflection"):
-    soft = Environment("soft", Interval(F(43), F(41), F(45)), Interval.point(F(0)))
-    hand = Environment("hand", Interval(F(50), F(25), F(90)), Interval(F(1), F(0), F(2)))
+    soft = Environment("soft", Elastic, (Interval(F(43), F(41), F(45)),))
+    hand = Environment(
+        "hand", KelvinVoigt, (Interval(F(50), F(25), F(90)), Interval(F(1), F(0), F(2)))
+    )
     plant = Plant(Actuator(F(1), F(1)), (soft, hand))
     design = ControllerDesign(ProportionalDerivative(F(1), F(1)), controllers)
     return close_loop("robot", plant, LOOP, design, coordinates)

@@ -28,7 +28,7 @@ from nrs_design.design.measures import (
 )
 from nrs_design.design.transfer import TransferFunction, frequency_response
 from nrs_design.errors import DesignError
-from nrs_design.models.contact import KelvinVoigt
+from nrs_design.models.contact import Elastic, KelvinVoigt
 from nrs_design.models.contact.environment import Environment
 from nrs_design.models.interval import Interval
 

@@ -24,7 +24,7 @@ from nrs_design.design.measures import (
     SENSITIVITY_PEAK,
 )
 from nrs_design.design.transfer import TransferFunction
-from nrs_design.models.contact import KelvinVoigt
+from nrs_design.models.contact import Elastic, KelvinVoigt
 from nrs_design.models.contact.environment import Environment
 from nrs_design.models.interval import Interval
 

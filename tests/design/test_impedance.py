@@ -21,7 +21,7 @@ from nrs_design.design.impedance import (
 )
 from nrs_design.design.transfer import TransferFunction, frequency_response
 from nrs_design.errors import DesignError
-from nrs_design.models.contact import Elastic, KelvinVoigt
+from nrs_design.models.contact import Elastic, KelvinBoltzmann, KelvinVoigt, Maxwell
 
 # Thesis 6.1 as printed, and with the exact coefficients of Kd = 2060, z = 56.9706.
 PRINTED = TransferFunction((0.99, 56.82), (0.0351, 1.99, 56.82))
@@ -292,3 +292,42 @@ def test_admittance_refuses_bad_input(Mt, Bt):
             call(loop, Mt, Bt)
     with pytest.raises(DesignError, match="Mt >= 0 and Bt > 0"):
         impedance_cost(make_problem(), Mt, Bt)
+
+
+@pytest.mark.parametrize(
+    ("contact", "Ze"),
+    [
+        # Thesis 2.5 and table 2.4.
+        (Maxwell(1.129, 120.233), lambda s: 120.233 / (1 + 120.233 / 1.129 * s)),
+        (
+            KelvinBoltzmann(0.233, 0.972, 23.631),
+            lambda s: (0.18795 / s + 19.06169) / (1 + 19.61079 * s),
+        ),
+    ],
+)
+def test_loop_in_viscoelastic_contact(contact, Ze):
+    omega = np.array([0.01, 0.3, 12.0, 200.0])
+    loop = ImpedanceLoop(EXACT, contact)
+    G, Y = frequency_response(EXACT, omega), 1 / (0.01 * 1j * omega + 2.15)
+    L = G * Ze(1j * omega) * Y
+    assert sensitivity(loop, 0.01, 2.15, omega) == pytest.approx(1 / (1 + L), rel=1e-4)
+    displayed = displayed_impedance(loop, 0.01, 2.15, omega)
+    assert displayed == pytest.approx(L / Y / (1 + L), rel=1e-4)
+
+
+def test_cost_in_viscoelastic_contact_is_the_mean_of_its_parts():
+    contact = KelvinBoltzmann(0.233, 0.972, 23.631)
+    problem = replace(make_problem(), loop=ImpedanceLoop(EXACT, contact), desired=0.1)
+    omega = np.linspace(0, BANDWIDTH, 200_001)[1:]
+    shown = np.abs(displayed_impedance(problem.loop, 0.001, 0.09, omega))
+    robust = np.abs(sensitivity(problem.loop, 0.001, 0.09, omega))
+    expected = 0.5 * np.abs(np.log10(0.1 / shown)).mean() + 0.5 * robust.mean()
+    assert float(impedance_cost(problem, 0.001, 0.09)) == pytest.approx(expected, abs=2e-4)
+
+
+@pytest.mark.parametrize(
+    "contact", [Maxwell(1.0, 0.0), Maxwell(0.0, 1.0), KelvinBoltzmann(1.0, 1.0, 0.0)]
+)
+def test_viscoelastic_parameters_are_positive(contact):
+    with pytest.raises(DesignError, match="must be positive"):
+        ImpedanceLoop(EXACT, contact)

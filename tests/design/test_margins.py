@@ -18,7 +18,7 @@ from nrs_design.design.impedance import (
 from nrs_design.design.margins import loop_margins, stiffness_limit
 from nrs_design.design.transfer import TransferFunction, frequency_response, to_control
 from nrs_design.errors import DesignError
-from nrs_design.models.contact import Elastic, KelvinVoigt
+from nrs_design.models.contact import Elastic, KelvinBoltzmann, KelvinVoigt, Maxwell
 
 EXACT = TransferFunction((0.9974, 56.822), (0.0351, 1.9974, 56.822))
 SOFT = ImpedanceLoop(EXACT, Elastic(43.0356))
@@ -187,3 +187,34 @@ def test_bad_admittance_is_refused(Mt, Bt):
     for call in (loop_margins, stiffness_limit):
         with pytest.raises(DesignError, match="Mt >= 0"):
             call(SOFT, Mt, Bt)
+
+
+@pytest.mark.parametrize(
+    "contact", [Maxwell(43.0, 4.0), Maxwell(43.0, 400.0), KelvinBoltzmann(20.0, 43.0, 3.0)]
+)
+@pytest.mark.parametrize("Mt", [0.0, 0.01])
+def test_margins_in_viscoelastic_contact(contact, Mt):
+    loop = ImpedanceLoop(EXACT, contact)
+    margins, tf = loop_margins(loop, Mt, 2.15), open_loop(loop, Mt, 2.15)
+    gain, phase, *_ = control.stability_margins(to_control(tf))
+    assert margins.gain_margin == pytest.approx(gain)
+    if math.isfinite(phase):
+        assert margins.phase_margin == pytest.approx(math.radians(phase))
+    S = 1 / (1 + frequency_response(tf, np.geomspace(1e-3, 1e5, 200_001)))
+    assert margins.sensitivity_peak == pytest.approx(max(1.0, np.abs(S).max()), rel=1e-6)
+    assert margins.disk_margin == pytest.approx(1 / np.abs(S - 0.5).max(), rel=1e-6)
+    # All parameters grow alike: the stiffness is the loop gain.
+    assert margins.stiffness_limit == pytest.approx(43.0 * margins.gain_margin, rel=1e-6)
+
+
+def test_stiffness_limit_in_viscoelastic_contact_by_bisection():
+    def stable(k):
+        contact = KelvinBoltzmann(0.5 * k, k, 0.1 * k)
+        return bool(is_stable(ImpedanceLoop(EXACT, contact), 0.01, 1.04))
+
+    low, high = 1.0, 1e4
+    for _ in range(60):
+        middle = math.sqrt(low * high)
+        low, high = (middle, high) if stable(middle) else (low, middle)
+    loop = ImpedanceLoop(EXACT, KelvinBoltzmann(1.0, 2.0, 0.2))
+    assert stiffness_limit(loop, 0.01, 1.04) == pytest.approx(low, rel=1e-6)

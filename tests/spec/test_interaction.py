@@ -7,7 +7,9 @@ from nrs_design.spec import (
     ElasticSpec,
     ForceControllerSpec,
     ImpedanceControllerSpec,
+    KelvinBoltzmannSpec,
     KelvinVoigtSpec,
+    MaxwellSpec,
     PositionControllerSpec,
 )
 
@@ -315,3 +317,58 @@ def test_entries_are_limited() -> None:
     many = "".join(f"  e{i}: {{model: elastic, stiffness: 1 N*m/rad}}\n" for i in range(65))
     error = refusal(spoiled(IMPEDANCE, "  soft:\n", many + "  soft:\n"))
     assert "environments: more than 64 entries are not read" in error.message
+
+
+BOLTZMANN = (
+    "model: kelvin-boltzmann\n    parallel_stiffness: 4 N/m\n    series_stiffness: 17 N/m\n"
+    "    damping: {nominal: 400 N*s/m, range: [300 N*s/m, 500 N*s/m]}"
+)
+MAXWELL = "model: maxwell\n    stiffness: 700 N/m\n    damping: 40 N*s/m"
+SOFT = "model: elastic\n    stiffness: 747.1461 N/m"
+
+
+def test_kelvin_boltzmann() -> None:
+    nose = interaction(spoiled(IMPEDANCE, SOFT, BOLTZMANN)).environments["soft"]
+    assert isinstance(nose, KelvinBoltzmannSpec)
+    turned = nose.at_pivot()
+    assert list(turned) == ["parallel_stiffness", "series_stiffness", "damping"]
+    assert turned["series_stiffness"].nominal.text == "0.9792 N*m/rad"
+    assert turned["damping"].nominal.unit == "N*m*s/rad"
+    assert [q.exact for q in turned["damping"].range] == [
+        300 * Fraction("0.0576"),
+        500 * Fraction("0.0576"),
+    ]
+    assert not nose.fixed
+
+
+def test_maxwell_alone() -> None:
+    gel = interaction(spoiled(IMPEDANCE, SOFT, MAXWELL)).environments["soft"]
+    assert isinstance(gel, MaxwellSpec)
+    assert gel.at_pivot()["damping"].nominal.exact == 40 * Fraction("0.0576")
+
+
+@pytest.mark.parametrize(
+    ("text", "change", "place", "reason"),
+    [
+        (MAXWELL, ("environment: soft", "environment: soft\n    contacts: [soft, hand]"),
+         "maxwell", "has no rest position, so 'soft' shares no deflection with hand"),
+        (BOLTZMANN, ("switching:", "coordinates: force\nswitching:"),
+         "force", "force coordinates do not apply to 'soft'"),
+        (BOLTZMANN.replace("nominal: 400", "nominal: 0").replace("300", "0"), ("", ""),
+         "0 N*s/m", "must be positive"),
+        (BOLTZMANN.replace("    series_stiffness: 17 N/m\n", ""), ("", ""),
+         "soft", "series_stiffness` is missing"),
+        (BOLTZMANN.replace("17 N/m", "17 N*m/rad"), ("", ""), "17 N*m", "a lever_arm is given"),
+    ],
+)  # fmt: skip
+def test_viscoelastic_refusals(text: str, change: tuple[str, str], place: str, reason: str) -> None:
+    spoilt = spoiled(IMPEDANCE, SOFT, text).replace(*change, 1)
+    faults = refusal(spoilt).faults
+    assert any(reason in fault.message for fault in faults), faults
+    lines = spoilt.splitlines()
+    assert any(place in lines[(fault.line or 0) - 1] for fault in faults)
+
+
+def test_force_control_of_what_remembers_is_refused() -> None:
+    text = FORCE.replace("model: elastic", "model: maxwell\n    damping: 1 N*s/m", 1)
+    assert "force control in contact with 'soft' is not modelled" in refusal(text).message

@@ -5,6 +5,7 @@ from nrs_design.spec.controllers import (
     ControllerSpec,
     CostWeights,
     ForceControllerSpec,
+    IdleStatesSpec,
     ImpedanceControllerSpec,
     PositionControllerSpec,
 )
@@ -63,6 +64,7 @@ __all__ = [
     "ForceControllerSpec",
     "GainSpec",
     "GoalsSpec",
+    "IdleStatesSpec",
     "ImpedanceControllerSpec",
     "InteractionDesignSpec",
     "KelvinBoltzmannSpec",

@@ -108,6 +108,8 @@ def _interaction(spec: InteractionDesignSpec) -> Iterator[Row]:
         yield from _environment(f"environments.{name}", environment)
     for name, controller in spec.controllers.items():
         yield from _controller(f"controllers.{name}", controller, spec.limits)
+    if spec.idle_states is not None:
+        yield from describe_model(spec.idle_states, "idle_states")
     yield from _goals("goals", spec.goals)
     yield Row("design.significant_digits", str(spec.design.significant_digits), "", "")
     yield Row("coordinates", spec.coordinates, "", "")

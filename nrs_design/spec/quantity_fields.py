@@ -225,6 +225,7 @@ Duration = Annotated[Quantity, _quantity(kinds.DURATION), _schema(kinds.DURATION
 DerivativeGain = Annotated[
     Quantity, _quantity(kinds.DERIVATIVE_GAIN), _schema(kinds.DERIVATIVE_GAIN)
 ]
+Decay = Annotated[Quantity, _quantity(kinds.DECAY, positive=False), _schema(kinds.DECAY)]
 Zero = Annotated[Quantity, _quantity(kinds.ZERO), _schema(kinds.ZERO)]
 AngularVelocity = Annotated[
     Quantity, _quantity(kinds.ANGULAR_VELOCITY), _schema(kinds.ANGULAR_VELOCITY)

@@ -10,6 +10,7 @@ from nrs_design.controllers.controller_design import ControllerDesign
 from nrs_design.controllers.gains import design_from_gains
 from nrs_design.errors import AssemblyError
 from nrs_design.models.plant import build_plant
+from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.system import Mode, SwitchedSystem, Time
 from nrs_design.spec import (
     ImpedanceControllerSpec,
@@ -95,6 +96,7 @@ def from_matrices(spec: SwitchedSystemSpec, scale: Fraction = DECLARED) -> Switc
     parameters = read_parameters(spec, scale)
     modes: list[Mode] = []
     groups = {}
+    resets = ((r.source, r.target, RationalMatrix.from_rows(r.map)) for r in spec.resets)
     for mode in spec.modes:
         corners, groups[mode.name] = corner_modes(mode, parameters)
         modes += corners
@@ -105,7 +107,7 @@ def from_matrices(spec: SwitchedSystemSpec, scale: Fraction = DECLARED) -> Switc
         tuple(modes),
         assume_matrices(spec, parameters, scale),
         replace(
-            assemble_switching(spec.switching, groups, spec.resets),
+            assemble_switching(spec.switching, groups, resets),
             fixed_parameter=fixed_parameter(parameters),
         ),
     )
@@ -123,5 +125,7 @@ def from_design(
     plant = build_plant(spec).scaled(scale, _touched(spec))
     loop = plant.motion_loop(design.motion.Kp, design.motion.Kd)
     boxes = gain_boxes(spec, design, scale)
-    system = close_loop(spec.name, plant, loop, design, coordinates, spec.switching, boxes)
+    system = close_loop(
+        spec.name, plant, loop, design, coordinates, spec.switching, boxes, spec.idle_states
+    )
     return replace(system, assumptions=(*system.assumptions, *scale_texts(scale)))

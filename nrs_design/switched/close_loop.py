@@ -24,10 +24,19 @@ from nrs_design.models.motion_loop import MotionLoop
 from nrs_design.models.plant import Plant
 from nrs_design.proof.matrix import RationalMatrix, multiply
 from nrs_design.proof.system import Mode, SwitchedSystem, Time
-from nrs_design.spec import SwitchingSpec
+from nrs_design.spec import IdleStatesSpec, SwitchingSpec
 from nrs_design.switched.assumptions import CONTINUOUS, rule_texts
 from nrs_design.switched.constraints import assemble_switching
 from nrs_design.switched.gain_box import GainBox
+from nrs_design.switched.mixture import (
+    check_mixture,
+    idle_size,
+    impedance_rows,
+    mixture_states,
+    mixture_texts,
+    resets_of,
+    with_idle,
+)
 from nrs_design.switched.parameter_box import Axis, box_corners
 from nrs_design.switched.parameters import Corner
 
@@ -78,6 +87,7 @@ def close_loop(
     coordinates: str,
     rules: SwitchingSpec | None = None,
     boxes: Mapping[str, GainBox] | None = None,
+    idle: IdleStatesSpec | None = None,
 ) -> SwitchedSystem:
     """Assemble every mode of an interaction design.
 
@@ -104,6 +114,9 @@ def close_loop(
         Rules for the change of controllers; by default any may follow any other at any time.
     boxes : mapping, optional
         Where the gains of impedance controllers may be, by name; by default, at what ships.
+    idle : IdleStatesSpec, optional
+        What the states of impedance controllers do while another kind of controller is active; by
+        default there is one kind only.
 
     Raises
     ------
@@ -115,11 +128,18 @@ def close_loop(
     boxes = boxes or {}
     touched = _touched(design, plant)
     _check_coordinates(coordinates, touched)
+    count = 0
+    if idle is not None:
+        check_mixture(coordinates, touched)
+        count = idle_size(design)
     memories = tuple(e for e in touched if e.creep is not None)
     parts = {
         controller.name: tuple(
             _controller_modes(
-                controller, plant, motion, coordinates, boxes.get(controller.name), memories
+                controller,
+                plant,
+                _Surroundings(motion, coordinates, memories, idle, count),
+                boxes.get(controller.name),
             )
         )
         for controller in design.controllers
@@ -133,9 +153,13 @@ def close_loop(
             at=("controllers",),
         )
     states = _state_names(motion.order, sizes[0], coordinates, touched)
-    assumptions = _assumptions(design, coordinates, rules, boxes, touched, given=loop.given)
+    if idle is not None:
+        states = mixture_states(motion.order, count)
+    assumptions = _assumptions(design, coordinates, rules, boxes, touched, idle, given=loop.given)
     groups = {key: tuple(Corner(mode.name) for mode in part) for key, part in parts.items()}
-    switching = assemble_switching(rules, groups)
+    reset = idle is not None and idle.reset
+    resets = resets_of(design, motion.order, count) if reset else ()
+    switching = assemble_switching(rules, groups, resets)
     return SwitchedSystem(name, Time.CONTINUOUS, states, modes, assumptions, switching)
 
 
@@ -164,25 +188,36 @@ def _check_coordinates(coordinates: str, touched: tuple[Environment, ...]) -> No
             )
 
 
+@dataclass(frozen=True, slots=True)
+class _Surroundings:
+    """What all modes share: motion loop, coordinates, memories, idle states and their count."""
+
+    motion: Realization
+    coordinates: str
+    memories: tuple[Environment, ...]
+    idle: IdleStatesSpec | None
+    count: int
+
+    def padded(self, rows: list[Row]) -> list[Row]:
+        """Return a mode of a position or force controller, with idle states if there are any."""
+        return rows if self.idle is None else with_idle(rows, self.count, self.idle.decay.exact)
+
+
 def _controller_modes(
-    controller: Controller,
-    plant: Plant,
-    motion: Realization,
-    coordinates: str,
-    box: GainBox | None,
-    memories: tuple[Environment, ...],
+    controller: Controller, plant: Plant, around: _Surroundings, box: GainBox | None
 ) -> Iterator[Mode]:
     law = controller.law
     if isinstance(law, PositionControl):
-        yield Mode(controller.name, RationalMatrix.from_rows(motion.A))
+        rows = around.padded([list(row) for row in around.motion.A])
+        yield Mode(controller.name, RationalMatrix.from_rows(rows))
         return
     gains: tuple[Axis, ...] = ()
     if isinstance(law, Admittance):
         gains = (box or GainBox.point(law)).axes
     for environment in map(plant.environment, controller.contacts):
         name = f"{controller.name}/{environment.name}"
-        axes = (*_contact_axes(environment, memories), *gains)
-        rows_at = partial(_rows_at, law, environment, motion, coordinates, memories)
+        axes = (*_contact_axes(environment, around.memories), *gains)
+        rows_at = partial(_rows_at, law, environment, around)
         for corner in box_corners(axes, rows_at, name):
             label = f"{name}/{corner.label}" if corner.label else name
             yield Mode(label, RationalMatrix.from_rows(corner.rows))
@@ -208,19 +243,21 @@ def _rate(environment: Environment) -> str:
 def _rows_at(
     law: Admittance | ProportionalForce,
     environment: Environment,
-    motion: Realization,
-    coordinates: str,
-    memories: tuple[Environment, ...],
+    around: _Surroundings,
     values: Mapping[str, Fraction],
 ) -> list[Row]:
     """Return A at the given parameters of the contact and, in impedance control, gains."""
+    motion = around.motion
     contact = environment.law(*(values[symbol] for symbol in environment.law.parameters()))
     if isinstance(law, ProportionalForce):
-        return force_mode(motion, law, contact, environment.name)
-    rows = impedance_mode(motion, Admittance(values["Mt"], values["Bt"]), contact)
-    if coordinates == "force":
+        return around.padded(force_mode(motion, law, contact, environment.name))
+    gains = Admittance(values["Mt"], values["Bt"])
+    if around.idle is not None:
+        return impedance_rows(motion.A, list(motion.C), gains, contact)
+    rows = impedance_mode(motion, gains, contact)
+    if around.coordinates == "force":
         return to_force_coordinates(rows, motion, contact)
-    return _with_memories(rows, environment, memories, values)
+    return _with_memories(rows, environment, around.memories, values)
 
 
 def _with_memories(
@@ -339,6 +376,7 @@ def _assumptions(
     rules: SwitchingSpec,
     boxes: Mapping[str, GainBox],
     touched: tuple[Environment, ...],
+    idle: IdleStatesSpec | None,
     *,
     given: bool,
 ) -> tuple[str, ...]:
@@ -378,8 +416,9 @@ def _assumptions(
         "declared ranges and may change arbitrarily fast.",
         *((last,) if impedance and all(e.law.has_rest for e in touched) else ()),
         *_memory_texts(touched),
+        *(mixture_texts(idle, idle_size(design)) if idle is not None else ()),
         *kept,
-        *_switch_texts(rules),
+        *_switch_texts(rules, reset=idle is not None and idle.reset),
         "Continuous time: sampling, delay, quantization, friction and saturation are not modelled.",
         f"{shipped}, or anywhere in their ranges." if ranged else f"{shipped}.",
         *ranges,
@@ -410,12 +449,13 @@ def _memory_texts(touched: tuple[Environment, ...]) -> Iterator[str]:
             )
 
 
-def _switch_texts(rules: SwitchingSpec) -> tuple[str, ...]:
+def _switch_texts(rules: SwitchingSpec, *, reset: bool) -> tuple[str, ...]:
+    states = "All other states are" if reset else "States are"
     if rules.is_arbitrary:
-        return (f"States are {CONTINUOUS}; any switching signal is possible.",)
+        return (f"{states} {CONTINUOUS}; any switching signal is possible.",)
     environment = (
         "While a controller is active, the environment that it touches may change among its "
         "contacts at any time."
     )
     contacts = () if rules.dwell_time is not None else (environment,)
-    return (f"States are {CONTINUOUS}.", *rule_texts(rules, "controller"), *contacts)
+    return (f"{states} {CONTINUOUS}.", *rule_texts(rules, "controller"), *contacts)

@@ -372,3 +372,41 @@ def test_viscoelastic_refusals(text: str, change: tuple[str, str], place: str, r
 def test_force_control_of_what_remembers_is_refused() -> None:
     text = FORCE.replace("model: elastic", "model: maxwell\n    damping: 1 N*s/m", 1)
     assert "force control in contact with 'soft' is not modelled" in refusal(text).message
+
+
+FREE = ("  insertion:", "  free: {type: position}\n  insertion:")
+IDLE = ("switching:", "idle_states: {decay: 20 1/s}\nswitching:")
+
+
+def test_idle_states() -> None:
+    mixed = IMPEDANCE.replace(*FREE, 1).replace(*IDLE, 1)
+    spec = interaction(mixed)
+    assert spec.idle_states is not None
+    assert spec.idle_states.decay.exact == 20
+    assert not spec.idle_states.reset
+    both = interaction(mixed.replace("20 1/s}", "1/2 1/s, reset: true}"))
+    assert both.idle_states is not None
+    assert both.idle_states.reset
+
+
+@pytest.mark.parametrize(
+    ("changes", "place", "reason"),
+    [
+        ((FREE,), "impedance", "it is not said what the states of impedance controllers do"),
+        ((IDLE,), "idle_states", "idle_states without impedance controllers beside"),
+        ((FREE, IDLE, ("switching:", "coordinates: force\nswitching:")), "force", "do not apply"),
+        ((FREE, IDLE, (SOFT, BOLTZMANN)), "boltzmann", "is not modelled for impedance controllers"),
+        ((FREE, IDLE, ("20 1/s", "20 s")), "20 s", "one over it"),
+        ((FREE, IDLE, ("20 1/s", "-20 1/s")), "-20 1/s", "zero or positive"),
+        ((FREE, IDLE, ("decay: 20 1/s", "reset: true")), "idle_states", "decay` is missing"),
+    ],
+)
+def test_mixture_refusals(changes: tuple[tuple[str, str], ...], place: str, reason: str) -> None:
+    text = IMPEDANCE
+    for old, new in changes:
+        assert old in text
+        text = text.replace(old, new, 1)
+    faults = refusal(text).faults
+    assert any(reason in f"{fault.message}; {fault.remedy}" for fault in faults), faults
+    lines = text.splitlines()
+    assert any(place in lines[(fault.line or 0) - 1] for fault in faults), faults

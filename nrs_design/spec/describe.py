@@ -227,6 +227,8 @@ def describe_model(value: object, name: str = "") -> Iterator[Row]:
         yield Row(name, value.text, _text(value.si), si_unit(value.dimension))
     elif isinstance(value, Fraction):
         yield _number(name, value)
+    elif isinstance(value, bool):
+        yield Row(name, str(value).lower(), "", "")
     elif value is not None:
         yield Row(name, str(value), "", "")
 

@@ -11,7 +11,7 @@ import pytest
 from nrs_design.certificates.certificate import content_id
 from nrs_design.proof.bounds import rounded_down, rounded_up
 from nrs_design.spec import read_spec
-from tests.support import COMMUTING, HARD, PRINT_ERROR, ROOT, SOFT_TISSUE, run, write_spec
+from tests.support import COMMUTING, HARD, PRINT_ERROR, ROBOT, ROOT, SOFT_TISSUE, run, write_spec
 
 EXAMPLES = ROOT / "specs" / "examples"
 RANGES = EXAMPLES / "oscillator-range.nrs.yaml"

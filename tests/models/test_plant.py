@@ -2,10 +2,12 @@ from fractions import Fraction
 
 import pytest
 
-from nrs_design.models.contact import Elastic
+from nrs_design.models.contact import LINEAR_LAWS, Elastic
 from nrs_design.models.interval import Interval
 from nrs_design.models.plant import build_plant
 from nrs_design.spec import load_spec, parse_spec
+from nrs_design.spec.environment import AbstractEnvironmentSpec
+from nrs_design.spec.quantity_fields import RangedQuantity
 from tests.support import SOFT_TISSUE
 
 F = Fraction
@@ -52,3 +54,18 @@ def test_lever_arm_applies_to_stiffness_and_damping():
 def test_unknown_environment():
     with pytest.raises(StopIteration):
         build_plant(load_spec(SOFT_TISSUE)).environment("other")
+
+
+def test_every_environment_of_a_spec_has_its_law():
+    """The spec stands below the models: what both say must agree."""
+    specs = {
+        field.annotation.__args__[0]: spec
+        for spec in AbstractEnvironmentSpec.__subclasses__()
+        if (field := spec.model_fields["model"])
+    }
+    assert specs.keys() == LINEAR_LAWS.keys()
+    for name, law in LINEAR_LAWS.items():
+        spec = specs[name]
+        keys = [k for k, f in spec.model_fields.items() if f.annotation is RangedQuantity]
+        assert tuple(keys) == law.keys
+        assert (spec.remembers, spec.has_rest) == (law.remembers, law.has_rest)

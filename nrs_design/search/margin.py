@@ -190,7 +190,7 @@ def find_shortest_dwell(
     Parameters
     ----------
     system : SwitchedSystem
-        With its own dwell time, perhaps zero; it has no longest ones.
+        With its own dwell times, perhaps zero; it has no longest ones. One for all modes is sought.
     certify : callable
         Decides a system.
     known : Certification, optional
@@ -210,8 +210,8 @@ def find_shortest_dwell(
         return found.verdict, found
 
     tried, longest = _Tried(decide), Fraction(LONGEST_DWELL)
-    if known is not None:
-        tried.remember(system.switching.dwell_time, known)
+    if known is not None and (dwell := _common_dwell(system, known)) is not None:
+        tried.remember(dwell, known)
     if tried.is_proved(Fraction(0)):
         return DwellMargin(Fraction(0), None, tried.certification(Fraction(0)), tried.largest())
     if _has_unstable_mode(tried.certification(Fraction(0))):
@@ -228,6 +228,20 @@ def find_shortest_dwell(
     return DwellMargin(
         proved, _longest_refuted(tried), tried.certification(proved), tried.largest()
     )
+
+
+def _common_dwell(system: SwitchedSystem, known: Certification) -> Fraction | None:
+    """Return the one dwell time for all modes at which the verdict on their own ones holds, too.
+
+    Where no mode is left sooner than the slowest of them may be, all of them keep their own times;
+    a signal that keeps these keeps the shortest of them everywhere.
+    """
+    times = [stay.shortest for stay in system.stays().values()]
+    if known.verdict is Verdict.PROVED:
+        return max(times)
+    if known.verdict is Verdict.REFUTED or min(times) == max(times):
+        return min(times)
+    return None
 
 
 def _has_unstable_mode(found: Certification | None) -> bool:

@@ -73,7 +73,11 @@ def examine_suspicious_modes(family: Family) -> Finding:
 
 def examine_every_mode(family: Family) -> Finding:
     """Test exactly every mode that need never be left."""
-    return _first_unstable(family.system.lasting_modes(), family)
+    lasting = family.system.lasting_modes()
+    evidence, outcome = _first_unstable(lasting, family)
+    if left := len(family.system.modes) - len(lasting):
+        outcome += f"; {left} not tested, they must be left and may be unstable"
+    return evidence, outcome
 
 
 def search_by_lmi(family: Family, *, optimize_rate: bool) -> Finding:

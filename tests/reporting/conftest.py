@@ -32,6 +32,14 @@ switching: arbitrary
 """
 KINDS = {
     "inconclusive": _DWELL.format("2.72"),
+    # Nearly the same stays as in a signal that grows, and a mode that is unstable by itself.
+    "inconclusive-leaving": """\
+time: continuous
+modes:
+  - {name: a, A: [[1]]}
+  - {name: b, A: [[-1]]}
+switching: {dwell_time: {b: 1 s}, longest_dwell_time: {a: 1 s}}
+""",
     "dwell": _DWELL.format("2.76"),
     "dwell-refuted": _DWELL.format("2.7"),
     "polynomial": _PAIR.format(6),

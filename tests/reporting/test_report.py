@@ -196,6 +196,12 @@ def test_inconclusive_report_says_so_plainly(report):
     assert "A longer dwell time" in text
 
 
+def test_unstable_mode_that_must_be_left_is_not_called_stable(report):
+    inconclusive = report("inconclusive-leaving")
+    assert inconclusive.verdict == "inconclusive"
+    assert "Every mode by itself is stable" not in words(inconclusive)
+
+
 @pytest.mark.parametrize(
     "case",
     ["proved", "force", "discrete", "polynomial", "dwell", "steps", "resets", "parameter"],

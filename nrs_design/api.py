@@ -13,10 +13,10 @@ from nrs_design import pipeline
 from nrs_design.certificates.certificate import dump
 from nrs_design.certificates.verify import Verification
 from nrs_design.certificates.verify import verify as verify_file
-from nrs_design.errors import DesignError, NrsDesignError, OutputError
+from nrs_design.errors import DesignError, NrsDesignError, OutputError, SpecError
 from nrs_design.given.matrices import read_matrix, read_number, read_rows, time_of
 from nrs_design.given.system import spec_of_matrices
-from nrs_design.output import CERTIFICATE, write_output
+from nrs_design.output import CERTIFICATE, PAGE, write_output
 from nrs_design.ownership import check_certificate, origin_of
 from nrs_design.proof.lyapunov import LyapunovCheck, check_quadratic
 from nrs_design.proof.matrix import RationalMatrix
@@ -114,11 +114,11 @@ class Decision:
 
         page = render_html(self._page())
         if file is not None:
-            write_output(Path(file), page)
+            write_output(Path(file), page, replaces=PAGE)
         return page
 
     def save(self, folder: str | Path) -> Path:
-        """Write ``NAME.cert.json``, and ``NAME.nrs.yaml`` beside it if the spec is no file yet.
+        """Write ``NAME.cert.json``, and the spec beside it if no file holds it as it was decided.
 
         Returns
         -------
@@ -128,7 +128,8 @@ class Decision:
         Raises
         ------
         OutputError
-            If nothing was shown, so that there is no certificate, or a file cannot be written.
+            If nothing was shown, so that there is no certificate, or a file cannot be written, or
+            another spec stands in its place.
         """
         place, loaded = Path(folder), self.result.loaded
         if self.result.certificate is None:
@@ -138,12 +139,18 @@ class Decision:
                 remedy="search longer, with a larger budget or max_degree",
             )
         file, spec = place / f"{loaded.spec.name}.cert.json", loaded.path
-        if not spec.exists():
+        if not _holds(spec, loaded):
             spec = place / loaded.path.name
-            check_certificate(spec, file)
-            write_output(spec, loaded.text)
-        origin = origin_of(spec, file)
         check_certificate(spec, file)
+        if not spec.exists():
+            write_output(spec, loaded.text)
+        elif not _holds(spec, loaded):
+            raise OutputError(
+                "exists already and is another spec, so it is not overwritten",
+                path=spec,
+                remedy="choose another folder or another name",
+            )
+        origin = origin_of(spec, file)
         write_output(file, dump(self.result.certificate, origin), replaces=CERTIFICATE)
         return file
 
@@ -404,6 +411,14 @@ def _symmetric_part(P: object) -> RationalMatrix:
     return RationalMatrix.from_rows(
         [[half * (rows[i][j] + rows[j][i]) for j in range(n)] for i in range(n)]
     )
+
+
+def _holds(path: Path, loaded: LoadedSpec) -> bool:
+    """Tell whether a file says what a spec says."""
+    try:
+        return read_spec(path).sha256 == loaded.sha256
+    except SpecError:
+        return False
 
 
 def _limits(budget: float | None, max_degree: int | None) -> Limits:

@@ -86,6 +86,30 @@ def test_save_and_verify(tmp_path):
     assert nrs.verify(file, tmp_path / "other" / "pair.nrs.yaml").fault is not None
 
 
+def test_saving_overwrites_no_other_spec(tmp_path, monkeypatch):
+    """Neither where the files go, nor in the working folder, where one has the same name."""
+    spec, place = tmp_path / "pair.nrs.yaml", tmp_path / "place"
+    text = (ROOT / "specs/examples/commuting.nrs.yaml").read_text().replace("commuting", "pair")
+    spec.write_text(text)
+    decision = nrs.certify(pair(6), name="pair")
+    with pytest.raises(OutputError, match="is another spec"):
+        decision.save(tmp_path)
+    assert spec.read_text() == text
+    assert not (tmp_path / "pair.cert.json").exists()
+    monkeypatch.chdir(tmp_path)
+    assert nrs.verify(decision.save(place), place / "pair.nrs.yaml").fault is None
+    decision.save(place)
+    assert spec.read_text() == text
+
+
+def test_a_page_overwrites_pages_only(tmp_path):
+    other = tmp_path / "thesis.html"
+    other.write_text("mine")
+    with pytest.raises(OutputError, match="not overwritten"):
+        nrs.certify(pair(5)).report(other)
+    assert other.read_text() == "mine"
+
+
 def test_nothing_shown_is_not_saved(tmp_path):
     inconclusive = nrs.certify(pair(6), method="lmi")
     assert inconclusive.verdict == "inconclusive"

@@ -266,6 +266,7 @@ def certify(
     *,
     time: str | None = None,
     dwell_time: object = None,
+    longest_dwell_time: object = None,
     transitions: Sequence[tuple[str, str]] | None = None,
     resets: Mapping[tuple[str, str], object] | None = None,
     parameters: Mapping[str, object] | None = None,
@@ -285,12 +286,15 @@ def certify(
         mapping name the modes; otherwise they are m1, m2, ...
     time : {"continuous", "discrete"}, optional
         By default what the dt of the state spaces says, else continuous.
-    dwell_time : number or str, optional
-        Shortest time in a mode, in s, or a number of steps; by default, switching is arbitrary.
+    dwell_time : number or str, or mapping from str to these, optional
+        Shortest time in a mode, in s, or a number of steps: one for all modes, or by name. By
+        default, switching is arbitrary.
+    longest_dwell_time : number or str, or mapping from str to these, optional
+        Time by which a mode must be left, so that it may be unstable.
     transitions : sequence of (str, str), optional
         Allowed switches; by default all.
-    resets : mapping from (str, str) to matrix, optional
-        ``x+ = G x`` at these switches; others leave the state as it is.
+    resets : mapping from (str, str) to matrix or list of matrices, optional
+        ``x+ = G x`` at these switches, with any one of several G; others leave the state as it is.
     parameters : mapping from str to (low, high), optional
         Uncertain numbers that move at will in their ranges; entries of modes may then be texts that
         are affine in them, such as ``"-1 - k"``. A mapping with nominal, range and varies says
@@ -326,6 +330,7 @@ def certify(
         name=name,
         time=time,
         dwell_time=dwell_time,
+        longest_dwell_time=longest_dwell_time,
         transitions=transitions,
         resets=resets,
         parameters=parameters,

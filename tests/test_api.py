@@ -77,6 +77,28 @@ def test_resets_and_parameters():
     assert nrs.certify([[["-1 - k"]]], parameters={"k": nominal}).verdict == "proved"
 
 
+def test_stays_of_single_modes():
+    """An unstable mode that is left in time, and a stable one that lasts: exp(0.5 - 1) < 1."""
+    modes = {"up": [[1]], "down": [[-1]]}
+    rules = {"longest_dwell_time": {"up": "0.5 s"}, "dwell_time": {"down": 1}}
+    assert nrs.certify(modes, **rules).verdict == "proved"
+    assert nrs.certify(modes, **(rules | {"dwell_time": {"down": 0.25}})).verdict == "refuted"
+
+
+def test_several_resets_between_two_modes():
+    """Either of them may happen, so the growing one decides."""
+    modes, small, large = [[[-1]], [[-2]]], np.array([[0.5]]), [[3]]
+    both = {("m1", "m2"): [small, large], ("m2", "m1"): [[1]]}
+    assert nrs.certify(modes, resets=both | {("m1", "m2"): small}).verdict == "proved"
+    for maps in ([small, large], (large, small), [[["0.5"]], large]):
+        assert nrs.certify(modes, resets=both | {("m1", "m2"): maps}).verdict == "refuted"
+
+
+def test_names_may_be_numbers():
+    rules = {"dwell_time": {1: 2}, "transitions": [(1, 2)], "resets": {(1, 2): [[3]]}}
+    assert nrs.certify({1: [[-1]], 2: [[-2]]}, **rules).verdict == "proved"
+
+
 def test_save_and_verify(tmp_path):
     file = nrs.certify(pair(6), name="pair").save(tmp_path)
     assert file == tmp_path / "pair.cert.json"

@@ -219,7 +219,7 @@ class Study:
         """
         limits = _limits(budget, max_degree)
         result = pipeline.run_certification(
-            self.loaded, method=Method(method), coordinates=coordinates, limits=limits
+            self.loaded, method=_method(method), coordinates=coordinates, limits=limits
         )
         return Decision(result)
 
@@ -424,6 +424,12 @@ def _holds(path: Path, loaded: LoadedSpec) -> bool:
         return read_spec(path).sha256 == loaded.sha256
     except SpecError:
         return False
+
+
+def _method(name: str) -> Method:
+    if name not in set(Method):
+        raise DesignError(f"there is no method {name!r}", remedy=f"one of {', '.join(Method)}")
+    return Method(name)
 
 
 def _limits(budget: float | None, max_degree: int | None) -> Limits:

@@ -108,6 +108,11 @@ def test_save_and_verify(tmp_path):
     assert nrs.verify(file, tmp_path / "other" / "pair.nrs.yaml").fault is not None
 
 
+def test_unknown_method():
+    with pytest.raises(DesignError, match="no method 'foo'"):
+        nrs.certify(pair(6), method="foo")
+
+
 def test_saving_overwrites_no_other_spec(tmp_path, monkeypatch):
     """Neither where the files go, nor in the working folder, where one has the same name."""
     spec, place = tmp_path / "pair.nrs.yaml", tmp_path / "place"

@@ -38,11 +38,32 @@ class AbstractEvidence(ABC):
 
     kind: ClassVar[str]
     allows_unequal_modes: ClassVar[bool] = False
+    # Whether the bound that it proves holds with a constant factor in front only, and whether some
+    # solution may really decay no faster than the proved rate.
+    bounds_up_to_a_constant: ClassVar[bool] = False
+    attains_rate: ClassVar[bool] = True
+    # Whether what is shown of the modes is shown of their convex combinations too.
+    covers_mixtures: ClassVar[bool] = False
 
     @property
     @abstractmethod
     def shows(self) -> Shows:
         """What follows if it holds."""
+
+    @property
+    def is_common_quadratic(self) -> bool:
+        """Whether it holds a common quadratic function, or one for every diagonal block."""
+        return False
+
+    @property
+    def mixes_up_to_a_constant(self) -> bool:
+        """Whether its bound for convex combinations has a constant factor, in discrete time."""
+        return False
+
+    @property
+    def names_unstable_mode(self) -> bool:
+        """Whether it shows that some mode is not stable by itself."""
+        return False
 
     def proved_rate(self, system: SwitchedSystem) -> Fraction | None:
         """Return the rate of decay (alpha in 1/s, or rho per step), if it shows one."""

@@ -63,6 +63,7 @@ class CommonPolynomial(AbstractEvidence):
     """
 
     kind: ClassVar[str] = "common-polynomial"
+    covers_mixtures: ClassVar[bool] = True
 
     degree: int
     Q: Matrix
@@ -74,6 +75,11 @@ class CommonPolynomial(AbstractEvidence):
     def shows(self) -> Shows:
         """Stability."""
         return Shows.STABILITY
+
+    @property
+    def mixes_up_to_a_constant(self) -> bool:
+        """True: V need not be convex, but a joint spectral radius is that of the convex hull."""
+        return True
 
     def proved_rate(self, system: SwitchedSystem) -> Fraction:
         """Return the claimed rate."""

@@ -38,6 +38,7 @@ class CommonQuadratic(AbstractEvidence):
     """
 
     kind: ClassVar[str] = "common-quadratic"
+    covers_mixtures: ClassVar[bool] = True
 
     Q: tuple[tuple[int, ...], ...]
     denominator_log2: int
@@ -47,6 +48,11 @@ class CommonQuadratic(AbstractEvidence):
     def shows(self) -> Shows:
         """Stability."""
         return Shows.STABILITY
+
+    @property
+    def is_common_quadratic(self) -> bool:
+        """True: that is what it is."""
+        return True
 
     def proved_rate(self, system: SwitchedSystem) -> Fraction:
         """Return the claimed rate."""

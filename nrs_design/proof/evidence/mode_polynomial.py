@@ -48,6 +48,7 @@ class ModePolynomial(AbstractEvidence):
 
     kind: ClassVar[str] = "mode-polynomial"
     allows_unequal_modes: ClassVar[bool] = True
+    bounds_up_to_a_constant: ClassVar[bool] = True
 
     degree: int
     quadratic: ModeQuadratic
@@ -57,6 +58,11 @@ class ModePolynomial(AbstractEvidence):
     def shows(self) -> Shows:
         """Stability."""
         return Shows.STABILITY
+
+    @property
+    def leaving(self) -> tuple[str, ...]:
+        """Modes in which V_i need not decrease, because they have a longest dwell time."""
+        return self.quadratic.leaving
 
     @property
     def lifted(self) -> ModeQuadratic:

@@ -67,6 +67,7 @@ class ModeQuadratic(AbstractEvidence):
 
     kind: ClassVar[str] = "mode-quadratic"
     allows_unequal_modes: ClassVar[bool] = True
+    bounds_up_to_a_constant: ClassVar[bool] = True
 
     functions: tuple[tuple[str, Matrix], ...]
     denominator_log2: int

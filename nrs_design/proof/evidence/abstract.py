@@ -38,11 +38,11 @@ class AbstractEvidence(ABC):
 
     kind: ClassVar[str]
     allows_unequal_modes: ClassVar[bool] = False
-    # Whether the bound that it proves holds with a constant factor in front only, and whether some
-    # solution may really decay no faster than the proved rate.
-    bounds_up_to_a_constant: ClassVar[bool] = False
-    attains_rate: ClassVar[bool] = True
-    # Whether what is shown of the modes is shown of their convex combinations too.
+    # What is said of a kind unless it shows more. Its bound holds from the first moment on, with no
+    # constant factor in front; and at the proved rate itself, not only at every slower one.
+    bounds_at_once: ClassVar[bool] = False
+    attains_rate: ClassVar[bool] = False
+    # What is shown of the modes is shown of their convex combinations too.
     covers_mixtures: ClassVar[bool] = False
 
     @property
@@ -56,8 +56,8 @@ class AbstractEvidence(ABC):
         return False
 
     @property
-    def mixes_up_to_a_constant(self) -> bool:
-        """Whether its bound for convex combinations has a constant factor, in discrete time."""
+    def keeps_bound_in_mixtures(self) -> bool:
+        """Whether convex combinations of modes get no further constant factor in discrete time."""
         return False
 
     @property

@@ -33,7 +33,6 @@ class BlockTriangular(AbstractEvidence):
     """
 
     kind: ClassVar[str] = "block-triangular"
-    bounds_up_to_a_constant: ClassVar[bool] = True
     # Where blocks are coupled, a solution may decay like that rate times a polynomial in time.
     attains_rate: ClassVar[bool] = False
     covers_mixtures: ClassVar[bool] = True
@@ -52,9 +51,9 @@ class BlockTriangular(AbstractEvidence):
         return all(part.is_common_quadratic for _, part in self.parts)
 
     @property
-    def mixes_up_to_a_constant(self) -> bool:
-        """Whether a part's does."""
-        return any(part.mixes_up_to_a_constant for _, part in self.parts)
+    def keeps_bound_in_mixtures(self) -> bool:
+        """Whether every part does."""
+        return all(part.keeps_bound_in_mixtures for _, part in self.parts)
 
     @property
     def names_unstable_mode(self) -> bool:

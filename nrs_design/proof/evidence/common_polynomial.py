@@ -63,6 +63,8 @@ class CommonPolynomial(AbstractEvidence):
     """
 
     kind: ClassVar[str] = "common-polynomial"
+    bounds_at_once: ClassVar[bool] = True
+    attains_rate: ClassVar[bool] = True
     covers_mixtures: ClassVar[bool] = True
 
     degree: int
@@ -77,9 +79,9 @@ class CommonPolynomial(AbstractEvidence):
         return Shows.STABILITY
 
     @property
-    def mixes_up_to_a_constant(self) -> bool:
-        """True: V need not be convex, but a joint spectral radius is that of the convex hull."""
-        return True
+    def keeps_bound_in_mixtures(self) -> bool:
+        """False: V need not be convex, but a joint spectral radius is that of the convex hull."""
+        return False
 
     def proved_rate(self, system: SwitchedSystem) -> Fraction:
         """Return the claimed rate."""

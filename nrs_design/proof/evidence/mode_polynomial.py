@@ -48,7 +48,7 @@ class ModePolynomial(AbstractEvidence):
 
     kind: ClassVar[str] = "mode-polynomial"
     allows_unequal_modes: ClassVar[bool] = True
-    bounds_up_to_a_constant: ClassVar[bool] = True
+    attains_rate: ClassVar[bool] = True
 
     degree: int
     quadratic: ModeQuadratic
@@ -72,6 +72,11 @@ class ModePolynomial(AbstractEvidence):
     def fits(self, switching: Switching) -> bool:
         """Tell whether every mode in force is one of the modes."""
         return self.quadratic.fits(switching)
+
+    @property
+    def keeps_bound_in_mixtures(self) -> bool:
+        """True: its bound has a constant factor anyway."""
+        return True
 
     def proved_rate(self, system: SwitchedSystem) -> Fraction:
         """Return the claimed rate."""

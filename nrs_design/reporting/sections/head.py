@@ -91,7 +91,7 @@ def _rate(system: SwitchedSystem, evidence: AbstractEvidence | None) -> list[tup
     if evidence is None or rate is None:
         return []
     constant = "" if evidence.attains_rate else ", not attained"
-    if evidence.bounds_up_to_a_constant:
+    if not evidence.bounds_at_once:
         constant += ", up to a constant factor"
     if system.time is Time.CONTINUOUS:
         text = at_least(rate, "1/s").removeprefix("= ")

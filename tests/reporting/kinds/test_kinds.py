@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import re
 from pathlib import Path
 
 import pytest
@@ -29,6 +30,19 @@ def test_a_page_is_in_a_file_that_is_named_like_that_of_its_evidence():
         assert page.__module__.rpartition(".")[2] == kind.__module__.rpartition(".")[2]
     files = {path.stem for path in Path(kinds.__file__).parent.glob("*.py")}
     assert files - {"__init__", "abstract"} == {kind.kind.replace("-", "_") for kind in KINDS}
+
+
+def test_outside_proof_and_search_only_the_page_names_its_kind():
+    for kind in proof.KINDS:
+        file = kind.kind.replace("-", "_")
+        named = {
+            path.relative_to(PACKAGE).as_posix()
+            for folder in PACKAGE.iterdir()
+            if folder.name not in ("proof", "search")
+            for path in ([folder] if folder.suffix == ".py" else folder.rglob("*.py"))
+            if re.search(rf"\b{kind.__name__}\b", path.read_text("utf-8"))
+        }
+        assert named == {"reporting/kinds/__init__.py", f"reporting/kinds/{file}.py"}
 
 
 @pytest.mark.parametrize("kind", sorted(TEXTS))

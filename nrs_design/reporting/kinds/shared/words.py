@@ -124,7 +124,7 @@ def all_corners(
         "parameter alone, or in its inverse, so all values between the corners are covered as "
         f"well, {how}."
     )
-    if system.time is Time.DISCRETE and evidence.mixes_up_to_a_constant:
+    if system.time is Time.DISCRETE and not evidence.keeps_bound_in_mixtures:
         text += " Between the corners, the bound holds up to a constant factor."
     return text
 

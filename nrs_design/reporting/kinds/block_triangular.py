@@ -70,7 +70,7 @@ class BlockTriangularPage(AbstractKindPage[BlockTriangular]):
                 *words.unneeded_rules(self.system),
                 words.decision(_DECIDED),
             )
-        inner = self._deciding(of_block=True).meaning()
+        inner = self._deciding().meaning()
         if self.evidence.shows is Shows.NO_COMMON_QUADRATIC:
             return inner
         return (
@@ -87,7 +87,7 @@ class BlockTriangularPage(AbstractKindPage[BlockTriangular]):
         """Say what a refutation of one block leaves open."""
         if self.evidence.shows is Shows.STABILITY:
             return ()
-        return self._deciding(of_block=True).limits()
+        return self._deciding().limits()
 
     def sections(self, *, first: bool = True) -> tuple[Section, ...]:
         """Draw the structure and summarize the evidence for the blocks."""
@@ -107,8 +107,7 @@ class BlockTriangularPage(AbstractKindPage[BlockTriangular]):
         """Draw a run of the whole family, beside the rate of its slowest block."""
         rate = self.evidence.proved_rate(self.system)
         if rate is None or self.evidence.shows is not Shows.STABILITY:
-            # The family contains the block that is unstable.
-            return self._deciding(of_block=False).run()
+            return self._deciding().run()
         return self._beside(float(rate))
 
     def _beside(self, rate: float) -> Section:
@@ -134,10 +133,10 @@ class BlockTriangularPage(AbstractKindPage[BlockTriangular]):
         for index, part in self.evidence.parts:
             yield index, diagonal_block(self.system, self.evidence.blocks[index]), part
 
-    def _deciding(self, *, of_block: bool) -> AbstractKindPage[Any]:
-        """Return the page of the one part that settles the family, of its block or of all."""
-        _, inner, part = next(self._parts())
-        return _page(inner if of_block else self.system, part)
+    def _deciding(self) -> AbstractKindPage[Any]:
+        """Return the page of the part that settles the family, which contains its block."""
+        _, part = self.evidence.parts[0]
+        return _page(self.system, part)
 
     def _without_function(self, blocks: list[Block]) -> Section:
         """Say which block has no common quadratic function, and why."""
@@ -176,6 +175,7 @@ class BlockTriangularPage(AbstractKindPage[BlockTriangular]):
 
 
 def _page(system: SwitchedSystem, part: AbstractEvidence) -> AbstractKindPage[Any]:
+    # Imported here, as the table names this file too.
     from nrs_design.reporting.kinds import page_of
 
     return page_of(system, part)

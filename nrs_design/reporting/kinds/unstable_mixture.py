@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from nrs_design.proof.evidence import UnstableMixture
 from nrs_design.reporting.document import Illustration, Paragraph, Section, Table
@@ -77,9 +78,7 @@ class UnstableMixturePage(AbstractKindPage[UnstableMixture]):
             *plane(system, run.response),
         )
 
-    def _spectra(
-        self, average: np.ndarray[tuple[int, ...], np.dtype[np.complex128]]
-    ) -> Illustration:
+    def _spectra(self, average: NDArray[np.complex128]) -> Illustration:
         names = [name for name, _ in self.evidence.weights]
         modes = tuple(mode for mode in self.system.modes if mode.name in names)
         mixed = replace(self.system, modes=modes)

@@ -49,6 +49,7 @@ class UnstableValuePage(AbstractKindPage[UnstableValue]):
 
     @property
     def _part(self) -> AbstractKindPage[Any]:
+        # Imported here, as the table names this file too.
         from nrs_design.reporting.kinds import page_of
 
         return page_of(system_at(self.system, self.evidence.share), self.evidence.part)

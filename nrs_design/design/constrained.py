@@ -8,10 +8,10 @@ from itertools import product
 
 import numpy as np
 
+from nrs_design.controllers.controller_design import ImpedanceOptimum
 from nrs_design.design.goals import Requirement
 from nrs_design.design.impedance import (
     NODES,
-    ImpedanceOptimum,
     ImpedanceProblem,
     admittance_at,
     impedance_cost,

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from nrs_design.controllers.controller_design import ImpedanceOptimum
 from nrs_design.design.goals import Achieved
-from nrs_design.design.impedance import ImpedanceOptimum
 from nrs_design.design.measures import DISK_MARGIN, MARGINS, SENSITIVITY_PEAK
 from nrs_design.spec import Doubt, ImpedanceControllerSpec
 

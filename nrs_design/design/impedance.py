@@ -14,6 +14,7 @@ from functools import partial
 import numpy as np
 from numpy.typing import ArrayLike
 
+from nrs_design.controllers.controller_design import ImpedanceOptimum
 from nrs_design.design.pattern_search import Objective, Points, local_minima, refine, snap
 from nrs_design.design.transfer import (
     BoolArray,
@@ -113,28 +114,6 @@ class ImpedanceProblem:
         weights = (self.weight_displayed, self.weight_sensitivity)
         if not all(math.isfinite(w) and w >= 0 for w in weights) or not any(weights):
             raise DesignError(f"weights must be at least 0 and not both 0: {weights}")
-
-
-@dataclass(frozen=True)
-class ImpedanceOptimum:
-    """The best admittance within the bounds.
-
-    Parameters
-    ----------
-    Mt : float
-        Virtual mass, kg m^2.
-    Bt : float
-        Virtual damping, N m s/rad.
-    cost : float
-        Value of `impedance_cost` there.
-    evaluations : int
-        Number of admittances that the search tried.
-    """
-
-    Mt: float
-    Bt: float
-    cost: float
-    evaluations: int
 
 
 def open_loop(loop: ImpedanceLoop, Mt: float, Bt: float) -> TransferFunction:

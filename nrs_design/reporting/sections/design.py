@@ -11,7 +11,6 @@ from nrs_design.controllers.controller_design import ControllerDesign
 from nrs_design.controllers.gains import MOTION, UNITS, gains_of
 from nrs_design.controllers.laws import Admittance, Law, PositionControl
 from nrs_design.design.transfer import TransferFunction, poles
-from nrs_design.models.plant import build_plant
 from nrs_design.reporting.document import Block, Illustration, Paragraph, Section, Table
 from nrs_design.reporting.figures.complex_plane import draw_root_locus
 from nrs_design.reporting.figures.impedance import draw_displayed_impedance, draw_sensitivity
@@ -21,6 +20,7 @@ from nrs_design.spec import ImpedanceControllerSpec, InteractionDesignSpec
 
 if TYPE_CHECKING:
     from nrs_design.design.evidence import DesignEvidence, ForceEvidence, ImpedanceEvidence
+    from nrs_design.pipeline import Designed
 
 # More controllers than these make a table too wide for a page, or a figure too full.
 _COLUMNS = 4
@@ -57,10 +57,9 @@ _FORCE_ROWS: tuple[tuple[str, Callable[[ForceEvidence], str]], ...] = (
 )
 
 
-def design_sections(
-    spec: InteractionDesignSpec, design: ControllerDesign, evidence: DesignEvidence | None
-) -> tuple[Section, ...]:
+def design_sections(designed: Designed, evidence: DesignEvidence | None) -> tuple[Section, ...]:
     """Describe a design; without evidence only its gains."""
+    spec, design = designed.spec, designed.design
     gains = Section("Designed gains", (_gain_table(design), *_ranges(spec, design)))
     if evidence is None:
         text = (
@@ -68,7 +67,7 @@ def design_sections(
             "loops are stable."
         )
         return (Section("Designed gains", (*gains.blocks, Paragraph(text))),)
-    parts = [gains, _motion_section(spec, design, evidence)]
+    parts = [gains, _motion_section(designed, evidence)]
     if evidence.impedance:
         parts.append(_impedance_section(evidence.impedance))
     if evidence.force:
@@ -87,7 +86,7 @@ def _gain_table(design: ControllerDesign) -> Table:
             unit = UNITS[kind, gain].replace("*", "·").replace("^2", "²")
             rows.append((name, gain, number(float(Fraction(text)), 6), unit, text))
         if not gains:
-            rows.append((name, "none: the motion loop alone", "", "", ""))
+            rows.append((name, "no gain: the motion loop alone", "", "", ""))
     columns = ("Controller", "Gain", "Value", "Unit", "Exact value that ships (float32)")
     return Table("Gains of one axis", columns, tuple(rows))
 
@@ -119,9 +118,8 @@ def _kind(law: Law) -> str:
     return "impedance" if isinstance(law, Admittance) else "force"
 
 
-def _motion_section(
-    spec: InteractionDesignSpec, design: ControllerDesign, evidence: DesignEvidence
-) -> Section:
+def _motion_section(designed: Designed, evidence: DesignEvidence) -> Section:
+    spec, design = designed.spec, designed.design
     G = evidence.motion
     text = (
         f"Motion loop in use: G(s) = ({polynomial(G.numerator, 6)}) / "
@@ -130,7 +128,7 @@ def _motion_section(
     )
     return Section(
         "Motion loop",
-        (Paragraph(text), _motion_table(design, evidence), _motion_locus(spec, design, evidence)),
+        (Paragraph(text), _motion_table(design, evidence), _motion_locus(designed, evidence)),
     )
 
 
@@ -175,10 +173,8 @@ def _motion_table(design: ControllerDesign, evidence: DesignEvidence) -> Table:
     )
 
 
-def _motion_locus(
-    spec: InteractionDesignSpec, design: ControllerDesign, evidence: DesignEvidence
-) -> Illustration:
-    actuator = build_plant(spec).actuator
+def _motion_locus(designed: Designed, evidence: DesignEvidence) -> Illustration:
+    design, actuator = designed.design, designed.plant.actuator
     gain, zero, Kd = float(actuator.gain), float(design.motion.zero), float(design.motion.Kd)
     lag = float(actuator.time_constant)
     open_loop = TransferFunction((gain, gain * zero), (lag, 1.0, 0.0))

@@ -29,7 +29,7 @@ from nrs_design.reporting.sections.run import run_section
 from nrs_design.reporting.sections.witness import witness_section
 
 if TYPE_CHECKING:
-    from nrs_design.search.certify import Certification
+    from nrs_design.search.certification import Certification
 
 
 def evidence_sections(certification: Certification) -> Iterator[Section]:

@@ -15,7 +15,7 @@ from nrs_design.spec import InteractionDesignSpec, RobotSpec
 
 if TYPE_CHECKING:
     from nrs_design.pipeline import Result
-    from nrs_design.search.certify import Certification
+    from nrs_design.search.certification import Certification
 
 NO_CLAIM = (
     "Neither a proof nor a refutation was found. This is no statement about stability: the modes "

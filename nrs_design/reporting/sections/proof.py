@@ -25,7 +25,7 @@ from nrs_design.switched.gain_box import KEPT_VELOCITY
 
 if TYPE_CHECKING:
     from nrs_design.pipeline import Result
-    from nrs_design.search.certify import Certification
+    from nrs_design.search.certification import Certification
 
 _NOT_COVERED_BY_A_DESIGN: tuple[str, ...] = (
     "Sampling, delay and quantization of the controller: the proof is in continuous time.",

@@ -206,6 +206,11 @@ class Study:
     ) -> Decision:
         """Design, assemble and decide; see `certify` for the options.
 
+        Parameters
+        ----------
+        method, coordinates, budget, max_degree
+            As for `certify`; coordinates (for designs) are those of the spec by default.
+
         Raises
         ------
         DesignError, AssemblyError

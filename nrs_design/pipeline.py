@@ -134,7 +134,17 @@ def run_robot(path: Path) -> tuple[LoadedSpec, RobotSpec, Robot]:
 
 
 def wrong_kind(loaded: LoadedSpec, message: str, remedy: str) -> DesignError:
-    """Return the error that a command raises about a kind of spec that it is not for."""
+    """Return the error that a command raises about a kind of spec that it is not for.
+
+    Parameters
+    ----------
+    loaded : LoadedSpec
+        The spec.
+    message : str
+        What is wrong.
+    remedy : str
+        What to do about it.
+    """
     place = loaded.place("kind")
     return DesignError(
         message, path=loaded.path, line=place.line, column=place.column, remedy=remedy

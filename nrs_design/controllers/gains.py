@@ -107,7 +107,8 @@ def _numbers(
 ) -> dict[str, Fraction]:
     texts = gains[name]
     if set(texts) != set(expected):
-        raise CertificateError(f"the gains of {name} are not {', '.join(expected) or 'none'}")
+        wanted = f"are not {', '.join(expected)}" if expected else "should be no gains at all"
+        raise CertificateError(f"the gains of {name} {wanted}")
     numbers = {gain: parse_exact(texts[gain]) for gain in expected}
     for gain, number in numbers.items():
         if not is_float32(number):

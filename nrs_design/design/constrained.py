@@ -57,7 +57,17 @@ def optimize_with_goals(problem: ImpedanceProblem, requirement: Requirement) -> 
 
 
 def meets(requirement: Requirement, Mt: float, Bt: float) -> bool:
-    """Tell whether an admittance meets all goals."""
+    """Tell whether an admittance meets all goals.
+
+    Parameters
+    ----------
+    requirement : Requirement
+        The goals.
+    Mt : float
+        Virtual mass, kg m^2.
+    Bt : float
+        Virtual damping, N m s/rad.
+    """
     return bool(requirement.violation(np.array([Mt]), np.array([Bt]))[0] <= 0)
 
 

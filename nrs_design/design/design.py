@@ -91,7 +91,19 @@ def to_transfer_function(loop: MotionLoop) -> TransferFunction:
 def impedance_problem(
     spec: InteractionDesignSpec, plant: Plant, loop: MotionLoop, controller: ImpedanceControllerSpec
 ) -> ImpedanceProblem:
-    """State the choice of one controller's virtual mass and damping as an optimization."""
+    """State the choice of one controller's virtual mass and damping as an optimization.
+
+    Parameters
+    ----------
+    spec : InteractionDesignSpec
+        With the limits of torque, velocity and frequency.
+    plant : Plant
+        With the environment.
+    loop : MotionLoop
+        The motion loop in use.
+    controller : ImpedanceControllerSpec
+        With bounds and weights.
+    """
     environment = plant.environment(controller.environment).nominal
     return ImpedanceProblem(
         loop=ImpedanceLoop(

@@ -126,7 +126,15 @@ class Requirement:
     def values(
         self, measure: Measure, Mt: FloatArray, Bt: FloatArray
     ) -> tuple[FloatArray, list[str]]:
-        """Return the worst value of a measure for every admittance, and at which corner."""
+        """Return the worst value of a measure for every admittance, and at which corner.
+
+        Parameters
+        ----------
+        measure : Measure
+            What is measured.
+        Mt, Bt : ndarray, shape (m,)
+            The admittances, kg m^2 and N m s/rad.
+        """
         corners = [c for c in self.corners if c.home or measure is not IMPEDANCE_ERROR]
         table = np.array([self._at(corner, measure, Mt, Bt) for corner in corners])
         worst = table.argmax(axis=0) if measure.upper else table.argmin(axis=0)
@@ -148,7 +156,19 @@ class Requirement:
 def achieve_impedance(
     requirement: Requirement, measures: tuple[Measure, ...], Mt: float, Bt: float
 ) -> tuple[Achieved, ...]:
-    """Return the worst value of every measure of one admittance."""
+    """Return the worst value of every measure of one admittance.
+
+    Parameters
+    ----------
+    requirement : Requirement
+        Where it is measured, and what is wanted.
+    measures : tuple of Measure
+        What is measured.
+    Mt : float
+        Virtual mass, kg m^2.
+    Bt : float
+        Virtual damping, N m s/rad.
+    """
     goals = dict(requirement.goals)
     found = []
     for measure in measures:
@@ -160,7 +180,17 @@ def achieve_impedance(
 def achieve_force(
     requirement: Requirement, measures: tuple[Measure, ...], gain: float
 ) -> tuple[Achieved, ...]:
-    """Return the worst value of every measure of one force gain."""
+    """Return the worst value of every measure of one force gain.
+
+    Parameters
+    ----------
+    requirement : Requirement
+        Where it is measured, and what is wanted.
+    measures : tuple of Measure
+        What is measured.
+    gain : float
+        In rad/(N m).
+    """
     goals = dict(requirement.goals)
     found = []
     for measure in measures:

@@ -117,7 +117,17 @@ class ImpedanceProblem:
 
 
 def open_loop(loop: ImpedanceLoop, Mt: float, Bt: float) -> TransferFunction:
-    """Return ``G Ze Y`` (thesis fig. 6.13) of an admittance with mass Mt and damping Bt."""
+    """Return ``G Ze Y`` (thesis fig. 6.13) of an admittance with mass Mt and damping Bt.
+
+    Parameters
+    ----------
+    loop : ImpedanceLoop
+        Motion loop and environment.
+    Mt : float
+        Virtual mass, kg m^2.
+    Bt : float
+        Virtual damping, N m s/rad.
+    """
     _check_admittance(Mt, Bt)
     environment = trim((loop.damping, loop.stiffness))
     numerator = np.convolve(loop.motion.numerator, environment)
@@ -150,7 +160,13 @@ def displayed_impedance(
 
 
 def sensitivity(loop: ImpedanceLoop, Mt: float, Bt: float, omega: ArrayLike) -> ComplexArray:
-    """Evaluate ``L = 1 / (1 + G Ze Y)`` (thesis 6.5); parameters as `displayed_impedance`."""
+    """Evaluate ``L = 1 / (1 + G Ze Y)`` (thesis 6.5); parameters as `displayed_impedance`.
+
+    Parameters
+    ----------
+    loop, Mt, Bt, omega
+        As for `displayed_impedance`.
+    """
     numerator = np.convolve(loop.motion.denominator, [*trim((Mt, Bt)), 0.0])
     return _over_characteristic(loop, Mt, Bt, numerator, omega)
 
@@ -159,6 +175,15 @@ def characteristic_polynomial(loop: ImpedanceLoop, Mt: float, Bt: float) -> Floa
     """Return the closed loop's characteristic polynomial, highest power first.
 
     Its degree is two more than the motion loop's order, and one more where Mt is zero.
+
+    Parameters
+    ----------
+    loop : ImpedanceLoop
+        Motion loop and environment.
+    Mt : float
+        Virtual mass, kg m^2.
+    Bt : float
+        Virtual damping, N m s/rad.
 
     Raises
     ------
@@ -170,7 +195,17 @@ def characteristic_polynomial(loop: ImpedanceLoop, Mt: float, Bt: float) -> Floa
 
 
 def is_stable(loop: ImpedanceLoop, Mt: ArrayLike, Bt: ArrayLike) -> BoolArray:
-    """Tell for which admittances the closed loop is Hurwitz (Mt and Bt broadcast)."""
+    """Tell for which admittances the closed loop is Hurwitz (Mt and Bt broadcast).
+
+    Parameters
+    ----------
+    loop : ImpedanceLoop
+        Motion loop and environment.
+    Mt : array_like
+        Virtual masses, kg m^2.
+    Bt : array_like
+        Virtual damping, N m s/rad.
+    """
     Mt, Bt = np.broadcast_arrays(np.asarray(Mt, np.float64), np.asarray(Bt, np.float64))
     return hurwitz(_characteristics(_basis(loop), Mt, Bt))
 
@@ -309,6 +344,13 @@ def admittance_at(
     """Map the unit square onto the bounds of Mt and Bt, corners exactly onto corners.
 
     A u below the search's tolerance counts as the bound itself.
+
+    Parameters
+    ----------
+    problem : ImpedanceProblem
+        With the bounds.
+    u, v : ndarray, shape (m,)
+        From 0 to 1: coordinates of Mt and of Bt.
     """
     (low, high), (least, most) = problem.mass_bounds, problem.damping_bounds
     u = np.where(u < _STEP_TOLERANCE, 0.0, u)

@@ -58,7 +58,21 @@ class Examiner:
     def obligation(
         self, rule: Rule, subject: str, status: Status, message: str, place: Position
     ) -> Obligation:
-        """Return an obligation at a place in this spec."""
+        """Return an obligation at a place in this spec.
+
+        Parameters
+        ----------
+        rule : Rule
+            What must hold.
+        subject : str
+            For what.
+        status : Status
+            How it ended.
+        message : str
+            What was found; one line.
+        place : Position
+            Line and column.
+        """
         path = self.loaded.path
         return Obligation(rule, path, subject, status, message, place.line, place.column)
 

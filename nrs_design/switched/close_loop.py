@@ -173,6 +173,15 @@ def impedance_mode(motion: Realization, law: Admittance, contact: Contact) -> li
 
     ``xp' = Ap xp + Bp (vc - vm)``, ``Mt vm' = -Bt vm + F``, ``delta' = Cp xp``,
     ``F = k delta + b delta'``. With ``Mt = 0`` the velocity is ``vm = F / Bt``.
+
+    Parameters
+    ----------
+    motion : Realization
+        Of the motion loop.
+    law : Admittance
+        With its gains.
+    contact : Contact
+        The environment at fixed parameters.
     """
     n = motion.order
     has_mass = law.Mt != 0
@@ -191,7 +200,17 @@ def impedance_mode(motion: Realization, law: Admittance, contact: Contact) -> li
 
 
 def to_force_coordinates(rows: list[Row], motion: Realization, contact: Contact) -> list[Row]:
-    """Replace the last state delta by the force ``F = k delta + b Cp xp`` (similarity T A T^-1)."""
+    """Replace the last state delta by the force ``F = k delta + b Cp xp`` (similarity T A T^-1).
+
+    Parameters
+    ----------
+    rows : list of list of Fraction
+        A in deflection coordinates.
+    motion : Realization
+        Of the motion loop.
+    contact : Contact
+        The environment at fixed parameters.
+    """
     size, n = len(rows), motion.order
     T = [[Fraction(int(i == j)) for j in range(size)] for i in range(size)]
     inverse = [list(row) for row in T]
@@ -204,6 +223,15 @@ def to_force_coordinates(rows: list[Row], motion: Realization, contact: Contact)
 
 def force_mode(motion: Realization, law: ProportionalForce, contact: Contact) -> list[Row]:
     """Return A of a force mode, ``Ap - Bp Kp k Cp`` (thesis 6.46).
+
+    Parameters
+    ----------
+    motion : Realization
+        Of the motion loop.
+    law : ProportionalForce
+        With its gain.
+    contact : Contact
+        The environment at fixed parameters.
 
     Raises
     ------

@@ -32,7 +32,7 @@ def goal_facts(evidence: DesignEvidence | None) -> tuple[tuple[str, str], ...]:
     goals = [f for item in evidence.measured for f in item.achieved if f.goal is not None]
     missed = sum(not found.met for found in goals)
     if not goals:
-        return (("Design goals", "none set"),)
+        return (("Design goals", "no goals set"),)
     return (("Design goals", f"{missed} of {len(goals)} MISSED" if missed else "all met"),)
 
 

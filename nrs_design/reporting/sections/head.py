@@ -61,7 +61,7 @@ def facts(result: Result) -> tuple[tuple[str, str], ...]:
         *_provenance(result),
         ("Package", f"nrs-design {__version__}"),
         ("SHA-256 of the spec", result.loaded.sha256),
-        ("Certificate id", result.certificate.id if result.certificate else "none"),
+        ("Certificate id", result.certificate.id if result.certificate else "no certificate"),
     ]
     return tuple(rows)
 

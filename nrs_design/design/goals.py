@@ -29,14 +29,6 @@ from nrs_design.design.measures import (
 from nrs_design.design.transfer import FloatArray, TransferFunction, static_gain
 from nrs_design.models.environment import Environment
 
-MEANING = (
-    "Margins: the worst at the nominal values and at every corner of the ranges of all contacts "
-    "and gains.",
-    "Errors: the worst with the designed gains, in the environment that the controller is designed "
-    "for, at its nominal values and every corner of its ranges.",
-    "Computed in floating point, not a proof; values between corners are not looked at.",
-)
-
 
 @dataclass(frozen=True, slots=True)
 class Achieved:

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from nrs_design.design.goals import MEANING, Achieved
+from nrs_design.design.goals import Achieved
+from nrs_design.design.measures import MEANING
 from nrs_design.reporting.document import Block, Bullets, Paragraph, Section, Table
 from nrs_design.spec import InteractionDesignSpec, doubt_spec
 

@@ -73,7 +73,8 @@ def _summary(item: ImpedanceEvidence) -> dict[str, Any]:
     return {
         "name": item.name,
         "desired_impedance": item.problem.desired,
-        "stiffness": item.problem.loop.stiffness,
+        "environment": item.problem.loop.contact.given(),
+        "stiffness": item.problem.loop.contact.stiffness,
         "Mt": item.Mt,
         "Bt": item.Bt,
         "cost": item.cost,
@@ -123,7 +124,7 @@ def _print(name: str, evidence: DesignEvidence) -> None:
         [
             item.name,
             f"{item.problem.desired:.5g}",
-            f"{item.problem.loop.stiffness:.6g}",
+            f"{item.problem.loop.contact.stiffness:.6g}",
             f"{item.Mt:.6g}",
             f"{item.Bt:.6g}",
             f"{item.cost:.4f}",

@@ -104,11 +104,9 @@ def impedance_problem(
     controller : ImpedanceControllerSpec
         With bounds and weights.
     """
-    environment = plant.environment(controller.environment).nominal
+    contact = plant.environment(controller.environment).nominal
     return ImpedanceProblem(
-        loop=ImpedanceLoop(
-            to_transfer_function(loop), float(environment.stiffness), float(environment.damping)
-        ),
+        loop=ImpedanceLoop(to_transfer_function(loop), contact),
         desired=desired_impedance(spec, controller),
         bandwidth=spec.limits.bandwidth.si,
         mass_bounds=(controller.Mt.min.si, controller.Mt.max.si),
@@ -203,7 +201,7 @@ def _force_gain(
 ) -> Fraction:
     if controller.proportional_gain is not None:
         return to_float32(controller.proportional_gain.exact)
-    stiffness = float(plant.environment(controller.environment).nominal.stiffness)
+    stiffness = plant.environment(controller.environment).nominal.stiffness
     wanted = float(controller.damping_ratio or 0)
     gain = design_force_gain(to_transfer_function(loop), stiffness, wanted)
     return to_float32(round_significant(gain, digits))

@@ -242,7 +242,7 @@ def _force(
     given = spec.controllers[controller.name]
     assert isinstance(given, ForceControllerSpec)
     requirement = requirement_of(spec, plant, motion, given)
-    stiffness = float(plant.environment(controller.environment or "").nominal.stiffness)
+    stiffness = plant.environment(controller.environment or "").nominal.stiffness
     with naming(controller.name):
         loop = force_loop_response(motion, stiffness, float(law.Kp))
     achieved = achieve_force(requirement, FORCE_MEASURES, float(law.Kp))

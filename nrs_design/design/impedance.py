@@ -26,6 +26,7 @@ from nrs_design.design.transfer import (
     trim,
 )
 from nrs_design.errors import DesignError
+from nrs_design.models.contact import AbstractLinearLaw
 
 # Midpoint rule over (0, bandwidth]. The absolute value in the cost has kinks, which spoil a
 # Gauss rule; with 256 midpoints the cost is within 1e-6 of its integral on the published designs
@@ -49,10 +50,8 @@ class ImpedanceLoop:
     ----------
     motion : TransferFunction
         Closed motion loop G, from commanded to actual velocity.
-    stiffness : float
-        Stiffness k of the environment, N m/rad, positive.
-    damping : float
-        Damping b of the environment, N m s/rad, not negative.
+    contact : AbstractLinearLaw
+        The environment as a rotation about the pivot, N m/rad and N m s/rad.
 
     Raises
     ------
@@ -61,15 +60,24 @@ class ImpedanceLoop:
     """
 
     motion: TransferFunction
-    stiffness: float
-    damping: float = 0.0
+    contact: AbstractLinearLaw
 
     def __post_init__(self) -> None:
         """Check the environment."""
-        if not (math.isfinite(self.stiffness) and self.stiffness > 0):
-            raise DesignError(f"the stiffness must be positive, not {self.stiffness}")
-        if not (math.isfinite(self.damping) and self.damping >= 0):
-            raise DesignError(f"the damping must not be negative: {self.damping}")
+        law = self.contact
+        for index, (kind, value) in enumerate(zip(law.kinds, law.values, strict=True)):
+            if not law.admits(index, value):
+                must = "not be negative" if law.admits(index, 0) else "be positive"
+                raise DesignError(f"the {kind} must {must}: {value}")
+
+    @property
+    def forward(self) -> tuple[FloatArray, FloatArray]:
+        """Numerator and denominator of ``G Ze``, highest power of s first."""
+        numerator, denominator = self.contact.impedance
+        return (
+            np.convolve(self.motion.numerator, trim(numerator)),
+            np.convolve(self.motion.denominator, denominator),
+        )
 
 
 @dataclass(frozen=True)
@@ -129,9 +137,8 @@ def open_loop(loop: ImpedanceLoop, Mt: float, Bt: float) -> TransferFunction:
         Virtual damping, N m s/rad.
     """
     _check_admittance(Mt, Bt)
-    environment = trim((loop.damping, loop.stiffness))
-    numerator = np.convolve(loop.motion.numerator, environment)
-    denominator = np.convolve(loop.motion.denominator, [*trim((Mt, Bt)), 0.0])
+    numerator, denominator = loop.forward
+    denominator = np.convolve(denominator, trim((Mt, Bt)))
     return TransferFunction(tuple(numerator.tolist()), tuple(denominator.tolist()))
 
 
@@ -154,8 +161,7 @@ def displayed_impedance(
     ndarray of complex
         Impedance, N m s/rad, in the shape of `omega`.
     """
-    environment = trim((loop.damping, loop.stiffness))
-    forward = np.convolve(loop.motion.numerator, environment)
+    forward, _ = loop.forward
     return _over_characteristic(loop, Mt, Bt, np.convolve(forward, trim((Mt, Bt))), omega)
 
 
@@ -167,14 +173,15 @@ def sensitivity(loop: ImpedanceLoop, Mt: float, Bt: float, omega: ArrayLike) -> 
     loop, Mt, Bt, omega
         As for `displayed_impedance`.
     """
-    numerator = np.convolve(loop.motion.denominator, [*trim((Mt, Bt)), 0.0])
+    numerator = np.convolve(loop.forward[1], trim((Mt, Bt)))
     return _over_characteristic(loop, Mt, Bt, numerator, omega)
 
 
 def characteristic_polynomial(loop: ImpedanceLoop, Mt: float, Bt: float) -> FloatArray:
     """Return the closed loop's characteristic polynomial, highest power first.
 
-    Its degree is two more than the motion loop's order, and one more where Mt is zero.
+    Its degree is that of ``G Ze Y``: with a spring two more than the motion loop's order, and one
+    more where Mt is zero.
 
     Parameters
     ----------
@@ -303,8 +310,8 @@ class _Samples:
 
 def _sample(problem: ImpedanceProblem, nodes: int) -> _Samples:
     omega: FloatArray = (np.arange(nodes, dtype=np.float64) + 0.5) * (problem.bandwidth / nodes)
-    environment = problem.loop.stiffness / (1j * omega) + problem.loop.damping
-    forward = frequency_response(problem.loop.motion, omega) * environment
+    Ze = TransferFunction(*problem.loop.contact.impedance)
+    forward = frequency_response(problem.loop.motion, omega) * frequency_response(Ze, omega)
     return _Samples(
         omega=omega,
         real=forward.real,
@@ -316,12 +323,11 @@ def _sample(problem: ImpedanceProblem, nodes: int) -> _Samples:
 
 def _basis(loop: ImpedanceLoop) -> FloatArray:
     """Return the rows M, B, C of the characteristic polynomial ``Mt M + Bt B + C``."""
-    den = np.asarray(loop.motion.denominator, dtype=np.float64)
-    contact = np.convolve(trim(loop.motion.numerator), (loop.damping, loop.stiffness))
-    basis = np.zeros((3, len(den) + 2))
-    basis[0, : len(den)] = den
-    basis[1, 1 : len(den) + 1] = den
-    basis[2, len(den) + 2 - len(contact) :] = contact
+    contact, den = loop.forward
+    basis = np.zeros((3, len(den) + 1))
+    basis[0, :-1] = den
+    basis[1, 1:] = den
+    basis[2, len(den) + 1 - len(contact) :] = contact
     return basis
 
 
@@ -393,7 +399,7 @@ def _scan(problem: ImpedanceProblem) -> Points:
         raise DesignError(
             f"no admittance with Mt in {list(problem.mass_bounds)} kg m^2 and Bt in "
             f"{list(problem.damping_bounds)} N m s/rad keeps the loop stable at "
-            f"{problem.loop.stiffness:.6g} N m/rad",
+            f"{problem.loop.contact.stiffness:.6g} N m/rad",
             remedy="raise the upper bound of Bt or lower the lower bound of Mt",
             at=("Bt",),
         )

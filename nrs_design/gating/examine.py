@@ -162,13 +162,14 @@ class Examiner:
             controller = spec.controllers[item.name]
             assert controller.type == "impedance"
             highest, limit = item.highest_stiffness, item.lowest_limit
+            held = ", all parameters in proportion" if item.problem.loop.contact.remembers else ""
             ranged = controller.Mt.ranged or controller.Bt.ranged
             where = f"{item.name}, in the corners of its gain ranges" if ranged else item.name
             reached = highest < limit
             verb = "stays below" if reached else "reaches"
             message = (
                 f"design goal: the stiffness of {controller.environment}, up to {highest:.6g} "
-                f"N*m/rad, {verb} the limit {limit:.6g} N*m/rad of controller {where} "
+                f"N*m/rad, {verb} the limit {limit:.6g} N*m/rad of controller {where}{held} "
                 "(floating point, not a proof)"
             )
             yield self.obligation(

@@ -264,6 +264,9 @@ Stiffness = Annotated[
 Damping = Annotated[
     RangedQuantity, _ranged(kinds.DAMPING, positive=False), _ranged_schema(kinds.DAMPING)
 ]
+PositiveDamping = Annotated[
+    RangedQuantity, _ranged(kinds.DAMPING, positive=True), _ranged_schema(kinds.DAMPING)
+]
 Mass = Annotated[Quantity, _quantity(kinds.MASS, positive=False), _schema(kinds.MASS)]
 Length = Annotated[Quantity, _quantity(kinds.LENGTH), _schema(kinds.LENGTH)]
 Coordinate = Annotated[Quantity, _quantity(kinds.LENGTH, signed=True), _schema(kinds.LENGTH)]

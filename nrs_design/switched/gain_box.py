@@ -12,7 +12,7 @@ from nrs_design.controllers.gain_range import gain_interval
 from nrs_design.controllers.gains import UNITS
 from nrs_design.controllers.laws import Admittance
 from nrs_design.errors import AssemblyError
-from nrs_design.models.environment import Interval
+from nrs_design.models.interval import Interval
 from nrs_design.proof.text import exact_text
 from nrs_design.spec import ImpedanceControllerSpec, InteractionDesignSpec
 from nrs_design.switched.parameter_box import Axis

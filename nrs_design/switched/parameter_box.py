@@ -14,7 +14,7 @@ from fractions import Fraction
 from itertools import product
 
 from nrs_design.errors import InternalError
-from nrs_design.models.environment import Interval
+from nrs_design.models.interval import Interval
 
 Rows = Sequence[Sequence[Fraction]]
 RowsAt = Callable[[Mapping[str, Fraction]], Rows]

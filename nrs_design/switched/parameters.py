@@ -12,7 +12,7 @@ from fractions import Fraction
 from itertools import product
 
 from nrs_design.errors import InternalError
-from nrs_design.models.environment import Interval
+from nrs_design.models.interval import Interval
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.system import FixedParameter, Mode
 from nrs_design.spec import ModeSpec, SwitchedSystemSpec

@@ -53,7 +53,7 @@ def test_the_decision_about_a_mode_is_bounded(place, case):
 @pytest.mark.parametrize("case", SPECS)
 def test_a_spec_in_every_command(place, case, command):
     write(place / "work/spec.nrs.yaml", SPECS[case]())
-    write(place / "work/nrs.lock", json.dumps({"schema": "nrs-design/lock/1", "specs": []}))
+    write(place / "work/nrs.lock", json.dumps({"schema": "nrs-design/lock/2", "specs": []}))
     check(place, *command, "spec.nrs.yaml")
 
 

@@ -17,7 +17,7 @@ from nrs_design.gating.lock import read_lock
 from nrs_design.identification.datasets.records import read_tissue
 from nrs_design.pipeline import run_certification
 from nrs_design.spec import read_spec
-from tests.support import COMMUTING, SOFT_TISSUE
+from tests.support import COMMUTING, ROOT, SOFT_TISSUE
 
 ROUNDS = 400
 # Pieces that mean something to some reader, or look as if they did.
@@ -65,20 +65,7 @@ def certificate_of(spec: Path) -> tuple[bytes, object]:
     return dump(run_certification(loaded).certificate).encode(), loaded
 
 
-LOCK = json.dumps(
-    {
-        "schema": "nrs-design/lock/1",
-        "specs": [
-            {
-                "path": "a.nrs.yaml",
-                "sha256": "0" * 64,
-                "verdict": "inconclusive",
-                "rate": None,
-                "certificate": None,
-            }
-        ],
-    }
-).encode()
+LOCK = (ROOT / "nrs.lock").read_bytes()
 
 READERS: dict[str, tuple[Callable[[Path], object], bytes]] = {
     "given matrices": (read_spec, COMMUTING.read_bytes()),

@@ -7,7 +7,7 @@ from pathlib import Path
 from ruamel.yaml import YAML
 
 from nrs_design.controllers.laws import Admittance
-from nrs_design.models.environment import Contact
+from nrs_design.models.contact import KelvinVoigt
 from nrs_design.models.motion_loop import MotionLoop
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.system import Mode, SwitchedSystem, Time
@@ -77,7 +77,7 @@ def robot(name, Mt, contacts, coordinates="deflection") -> SwitchedSystem:
     motion, zero = realize(MOTION), parse_exact("0")
     modes = []
     for k, Bt in contacts:
-        contact = Contact("contact", parse_exact(k), zero)
+        contact = KelvinVoigt(parse_exact(k), zero)
         rows = impedance_mode(motion, Admittance(parse_exact(Mt), parse_exact(Bt)), contact)
         if coordinates == "force":
             rows = to_force_coordinates(rows, motion, contact)

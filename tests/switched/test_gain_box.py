@@ -10,7 +10,8 @@ from hypothesis import strategies as st
 from nrs_design.controllers.gains import gains_of
 from nrs_design.controllers.laws import Admittance
 from nrs_design.errors import AssemblyError
-from nrs_design.models.environment import Contact, Interval
+from nrs_design.models.contact import KelvinVoigt
+from nrs_design.models.interval import Interval
 from nrs_design.models.plant import build_plant
 from nrs_design.pipeline import run_design
 from nrs_design.proof.evidence import CommonQuadratic, UnstableMode
@@ -101,7 +102,7 @@ class TestCorners:
             law, at = Admittance(F(0), inverse_between(at[3], *d)), [*at[:2], at[3]]
         else:
             law = Admittance(inverse_between(at[2], *BOX[2]), between(at[3], *d))
-        rows = loop_rows(massless, law, Contact("soft", k, b), coordinates)
+        rows = loop_rows(massless, law, KelvinVoigt(k, b), coordinates)
         weights = [F(1)]
         for share in at:
             weights = [w * part for w in weights for part in (1 - share, share)]
@@ -115,7 +116,7 @@ class TestCorners:
         assert isinstance(evidence, CommonQuadratic)
         for at in product((F(0), F(1, 3), F(1, 2), F(1)), repeat=4):
             k, b, m, d = (between(s, *ends) for s, ends in zip(at, BOX, strict=True))
-            rows = loop_rows(False, Admittance(m, d), Contact("soft", k, b), "deflection")
+            rows = loop_rows(False, Admittance(m, d), KelvinVoigt(k, b), "deflection")
             assert is_definite(decrease(rows, evidence.Q, evidence.rate, system.time))
 
 

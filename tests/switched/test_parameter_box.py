@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from nrs_design.errors import InternalError
-from nrs_design.models.environment import Interval
+from nrs_design.models.interval import Interval
 from nrs_design.switched.parameter_box import Axis, box_corners
 
 F = Fraction

@@ -29,10 +29,15 @@ _CURVES = 6
 _NOMINAL = (
     "Design values in floating point, for contact at the nominal stiffness; no part of the proof."
 )
+_SUDDEN = (
+    "Viscoelastic contact: the stiffness is that which a sudden motion meets, and up to the "
+    "stiffness limit all parameters of the law grow in proportion to it."
+)
 _IMPEDANCE_ROWS: tuple[tuple[str, Callable[[ImpedanceEvidence], str]], ...] = (
     ("Desired impedance [N·m·s/rad]", lambda item: number(item.problem.desired, 5)),
-    ("Nominal stiffness [N·m/rad]", lambda item: number(item.problem.loop.stiffness, 6)),
-    ("Nominal damping [N·m·s/rad]", lambda item: number(item.problem.loop.damping, 5)),
+    ("Nominal stiffness [N·m/rad]", lambda item: number(item.problem.loop.contact.stiffness, 6)),
+    ("Stiffness beside the damper [N·m/rad]", lambda item: _given(item, "parallel_stiffness")),
+    ("Nominal damping [N·m·s/rad]", lambda item: _given(item, "damping", "0")),
     ("Mt at the optimum [kg·m²]", lambda item: number(item.optimum.Mt, 6)),
     ("Bt at the optimum [N·m·s/rad]", lambda item: number(item.optimum.Bt, 6)),
     ("Mt as shipped [kg·m²]", lambda item: number(item.Mt, 6)),
@@ -207,13 +212,24 @@ def _impedance_section(items: tuple[ImpedanceEvidence, ...]) -> Section:
         f"above 1 (gray line) amplifies disturbances of that frequency.{rest}",
         draw_sensitivity(drawn),
     )
+    rows = [(label, [value(item) for item in items]) for label, value in _IMPEDANCE_ROWS]
+    rows = [(label, values) for label, values in rows if any(values)]
     tables = _by_controller(
         "Impedance controllers",
-        [label for label, _ in _IMPEDANCE_ROWS],
+        [label for label, _ in rows],
         [item.name for item in items],
-        [[value(item) for _, value in _IMPEDANCE_ROWS] for item in items],
+        [list(column) for column in zip(*(values for _, values in rows), strict=True)],
     )
-    return Section("Impedance control", (Paragraph(_NOMINAL), *tables, displayed, sensitivity))
+    paragraphs = [Paragraph(_NOMINAL)]
+    if any(item.problem.loop.contact.remembers for item in items):
+        paragraphs.append(Paragraph(_SUDDEN))
+    return Section("Impedance control", (*paragraphs, *tables, displayed, sensitivity))
+
+
+def _given(item: ImpedanceEvidence, key: str, default: str = "") -> str:
+    """Write a parameter of the nominal contact, if its law has it."""
+    value = item.problem.loop.contact.given().get(key)
+    return number(float(value), 5) if value is not None else default
 
 
 def _force_section(evidence: DesignEvidence) -> Section:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from nrs_design.proof.evidence import CommonQuadratic
 from nrs_design.proof.evidence.fields import rate_words
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.reproduction import thesis
@@ -78,6 +77,7 @@ def _withdrawal(Mt: str) -> SwitchedSystem:
 
 
 def _describe(found: Certification) -> str:
-    if not isinstance(found.evidence, CommonQuadratic):
+    rate = found.evidence.proved_rate(found.system) if found.evidence else None
+    if rate is None:
         return str(found.verdict)
-    return f"{found.verdict}, {rate_words(found.evidence.rate, found.system.time)}"
+    return f"{found.verdict}, {rate_words(rate, found.system.time)}"

@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING
 
 from nrs_design.certificates.certificate import Verdict
 from nrs_design.errors import AssemblyError
-from nrs_design.proof.evidence import BlockTriangular, UnstableMode
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.spec.switching import LONGEST_DWELL
 
@@ -233,9 +232,7 @@ def find_shortest_dwell(
 def _has_unstable_mode(found: Certification | None) -> bool:
     """Tell whether a refutation holds for every dwell time."""
     evidence = None if found is None else found.evidence
-    if isinstance(evidence, BlockTriangular):
-        evidence = evidence.parts[0][1]
-    return isinstance(evidence, UnstableMode)
+    return evidence is not None and evidence.names_unstable_mode
 
 
 def _widen(tried: _Tried, system: SwitchedSystem) -> Fraction | None:

@@ -63,6 +63,9 @@ class CommonPolynomial(AbstractEvidence):
     """
 
     kind: ClassVar[str] = "common-polynomial"
+    bounds_at_once: ClassVar[bool] = True
+    attains_rate: ClassVar[bool] = True
+    covers_mixtures: ClassVar[bool] = True
 
     degree: int
     Q: Matrix
@@ -74,6 +77,11 @@ class CommonPolynomial(AbstractEvidence):
     def shows(self) -> Shows:
         """Stability."""
         return Shows.STABILITY
+
+    @property
+    def keeps_bound_in_mixtures(self) -> bool:
+        """False: V need not be convex, but a joint spectral radius is that of the convex hull."""
+        return False
 
     def proved_rate(self, system: SwitchedSystem) -> Fraction:
         """Return the claimed rate."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-from nrs_design.controllers.laws import Law, ProportionalDerivative
+from nrs_design.controllers.laws import AbstractLaw, Law, ProportionalDerivative
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,3 +69,8 @@ class ControllerDesign:
 
     motion: ProportionalDerivative
     controllers: tuple[Controller, ...]
+
+    @property
+    def laws(self) -> dict[str, AbstractLaw]:
+        """Every law by the name of its controller, the motion controller first."""
+        return {self.motion.name: self.motion} | {c.name: c.law for c in self.controllers}

@@ -4,12 +4,10 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from fractions import Fraction
 from typing import TYPE_CHECKING
 
 from nrs_design.controllers.controller_design import ControllerDesign
-from nrs_design.controllers.gains import MOTION, UNITS, gains_of
-from nrs_design.controllers.laws import Admittance, Law, PositionControl
+from nrs_design.controllers.float32 import exact_decimal
 from nrs_design.design.transfer import TransferFunction, poles
 from nrs_design.reporting.document import Block, Illustration, Paragraph, Section, Table
 from nrs_design.reporting.figures.complex_plane import draw_root_locus
@@ -83,14 +81,12 @@ def design_sections(designed: Designed, evidence: DesignEvidence | None) -> tupl
 
 
 def _gain_table(design: ControllerDesign) -> Table:
-    laws: dict[str, Law] = {controller.name: controller.law for controller in design.controllers}
     rows = []
-    for name, gains in gains_of(design).items():
-        kind = "motion" if name == MOTION else _kind(laws[name])
-        for gain, text in gains.items():
-            unit = UNITS[kind, gain].replace("*", "·").replace("^2", "²")
-            rows.append((name, gain, number(float(Fraction(text)), 6), unit, text))
-        if not gains:
+    for name, law in design.laws.items():
+        for gain, value in law.gains.items():
+            unit = law.units[gain].replace("*", "·").replace("^2", "²")
+            rows.append((name, gain, number(float(value), 6), unit, exact_decimal(value)))
+        if not law.gains:
             rows.append((name, "no gain: the motion loop alone", "", "", ""))
     columns = ("Controller", "Gain", "Value", "Unit", "Exact value that ships (float32)")
     return Table("Gains of one axis", columns, tuple(rows))
@@ -115,12 +111,6 @@ def _ranges(spec: InteractionDesignSpec, design: ControllerDesign) -> tuple[Bloc
     )
     columns = ("Controller", "Gain", "Lowest", "Highest")
     return Paragraph(text), Table("Declared ranges of gains", columns, tuple(rows))
-
-
-def _kind(law: Law) -> str:
-    if isinstance(law, PositionControl):
-        return "position"
-    return "impedance" if isinstance(law, Admittance) else "force"
 
 
 def _motion_section(designed: Designed, evidence: DesignEvidence) -> Section:

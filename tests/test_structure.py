@@ -143,3 +143,56 @@ def test_the_reader_of_imports_sees_them():
     assert ("nrs_design.gating.run", "nrs_design.reporting") in lazy
     typed = {(item.source, item.target) for item in OURS if item.typing_only}
     assert ("nrs_design.cli.report", "nrs_design.pipeline") in typed
+
+
+def named_paths(page: str) -> set[str]:
+    """Paths of the package that a page names; ``<law>`` stands for any file there."""
+    text = (ROOT / page).read_text(encoding="utf-8")
+    return set(re.findall(r"`((?:nrs_design|tests|docs)/[\w/.<>-]*)`", text))
+
+
+@pytest.mark.parametrize("page", ["CONTRIBUTING.md", "docs/architecture.md"])
+def test_what_the_pages_name_is_there(page):
+    patterns = {path: re.sub("<[a-z]+>", "*", path) for path in named_paths(page)}
+    assert patterns
+    assert [path for path, pattern in patterns.items() if not list(ROOT.glob(pattern))] == []
+
+
+def test_adding_is_cheap():
+    """The table is a promise: at most so many files for each kind of thing."""
+    text = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
+    rows = dict(re.findall(r"^\| an? ([a-z ]+) \| (.*) \|$", text, re.MULTILINE))
+    counts = {what: row.count("`nrs_design/") for what, row in rows.items()}
+    most = {"controller law": 5, "environment law": 4, "figure": 2, "export format": 2}
+    assert {what: counts[what] for what in most} == most
+    assert len(re.findall(r"^\| `nrs_design/\S+` \|", text, re.MULTILINE)) == 6
+
+
+@pytest.mark.parametrize(
+    ("law", "file"), [("Maxwell", "maxwell"), ("KelvinBoltzmann", "kelvin_boltzmann")]
+)
+def test_a_linear_law_of_contact_is_known_to_the_files_of_the_table(law, file):
+    """Others take it from the tables; only the numbers of the dissertation ask for one by name."""
+    known = {
+        path.relative_to(PACKAGE).as_posix()
+        for path in FILES.values()
+        if {law, f"{law}Spec"} & names_in(path) and path.parent.name != "reproduction"
+    }
+    assert known <= {
+        f"models/contact/{file}.py",
+        "models/contact/__init__.py",
+        "spec/environment.py",
+        "identification/tissue/starts.py",
+    }
+
+
+def names_in(path: Path) -> set[str]:
+    """Names that the code of a file uses or imports."""
+    tree = ast.parse(path.read_text(encoding="utf-8"))
+    used = {node.id for node in ast.walk(tree) if isinstance(node, ast.Name)}
+    return used | {
+        alias.name
+        for node in ast.walk(tree)
+        if isinstance(node, ast.ImportFrom)
+        for alias in node.names
+    }

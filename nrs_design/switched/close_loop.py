@@ -183,9 +183,8 @@ def _controller_modes(
         name = f"{controller.name}/{environment.name}"
         axes = (*_contact_axes(environment, memories), *gains)
         rows_at = partial(_rows_at, law, environment, motion, coordinates, memories)
-        for corner in box_corners(axes, rows_at, name):
-            label = f"{name}/{corner.label}" if corner.label else name
-            yield Mode(label, RationalMatrix.from_rows(corner.rows))
+        for label, rows in box_corners(axes, rows_at, name):
+            yield Mode(f"{name}/{label}" if label else name, RationalMatrix.from_rows(rows))
 
 
 def _contact_axes(environment: Environment, memories: tuple[Environment, ...]) -> Iterator[Axis]:
@@ -220,7 +219,7 @@ def _rows_at(
     rows = impedance_mode(motion, Admittance(values["Mt"], values["Bt"]), contact)
     if coordinates == "force":
         return to_force_coordinates(rows, motion, contact)
-    return _with_memories(rows, environment, memories, values)
+    return _with_memories(rows, environment, memories, values) if memories else rows
 
 
 def _with_memories(

@@ -52,3 +52,9 @@ def test_lever_arm_applies_to_stiffness_and_damping():
 def test_unknown_environment():
     with pytest.raises(StopIteration):
         build_plant(load_spec(SOFT_TISSUE)).environment("other")
+
+
+def test_ranges_as_declared_are_not_made_anew():
+    plant = build_plant(load_spec(SOFT_TISSUE))
+    assert plant.scaled(Fraction(1), ("soft",)) is plant
+    assert plant.scaled(Fraction(1, 2), ("soft",)) is not plant

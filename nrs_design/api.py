@@ -21,7 +21,7 @@ from nrs_design.ownership import check_certificate, origin_of
 from nrs_design.proof.lyapunov import LyapunovCheck, check_quadratic
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.system import Mode
-from nrs_design.search.certify import Attempt, Limits, Method
+from nrs_design.search.certification import Attempt, Limits, Method
 from nrs_design.spec import LoadedSpec, read_spec
 
 if TYPE_CHECKING:
@@ -158,9 +158,9 @@ class Decision:
         from nrs_design.reporting import build_report
 
         evidence = None
-        if self.result.design is not None:
+        if self.result.designed is not None:
             try:
-                evidence = pipeline.run_evidence(self.result.loaded, self.result.design)
+                evidence = pipeline.run_evidence(self.result.designed)
             except DesignError:
                 # Where a nominal loop has no margins, the page has none.
                 evidence = None
@@ -200,7 +200,8 @@ class Study:
         DesignError
             If a requirement cannot be met within its bounds.
         """
-        return pipeline.run_design(self.loaded)
+        designed = pipeline.run_design(self.loaded)
+        return None if designed is None else designed.design
 
     def certify(
         self,
@@ -211,6 +212,11 @@ class Study:
         max_degree: int | None = None,
     ) -> Decision:
         """Design, assemble and decide; see `certify` for the options.
+
+        Parameters
+        ----------
+        method, coordinates, budget, max_degree
+            As for `certify`; coordinates (for designs) are those of the spec by default.
 
         Raises
         ------

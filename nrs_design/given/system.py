@@ -35,6 +35,11 @@ def spec_of_matrices(
 ) -> LoadedSpec:
     """Return the spec of a switched system whose matrices are given; see `nrs_design.certify`.
 
+    Parameters
+    ----------
+    modes, name, time, dwell_time, transitions, resets, parameters
+        As for `nrs_design.certify`.
+
     Raises
     ------
     SpecError

@@ -13,7 +13,7 @@ from nrs_design.proof.system import SwitchedSystem
 from nrs_design.spec.switching import LONGEST_DWELL
 
 if TYPE_CHECKING:
-    from nrs_design.search.certify import Certification
+    from nrs_design.search.certification import Certification
 
 LARGEST_SCALE = 64
 STEPS = 8

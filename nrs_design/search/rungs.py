@@ -180,7 +180,17 @@ def prove_obstruction(family: Family) -> Finding:
 
 
 def search_polynomial(family: Family, *, degree: int, optimize_rate: bool = False) -> Finding:
-    """Search for a common homogeneous polynomial of degree 2d, and a large rate if asked to."""
+    """Search for a common homogeneous polynomial of degree 2d, and a large rate if asked to.
+
+    Parameters
+    ----------
+    family : Family
+        The modes.
+    degree : int
+        The d of a form of degree 2d.
+    optimize_rate : bool
+        Look for a large rate.
+    """
     system, allowance = family.system, family.allowance
     allowance.require(*polynomial_cost(system.order, len(system.modes), degree))
     lift = lift_family(system, family.exponents, degree)

@@ -71,7 +71,17 @@ def diagonal_exponents(Q: IntegerMatrix) -> list[int]:
 
 
 def scaled_form(M: IntegerMatrix, exponents: Sequence[int], scale: int = 1) -> Array:
-    """Return ``M_ij / (scale 2^(e_i + e_j))``: integers may be beyond the range of doubles."""
+    """Return ``M_ij / (scale 2^(e_i + e_j))``: integers may be beyond the range of doubles.
+
+    Parameters
+    ----------
+    M : integer matrix
+        n x n.
+    exponents : sequence of int
+        The e, one for each row.
+    scale : int
+        Common denominator.
+    """
     return np.array(
         [
             [

@@ -9,7 +9,11 @@ from nrs_design.spec.controllers import (
     PositionControllerSpec,
 )
 from nrs_design.spec.doubts import Doubt, doubt_spec
-from nrs_design.spec.environment import ElasticSpec, EnvironmentSpec, KelvinVoigtSpec
+from nrs_design.spec.environment import (
+    ElasticSpec,
+    EnvironmentSpec,
+    KelvinVoigtSpec,
+)
 from nrs_design.spec.exact import parse_exact
 from nrs_design.spec.gain_fields import GainSpec
 from nrs_design.spec.goals import GoalsSpec

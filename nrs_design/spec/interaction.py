@@ -81,6 +81,7 @@ class InteractionDesignSpec(SpecModel):
                 for name, c in self.controllers.items()
                 if not isinstance(c, PositionControllerSpec)
             ),
+            partial(_check_memories, self.controllers, self.environments, self.coordinates),
             lambda: check_applicable(
                 self.goals, {c.type for c in self.controllers.values()}, "goals"
             ),
@@ -148,6 +149,49 @@ def _check_references(
             name,
             "contacts",
         )
+
+
+def _check_memories(
+    controllers: dict[str, ControllerSpec],
+    environments: dict[str, EnvironmentSpec],
+    coordinates: str,
+) -> None:
+    """Refuse what is not modelled about environments that remember."""
+    touched: dict[str, EnvironmentSpec] = {}
+    for name, controller in controllers.items():
+        contacts = () if isinstance(controller, PositionControllerSpec) else controller.contacts
+        for contact in contacts:
+            environment = environments.get(contact)
+            if environment is None or not environment.remembers:
+                touched |= {} if environment is None else {contact: environment}
+                continue
+            touched[contact] = environment
+            if controller.type == "force":
+                raise fault(
+                    f"force control in contact with {contact!r} is not modelled: its law, "
+                    f"{environment.model}, remembers",
+                    "use an elastic environment for force controllers",
+                    "controllers",
+                    name,
+                    "contacts" if "contacts" in controller.model_fields_set else "environment",
+                )
+    for name, environment in touched.items():
+        if not environment.has_rest and len(touched) > 1:
+            others = ", ".join(other for other in touched if other != name)
+            raise fault(
+                f"{environment.model} has no rest position, so {name!r} shares no deflection with "
+                f"{others}",
+                "let the controllers touch no other environment, or write a spec for each",
+                "environments",
+                name,
+                "model",
+            )
+        if environment.remembers and coordinates == "force":
+            raise fault(
+                f"force coordinates do not apply to {name!r}, which is {environment.model}",
+                "use `coordinates: deflection`",
+                "coordinates",
+            )
 
 
 def _check_dwell_time(

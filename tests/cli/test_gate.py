@@ -113,8 +113,9 @@ def test_broken_spec_is_worse_than_a_refuted_one(gate, capsys):
 
 
 def test_inconclusive_is_exit_3_and_refuted_is_worse(gate, monkeypatch):
+    from nrs_design.certificates.certificate import CommonQuadraticStatus, Verdict
     from nrs_design.search import certify as module
-    from nrs_design.search.certify import Certification, CommonQuadraticStatus, Verdict
+    from nrs_design.search.certification import Certification
 
     def give_up_on_stable(system, *arguments, **options):
         if system.name != "stable":

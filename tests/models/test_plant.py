@@ -2,7 +2,8 @@ from fractions import Fraction
 
 import pytest
 
-from nrs_design.models.environment import Interval
+from nrs_design.models.contact import Elastic
+from nrs_design.models.interval import Interval
 from nrs_design.models.plant import build_plant
 from nrs_design.spec import load_spec, parse_spec
 from tests.support import SOFT_TISSUE
@@ -31,7 +32,7 @@ def test_soft_tissue_of_the_thesis():
     assert soft.stiffness.nominal == F("747.1461") * F("0.0576")
     assert float(soft.stiffness.nominal) == pytest.approx(43.0356, rel=1e-5)
     assert soft.stiffness.low == F("720.56") * F("0.0576")
-    assert soft.damping == Interval.point(F(0))
+    assert soft.law is Elastic
 
 
 def test_lever_arm_applies_to_stiffness_and_damping():
@@ -42,12 +43,18 @@ def test_lever_arm_applies_to_stiffness_and_damping():
     hand = plant.environment("hand")
     assert float(hand.stiffness.low) == pytest.approx(24.998, abs=1e-3)
     assert float(hand.stiffness.high) == pytest.approx(90.432, abs=1e-3)
-    assert hand.damping == Interval(5 * F("0.0576"), F(0), 10 * F("0.0576"))
+    assert hand.ranges[1] == Interval(5 * F("0.0576"), F(0), 10 * F("0.0576"))
     rotational = plant.environment("rotational")
     assert rotational.stiffness == Interval.point(F(43))
-    assert rotational.damping == Interval.point(F(1, 2))
+    assert rotational.ranges[1] == Interval.point(F(1, 2))
 
 
 def test_unknown_environment():
     with pytest.raises(StopIteration):
         build_plant(load_spec(SOFT_TISSUE)).environment("other")
+
+
+def test_ranges_as_declared_are_not_made_anew():
+    plant = build_plant(load_spec(SOFT_TISSUE))
+    assert plant.scaled(Fraction(1), ("soft",)) is plant
+    assert plant.scaled(Fraction(1, 2), ("soft",)) is not plant

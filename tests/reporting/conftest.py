@@ -147,7 +147,7 @@ def report_of(path: Path) -> Report:
     """Take a spec all the way to its report."""
     loaded = read_spec(path)
     result = run_certification(loaded)
-    return build_report(result, run_evidence(loaded, result.design) if result.design else None)
+    return build_report(result, run_evidence(result.designed) if result.designed else None)
 
 
 @pytest.fixture(scope="session")

@@ -7,17 +7,12 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from nrs_design.certificates.certificate import CommonQuadraticStatus, Verdict
 from nrs_design.errors import AssemblyError, DesignError
 from nrs_design.pipeline import run_certification, run_margin, run_shortest_dwell
 from nrs_design.proof.system import Stay, Switching
-from nrs_design.search.certify import (
-    Certification,
-    CommonQuadraticStatus,
-    Limits,
-    Method,
-    Verdict,
-    certify,
-)
+from nrs_design.search.certification import Certification, Limits, Method
+from nrs_design.search.certify import certify
 from nrs_design.search.margin import (
     DOUBLINGS,
     DWELL_STEPS,

@@ -32,8 +32,13 @@ def correction(
 
     Example: nrs-design robot correction specs/robots/neuroboscope.nrs.yaml --table correction.csv
     """
-    from nrs_design.models.robot import correction_coefficients, thesis_tilts, tilt_table
-    from nrs_design.models.robot.correction import TABLE_3_5, to_csv
+    from nrs_design.models.robot import (
+        TABLE_3_5,
+        correction_coefficients,
+        thesis_tilts,
+        tilt_table,
+        to_csv,
+    )
     from nrs_design.output import TABLE, write_output
     from nrs_design.pipeline import run_robot
 

@@ -88,7 +88,17 @@ def read_pose(text: str, robot: Robot) -> tuple[float, float, float]:
 
 
 def write_figures(folder: Path, figures: Mapping[str, Figure], *, quiet: bool) -> list[str]:
-    """Write every figure as SVG and PNG; return the files."""
+    """Write every figure as SVG and PNG; return the files.
+
+    Parameters
+    ----------
+    folder : Path
+        Where they go.
+    figures : mapping
+        By the name of the file.
+    quiet : bool
+        Do not say where.
+    """
     from nrs_design.output import PNG, SVG, write_output
     from nrs_design.reporting.svg import to_png, to_svg_file
 

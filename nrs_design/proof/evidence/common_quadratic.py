@@ -107,7 +107,17 @@ def find_rate_misfit(rate: Fraction, time: Time) -> str | None:
 
 
 def decay_claim(system: SwitchedSystem, rate: Fraction, norm: str) -> str:
-    """State that every solution decays at a rate in a norm."""
+    """State that every solution decays at a rate in a norm.
+
+    Parameters
+    ----------
+    system : SwitchedSystem
+        With the time axis.
+    rate : Fraction
+        The alpha in 1/s, or rho per step.
+    norm : str
+        In words or symbols.
+    """
     continuous = system.time is Time.CONTINUOUS
     law = "x' = A x" if continuous else "x+ = A x"
     bound = "exp(-alpha t) |x(0)|" if continuous else "rho^t |x(0)|"

@@ -10,7 +10,7 @@ from nrs_design.reporting.kinds import page_of
 from nrs_design.reporting.kinds.shared.run import unbounded_run
 
 if TYPE_CHECKING:
-    from nrs_design.search.certify import Certification
+    from nrs_design.search.certification import Certification
 
 
 def evidence_sections(certification: Certification) -> Iterator[Section]:

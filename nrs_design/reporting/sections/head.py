@@ -15,7 +15,7 @@ from nrs_design.spec import InteractionDesignSpec, RobotSpec
 
 if TYPE_CHECKING:
     from nrs_design.pipeline import Result
-    from nrs_design.search.certify import Certification
+    from nrs_design.search.certification import Certification
 
 NO_CLAIM = (
     "Neither a proof nor a refutation was found. This is no statement about stability: the modes "
@@ -61,7 +61,7 @@ def facts(result: Result) -> tuple[tuple[str, str], ...]:
         *_provenance(result),
         ("Package", f"nrs-design {__version__}"),
         ("SHA-256 of the spec", result.loaded.sha256),
-        ("Certificate id", result.certificate.id if result.certificate else "none"),
+        ("Certificate id", result.certificate.id if result.certificate else "no certificate"),
     ]
     return tuple(rows)
 

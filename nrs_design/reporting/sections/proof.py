@@ -16,13 +16,13 @@ from nrs_design.switched.gain_box import KEPT_VELOCITY
 
 if TYPE_CHECKING:
     from nrs_design.pipeline import Result
-    from nrs_design.search.certify import Certification
+    from nrs_design.search.certification import Certification
 
 _NOT_COVERED_BY_A_DESIGN: tuple[str, ...] = (
     "Sampling, delay and quantization of the controller: the proof is in continuous time.",
     "Friction, backlash, and saturation of motor or driver.",
     "Loss of contact: no mode describes a compliant controller in free motion.",
-    "Tissue that does not follow the linear model of the spec, such as viscous creep or a "
+    "Tissue that does not follow the linear law of the spec, such as a creep of another kind or a "
     "stiffness that depends on depth.",
     "Parameter values outside the declared ranges, and motor constants other than those given.",
     "Coupling between the axes of the robot.",

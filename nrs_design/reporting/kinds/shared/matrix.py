@@ -14,7 +14,17 @@ _WRITTEN = 8
 
 
 def matrix_table(title: str, Q: Array, states: tuple[str, ...]) -> list[Block]:
-    """Return a matrix as a table, or nothing if it is too large for a page."""
+    """Return a matrix as a table, or nothing if it is too large for a page.
+
+    Parameters
+    ----------
+    title : str
+        Caption.
+    Q : ndarray, shape (n, n)
+        The matrix.
+    states : tuple of str
+        Names of rows and columns.
+    """
     if len(Q) > _WRITTEN:
         return []
     names = states[: len(Q)]

@@ -163,7 +163,19 @@ def euclidean(system: SwitchedSystem) -> dict[str, Array]:
 
 
 def bound_line(response: TimeResponse, rate: float, time: Time, label: str) -> Bound:
-    """Return how a rate decays along the times of a run, with its label."""
+    """Return how a rate decays along the times of a run, with its label.
+
+    Parameters
+    ----------
+    response : TimeResponse
+        With the times.
+    rate : float
+        The alpha in 1/s, or rho per step.
+    time : Time
+        Which of the two.
+    label : str
+        What stands before the formula.
+    """
     if time is Time.CONTINUOUS:
         return f"{label}exp(-alpha t)", np.exp(-rate * response.time)
     return f"{label}rho^t", rate**response.time
@@ -202,7 +214,19 @@ def phase_plane(
     norm: Norm | None,
     levels: tuple[float, ...] = (),
 ) -> tuple[Illustration, ...]:
-    """Draw a run of two states, with the level curves that it cannot leave, if there are any."""
+    """Draw a run of two states, with the level curves that it cannot leave, if there are any.
+
+    Parameters
+    ----------
+    system : SwitchedSystem
+        The modes.
+    response : TimeResponse
+        The run.
+    norm : Norm or None
+        Whose level curve bounds it.
+    levels : tuple of float
+        Of the curves that are drawn.
+    """
     inside = " It cannot leave the dashed level curve of V." if norm is not None else ""
     if len(levels) > 1:
         inside += " The dotted ones are level curves further in: no run crosses one outward."
@@ -216,7 +240,15 @@ def plane(
     norm: Norm | None = None,
     levels: tuple[float, ...] = (),
 ) -> tuple[Illustration, ...]:
-    """Draw a run of two states with more words in its caption; nothing for other numbers."""
+    """Draw a run of two states with more words in its caption; nothing for other numbers.
+
+    Parameters
+    ----------
+    system, response, norm, levels
+        As for `phase_plane`.
+    more : str
+        Words for the end of the caption.
+    """
     if system.order != 2 or not system.is_uniform:
         return ()
     return (

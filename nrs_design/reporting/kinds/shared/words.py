@@ -118,7 +118,17 @@ def ruled_decision(system: SwitchedSystem, how: str) -> str:
 def all_corners(
     system: SwitchedSystem, evidence: AbstractEvidence, how: str = "however fast they change"
 ) -> str:
-    """Say that values between the corners of declared ranges are covered."""
+    """Say that values between the corners of declared ranges are covered.
+
+    Parameters
+    ----------
+    system : SwitchedSystem
+        What is proved about.
+    evidence : AbstractEvidence
+        What proves it.
+    how : str
+        How values may move.
+    """
     text = (
         "Every corner of the declared parameter ranges is a mode. The matrices are affine in each "
         "parameter alone, or in its inverse, so all values between the corners are covered as "

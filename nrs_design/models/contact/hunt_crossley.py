@@ -3,19 +3,19 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import TYPE_CHECKING, ClassVar
 
-import numpy as np
+from nrs_design.models.contact.law import AbstractContactLaw
 
-from nrs_design.models.tissue.law import AbstractTissueLaw
-from nrs_design.models.tissue.motion import Array, Motion
+if TYPE_CHECKING:
+    from nrs_design.models.contact.motion import Array, Motion
 
 # The thesis takes phi between these, and then 1.2.
 LEAST_EXPONENT, LARGEST_EXPONENT = 1.1, 1.3
 
 
 @dataclass(frozen=True)
-class HuntCrossley(AbstractTissueLaw):
+class HuntCrossley(AbstractContactLaw):
     """A spring and a damper that both stiffen with the deflection; no force without contact.
 
     Parameters
@@ -38,11 +38,15 @@ class HuntCrossley(AbstractTissueLaw):
 
     def simulate(self, motion: Motion) -> Array:
         """Return the reaction at the samples, in N (N m); 0 where the deflection is negative."""
+        import numpy as np
+
         power = np.maximum(motion.deflection, 0.0) ** self.phi
         return np.asarray(power * (self.rho + self.lam * motion.velocity))
 
     def sensitivities(self, motion: Motion) -> Array:
         """Return its derivatives by log rho, log lam and log phi, shape (n, 3)."""
+        import numpy as np
+
         contact = np.maximum(motion.deflection, 0.0)
         power = contact**self.phi
         # delta^phi log(delta) goes to 0 with delta.
@@ -55,6 +59,12 @@ class HuntCrossley(AbstractTissueLaw):
         return HuntCrossley(
             self.rho * radius ** (self.phi + 1), self.lam * radius ** (self.phi + 2), self.phi
         )
+
+    @classmethod
+    def units(cls, *, rotational: bool) -> tuple[str, ...]:
+        """Return the units of rho and lam; the exponent has none."""
+        force, length = ("N*m", "rad") if rotational else ("N", "m")
+        return f"{force}/{length}^φ", f"{force}*s/{length}^(φ+1)", ""
 
     def tangent(self, deflection: float) -> tuple[float, float]:
         """Return stiffness and damping of small motions about a deflection.

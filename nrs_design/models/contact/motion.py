@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
-import numpy as np
-from numpy.typing import NDArray
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+    Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,15 +38,21 @@ class Motion:
     @cached_property
     def steps(self) -> Array:
         """Time from each sample to the next, shape (n - 1,), in s."""
+        import numpy as np
+
         return np.diff(self.time)
 
     @cached_property
     def increments(self) -> Array:
         """Change of the deflection from each sample to the next, shape (n - 1,)."""
+        import numpy as np
+
         return np.diff(self.deflection)
 
     @cached_property
     def velocity(self) -> Array:
         """Velocity at the samples, shape (n,): second-order differences, per s."""
+        import numpy as np
+
         order: Literal[1, 2] = 2 if len(self) > 2 else 1
         return np.asarray(np.gradient(self.deflection, self.time, edge_order=order), float)

@@ -4,7 +4,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from nrs_design.models.tissue import Elastic, KelvinBoltzmann, KelvinVoigt, Maxwell
+from nrs_design.models.contact import Elastic, KelvinBoltzmann, KelvinVoigt, Maxwell
 from tests.identification.support import wobble
 
 positive = st.floats(1e-3, 1e3)

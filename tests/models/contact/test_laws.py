@@ -1,13 +1,18 @@
 """What holds for all tissue laws."""
 
+import subprocess
+import sys
+from fractions import Fraction
+
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
 
-from nrs_design.models.tissue import (
+from nrs_design.models.contact import (
     LAWS,
+    LINEAR_LAWS,
     Elastic,
     HuntCrossley,
     KelvinBoltzmann,
@@ -94,3 +99,58 @@ def test_linear_laws_are_linear(scale, seed):
     for law in SAMPLES[:-1]:
         expected = scale * law.simulate(motion)
         assert law.simulate(twice) == pytest.approx(expected, abs=1e-9 * np.abs(expected).max())
+
+
+LINEAR = [law for law in SAMPLES if law.name in LINEAR_LAWS]
+
+
+def printed_impedance(law, s):
+    """``F/v`` by the law as the thesis prints it, with ``delta = v/s``."""
+    if isinstance(law, Maxwell):
+        return law.b / (1 + law.b / law.k * s)
+    if isinstance(law, KelvinBoltzmann):
+        eta1, eta2, eta3 = law.eta
+        return (eta1 / s + eta2) / (1 + eta3 * s)
+    return law.k / s + (law.b if isinstance(law, KelvinVoigt) else 0.0)
+
+
+@pytest.mark.parametrize("law", LINEAR, ids=lambda law: law.name)
+@pytest.mark.parametrize("s", [0.3, 2j, 1 + 40j])
+def test_impedance_and_state_space_are_the_printed_law(law, s):
+    expected = printed_impedance(law, s)
+    numerator, denominator = law.impedance
+    assert np.polyval(numerator, s) / np.polyval(denominator, s) == pytest.approx(expected)
+    block = law.reaction
+    A, B, C = (np.array(part, dtype=float) for part in (block.A, block.B, block.C))
+    z = np.linalg.solve(s * np.eye(len(B)) - A, B)
+    assert C @ z + float(block.D) == pytest.approx(expected)
+
+
+@pytest.mark.parametrize("law", LINEAR, ids=lambda law: law.name)
+def test_growing_stiffness(law):
+    """Kelvin-Voigt holds its damping; the others grow in proportion, their ratios held."""
+    held, grown = law.by_stiffness
+    stiff = 3 * law.stiffness
+    larger = KelvinVoigt(stiff, law.b) if isinstance(law, KelvinVoigt) else law.at_pivot(3**0.5)
+    s = 0.7j
+    numerator, denominator = larger.impedance
+    expected = np.polyval(numerator, s) / np.polyval(denominator, s)
+    sum_ = np.polyval(held, s) + stiff * np.polyval(grown, s)
+    assert sum_ / np.polyval(law.impedance[1], s) == pytest.approx(expected)
+
+
+@pytest.mark.parametrize("law", LINEAR, ids=lambda law: law.name)
+def test_exact_parameters_stay_exact(law):
+    third = type(law)(*(Fraction(1, 3) for _ in law.values))
+    assert all(entry == 1 or entry.denominator <= 9 for entry in third.reaction.C)
+    assert third.at_pivot(Fraction(1, 2)).exact == (Fraction(1, 12),) * len(law.values)
+    assert third.texts() == tuple(
+        f"{name} = 0.333333 {unit}"
+        for name, unit in zip(law.parameters(), law.units(rotational=True), strict=True)
+    )
+
+
+def test_laws_load_no_numpy():
+    """A certificate is verified without it."""
+    code = "import sys, nrs_design.models.plant; assert 'numpy' not in sys.modules"
+    subprocess.run([sys.executable, "-c", code], check=True)

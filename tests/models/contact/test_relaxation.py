@@ -6,8 +6,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
 
-from nrs_design.models.tissue.motion import Motion
-from nrs_design.models.tissue.relaxation import relax
+from nrs_design.models.contact.motion import Motion
+from nrs_design.models.contact.relaxation import relax
 from tests.identification.support import wobble
 
 TAU = 0.3

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from nrs_design.models.tissue import HuntCrossley, Motion
+from nrs_design.models.contact import HuntCrossley, Motion
 
 NOSE = HuntCrossley(rho=0.28, lam=15.328, phi=1.2)  # thesis table 2.4
 

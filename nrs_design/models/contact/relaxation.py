@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 
 from nrs_design.models.recursion import run_first_order
-from nrs_design.models.tissue.motion import Array, Motion
+
+if TYPE_CHECKING:
+    from nrs_design.models.contact.motion import Array, Motion
 
 
 def relax(motion: Motion, time_constant: float) -> tuple[Array, Array]:

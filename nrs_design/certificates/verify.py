@@ -21,13 +21,14 @@ from nrs_design.certificates.certificate import (
 )
 from nrs_design.errors import DISAGREE, CertificateError, InternalError, NrsDesignError
 from nrs_design.files import open_regular
+from nrs_design.models.plant import Plant
 from nrs_design.proof.evidence import AbstractEvidence, Shows, read_evidence
 from nrs_design.proof.evidence.fields import read_text
 from nrs_design.proof.second_opinion import agrees
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.proof.text import quoted
 from nrs_design.spec import LoadedSpec
-from nrs_design.switched.assemble import assemble
+from nrs_design.switched.assemble import assemble_from_text
 
 MAX_BYTES = 256 * 2**20
 MAX_VERDICTS = 2
@@ -50,7 +51,9 @@ class Verification:
     fault: str | None
 
 
-def verify(path: Path, spec: LoadedSpec, coordinates: str | None = None) -> Verification:
+def verify(
+    path: Path, spec: LoadedSpec, coordinates: str | None = None, plant: Plant | None = None
+) -> Verification:
     """Re-check a certificate file against the spec that it is said to belong to.
 
     Parameters
@@ -61,24 +64,37 @@ def verify(path: Path, spec: LoadedSpec, coordinates: str | None = None) -> Veri
         The spec, as read from its own file.
     coordinates : {"deflection", "force"}, optional
         That the certificate must be about; those of the spec by default.
+    plant : Plant, optional
+        Built from this very spec, where it is in hand; by default it is built here.
 
     Raises
     ------
     CertificateError
         If the file cannot be read as a certificate of this format at all.
     """
-    return verify_document(read_document(path), spec, coordinates)
+    return verify_document(read_document(path), spec, coordinates, plant)
 
 
 def verify_document(
-    document: Mapping[str, Any], spec: LoadedSpec, coordinates: str | None = None
+    document: Mapping[str, Any],
+    spec: LoadedSpec,
+    coordinates: str | None = None,
+    plant: Plant | None = None,
 ) -> Verification:
-    """Re-check a parsed certificate; see `verify`."""
+    """Re-check a parsed certificate.
+
+    Parameters
+    ----------
+    document : mapping
+        As `read_document` gives it.
+    spec, coordinates, plant
+        As for `verify`.
+    """
     try:
         foreign = _find_foreign(document, spec, coordinates)
         if foreign is not None:
             return Verification(None, foreign)
-        certificate = _rebuild(document, spec)
+        certificate = _rebuild(document, spec, plant)
         fault = _find_difference(document, certificate)
         for statement in certificate.statements:
             fault = fault or statement.find_fault(certificate.system)
@@ -152,10 +168,10 @@ def _find_foreign(
     return None
 
 
-def _rebuild(document: Mapping[str, Any], spec: LoadedSpec) -> Certificate:
+def _rebuild(document: Mapping[str, Any], spec: LoadedSpec, plant: Plant | None) -> Certificate:
     coordinates = document["coordinates"]
     gains = _mapping(document["gains"])
-    system = assemble(spec.spec, gains, coordinates)
+    system = assemble_from_text(spec.spec, gains, coordinates, plant=plant)
     return Certificate(
         spec_name=spec.spec.name,
         spec_sha256=spec.sha256,

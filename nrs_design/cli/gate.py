@@ -87,7 +87,7 @@ def gate(
     """
     from nrs_design.gating.find_specs import SUFFIXES
     from nrs_design.gating.formats import FORMATS
-    from nrs_design.output import write_output
+    from nrs_design.output import GATE, check_replaceable, write_output
 
     if as_json and format_ not in (FormatOption.TEXT, FormatOption.JSON):
         raise NrsDesignError(
@@ -100,6 +100,8 @@ def gate(
         )
     if out is not None and out.name.lower().endswith(SUFFIXES):
         raise OutputError("is the name of a spec", path=out, remedy="choose another --out")
+    if out is not None:
+        check_replaceable(out, GATE)
     chosen = FormatOption.JSON if as_json else format_
     search = (max_degree, budget, memory)
     start = perf_counter()
@@ -110,7 +112,7 @@ def gate(
     )
     document = FORMATS[chosen](outcome)
     if out is not None:
-        write_output(out, document)
+        write_output(out, document, replaces=GATE)
     else:
         sys.stdout.write(document)
     if out is not None or chosen is not FormatOption.TEXT:

@@ -29,15 +29,15 @@ def optimize(spec: SpecFile, as_json: Json = False, quiet: Quiet = False) -> Non
     loaded = read_spec(spec)
     with progress(f"designing {loaded.spec.name}", quiet=quiet) as step:
         step("cost")
-        design = run_design(loaded)
-        if design is None:
+        designed = run_design(loaded)
+        if designed is None:
             raise wrong_kind(
                 loaded,
                 "a switched-system spec has nothing to design",
                 "use certify-switching, or a spec of kind interaction-design",
             )
         step("margins")
-        evidence = run_evidence(loaded, design)
+        evidence = run_evidence(designed)
     warnings = warnings_of(loaded.spec, evidence)
     if as_json:
         print_json(

@@ -37,7 +37,17 @@ def note(line: str, *, quiet: bool = False) -> None:
 
 
 def wrapped(line: str, stream: TextIO, hanging: int = 2) -> str:
-    """Break a line between words, as wide as the terminal is; a pipe gets it whole."""
+    """Break a line between words, as wide as the terminal is; a pipe gets it whole.
+
+    Parameters
+    ----------
+    line : str
+        Text without line breaks.
+    stream : TextIO
+        Where it is printed.
+    hanging : int
+        Spaces before the second and every later line.
+    """
     if not stream.isatty():
         return line
     indent = " " * (len(line) - len(line.lstrip(" ")))

@@ -101,10 +101,10 @@ def _evidence(result: Result, *, quiet: bool) -> DesignEvidence | None:
     """Return what the design achieves, or nothing where a nominal loop has no margins."""
     from nrs_design.pipeline import run_evidence
 
-    if result.design is None:
+    if result.designed is None:
         return None
     try:
-        return run_evidence(result.loaded, result.design)
+        return run_evidence(result.designed)
     except DesignError as error:
         note(f"no margins in this report: {error.message}", quiet=quiet)
         return None

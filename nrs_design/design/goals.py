@@ -31,14 +31,6 @@ from nrs_design.design.transfer import FloatArray, TransferFunction, static_gain
 from nrs_design.models.contact import AbstractLinearLaw
 from nrs_design.models.contact.environment import Environment
 
-MEANING = (
-    "Margins: the worst at the nominal values and at every corner of the ranges of all contacts "
-    "and gains.",
-    "Errors: the worst with the designed gains, in the environment that the controller is designed "
-    "for, at its nominal values and every corner of its ranges.",
-    "Computed in floating point, not a proof; values between corners are not looked at.",
-)
-
 
 @dataclass(frozen=True, slots=True)
 class Achieved:
@@ -127,7 +119,15 @@ class Requirement:
     def values(
         self, measure: Measure, Mt: FloatArray, Bt: FloatArray
     ) -> tuple[FloatArray, list[str]]:
-        """Return the worst value of a measure for every admittance, and at which corner."""
+        """Return the worst value of a measure for every admittance, and at which corner.
+
+        Parameters
+        ----------
+        measure : Measure
+            What is measured.
+        Mt, Bt : ndarray, shape (m,)
+            The admittances, kg m^2 and N m s/rad.
+        """
         corners = [c for c in self.corners if c.home or measure is not IMPEDANCE_ERROR]
         table = np.array([self._at(corner, measure, Mt, Bt) for corner in corners])
         worst = table.argmax(axis=0) if measure.upper else table.argmin(axis=0)
@@ -149,7 +149,19 @@ class Requirement:
 def achieve_impedance(
     requirement: Requirement, measures: tuple[Measure, ...], Mt: float, Bt: float
 ) -> tuple[Achieved, ...]:
-    """Return the worst value of every measure of one admittance."""
+    """Return the worst value of every measure of one admittance.
+
+    Parameters
+    ----------
+    requirement : Requirement
+        Where it is measured, and what is wanted.
+    measures : tuple of Measure
+        What is measured.
+    Mt : float
+        Virtual mass, kg m^2.
+    Bt : float
+        Virtual damping, N m s/rad.
+    """
     goals = dict(requirement.goals)
     found = []
     for measure in measures:
@@ -161,7 +173,17 @@ def achieve_impedance(
 def achieve_force(
     requirement: Requirement, measures: tuple[Measure, ...], gain: float
 ) -> tuple[Achieved, ...]:
-    """Return the worst value of every measure of one force gain."""
+    """Return the worst value of every measure of one force gain.
+
+    Parameters
+    ----------
+    requirement : Requirement
+        Where it is measured, and what is wanted.
+    measures : tuple of Measure
+        What is measured.
+    gain : float
+        In rad/(N m).
+    """
     goals = dict(requirement.goals)
     found = []
     for measure in measures:

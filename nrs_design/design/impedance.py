@@ -14,6 +14,7 @@ from functools import partial
 import numpy as np
 from numpy.typing import ArrayLike
 
+from nrs_design.controllers.controller_design import ImpedanceOptimum
 from nrs_design.design.pattern_search import Objective, Points, local_minima, refine, snap
 from nrs_design.design.transfer import (
     BoolArray,
@@ -123,30 +124,18 @@ class ImpedanceProblem:
             raise DesignError(f"weights must be at least 0 and not both 0: {weights}")
 
 
-@dataclass(frozen=True)
-class ImpedanceOptimum:
-    """The best admittance within the bounds.
+def open_loop(loop: ImpedanceLoop, Mt: float, Bt: float) -> TransferFunction:
+    """Return ``G Ze Y`` (thesis fig. 6.13) of an admittance with mass Mt and damping Bt.
 
     Parameters
     ----------
+    loop : ImpedanceLoop
+        Motion loop and environment.
     Mt : float
         Virtual mass, kg m^2.
     Bt : float
         Virtual damping, N m s/rad.
-    cost : float
-        Value of `impedance_cost` there.
-    evaluations : int
-        Number of admittances that the search tried.
     """
-
-    Mt: float
-    Bt: float
-    cost: float
-    evaluations: int
-
-
-def open_loop(loop: ImpedanceLoop, Mt: float, Bt: float) -> TransferFunction:
-    """Return ``G Ze Y`` (thesis fig. 6.13) of an admittance with mass Mt and damping Bt."""
     _check_admittance(Mt, Bt)
     numerator, denominator = loop.forward
     denominator = np.convolve(denominator, trim((Mt, Bt)))
@@ -177,7 +166,13 @@ def displayed_impedance(
 
 
 def sensitivity(loop: ImpedanceLoop, Mt: float, Bt: float, omega: ArrayLike) -> ComplexArray:
-    """Evaluate ``L = 1 / (1 + G Ze Y)`` (thesis 6.5); parameters as `displayed_impedance`."""
+    """Evaluate ``L = 1 / (1 + G Ze Y)`` (thesis 6.5); parameters as `displayed_impedance`.
+
+    Parameters
+    ----------
+    loop, Mt, Bt, omega
+        As for `displayed_impedance`.
+    """
     numerator = np.convolve(loop.forward[1], trim((Mt, Bt)))
     return _over_characteristic(loop, Mt, Bt, numerator, omega)
 
@@ -187,6 +182,15 @@ def characteristic_polynomial(loop: ImpedanceLoop, Mt: float, Bt: float) -> Floa
 
     Its degree is that of ``G Ze Y``: with a spring two more than the motion loop's order, and one
     more where Mt is zero.
+
+    Parameters
+    ----------
+    loop : ImpedanceLoop
+        Motion loop and environment.
+    Mt : float
+        Virtual mass, kg m^2.
+    Bt : float
+        Virtual damping, N m s/rad.
 
     Raises
     ------
@@ -198,7 +202,17 @@ def characteristic_polynomial(loop: ImpedanceLoop, Mt: float, Bt: float) -> Floa
 
 
 def is_stable(loop: ImpedanceLoop, Mt: ArrayLike, Bt: ArrayLike) -> BoolArray:
-    """Tell for which admittances the closed loop is Hurwitz (Mt and Bt broadcast)."""
+    """Tell for which admittances the closed loop is Hurwitz (Mt and Bt broadcast).
+
+    Parameters
+    ----------
+    loop : ImpedanceLoop
+        Motion loop and environment.
+    Mt : array_like
+        Virtual masses, kg m^2.
+    Bt : array_like
+        Virtual damping, N m s/rad.
+    """
     Mt, Bt = np.broadcast_arrays(np.asarray(Mt, np.float64), np.asarray(Bt, np.float64))
     return hurwitz(_characteristics(_basis(loop), Mt, Bt))
 
@@ -336,6 +350,13 @@ def admittance_at(
     """Map the unit square onto the bounds of Mt and Bt, corners exactly onto corners.
 
     A u below the search's tolerance counts as the bound itself.
+
+    Parameters
+    ----------
+    problem : ImpedanceProblem
+        With the bounds.
+    u, v : ndarray, shape (m,)
+        From 0 to 1: coordinates of Mt and of Bt.
     """
     (low, high), (least, most) = problem.mass_bounds, problem.damping_bounds
     u = np.where(u < _STEP_TOLERANCE, 0.0, u)

@@ -9,8 +9,10 @@ from pathlib import Path
 from typing import Any, NoReturn
 
 from nrs_design.errors import DataError
+from nrs_design.proof.text import quoted
 
 MAX_BYTES = 256 * 2**20
+_OPTIONAL = ("rate", "time")
 _CONTENT = "it holds `P`, and the modes as `A` (or A1, A2, ...), and may hold `rate` and `time`"
 
 
@@ -97,9 +99,7 @@ def _scalar(value: object) -> object:
 
 
 def _modes(content: dict[str, Any], path: Path) -> dict[str, object]:
-    numbered = sorted(
-        (key for key in content if key[:1] == "A" and key[1:].isdecimal()), key=lambda k: int(k[1:])
-    )
+    numbered = sorted(filter(_is_numbered, content), key=lambda key: int(key[1:]))
     if "A" in content and numbered:
         raise DataError("holds both `A` and numbered modes", path=path, remedy="keep one of them")
     if numbered:
@@ -114,13 +114,35 @@ def _modes(content: dict[str, Any], path: Path) -> dict[str, object]:
     raise DataError("holds no modes", path=path, remedy=_CONTENT)
 
 
+def _is_numbered(key: str) -> bool:
+    return key[:1] == "A" and key[1:].isdecimal()
+
+
+def _is_matrix_name(key: str) -> bool:
+    return key in ("A", "P") or _is_numbered(key)
+
+
 def _read_json(path: Path) -> dict[str, Any]:
     content = json.loads(
-        path.read_text(encoding="utf-8"), parse_float=str, parse_constant=_not_finite
+        path.read_text(encoding="utf-8"),
+        parse_float=str,
+        parse_constant=_not_finite,
+        object_pairs_hook=_unique,
     )
     if not isinstance(content, dict):
         raise ValueError("expected a JSON object")
+    # A workspace of NumPy or MATLAB may hold anything; such a file is written for this purpose.
+    if foreign := [key for key in content if key not in _OPTIONAL and not _is_matrix_name(key)]:
+        raise ValueError(f"{quoted(foreign[0])} is not known here")
     return content
+
+
+def _unique(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+    """Refuse a mode that another of its name would hide."""
+    found = dict(pairs)
+    if len(found) < len(pairs):
+        raise ValueError("a name occurs twice in one object")
+    return found
 
 
 def _read_npz(path: Path) -> dict[str, Any]:

@@ -116,7 +116,7 @@ def _environment(spec: InteractionDesignSpec, name: str | None, path: Path) -> s
         return names[0]
     if name not in names:
         said = "there is no environment to write to" if name is None else f"no environment {name!r}"
-        listed = ", ".join(names) or "none"
+        listed = ", ".join(names) or "no environments"
         raise SpecError(
             said if len(names) == 0 or name else "there are several environments",
             path=path,

@@ -11,7 +11,7 @@ from nrs_design.models.contact import LINEAR_LAWS
 from nrs_design.models.contact.environment import Environment
 from nrs_design.models.interval import Interval
 from nrs_design.models.motion_loop import MotionLoop, close_motion_loop
-from nrs_design.spec import EnvironmentSpec, InteractionDesignSpec, RangedQuantity
+from nrs_design.spec import EnvironmentSpec, InteractionDesignSpec
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,13 +49,15 @@ class Plant:
     def scaled(self, scale: Fraction, touched: Collection[str]) -> Plant:
         """Return the plant with the ranges of its touched environments stretched.
 
-        Every parameter is stretched about its nominal value.
+        Every parameter is stretched about its nominal value; a scale of 1 leaves all as it is.
 
         Raises
         ------
         AssemblyError
             If a parameter would reach a value that its law does not admit.
         """
+        if scale == 1:
+            return self
         environments = (e.scaled(scale) if e.name in touched else e for e in self.environments)
         return replace(self, environments=tuple(environments))
 
@@ -74,10 +76,5 @@ def build_plant(spec: InteractionDesignSpec) -> Plant:
 
 
 def _environment(name: str, spec: EnvironmentSpec) -> Environment:
-    law, turned = LINEAR_LAWS[spec.model], spec.at_pivot()
-    return Environment(name, law, tuple(_interval(turned[key]) for key in law.keys))
-
-
-def _interval(quantity: RangedQuantity) -> Interval:
-    nominal, low, high = (q.exact for q in (quantity.nominal, *quantity.range))
-    return Interval(nominal, low, high)
+    law, turned = LINEAR_LAWS[spec.model], spec.exact_at_pivot()
+    return Environment(name, law, tuple(Interval(*turned[key]) for key in law.keys))

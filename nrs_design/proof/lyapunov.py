@@ -60,8 +60,8 @@ class LyapunovCheck:
         P is positive definite, and V increases in no mode: stability, but no decay, is shown.
     rate : Fraction or None
         A rate at which V decreases: alpha in 1/s, or rho per step in discrete time. What was asked
-        for, or else the best one on a fine grid, rounded to the side that is proved. None if V does
-        not decrease strictly.
+        for if it holds, or else the best one on a fine grid, rounded to the side that is proved.
+        None if V does not decrease strictly at any rate.
     counterexample : Counterexample or None
         Why it does not hold.
     """
@@ -92,9 +92,12 @@ def check_quadratic(
     Raises
     ------
     ValueError
-        If P is not symmetric or a mode is of another size, or the rate is not one of decay.
+        If there is no mode, P is not symmetric or a mode is of another size, or the rate is not one
+        of decay.
     """
     n = len(P.numerators)
+    if not modes:
+        raise ValueError("there is no mode")
     if any(mode.A.shape != (n, n) for mode in modes) or P.shape != (n, n):
         raise ValueError(f"P is {n} x {P.shape[1]}, and not every mode is {n} x {n}")
     still = Fraction(int(time is Time.DISCRETE))
@@ -104,7 +107,8 @@ def check_quadratic(
     for mode, form in _forms(modes, P, time, asked):
         if not is_positive_definite(form):
             weak = _is_weak(modes, P, time)
-            return LyapunovCheck(False, weak, None, _counterexample(mode, form, P, asked, time))
+            best = _best_rate(modes, P, time) if _is_proved(modes, P, time, still) else None
+            return LyapunovCheck(False, weak, best, _counterexample(mode, form, P, asked, time))
     best = _best_rate(modes, P, time) if rate is None else rate
     return LyapunovCheck(True, True, best, None)
 
@@ -117,6 +121,10 @@ def _forms(
     form = lyapunov_decrease if time is Time.CONTINUOUS else stein_decrease
     for mode in modes:
         yield mode, form(mode.A.numerators, mode.A.denominator, P.numerators, rate)
+
+
+def _is_proved(modes: Sequence[Mode], P: RationalMatrix, time: Time, rate: Fraction) -> bool:
+    return all(is_positive_definite(M) for _, M in _forms(modes, P, time, rate))
 
 
 def _is_weak(modes: Sequence[Mode], P: RationalMatrix, time: Time) -> bool:
@@ -135,7 +143,7 @@ def _best_rate(modes: Sequence[Mode], P: RationalMatrix, time: Time) -> Fraction
         return decay if time is Time.CONTINUOUS else 1 - decay
 
     def is_proved(decay: Fraction) -> bool:
-        return all(is_positive_definite(M) for _, M in _forms(modes, P, time, rate_at(decay)))
+        return _is_proved(modes, P, time, rate_at(decay))
 
     low = _decay_bound(modes, P) if time is Time.CONTINUOUS else Fraction(1, 2)
     while not is_proved(low):

@@ -21,7 +21,19 @@ MOTION = realize(thesis.REALIZED_LOOP)
 
 
 def impedance_rows(stiffness: Fraction, Mt: str, Bt: str, coordinates: str) -> list[Row]:
-    """Return A of an impedance mode (thesis 6.28), in deflection or force coordinates."""
+    """Return A of an impedance mode (thesis 6.28), in deflection or force coordinates.
+
+    Parameters
+    ----------
+    stiffness : Fraction
+        In N m/rad.
+    Mt : str
+        Decimal, kg m^2.
+    Bt : str
+        Decimal, N m s/rad.
+    coordinates : {"deflection", "force"}
+        Last state.
+    """
     environment = Elastic(stiffness)
     rows = impedance_mode(MOTION, Admittance(Fraction(Mt), Fraction(Bt)), environment)
     return rows if coordinates == "deflection" else to_force_coordinates(rows, MOTION, environment)

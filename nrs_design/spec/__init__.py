@@ -13,9 +13,7 @@ from nrs_design.spec.doubts import Doubt, doubt_spec
 from nrs_design.spec.environment import (
     ElasticSpec,
     EnvironmentSpec,
-    KelvinBoltzmannSpec,
     KelvinVoigtSpec,
-    MaxwellSpec,
 )
 from nrs_design.spec.exact import parse_exact
 from nrs_design.spec.gain_fields import GainSpec
@@ -67,12 +65,10 @@ __all__ = [
     "IdleStatesSpec",
     "ImpedanceControllerSpec",
     "InteractionDesignSpec",
-    "KelvinBoltzmannSpec",
     "KelvinVoigtSpec",
     "LegSpec",
     "LimitsSpec",
     "LoadedSpec",
-    "MaxwellSpec",
     "ModeSpec",
     "MotionLoopSpec",
     "ParameterSpec",

@@ -89,7 +89,7 @@ def _switching(switching: SwitchingSpec) -> Iterator[Row]:
     if switching.transitions is not None:
         pairs = [f"{source} to {target}" for source, target in switching.transitions]
         listed = ", ".join(pairs[:MAX_LISTED]) + ", ..." * (len(pairs) > MAX_LISTED)
-        yield Row("switching.transitions", listed or "none", str(len(pairs)), "")
+        yield Row("switching.transitions", listed or "no switch", str(len(pairs)), "")
 
 
 def _interaction(spec: InteractionDesignSpec) -> Iterator[Row]:

@@ -63,21 +63,31 @@ class AbstractEnvironmentSpec(SpecModel):
         values = ((name, getattr(self, name)) for name in type(self).model_fields)
         return {name: value for name, value in values if isinstance(value, RangedQuantity)}
 
-    def at_pivot(self) -> dict[str, RangedQuantity]:
-        """Return the parameters as a rotation about the pivot sees them, in N*m/rad, N*m*s/rad.
+    def exact_at_pivot(self) -> dict[str, tuple[Fraction, Fraction, Fraction]]:
+        """Return nominal, lowest and highest values for a rotation, in N*m/rad and N*m*s/rad.
 
         With a lever arm r, each value is multiplied by ``r^2``, exactly (thesis 6.3.1.1:
         747.1461 N/m at 0.24 m is 43.0356 N*m/rad).
         """
-        return {name: self._turned(value) for name, value in self.parameters().items()}
+        radius = Fraction(1) if self.lever_arm is None else self.lever_arm.exact
+        return {
+            name: (
+                turn(value.nominal.exact, radius),
+                turn(value.range[0].exact, radius),
+                turn(value.range[1].exact, radius),
+            )
+            for name, value in self.parameters().items()
+        }
 
-    def _turned(self, quantity: RangedQuantity) -> RangedQuantity:
+    def at_pivot(self) -> dict[str, RangedQuantity]:
+        """Return the parameters for a rotation as quantities, for people to read."""
         if self.lever_arm is None:
-            return quantity
-        radius, unit = self.lever_arm.exact, unit_at_pivot(quantity.nominal)
-        values = (turn(q.exact, radius) for q in (quantity.nominal, *quantity.range))
-        nominal, low, high = (Quantity(f"{float(v):.6g} {unit}", v, unit) for v in values)
-        return RangedQuantity(nominal=nominal, range=(low, high))
+            return self.parameters()
+        turned = self.exact_at_pivot()
+        return {
+            name: _quantities(turned[name], unit_at_pivot(value.nominal))
+            for name, value in self.parameters().items()
+        }
 
 
 class ElasticSpec(AbstractEnvironmentSpec):
@@ -132,6 +142,11 @@ class KelvinBoltzmannSpec(AbstractEnvironmentSpec):
 EnvironmentSpec = Annotated[
     ElasticSpec | KelvinVoigtSpec | MaxwellSpec | KelvinBoltzmannSpec, Discriminator("model")
 ]
+
+
+def _quantities(values: tuple[Fraction, Fraction, Fraction], unit: str) -> RangedQuantity:
+    nominal, low, high = (Quantity(f"{float(v):.6g} {unit}", v, unit) for v in values)
+    return RangedQuantity(nominal=nominal, range=(low, high))
 
 
 def turn(value: Number, radius: Number) -> Number:

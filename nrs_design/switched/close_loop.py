@@ -208,8 +208,8 @@ def _controller_modes(
 ) -> Iterator[Mode]:
     law = controller.law
     if isinstance(law, PositionControl):
-        rows = around.padded([list(row) for row in around.motion.A])
-        yield Mode(controller.name, RationalMatrix.from_rows(rows))
+        alone = around.padded([list(row) for row in around.motion.A])
+        yield Mode(controller.name, RationalMatrix.from_rows(alone))
         return
     gains: tuple[Axis, ...] = ()
     if isinstance(law, Admittance):
@@ -218,9 +218,8 @@ def _controller_modes(
         name = f"{controller.name}/{environment.name}"
         axes = (*_contact_axes(environment, around.memories), *gains)
         rows_at = partial(_rows_at, law, environment, around)
-        for corner in box_corners(axes, rows_at, name):
-            label = f"{name}/{corner.label}" if corner.label else name
-            yield Mode(label, RationalMatrix.from_rows(corner.rows))
+        for label, rows in box_corners(axes, rows_at, name):
+            yield Mode(f"{name}/{label}" if label else name, RationalMatrix.from_rows(rows))
 
 
 def _contact_axes(environment: Environment, memories: tuple[Environment, ...]) -> Iterator[Axis]:
@@ -257,7 +256,8 @@ def _rows_at(
     rows = impedance_mode(motion, gains, contact)
     if around.coordinates == "force":
         return to_force_coordinates(rows, motion, contact)
-    return _with_memories(rows, environment, around.memories, values)
+    memories = around.memories
+    return _with_memories(rows, environment, memories, values) if memories else rows
 
 
 def _with_memories(
@@ -285,6 +285,15 @@ def impedance_mode(motion: Realization, law: Admittance, contact: AbstractLinear
 
     ``xp' = Ap xp + Bp (vc - vm)``, ``Mt vm' = -Bt vm + F``, and the law of the contact from
     ``v = Cp xp`` to F. With ``Mt = 0`` the velocity is ``vm = F / Bt``.
+
+    Parameters
+    ----------
+    motion : Realization
+        Of the motion loop.
+    law : Admittance
+        With its gains.
+    contact : AbstractLinearLaw
+        Of the environment, at fixed parameters.
     """
     reaction = contact.reaction
     n, m = motion.order, len(reaction.B)
@@ -306,7 +315,17 @@ def impedance_mode(motion: Realization, law: Admittance, contact: AbstractLinear
 def to_force_coordinates(
     rows: list[Row], motion: Realization, contact: AbstractLinearLaw
 ) -> list[Row]:
-    """Replace the last state delta by the force ``F = k delta + b Cp xp`` (similarity T A T^-1)."""
+    """Replace the last state delta by the force ``F = k delta + b Cp xp`` (similarity T A T^-1).
+
+    Parameters
+    ----------
+    rows : list of list of Fraction
+        A in deflection coordinates.
+    motion : Realization
+        Of the motion loop.
+    contact : AbstractLinearLaw
+        Of the environment, at fixed parameters.
+    """
     (stiffness,), damping = contact.reaction.C, contact.reaction.D
     size, n = len(rows), motion.order
     T = [[Fraction(int(i == j)) for j in range(size)] for i in range(size)]
@@ -322,6 +341,17 @@ def force_mode(
     motion: Realization, law: ProportionalForce, contact: AbstractLinearLaw, environment: str
 ) -> list[Row]:
     """Return A of a force mode, ``Ap - Bp Kp k Cp`` (thesis 6.46).
+
+    Parameters
+    ----------
+    motion : Realization
+        Of the motion loop.
+    law : ProportionalForce
+        With its gain.
+    contact : AbstractLinearLaw
+        Of the environment, at fixed parameters.
+    environment : str
+        Its name, for errors.
 
     Raises
     ------

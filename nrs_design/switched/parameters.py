@@ -116,6 +116,15 @@ def check_affine(middle: Rows, corners: Sequence[Rows], name: str) -> None:
     Follows from the construction; it is computed again because a proof for the whole box rests
     on it.
 
+    Parameters
+    ----------
+    middle : rows of Fraction
+        The matrix halfway.
+    corners : sequence of rows
+        The matrices at the corners.
+    name : str
+        Of the mode, for errors.
+
     Raises
     ------
     InternalError

@@ -113,8 +113,9 @@ def test_broken_spec_is_worse_than_a_refuted_one(gate, capsys):
 
 
 def test_inconclusive_is_exit_3_and_refuted_is_worse(gate, monkeypatch):
+    from nrs_design.certificates.certificate import CommonQuadraticStatus, Verdict
     from nrs_design.search import certify as module
-    from nrs_design.search.certify import Certification, CommonQuadraticStatus, Verdict
+    from nrs_design.search.certification import Certification
 
     def give_up_on_stable(system, *arguments, **options):
         if system.name != "stable":
@@ -148,6 +149,20 @@ def test_documents_go_to_stdout_and_the_table_to_stderr(gate, capsys, format_):
     assert gate("specs", "--no-reports", "--format", format_, "--out", "ci/gate.out", "-q") == 0
     assert capsys.readouterr() == ("", "")
     assert Path("ci/gate.out").read_text() == out
+
+
+def test_a_document_replaces_documents_only(gate, capsys):
+    """Not the lock that the same run writes, and of other files nothing either."""
+    assert gate("specs", "--no-reports") == 0
+    before = Path("nrs.lock").read_bytes()
+    Path("record.csv").write_text("time,force")
+    for foreign in ("nrs.lock", "record.csv"):
+        assert gate("specs", "--no-reports", "--format", "json", "--out", foreign) == 2
+        assert "not overwritten" in capsys.readouterr().err
+    assert Path("nrs.lock").read_bytes() == before
+    assert Path("record.csv").read_text() == "time,force"
+    for format_ in ("text", "json", "sarif", "junit", "github", "text"):
+        assert gate("specs", "--no-reports", "--format", format_, "--out", "gate.out", "-q") == 0
 
 
 def test_documents_are_the_same_on_repeat(gate, capsys):

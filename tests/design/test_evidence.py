@@ -14,7 +14,7 @@ GIVEN = """motion_loop:
 
 def evidence(path):
     loaded = read_spec(path)
-    return run_evidence(loaded, run_design(loaded))
+    return run_evidence(run_design(loaded))
 
 
 def test_motion_loop_of_the_thesis():

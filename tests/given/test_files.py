@@ -61,9 +61,12 @@ def test_one_matrix_alone(tmp_path):
     [
         ("a.json", b"{", "cannot be read"),
         ("a.json", b"[]", "expected a JSON object"),
+        ("a.json", b'{"P": [[1]], "A1": [[5]], "A1": [[-1]]}', "occurs twice"),
+        ("a.json", b'{"P": [[1]], "A": {"a": [[5]], "a": [[-1]]}}', "occurs twice"),
+        ("a.json", b'{"P": [[1]], "A": [[-1]], "Time": "discrete"}', "'Time' is not known"),
         ("a.json", b'{"A": [[1]]}', "holds no `P`"),
         ("a.json", b'{"P": [[1]]}', "holds no modes"),
-        ("a.json", b'{"P": [[1]], "A": [], "x": 1}', "holds no modes"),
+        ("a.json", b'{"P": [[1]], "A": []}', "holds no modes"),
         ("a.json", b'{"P": [[1]], "A": [[1]], "A1": [[1]]}', "both `A` and numbered"),
         ("a.json", b'{"P": [[1]], "A": [[1]], "time": "now"}', "`time` is not known"),
         ("a.json", b'{"P": [[NaN]], "A": [[1]]}', "not a finite number"),

@@ -9,7 +9,8 @@ from nrs_design.identification.actuator import identify_actuator
 from nrs_design.identification.tissue import identify_tissue
 from nrs_design.identification.write_spec import merge_actuator, merge_tissue
 from nrs_design.models.contact import Elastic, KelvinVoigt, Maxwell
-from nrs_design.spec import KelvinBoltzmannSpec, MaxwellSpec, parse_spec, read_spec
+from nrs_design.spec import parse_spec, read_spec
+from nrs_design.spec.environment import KelvinBoltzmannSpec, MaxwellSpec
 from tests.identification import synthetic
 from tests.identification.support import MOTOR, quick, record, sinusoids, slow
 from tests.support import COMMUTING, FORCE_LIMIT, ROBOT, SOFT_TISSUE

@@ -47,7 +47,8 @@ def test_a_rate_beyond_the_limit_does_not_hold_and_is_shown():
     found = check_quadratic(PAIR, matrix([[1, 0], [0, 5]]), Time.CONTINUOUS, F(1, 9))
     assert not found.holds
     assert found.weak
-    assert found.rate is None
+    assert found.rate is not None
+    assert F("0.1055") < found.rate < F(1, 9)
     assert found.counterexample is not None
     x = found.counterexample.vector
     assert found.counterexample.mode == "m0"
@@ -59,6 +60,11 @@ def test_a_rate_beyond_the_limit_does_not_hold_and_is_shown():
 def test_undamped_oscillation_is_weak():
     found = check_quadratic(modes([[0, 1], [-1, 0]]), matrix([[1, 0], [0, 1]]), Time.CONTINUOUS)
     assert (found.holds, found.weak) == (False, True)
+
+
+def test_no_modes():
+    with pytest.raises(ValueError, match="no mode"):
+        check_quadratic([], matrix([[1]]), Time.CONTINUOUS)
 
 
 def test_indefinite_p_names_no_mode():

@@ -7,11 +7,10 @@ from nrs_design.spec import (
     ElasticSpec,
     ForceControllerSpec,
     ImpedanceControllerSpec,
-    KelvinBoltzmannSpec,
     KelvinVoigtSpec,
-    MaxwellSpec,
     PositionControllerSpec,
 )
+from nrs_design.spec.environment import KelvinBoltzmannSpec, MaxwellSpec
 
 from .samples import FORCE, IMPEDANCE, interaction, place_of, refusal, spoiled
 

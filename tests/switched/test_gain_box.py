@@ -17,7 +17,7 @@ from nrs_design.pipeline import run_design
 from nrs_design.proof.evidence import CommonQuadratic, UnstableMode
 from nrs_design.search.certify import Limits, Verdict, certify
 from nrs_design.spec import LoadedSpec, parse_spec, read_spec
-from nrs_design.switched.assemble import DECLARED, assemble, has_ranges
+from nrs_design.switched.assemble import DECLARED, assemble_from_text, has_ranges
 from nrs_design.switched.close_loop import impedance_mode, realize, to_force_coordinates
 from nrs_design.switched.gain_box import GainBox
 from tests.proof.truth import combine, decrease, is_definite
@@ -52,7 +52,7 @@ def loaded(**fields):
 
 
 def assembled(spec, coordinates="deflection", scale=DECLARED):
-    return assemble(spec.spec, gains_of(run_design(spec)), coordinates, scale)
+    return assemble_from_text(spec.spec, gains_of(run_design(spec).design), coordinates, scale)
 
 
 class TestPublished:
@@ -143,7 +143,7 @@ SYSTEMS = {
 MOTIONS = {
     massless: realize(build_plant(spec.spec).motion_loop(motion.Kp, motion.Kd))
     for massless, spec in CASES.items()
-    for motion in (run_design(spec).motion,)
+    for motion in (run_design(spec).design.motion,)
 }
 
 

@@ -20,7 +20,7 @@ from nrs_design.pipeline import run_design
 from nrs_design.proof.exact import characteristic_polynomial
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.spec import parse_spec, read_spec
-from nrs_design.switched.assemble import from_design
+from nrs_design.switched.assemble import assemble
 from nrs_design.switched.close_loop import impedance_mode, realize
 from nrs_design.switched.mixture import impedance_rows, with_idle
 from tests.support import ROOT
@@ -45,8 +45,8 @@ def mixed(**changes):
         text = text.replace(old, new)
     spec = parse_spec(text)
     loaded = read_spec(MIXED)
-    design = run_design(loaded)
-    return from_design(spec, design, "deflection")
+    design = run_design(loaded).design
+    return assemble(spec, build_plant(spec), design, "deflection")
 
 
 @given(k=positive, b=positive, Mt=positive, Bt=positive, massless=st.booleans())
@@ -132,7 +132,7 @@ def test_the_example_has_one_state_for_all():
 def system_motion(system):
     """Motion loop of the example, from its own gains."""
     plant = build_plant(read_spec(MIXED).spec)
-    design = run_design(read_spec(MIXED))
+    design = run_design(read_spec(MIXED)).design
     return realize(plant.motion_loop(design.motion.Kp, design.motion.Kd)).A
 
 
@@ -157,7 +157,7 @@ def test_what_is_held_is_said_to_be():
 def test_force_coordinates_are_refused():
     spec = read_spec(MIXED)
     with pytest.raises(AssemblyError, match="force coordinates do not apply"):
-        from_design(spec.spec, run_design(spec), "force")
+        assemble(spec.spec, build_plant(spec.spec), run_design(spec).design, "force")
 
 
 def test_stiff_contact_in_impedance_mode_is_that_of_the_thesis():

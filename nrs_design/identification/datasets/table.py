@@ -69,7 +69,17 @@ class Table:
     first_line: int
 
     def fail(self, message: str, row: int, remedy: str) -> NoReturn:
-        """Raise an error about a row, counted from 0."""
+        """Raise an error about a row, counted from 0.
+
+        Parameters
+        ----------
+        message : str
+            What is wrong.
+        row : int
+            Counted from 0.
+        remedy : str
+            What to do about it.
+        """
         raise DataError(message, path=self.source.path, line=self.first_line + row, remedy=remedy)
 
 

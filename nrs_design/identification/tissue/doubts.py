@@ -28,7 +28,19 @@ def doubts(
     found: Uncertainty,
     bounds: tuple[Array, Array],
 ) -> tuple[str, ...]:
-    """List what makes a fit doubtful, in words; nothing for a sound one."""
+    """List what makes a fit doubtful, in words; nothing for a sound one.
+
+    Parameters
+    ----------
+    law : AbstractTissueLaw
+        That was fitted.
+    record : TissueRecord
+        To which data.
+    found : Uncertainty
+        Of its parameters.
+    bounds : tuple of ndarray
+        Logarithms between which they were sought: lower, upper.
+    """
     return (
         *_bounds(law, bounds),
         *_errors(law, found),

@@ -54,6 +54,15 @@ class KelvinBoltzmann(AbstractLinearLaw):
 
         ``k2 = eta2/eta3``, ``k1 = eta1 k2/(k2 - eta1)``, ``b = eta3 (k1 + k2)``.
 
+        Parameters
+        ----------
+        eta1 : float
+            In N/m.
+        eta2 : float
+            In N s/m.
+        eta3 : float
+            In s.
+
         Raises
         ------
         ValueError

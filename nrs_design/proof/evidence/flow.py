@@ -37,6 +37,17 @@ def enclosed_form(
     within r of a rational midpoint, then its smallest eigenvalue is at least that of the midpoint
     minus n r, so that much is subtracted from the diagonal. The times are those around their
     middle: ``exp(B t) = exp(B d) exp(B m)`` with d in a ball around zero.
+
+    Parameters
+    ----------
+    edge : Edge
+        Mode, next mode and reset.
+    times : tuple of Fraction
+        The first and the last, in s.
+    Q : mapping
+        The forms by mode.
+    rate : Fraction
+        The alpha in 1/s.
     """
     from flint import arb, arb_mat, ctx, fmpq, fmpq_mat, fmpz_mat
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -12,7 +13,14 @@ from nrs_design.cli.options import Json
 from nrs_design.cli.printing import print_json, say
 
 if TYPE_CHECKING:
+    from fractions import Fraction
+
     from nrs_design.proof.lyapunov import LyapunovCheck
+
+# Of the integers in a vector that shows a failure; Python writes 4300 unless told.
+MAX_DIGITS = 200_000
+# A longer number is shown rounded, except in JSON.
+LONGEST = 60
 
 
 def check_lyapunov(
@@ -38,6 +46,7 @@ def check_lyapunov(
     from nrs_design.api import check_lyapunov as check
     from nrs_design.given.files import read_proposal
 
+    sys.set_int_max_str_digits(MAX_DIGITS)
     proposal = read_proposal(file)
     time = "discrete" if discrete else proposal.time
     wanted = proposal.rate if rate is None else rate
@@ -71,9 +80,12 @@ def _show(found: LyapunovCheck, time: str, *, asked: bool) -> None:
     from nrs_design.proof.evidence.fields import rate_text
     from nrs_design.proof.system import Time
 
-    if found.holds and found.rate is not None:
+    if found.holds:
         word, unit = ("alpha", " 1/s") if time == "continuous" else ("rho", " per step")
         say("HOLDS: x' P x is positive definite and decreases strictly in every mode.")
+        if found.rate is None:
+            say("  The numbers are too large to look for its rate: ask for one with --rate.")
+            return
         kind = "the rate asked for" if asked else "proved"
         say(f"  {kind}: {word} = {rate_text(found.rate, Time(time))}{unit}")
         return
@@ -85,9 +97,17 @@ def _show(found: LyapunovCheck, time: str, *, asked: bool) -> None:
 
 
 def _show_counterexample(failing: Any) -> None:
-    vector = ", ".join(map(str, failing.vector))
+    value, *vector = map(_number, (failing.value, *failing.vector))
     if failing.mode is None:
-        say(f"  P is not positive definite: x' P x = {failing.value}")
+        say(f"  P is not positive definite: x' P x = {value}")
     else:
-        say(f"  in mode {failing.mode} it does not decrease: its change is {failing.value}")
-    say(f"  at x = ({vector}), exactly")
+        say(f"  in mode {failing.mode} it does not decrease: its change is {value}")
+    rounded = any(text.startswith("about") for text in (value, *vector))
+    say(f"  at x = ({', '.join(vector)}), {'rounded; --json has it' if rounded else 'exactly'}")
+
+
+def _number(number: Fraction) -> str:
+    from nrs_design.proof.bounds import nearly
+
+    text = str(number)
+    return text if len(text) <= LONGEST else nearly(number)

@@ -6,7 +6,16 @@ from pathlib import Path
 
 import pytest
 
-from tests.hostile.corpus import CERTIFICATES, LARGE_SPECS, LOCKS, NAMES, RECORDS, SPECS, write
+from tests.hostile.corpus import (
+    CERTIFICATES,
+    LARGE_SPECS,
+    LOCKS,
+    NAMES,
+    PROPOSALS,
+    RECORDS,
+    SPECS,
+    write,
+)
 from tests.hostile.running import check
 from tests.support import COMMUTING
 
@@ -94,6 +103,12 @@ def test_a_lock(place, case):
     check(place, "gate", "--locked", "spec.nrs.yaml", codes=(1, 2))
 
 
+@pytest.mark.parametrize("case", PROPOSALS)
+def test_a_proposal(place, case):
+    write(place / "work/p.json", PROPOSALS[case]())
+    check(place, "check-lyapunov", "p.json", codes=(0, 1, 2))
+
+
 @pytest.mark.parametrize("name", NAMES)
 @pytest.mark.parametrize(
     "command",
@@ -119,6 +134,7 @@ def test_a_file_name(place, name, command):
         ("identify", "tissue", "x"),
         ("identify", "actuator", "x"),
         ("verify", "x", str(COMMUTING)),
+        ("check-lyapunov", "x"),
         ("gate", "--locked", "--lock", "x", str(COMMUTING)),
     ],
     ids=" ".join,

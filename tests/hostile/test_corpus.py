@@ -1,11 +1,11 @@
 """Every command on every hostile input: its exit code, time, memory, words, and what it touches."""
 
-import json
 import os
 from pathlib import Path
 
 import pytest
 
+from nrs_design.gating.lock import Lock, dump_lock
 from tests.hostile.corpus import (
     CERTIFICATES,
     LARGE_SPECS,
@@ -62,7 +62,7 @@ def test_the_decision_about_a_mode_is_bounded(place, case):
 @pytest.mark.parametrize("case", SPECS)
 def test_a_spec_in_every_command(place, case, command):
     write(place / "work/spec.nrs.yaml", SPECS[case]())
-    write(place / "work/nrs.lock", json.dumps({"schema": "nrs-design/lock/1", "specs": []}))
+    write(place / "work/nrs.lock", dump_lock(Lock(specs=[])))
     check(place, *command, "spec.nrs.yaml")
 
 

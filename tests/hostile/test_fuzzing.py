@@ -13,11 +13,12 @@ from hypothesis import strategies as st
 from nrs_design.certificates.certificate import content_id, dump
 from nrs_design.certificates.verify import read_document, verify_document
 from nrs_design.errors import NrsDesignError
-from nrs_design.gating.lock import read_lock
+from nrs_design.gating.lock import Lock, LockedGoal, LockedSpec, dump_lock, read_lock
+from nrs_design.given.files import read_proposal
 from nrs_design.identification.datasets.records import read_tissue
 from nrs_design.pipeline import run_certification
 from nrs_design.spec import read_spec
-from tests.support import COMMUTING, SOFT_TISSUE
+from tests.support import COMMUTING, ROOT, SOFT_TISSUE
 
 ROUNDS = 400
 # Pieces that mean something to some reader, or look as if they did.
@@ -65,26 +66,36 @@ def certificate_of(spec: Path) -> tuple[bytes, object]:
     return dump(run_certification(loaded).certificate).encode(), loaded
 
 
-LOCK = json.dumps(
-    {
-        "schema": "nrs-design/lock/1",
-        "specs": [
-            {
-                "path": "a.nrs.yaml",
-                "sha256": "0" * 64,
-                "verdict": "inconclusive",
-                "rate": None,
-                "certificate": None,
-            }
-        ],
-    }
+LOCK = dump_lock(
+    Lock(
+        specs=[
+            LockedSpec(
+                path="a.nrs.yaml",
+                sha256="0" * 64,
+                version="0",
+                verdict="inconclusive",
+                rate=None,
+                certificate=None,
+                gains={"a": {"Mt": "1"}},
+                goals=[LockedGoal(rule="NRS103", subject="a", status="met", message="as it is")],
+            )
+        ]
+    )
 ).encode()
+
+EXAMPLE = ROOT / "docs/examples/lyapunov.json"
+
+
+def read_json_proposal(path: Path) -> object:
+    return read_proposal(path.rename(path.with_suffix(".json")))
+
 
 READERS: dict[str, tuple[Callable[[Path], object], bytes]] = {
     "given matrices": (read_spec, COMMUTING.read_bytes()),
     "interaction design": (read_spec, SOFT_TISSUE.read_bytes()),
     "certificate": (read_document, b'{"a": [1, 2, {"b": "c"}], "d": null}'),
     "lock": (read_lock, LOCK),
+    "proposal": (read_json_proposal, EXAMPLE.read_bytes()),
     "record": (read_tissue, RECORD.encode()),
 }
 

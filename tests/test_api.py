@@ -174,3 +174,11 @@ def test_examples_in_docstrings(monkeypatch):
     found = doctest.testmod(api)
     assert found.attempted >= 6
     assert found.failed == 0
+
+
+def test_the_readme_runs_as_it_stands():
+    text = (ROOT / "README.md").read_text()
+    code = text.partition("## From Python\n\n```python\n")[2].partition("```")[0]
+    names: dict[str, object] = {}
+    exec(code, names)
+    assert names["decision"].verdict == "proved"

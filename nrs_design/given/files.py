@@ -156,7 +156,8 @@ def _read_mat(raw: bytes) -> dict[str, Any]:
     from scipy.io import loadmat
 
     check_mat(raw)
-    variables = loadmat(BytesIO(raw))
+    # It reads from streams, too, whatever its annotations say.
+    variables = loadmat(BytesIO(raw))  # type: ignore[arg-type]
     arrays = {key: value for key, value in variables.items() if not key.startswith("__")}
     _check_entries(sum(map(_size, arrays.values())))
     return {key: _plain(value) for key, value in arrays.items()}

@@ -65,5 +65,5 @@ def test_a_controller_designed_for_what_it_does_not_touch_is_refused(tmp_path: P
     result = run("check", path.name, cwd=tmp_path)
     assert result.returncode == 2
     line = text.split("\n").index("    contacts: [soft]") + 1
-    assert f"hand.nrs.yaml:{line}:15: " in result.stderr
+    assert f" --> hand.nrs.yaml:{line}:15\n" in result.stderr
     assert "add hand to contacts" in result.stderr

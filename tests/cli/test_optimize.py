@@ -95,9 +95,8 @@ def test_gains_that_are_given_and_miss_a_goal_end_with_1(tmp_path):
 def test_a_goal_out_of_reach_is_an_error_with_the_best_value(tmp_path):
     result = run("optimize", spec_with(tmp_path, "{min_gain_margin: 1e6}"), cwd=tmp_path)
     assert result.returncode == 2
-    assert "error[NRS002]: goals.nrs.yaml: controller insertion: the goal min_gain_margin" in (
-        result.stderr
-    )
+    assert "error[NRS002]: controller insertion: the goal min_gain_margin" in result.stderr
+    assert " --> goals.nrs.yaml:" in result.stderr
     assert "the best is" in result.stderr
 
 

@@ -19,19 +19,21 @@ from tests.hostile.corpus import (
 from tests.hostile.running import check
 from tests.support import COMMUTING
 
+# A search takes what it is given, here less than by default.
+SEARCH = ("--budget", "2", "--memory", "0.1")
 SPEC_COMMANDS = (
     ("check", "--json"),
-    ("certify-switching", "--budget", "2"),
-    ("certify-switching", "--budget", "2", "--margin"),
+    ("certify-switching", *SEARCH),
+    ("certify-switching", *SEARCH, "--margin"),
     ("optimize",),
     ("tune",),
-    ("report",),
+    ("report", *SEARCH),
     ("export",),
     ("robot", "check"),
     ("robot", "kinematics"),
-    ("gate",),
-    ("gate", "--format", "github", "--no-reports"),
-    ("gate", "--format", "junit", "--no-reports"),
+    ("gate", *SEARCH),
+    ("gate", *SEARCH, "--format", "github", "--no-reports"),
+    ("gate", *SEARCH, "--format", "junit", "--no-reports"),
     ("gate", "--locked"),
 )
 

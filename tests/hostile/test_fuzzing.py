@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from nrs_design.certificates.certificate import content_id, dump
 from nrs_design.certificates.verify import read_document, verify_document
 from nrs_design.errors import NrsDesignError
-from nrs_design.gating.lock import Lock, LockedGoal, LockedSpec, dump_lock, read_lock
+from nrs_design.gating.lock import read_lock
 from nrs_design.given.files import read_proposal
 from nrs_design.identification.datasets.records import read_tissue
 from nrs_design.pipeline import run_certification
@@ -66,22 +66,7 @@ def certificate_of(spec: Path) -> tuple[bytes, object]:
     return dump(run_certification(loaded).certificate).encode(), loaded
 
 
-LOCK = dump_lock(
-    Lock(
-        specs=[
-            LockedSpec(
-                path="a.nrs.yaml",
-                sha256="0" * 64,
-                version="0",
-                verdict="inconclusive",
-                rate=None,
-                certificate=None,
-                gains={"a": {"Mt": "1"}},
-                goals=[LockedGoal(rule="NRS103", subject="a", status="met", message="as it is")],
-            )
-        ]
-    )
-).encode()
+LOCK = (ROOT / "nrs.lock").read_bytes()
 
 EXAMPLE = ROOT / "docs/examples/lyapunov.json"
 

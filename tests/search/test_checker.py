@@ -12,7 +12,7 @@ from nrs_design.search.certify import Limits, Method, certify
 from nrs_design.search.checker import Checker
 from tests.proof.systems import family
 
-SYSTEM = family([[-1, 0], [0, -2]], [[-2, 0], [0, -1]])
+SYSTEM = family([[-1, 1], [-1, -2]], [[-2, 1], [-1, -1]])
 GOOD = CommonQuadratic(((1, 0), (0, 1)), 0, Fraction(1, 2))
 WRONG = replace(GOOD, rate=Fraction(2))
 

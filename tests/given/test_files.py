@@ -73,7 +73,7 @@ def test_one_matrix_alone(tmp_path):
         ("a.json", b'{"P": [[1]], "A": [[1]], "time": "now"}', "`time` is not known"),
         ("a.json", b'{"P": [[NaN]], "A": [[1]]}', "not a finite number"),
         ("a.json", b"\xff", "cannot be read"),
-        ("a.json", b'{"P": [[1]], "A%s": [[1]]}' % (b"1" * 5000), "holds no modes"),
+        ("a.json", b'{"P": [[1]], "A%s": [[1]]}' % (b"1" * 5000), "is not known here"),
         ("a.json", b'{"P": [[1]], "A": [%s1]}' % (b"1," * 200_000), "more than 200000 entries"),
         ("a.json", b'{"P": [[1]], "A": [%s[]]}' % (b"[]," * 600_000), "more than 1000000 values"),
         ("a.json", b" " * (16 * 2**20 + 1), "is larger than"),

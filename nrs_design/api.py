@@ -14,10 +14,17 @@ from nrs_design.certificates.certificate import dump
 from nrs_design.certificates.verify import Verification
 from nrs_design.certificates.verify import verify as verify_file
 from nrs_design.errors import DesignError, NrsDesignError, OutputError, SpecError
-from nrs_design.given.matrices import read_matrix, read_number, read_rows, time_of
+from nrs_design.given.matrices import (
+    exact_matrix,
+    read_matrix,
+    read_number,
+    read_rows,
+    time_of,
+)
 from nrs_design.given.system import spec_of_matrices
 from nrs_design.output import CERTIFICATE, PAGE, write_output
 from nrs_design.ownership import check_certificate, origin_of
+from nrs_design.proof.exact import TooLargeError
 from nrs_design.proof.lyapunov import LyapunovCheck, check_quadratic
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.system import Mode
@@ -391,6 +398,10 @@ def check_lyapunov(
     alpha = None if rate is None else read_number(rate, "rate")
     try:
         return check_quadratic(exact, _symmetric_part(P), axis, alpha)
+    except TooLargeError as error:
+        raise NrsDesignError(
+            str(error), remedy="give fewer modes, or numbers with fewer digits"
+        ) from None
     except ValueError as error:
         raise NrsDesignError(str(error), remedy="correct the matrices or the rate") from None
 
@@ -419,8 +430,8 @@ def _symmetric_part(P: object) -> RationalMatrix:
         )
     n = len(rows)
     half = Fraction(1, 2)
-    return RationalMatrix.from_rows(
-        [[half * (rows[i][j] + rows[j][i]) for j in range(n)] for i in range(n)]
+    return exact_matrix(
+        [[half * (rows[i][j] + rows[j][i]) for j in range(n)] for i in range(n)], "P"
     )
 
 

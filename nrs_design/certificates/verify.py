@@ -20,7 +20,7 @@ from nrs_design.certificates.certificate import (
     to_document,
 )
 from nrs_design.errors import DISAGREE, CertificateError, InternalError, NrsDesignError
-from nrs_design.files import open_regular
+from nrs_design.files import open_regular, read_json_text
 from nrs_design.models.plant import Plant
 from nrs_design.proof.evidence import AbstractEvidence, Shows, read_evidence
 from nrs_design.proof.evidence.fields import read_text
@@ -30,7 +30,7 @@ from nrs_design.proof.text import quoted
 from nrs_design.spec import LoadedSpec
 from nrs_design.switched.assemble import assemble_from_text
 
-MAX_BYTES = 256 * 2**20
+MAX_BYTES = 32 * 2**20
 MAX_VERDICTS = 2
 # What a hostile document can raise before the exact check: all of it means rejection.
 _MALFORMED = (
@@ -119,7 +119,7 @@ def read_document(path: Path) -> dict[str, Any]:
     """
     try:
         document = json.loads(
-            _read_bytes(path).decode("utf-8"),
+            read_json_text(_read_bytes(path)),
             parse_float=_no_float,
             parse_constant=_no_float,
             object_pairs_hook=_unique,

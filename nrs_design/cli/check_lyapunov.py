@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -12,6 +13,8 @@ from nrs_design.cli.options import Json
 from nrs_design.cli.printing import print_json, say
 
 if TYPE_CHECKING:
+    from fractions import Fraction
+
     from nrs_design.proof.lyapunov import Counterexample, LyapunovCheck
 
 # What must be negative, by time and whether a rate is asked for.
@@ -21,6 +24,11 @@ _CHANGE = {
     ("discrete", False): "x' (A'PA - P) x",
     ("discrete", True): "x' (A'PA - rho^2 P) x",
 }
+
+# Of the integers in a vector that shows a failure; Python writes 4300 unless told.
+MAX_DIGITS = 200_000
+# A longer number is shown rounded, except in JSON.
+LONGEST = 60
 
 
 def check_lyapunov(
@@ -46,6 +54,7 @@ def check_lyapunov(
     from nrs_design.api import check_lyapunov as check
     from nrs_design.given.files import read_proposal
 
+    sys.set_int_max_str_digits(MAX_DIGITS)
     proposal = read_proposal(file)
     time = "discrete" if discrete else proposal.time
     wanted = proposal.rate if rate is None else rate
@@ -90,7 +99,10 @@ def _show(found: LyapunovCheck, time: str, modes: list[str], *, asked: bool) -> 
             f"HOLDS: x' P x is positive definite and, along {law}, decreases strictly in every "
             f"mode: {', '.join(modes)}"
         )
-        say(f"  {'the rate asked for' if asked else 'proved'}: {best}")
+        if best is None:
+            say("  The numbers are too large to look for its rate: ask for one with --rate.")
+        else:
+            say(f"  {'the rate asked for' if asked else 'proved'}: {best}")
         return
     say("DOES NOT HOLD: x' P x is no common Lyapunov function" + (" at this rate." * asked or "."))
     if found.counterexample is not None:
@@ -102,11 +114,19 @@ def _show(found: LyapunovCheck, time: str, modes: list[str], *, asked: bool) -> 
 
 
 def _show_counterexample(failing: Counterexample, time: str, *, asked: bool) -> None:
-    vector = ", ".join(map(str, failing.vector))
+    value, *vector = map(_number, (failing.value, *failing.vector))
     if failing.mode is None:
-        say(f"  P is not positive definite: x' P x = {failing.value}")
+        say(f"  P is not positive definite: x' P x = {value}")
     else:
         too_slowly = " at this rate" * asked
         say(f"  in mode {failing.mode} it does not decrease{too_slowly}:")
-        say(f"  {_CHANGE[time, asked]} = {failing.value}, which is not below zero,")
-    say(f"  at x = ({vector}), exactly")
+        say(f"  {_CHANGE[time, asked]} = {value}, which is not below zero,")
+    rounded = any(text.startswith("about") for text in (value, *vector))
+    say(f"  at x = ({', '.join(vector)}), {'rounded; --json has it' if rounded else 'exactly'}")
+
+
+def _number(number: Fraction) -> str:
+    from nrs_design.proof.bounds import nearly
+
+    text = str(number)
+    return text if len(text) <= LONGEST else nearly(number)

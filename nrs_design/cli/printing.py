@@ -30,6 +30,12 @@ def say(line: str = "", *, verdict: str = "") -> None:
     print(text.replace(word, painted(word, OF_VERDICT[verdict], sys.stdout), 1) if word else text)
 
 
+def say_failure(line: str, status: str) -> None:
+    """Print one line about what is not fulfilled; its status is coloured on a terminal."""
+    text, colour = wrapped(printable(line), sys.stdout), OF_VERDICT.get(status, "red")
+    print(text.replace(f"{status}:", f"{painted(status, colour, sys.stdout)}:", 1))
+
+
 def note(line: str, *, quiet: bool = False) -> None:
     """Print one line on stderr."""
     if not quiet:

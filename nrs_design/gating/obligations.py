@@ -205,6 +205,7 @@ def of_error(path: Path, error: NrsDesignError) -> Obligation:
     message = f"{error.location}: {error.message}" if elsewhere else error.message
     if error.remedy:
         message += f" ({error.remedy})"
+    message += error.more
     return Obligation(
         RULES[error.rule],
         path,

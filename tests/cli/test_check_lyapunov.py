@@ -66,3 +66,22 @@ def test_wrong_input(tmp_path):
     for rate in ("-1", "fast", "nan"):
         done = run("check-lyapunov", file, f"--rate={rate}", cwd=tmp_path)
         assert done.returncode == 2, done.stdout
+
+
+def test_large_numbers(tmp_path):
+    file = tmp_path / "a.npz"
+    np.savez(file, A=np.ones((40, 40)) / 3 - 40 * np.eye(40), P=np.eye(40) / 3 + 0.001)
+    done = run("check-lyapunov", file, "--rate", "1", cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    np.savez(file, A=np.ones((30, 30)) / 3 + np.diag(np.arange(30) / 7 - 40), P=-np.eye(30) / 3)
+    done = run("check-lyapunov", file, cwd=tmp_path)
+    assert done.returncode == 1, done.stderr
+    # A vector with integers of more than 4300 digits.
+    n = 24
+    long = [[f"{7 ** (90 - i - j)}.{3 ** (i * j % 9)}" for j in range(n)] for i in range(n)]
+    file = tmp_path / "a.json"
+    file.write_text(json.dumps({"A": [["-1" if i == j else "0" for j in range(n)]
+                                      for i in range(n)], "P": long}))  # fmt: skip
+    for option in ((), ("--json",)):
+        done = run("check-lyapunov", file, *option, cwd=tmp_path)
+        assert done.returncode == 1, done.stderr

@@ -1,5 +1,6 @@
 import json
 import os
+import re
 import subprocess
 import sys
 import xml.etree.ElementTree as ET
@@ -9,6 +10,7 @@ import pytest
 
 from nrs_design.cli import main
 from nrs_design.gating.rules import RULES
+from tests.terminal import run_on_terminal
 
 ROOT = Path(__file__).parents[2]
 PRINT_ERROR = ROOT / "docs/examples/thesis-print-error.nrs.yaml"
@@ -86,6 +88,35 @@ def test_as_typed(gate, tmp_path):
     assert "1 s" not in done.stdout.replace("1 spec", ""), "times belong on stderr"
     assert sorted(p.name for p in tmp_path.iterdir()) == ["nrs.lock", "reports", "specs"]
     assert [p.name for p in (tmp_path / "reports").iterdir()] == ["stable.cert.json"]
+
+
+def test_quiet_says_only_what_is_not_fulfilled(gate, capsys):
+    assert gate("specs", "--no-reports", "-q") == 0
+    assert capsys.readouterr() == ("", "")
+    assert gate(PRINT_ERROR, "--no-reports", "-q") == 1
+    out, err = capsys.readouterr()
+    assert err == ""
+    assert {line.split(": ")[1] for line in out.splitlines()} == {
+        "NRS101 refuted",
+        "NRS102 refuted",
+    }
+    assert gate("specs", "--locked", "-q", "--json") == 0
+    assert json.loads(capsys.readouterr().out)["passed"]
+
+
+def test_a_narrow_terminal(tmp_path):
+    shown, code = run_on_terminal(50, "gate", PRINT_ERROR, "--no-reports", cwd=tmp_path)
+    assert code == 1
+    assert "\x1b[1;31mrefuted\x1b[0m:" in shown
+    plain = re.sub("\x1b\\[[0-9;?]*[A-Za-z]", "", shown).splitlines()
+    assert any(line.split() == ["verdict", "refuted"] for line in plain)
+    assert max(len(line) for line in plain if "/" not in line) <= 50
+
+
+def test_the_number_of_further_faults_of_a_spec(gate, capsys):
+    Path("specs/broken.nrs.yaml").write_text(BROKEN.replace("switching", "swiching"))
+    assert gate("specs", "--no-reports") == 2
+    assert "; 1 more fault in this file" in capsys.readouterr().out
 
 
 def test_usage(gate):

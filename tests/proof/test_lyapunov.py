@@ -6,6 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from nrs_design.proof.exact import TooLargeError
 from nrs_design.proof.lyapunov import check_quadratic, indefinite_vector
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.system import Mode, Time
@@ -131,3 +132,21 @@ def test_the_verdict_comes_with_its_reason(A, P, time):
         assert found.counterexample.value >= 0
     if found.rate is not None:
         assert check_quadratic(modes(A), RationalMatrix.from_rows(P), time, found.rate).holds
+
+
+def test_what_is_too_large_is_not_decided():
+    n = 30
+    long = [[F(-n if i == j else 1, 3**300 + i) for j in range(n)] for i in range(n)]
+    P = matrix([[int(i == j) for j in range(n)] for i in range(n)])
+    with pytest.raises(TooLargeError, match="too large"):
+        check_quadratic([Mode("m", RationalMatrix.from_rows(long))], P, Time.CONTINUOUS)
+
+
+def test_a_large_function_holds_without_a_rate():
+    n = 40
+    A = [[F(-n if i == j else 1, 2**50) for j in range(n)] for i in range(n)]
+    P = matrix([[int(i == j) for j in range(n)] for i in range(n)])
+    mode = Mode("m", RationalMatrix.from_rows(A))
+    found = check_quadratic([mode] * 3, P, Time.CONTINUOUS)
+    assert (found.holds, found.rate) == (True, None)
+    assert check_quadratic([mode] * 3, P, Time.CONTINUOUS, F(1, 2**51)).rate == F(1, 2**51)

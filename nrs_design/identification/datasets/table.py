@@ -187,7 +187,15 @@ def _names(text: str, path: Path, line: int) -> list[str]:
             line=line,
             remedy="save the columns that are needed, under short names",
         )
-    names = [name.strip() for name in next(csv.reader([text]))]
+    try:
+        names = [name.strip() for name in next(csv.reader([text]))]
+    except csv.Error as error:
+        raise DataError(
+            f"has a header line that is no CSV ({error})",
+            path=path,
+            line=line,
+            remedy="save it with one header line and line ends of one kind",
+        ) from None
     if len(names) == 1:
         for separator, word in ((";", "semicolons"), ("\t", "tabs")):
             if separator in text:

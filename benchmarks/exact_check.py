@@ -1,4 +1,4 @@
-"""The exact check alone, as `certify` makes it, against leading minors in SymPy, SABBATH's method."""
+"""The exact check alone, as `certify` makes it, against leading minors in SymPy (SABBATH)."""
 
 from __future__ import annotations
 

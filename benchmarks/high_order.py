@@ -6,7 +6,7 @@ from benchmarks.families import stable_family, to_system
 from benchmarks.measure import Comparison, Finding, prove, time_side_by_side
 from benchmarks.peers import Solution, solve_all_at_once
 from nrs_design.certificates.certificate import Verdict
-from nrs_design.search.certify import Certification
+from nrs_design.search.certification import Certification
 
 N, M, DECIMALS = 20, 32, 3
 

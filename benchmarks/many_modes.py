@@ -5,7 +5,7 @@ from __future__ import annotations
 from benchmarks.families import stable_family, to_system
 from benchmarks.measure import Comparison, prove, time_side_by_side
 from benchmarks.peers import Solution, solve_all_at_once
-from nrs_design.search.certify import Certification
+from nrs_design.search.certification import Certification
 
 SIZES = ((6, 512), (6, 2048), (4, 1024))
 QUICK_SIZES = ((6, 512),)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from benchmarks.families import Matrices, crowded_family, narrow_family, to_system
 from benchmarks.measure import Comparison, prove, time_side_by_side
 from benchmarks.peers import Solution, gradient_ends_within, solve_all_at_once, solve_lazily
-from nrs_design.search.certify import Certification
+from nrs_design.search.certification import Certification
 
 N, M, SEED, DECIMALS = 12, 64, 7, 4
 # Both have t* = 0.01 or a little below.

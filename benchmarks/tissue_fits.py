@@ -16,7 +16,7 @@ from benchmarks.measure import Comparison
 from nrs_design.identification.datasets import Source, TissueRecord
 from nrs_design.identification.tissue.output_error import RecordFit, fit_record, rmse
 from nrs_design.identification.tissue.starts import box, scan
-from nrs_design.models.tissue import LAWS, AbstractTissueLaw, KelvinBoltzmann, Maxwell
+from nrs_design.models.contact import LAWS, AbstractContactLaw, KelvinBoltzmann, Maxwell
 from tests.identification.synthetic import CONCHA, pressing, tissue_record
 
 Array = NDArray[np.float64]
@@ -62,11 +62,11 @@ def _fit_all(record: TissueRecord) -> Sequence[RecordFit]:
     return [fit_record(kind, record) for kind in LAWS.values()]
 
 
-def _peer_all(record: TissueRecord) -> Sequence[AbstractTissueLaw]:
+def _peer_all(record: TissueRecord) -> Sequence[AbstractContactLaw]:
     return [_peer(kind, record) for kind in LAWS.values()]
 
 
-def _peer(kind: type[AbstractTissueLaw], record: TissueRecord) -> AbstractTissueLaw:
+def _peer(kind: type[AbstractContactLaw], record: TissueRecord) -> AbstractContactLaw:
     """Fit as one would by hand: one start (the best of ours), differences for the Jacobian."""
     start = min(scan(kind, record), key=lambda law: rmse(law, record))
     low, high = box(kind, record)
@@ -81,7 +81,7 @@ def _peer(kind: type[AbstractTissueLaw], record: TissueRecord) -> AbstractTissue
     return kind(*np.exp(found.x).tolist())
 
 
-def _simulate(law: AbstractTissueLaw, record: TissueRecord) -> Array:
+def _simulate(law: AbstractContactLaw, record: TissueRecord) -> Array:
     """Integrate the laws with memory; the others have a closed form, for the peer, too."""
     motion = record.motion
     if isinstance(law, Maxwell):

@@ -13,15 +13,22 @@ from nrs_design import pipeline
 from nrs_design.certificates.certificate import dump
 from nrs_design.certificates.verify import Verification
 from nrs_design.certificates.verify import verify as verify_file
-from nrs_design.errors import DesignError, NrsDesignError, OutputError
-from nrs_design.given.matrices import read_matrix, read_number, read_rows, time_of
+from nrs_design.errors import DesignError, NrsDesignError, OutputError, SpecError
+from nrs_design.given.matrices import (
+    exact_matrix,
+    read_matrix,
+    read_number,
+    read_rows,
+    time_of,
+)
 from nrs_design.given.system import spec_of_matrices
-from nrs_design.output import CERTIFICATE, write_output
+from nrs_design.output import CERTIFICATE, PAGE, write_output
 from nrs_design.ownership import check_certificate, origin_of
+from nrs_design.proof.exact import TooLargeError
 from nrs_design.proof.lyapunov import LyapunovCheck, check_quadratic
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.system import Mode
-from nrs_design.search.certify import Attempt, Limits, Method
+from nrs_design.search.certification import Attempt, Limits, Method
 from nrs_design.spec import LoadedSpec, read_spec
 
 if TYPE_CHECKING:
@@ -114,11 +121,11 @@ class Decision:
 
         page = render_html(self._page())
         if file is not None:
-            write_output(Path(file), page)
+            write_output(Path(file), page, replaces=PAGE)
         return page
 
     def save(self, folder: str | Path) -> Path:
-        """Write ``NAME.cert.json``, and ``NAME.nrs.yaml`` beside it if the spec is no file yet.
+        """Write ``NAME.cert.json``, and the spec beside it if no file holds it as it was decided.
 
         Returns
         -------
@@ -128,7 +135,8 @@ class Decision:
         Raises
         ------
         OutputError
-            If nothing was shown, so that there is no certificate, or a file cannot be written.
+            If nothing was shown, so that there is no certificate, or a file cannot be written, or
+            another spec stands in its place.
         """
         place, loaded = Path(folder), self.result.loaded
         if self.result.certificate is None:
@@ -138,12 +146,18 @@ class Decision:
                 remedy="search longer, with a larger budget or max_degree",
             )
         file, spec = place / f"{loaded.spec.name}.cert.json", loaded.path
-        if not spec.exists():
+        if not _holds(spec, loaded):
             spec = place / loaded.path.name
-            check_certificate(spec, file)
-            write_output(spec, loaded.text)
-        origin = origin_of(spec, file)
         check_certificate(spec, file)
+        if not spec.exists():
+            write_output(spec, loaded.text)
+        elif not _holds(spec, loaded):
+            raise OutputError(
+                "exists already and is another spec, so it is not overwritten",
+                path=spec,
+                remedy="choose another folder or another name",
+            )
+        origin = origin_of(spec, file)
         write_output(file, dump(self.result.certificate, origin), replaces=CERTIFICATE)
         return file
 
@@ -151,9 +165,9 @@ class Decision:
         from nrs_design.reporting import build_report
 
         evidence = None
-        if self.result.design is not None:
+        if self.result.designed is not None:
             try:
-                evidence = pipeline.run_evidence(self.result.loaded, self.result.design)
+                evidence = pipeline.run_evidence(self.result.designed)
             except DesignError:
                 # Where a nominal loop has no margins, the page has none.
                 evidence = None
@@ -193,7 +207,8 @@ class Study:
         DesignError
             If a requirement cannot be met within its bounds.
         """
-        return pipeline.run_design(self.loaded)
+        designed = pipeline.run_design(self.loaded)
+        return None if designed is None else designed.design
 
     def certify(
         self,
@@ -205,6 +220,11 @@ class Study:
     ) -> Decision:
         """Design, assemble and decide; see `certify` for the options.
 
+        Parameters
+        ----------
+        method, coordinates, budget, max_degree
+            As for `certify`; coordinates (for designs) are those of the spec by default.
+
         Raises
         ------
         DesignError, AssemblyError
@@ -212,7 +232,7 @@ class Study:
         """
         limits = _limits(budget, max_degree)
         result = pipeline.run_certification(
-            self.loaded, method=Method(method), coordinates=coordinates, limits=limits
+            self.loaded, method=_method(method), coordinates=coordinates, limits=limits
         )
         return Decision(result)
 
@@ -259,6 +279,7 @@ def certify(
     *,
     time: str | None = None,
     dwell_time: object = None,
+    longest_dwell_time: object = None,
     transitions: Sequence[tuple[str, str]] | None = None,
     resets: Mapping[tuple[str, str], object] | None = None,
     parameters: Mapping[str, object] | None = None,
@@ -278,12 +299,15 @@ def certify(
         mapping name the modes; otherwise they are m1, m2, ...
     time : {"continuous", "discrete"}, optional
         By default what the dt of the state spaces says, else continuous.
-    dwell_time : number or str, optional
-        Shortest time in a mode, in s, or a number of steps; by default, switching is arbitrary.
+    dwell_time : number or str, or mapping from str to these, optional
+        Shortest time in a mode, in s, or a number of steps: one for all modes, or by name. By
+        default, switching is arbitrary.
+    longest_dwell_time : number or str, or mapping from str to these, optional
+        Time by which a mode must be left, so that it may be unstable.
     transitions : sequence of (str, str), optional
         Allowed switches; by default all.
-    resets : mapping from (str, str) to matrix, optional
-        ``x+ = G x`` at these switches; others leave the state as it is.
+    resets : mapping from (str, str) to matrix or list of matrices, optional
+        ``x+ = G x`` at these switches, with any one of several G; others leave the state as it is.
     parameters : mapping from str to (low, high), optional
         Uncertain numbers that move at will in their ranges; entries of modes may then be texts that
         are affine in them, such as ``"-1 - k"``. A mapping with nominal, range and varies says
@@ -319,6 +343,7 @@ def certify(
         name=name,
         time=time,
         dwell_time=dwell_time,
+        longest_dwell_time=longest_dwell_time,
         transitions=transitions,
         resets=resets,
         parameters=parameters,
@@ -373,6 +398,10 @@ def check_lyapunov(
     alpha = None if rate is None else read_number(rate, "rate")
     try:
         return check_quadratic(exact, _symmetric_part(P), axis, alpha)
+    except TooLargeError as error:
+        raise NrsDesignError(
+            str(error), remedy="give fewer modes, or numbers with fewer digits"
+        ) from None
     except ValueError as error:
         raise NrsDesignError(str(error), remedy="correct the matrices or the rate") from None
 
@@ -409,9 +438,23 @@ def _symmetric_part(P: object) -> RationalMatrix:
         )
     n = len(rows)
     half = Fraction(1, 2)
-    return RationalMatrix.from_rows(
-        [[half * (rows[i][j] + rows[j][i]) for j in range(n)] for i in range(n)]
+    return exact_matrix(
+        [[half * (rows[i][j] + rows[j][i]) for j in range(n)] for i in range(n)], "P"
     )
+
+
+def _holds(path: Path, loaded: LoadedSpec) -> bool:
+    """Tell whether a file says what a spec says."""
+    try:
+        return read_spec(path).sha256 == loaded.sha256
+    except SpecError:
+        return False
+
+
+def _method(name: str) -> Method:
+    if name not in set(Method):
+        raise DesignError(f"there is no method {name!r}", remedy=f"one of {', '.join(Method)}")
+    return Method(name)
 
 
 def _limits(budget: float | None, max_degree: int | None) -> Limits:

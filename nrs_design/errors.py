@@ -78,10 +78,16 @@ class NrsDesignError(Exception):
         """Everything that is wrong, in file order."""
         return (Fault(self.message, self.line, self.column, self.remedy),)
 
+    @property
+    def more(self) -> str:
+        """How many faults there are beside the first, such as ``; 2 more faults in this file``."""
+        count = len(self.faults) - 1
+        return f"; {count} more fault{'s' * (count > 1)} in this file" if count else ""
+
     def __str__(self) -> str:
-        """One line: place, fault and remedy."""
+        """One line: place, fault and remedy of the first, and how many more there are."""
         text = f"{self.location}: {self.message}" if self.location else self.message
-        return f"{text} ({self.remedy})" if self.remedy else text
+        return (f"{text} ({self.remedy})" if self.remedy else text) + self.more
 
 
 class SpecError(NrsDesignError):
@@ -111,12 +117,6 @@ class SpecError(NrsDesignError):
     def faults(self) -> tuple[Fault, ...]:
         """Everything that is wrong, in file order."""
         return (*super().faults, *self._others)
-
-    def __str__(self) -> str:
-        """One line: place, fault and remedy of the first, and how many more there are."""
-        count = len(self._others)
-        more = f"; {count} more fault{'s' * (count > 1)} in this file" if count else ""
-        return super().__str__() + more
 
 
 class DesignError(NrsDesignError):

@@ -8,6 +8,9 @@ import stat
 from pathlib import Path
 from typing import BinaryIO
 
+# More values than any honest file holds; each takes some 100 bytes when it is parsed.
+MAX_JSON_VALUES = 1_000_000
+
 # Windows takes a file of one of these names, with any ending, for a device.
 DEVICES = frozenset(
     ["con", "prn", "aux", "nul", *(f"{port}{k}" for port in ("com", "lpt") for k in range(10))]
@@ -32,3 +35,16 @@ def open_regular(path: Path) -> BinaryIO:
         os.close(handle)
         raise OSError(errno.EINVAL, "it is not a regular file", str(path))
     return os.fdopen(handle, "rb")
+
+
+def read_json_text(content: bytes) -> str:
+    """Decode the text of a JSON file, and refuse what would take far more memory than its length.
+
+    Raises
+    ------
+    ValueError
+        If it is not UTF-8, or may hold more than a million values.
+    """
+    if sum(map(content.count, (b",", b"[", b"{"))) > MAX_JSON_VALUES:
+        raise ValueError(f"it holds more than {MAX_JSON_VALUES} values")
+    return content.decode("utf-8")

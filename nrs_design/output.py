@@ -14,11 +14,29 @@ CERTIFICATE = b'{\n  "schema": "nrs-design/certificate/'
 EXPORT = b'{\n  "schema": "nrs-design/export/'
 LOCK = b'{\n  "schema": "nrs-design/lock/'
 PAGE = b'<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta name="generator" content="nrs-design">\n'
+SCHEMA = (
+    b'{\n  "$schema": "http://json-schema.org/draft-07/schema#",\n  "title": "nrs-design spec",\n'
+)
+TABLE = b"theta4_deg,K1,K2,K3,"
+GATE = (
+    b"spec ",
+    b"::",
+    b'{\n  "schema": "nrs-design/gate/',
+    b'{\n  "$schema": "https://json.schemastore.org/sarif',
+    b'<?xml version="1.0" encoding="UTF-8"?>\n<testsuites ',
+)
+SVG = b"<?xml "
 PDF = b"%PDF-"
 PNG = b"\x89PNG"
 
 
-def write_output(path: Path, content: str | bytes, *, replaces: bytes = b"") -> None:
+# More than the longest of them.
+_LONGEST = 256
+
+Beginning = bytes | tuple[bytes, ...]
+
+
+def write_output(path: Path, content: str | bytes, *, replaces: Beginning = b"") -> None:
     """Write a file through a temporary one beside it, so that no half-written file is left.
 
     Parameters
@@ -27,8 +45,9 @@ def write_output(path: Path, content: str | bytes, *, replaces: bytes = b"") -> 
         Its folder is made if it does not exist.
     content : str or bytes
         Text is written as UTF-8.
-    replaces : bytes
-        How a file that is there already must begin for it to be replaced; any file by default.
+    replaces : bytes or tuple of bytes
+        How a file that is there already must begin for it to be replaced, or in which ways; any
+        file by default. An empty one may always be.
 
     Raises
     ------
@@ -76,8 +95,8 @@ def _refuse_links(path: Path) -> None:
             )
 
 
-def check_replaceable(path: Path, beginning: bytes) -> None:
-    """Refuse a place that holds something else than a file that begins so.
+def check_replaceable(path: Path, beginning: Beginning) -> None:
+    """Refuse a place that holds something else than a file that begins so, or in one of the ways.
 
     Raises
     ------
@@ -91,8 +110,8 @@ def check_replaceable(path: Path, beginning: bytes) -> None:
             "is a folder or a device, not a file", path=path, remedy="name another file"
         )
     with path.open("rb") as file:
-        found = file.read(len(beginning))
-    if found != beginning:
+        found = file.read(_LONGEST)
+    if found and not found.startswith(beginning):
         raise OutputError(
             "exists already and is no such file of nrs-design, so it is not overwritten",
             path=path,

@@ -46,7 +46,11 @@ def check_owner(spec: Path, name: str, folder: Path) -> None:
         what is there is no certificate at all.
     """
     check_certificate(spec, folder / f"{name}.cert.json")
-    page = folder / f"{name}.html"
+    check_page(spec, folder / f"{name}.html")
+
+
+def check_page(spec: Path, page: Path) -> None:
+    """Refuse to overwrite the page of another spec; see `check_owner`."""
     if page.is_file():
         with page.open("rb") as file:
             found = _PAGE_ORIGIN.match(file.read(8192))

@@ -11,20 +11,29 @@ from typing import TYPE_CHECKING
 
 from nrs_design import __version__
 from nrs_design.certificates.certificate import Certificate
+from nrs_design.certificates.verify import Verification, verify
 from nrs_design.controllers.controller_design import ControllerDesign
 from nrs_design.controllers.gains import gains_of
-from nrs_design.errors import DesignError, NrsDesignError
-from nrs_design.models.plant import build_plant
+from nrs_design.errors import AssemblyError, DesignError, NrsDesignError
+from nrs_design.models.plant import Plant, build_plant
 from nrs_design.proof.bounds import nearly
 from nrs_design.proof.system import SwitchedSystem, Time
-from nrs_design.spec import InteractionDesignSpec, LoadedSpec, RobotSpec, Spec, read_spec
-from nrs_design.switched.assemble import assemble, has_ranges
+from nrs_design.search.allowance import GIGABYTE
+from nrs_design.search.certification import Certification, Limits, Method
+from nrs_design.search.margin import BoxMargin, DwellMargin, find_margin, find_shortest_dwell
+from nrs_design.spec import (
+    InteractionDesignSpec,
+    LoadedSpec,
+    RobotSpec,
+    Spec,
+    SwitchedSystemSpec,
+    read_spec,
+)
+from nrs_design.switched.assemble import assemble, assemble_matrices, has_ranges
 
 if TYPE_CHECKING:
     from nrs_design.design.evidence import DesignEvidence
     from nrs_design.models.robot import Robot
-    from nrs_design.search.certify import Certification, Limits, Method
-    from nrs_design.search.margin import BoxMargin, DwellMargin
 
 Progress = Callable[[str], None]
 
@@ -37,6 +46,28 @@ def _silent(step: str) -> None:
 
 
 @dataclass(frozen=True)
+class Designed:
+    """An interaction design with all that follows from its spec alone.
+
+    Parameters
+    ----------
+    loaded : LoadedSpec
+        The spec and where it came from.
+    spec : InteractionDesignSpec
+        What it says.
+    plant : Plant
+        That it describes; the later stages take this one.
+    design : ControllerDesign
+        The gains that ship.
+    """
+
+    loaded: LoadedSpec
+    spec: InteractionDesignSpec
+    plant: Plant
+    design: ControllerDesign
+
+
+@dataclass(frozen=True)
 class Result:
     """One spec, all the way through.
 
@@ -44,8 +75,8 @@ class Result:
     ----------
     loaded : LoadedSpec
         The spec and where it came from.
-    design : ControllerDesign or None
-        The gains that ship; None for given matrices.
+    designed : Designed or None
+        The plant and the gains that ship; None for given matrices.
     coordinates : str or None
         Of the assembled modes; None for given matrices.
     certification : Certification
@@ -55,10 +86,15 @@ class Result:
     """
 
     loaded: LoadedSpec
-    design: ControllerDesign | None
+    designed: Designed | None
     coordinates: str | None
     certification: Certification
     certificate: Certificate | None
+
+    @property
+    def design(self) -> ControllerDesign | None:
+        """The gains that ship; None for given matrices."""
+        return None if self.designed is None else self.designed.design
 
 
 @contextmanager
@@ -98,15 +134,25 @@ def run_robot(path: Path) -> tuple[LoadedSpec, RobotSpec, Robot]:
 
 
 def wrong_kind(loaded: LoadedSpec, message: str, remedy: str) -> DesignError:
-    """Return the error that a command raises about a kind of spec that it is not for."""
+    """Return the error that a command raises about a kind of spec that it is not for.
+
+    Parameters
+    ----------
+    loaded : LoadedSpec
+        The spec.
+    message : str
+        What is wrong.
+    remedy : str
+        What to do about it.
+    """
     place = loaded.place("kind")
     return DesignError(
         message, path=loaded.path, line=place.line, column=place.column, remedy=remedy
     )
 
 
-def run_design(loaded: LoadedSpec) -> ControllerDesign | None:
-    """Design the controllers of a spec; None for given matrices.
+def run_design(loaded: LoadedSpec) -> Designed | None:
+    """Build the plant of a spec and design its controllers; None for given matrices.
 
     Raises
     ------
@@ -119,28 +165,28 @@ def run_design(loaded: LoadedSpec) -> ControllerDesign | None:
             "a robot spec has no controllers that are switched, so there is nothing to certify",
             "use `nrs-design robot check SPEC`, or a spec of kind interaction-design",
         )
-    if not isinstance(loaded.spec, InteractionDesignSpec):
+    spec = loaded.spec
+    if not isinstance(spec, InteractionDesignSpec):
         return None
     from nrs_design.design.design import design_controllers
 
     with placed(loaded):
-        return design_controllers(loaded.spec, build_plant(loaded.spec))
+        plant = build_plant(spec)
+        return Designed(loaded, spec, plant, design_controllers(spec, plant))
 
 
-def run_evidence(loaded: LoadedSpec, design: ControllerDesign) -> DesignEvidence:
+def run_evidence(designed: Designed) -> DesignEvidence:
     """Compute what a design achieves.
 
     Raises
     ------
-    TypeError
-        If the spec gives matrices, so that there is no design.
+    DesignError
+        If a nominal loop is unstable, so that it has no margins.
     """
     from nrs_design.design.evidence import examine_design
 
-    if not isinstance(loaded.spec, InteractionDesignSpec):
-        raise TypeError("given matrices have no design")
-    with placed(loaded):
-        return examine_design(loaded.spec, build_plant(loaded.spec), design)
+    with placed(designed.loaded):
+        return examine_design(designed.spec, designed.plant, designed.design)
 
 
 @dataclass(frozen=True, slots=True)
@@ -163,10 +209,17 @@ class Overrides:
 
 
 def limits_of(spec: Spec, overrides: Overrides | None = None, optimize_rate: bool = True) -> Limits:
-    """Return how far the search goes: by default, as the spec says, or as a command sets it."""
-    from nrs_design.search.allowance import GIGABYTE
-    from nrs_design.search.certify import Limits
+    """Return how far the search goes: by default, as the spec says, or as a command sets it.
 
+    Parameters
+    ----------
+    spec : Spec
+        Whose `certification` section counts.
+    overrides : Overrides, optional
+        What a command sets instead.
+    optimize_rate : bool
+        Look for the largest provable decay rate, not only for some.
+    """
     limits, asked = Limits(optimize_rate=optimize_rate), overrides or Overrides()
     declared = None if isinstance(spec, RobotSpec) else spec.certification
     if declared is not None and declared.max_degree is not None:
@@ -185,7 +238,7 @@ def limits_of(spec: Spec, overrides: Overrides | None = None, optimize_rate: boo
 def run_certification(
     loaded: LoadedSpec,
     *,
-    method: Method | None = None,
+    method: Method = Method.AUTO,
     coordinates: str | None = None,
     limits: Limits | None = None,
     progress: Progress = _silent,
@@ -196,8 +249,8 @@ def run_certification(
     ----------
     loaded : LoadedSpec
         As `nrs_design.spec.read_spec` gives it.
-    method : Method, optional
-        Search method; all of them in turn by default.
+    method : Method
+        One rung of the search, or all of them in turn.
     coordinates : {"deflection", "force"}, optional
         Overrides what the spec says.
     limits : Limits, optional
@@ -210,24 +263,21 @@ def run_certification(
     DesignError, AssemblyError
         If the spec has no design, or its modes make no switched system.
     """
-    from nrs_design.search.certify import Method as Methods
     from nrs_design.search.certify import certify
 
     progress("design")
-    design = run_design(loaded)
-    if isinstance(loaded.spec, InteractionDesignSpec):
-        coordinates = coordinates or loaded.spec.coordinates
-    gains = gains_of(design) if design else {}
+    designed = run_design(loaded)
+    if designed is not None:
+        coordinates = coordinates or designed.spec.coordinates
     with placed(loaded):
-        system = assemble(loaded.spec, gains, coordinates)
-    limits = limits or limits_of(loaded.spec)
-    certification = certify(system, method or Methods.AUTO, limits, progress)
+        system = _assemble(loaded, designed, coordinates)
+    certification = certify(system, method, limits or limits_of(loaded.spec), progress)
     certificate = (
         Certificate(
             spec_name=loaded.spec.name,
             spec_sha256=loaded.sha256,
             coordinates=coordinates,
-            gains=gains,
+            gains=gains_of(designed.design) if designed else {},
             system=system,
             statements=certification.statements,
             version=__version__,
@@ -235,7 +285,35 @@ def run_certification(
         if certification.statements
         else None
     )
-    return Result(loaded, design, coordinates, certification, certificate)
+    return Result(loaded, designed, coordinates, certification, certificate)
+
+
+def _assemble(
+    loaded: LoadedSpec,
+    designed: Designed | None,
+    coordinates: str | None,
+    scale: Fraction = Fraction(1),
+) -> SwitchedSystem:
+    """Assemble either kind of spec, with its ranges stretched by a scale."""
+    if designed is not None:
+        return assemble(designed.spec, designed.plant, designed.design, coordinates, scale)
+    # A robot has no design either, but no way here.
+    assert isinstance(loaded.spec, SwitchedSystemSpec)
+    if coordinates is not None:
+        raise AssemblyError("given matrices have neither gains nor coordinates")
+    return assemble_matrices(loaded.spec, scale)
+
+
+def run_verification(file: Path, result: Result) -> Verification:
+    """Re-check a certificate file against the spec of a result, whose plant is in hand.
+
+    Raises
+    ------
+    CertificateError
+        If the file cannot be read as a certificate at all.
+    """
+    plant = None if result.designed is None else result.designed.plant
+    return verify(file, result.loaded, plant=plant)
 
 
 def run_margin(
@@ -258,7 +336,6 @@ def run_margin(
         If the spec declares no range.
     """
     from nrs_design.search.certify import certify
-    from nrs_design.search.margin import find_margin
 
     spec = result.loaded.spec
     if not has_ranges(spec):
@@ -269,13 +346,12 @@ def run_margin(
                 remedy="give an environment or a parameter a range",
                 at=(given,),
             )
-    gains = gains_of(result.design) if result.design else {}
     limits = limits or limits_of(result.loaded.spec)
     quick = replace(limits, optimize_rate=False, budget=min(limits.budget, MARGIN_BUDGET))
 
     def assemble_at(scale: Fraction) -> SwitchedSystem:
         progress(f"box scaled by {nearly(scale)}")
-        return assemble(spec, gains, result.coordinates, scale)
+        return _assemble(result.loaded, result.designed, result.coordinates, scale)
 
     return find_margin(
         assemble_at, lambda system: certify(system, limits=quick), result.certification
@@ -303,7 +379,6 @@ def run_shortest_dwell(
         longest dwell times, which would bound the shortest one.
     """
     from nrs_design.search.certify import certify
-    from nrs_design.search.margin import find_shortest_dwell
 
     known = result.certification
     system = known.system

@@ -27,12 +27,28 @@ def printable(text: object) -> str:
     text : object
         A text, or what ``str`` makes one of: a path, an error.
     """
-    raw = str(text)
-    if not raw.isprintable():
-        raw = "".join(c if c.isprintable() else _escape(c) for c in raw)
-    if not raw.isascii():
-        raw = _STRANGE.sub(lambda found: _escape(found[0]), raw)
-    return _COMMAND.sub(lambda found: found[0][:-1] + _hex(found[0][-1]), raw)
+    return _COMMAND.sub(lambda found: found[0][:-1] + _hex(found[0][-1]), _shown(str(text)))
+
+
+def visible(text: str) -> str:
+    r"""Write a text for a page or a figure, where line breaks are spaces and no server listens.
+
+    What has no shape of its own appears as an escape, such as ``\u202e``.
+    """
+    return _shown(" ".join(text.splitlines()) if "\n" in text or "\r" in text else text)
+
+
+def escaped(character: str) -> str:
+    r"""Write a character as Python does in a string, such as ``\x1b``."""
+    return character.encode("unicode_escape").decode()
+
+
+def _shown(text: str) -> str:
+    if not text.isprintable():
+        text = "".join(c if c.isprintable() else escaped(c) for c in text)
+    if not text.isascii():
+        text = _STRANGE.sub(lambda found: escaped(found[0]), text)
+    return text
 
 
 def json_text(document: object, **options: Any) -> str:
@@ -47,10 +63,6 @@ def json_text(document: object, **options: Any) -> str:
     """
     text = json.dumps(document, indent=2, ensure_ascii=True, **options)
     return text.replace("\x7f", "\\u007f").replace("##[", "#\\u0023[")
-
-
-def _escape(character: str) -> str:
-    return character.encode("unicode_escape").decode()
 
 
 def _hex(character: str) -> str:

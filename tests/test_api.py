@@ -77,6 +77,28 @@ def test_resets_and_parameters():
     assert nrs.certify([[["-1 - k"]]], parameters={"k": nominal}).verdict == "proved"
 
 
+def test_stays_of_single_modes():
+    """An unstable mode that is left in time, and a stable one that lasts: exp(0.5 - 1) < 1."""
+    modes = {"up": [[1]], "down": [[-1]]}
+    rules = {"longest_dwell_time": {"up": "0.5 s"}, "dwell_time": {"down": 1}}
+    assert nrs.certify(modes, **rules).verdict == "proved"
+    assert nrs.certify(modes, **(rules | {"dwell_time": {"down": 0.25}})).verdict == "refuted"
+
+
+def test_several_resets_between_two_modes():
+    """Either of them may happen, so the growing one decides."""
+    modes, small, large = [[[-1]], [[-2]]], np.array([[0.5]]), [[3]]
+    both = {("m1", "m2"): [small, large], ("m2", "m1"): [[1]]}
+    assert nrs.certify(modes, resets=both | {("m1", "m2"): small}).verdict == "proved"
+    for maps in ([small, large], (large, small), [[["0.5"]], large]):
+        assert nrs.certify(modes, resets=both | {("m1", "m2"): maps}).verdict == "refuted"
+
+
+def test_names_may_be_numbers():
+    rules = {"dwell_time": {1: 2}, "transitions": [(1, 2)], "resets": {(1, 2): [[3]]}}
+    assert nrs.certify({1: [[-1]], 2: [[-2]]}, **rules).verdict == "proved"
+
+
 def test_save_and_verify(tmp_path):
     file = nrs.certify(pair(6), name="pair").save(tmp_path)
     assert file == tmp_path / "pair.cert.json"
@@ -84,6 +106,35 @@ def test_save_and_verify(tmp_path):
     other = nrs.certify(pair(5), name="pair")
     other.save(tmp_path / "other")
     assert nrs.verify(file, tmp_path / "other" / "pair.nrs.yaml").fault is not None
+
+
+def test_unknown_method():
+    with pytest.raises(DesignError, match="no method 'foo'"):
+        nrs.certify(pair(6), method="foo")
+
+
+def test_saving_overwrites_no_other_spec(tmp_path, monkeypatch):
+    """Neither where the files go, nor in the working folder, where one has the same name."""
+    spec, place = tmp_path / "pair.nrs.yaml", tmp_path / "place"
+    text = (ROOT / "specs/examples/commuting.nrs.yaml").read_text().replace("commuting", "pair")
+    spec.write_text(text)
+    decision = nrs.certify(pair(6), name="pair")
+    with pytest.raises(OutputError, match="is another spec"):
+        decision.save(tmp_path)
+    assert spec.read_text() == text
+    assert not (tmp_path / "pair.cert.json").exists()
+    monkeypatch.chdir(tmp_path)
+    assert nrs.verify(decision.save(place), place / "pair.nrs.yaml").fault is None
+    decision.save(place)
+    assert spec.read_text() == text
+
+
+def test_a_page_overwrites_pages_only(tmp_path):
+    other = tmp_path / "thesis.html"
+    other.write_text("mine")
+    with pytest.raises(OutputError, match="not overwritten"):
+        nrs.certify(pair(5)).report(other)
+    assert other.read_text() == "mine"
 
 
 def test_nothing_shown_is_not_saved(tmp_path):

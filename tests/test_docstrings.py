@@ -65,5 +65,23 @@ def test_parameters_that_are_described_exist(name):
         assert names <= known, f"{name}.{what} describes {names - known}"
 
 
+def is_command(name, what):
+    """A command of the same name as its module: its options carry their help."""
+    return name.startswith("nrs_design.cli.") and name.rpartition(".")[2] == what
+
+
+def test_three_parameters_or_more_are_described():
+    silent = [
+        f"{name}.{what}"
+        for name in MODULES
+        for what, thing in public(importlib.import_module(name))
+        if inspect.isfunction(thing)
+        and not is_command(name, what)
+        and len(inspect.signature(thing).parameters.keys() - {"self", "cls"}) >= 3
+        and not re.search(r"^Parameters\n-+\n", inspect.getdoc(thing) or "", re.MULTILINE)
+    ]
+    assert not silent
+
+
 def test_walk_reaches_the_core():
     assert {"nrs_design.proof.exact", "nrs_design.cli.app", "nrs_design.spec.load"} <= set(MODULES)

@@ -5,7 +5,8 @@ from pathlib import Path
 import pytest
 
 from nrs_design.errors import OutputError
-from nrs_design.output import CERTIFICATE, PAGE, PDF, PNG, write_output
+from nrs_design.output import CERTIFICATE, GATE, PAGE, PDF, PNG, SCHEMA, write_output
+from nrs_design.spec.schema import schema_text
 
 
 @pytest.mark.parametrize(
@@ -58,7 +59,9 @@ def test_a_working_folder_behind_a_link_is_the_users_own_choice(tmp_path, monkey
         (CERTIFICATE, '{\n  "schema": "nrs-design/certificate/9"', '{"schema": "other"}'),
         (PAGE, f"{PAGE.decode()}<title>", "<!DOCTYPE html>\n<html>"),
         (PDF, "%PDF-1.4", "kind: switched-system"),
-        (PNG, b"\x89PNG\r\n", ""),
+        (PNG, b"\x89PNG\r\n", "\x89PN"),
+        (GATE, '{\n  "schema": "nrs-design/gate/1"', '{\n  "schema": "nrs-design/lock/1"'),
+        (SCHEMA, schema_text(), "kind: switched-system"),
     ],
 )
 def test_only_a_file_of_its_kind_is_replaced(tmp_path, kind, ours, foreign):
@@ -69,6 +72,13 @@ def test_only_a_file_of_its_kind_is_replaced(tmp_path, kind, ours, foreign):
     with pytest.raises(OutputError, match="not overwritten"):
         write_output(path, ours, replaces=kind)
     assert path.read_text() == foreign
+
+
+def test_an_empty_file_holds_nothing_that_could_be_lost(tmp_path):
+    path = tmp_path / "out"
+    path.touch()
+    write_output(path, "::error", replaces=GATE)
+    assert path.read_text() == "::error"
 
 
 @pytest.mark.parametrize("target", ["there", "nowhere"])

@@ -1,7 +1,13 @@
+import importlib
+import re
+from collections import Counter
+from dataclasses import replace
+
 import pytest
 
 from nrs_design import __version__
 from nrs_design.errors import AssemblyError
+from nrs_design.gating.run import Files, run_gate
 from nrs_design.pipeline import run_certification, run_design, run_evidence
 from nrs_design.search.certify import Limits, Method, Verdict
 from nrs_design.spec import read_spec
@@ -11,6 +17,7 @@ from tests.support import (
     HARD,
     PRINT_ERROR,
     ROBOT,
+    ROOT,
     SOFT_TISSUE,
     holds,
     write_spec,
@@ -43,8 +50,73 @@ def test_given_matrices_have_no_design():
     assert run_design(loaded) is None
     result = run_certification(loaded)
     assert (result.design, result.coordinates, result.certificate.gains) == (None, None, {})
-    with pytest.raises(TypeError, match="no design"):
-        run_evidence(loaded, run_design(read_spec(SOFT_TISSUE)))
+
+
+def calls_of(monkeypatch, **functions):
+    """Count calls of functions of modules, named by where they are looked up."""
+    calls = Counter()
+    for name, places in functions.items():
+        for place in places:
+            module = importlib.import_module(f"nrs_design.{place}")
+            monkeypatch.setattr(module, name, counting(calls, name, getattr(module, name)))
+    return calls
+
+
+def counting(calls, name, function):
+    def counted(*arguments, **options):
+        calls[name] += 1
+        return function(*arguments, **options)
+
+    return counted
+
+
+@pytest.mark.parametrize("html", [False, True])
+def test_a_gated_spec_is_built_once_and_optimized_once(tmp_path, monkeypatch, html):
+    calls = calls_of(
+        monkeypatch,
+        build_plant=("pipeline", "switched.assemble"),
+        optimize_impedance=("design.constrained", "design.evidence"),
+        design_controllers=("design.design",),
+    )
+    outcome = run_gate([SOFT_TISSUE], Files(tmp_path, html=html))
+    assert outcome.severity == 0
+    # One plant, and one optimum for each of the two controllers.
+    assert calls == {"build_plant": 1, "design_controllers": 1, "optimize_impedance": 2}
+
+
+def test_functions_are_counted_wherever_they_are_used():
+    """The count above looks into every module that could build a plant or optimize."""
+    for name, places in (
+        ("build_plant", {"pipeline", "switched/assemble", "models/plant"}),
+        ("optimize_impedance", {"design/constrained", "design/evidence", "design/impedance"}),
+    ):
+        package = ROOT / "nrs_design"
+        using = {
+            path.relative_to(package).with_suffix("").as_posix()
+            for path in package.rglob("*.py")
+            if f"{name}(" in path.read_text(encoding="utf-8")
+        }
+        assert {item for item in using if not item.startswith("reproduction/")} == places
+
+
+def test_the_design_keeps_the_optimum_it_found():
+    designed = run_design(read_spec(SOFT_TISSUE))
+    found = run_evidence(designed).impedance
+    for controller, item in zip(designed.design.controllers, found, strict=True):
+        assert item.optimum is controller.optimum
+        assert item.optimum.Bt == pytest.approx(item.Bt, rel=5e-3)
+        # What runs on the robot is the same, wherever the gains come from.
+        assert controller == replace(controller, optimum=None)
+
+
+def test_gains_that_are_given_have_no_optimum_to_keep(tmp_path):
+    text = re.sub("Mt: {.*}", "Mt: 0.01 kg*m^2", SOFT_TISSUE.read_text())
+    path = tmp_path / "fixed.nrs.yaml"
+    path.write_text(re.sub("Bt: {.*}", "Bt: 2.5 N*m*s/rad", text))
+    designed = run_design(read_spec(path))
+    assert [controller.optimum for controller in designed.design.controllers] == [None, None]
+    for item in run_evidence(designed).impedance:
+        assert (item.optimum.Mt, item.optimum.Bt) == (0.01, 2.5)
 
 
 def test_no_certificate_without_a_statement(tmp_path):

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from nrs_design.printable import json_text, printable
+from nrs_design.printable import json_text, printable, visible
 
 DECEPTIVE = {
     "newline": "\n",
@@ -61,6 +61,24 @@ def test_what_is_shown_is_one_line_and_shown_again_the_same(text):
     shown = printable(text)
     assert shown.isprintable()
     assert printable(shown) == shown
+
+
+@pytest.mark.parametrize(
+    ("text", "shown"),
+    [
+        ("mode a/b", "mode a/b"),
+        ("a\nb\r\nc", "a b c"),
+        ("a\u202eb", "a\\u202eb"),
+        ("\x1b[31m", "\\x1b[31m"),
+        ("\udcff.csv", "\\udcff.csv"),
+        ("\u3164", "\\u3164"),
+        ("::error::x", "::error::x"),
+        ("שלום", "שלום"),
+        ("中", "中"),
+    ],
+)
+def test_visible_shows_what_has_no_shape(text, shown):
+    assert visible(text) == shown
 
 
 def test_paths_and_errors_are_texts():

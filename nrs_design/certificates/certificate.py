@@ -9,13 +9,7 @@ from dataclasses import dataclass
 from enum import StrEnum
 from typing import Any
 
-from nrs_design.proof.evidence import (
-    AbstractEvidence,
-    BlockTriangular,
-    CommonQuadratic,
-    Shows,
-    UnstableMode,
-)
+from nrs_design.proof.evidence import AbstractEvidence, Shows
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.proof.system_fields import system_fields
 
@@ -115,14 +109,11 @@ def common_quadratic_of(
 ) -> CommonQuadraticStatus:
     """Return what checked statements say about a common quadratic function."""
     for item in statements:
-        parts = [part for _, part in item.parts] if isinstance(item, BlockTriangular) else [item]
-        if all(isinstance(part, CommonQuadratic) for part in parts):
+        if item.is_common_quadratic:
             return CommonQuadraticStatus.EXISTS
         # Where no reset moves the state, such a function would prove stability.
         unstable = item.shows is Shows.INSTABILITY and not system.switching.resets
-        if item.shows is Shows.NO_COMMON_QUADRATIC or unstable:
-            return CommonQuadraticStatus.IMPOSSIBLE
-        if any(isinstance(part, UnstableMode) for part in parts):
+        if item.shows is Shows.NO_COMMON_QUADRATIC or unstable or item.names_unstable_mode:
             return CommonQuadraticStatus.IMPOSSIBLE
     return CommonQuadraticStatus.UNKNOWN
 

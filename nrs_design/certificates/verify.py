@@ -24,19 +24,23 @@ from nrs_design.certificates.prove import (
     read_gains,
 )
 from nrs_design.errors import CertificateError
-from nrs_design.files import open_regular
+from nrs_design.files import open_regular, read_json_text
+from nrs_design.models.plant import Plant
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.proof.text import quoted
 from nrs_design.spec import LoadedSpec
-from nrs_design.switched.assemble import assemble
+from nrs_design.switched.assemble import assemble_from_text
 
 __all__ = ["Verification", "prove", "read_document", "verify", "verify_document"]
 
-MAX_BYTES = 256 * 2**20
+MAX_BYTES = 32 * 2**20
 
 
 def verify(
-    path: Path, spec: LoadedSpec | None = None, coordinates: str | None = None
+    path: Path,
+    spec: LoadedSpec | None = None,
+    coordinates: str | None = None,
+    plant: Plant | None = None,
 ) -> Verification:
     """Re-check a certificate file, and whether it belongs to a spec.
 
@@ -49,6 +53,8 @@ def verify(
         certificate, whosever they are.
     coordinates : {"deflection", "force"}, optional
         That the certificate must be about; those of the spec by default.
+    plant : Plant, optional
+        Built from this very spec, where it is in hand; by default it is built here.
 
     Raises
     ------
@@ -57,24 +63,38 @@ def verify(
     InternalError
         If flint disagrees with what has been accepted.
     """
-    return verify_document(read_document(path), spec, coordinates)
+    return verify_document(read_document(path), spec, coordinates, plant)
 
 
 def verify_document(
-    document: Mapping[str, Any], spec: LoadedSpec | None = None, coordinates: str | None = None
+    document: Mapping[str, Any],
+    spec: LoadedSpec | None = None,
+    coordinates: str | None = None,
+    plant: Plant | None = None,
 ) -> Verification:
-    """Re-check a parsed certificate; see `verify`."""
+    """Re-check a parsed certificate.
+
+    Parameters
+    ----------
+    document : mapping
+        As `read_document` gives it.
+    spec, coordinates, plant
+        As for `verify`.
+    """
     if spec is None:
         return prove(document)
-    return confirmed(lambda: _verify(document, spec, coordinates))
+    return confirmed(lambda: _verify(document, spec, coordinates, plant))
 
 
-def _verify(document: Mapping[str, Any], spec: LoadedSpec, coordinates: str | None) -> Verification:
+def _verify(
+    document: Mapping[str, Any], spec: LoadedSpec, coordinates: str | None, plant: Plant | None
+) -> Verification:
     if (altered := find_altered(document)) is not None:
         return altered
     if (foreign := _find_foreign(document, spec, coordinates)) is not None:
         return Verification(None, foreign)
-    system = assemble(spec.spec, read_gains(document), document["coordinates"])
+    gains = read_gains(document)
+    system = assemble_from_text(spec.spec, gains, document["coordinates"], plant=plant)
     if document["schema"] != FORMER:
         held = held_system(document)
         for field in fields(SwitchedSystem):
@@ -93,7 +113,7 @@ def read_document(path: Path) -> dict[str, Any]:
     """
     try:
         document = json.loads(
-            _read_bytes(path).decode("utf-8"),
+            read_json_text(_read_bytes(path)),
             parse_float=_no_float,
             parse_constant=_no_float,
             object_pairs_hook=_unique,

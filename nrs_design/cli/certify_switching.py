@@ -89,7 +89,7 @@ def certify_switching(
         run_margin,
         run_shortest_dwell,
     )
-    from nrs_design.search.certify import Method
+    from nrs_design.search.certification import Method
     from nrs_design.spec import read_spec
 
     loaded = read_spec(spec)

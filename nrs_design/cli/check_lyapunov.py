@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -12,7 +13,22 @@ from nrs_design.cli.options import Json
 from nrs_design.cli.printing import print_json, say
 
 if TYPE_CHECKING:
-    from nrs_design.proof.lyapunov import LyapunovCheck
+    from fractions import Fraction
+
+    from nrs_design.proof.lyapunov import Counterexample, LyapunovCheck
+
+# What must be negative, by time and whether a rate is asked for.
+_CHANGE = {
+    ("continuous", False): "x' (A'P + PA) x",
+    ("continuous", True): "x' (A'P + PA + 2 alpha P) x",
+    ("discrete", False): "x' (A'PA - P) x",
+    ("discrete", True): "x' (A'PA - rho^2 P) x",
+}
+
+# Of the integers in a vector that shows a failure; Python writes 4300 unless told.
+MAX_DIGITS = 200_000
+# A longer number is shown rounded, except in JSON.
+LONGEST = 60
 
 
 def check_lyapunov(
@@ -38,22 +54,27 @@ def check_lyapunov(
     from nrs_design.api import check_lyapunov as check
     from nrs_design.given.files import read_proposal
 
+    sys.set_int_max_str_digits(MAX_DIGITS)
     proposal = read_proposal(file)
     time = "discrete" if discrete else proposal.time
     wanted = proposal.rate if rate is None else rate
     found = check(proposal.modes, proposal.P, wanted, time=time)
     if as_json:
-        print_json("check-lyapunov", _document(file, found, time or "continuous", wanted))
+        document = _document(file, found, time or "continuous", list(proposal.modes), wanted)
+        print_json("check-lyapunov", document)
     else:
-        _show(found, time or "continuous", asked=wanted is not None)
+        _show(found, time or "continuous", list(proposal.modes), asked=wanted is not None)
     raise typer.Exit(exit_codes.PROVED if found.holds else exit_codes.REFUTED)
 
 
-def _document(file: Path, found: LyapunovCheck, time: str, asked: object) -> dict[str, Any]:
+def _document(
+    file: Path, found: LyapunovCheck, time: str, modes: list[str], asked: object
+) -> dict[str, Any]:
     failing = found.counterexample
     return {
         "file": str(file),
         "time": time,
+        "modes": modes,
         "holds": found.holds,
         "weak": found.weak,
         "rate_asked": None if asked is None else str(asked),
@@ -67,27 +88,45 @@ def _document(file: Path, found: LyapunovCheck, time: str, asked: object) -> dic
     }
 
 
-def _show(found: LyapunovCheck, time: str, *, asked: bool) -> None:
-    from nrs_design.proof.evidence.fields import rate_text
+def _show(found: LyapunovCheck, time: str, modes: list[str], *, asked: bool) -> None:
+    from nrs_design.proof.evidence.fields import rate_words
     from nrs_design.proof.system import Time
 
-    if found.holds and found.rate is not None:
-        word, unit = ("alpha", " 1/s") if time == "continuous" else ("rho", " per step")
-        say("HOLDS: x' P x is positive definite and decreases strictly in every mode.")
-        kind = "the rate asked for" if asked else "proved"
-        say(f"  {kind}: {word} = {rate_text(found.rate, Time(time))}{unit}")
+    law = "x' = A x" if time == "continuous" else "x+ = A x"
+    best = None if found.rate is None else rate_words(found.rate, Time(time))
+    if found.holds:
+        say(
+            f"HOLDS: x' P x is positive definite and, along {law}, decreases strictly in every "
+            f"mode: {', '.join(modes)}"
+        )
+        if best is None:
+            say("  The numbers are too large to look for its rate: ask for one with --rate.")
+        else:
+            say(f"  {'the rate asked for' if asked else 'proved'}: {best}")
         return
     say("DOES NOT HOLD: x' P x is no common Lyapunov function" + (" at this rate." * asked or "."))
     if found.counterexample is not None:
-        _show_counterexample(found.counterexample)
-    if found.weak:
+        _show_counterexample(found.counterexample, time, asked=asked)
+    if best is not None:
+        say(f"  Along {law} it decreases strictly in every mode, proved at {best} only.")
+    elif found.weak:
         say("  It increases in no mode, which shows stability but no decay.")
 
 
-def _show_counterexample(failing: Any) -> None:
-    vector = ", ".join(map(str, failing.vector))
+def _show_counterexample(failing: Counterexample, time: str, *, asked: bool) -> None:
+    value, *vector = map(_number, (failing.value, *failing.vector))
     if failing.mode is None:
-        say(f"  P is not positive definite: x' P x = {failing.value}")
+        say(f"  P is not positive definite: x' P x = {value}")
     else:
-        say(f"  in mode {failing.mode} it does not decrease: its change is {failing.value}")
-    say(f"  at x = ({vector}), exactly")
+        too_slowly = " at this rate" * asked
+        say(f"  in mode {failing.mode} it does not decrease{too_slowly}:")
+        say(f"  {_CHANGE[time, asked]} = {value}, which is not below zero,")
+    rounded = any(text.startswith("about") for text in (value, *vector))
+    say(f"  at x = ({', '.join(vector)}), {'rounded; --json has it' if rounded else 'exactly'}")
+
+
+def _number(number: Fraction) -> str:
+    from nrs_design.proof.bounds import nearly
+
+    text = str(number)
+    return text if len(text) <= LONGEST else nearly(number)

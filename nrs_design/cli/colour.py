@@ -10,6 +10,16 @@ OF_VERDICT = {"proved": "green", "refuted": "red", "rejected": "red", "inconclus
 
 
 def painted(text: str, colour: str, stream: TextIO) -> str:
-    """Colour a text if the stream is a terminal, and its user has not asked for none (NO_COLOR)."""
+    """Colour a text if the stream is a terminal, and its user has not asked for none (NO_COLOR).
+
+    Parameters
+    ----------
+    text : str
+        What is printed.
+    colour : str
+        Such as ``red``.
+    stream : TextIO
+        Where it is printed.
+    """
     dull = os.environ.get("NO_COLOR") or os.environ.get("TERM") == "dumb"
     return text if dull or not stream.isatty() else f"\x1b[{_CODES[colour]}m{text}\x1b[0m"

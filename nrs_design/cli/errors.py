@@ -15,6 +15,8 @@ from nrs_design.printable import printable
 
 # More than a user mends at once.
 MAX_SHOWN = 20
+# In JSON, for programs that show them in an editor.
+MAX_LISTED = 100
 # Of a line of the file; narrower on a narrow terminal.
 WIDEST_LINE = 100
 # A file beyond this is data, not text that is read by line.
@@ -36,9 +38,10 @@ def print_error(error: NrsDesignError) -> None:
 
 
 def summary(error: NrsDesignError) -> dict[str, Any]:
-    """Return what ``--json`` prints about an error: all of its faults, in file order."""
+    """Return what ``--json`` prints about an error: its faults in file order, and their number."""
     return {
         "rule": error.rule,
+        "count": len(error.faults),
         "path": None if error.path is None else str(error.path),
         "faults": [
             {
@@ -47,7 +50,7 @@ def summary(error: NrsDesignError) -> dict[str, Any]:
                 "column": fault.column,
                 "remedy": fault.remedy,
             }
-            for fault in error.faults
+            for fault in error.faults[:MAX_LISTED]
         ],
     }
 

@@ -12,7 +12,8 @@ import typer
 
 from nrs_design.cli import exit_codes
 from nrs_design.cli.options import Budget, Json, MaxDegree, Memory, Quiet
-from nrs_design.cli.printing import note, progress
+from nrs_design.cli.printing import note, progress, say, say_failure
+from nrs_design.cli.tables import print_table
 from nrs_design.errors import NrsDesignError, OutputError
 
 if TYPE_CHECKING:
@@ -87,7 +88,7 @@ def gate(
     """
     from nrs_design.gating.find_specs import SUFFIXES
     from nrs_design.gating.formats import FORMATS
-    from nrs_design.output import write_output
+    from nrs_design.output import GATE, check_replaceable, write_output
 
     if as_json and format_ not in (FormatOption.TEXT, FormatOption.JSON):
         raise NrsDesignError(
@@ -100,6 +101,8 @@ def gate(
         )
     if out is not None and out.name.lower().endswith(SUFFIXES):
         raise OutputError("is the name of a spec", path=out, remedy="choose another --out")
+    if out is not None:
+        check_replaceable(out, GATE)
     chosen = FormatOption.JSON if as_json else format_
     search = (max_degree, budget, memory)
     start = perf_counter()
@@ -110,7 +113,9 @@ def gate(
     )
     document = FORMATS[chosen](outcome)
     if out is not None:
-        write_output(out, document)
+        write_output(out, document, replaces=GATE)
+    elif chosen is FormatOption.TEXT:
+        _show(outcome, document, quiet=quiet)
     else:
         sys.stdout.write(document)
     if out is not None or chosen is not FormatOption.TEXT:
@@ -122,6 +127,26 @@ def gate(
         note(f"note: {text}", quiet=quiet)
     note(f"{perf_counter() - start:.1f} s", quiet=quiet)
     raise typer.Exit(OF_SEVERITY[outcome.severity])
+
+
+def _show(outcome: GateOutcome, document: str, *, quiet: bool) -> None:
+    """Print for people: what is not fulfilled, and the rest too unless it shall be quiet."""
+    from nrs_design.gating.formats import text
+
+    if not (quiet or sys.stdout.isatty()):
+        sys.stdout.write(document)
+        return
+    if not quiet:
+        print_table("", text.COLUMNS, text.rows_of(outcome))
+        for line in text.gains_of(outcome):
+            say(line)
+    if outcome.broken and not quiet:
+        say()
+    for item in outcome.broken:
+        say_failure(text.line_of(item), str(item.status))
+    if not quiet:
+        say()
+        say(text.summary_of(outcome))
 
 
 def _certify(

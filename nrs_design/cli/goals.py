@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 def print_goals(name: str, items: Iterable[Item]) -> None:
     """Print what the spec asks for beside what is achieved at worst; nothing without goals."""
-    from nrs_design.design.goals import MEANING
+    from nrs_design.design.measures import MEANING
 
     rows = [
         [

@@ -29,15 +29,15 @@ def optimize(spec: SpecFile, as_json: Json = False, quiet: Quiet = False) -> Non
     loaded = read_spec(spec)
     with progress(f"designing {loaded.spec.name}", quiet=quiet) as step:
         step("cost")
-        design = run_design(loaded)
-        if design is None:
+        designed = run_design(loaded)
+        if designed is None:
             raise wrong_kind(
                 loaded,
                 "a switched-system spec has nothing to design",
                 "use certify-switching, or a spec of kind interaction-design",
             )
         step("margins")
-        evidence = run_evidence(loaded, design)
+        evidence = run_evidence(designed)
     warnings = warnings_of(loaded.spec, evidence)
     if as_json:
         print_json(
@@ -73,7 +73,8 @@ def _summary(item: ImpedanceEvidence) -> dict[str, Any]:
     return {
         "name": item.name,
         "desired_impedance": item.problem.desired,
-        "stiffness": item.problem.loop.stiffness,
+        "environment": item.problem.loop.contact.given(),
+        "stiffness": item.problem.loop.contact.stiffness,
         "Mt": item.Mt,
         "Bt": item.Bt,
         "cost": item.cost,
@@ -123,7 +124,7 @@ def _print(name: str, evidence: DesignEvidence) -> None:
         [
             item.name,
             f"{item.problem.desired:.5g}",
-            f"{item.problem.loop.stiffness:.6g}",
+            f"{item.problem.loop.contact.stiffness:.6g}",
             f"{item.Mt:.6g}",
             f"{item.Bt:.6g}",
             f"{item.cost:.4f}",

@@ -30,6 +30,12 @@ def say(line: str = "", *, verdict: str = "") -> None:
     print(text.replace(word, painted(word, OF_VERDICT[verdict], sys.stdout), 1) if word else text)
 
 
+def say_failure(line: str, status: str) -> None:
+    """Print one line about what is not fulfilled; its status is coloured on a terminal."""
+    text, colour = wrapped(printable(line), sys.stdout), OF_VERDICT.get(status, "red")
+    print(text.replace(f"{status}:", f"{painted(status, colour, sys.stdout)}:", 1))
+
+
 def note(line: str, *, quiet: bool = False) -> None:
     """Print one line on stderr."""
     if not quiet:
@@ -37,7 +43,17 @@ def note(line: str, *, quiet: bool = False) -> None:
 
 
 def wrapped(line: str, stream: TextIO, hanging: int = 2) -> str:
-    """Break a line between words, as wide as the terminal is; a pipe gets it whole."""
+    """Break a line between words, as wide as the terminal is; a pipe gets it whole.
+
+    Parameters
+    ----------
+    line : str
+        Text without line breaks.
+    stream : TextIO
+        Where it is printed.
+    hanging : int
+        Spaces before the second and every later line.
+    """
     if not stream.isatty():
         return line
     indent = " " * (len(line) - len(line.lstrip(" ")))

@@ -63,7 +63,7 @@ def report(
 
     Example: nrs-design report specs/neuroboscope/soft-tissue.nrs.yaml --format pdf
     """
-    from nrs_design.ownership import check_owner
+    from nrs_design.ownership import check_owner, check_page
     from nrs_design.pipeline import Overrides, limits_of, run_certification
     from nrs_design.reporting import build_report
     from nrs_design.spec import read_spec
@@ -71,6 +71,8 @@ def report(
     loaded = read_spec(spec)
     if out is None:
         check_owner(spec, loaded.spec.name, REPORTS)
+    else:
+        check_page(spec, out)
     with progress(f"reporting {loaded.spec.name}", quiet=quiet) as step:
         limits = limits_of(loaded.spec, Overrides(max_degree, budget, memory))
         result = run_certification(loaded, limits=limits, progress=step)
@@ -101,10 +103,10 @@ def _evidence(result: Result, *, quiet: bool) -> DesignEvidence | None:
     """Return what the design achieves, or nothing where a nominal loop has no margins."""
     from nrs_design.pipeline import run_evidence
 
-    if result.design is None:
+    if result.designed is None:
         return None
     try:
-        return run_evidence(result.loaded, result.design)
+        return run_evidence(result.designed)
     except DesignError as error:
         note(f"no margins in this report: {error.message}", quiet=quiet)
         return None

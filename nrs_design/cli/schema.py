@@ -20,12 +20,12 @@ def schema(
 
     Example: nrs-design schema --out nrs.schema.json
     """
-    from nrs_design.output import write_output
+    from nrs_design.output import SCHEMA, write_output
     from nrs_design.spec.schema import schema_text
 
     text = schema_text()
     if out is None:
         sys.stdout.write(text)
         return
-    write_output(out, text)
+    write_output(out, text, replaces=SCHEMA)
     note(f"schema written to {out}", quiet=quiet)

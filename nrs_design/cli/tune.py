@@ -49,20 +49,20 @@ def tune(spec: SpecFile, as_json: Json = False, quiet: Quiet = False) -> None:
 
     loaded = read_spec(spec)
     with progress(f"tuning {loaded.spec.name}", quiet=quiet):
-        design = run_design(loaded)
-        if design is None:
+        designed = run_design(loaded)
+        if designed is None:
             raise wrong_kind(
                 loaded,
                 "a switched-system spec has nothing to tune",
                 "use certify-switching, or a spec of kind interaction-design",
             )
-        evidence = run_evidence(loaded, design)
+        evidence = run_evidence(designed)
     warnings = warnings_of(loaded.spec, evidence)
     if as_json:
         content = {"spec": loaded.spec.name, "spec_sha256": loaded.sha256}
-        print_json("tune", content | _summary(design, evidence) | {"warnings": warnings})
+        print_json("tune", content | _summary(designed.design, evidence) | {"warnings": warnings})
     elif not quiet:
-        _print(loaded.spec.name, design, evidence)
+        _print(loaded.spec.name, designed.design, evidence)
         print_goals(loaded.spec.name, evidence.force)
         print_warnings(warnings, quiet=quiet)
     raise typer.Exit(exit_code(evidence.force))

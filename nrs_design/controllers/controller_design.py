@@ -2,9 +2,31 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
-from nrs_design.controllers.laws import Law, ProportionalDerivative
+from nrs_design.controllers.laws import AbstractLaw, Law, ProportionalDerivative
+
+
+@dataclass(frozen=True, slots=True)
+class ImpedanceOptimum:
+    """The best admittance within the bounds, before any rounding.
+
+    Parameters
+    ----------
+    Mt : float
+        Virtual mass, kg m^2.
+    Bt : float
+        Virtual damping, N m s/rad.
+    cost : float
+        Value of `nrs_design.design.impedance.impedance_cost` there.
+    evaluations : int
+        Number of admittances that the search tried.
+    """
+
+    Mt: float
+    Bt: float
+    cost: float
+    evaluations: int
 
 
 @dataclass(frozen=True, slots=True)
@@ -21,12 +43,16 @@ class Controller:
         The environment that it was designed for.
     contacts : tuple of str
         The environments that it may touch while it is active; empty for position control.
+    optimum : ImpedanceOptimum or None
+        What the gains were rounded from, if a search found them. It does not run on the robot, so
+        controllers that differ in it alone are equal.
     """
 
     name: str
     law: Law
     environment: str | None
     contacts: tuple[str, ...]
+    optimum: ImpedanceOptimum | None = field(default=None, compare=False)
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,3 +69,8 @@ class ControllerDesign:
 
     motion: ProportionalDerivative
     controllers: tuple[Controller, ...]
+
+    @property
+    def laws(self) -> dict[str, AbstractLaw]:
+        """Every law by the name of its controller, the motion controller first."""
+        return {self.motion.name: self.motion} | {c.name: c.law for c in self.controllers}

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from fractions import Fraction
 
 from nrs_design.controllers.float32 import exact_decimal, to_float32
-from nrs_design.models.environment import Interval
+from nrs_design.models.interval import Interval
 from nrs_design.spec import GainSpec, ImpedanceControllerSpec
 
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import fields
 from fractions import Fraction
 
 from nrs_design.controllers.controller_design import Controller, ControllerDesign
@@ -11,7 +10,6 @@ from nrs_design.controllers.float32 import exact_decimal, is_float32, to_float32
 from nrs_design.controllers.gain_range import faults_of_ranges
 from nrs_design.controllers.laws import (
     Admittance,
-    Law,
     PositionControl,
     ProportionalDerivative,
     ProportionalForce,
@@ -25,23 +23,14 @@ from nrs_design.spec import (
     parse_exact,
 )
 
-MOTION = "motion"
-UNITS = {
-    ("motion", "Kp"): "rpm/rad",
-    ("motion", "Kd"): "rpm*s/rad",
-    ("impedance", "Mt"): "kg*m^2",
-    ("impedance", "Bt"): "N*m*s/rad",
-    ("force", "Kp"): "rad/(N*m)",
-}
+MOTION = ProportionalDerivative.name
 
 
 def gains_of(design: ControllerDesign) -> dict[str, dict[str, str]]:
     """Return every gain as an exact decimal, by controller name; the PD is ``motion``."""
-    laws: list[tuple[str, Law | ProportionalDerivative]] = [(MOTION, design.motion)]
-    laws += [(controller.name, controller.law) for controller in design.controllers]
     return {
-        name: {field.name: exact_decimal(getattr(law, field.name)) for field in fields(law)}
-        for name, law in laws
+        name: {gain: exact_decimal(value) for gain, value in law.gains.items()}
+        for name, law in design.laws.items()
     }
 
 
@@ -107,7 +96,8 @@ def _numbers(
 ) -> dict[str, Fraction]:
     texts = gains[name]
     if set(texts) != set(expected):
-        raise CertificateError(f"the gains of {name} are not {', '.join(expected) or 'none'}")
+        wanted = f"are not {', '.join(expected)}" if expected else "should be no gains at all"
+        raise CertificateError(f"the gains of {name} {wanted}")
     numbers = {gain: parse_exact(texts[gain]) for gain in expected}
     for gain, number in numbers.items():
         if not is_float32(number):

@@ -6,12 +6,30 @@ and an export speak about the same values.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from abc import ABC
+from collections.abc import Mapping
+from dataclasses import dataclass, fields
 from fractions import Fraction
+from types import MappingProxyType
+from typing import ClassVar
 
 
 @dataclass(frozen=True, slots=True)
-class ProportionalDerivative:
+class AbstractLaw(ABC):
+    """A control law; its fields are its gains, exact single-precision numbers."""
+
+    # As certificates and exports call it, and the unit of every gain.
+    name: ClassVar[str]
+    units: ClassVar[Mapping[str, str]]
+
+    @property
+    def gains(self) -> Mapping[str, Fraction]:
+        """The gains by name."""
+        return {field.name: getattr(self, field.name) for field in fields(self)}
+
+
+@dataclass(frozen=True, slots=True)
+class ProportionalDerivative(AbstractLaw):
     """Motion control ``delta = Kp e + Kd e'`` (thesis 4.3), e in rad, delta in rpm.
 
     Parameters
@@ -21,6 +39,9 @@ class ProportionalDerivative:
     Kd : Fraction
         In rpm s/rad.
     """
+
+    name: ClassVar[str] = "motion"
+    units: ClassVar[Mapping[str, str]] = MappingProxyType({"Kp": "rpm/rad", "Kd": "rpm*s/rad"})
 
     Kp: Fraction
     Kd: Fraction
@@ -32,7 +53,7 @@ class ProportionalDerivative:
 
 
 @dataclass(frozen=True, slots=True)
-class Admittance:
+class Admittance(AbstractLaw):
     """Velocity correction ``vm = F / (Mt s + Bt)`` (thesis 6.8), subtracted from the command.
 
     Parameters
@@ -43,12 +64,15 @@ class Admittance:
         Virtual damping in N m s/rad; positive.
     """
 
+    name: ClassVar[str] = "impedance"
+    units: ClassVar[Mapping[str, str]] = MappingProxyType({"Mt": "kg*m^2", "Bt": "N*m*s/rad"})
+
     Mt: Fraction
     Bt: Fraction
 
 
 @dataclass(frozen=True, slots=True)
-class ProportionalForce:
+class ProportionalForce(AbstractLaw):
     """Position correction ``Kp (Fd - F)`` of the force mode (thesis 6.32).
 
     Parameters
@@ -57,12 +81,18 @@ class ProportionalForce:
         In rad/(N m).
     """
 
+    name: ClassVar[str] = "force"
+    units: ClassVar[Mapping[str, str]] = MappingProxyType({"Kp": "rad/(N*m)"})
+
     Kp: Fraction
 
 
 @dataclass(frozen=True, slots=True)
-class PositionControl:
+class PositionControl(AbstractLaw):
     """The position mode: the motion loop follows its command, whatever the force."""
+
+    name: ClassVar[str] = "position"
+    units: ClassVar[Mapping[str, str]] = MappingProxyType({})
 
 
 Law = Admittance | ProportionalForce | PositionControl

@@ -8,10 +8,10 @@ from itertools import product
 
 import numpy as np
 
+from nrs_design.controllers.controller_design import ImpedanceOptimum
 from nrs_design.design.goals import Requirement
 from nrs_design.design.impedance import (
     NODES,
-    ImpedanceOptimum,
     ImpedanceProblem,
     admittance_at,
     impedance_cost,
@@ -57,7 +57,17 @@ def optimize_with_goals(problem: ImpedanceProblem, requirement: Requirement) -> 
 
 
 def meets(requirement: Requirement, Mt: float, Bt: float) -> bool:
-    """Tell whether an admittance meets all goals."""
+    """Tell whether an admittance meets all goals.
+
+    Parameters
+    ----------
+    requirement : Requirement
+        The goals.
+    Mt : float
+        Virtual mass, kg m^2.
+    Bt : float
+        Virtual damping, N m s/rad.
+    """
     return bool(requirement.violation(np.array([Mt]), np.array([Bt]))[0] <= 0)
 
 

@@ -6,7 +6,11 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from fractions import Fraction
 
-from nrs_design.controllers.controller_design import Controller, ControllerDesign
+from nrs_design.controllers.controller_design import (
+    Controller,
+    ControllerDesign,
+    ImpedanceOptimum,
+)
 from nrs_design.controllers.float32 import neighbors, round_significant, to_float32
 from nrs_design.controllers.gain_range import faults_of_ranges
 from nrs_design.controllers.laws import (
@@ -18,7 +22,7 @@ from nrs_design.controllers.laws import (
 from nrs_design.design.constrained import best_rounding, meets, optimize_with_goals
 from nrs_design.design.force_loop import design_force_gain
 from nrs_design.design.goals import Requirement
-from nrs_design.design.impedance import ImpedanceLoop, ImpedanceOptimum, ImpedanceProblem
+from nrs_design.design.impedance import ImpedanceLoop, ImpedanceProblem
 from nrs_design.design.requirements import desired_impedance, requirement_of
 from nrs_design.design.root_locus import PdDesign, design_pd
 from nrs_design.design.transfer import TransferFunction
@@ -87,12 +91,22 @@ def to_transfer_function(loop: MotionLoop) -> TransferFunction:
 def impedance_problem(
     spec: InteractionDesignSpec, plant: Plant, loop: MotionLoop, controller: ImpedanceControllerSpec
 ) -> ImpedanceProblem:
-    """State the choice of one controller's virtual mass and damping as an optimization."""
-    environment = plant.environment(controller.environment).nominal
+    """State the choice of one controller's virtual mass and damping as an optimization.
+
+    Parameters
+    ----------
+    spec : InteractionDesignSpec
+        With the limits of torque, velocity and frequency.
+    plant : Plant
+        With the environment.
+    loop : MotionLoop
+        The motion loop in use.
+    controller : ImpedanceControllerSpec
+        With bounds and weights.
+    """
+    contact = plant.environment(controller.environment).nominal
     return ImpedanceProblem(
-        loop=ImpedanceLoop(
-            to_transfer_function(loop), float(environment.stiffness), float(environment.damping)
-        ),
+        loop=ImpedanceLoop(to_transfer_function(loop), contact),
         desired=desired_impedance(spec, controller),
         bandwidth=spec.limits.bandwidth.si,
         mass_bounds=(controller.Mt.min.si, controller.Mt.max.si),
@@ -109,7 +123,14 @@ def _motion(spec: InteractionDesignSpec) -> ProportionalDerivative:
     Kd = round_significant(wanted.derivative_gain, digits) if gain is None else gain.exact
     zero = round_significant(wanted.zero, digits) if given.zero is None else given.zero.exact
     shipped = to_float32(Kd)
-    return ProportionalDerivative(Kp=to_float32(shipped * zero), Kd=shipped)
+    motion = ProportionalDerivative(Kp=to_float32(shipped * zero), Kd=shipped)
+    if motion.Kp <= 0 or motion.Kd <= 0:
+        raise DesignError(
+            "a gain of the motion controller is zero in single precision",
+            remedy="ask for a larger derivative gain or zero, or a shorter settling time",
+            at=("motion_loop",),
+        )
+    return motion
 
 
 def _controller(
@@ -123,6 +144,7 @@ def _controller(
         return Controller(name, PositionControl(), None, ())
     digits = spec.design.significant_digits
     law: Admittance | ProportionalForce
+    optimum = None
     if isinstance(controller, ForceControllerSpec):
         law = ProportionalForce(_force_gain(plant, loop, controller, digits))
     elif controller.Mt.fixed and controller.Bt.fixed:
@@ -130,14 +152,14 @@ def _controller(
         law = Admittance(to_float32(controller.Mt.min.exact), to_float32(controller.Bt.min.exact))
         _check_ranges(controller, law)
     else:
-        law = _admittance(spec, plant, loop, controller)
+        law, optimum = _admittance(spec, plant, loop, controller)
         _check_ranges(controller, law)
-    return Controller(name, law, controller.environment, controller.contacts)
+    return Controller(name, law, controller.environment, controller.contacts, optimum)
 
 
 def _admittance(
     spec: InteractionDesignSpec, plant: Plant, loop: MotionLoop, controller: ImpedanceControllerSpec
-) -> Admittance:
+) -> tuple[Admittance, ImpedanceOptimum]:
     """Optimize an admittance under its goals, and round it so that they are still met."""
     problem = impedance_problem(spec, plant, loop, controller)
     requirement = requirement_of(spec, plant, problem.loop.motion, controller)
@@ -147,9 +169,9 @@ def _admittance(
         Mt=_shipped(optimum.Mt, controller.Mt, digits),
         Bt=_shipped(optimum.Bt, controller.Bt, digits),
     )
-    if meets(requirement, float(law.Mt), float(law.Bt)):
-        return law
-    return _rounded_within(problem, requirement, optimum, controller, digits)
+    if not meets(requirement, float(law.Mt), float(law.Bt)):
+        law = _rounded_within(problem, requirement, optimum, controller, digits)
+    return law, optimum
 
 
 def _rounded_within(
@@ -179,7 +201,7 @@ def _force_gain(
 ) -> Fraction:
     if controller.proportional_gain is not None:
         return to_float32(controller.proportional_gain.exact)
-    stiffness = float(plant.environment(controller.environment).nominal.stiffness)
+    stiffness = plant.environment(controller.environment).nominal.stiffness
     wanted = float(controller.damping_ratio or 0)
     gain = design_force_gain(to_transfer_function(loop), stiffness, wanted)
     return to_float32(round_significant(gain, digits))

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from nrs_design.controllers.controller_design import ImpedanceOptimum
 from nrs_design.design.goals import Achieved
-from nrs_design.design.impedance import ImpedanceOptimum
 from nrs_design.design.measures import DISK_MARGIN, MARGINS, SENSITIVITY_PEAK
 from nrs_design.spec import Doubt, ImpedanceControllerSpec
 
@@ -34,7 +34,17 @@ def doubt_values(name: str, achieved: tuple[Achieved, ...]) -> Iterator[Doubt]:
 def doubt_bounds(
     name: str, controller: ImpedanceControllerSpec, optimum: ImpedanceOptimum
 ) -> Iterator[Doubt]:
-    """Yield which gains the bounds have chosen, not the cost."""
+    """Yield which gains the bounds have chosen, not the cost.
+
+    Parameters
+    ----------
+    name : str
+        Of the controller.
+    controller : ImpedanceControllerSpec
+        With the bounds.
+    optimum : ImpedanceOptimum
+        What was found within them.
+    """
     for gain, bounds, value in (
         ("Mt", controller.Mt, optimum.Mt),
         ("Bt", controller.Bt, optimum.Bt),

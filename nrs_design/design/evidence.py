@@ -6,10 +6,13 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import product
 
-from nrs_design.controllers.controller_design import Controller, ControllerDesign
+from nrs_design.controllers.controller_design import (
+    Controller,
+    ControllerDesign,
+    ImpedanceOptimum,
+)
 from nrs_design.controllers.gain_range import gain_interval
 from nrs_design.controllers.laws import Admittance, ProportionalForce
-from nrs_design.design.constrained import optimize_with_goals
 from nrs_design.design.design import (
     impedance_problem,
     naming,
@@ -18,9 +21,8 @@ from nrs_design.design.design import (
 )
 from nrs_design.design.doubts import doubt_bounds, doubt_values
 from nrs_design.design.force_loop import ForceLoop, force_loop_response
-from nrs_design.design.goals import Achieved, Requirement, achieve_force, achieve_impedance
+from nrs_design.design.goals import Achieved, achieve_force, achieve_impedance
 from nrs_design.design.impedance import (
-    ImpedanceOptimum,
     ImpedanceProblem,
     impedance_cost,
     optimize_impedance,
@@ -58,6 +60,8 @@ class ImpedanceEvidence:
         Of the shipped gains.
     margins : LoopMargins
         Of the shipped gains, in nominal contact.
+    highest_stiffness : float
+        Upper end of the stiffness of the environment that it was designed for, in N m/rad.
     lowest_limit : float
         Smallest stiffness limit in N m/rad, of the shipped gains and of the corners of their
         declared ranges.
@@ -72,6 +76,7 @@ class ImpedanceEvidence:
     Bt: float
     cost: float
     margins: LoopMargins
+    highest_stiffness: float
     lowest_limit: float
     achieved: tuple[Achieved, ...]
 
@@ -137,7 +142,22 @@ class DesignEvidence:
 def examine_design(
     spec: InteractionDesignSpec, plant: Plant, design: ControllerDesign
 ) -> DesignEvidence:
-    """Compute poles, costs and margins of a design."""
+    """Compute poles, costs and margins of a design.
+
+    Parameters
+    ----------
+    spec : InteractionDesignSpec
+        What was asked for.
+    plant : Plant
+        That it describes.
+    design : ControllerDesign
+        As `nrs_design.design.design.design_controllers` gives it.
+
+    Raises
+    ------
+    DesignError
+        If a nominal loop is unstable, so that it has no margins.
+    """
     loop = plant.motion_loop(design.motion.Kp, design.motion.Kd)
     motion = to_transfer_function(loop)
     impedance = tuple(
@@ -200,20 +220,16 @@ def _impedance(
     return ImpedanceEvidence(
         name=controller.name,
         problem=problem,
-        optimum=_optimum(problem, requirement),
+        # Gains that the spec gives are their own optimum.
+        optimum=controller.optimum or optimize_impedance(problem),
         Mt=Mt,
         Bt=Bt,
         cost=float(impedance_cost(problem, Mt, Bt)),
         margins=margins,
+        highest_stiffness=float(plant.environment(given.environment).stiffness.high),
         lowest_limit=min(margins.stiffness_limit, *limits),
         achieved=achieve_impedance(requirement, IMPEDANCE_MEASURES, Mt, Bt),
     )
-
-
-def _optimum(problem: ImpedanceProblem, requirement: Requirement) -> ImpedanceOptimum:
-    """Return the optimum before rounding; gains that are given are their own."""
-    fixed = all(low == high for low, high in (problem.mass_bounds, problem.damping_bounds))
-    return optimize_impedance(problem) if fixed else optimize_with_goals(problem, requirement)
 
 
 def _force(
@@ -226,7 +242,7 @@ def _force(
     given = spec.controllers[controller.name]
     assert isinstance(given, ForceControllerSpec)
     requirement = requirement_of(spec, plant, motion, given)
-    stiffness = float(plant.environment(controller.environment or "").nominal.stiffness)
+    stiffness = plant.environment(controller.environment or "").nominal.stiffness
     with naming(controller.name):
         loop = force_loop_response(motion, stiffness, float(law.Kp))
     achieved = achieve_force(requirement, FORCE_MEASURES, float(law.Kp))

@@ -15,6 +15,7 @@ from itertools import product
 
 import numpy as np
 
+from nrs_design.design.impedance import ImpedanceLoop
 from nrs_design.design.loops import Loops, extremes, multiply
 from nrs_design.design.measures import (
     DELAY_MARGIN,
@@ -27,15 +28,8 @@ from nrs_design.design.measures import (
     Measure,
 )
 from nrs_design.design.transfer import FloatArray, TransferFunction, static_gain
-from nrs_design.models.environment import Environment
-
-MEANING = (
-    "Margins: the worst at the nominal values and at every corner of the ranges of all contacts "
-    "and gains.",
-    "Errors: the worst with the designed gains, in the environment that the controller is designed "
-    "for, at its nominal values and every corner of its ranges.",
-    "Computed in floating point, not a proof; values between corners are not looked at.",
-)
+from nrs_design.models.contact import AbstractLinearLaw
+from nrs_design.models.contact.environment import Environment
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,8 +67,8 @@ class Corner:
     ----------
     label : str
         For people.
-    stiffness, damping : float
-        Of the environment, in N m/rad and N m s/rad.
+    contact : AbstractLinearLaw
+        The environment there.
     home : bool
         Whether this is the environment that the controller is designed for, with the designed
         gains.
@@ -83,8 +77,7 @@ class Corner:
     """
 
     label: str
-    stiffness: float
-    damping: float
+    contact: AbstractLinearLaw
     home: bool
     Mt: float | None = None
     Bt: float | None = None
@@ -126,7 +119,15 @@ class Requirement:
     def values(
         self, measure: Measure, Mt: FloatArray, Bt: FloatArray
     ) -> tuple[FloatArray, list[str]]:
-        """Return the worst value of a measure for every admittance, and at which corner."""
+        """Return the worst value of a measure for every admittance, and at which corner.
+
+        Parameters
+        ----------
+        measure : Measure
+            What is measured.
+        Mt, Bt : ndarray, shape (m,)
+            The admittances, kg m^2 and N m s/rad.
+        """
         corners = [c for c in self.corners if c.home or measure is not IMPEDANCE_ERROR]
         table = np.array([self._at(corner, measure, Mt, Bt) for corner in corners])
         worst = table.argmax(axis=0) if measure.upper else table.argmin(axis=0)
@@ -148,7 +149,19 @@ class Requirement:
 def achieve_impedance(
     requirement: Requirement, measures: tuple[Measure, ...], Mt: float, Bt: float
 ) -> tuple[Achieved, ...]:
-    """Return the worst value of every measure of one admittance."""
+    """Return the worst value of every measure of one admittance.
+
+    Parameters
+    ----------
+    requirement : Requirement
+        Where it is measured, and what is wanted.
+    measures : tuple of Measure
+        What is measured.
+    Mt : float
+        Virtual mass, kg m^2.
+    Bt : float
+        Virtual damping, N m s/rad.
+    """
     goals = dict(requirement.goals)
     found = []
     for measure in measures:
@@ -160,7 +173,17 @@ def achieve_impedance(
 def achieve_force(
     requirement: Requirement, measures: tuple[Measure, ...], gain: float
 ) -> tuple[Achieved, ...]:
-    """Return the worst value of every measure of one force gain."""
+    """Return the worst value of every measure of one force gain.
+
+    Parameters
+    ----------
+    requirement : Requirement
+        Where it is measured, and what is wanted.
+    measures : tuple of Measure
+        What is measured.
+    gain : float
+        In rad/(N m).
+    """
     goals = dict(requirement.goals)
     found = []
     for measure in measures:
@@ -198,43 +221,34 @@ def corners_of(
 def _corners(
     environment: Environment, home: str, gains: Mapping[str, tuple[float, ...]]
 ) -> Iterator[Corner]:
-    points = list(
-        product(
-            [float(value) for _, value in environment.stiffness.ends],
-            [float(value) for _, value in environment.damping.ends],
-        )
-    )
-    nominal = (float(environment.stiffness.nominal), float(environment.damping.nominal))
-    if nominal not in points:
-        points.insert(0, nominal)
+    points = list(environment.corners)
+    if environment.nominal not in points:
+        points.insert(0, environment.nominal)
     retuned = [*product(gains.get("Mt") or (None,), gains.get("Bt") or (None,))]
-    for (stiffness, damping), (Mt, Bt) in product(points, dict.fromkeys([(None, None), *retuned])):
-        at = [f"k = {stiffness:.6g} N*m/rad"]
-        at += [f"b = {damping:.6g} N*m*s/rad"] if damping else []
+    for contact, (Mt, Bt) in product(points, dict.fromkeys([(None, None), *retuned])):
+        at = [*contact.texts()]
         at += [f"Mt = {Mt:.6g} kg*m^2"] if Mt is not None else []
         at += [f"Bt = {Bt:.6g} N*m*s/rad"] if Bt is not None else []
         designed = environment.name == home and Mt is None and Bt is None
-        label = f"{environment.name}, {', '.join(at)}"
-        yield Corner(label, stiffness, damping, designed, Mt, Bt)
+        yield Corner(f"{environment.name}, {', '.join(at)}", contact, designed, Mt, Bt)
 
 
 def _impedance_loops(
     motion: TransferFunction, corner: Corner, Mt: FloatArray, Bt: FloatArray
 ) -> Loops:
     """Return ``G Ze Y`` of many admittances (thesis fig. 6.13)."""
-    width = len(motion.denominator) + 2
-    contact = np.convolve(motion.numerator, (corner.damping, corner.stiffness))
-    numerator = np.zeros((len(Mt), width))
-    numerator[:, width - len(contact) :] = contact
-    denominator = np.zeros((len(Mt), width))
-    denominator[:, :-2] += np.outer(Mt, motion.denominator)
-    denominator[:, 1:-1] += np.outer(Bt, motion.denominator)
+    contact, free = ImpedanceLoop(motion, corner.contact).forward
+    numerator = np.zeros((len(Mt), len(free) + 1))
+    numerator[:, len(free) + 1 - len(contact) :] = contact
+    denominator = np.zeros_like(numerator)
+    denominator[:, :-1] += np.outer(Mt, free)
+    denominator[:, 1:] += np.outer(Bt, free)
     return Loops(numerator, denominator)
 
 
 def _force_value(motion: TransferFunction, corner: Corner, measure: Measure, gain: float) -> float:
     """Return a measure of the force loop ``Kp k G`` (thesis 6.33) in one contact."""
-    loop_gain = gain * corner.stiffness
+    loop_gain = gain * corner.contact.stiffness
     numerator = np.zeros((1, len(motion.denominator)))
     numerator[0, -len(motion.numerator) :] = loop_gain * np.asarray(motion.numerator)
     loops = Loops(numerator, np.array([motion.denominator]))

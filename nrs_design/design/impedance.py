@@ -14,6 +14,7 @@ from functools import partial
 import numpy as np
 from numpy.typing import ArrayLike
 
+from nrs_design.controllers.controller_design import ImpedanceOptimum
 from nrs_design.design.pattern_search import Objective, Points, local_minima, refine, snap
 from nrs_design.design.transfer import (
     BoolArray,
@@ -25,6 +26,7 @@ from nrs_design.design.transfer import (
     trim,
 )
 from nrs_design.errors import DesignError
+from nrs_design.models.contact import AbstractLinearLaw
 
 # Midpoint rule over (0, bandwidth]. The absolute value in the cost has kinks, which spoil a
 # Gauss rule; with 256 midpoints the cost is within 1e-6 of its integral on the published designs
@@ -48,10 +50,8 @@ class ImpedanceLoop:
     ----------
     motion : TransferFunction
         Closed motion loop G, from commanded to actual velocity.
-    stiffness : float
-        Stiffness k of the environment, N m/rad, positive.
-    damping : float
-        Damping b of the environment, N m s/rad, not negative.
+    contact : AbstractLinearLaw
+        The environment as a rotation about the pivot, N m/rad and N m s/rad.
 
     Raises
     ------
@@ -60,15 +60,24 @@ class ImpedanceLoop:
     """
 
     motion: TransferFunction
-    stiffness: float
-    damping: float = 0.0
+    contact: AbstractLinearLaw
 
     def __post_init__(self) -> None:
         """Check the environment."""
-        if not (math.isfinite(self.stiffness) and self.stiffness > 0):
-            raise DesignError(f"the stiffness must be positive, not {self.stiffness}")
-        if not (math.isfinite(self.damping) and self.damping >= 0):
-            raise DesignError(f"the damping must not be negative: {self.damping}")
+        law = self.contact
+        for index, (kind, value) in enumerate(zip(law.kinds, law.values, strict=True)):
+            if not law.admits(index, value):
+                must = "not be negative" if law.admits(index, 0) else "be positive"
+                raise DesignError(f"the {kind} must {must}: {value}")
+
+    @property
+    def forward(self) -> tuple[FloatArray, FloatArray]:
+        """Numerator and denominator of ``G Ze``, highest power of s first."""
+        numerator, denominator = self.contact.impedance
+        return (
+            np.convolve(self.motion.numerator, trim(numerator)),
+            np.convolve(self.motion.denominator, denominator),
+        )
 
 
 @dataclass(frozen=True)
@@ -115,34 +124,21 @@ class ImpedanceProblem:
             raise DesignError(f"weights must be at least 0 and not both 0: {weights}")
 
 
-@dataclass(frozen=True)
-class ImpedanceOptimum:
-    """The best admittance within the bounds.
+def open_loop(loop: ImpedanceLoop, Mt: float, Bt: float) -> TransferFunction:
+    """Return ``G Ze Y`` (thesis fig. 6.13) of an admittance with mass Mt and damping Bt.
 
     Parameters
     ----------
+    loop : ImpedanceLoop
+        Motion loop and environment.
     Mt : float
         Virtual mass, kg m^2.
     Bt : float
         Virtual damping, N m s/rad.
-    cost : float
-        Value of `impedance_cost` there.
-    evaluations : int
-        Number of admittances that the search tried.
     """
-
-    Mt: float
-    Bt: float
-    cost: float
-    evaluations: int
-
-
-def open_loop(loop: ImpedanceLoop, Mt: float, Bt: float) -> TransferFunction:
-    """Return ``G Ze Y`` (thesis fig. 6.13) of an admittance with mass Mt and damping Bt."""
     _check_admittance(Mt, Bt)
-    environment = trim((loop.damping, loop.stiffness))
-    numerator = np.convolve(loop.motion.numerator, environment)
-    denominator = np.convolve(loop.motion.denominator, [*trim((Mt, Bt)), 0.0])
+    numerator, denominator = loop.forward
+    denominator = np.convolve(denominator, trim((Mt, Bt)))
     return TransferFunction(tuple(numerator.tolist()), tuple(denominator.tolist()))
 
 
@@ -165,21 +161,36 @@ def displayed_impedance(
     ndarray of complex
         Impedance, N m s/rad, in the shape of `omega`.
     """
-    environment = trim((loop.damping, loop.stiffness))
-    forward = np.convolve(loop.motion.numerator, environment)
+    forward, _ = loop.forward
     return _over_characteristic(loop, Mt, Bt, np.convolve(forward, trim((Mt, Bt))), omega)
 
 
 def sensitivity(loop: ImpedanceLoop, Mt: float, Bt: float, omega: ArrayLike) -> ComplexArray:
-    """Evaluate ``L = 1 / (1 + G Ze Y)`` (thesis 6.5); parameters as `displayed_impedance`."""
-    numerator = np.convolve(loop.motion.denominator, [*trim((Mt, Bt)), 0.0])
+    """Evaluate ``L = 1 / (1 + G Ze Y)`` (thesis 6.5); parameters as `displayed_impedance`.
+
+    Parameters
+    ----------
+    loop, Mt, Bt, omega
+        As for `displayed_impedance`.
+    """
+    numerator = np.convolve(loop.forward[1], trim((Mt, Bt)))
     return _over_characteristic(loop, Mt, Bt, numerator, omega)
 
 
 def characteristic_polynomial(loop: ImpedanceLoop, Mt: float, Bt: float) -> FloatArray:
     """Return the closed loop's characteristic polynomial, highest power first.
 
-    Its degree is two more than the motion loop's order, and one more where Mt is zero.
+    Its degree is that of ``G Ze Y``: with a spring two more than the motion loop's order, and one
+    more where Mt is zero.
+
+    Parameters
+    ----------
+    loop : ImpedanceLoop
+        Motion loop and environment.
+    Mt : float
+        Virtual mass, kg m^2.
+    Bt : float
+        Virtual damping, N m s/rad.
 
     Raises
     ------
@@ -191,7 +202,17 @@ def characteristic_polynomial(loop: ImpedanceLoop, Mt: float, Bt: float) -> Floa
 
 
 def is_stable(loop: ImpedanceLoop, Mt: ArrayLike, Bt: ArrayLike) -> BoolArray:
-    """Tell for which admittances the closed loop is Hurwitz (Mt and Bt broadcast)."""
+    """Tell for which admittances the closed loop is Hurwitz (Mt and Bt broadcast).
+
+    Parameters
+    ----------
+    loop : ImpedanceLoop
+        Motion loop and environment.
+    Mt : array_like
+        Virtual masses, kg m^2.
+    Bt : array_like
+        Virtual damping, N m s/rad.
+    """
     Mt, Bt = np.broadcast_arrays(np.asarray(Mt, np.float64), np.asarray(Bt, np.float64))
     return hurwitz(_characteristics(_basis(loop), Mt, Bt))
 
@@ -289,8 +310,8 @@ class _Samples:
 
 def _sample(problem: ImpedanceProblem, nodes: int) -> _Samples:
     omega: FloatArray = (np.arange(nodes, dtype=np.float64) + 0.5) * (problem.bandwidth / nodes)
-    environment = problem.loop.stiffness / (1j * omega) + problem.loop.damping
-    forward = frequency_response(problem.loop.motion, omega) * environment
+    Ze = TransferFunction(*problem.loop.contact.impedance)
+    forward = frequency_response(problem.loop.motion, omega) * frequency_response(Ze, omega)
     return _Samples(
         omega=omega,
         real=forward.real,
@@ -302,12 +323,11 @@ def _sample(problem: ImpedanceProblem, nodes: int) -> _Samples:
 
 def _basis(loop: ImpedanceLoop) -> FloatArray:
     """Return the rows M, B, C of the characteristic polynomial ``Mt M + Bt B + C``."""
-    den = np.asarray(loop.motion.denominator, dtype=np.float64)
-    contact = np.convolve(trim(loop.motion.numerator), (loop.damping, loop.stiffness))
-    basis = np.zeros((3, len(den) + 2))
-    basis[0, : len(den)] = den
-    basis[1, 1 : len(den) + 1] = den
-    basis[2, len(den) + 2 - len(contact) :] = contact
+    contact, den = loop.forward
+    basis = np.zeros((3, len(den) + 1))
+    basis[0, :-1] = den
+    basis[1, 1:] = den
+    basis[2, len(den) + 1 - len(contact) :] = contact
     return basis
 
 
@@ -330,6 +350,13 @@ def admittance_at(
     """Map the unit square onto the bounds of Mt and Bt, corners exactly onto corners.
 
     A u below the search's tolerance counts as the bound itself.
+
+    Parameters
+    ----------
+    problem : ImpedanceProblem
+        With the bounds.
+    u, v : ndarray, shape (m,)
+        From 0 to 1: coordinates of Mt and of Bt.
     """
     (low, high), (least, most) = problem.mass_bounds, problem.damping_bounds
     u = np.where(u < _STEP_TOLERANCE, 0.0, u)
@@ -372,7 +399,7 @@ def _scan(problem: ImpedanceProblem) -> Points:
         raise DesignError(
             f"no admittance with Mt in {list(problem.mass_bounds)} kg m^2 and Bt in "
             f"{list(problem.damping_bounds)} N m s/rad keeps the loop stable at "
-            f"{problem.loop.stiffness:.6g} N m/rad",
+            f"{problem.loop.contact.stiffness:.6g} N m/rad",
             remedy="raise the upper bound of Bt or lower the lower bound of Mt",
             at=("Bt",),
         )

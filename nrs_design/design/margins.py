@@ -19,6 +19,7 @@ from nrs_design.design.transfer import (
     ratio_slope,
     squared_magnitude,
     to_control,
+    trim,
 )
 from nrs_design.errors import DesignError
 from nrs_design.plotting import load_matplotlib
@@ -90,7 +91,7 @@ def loop_margins(loop: ImpedanceLoop, Mt: float, Bt: float) -> LoopMargins:
     if not is_stable(loop, Mt, Bt):
         raise DesignError(
             f"the loop with Mt = {Mt:.6g} kg m^2 and Bt = {Bt:.6g} N m s/rad is unstable at "
-            f"{loop.stiffness:.6g} N m/rad",
+            f"{loop.contact.stiffness:.6g} N m/rad",
             remedy=f"it is stable below {limit:.6g} N m/rad; raise Bt or lower Mt",
             at=("Bt",),
         )
@@ -111,14 +112,17 @@ def loop_margins(loop: ImpedanceLoop, Mt: float, Bt: float) -> LoopMargins:
 def stiffness_limit(loop: ImpedanceLoop, Mt: float, Bt: float) -> float:
     """Return the largest stiffness up to which the closed loop is Hurwitz throughout.
 
-    With the damping held, the characteristic polynomial is ``A(s) + k B(s)``. A root can reach
-    the right half plane only across the imaginary axis, so the limit is the smallest positive
-    ``k = -A(j omega)/B(j omega)`` that is real.
+    In elastic and Kelvin-Voigt contact the damping is held. In Maxwell and Kelvin-Boltzmann contact
+    all parameters are scaled alike, so that the relaxation time is held, and the stiffness is that
+    which a sudden motion meets. The characteristic polynomial is then ``A(s) + k B(s)``: a root
+    can reach the right half plane only across the imaginary axis, so the limit is the smallest
+    positive ``k = -A(j omega)/B(j omega)`` that is real. None crosses at s = 0, where a positive k
+    only adds to what is positive.
 
     Parameters
     ----------
     loop : ImpedanceLoop
-        Motion loop and damping of the environment; its own stiffness is not used.
+        Motion loop and law of the environment; its own stiffness is not used.
     Mt, Bt : float
         Admittance, kg m^2 and N m s/rad; Mt may be zero.
 
@@ -133,16 +137,26 @@ def stiffness_limit(loop: ImpedanceLoop, Mt: float, Bt: float) -> float:
     DesignError
         If Mt is negative or Bt is not positive.
     """
-    free = np.asarray(open_loop(loop, Mt, Bt).denominator)
-    if loop.damping:
-        free = np.polyadd(free, np.polymul(loop.motion.numerator, [loop.damping, 0.0]))
-    contact = loop.motion.numerator
+    free, contact = _by_stiffness(loop, Mt, Bt)
     real, imaginary = product_parts(free.tolist(), contact)
     x = positive_roots(imaginary)
     critical = -np.polyval(real, x) / np.polyval(squared_magnitude(contact), x)
     limit = min((float(k) for k in critical if k > 0), default=math.inf)
     probe = limit / 2 if math.isfinite(limit) else 1.0
     return limit if bool(hurwitz(np.polyadd(free, probe * np.asarray(contact)))) else 0.0
+
+
+def _by_stiffness(
+    loop: ImpedanceLoop, Mt: float, Bt: float
+) -> tuple[FloatArray, tuple[float, ...]]:
+    """Write the characteristic polynomial as ``A(s) + k B(s)``; return A and B."""
+    free = np.asarray(open_loop(loop, Mt, Bt).denominator)
+    held, grown = loop.contact.by_stiffness
+    motion = loop.motion.numerator
+    return (
+        np.polyadd(free, np.polymul(motion, trim(held))),
+        tuple(np.polymul(motion, trim(grown)).tolist()),
+    )
 
 
 def _sensitivity_peak(tf: TransferFunction) -> tuple[float, float]:

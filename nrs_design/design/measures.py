@@ -9,6 +9,16 @@ from decimal import ROUND_CEILING, ROUND_FLOOR, Context, Decimal
 _DIGITS = 4
 
 
+# What the worst values of the measures are, in words.
+MEANING = (
+    "Margins: the worst at the nominal values and at every corner of the ranges of all contacts "
+    "and gains.",
+    "Errors: the worst with the designed gains, in the environment that the controller is designed "
+    "for, at its nominal values and every corner of its ranges.",
+    "Computed in floating point, not a proof; values between corners are not looked at.",
+)
+
+
 @dataclass(frozen=True, slots=True)
 class Measure:
     """One measure of a controller.

@@ -95,6 +95,13 @@ def snap(
 
     An objective that is flat near an edge lets rounding hide the last step there.
 
+    Parameters
+    ----------
+    objective : callable
+        Of u and v, which is minimized.
+    u, v : ndarray, shape (m,)
+        Points of the unit square.
+
     Returns
     -------
     u, v, costs : ndarray, shape (m,)

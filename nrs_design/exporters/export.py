@@ -10,7 +10,7 @@ from nrs_design.certificates.certificate import Certificate
 from nrs_design.certificates.verify import verify
 from nrs_design.controllers.controller_design import ControllerDesign
 from nrs_design.exporters.record import ExportRecord, build_record, find_mismatch
-from nrs_design.pipeline import run_certification, run_design, wrong_kind
+from nrs_design.pipeline import Designed, run_certification, run_design, wrong_kind
 from nrs_design.spec import InteractionDesignSpec, LoadedSpec
 
 Progress = Callable[[str], None]
@@ -68,10 +68,10 @@ def export_design(
     if certificate is None:
         return _certified_afresh(loaded, progress)
     progress("design")
-    design = run_design(loaded)
-    assert design is not None
+    designed = run_design(loaded)
+    assert designed is not None
     progress("re-check")
-    return _certified_by(certificate, loaded, loaded.spec.coordinates, design)
+    return _certified_by(certificate, designed)
 
 
 def _certified_afresh(loaded: LoadedSpec, progress: Progress) -> Export:
@@ -82,21 +82,19 @@ def _certified_afresh(loaded: LoadedSpec, progress: Progress) -> Export:
     return _proved(result.design, result.certificate)
 
 
-def _certified_by(
-    file: Path, loaded: LoadedSpec, coordinates: str, design: ControllerDesign
-) -> Export:
-    checked = verify(file, loaded)
+def _certified_by(file: Path, designed: Designed) -> Export:
+    checked = verify(file, designed.loaded, plant=designed.plant)
     if checked.certificate is None or checked.fault is not None:
         return Export("rejected", None, None, f"{file} is rejected: {checked.fault}")
     found = checked.certificate
     if found.verdict == "refuted":
         return Export("refuted", None, None, f"{file} refutes the design")
-    fault = find_mismatch(design, found)
-    if fault is None and found.coordinates != coordinates:
+    fault = find_mismatch(designed.design, found)
+    if fault is None and found.coordinates != designed.spec.coordinates:
         fault = f"is about {found.coordinates} coordinates, not those of the spec"
     if fault is not None:
         return Export("rejected", None, None, f"{file} {fault}")
-    return _proved(design, found)
+    return _proved(designed.design, found)
 
 
 def _proved(design: ControllerDesign, certificate: Certificate) -> Export:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import struct
-from dataclasses import fields
 from fractions import Fraction
 from typing import Annotated, Literal
 
@@ -14,27 +13,13 @@ from nrs_design import __version__
 from nrs_design.certificates.certificate import Certificate
 from nrs_design.controllers.controller_design import ControllerDesign
 from nrs_design.controllers.float32 import exact_decimal
-from nrs_design.controllers.gains import UNITS, gains_of
-from nrs_design.controllers.laws import (
-    Admittance,
-    Law,
-    PositionControl,
-    ProportionalDerivative,
-    ProportionalForce,
-)
+from nrs_design.controllers.gains import gains_of
+from nrs_design.controllers.laws import AbstractLaw
 from nrs_design.errors import CertificateError
 from nrs_design.proof.evidence.fields import rate_text
 from nrs_design.proof.system import Time
 
-LawName = Literal["motion", "impedance", "force", "position"]
 Sha256 = Annotated[str, Field(pattern="^[0-9a-f]{64}$")]
-
-_NAMES: dict[type[Law | ProportionalDerivative], LawName] = {
-    ProportionalDerivative: "motion",
-    Admittance: "impedance",
-    ProportionalForce: "force",
-    PositionControl: "position",
-}
 
 
 class _Frozen(BaseModel):
@@ -77,7 +62,7 @@ class CompliantController(_Frozen):
     """One controller, with what it was designed for and what it may touch."""
 
     name: str
-    law: Literal["impedance", "force", "position"]
+    law: str
     environment: str | None
     contacts: tuple[str, ...]
     gains: tuple[Gain, ...]
@@ -155,7 +140,7 @@ def build_record(design: ControllerDesign, certificate: Certificate) -> ExportRe
             CompliantController.model_validate(
                 {
                     "name": controller.name,
-                    "law": _NAMES[type(controller.law)],
+                    "law": controller.law.name,
                     "environment": controller.environment,
                     "contacts": controller.contacts,
                     "gains": _gains(controller.law),
@@ -191,12 +176,8 @@ def dump_record(record: ExportRecord) -> str:
     return json.dumps(record.model_dump(mode="json", by_alias=True), indent=2) + "\n"
 
 
-def _gains(law: Law | ProportionalDerivative) -> tuple[Gain, ...]:
-    kind = _NAMES[type(law)]
-    return tuple(
-        _gain(field.name, UNITS[kind, field.name], getattr(law, field.name))
-        for field in fields(law)
-    )
+def _gains(law: AbstractLaw) -> tuple[Gain, ...]:
+    return tuple(_gain(name, law.units[name], value) for name, value in law.gains.items())
 
 
 def _gain(name: str, unit: str, value: Fraction) -> Gain:

@@ -58,7 +58,21 @@ class Examiner:
     def obligation(
         self, rule: Rule, subject: str, status: Status, message: str, place: Position
     ) -> Obligation:
-        """Return an obligation at a place in this spec."""
+        """Return an obligation at a place in this spec.
+
+        Parameters
+        ----------
+        rule : Rule
+            What must hold.
+        subject : str
+            For what.
+        status : Status
+            How it ended.
+        message : str
+            What was found; one line.
+        place : Position
+            Line and column.
+        """
         path = self.loaded.path
         return Obligation(rule, path, subject, status, message, place.line, place.column)
 
@@ -142,23 +156,20 @@ class Examiner:
 
     def stiffness_ranges(self, evidence: DesignEvidence) -> Iterator[Obligation]:
         """Yield NRS103 for every impedance controller."""
-        from nrs_design.models.plant import build_plant
-
         spec = self.loaded.spec
         assert isinstance(spec, InteractionDesignSpec)
-        plant = build_plant(spec)
         for item in evidence.impedance:
             controller = spec.controllers[item.name]
             assert controller.type == "impedance"
-            highest = float(plant.environment(controller.environment).stiffness.high)
-            limit = item.lowest_limit
+            highest, limit = item.highest_stiffness, item.lowest_limit
+            held = ", all parameters in proportion" if item.problem.loop.contact.remembers else ""
             ranged = controller.Mt.ranged or controller.Bt.ranged
             where = f"{item.name}, in the corners of its gain ranges" if ranged else item.name
             reached = highest < limit
             verb = "stays below" if reached else "reaches"
             message = (
                 f"design goal: the stiffness of {controller.environment}, up to {highest:.6g} "
-                f"N*m/rad, {verb} the limit {limit:.6g} N*m/rad of controller {where} "
+                f"N*m/rad, {verb} the limit {limit:.6g} N*m/rad of controller {where}{held} "
                 "(floating point, not a proof)"
             )
             yield self.obligation(

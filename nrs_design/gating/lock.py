@@ -11,7 +11,7 @@ from typing import Annotated, Any, Literal
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationError, model_validator
 
 from nrs_design.errors import CertificateError
-from nrs_design.files import open_regular
+from nrs_design.files import open_regular, read_json_text
 from nrs_design.gating.rules import (
     CERTIFICATE_HOLDS,
     LOCKED,
@@ -135,7 +135,7 @@ def read_lock(file: Path) -> Lock:
     """
     remedy = "make it with nrs-design gate, without --locked"
     try:
-        document = json.loads(_read_bytes(file).decode(), object_pairs_hook=_unique)
+        document = json.loads(read_json_text(_read_bytes(file)), object_pairs_hook=_unique)
         _check_format(document, file)
         return Lock.model_validate(document)
     except OSError as error:

@@ -96,7 +96,7 @@ def _examine_safely(path: Path, entry: LockedSpec | None, file: Path) -> SpecOut
 
 def _examine(loaded: LoadedSpec, entry: LockedSpec | None, file: Path) -> SpecOutcome:
     examiner = Examiner.of(loaded)
-    if isinstance(loaded.spec, RobotSpec):
+    if isinstance(loaded.spec, RobotSpec) and entry is None:
         return examiner.nothing_to_certify()
     if entry is None:
         return _missed(examiner, f"this spec is not in {file.name} ({RENEW})")

@@ -180,7 +180,17 @@ class GateOutcome:
 
 
 def failed(path: Path, error: Exception, sha256: str | None = None) -> SpecOutcome:
-    """Return the outcome of a spec that an error stopped; an unforeseen one is a defect."""
+    """Return the outcome of a spec that an error stopped; an unforeseen one is a defect.
+
+    Parameters
+    ----------
+    path : Path
+        The spec, as it was named.
+    error : Exception
+        What stopped it.
+    sha256 : str, optional
+        Hash of the spec, if it could be read.
+    """
     if isinstance(error, NrsDesignError):
         obligation = of_error(path, error)
     else:
@@ -195,6 +205,7 @@ def of_error(path: Path, error: NrsDesignError) -> Obligation:
     message = f"{error.location}: {error.message}" if elsewhere else error.message
     if error.remedy:
         message += f" ({error.remedy})"
+    message += error.more
     return Obligation(
         RULES[error.rule],
         path,

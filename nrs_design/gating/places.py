@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from nrs_design.spec import LoadedSpec, SwitchedSystemSpec
-from nrs_design.spec.document import Mapping, Node, Position, Sequence, parse_document
+from nrs_design.spec.document import Mapping, Node, Position, Sequence
 
 
 class Places:
@@ -12,11 +12,11 @@ class Places:
     Parameters
     ----------
     loaded : LoadedSpec
-        The spec; its text is parsed once more, for the positions.
+        The spec.
     """
 
     def __init__(self, loaded: LoadedSpec) -> None:
-        self._root = parse_document(loaded.text, loaded.path)
+        self._root = loaded.root
         spec = loaded.spec
         modes = spec.modes if isinstance(spec, SwitchedSystemSpec) else ()
         self._indices = {mode.name: index for index, mode in enumerate(modes)}

@@ -137,7 +137,8 @@ STIFFNESS_RANGE = Rule(
     "The declared stiffness is below the stiffness limit",
     "For every impedance controller, the whole declared stiffness range of the environment that "
     "it is designed for lies below the stiffness at which its loop first becomes unstable (at "
-    "nominal damping, with the designed gains and in the corners of their declared ranges). A "
+    "nominal damping, or in viscoelastic contact with all parameters in proportion; with the "
+    "designed gains and in the corners of their declared ranges). A "
     "design goal, computed in floating point: not a proof. What is proved about the ranges is "
     "NRS102, at every corner of the parameter box and so inside it.",
     "Raise Bt or its upper bound, or narrow the stiffness range to what really occurs.",

@@ -10,7 +10,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from nrs_design.certificates.certificate import dump
-from nrs_design.certificates.verify import verify
 from nrs_design.controllers.gains import gains_of
 from nrs_design.errors import DesignError, OutputError, SpecError
 from nrs_design.gating.examine import Examiner, rate_of
@@ -31,6 +30,7 @@ from nrs_design.pipeline import (
     limits_of,
     run_certification,
     run_evidence,
+    run_verification,
 )
 from nrs_design.spec import LoadedSpec, RobotSpec, read_spec
 
@@ -182,7 +182,7 @@ def _examine(
         text = dump(certificate, origin_of(loaded.path, file))
         write_output(file, text, replaces=CERTIFICATE)
         progress("re-check")
-        obligations += (examiner.certificate(file, verify(file, loaded).fault),)
+        obligations += (examiner.certificate(file, run_verification(file, result).fault),)
     goals, cautions = _goals_and_report(result, examiner, files, progress)
     rate, rate_name = rate_of(certificate)
     return SpecOutcome(
@@ -206,10 +206,10 @@ def _goals_and_report(
 ) -> tuple[tuple[Obligation, ...], tuple[Caution, ...]]:
     evidence: DesignEvidence | None = None
     missed: tuple[Obligation, ...] = ()
-    if result.design is not None:
+    if result.designed is not None:
         progress("margins")
         try:
-            evidence = run_evidence(result.loaded, result.design)
+            evidence = run_evidence(result.designed)
         except DesignError as error:
             missed = (examiner.no_margins(error),)
     if files.html:

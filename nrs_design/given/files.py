@@ -3,14 +3,23 @@
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from io import BytesIO
 from pathlib import Path
 from typing import Any, NoReturn
 
 from nrs_design.errors import DataError
+from nrs_design.files import open_regular, read_json_text
+from nrs_design.given.unpacked import check_mat, check_npz
+from nrs_design.proof.text import quoted
 
-MAX_BYTES = 256 * 2**20
+MAX_BYTES = 16 * 2**20
+# Of all matrices together.
+MAX_ENTRIES = 200_000
+_NUMBERED = re.compile("A[0-9]{1,6}")
+_OPTIONAL = ("rate", "time")
 _CONTENT = "it holds `P`, and the modes as `A` (or A1, A2, ...), and may hold `rate` and `time`"
 
 
@@ -53,7 +62,7 @@ def read_proposal(path: Path) -> Proposal:
     DataError
         If the file cannot be read, or does not hold these.
     """
-    readers: dict[str, Callable[[Path], dict[str, Any]]] = {
+    readers: dict[str, Callable[[bytes], dict[str, Any]]] = {
         ".npz": _read_npz,
         ".mat": _read_mat,
         ".json": _read_json,
@@ -65,18 +74,30 @@ def read_proposal(path: Path) -> Proposal:
             path=path,
             remedy="name a file .npz, .mat or .json",
         )
-    if not path.is_file():
-        raise DataError("is no file", path=path, remedy="check the path")
-    if path.stat().st_size > MAX_BYTES:
-        raise DataError(f"is larger than {MAX_BYTES} bytes", path=path, remedy="name a smaller one")
+    raw = _read_bytes(path)
     try:
-        content = reader(path)
+        content = reader(raw)
     except Exception as error:
         # Readers of foreign formats raise what they like on files that are not theirs.
         raise DataError(
             f"cannot be read ({error or type(error).__name__})", path=path, remedy=_CONTENT
         ) from error
     return _proposal(content, path)
+
+
+def _read_bytes(path: Path) -> bytes:
+    if not path.is_file():
+        raise DataError("is no file", path=path, remedy="check the path")
+    try:
+        with open_regular(path) as file:
+            content = file.read(MAX_BYTES + 1)
+    except OSError as error:
+        raise DataError(
+            f"cannot be read ({error.strerror})", path=path, remedy="check the path"
+        ) from error
+    if len(content) > MAX_BYTES:
+        raise DataError(f"is larger than {MAX_BYTES} bytes", path=path, remedy="name a smaller one")
+    return content
 
 
 def _proposal(content: dict[str, Any], path: Path) -> Proposal:
@@ -97,9 +118,7 @@ def _scalar(value: object) -> object:
 
 
 def _modes(content: dict[str, Any], path: Path) -> dict[str, object]:
-    numbered = sorted(
-        (key for key in content if key[:1] == "A" and key[1:].isdecimal()), key=lambda k: int(k[1:])
-    )
+    numbered = sorted(filter(_NUMBERED.fullmatch, content), key=lambda key: int(key[1:]))
     if "A" in content and numbered:
         raise DataError("holds both `A` and numbered modes", path=path, remedy="keep one of them")
     if numbered:
@@ -108,33 +127,78 @@ def _modes(content: dict[str, Any], path: Path) -> dict[str, object]:
     if isinstance(held, dict) and held:
         return held
     if isinstance(held, list) and held:
-        single = not isinstance(held[0], list) or not isinstance(held[0][0], list)
+        rows = held[0] if isinstance(held[0], list) else []
+        single = not (rows and isinstance(rows[0], list))
         matrices = [held] if single else held
         return {f"A{index + 1}": matrix for index, matrix in enumerate(matrices)}
     raise DataError("holds no modes", path=path, remedy=_CONTENT)
 
 
-def _read_json(path: Path) -> dict[str, Any]:
+def _is_matrix_name(key: str) -> bool:
+    return key in ("A", "P") or _NUMBERED.fullmatch(key) is not None
+
+
+def _read_json(raw: bytes) -> dict[str, Any]:
     content = json.loads(
-        path.read_text(encoding="utf-8"), parse_float=str, parse_constant=_not_finite
+        read_json_text(raw),
+        parse_float=str,
+        parse_int=str,
+        parse_constant=_not_finite,
+        object_pairs_hook=_unique,
     )
     if not isinstance(content, dict):
         raise ValueError("expected a JSON object")
+    # A workspace of NumPy or MATLAB may hold anything; such a file is written for this purpose.
+    if foreign := [key for key in content if key not in _OPTIONAL and not _is_matrix_name(key)]:
+        raise ValueError(f"{quoted(foreign[0])} is not known here")
+    _check_entries(_count(content))
     return content
 
 
-def _read_npz(path: Path) -> dict[str, Any]:
+def _unique(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+    """Refuse a mode that another of its name would hide."""
+    found = dict(pairs)
+    if len(found) < len(pairs):
+        raise ValueError("a name occurs twice in one object")
+    return found
+
+
+def _read_npz(raw: bytes) -> dict[str, Any]:
     import numpy as np
 
-    with np.load(path, allow_pickle=False) as archive:
-        return {key: archive[key].tolist() for key in archive.files}
+    check_npz(raw)
+    with np.load(BytesIO(raw), allow_pickle=False) as archive:
+        arrays = {key: archive[key] for key in archive.files}
+    _check_entries(sum(array.size for array in arrays.values()))
+    return {key: array.tolist() for key, array in arrays.items()}
 
 
-def _read_mat(path: Path) -> dict[str, Any]:
+def _read_mat(raw: bytes) -> dict[str, Any]:
     from scipy.io import loadmat
 
-    variables = loadmat(path)
-    return {key: _plain(value) for key, value in variables.items() if not key.startswith("__")}
+    check_mat(raw)
+    # It reads from streams, too, whatever its annotations say.
+    variables = loadmat(BytesIO(raw))  # type: ignore[arg-type]
+    arrays = {key: value for key, value in variables.items() if not key.startswith("__")}
+    _check_entries(sum(map(_size, arrays.values())))
+    return {key: _plain(value) for key, value in arrays.items()}
+
+
+def _size(value: Any) -> int:
+    """Count the entries of a MATLAB array, those of its cells included."""
+    return sum(map(_size, value.ravel())) if value.dtype == object else int(value.size)
+
+
+def _count(value: object) -> int:
+    """Count the entries of nested lists and objects."""
+    if isinstance(value, dict):
+        return sum(map(_count, value.values()))
+    return sum(map(_count, value)) if isinstance(value, list) else 1
+
+
+def _check_entries(count: int) -> None:
+    if count > MAX_ENTRIES:
+        raise ValueError(f"it holds more than {MAX_ENTRIES} entries")
 
 
 def _plain(value: Any) -> Any:

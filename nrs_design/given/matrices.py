@@ -9,10 +9,14 @@ from numbers import Rational, Real
 from typing import Any
 
 from nrs_design.errors import SpecError
+from nrs_design.proof.exact import common_denominator
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.system import Time
 from nrs_design.proof.text import quoted
 from nrs_design.spec.exact import parse_exact
+
+# That of doubles has at most 1074.
+MAX_DENOMINATOR_BITS = 2048
 
 
 def read_rows(matrix: object, name: str = "the matrix") -> list[list[Fraction]]:
@@ -46,7 +50,24 @@ def read_rows(matrix: object, name: str = "the matrix") -> list[list[Fraction]]:
 
 def read_matrix(matrix: object, name: str = "the matrix") -> RationalMatrix:
     """Read a matrix over its least common denominator; see `read_rows`."""
-    return RationalMatrix.from_rows(read_rows(matrix, name))
+    return exact_matrix(read_rows(matrix, name), name)
+
+
+def exact_matrix(rows: Sequence[Sequence[Fraction]], name: str = "the matrix") -> RationalMatrix:
+    """Bring rows over their least common denominator.
+
+    Raises
+    ------
+    SpecError
+        If that has more than 2048 binary digits.
+    """
+    common = common_denominator(entry.denominator for row in rows for entry in row)
+    if common is None or common.bit_length() > MAX_DENOMINATOR_BITS:
+        raise SpecError(
+            f"the common denominator of {name} has more than {MAX_DENOMINATOR_BITS} binary digits",
+            remedy="write its entries with fewer digits",
+        )
+    return RationalMatrix.from_rows(rows)
 
 
 def read_number(value: object, name: str = "the value") -> Fraction:

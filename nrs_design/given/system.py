@@ -28,11 +28,17 @@ def spec_of_matrices(
     name: str,
     time: str | None = None,
     dwell_time: object = None,
+    longest_dwell_time: object = None,
     transitions: Sequence[tuple[str, str]] | None = None,
     resets: Mapping[tuple[str, str], object] | None = None,
     parameters: Mapping[str, object] | None = None,
 ) -> LoadedSpec:
     """Return the spec of a switched system whose matrices are given; see `nrs_design.certify`.
+
+    Parameters
+    ----------
+    modes, name, time, dwell_time, transitions, resets, parameters
+        As for `nrs_design.certify`.
 
     Raises
     ------
@@ -43,26 +49,30 @@ def spec_of_matrices(
     if not named:
         raise SpecError("no modes are given", remedy="give at least one matrix")
     axis = time_of(list(named.values()), time)
+    unit = "s" if axis == "continuous" else "steps"
+    times = {"dwell_time": dwell_time, "longest_dwell_time": longest_dwell_time}
     uncertain = bool(parameters)
     document: Document = {
         "kind": "switched-system",
         "name": name,
         "time": str(axis),
         "modes": [
-            {"name": label, "A": _entries(A, label, uncertain)} for label, A in named.items()
+            {"name": str(label), "A": _entries(A, str(label), uncertain)}
+            for label, A in named.items()
         ],
-        "switching": _switching(dwell_time, transitions, "s" if axis == "continuous" else "steps"),
+        "switching": _switching(times, transitions, unit),
     }
     if parameters:
         document["parameters"] = {key: _parameter(value) for key, value in parameters.items()}
     if resets:
         document["resets"] = [
             {
-                "from": source,
-                "to": target,
+                "from": str(source),
+                "to": str(target),
                 "map": _texts(read_rows(G, f"the reset {source}-{target}")),
             }
-            for (source, target), G in resets.items()
+            for (source, target), maps in resets.items()
+            for G in _several(maps)
         ]
     return _validated(document, name)
 
@@ -92,15 +102,36 @@ def _text(number: Fraction) -> str:
     return exact_text(number)
 
 
-def _switching(dwell_time: object, transitions: object, unit: str) -> object:
-    rules: Document = {}
-    if dwell_time is not None:
-        is_text = isinstance(dwell_time, str) and " " in dwell_time
-        text = dwell_time if is_text else f"{_text(read_number(dwell_time, 'dwell_time'))} {unit}"
-        rules["dwell_time"] = text
+def _several(maps: object) -> list[object]:
+    """Return the matrices of several resets between two modes; mostly, it is one."""
+    if isinstance(maps, list | tuple) and maps and _depth(maps[0]) == 2:
+        return list(maps)
+    return [maps]
+
+
+def _depth(held: object) -> int:
+    """Return how deep lists or arrays are nested: 1 for a row, 2 for a matrix."""
+    dimensions = getattr(held, "ndim", None)
+    if dimensions is not None:
+        return int(dimensions)
+    return 1 + _depth(held[0]) if isinstance(held, list | tuple) and held else 0
+
+
+def _switching(times: Mapping[str, object], transitions: object, unit: str) -> object:
+    rules: Document = {
+        key: _dwell_times(value, key, unit) for key, value in times.items() if value is not None
+    }
     if transitions is not None:
-        rules["transitions"] = [list(pair) for pair in transitions]  # type: ignore[attr-defined]
+        rules["transitions"] = [[*map(str, pair)] for pair in transitions]  # type: ignore[attr-defined]
     return rules or "arbitrary"
+
+
+def _dwell_times(value: object, key: str, unit: str) -> object:
+    """Return one time as the text of a spec, or one for each of some modes."""
+    if isinstance(value, Mapping):
+        return {str(name): _dwell_times(time, key, unit) for name, time in value.items()}
+    is_text = isinstance(value, str) and " " in value
+    return value if is_text else f"{_text(read_number(value, key))} {unit}"
 
 
 def _parameter(value: object) -> Document:

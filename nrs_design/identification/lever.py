@@ -3,13 +3,9 @@
 from __future__ import annotations
 
 from nrs_design.errors import DataError, SpecError
-from nrs_design.models.tissue import AbstractTissueLaw, HuntCrossley
-from nrs_design.models.tissue.law import DAMPING, STIFFNESS
+from nrs_design.models.contact import AbstractContactLaw
 from nrs_design.spec.kinds import LEVER_ARM
 from nrs_design.spec.quantity import parse_quantity
-
-_LINEAR = {STIFFNESS: "N/m", DAMPING: "N s/m"}
-_ROTATIONAL = {STIFFNESS: "N m/rad", DAMPING: "N m s/rad"}
 
 
 def parse_arm(text: str | None, *, rotational: bool) -> float | None:
@@ -35,10 +31,6 @@ def parse_arm(text: str | None, *, rotational: bool) -> float | None:
     return arm
 
 
-def units_of(law: AbstractTissueLaw, rotational: bool) -> tuple[str, ...]:
-    """Return the units of the parameters of a law."""
-    units = _ROTATIONAL if rotational else _LINEAR
-    if isinstance(law, HuntCrossley):
-        force, length = ("N m", "rad") if rotational else ("N", "m")
-        return f"{force}/{length}^φ", f"{force} s/{length}^(φ+1)", ""
-    return tuple(units[kind] for kind in law.kinds)
+def units_of(law: AbstractContactLaw, rotational: bool) -> tuple[str, ...]:
+    """Return the units of the parameters of a law, as people read them."""
+    return tuple(unit.replace("*", " ") for unit in law.units(rotational=rotational))

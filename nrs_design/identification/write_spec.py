@@ -14,16 +14,10 @@ from nrs_design.identification.actuator import ActuatorIdentification
 from nrs_design.identification.datasets import Source
 from nrs_design.identification.statistics import Estimate
 from nrs_design.identification.tissue import TissueIdentification
-from nrs_design.models.tissue.law import DAMPING, STIFFNESS
+from nrs_design.models.contact import LINEAR_LAWS, AbstractLinearLaw
 from nrs_design.spec import InteractionDesignSpec, LoadedSpec, parse_spec
 
-# What a spec can hold; the others are not linear, or not without memory.
-WRITABLE = ("elastic", "kelvin-voigt")
 _DIGITS = 6
-_UNITS = {
-    False: {STIFFNESS: "N/m", DAMPING: "N*s/m"},
-    True: {STIFFNESS: "N*m/rad", DAMPING: "N*m*s/rad"},
-}
 
 
 def merge_tissue(
@@ -50,21 +44,22 @@ def merge_tissue(
         If the chosen law has no place in a spec, or its range is unlimited.
     """
     model = found.chosen
-    if model.law.name not in WRITABLE:
+    law = model.law
+    if not isinstance(law, AbstractLinearLaw):
         raise DataError(
-            f"the chosen law, {model.law.name}, has no place in a spec",
-            remedy=f"choose one that has: --model {' or --model '.join(WRITABLE)}",
+            f"the chosen law, {law.name}, has no place in a spec",
+            remedy=f"choose one that has: --model {' or --model '.join(LINEAR_LAWS)}",
         )
     spec = _interaction(loaded)
     name = _environment(spec, environment, loaded.path)
     document = _Document(loaded)
     node = document.root["environments"][name]
-    document.put(node, "model", model.law.name)
-    units = _UNITS[found.rotational]
-    for kind, estimate in zip(model.law.kinds, model.ranges, strict=True):
-        _put_range(document, node, kind, _ranged(estimate, units[kind], kind))
-    if DAMPING not in model.law.kinds:
-        document.drop(node, DAMPING)
+    document.put(node, "model", law.name)
+    units = law.units(rotational=found.rotational)
+    for key, unit, estimate in zip(law.keys, units, model.ranges, strict=True):
+        _put_range(document, node, key, _ranged(estimate, unit, key))
+    for key in {key for other in LINEAR_LAWS.values() for key in other.keys}.difference(law.keys):
+        document.drop(node, key)
     if found.rotational:
         document.drop(node, "lever_arm")
     elif arm is not None:
@@ -121,7 +116,7 @@ def _environment(spec: InteractionDesignSpec, name: str | None, path: Path) -> s
         return names[0]
     if name not in names:
         said = "there is no environment to write to" if name is None else f"no environment {name!r}"
-        listed = ", ".join(names) or "none"
+        listed = ", ".join(names) or "no environments"
         raise SpecError(
             said if len(names) == 0 or name else "there are several environments",
             path=path,

@@ -7,14 +7,11 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 
 from nrs_design.models.actuator import Actuator
-from nrs_design.models.environment import Environment, Interval
+from nrs_design.models.contact import LINEAR_LAWS
+from nrs_design.models.contact.environment import Environment
+from nrs_design.models.interval import Interval
 from nrs_design.models.motion_loop import MotionLoop, close_motion_loop
-from nrs_design.spec import (
-    ElasticSpec,
-    InteractionDesignSpec,
-    KelvinVoigtSpec,
-    RangedQuantity,
-)
+from nrs_design.spec import EnvironmentSpec, InteractionDesignSpec
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,23 +49,21 @@ class Plant:
     def scaled(self, scale: Fraction, touched: Collection[str]) -> Plant:
         """Return the plant with the ranges of its touched environments stretched.
 
-        Every parameter is stretched about its nominal value.
+        Every parameter is stretched about its nominal value; a scale of 1 leaves all as it is.
 
         Raises
         ------
         AssemblyError
-            If a stiffness would not stay positive, or a damping would become negative.
+            If a parameter would reach a value that its law does not admit.
         """
+        if scale == 1:
+            return self
         environments = (e.scaled(scale) if e.name in touched else e for e in self.environments)
         return replace(self, environments=tuple(environments))
 
 
 def build_plant(spec: InteractionDesignSpec) -> Plant:
-    """Convert the plant of a spec to exact SI numbers.
-
-    A linear stiffness or damping at distance r from the pivot is multiplied by r^2 to give the
-    rotational one (thesis 6.3.1.1: 747.1461 N/m at 0.24 m is 43.0356 N m/rad).
-    """
+    """Convert the plant of a spec to exact SI numbers, environments as the pivot sees them."""
     actuator = Actuator(spec.actuator.gain.exact, spec.actuator.time_constant.exact)
     environments = tuple(
         _environment(name, environment) for name, environment in spec.environments.items()
@@ -80,17 +75,6 @@ def build_plant(spec: InteractionDesignSpec) -> Plant:
     return Plant(actuator, environments, loop)
 
 
-def _environment(name: str, spec: ElasticSpec | KelvinVoigtSpec) -> Environment:
-    arm = spec.lever_arm
-    factor = Fraction(1) if arm is None else arm.exact**2
-    damping = (
-        _interval(spec.damping, factor)
-        if isinstance(spec, KelvinVoigtSpec)
-        else Interval.point(Fraction(0))
-    )
-    return Environment(name, _interval(spec.stiffness, factor), damping)
-
-
-def _interval(quantity: RangedQuantity, factor: Fraction) -> Interval:
-    nominal, low, high = (q.exact * factor for q in (quantity.nominal, *quantity.range))
-    return Interval(nominal, low, high)
+def _environment(name: str, spec: EnvironmentSpec) -> Environment:
+    law, turned = LINEAR_LAWS[spec.model], spec.exact_at_pivot()
+    return Environment(name, law, tuple(Interval(*turned[key]) for key in law.keys))

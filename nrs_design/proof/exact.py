@@ -74,7 +74,15 @@ def common_denominator(denominators: Iterable[int]) -> int | None:
 
 
 def add(left: IntegerMatrix, right: IntegerMatrix, weight: int = 1) -> list[list[int]]:
-    """Return ``left + weight right``."""
+    """Return ``left + weight right``.
+
+    Parameters
+    ----------
+    left, right : integer matrix
+        Of one shape.
+    weight : int
+        Of the right one.
+    """
     return [
         [a + weight * b for a, b in zip(*rows, strict=True)]
         for rows in zip(left, right, strict=True)

@@ -7,12 +7,15 @@ it: the test is a proof in either direction, and no eigenvalue is computed.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 
 from nrs_design.proof.exact import (
+    MAX_WORK,
     IntegerMatrix,
+    TooLargeError,
+    bit_length,
     is_positive_definite,
     is_positive_semidefinite,
     lyapunov_decrease,
@@ -23,6 +26,8 @@ from nrs_design.proof.system import Mode, Time
 
 # A rate is sharpened to one part in two to this power of the range that it may lie in.
 RATE_BITS = 20
+# How many decisions about all modes that takes, nearly.
+DECISIONS = 2 * RATE_BITS
 # A counterexample is written with as few of these decimal digits as show it.
 DIGITS = (1, 2, 4, 8, 16)
 
@@ -60,8 +65,9 @@ class LyapunovCheck:
         P is positive definite, and V increases in no mode: stability, but no decay, is shown.
     rate : Fraction or None
         A rate at which V decreases: alpha in 1/s, or rho per step in discrete time. What was asked
-        for, or else the best one on a fine grid, rounded to the side that is proved. None if V does
-        not decrease strictly.
+        for if it holds, or else the best one on a fine grid, rounded to the side that is proved.
+        None if V does not decrease strictly at any rate, or if the numbers are too large to look
+        for one.
     counterexample : Counterexample or None
         Why it does not hold.
     """
@@ -92,21 +98,46 @@ def check_quadratic(
     Raises
     ------
     ValueError
-        If P is not symmetric or a mode is of another size, or the rate is not one of decay.
+        If there is no mode, P is not symmetric or a mode is of another size, or the rate is not one
+        of decay.
+    TooLargeError
+        If it would take more than some seconds.
     """
     n = len(P.numerators)
+    if not modes:
+        raise ValueError("there is no mode")
     if any(mode.A.shape != (n, n) for mode in modes) or P.shape != (n, n):
         raise ValueError(f"P is {n} x {P.shape[1]}, and not every mode is {n} x {n}")
     still = Fraction(int(time is Time.DISCRETE))
     if rate is not None and (rate < 0 or (time is Time.DISCRETE and not 0 < rate <= 1)):
         raise ValueError("a rate of decay is not negative, and in discrete time in (0, 1]")
     asked = still if rate is None else rate
+    work = _work(modes, P, time, asked)
+    if work > MAX_WORK // 2:
+        raise TooLargeError("the matrices are too large, or their numbers too long, to decide")
+    affordable = DECISIONS * work <= 4 * MAX_WORK
     for mode, form in _forms(modes, P, time, asked):
         if not is_positive_definite(form):
             weak = _is_weak(modes, P, time)
-            return LyapunovCheck(False, weak, None, _counterexample(mode, form, P, asked, time))
-    best = _best_rate(modes, P, time) if rate is None else rate
+            best = None
+            if affordable and _is_proved(modes, P, time, still):
+                best = _best_rate(modes, P, time)
+            return LyapunovCheck(False, weak, best, _counterexample(mode, form, P, asked, time))
+    best = _best_rate(modes, P, time) if rate is None and affordable else rate
     return LyapunovCheck(True, True, best, None)
+
+
+def _work(modes: Sequence[Mode], P: RationalMatrix, time: Time, rate: Fraction) -> int:
+    """Predict what one decision about P and all modes takes; see `MAX_WORK`."""
+    longest = max(
+        (max(bit_length(mode.A.numerators), mode.A.denominator.bit_length()) for mode in modes),
+        default=0,
+    )
+    long = max(rate.numerator.bit_length(), rate.denominator.bit_length())
+    n = len(P.numerators)
+    times = 1 if time is Time.CONTINUOUS else 2
+    bits = times * (longest + long + n.bit_length()) + bit_length(P.numerators)
+    return (len(modes) + 1) * n**3 * bits
 
 
 def _forms(
@@ -117,6 +148,10 @@ def _forms(
     form = lyapunov_decrease if time is Time.CONTINUOUS else stein_decrease
     for mode in modes:
         yield mode, form(mode.A.numerators, mode.A.denominator, P.numerators, rate)
+
+
+def _is_proved(modes: Sequence[Mode], P: RationalMatrix, time: Time, rate: Fraction) -> bool:
+    return all(is_positive_definite(M) for _, M in _forms(modes, P, time, rate))
 
 
 def _is_weak(modes: Sequence[Mode], P: RationalMatrix, time: Time) -> bool:
@@ -135,16 +170,26 @@ def _best_rate(modes: Sequence[Mode], P: RationalMatrix, time: Time) -> Fraction
         return decay if time is Time.CONTINUOUS else 1 - decay
 
     def is_proved(decay: Fraction) -> bool:
-        return all(is_positive_definite(M) for _, M in _forms(modes, P, time, rate_at(decay)))
+        return _is_proved(modes, P, time, rate_at(decay))
 
-    low = _decay_bound(modes, P) if time is Time.CONTINUOUS else Fraction(1, 2)
-    while not is_proved(low):
-        low /= 2
+    first = _decay_bound(modes, P) if time is Time.CONTINUOUS else Fraction(1, 2)
+    low = first / 2 ** _least(lambda k: is_proved(first / 2**k))
     high = 2 * low if time is Time.CONTINUOUS or low < Fraction(1, 2) else Fraction(1)
     for _ in range(RATE_BITS):
         middle = (low + high) / 2
         low, high = (middle, high) if is_proved(middle) else (low, middle)
     return rate_at(low)
+
+
+def _least(holds: Callable[[int], bool]) -> int:
+    """Return the least natural number with a property that all greater ones have, too."""
+    fails, found = -1, 0
+    while not holds(found):
+        fails, found = found, 2 * found + 1
+    while found - fails > 1:
+        middle = (fails + found) // 2
+        fails, found = (fails, middle) if holds(middle) else (middle, found)
+    return found
 
 
 def _decay_bound(modes: Sequence[Mode], P: RationalMatrix) -> Fraction:
@@ -200,28 +245,35 @@ def indefinite_vector(M: IntegerMatrix) -> tuple[Fraction, ...]:
     """Return a nonzero x with ``x' M x <= 0`` for a symmetric M that is not positive definite.
 
     Elimination goes on until a pivot is not positive. With the block above and left of it called
-    B, and c the column beside that block, ``x = (-B^-1 c, 1, 0)`` gives that pivot as ``x' M x``.
+    B, and c the column beside that block, ``x = (-B^-1 c, 1, 0)`` gives that pivot as ``x' M x``
+    (here after fraction-free elimination, times the last positive minor).
 
     Raises
     ------
     ValueError
         If M is positive definite.
     """
-    n = len(M)
-    rows = [[Fraction(entry) for entry in row] for row in M]
-    for k in range(n):
-        if rows[k][k] <= 0:
-            return _solved(rows, k, n)
-        for i in range(k + 1, n):
-            factor = rows[i][k] / rows[k][k]
-            rows[i] = [a - factor * b for a, b in zip(rows[i], rows[k], strict=True)]
+    rows, minor = [list(row) for row in M], 1
+    for k in range(len(rows)):
+        pivot = rows[k][k]
+        if pivot <= 0:
+            return _solved(rows, k, minor)
+        for i in range(k + 1, len(rows)):
+            first = rows[i][k]
+            rows[i] = [
+                (pivot * a - first * b) // minor for a, b in zip(rows[i], rows[k], strict=True)
+            ]
+        minor = pivot
     raise ValueError("the matrix is positive definite")
 
 
-def _solved(rows: Sequence[Sequence[Fraction]], k: int, n: int) -> tuple[Fraction, ...]:
-    """Solve ``U x = -c`` backwards, with the first k rows after elimination."""
-    x = [Fraction(0)] * n
-    x[k] = Fraction(1)
+def _solved(rows: IntegerMatrix, k: int, minor: int) -> tuple[Fraction, ...]:
+    """Solve ``U x = -c`` backwards, with the first k rows after elimination.
+
+    By Cramer's rule the solution times the leading minor of order k is integer.
+    """
+    x = [0] * len(rows)
+    x[k] = minor
     for i in reversed(range(k)):
-        x[i] = -sum((rows[i][j] * x[j] for j in range(i + 1, k + 1)), Fraction(0)) / rows[i][i]
-    return tuple(x)
+        x[i] = -sum(rows[i][j] * x[j] for j in range(i + 1, k + 1)) // rows[i][i]
+    return tuple(Fraction(entry, minor) for entry in x)

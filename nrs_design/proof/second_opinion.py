@@ -13,7 +13,7 @@ second opinion.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
 from fractions import Fraction
 from typing import Any
 
@@ -41,19 +41,29 @@ def agrees(system: SwitchedSystem, evidence: AbstractEvidence) -> bool:
     """Tell whether the second opinion, too, is that evidence holds which the check has accepted."""
     if not all(_is_met(A, time) for A, time in _exponents(system, evidence)):
         return False
-    if isinstance(evidence, UnstableMode):
-        matrix = next(mode.A for mode in system.modes if mode.name == evidence.mode)
-        return not _is_surely_stable(matrix, system.time)
-    if isinstance(evidence, UnstableMixture):
-        return not _is_surely_stable(mixture(system, evidence.weights), system.time)
-    if isinstance(evidence, UnstableValue):
-        return agrees(system_at(system, evidence.share), evidence.part)
-    if isinstance(evidence, BlockTriangular):
-        blocks = evidence.blocks
-        return all(agrees(diagonal_block(system, blocks[k]), part) for k, part in evidence.parts)
-    if isinstance(evidence, CommonQuadratic):
-        return _decreases_everywhere(system, evidence)
+    return _OPINIONS.get(type(evidence), _has_positive_forms)(system, evidence)
+
+
+def _has_positive_forms(system: SwitchedSystem, evidence: AbstractEvidence) -> bool:
     return all(_has_positive_spectrum(_matrix(form)) for _, form in evidence.forms(system))
+
+
+def _is_mode_unstable(system: SwitchedSystem, evidence: UnstableMode) -> bool:
+    matrix = next(mode.A for mode in system.modes if mode.name == evidence.mode)
+    return not _is_surely_stable(matrix, system.time)
+
+
+def _is_mixture_unstable(system: SwitchedSystem, evidence: UnstableMixture) -> bool:
+    return not _is_surely_stable(mixture(system, evidence.weights), system.time)
+
+
+def _is_value_unstable(system: SwitchedSystem, evidence: UnstableValue) -> bool:
+    return agrees(system_at(system, evidence.share), evidence.part)
+
+
+def _agrees_on_every_part(system: SwitchedSystem, evidence: BlockTriangular) -> bool:
+    blocks = evidence.blocks
+    return all(agrees(diagonal_block(system, blocks[k]), part) for k, part in evidence.parts)
 
 
 def _exponents(
@@ -95,6 +105,16 @@ def _decreases_everywhere(system: SwitchedSystem, evidence: CommonQuadratic) -> 
 
     modes = (decrease(mode.A) for mode in system.modes)
     return _has_positive_spectrum(Q) and all(map(_has_positive_spectrum, modes))
+
+
+# The kinds on which flint has more to say than on the definiteness of their forms.
+_OPINIONS: Mapping[type[AbstractEvidence], Callable[[SwitchedSystem, Any], bool]] = {
+    BlockTriangular: _agrees_on_every_part,
+    CommonQuadratic: _decreases_everywhere,
+    UnstableMixture: _is_mixture_unstable,
+    UnstableMode: _is_mode_unstable,
+    UnstableValue: _is_value_unstable,
+}
 
 
 def _matrix(rows: Sequence[Sequence[int]]) -> Any:

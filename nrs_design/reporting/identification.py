@@ -121,7 +121,7 @@ def _comparison(found: TissueIdentification) -> Iterator[Block]:
             number(model.aic - least_aic),
             number(model.bic - least_bic),
             f"{min(fit.uncertainty.whiteness for fit in model.fits):.2g}",
-            str(len(model.doubts)) if model.doubts else "none",
+            str(len(model.doubts)),
         )
         for model in found.models
     )

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import Any
 
+from nrs_design.printable import visible
 from nrs_design.reporting.document import Bullets, Illustration, Paragraph, Report, Section, Table
 from nrs_design.reporting.svg import to_svg
-from nrs_design.reporting.text import visible
 
 # More letters in a row than these do not fit on a telephone.
 _NARROW = 36

@@ -13,7 +13,6 @@ from nrs_design.reporting.sections.modes import modes_section
 from nrs_design.reporting.sections.proof import proof_section
 from nrs_design.reporting.sections.recheck import recheck_section
 from nrs_design.reporting.sections.search import assumptions_section, rungs_section
-from nrs_design.spec import InteractionDesignSpec
 
 if TYPE_CHECKING:
     import datetime
@@ -72,7 +71,4 @@ def build_report(
 
 
 def _design(result: Result, evidence: DesignEvidence | None) -> tuple[Section, ...]:
-    spec = result.loaded.spec
-    if result.design is None or not isinstance(spec, InteractionDesignSpec):
-        return ()
-    return design_sections(spec, result.design, evidence)
+    return () if result.designed is None else design_sections(result.designed, evidence)

@@ -151,6 +151,15 @@ def legend(figure: Figure, axes: Axes, columns: int = 2) -> None:
     """Put a legend below the axes, where it hides no data, and make the figure higher for it.
 
     A single series has none. Names are written in full, on several lines where they are long.
+
+    Parameters
+    ----------
+    figure : Figure
+        Made higher.
+    axes : Axes
+        With the labelled series.
+    columns : int
+        At most so many.
     """
     handles, labels = axes.get_legend_handles_labels()
     if len(handles) < 2:

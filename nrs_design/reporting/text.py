@@ -5,17 +5,7 @@ from __future__ import annotations
 import textwrap
 from functools import cache
 
-
-def visible(text: str) -> str:
-    r"""Write what has no shape of its own as an escape, such as ``\u202e``; line breaks as spaces.
-
-    Control characters, marks that change the direction of writing and lone surrogates would
-    make a reader see something else than what is there.
-    """
-    joined = " ".join(text.splitlines()) if "\n" in text or "\r" in text else text
-    if joined.isprintable():
-        return joined
-    return "".join(c if c.isprintable() else _escape(c) for c in joined)
+from nrs_design.printable import escaped, visible
 
 
 def drawable(text: str) -> str:
@@ -24,7 +14,7 @@ def drawable(text: str) -> str:
     if shown.isascii():
         return shown
     letters = _letters()
-    return "".join(c if ord(c) in letters else _escape(c) for c in shown)
+    return "".join(c if ord(c) in letters else escaped(c) for c in shown)
 
 
 def wrapped(text: str, width: int) -> str:
@@ -38,10 +28,6 @@ def wrapped(text: str, width: int) -> str:
             else:
                 lines.append(piece)
     return "\n".join(line.strip() for line in lines)
-
-
-def _escape(character: str) -> str:
-    return character.encode("unicode_escape").decode()
 
 
 @cache

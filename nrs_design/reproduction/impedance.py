@@ -7,6 +7,7 @@ from math import pi
 from nrs_design.design.impedance import ImpedanceLoop, ImpedanceProblem, optimize_impedance
 from nrs_design.design.margins import stiffness_limit
 from nrs_design.design.transfer import TransferFunction
+from nrs_design.models.contact import Elastic
 from nrs_design.reproduction import thesis
 from nrs_design.reproduction.row import Row, Tolerance, misprint, reproduced
 
@@ -107,7 +108,7 @@ def _optimum(
     loop: TransferFunction, stiffness: float, desired: float, least: float
 ) -> tuple[float, float]:
     problem = ImpedanceProblem(
-        loop=ImpedanceLoop(loop, stiffness),
+        loop=ImpedanceLoop(loop, Elastic(stiffness)),
         desired=desired,
         bandwidth=2 * pi * thesis.BANDWIDTH_IN_HERTZ,
         mass_bounds=(least, 1.0),
@@ -122,7 +123,7 @@ def _limits() -> tuple[Row, ...]:
 
 
 def _limit(Bt: float, used: str, section: str, right: str, tolerance: float) -> Row:
-    limit = stiffness_limit(ImpedanceLoop(thesis.EXACT_LOOP, float(used)), 0.01, Bt)
+    limit = stiffness_limit(ImpedanceLoop(thesis.EXACT_LOOP, Elastic(float(used))), 0.01, Bt)
     hand = (
         f" A surgeon's hand, {HAND[0]:.1f} to {HAND[1]:.1f} N m/rad by the thesis's own figures, "
         "reaches beyond it."

@@ -5,7 +5,7 @@ from __future__ import annotations
 from fractions import Fraction
 
 from nrs_design.controllers.laws import Admittance, ProportionalForce
-from nrs_design.models.environment import Contact
+from nrs_design.models.contact import Elastic
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.system import Mode, SwitchedSystem, Time
 from nrs_design.reproduction import thesis
@@ -20,21 +20,28 @@ from nrs_design.switched.close_loop import (
 MOTION = realize(thesis.REALIZED_LOOP)
 
 
-def contact(stiffness: Fraction) -> Contact:
-    """Return an elastic environment, stiffness in N m/rad."""
-    return Contact("contact", stiffness, Fraction(0))
-
-
 def impedance_rows(stiffness: Fraction, Mt: str, Bt: str, coordinates: str) -> list[Row]:
-    """Return A of an impedance mode (thesis 6.28), in deflection or force coordinates."""
-    environment = contact(stiffness)
+    """Return A of an impedance mode (thesis 6.28), in deflection or force coordinates.
+
+    Parameters
+    ----------
+    stiffness : Fraction
+        In N m/rad.
+    Mt : str
+        Decimal, kg m^2.
+    Bt : str
+        Decimal, N m s/rad.
+    coordinates : {"deflection", "force"}
+        Last state.
+    """
+    environment = Elastic(stiffness)
     rows = impedance_mode(MOTION, Admittance(Fraction(Mt), Fraction(Bt)), environment)
     return rows if coordinates == "deflection" else to_force_coordinates(rows, MOTION, environment)
 
 
 def hybrid_rows() -> tuple[list[Row], list[Row]]:
     """Return A of the position mode and of the force mode (thesis 6.44 and 6.46)."""
-    force = force_mode(MOTION, ProportionalForce(thesis.FORCE_GAIN), contact(thesis.SOFT))
+    force = force_mode(MOTION, ProportionalForce(thesis.FORCE_GAIN), Elastic(thesis.SOFT), "soft")
     return [list(row) for row in MOTION.A], force
 
 

@@ -124,6 +124,15 @@ def misprint(
 
     The row is a drift if the value leaves the tolerance around what is `right`, or if the print
     turns out to be within it.
+
+    Parameters
+    ----------
+    name, section, printed, value, unit, tolerance
+        As for `reproduced`.
+    right : str or tuple of str
+        What should be printed.
+    note : str
+        Why.
     """
     values = _sequence(value)
     confirmed = tolerance.allows(values, _numbers(right))
@@ -159,12 +168,28 @@ def claim(
 
 
 def hardware_only(name: str, section: str, printed: str, unit: str, note: str = "") -> Row:
-    """Return the row of a measurement on the robot."""
+    """Return the row of a measurement on the robot.
+
+    Parameters
+    ----------
+    name, section, printed, unit
+        As for `reproduced`.
+    note : str
+        What it would take.
+    """
     return Row(name, section, printed, None, unit, None, Verdict.HARDWARE_ONLY, note)
 
 
 def omitted(name: str, section: str, printed: str, unit: str, note: str) -> Row:
-    """Return the row of a number whose data the thesis does not give."""
+    """Return the row of a number whose data the thesis does not give.
+
+    Parameters
+    ----------
+    name, section, printed, unit
+        As for `reproduced`.
+    note : str
+        What is missing.
+    """
     return Row(name, section, printed, None, unit, None, Verdict.OMITTED_DATA, note)
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from statistics import fmean
 
-from nrs_design.models.tissue import Elastic, KelvinBoltzmann
+from nrs_design.models.contact import Elastic, KelvinBoltzmann
 from nrs_design.reproduction.row import (
     Row,
     Tolerance,
@@ -125,7 +125,7 @@ def _at_pivot(name: str, fits: tuple[str, ...]) -> Row:
         f"mean of the fits at the pivot, {name} specimen",
         {"soft": "6.3.1.1", "stiff": "6.4.1"}[name],
         printed,
-        turned.k,
+        turned.stiffness,
         "N m/rad",
         Tolerance(5e-5),
     )

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from nrs_design.proof.evidence import CommonQuadratic
 from nrs_design.proof.evidence.fields import rate_words
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.reproduction import thesis
 from nrs_design.reproduction.matrices import family, hybrid_rows, impedance_rows, printed_rows
 from nrs_design.reproduction.row import Row, Verdict, claim
-from nrs_design.search.certify import Certification, certify
+from nrs_design.search.certification import Certification
+from nrs_design.search.certify import certify
 
 STABLE = "stable under arbitrary switching"
 
@@ -77,6 +77,7 @@ def _withdrawal(Mt: str) -> SwitchedSystem:
 
 
 def _describe(found: Certification) -> str:
-    if not isinstance(found.evidence, CommonQuadratic):
+    rate = found.evidence.proved_rate(found.system) if found.evidence else None
+    if rate is None:
         return str(found.verdict)
-    return f"{found.verdict}, {rate_words(found.evidence.rate, found.system.time)}"
+    return f"{found.verdict}, {rate_words(rate, found.system.time)}"

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from statistics import fmean
 
-from nrs_design.models.tissue import KelvinBoltzmann, Maxwell
+from nrs_design.models.contact import KelvinBoltzmann, Maxwell
 from nrs_design.reproduction.row import (
     Row,
     Tolerance,
@@ -102,7 +102,7 @@ def _memory(tissue: str) -> Row:
         f"stiffness of the {tissue}: at once, elastic fit, relaxed",
         _TABLE[tissue],
         f"k2 = {law.k2:g}, elastic {elastic:g}",
-        ", ".join(format_number(k) for k in (law.k2, elastic, relaxed)),
+        ", ".join(format_number(k) for k in (law.stiffness, elastic, relaxed)),
         "N m/rad",
         verdict=Verdict.REPRODUCED,
         holds=law.k2 > elastic > relaxed,

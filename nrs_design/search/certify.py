@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, replace
-from enum import StrEnum
+from dataclasses import replace
 from functools import partial
 from itertools import islice, zip_longest
 from time import perf_counter
@@ -12,10 +11,8 @@ from time import perf_counter
 from numpy.linalg import LinAlgError
 
 from nrs_design.certificates.certificate import (
-    CommonQuadraticStatus,
     Verdict,
     common_quadratic_of,
-    deciding,
     verdict_of,
 )
 from nrs_design.errors import DISAGREE, DesignError, InternalError
@@ -30,12 +27,8 @@ from nrs_design.proof.evidence.unstable_mode import affordable, is_stable
 from nrs_design.proof.exact import TooLargeError
 from nrs_design.proof.second_opinion import agrees
 from nrs_design.proof.system import Mode, SwitchedSystem, Time
-from nrs_design.search.allowance import (
-    GIGABYTE,
-    Allowance,
-    Cost,
-    NotAffordableError,
-)
+from nrs_design.search.allowance import Allowance, Cost, NotAffordableError
+from nrs_design.search.certification import Attempt, Certification, Limits, Method
 from nrs_design.search.checker import Checker
 from nrs_design.search.family import Family, floats_in_silence
 from nrs_design.search.limits import rate_limit
@@ -65,94 +58,8 @@ from nrs_design.search.structure import merge_equal_modes, triangular_blocks
 
 Progress = Callable[[str], None]
 
-DEFAULT_BUDGET = 60.0
-DEFAULT_MEMORY = 2 * GIGABYTE
 # Degrees that are tried before a search for growing periods, which is quicker than higher ones.
 FIRST_DEGREES = 2
-
-
-class Method(StrEnum):
-    """The rungs of the ladder, or all of them in turn."""
-
-    AUTO = "auto"
-    LMI = "lmi"
-    GRADIENT = "gradient"
-    OBSTRUCTION = "obstruction"
-    MIXTURE = "mixture"
-    MODE_POLYNOMIAL = "mode-polynomial"
-    MODE_QUADRATIC = "mode-quadratic"
-    PARAMETER_QUADRATIC = "parameter-quadratic"
-    PERIOD = "period"
-    POLYNOMIAL = "polynomial"
-    VALUE = "value"
-
-
-@dataclass(frozen=True, slots=True)
-class Limits:
-    """How far the searches go.
-
-    Parameters
-    ----------
-    max_degree : int or None
-        Highest degree of a homogeneous polynomial function; None for as high as the budget allows.
-    budget : float
-        Time in s. Steps that are predicted not to fit are not begun, others are stopped.
-    memory : float
-        Steps that are predicted to need more bytes are not begun.
-    optimize_rate : bool
-        Look for the largest provable decay rate, not only for some.
-    """
-
-    max_degree: int | None = None
-    budget: float = DEFAULT_BUDGET
-    memory: float = DEFAULT_MEMORY
-    optimize_rate: bool = True
-
-
-@dataclass(frozen=True, slots=True)
-class Attempt:
-    """One rung: what was tried, how it ended, and its time in s."""
-
-    step: str
-    outcome: str
-    seconds: float
-
-
-@dataclass(frozen=True, slots=True)
-class Certification:
-    """The verdict on one system, with everything that was shown on the way.
-
-    Parameters
-    ----------
-    system : SwitchedSystem
-        What the verdict is about.
-    verdict : Verdict
-        Proved, refuted or inconclusive.
-    common_quadratic : CommonQuadraticStatus
-        Whether a common quadratic function exists.
-    method : str
-        The rung that settled it, or what was asked for.
-    statements : tuple of AbstractEvidence
-        The deciding evidence first, if any. Each has passed the exact check.
-    attempts : tuple of Attempt
-        Every rung in order.
-    rate_limit : float or None
-        No proof can claim a faster decay (in floating point): the slowest mode's rate, in discrete
-        time the fastest growth per step along a cycle of modes. None beyond floating point.
-    """
-
-    system: SwitchedSystem
-    verdict: Verdict
-    common_quadratic: CommonQuadraticStatus
-    method: str
-    statements: tuple[AbstractEvidence, ...]
-    attempts: tuple[Attempt, ...]
-    rate_limit: float | None = None
-
-    @property
-    def evidence(self) -> AbstractEvidence | None:
-        """The statement that decides the verdict, or None."""
-        return deciding(self.statements)
 
 
 def certify(

@@ -35,7 +35,17 @@ def limit_rate(matrices: NDArray[np.float64], time: Time) -> float:
 
 
 def rate_at(position: float, limit: float, time: Time) -> float:
-    """Return the rate at a position between mere stability and the limit."""
+    """Return the rate at a position between mere stability and the limit.
+
+    Parameters
+    ----------
+    position : float
+        From 0, mere stability, to 1, the limit.
+    limit : float
+        The alpha in 1/s, or rho per step, that no proof can beat.
+    time : Time
+        Which of the two.
+    """
     return position * limit if time is Time.CONTINUOUS else 1 - position * (1 - limit)
 
 

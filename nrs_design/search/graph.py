@@ -25,6 +25,8 @@ CHUNK_ENTRIES = 2_000_000
 # Steps beyond the dwell time that a stay may have: few, and then up to where a mode has decayed.
 FIBONACCI = (0, 1, 2, 3, 5, 8, 13, 21, 34, 55, 89, 144, 233, 377, 610, 987)
 DECAYED = 1e-3
+# The time between resets that grow by themselves, over the shortest of the other times.
+BRIEF = 1e-5
 
 
 @dataclass(frozen=True)
@@ -74,6 +76,9 @@ class Graph:
         shortest = np.array([float(stay.shortest) for stay in stays])
         longest = np.array([np.inf if s.longest is None else float(s.longest) for s in stays])
         beyond = _times_beyond(matrices, np.isinf(longest), system.time)
+        if system.switching.resets and system.time is Time.CONTINUOUS:
+            # Resets may grow by less than modes decay in any other of these times.
+            beyond = np.insert(beyond, 1, BRIEF * beyond[1])
         times = tuple(
             np.array([t for t in low + beyond if 0 < t < high] + [high] * int(high < np.inf))
             for low, high in zip(shortest, longest, strict=True)

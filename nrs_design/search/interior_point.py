@@ -63,7 +63,17 @@ class _Scaled(NamedTuple):
 
 
 def step_cost(variables: int, cones: int, order: int) -> Cost:
-    """Predict what one step of `maximize_last` takes."""
+    """Predict what one step of `maximize_last` takes.
+
+    Parameters
+    ----------
+    variables : int
+        Unknowns.
+    cones : int
+        Matrices that must be positive definite.
+    order : int
+        Their size.
+    """
     entries = variables * cones * order**2
     products = 2 * variables**2 * cones * order * (order + 1) / 2 + 4 * entries * order
     return Cost(PER_STEP + PER_PRODUCT * products, PER_ENTRY * entries)

@@ -37,7 +37,19 @@ FEWEST_STEPS = 4
 
 
 def decreases(matrices: Matrices, Q: Matrices, time: Time, rate: float) -> Matrices:
-    """Return, for every mode, the matrix that must be positive definite; shape (m, n, n)."""
+    """Return, for every mode, the matrix that must be positive definite; shape (m, n, n).
+
+    Parameters
+    ----------
+    matrices : ndarray, shape (m, n, n)
+        The modes.
+    Q : ndarray, shape (n, n)
+        Of the quadratic function; a stack of them must broadcast with the modes.
+    time : Time
+        Which inequality.
+    rate : float
+        The alpha in 1/s, or rho per step.
+    """
     if time is Time.CONTINUOUS:
         half = Q @ matrices
         return -(half + np.swapaxes(half, -1, -2)) - 2 * rate * Q
@@ -45,7 +57,13 @@ def decreases(matrices: Matrices, Q: Matrices, time: Time, rate: float) -> Matri
 
 
 def margins(matrices: Matrices, Q: Matrices, time: Time, rate: float) -> Matrices:
-    """Return the smallest eigenvalue of every mode's decrease; shape (m,)."""
+    """Return the smallest eigenvalue of every mode's decrease; shape (m,).
+
+    Parameters
+    ----------
+    matrices, Q, time, rate
+        As for `decreases`.
+    """
     return np.asarray(np.linalg.eigvalsh(decreases(matrices, Q, time, rate))[:, 0], dtype=float)
 
 
@@ -132,7 +150,21 @@ def _solve(
 def solve_by_clarabel(
     matrices: Matrices, time: Time, rate: float, Q: Matrices, allowance: Allowance
 ) -> Matrices | None:
-    """Solve the margin form for the given modes; None if the result is not finite."""
+    """Solve the margin form for the given modes; None if the result is not finite.
+
+    Parameters
+    ----------
+    matrices : ndarray, shape (m, n, n)
+        The modes that count.
+    time : Time
+        Which inequality.
+    rate : float
+        The alpha in 1/s, or rho per step.
+    Q : ndarray, shape (n, n)
+        A place to begin, which this solver does not need.
+    allowance : Allowance
+        Time and memory that are left.
+    """
     m, n = matrices.shape[:2]
     unknowns = n * (n + 1) // 2 + 1
     cost = program_cost(unknowns, unknowns, [(n, unknowns)] * (m + 2))

@@ -9,12 +9,11 @@ from typing import TYPE_CHECKING
 
 from nrs_design.certificates.certificate import Verdict
 from nrs_design.errors import AssemblyError
-from nrs_design.proof.evidence import BlockTriangular, UnstableMode
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.spec.switching import LONGEST_DWELL
 
 if TYPE_CHECKING:
-    from nrs_design.search.certify import Certification
+    from nrs_design.search.certification import Certification
 
 LARGEST_SCALE = 64
 STEPS = 8
@@ -190,7 +189,7 @@ def find_shortest_dwell(
     Parameters
     ----------
     system : SwitchedSystem
-        With its own dwell time, perhaps zero; it has no longest ones.
+        With its own dwell times, perhaps zero; it has no longest ones. One for all modes is sought.
     certify : callable
         Decides a system.
     known : Certification, optional
@@ -210,8 +209,8 @@ def find_shortest_dwell(
         return found.verdict, found
 
     tried, longest = _Tried(decide), Fraction(LONGEST_DWELL)
-    if known is not None:
-        tried.remember(system.switching.dwell_time, known)
+    if known is not None and (dwell := _common_dwell(system, known)) is not None:
+        tried.remember(dwell, known)
     if tried.is_proved(Fraction(0)):
         return DwellMargin(Fraction(0), None, tried.certification(Fraction(0)), tried.largest())
     if _has_unstable_mode(tried.certification(Fraction(0))):
@@ -230,12 +229,24 @@ def find_shortest_dwell(
     )
 
 
+def _common_dwell(system: SwitchedSystem, known: Certification) -> Fraction | None:
+    """Return the one dwell time for all modes at which the verdict on their own ones holds, too.
+
+    Where no mode is left sooner than the slowest of them may be, all of them keep their own times;
+    a signal that keeps these keeps the shortest of them everywhere.
+    """
+    times = [stay.shortest for stay in system.stays().values()]
+    if known.verdict is Verdict.PROVED:
+        return max(times)
+    if known.verdict is Verdict.REFUTED or min(times) == max(times):
+        return min(times)
+    return None
+
+
 def _has_unstable_mode(found: Certification | None) -> bool:
     """Tell whether a refutation holds for every dwell time."""
     evidence = None if found is None else found.evidence
-    if isinstance(evidence, BlockTriangular):
-        evidence = evidence.parts[0][1]
-    return isinstance(evidence, UnstableMode)
+    return evidence is not None and evidence.names_unstable_mode
 
 
 def _widen(tried: _Tried, system: SwitchedSystem) -> Fraction | None:

@@ -132,7 +132,17 @@ def _differences(variables: int, degree: int, scaling: Exponents) -> Array:
 
 
 def vanishing_basis(variables: int, degree: int, scaling: Exponents) -> Array:
-    """Return an orthonormal basis of the forms that vanish, in the coordinates ``2^e z(x)``."""
+    """Return an orthonormal basis of the forms that vanish, in the coordinates ``2^e z(x)``.
+
+    Parameters
+    ----------
+    variables : int
+        Length of x.
+    degree : int
+        Of the monomials z.
+    scaling : ndarray of int
+        The exponents e.
+    """
     return orthonormal(_differences(variables, degree, scaling))
 
 
@@ -151,7 +161,17 @@ def highest_degree(variables: int) -> int:
 
 
 def polynomial_cost(variables: int, modes: int, degree: int) -> tuple[Cost, str]:
-    """Predict what `find_common_polynomial` takes before anything is lifted; say for what."""
+    """Predict what `find_common_polynomial` takes before anything is lifted; say for what.
+
+    Parameters
+    ----------
+    variables : int
+        States.
+    modes : int
+        How many.
+    degree : int
+        The d of a form of degree 2d.
+    """
     order = comb(variables + degree - 1, degree)
     shared = order * (order + 1) // 2 + 1
     forms = shared - 1 - comb(variables + 2 * degree - 1, 2 * degree)

@@ -75,6 +75,15 @@ def unscale(
 ) -> tuple[tuple[tuple[int, ...], ...], int]:
     """Round to integers over ``2^bits`` and undo the scaling exactly, ``2^-d Q 2^-d``.
 
+    Parameters
+    ----------
+    Q : ndarray, shape (n, n)
+        In scaled coordinates.
+    exponents : ndarray of int, shape (n,)
+        The d.
+    bits : int
+        After the binary point.
+
     Returns
     -------
     tuple

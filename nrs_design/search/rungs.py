@@ -73,7 +73,11 @@ def examine_suspicious_modes(family: Family) -> Finding:
 
 def examine_every_mode(family: Family) -> Finding:
     """Test exactly every mode that need never be left."""
-    return _first_unstable(family.system.lasting_modes(), family)
+    lasting = family.system.lasting_modes()
+    evidence, outcome = _first_unstable(lasting, family)
+    if left := len(family.system.modes) - len(lasting):
+        outcome += f"; {left} not tested, they must be left and may be unstable"
+    return evidence, outcome
 
 
 def search_by_lmi(family: Family, *, optimize_rate: bool) -> Finding:
@@ -176,7 +180,17 @@ def prove_obstruction(family: Family) -> Finding:
 
 
 def search_polynomial(family: Family, *, degree: int, optimize_rate: bool = False) -> Finding:
-    """Search for a common homogeneous polynomial of degree 2d, and a large rate if asked to."""
+    """Search for a common homogeneous polynomial of degree 2d, and a large rate if asked to.
+
+    Parameters
+    ----------
+    family : Family
+        The modes.
+    degree : int
+        The d of a form of degree 2d.
+    optimize_rate : bool
+        Look for a large rate.
+    """
     system, allowance = family.system, family.allowance
     allowance.require(*polynomial_cost(system.order, len(system.modes), degree))
     lift = lift_family(system, family.exponents, degree)

@@ -101,7 +101,17 @@ def admissible_run(
 def active_norms(
     system: SwitchedSystem, response: TimeResponse, functions: Mapping[str, Array]
 ) -> Array:
-    """Return ``sqrt(x' Q_i x)`` of the active mode over its first value; shape (N + 1,)."""
+    """Return ``sqrt(x' Q_i x)`` of the active mode over its first value; shape (N + 1,).
+
+    Parameters
+    ----------
+    system : SwitchedSystem
+        The modes.
+    response : TimeResponse
+        A run of N steps.
+    functions : mapping
+        The Q of every mode, by name.
+    """
     active = np.append(response.mode, response.mode[-1])
     values = np.empty(len(active))
     for index in set(active.tolist()):

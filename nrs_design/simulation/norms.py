@@ -10,7 +10,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from nrs_design.proof.constant import system_at
-from nrs_design.proof.evidence import CommonPolynomial, ModeQuadratic, ParameterQuadratic
 from nrs_design.proof.exact import IntegerMatrix
 from nrs_design.proof.lift import monomials
 from nrs_design.proof.system import SwitchedSystem, Switching
@@ -40,26 +39,28 @@ def quadratic_norm(Q: Array) -> Norm:
     return norm
 
 
-def polynomial_norm(evidence: CommonPolynomial, order: int) -> Norm:
+def polynomial_norm(Q: IntegerMatrix, degree: int, order: int) -> Norm:
     """Return ``V(x)^(1/2d)`` times a constant, for a form V of degree 2d.
 
     Parameters
     ----------
-    evidence : CommonPolynomial
-        The Gram matrix of V.
+    Q : sequence of sequences of int, shape (K, K)
+        Gram matrix of V, in the monomials as `lift.monomials` orders them.
+    degree : int
+        The d.
     order : int
         Number of states n.
     """
-    basis = np.array(monomials(order, evidence.degree))
-    exponents = diagonal_exponents(evidence.Q)
-    values, vectors = np.linalg.eigh(scaled_form(evidence.Q, exponents))
+    basis = np.array(monomials(order, degree))
+    exponents = diagonal_exponents(Q)
+    values, vectors = np.linalg.eigh(scaled_form(Q, exponents))
     root = vectors * np.sqrt(np.maximum(values, 0.0))
     # Only ratios of norms are shown, so the largest weight may be one.
     weights = np.ldexp(1.0, np.array(exponents) - max(exponents))
 
     def norm(states: Array) -> Array:
         z = np.prod(states[..., None, :] ** basis, axis=-1) * weights
-        return np.asarray(np.linalg.norm(z @ root, axis=-1) ** (1 / evidence.degree))
+        return np.asarray(np.linalg.norm(z @ root, axis=-1) ** (1 / degree))
 
     return norm
 
@@ -70,7 +71,17 @@ def diagonal_exponents(Q: IntegerMatrix) -> list[int]:
 
 
 def scaled_form(M: IntegerMatrix, exponents: Sequence[int], scale: int = 1) -> Array:
-    """Return ``M_ij / (scale 2^(e_i + e_j))``: integers may be beyond the range of doubles."""
+    """Return ``M_ij / (scale 2^(e_i + e_j))``: integers may be beyond the range of doubles.
+
+    Parameters
+    ----------
+    M : integer matrix
+        n x n.
+    exponents : sequence of int
+        The e, one for each row.
+    scale : int
+        Common denominator.
+    """
     return np.array(
         [
             [
@@ -86,19 +97,6 @@ def scaled_matrices(*matrices: IntegerMatrix) -> list[Array]:
     """Return symmetric matrices in floating point, all divided by their largest entry."""
     largest = max(abs(entry) for M in matrices for row in M for entry in row)
     return [np.array([[entry / largest for entry in row] for row in M]) for M in matrices]
-
-
-def mode_functions(evidence: ModeQuadratic) -> dict[str, Array]:
-    """Return the matrix of every mode, all divided by the largest entry of all."""
-    names = [name for name, _ in evidence.functions]
-    matrices = scaled_matrices(*(Q for _, Q in evidence.functions))
-    return dict(zip(names, matrices, strict=True))
-
-
-def function_at(evidence: ParameterQuadratic, p: float) -> Array:
-    """Return Q at one value of the parameter, from 0 (low end) to 1 (high end)."""
-    low, high = scaled_matrices(evidence.low, evidence.high)
-    return (1 - p) * low + p * high
 
 
 def modes_at(system: SwitchedSystem, p: Fraction) -> SwitchedSystem:

@@ -1,22 +1,11 @@
-"""How fast a Lyapunov function decreases in every mode, in floating point: for figures only."""
+"""How fast a quadratic function decreases in every mode, in floating point: for figures only."""
 
 from __future__ import annotations
 
-from fractions import Fraction
-
 import numpy as np
 
-from nrs_design.proof.evidence import CommonPolynomial, ParameterQuadratic
-from nrs_design.proof.evidence.common_polynomial import lifted_decrease, lifted_factor
-from nrs_design.proof.exact import add
 from nrs_design.proof.system import SwitchedSystem, Time
-from nrs_design.simulation.norms import (
-    Array,
-    diagonal_exponents,
-    function_at,
-    modes_at,
-    scaled_form,
-)
+from nrs_design.simulation.norms import Array
 
 
 def mode_rates(system: SwitchedSystem, Q: Array) -> Array:
@@ -40,55 +29,6 @@ def mode_rates(system: SwitchedSystem, Q: Array) -> Array:
     if system.time is Time.DISCRETE:
         return np.asarray(np.sqrt(np.maximum(largest, 0.0)))
     return np.asarray(-largest / 2)
-
-
-def polynomial_rates(system: SwitchedSystem, evidence: CommonPolynomial) -> Array:
-    """Return the rate that the certificate's own numbers would prove for every mode alone.
-
-    Returns
-    -------
-    ndarray, shape (m,)
-        Decay rates in 1/s, or contractions per step, of ``V^(1/2d)``.
-    """
-    exponents = diagonal_exponents(evidence.Q)
-    inverse = np.linalg.inv(np.linalg.cholesky(scaled_form(evidence.Q, exponents)))
-    d, rate = evidence.degree, float(evidence.rate)
-    slack = []
-    for mode, N in zip(system.modes, evidence.vanishing, strict=True):
-        form = add(lifted_decrease(mode, d, evidence.Q, evidence.rate, system.time), N)
-        factor = lifted_factor(mode, d, evidence.rate, system.time)
-        relative = inverse @ scaled_form(form, exponents, factor) @ inverse.T
-        slack.append(float(np.linalg.eigvalsh(relative)[0]))
-    if system.time is Time.CONTINUOUS:
-        return rate + np.array(slack) / (2 * d)
-    return np.asarray(np.maximum(rate ** (2 * d) - np.array(slack), 0.0) ** (1 / (2 * d)))
-
-
-def parameter_rates(
-    system: SwitchedSystem, evidence: ParameterQuadratic, values: Array
-) -> tuple[list[str], Array]:
-    """Return how fast the norm of Q(p) decays in every mode, over the parameter p.
-
-    Parameters
-    ----------
-    system : SwitchedSystem
-        With the two ends of the parameter.
-    evidence : ParameterQuadratic
-        Q at both ends.
-    values : ndarray, shape (k,)
-        From 0 (low end) to 1 (high end).
-
-    Returns
-    -------
-    list of str, ndarray of shape (k, m)
-        Names of the modes, and decay rates in 1/s.
-    """
-    names = [mode.name for mode in modes_at(system, Fraction(0)).modes]
-    rates = [
-        mode_rates(modes_at(system, Fraction(float(p))), function_at(evidence, float(p)))
-        for p in values
-    ]
-    return names, np.array(rates)
 
 
 def drift(system: SwitchedSystem, Q: Array) -> list[Array]:

@@ -109,7 +109,17 @@ def worst_direction(system: SwitchedSystem, Q: Array) -> Array:
 
 
 def sampled_direction(system: SwitchedSystem, norm: Norm, step: float) -> Array:
-    """Return the state of norm one, among some, whose norm is largest after one step."""
+    """Return the state of norm one, among some, whose norm is largest after one step.
+
+    Parameters
+    ----------
+    system : SwitchedSystem
+        The modes.
+    norm : Norm
+        In which they are compared.
+    step : float
+        In s, or steps.
+    """
     n = system.order
     rng = np.random.default_rng(0)
     directions = rng.standard_normal((_DIRECTIONS, n)) / norm(np.eye(n))

@@ -5,11 +5,16 @@ from nrs_design.spec.controllers import (
     ControllerSpec,
     CostWeights,
     ForceControllerSpec,
+    IdleStatesSpec,
     ImpedanceControllerSpec,
     PositionControllerSpec,
 )
 from nrs_design.spec.doubts import Doubt, doubt_spec
-from nrs_design.spec.environment import ElasticSpec, EnvironmentSpec, KelvinVoigtSpec
+from nrs_design.spec.environment import (
+    ElasticSpec,
+    EnvironmentSpec,
+    KelvinVoigtSpec,
+)
 from nrs_design.spec.exact import parse_exact
 from nrs_design.spec.gain_fields import GainSpec
 from nrs_design.spec.goals import GoalsSpec
@@ -57,6 +62,7 @@ __all__ = [
     "ForceControllerSpec",
     "GainSpec",
     "GoalsSpec",
+    "IdleStatesSpec",
     "ImpedanceControllerSpec",
     "InteractionDesignSpec",
     "KelvinVoigtSpec",

@@ -12,7 +12,8 @@ from nrs_design.spec.fields import Label, Positive, UnitFraction, Weight
 from nrs_design.spec.gain_fields import DampingGain, InertiaGain
 from nrs_design.spec.goals import GoalsSpec
 from nrs_design.spec.model import SpecModel
-from nrs_design.spec.quantity_fields import ForceGain, Impedance
+from nrs_design.spec.parameters import Switch
+from nrs_design.spec.quantity_fields import Decay, ForceGain, Impedance
 
 _ENVIRONMENT = "name of the environment that the gains are designed for"
 _CONTACTS = "names of all environments touched while this controller is active; default: its own"
@@ -135,6 +136,19 @@ class PositionControllerSpec(SpecModel):
     """Position mode of the hybrid scheme: the closed motion loop alone (thesis 6.3.3)."""
 
     type: Literal["position"] = Field(description="position: the motion loop alone, no contact")
+
+
+class IdleStatesSpec(SpecModel):
+    """What the states of impedance controllers do while another kind of controller is active."""
+
+    decay: Decay = Field(
+        description="rate in 1/s at which the admittance velocity and the position reference "
+        "decay; 0 1/s holds them, which is not asymptotically stable by itself"
+    )
+    reset: Switch = Field(
+        default=False,
+        description="true: they are set to zero when an impedance controller is left",
+    )
 
 
 ControllerSpec = Annotated[

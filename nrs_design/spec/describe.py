@@ -9,7 +9,7 @@ from typing import NamedTuple
 from nrs_design.proof.text import exact_text
 from nrs_design.spec import kinds
 from nrs_design.spec.controllers import ControllerSpec, ImpedanceControllerSpec
-from nrs_design.spec.environment import EnvironmentSpec, KelvinVoigtSpec
+from nrs_design.spec.environment import EnvironmentSpec, unit_at_pivot
 from nrs_design.spec.gain_fields import GainSpec
 from nrs_design.spec.goals import GoalsSpec
 from nrs_design.spec.interaction import InteractionDesignSpec
@@ -89,7 +89,7 @@ def _switching(switching: SwitchingSpec) -> Iterator[Row]:
     if switching.transitions is not None:
         pairs = [f"{source} to {target}" for source, target in switching.transitions]
         listed = ", ".join(pairs[:MAX_LISTED]) + ", ..." * (len(pairs) > MAX_LISTED)
-        yield Row("switching.transitions", listed or "none", str(len(pairs)), "")
+        yield Row("switching.transitions", listed or "no switch", str(len(pairs)), "")
 
 
 def _interaction(spec: InteractionDesignSpec) -> Iterator[Row]:
@@ -108,6 +108,8 @@ def _interaction(spec: InteractionDesignSpec) -> Iterator[Row]:
         yield from _environment(f"environments.{name}", environment)
     for name, controller in spec.controllers.items():
         yield from _controller(f"controllers.{name}", controller, spec.limits)
+    if spec.idle_states is not None:
+        yield from describe_model(spec.idle_states, "idle_states")
     yield from _goals("goals", spec.goals)
     yield Row("design.significant_digits", str(spec.design.significant_digits), "", "")
     yield Row("coordinates", spec.coordinates, "", "")
@@ -130,13 +132,10 @@ def _motion_loop(spec: InteractionDesignSpec) -> Iterator[Row]:
 
 def _environment(name: str, environment: EnvironmentSpec) -> Iterator[Row]:
     yield Row(f"{name}.model", environment.model, "", "")
-    yield from _ranged(
-        f"{name}.stiffness", environment.stiffness, environment.rotational_stiffness, "N*m/rad"
-    )
-    if isinstance(environment, KelvinVoigtSpec):
-        yield from _ranged(
-            f"{name}.damping", environment.damping, environment.rotational_damping, "N*m*s/rad"
-        )
+    turned = environment.at_pivot()
+    for key, written in environment.parameters().items():
+        unit = unit_at_pivot(written.nominal)
+        yield from _ranged(f"{name}.{key}", written, turned[key], unit)
     if environment.lever_arm is not None:
         yield _row(f"{name}.lever_arm", environment.lever_arm, kinds.LEVER_ARM)
     yield from _provenance(name, environment.provenance)
@@ -228,6 +227,8 @@ def describe_model(value: object, name: str = "") -> Iterator[Row]:
         yield Row(name, value.text, _text(value.si), si_unit(value.dimension))
     elif isinstance(value, Fraction):
         yield _number(name, value)
+    elif isinstance(value, bool):
+        yield Row(name, str(value).lower(), "", "")
     elif value is not None:
         yield Row(name, str(value), "", "")
 

@@ -1,9 +1,9 @@
-"""Environments that the robot touches, and what their linear stiffness is at the pivot."""
+"""Environments that the robot touches, and what their linear parameters are at the pivot."""
 
 from __future__ import annotations
 
 from fractions import Fraction
-from typing import Annotated, Literal
+from typing import Annotated, ClassVar, Literal, Self, TypeVar
 
 from pydantic import Discriminator, Field, model_validator
 
@@ -12,80 +12,154 @@ from nrs_design.spec.faults import fault
 from nrs_design.spec.model import SpecModel
 from nrs_design.spec.provenance import PROVENANCE, Provenance
 from nrs_design.spec.quantity import Quantity
-from nrs_design.spec.quantity_fields import Damping, LeverArm, RangedQuantity, Stiffness
+from nrs_design.spec.quantity_fields import (
+    Damping,
+    LeverArm,
+    PositiveDamping,
+    RangedQuantity,
+    Stiffness,
+)
 
 _LEVER_ARM = (
     "distance from the pivot to the contact point, a length in m; required if stiffness or damping "
     "are linear (N/m, N*s/m), forbidden otherwise"
 )
 _STIFFNESS = (
-    "stiffness at the pivot in N*m/rad, or at the contact point in N/m with lever_arm; one "
-    "quantity, or {nominal: ..., range: [lowest, highest]}"
+    "stiffness{which} at the pivot in N*m/rad, or at the contact point in N/m with lever_arm; one "
+    "quantity, or {{nominal: ..., range: [lowest, highest]}}"
 )
 _DAMPING = (
-    "damping at the pivot in N*m*s/rad, or at the contact point in N*s/m with lever_arm; one "
-    "quantity, or {nominal: ..., range: [lowest, highest]}"
+    "damping{which} at the pivot in N*m*s/rad, or at the contact point in N*s/m with lever_arm; "
+    "one quantity, or {{nominal: ..., range: [lowest, highest]}}"
 )
 
+Number = TypeVar("Number", float, Fraction)
 
-class ElasticSpec(SpecModel):
-    """Elastic environment, ``F = k delta`` (thesis 2.5)."""
 
-    model: Literal["elastic"] = Field(description="law of the environment: elastic, F = k delta")
-    stiffness: Stiffness = Field(description=_STIFFNESS)
+class AbstractEnvironmentSpec(SpecModel):
+    """What all environments have in common; parameters of the law are the ranged quantities."""
+
+    # Whether the force depends on more than the deflection and the velocity of the moment.
+    remembers: ClassVar[bool] = False
+    # Whether a constant deflection keeps a force.
+    has_rest: ClassVar[bool] = True
+
     lever_arm: LeverArm | None = Field(default=None, description=_LEVER_ARM)
     provenance: Provenance = Field(default=(), description=PROVENANCE)
 
     @model_validator(mode="after")
-    def _check_lever_arm(self) -> ElasticSpec:
-        _check_arm(self.stiffness, "stiffness", self.lever_arm)
+    def _check_lever_arm(self) -> Self:
+        for name, quantity in self.parameters().items():
+            _check_arm(quantity, name, self.lever_arm)
         return self
 
     @property
     def fixed(self) -> bool:
         """Whether every parameter has a single value."""
-        return self.stiffness.fixed
+        return all(quantity.fixed for quantity in self.parameters().values())
 
-    @property
-    def rotational_stiffness(self) -> RangedQuantity:
-        """Stiffness at the pivot, in N*m/rad: ``k r^2`` for a linear one."""
-        return at_pivot(self.stiffness, self.lever_arm, "N*m/rad")
+    def parameters(self) -> dict[str, RangedQuantity]:
+        """Return the parameters of the law as written, by their keys."""
+        values = ((name, getattr(self, name)) for name in type(self).model_fields)
+        return {name: value for name, value in values if isinstance(value, RangedQuantity)}
+
+    def exact_at_pivot(self) -> dict[str, tuple[Fraction, Fraction, Fraction]]:
+        """Return nominal, lowest and highest values for a rotation, in N*m/rad and N*m*s/rad.
+
+        With a lever arm r, each value is multiplied by ``r^2``, exactly (thesis 6.3.1.1:
+        747.1461 N/m at 0.24 m is 43.0356 N*m/rad).
+        """
+        radius = Fraction(1) if self.lever_arm is None else self.lever_arm.exact
+        return {
+            name: (
+                turn(value.nominal.exact, radius),
+                turn(value.range[0].exact, radius),
+                turn(value.range[1].exact, radius),
+            )
+            for name, value in self.parameters().items()
+        }
+
+    def at_pivot(self) -> dict[str, RangedQuantity]:
+        """Return the parameters for a rotation as quantities, for people to read."""
+        if self.lever_arm is None:
+            return self.parameters()
+        turned = self.exact_at_pivot()
+        return {
+            name: _quantities(turned[name], unit_at_pivot(value.nominal))
+            for name, value in self.parameters().items()
+        }
 
 
-class KelvinVoigtSpec(SpecModel):
+class ElasticSpec(AbstractEnvironmentSpec):
+    """Elastic environment, ``F = k delta`` (thesis 2.5)."""
+
+    model: Literal["elastic"] = Field(description="law of the environment: elastic, F = k delta")
+    stiffness: Stiffness = Field(description=_STIFFNESS.format(which=""))
+
+
+class KelvinVoigtSpec(AbstractEnvironmentSpec):
     """Kelvin-Voigt environment, ``F = k delta + b ddelta`` (thesis 2.5)."""
 
     model: Literal["kelvin-voigt"] = Field(
         description="law of the environment: kelvin-voigt, F = k delta + b ddelta/dt"
     )
-    stiffness: Stiffness = Field(description=_STIFFNESS)
-    damping: Damping = Field(description=_DAMPING)
-    lever_arm: LeverArm | None = Field(default=None, description=_LEVER_ARM)
-    provenance: Provenance = Field(default=(), description=PROVENANCE)
-
-    @model_validator(mode="after")
-    def _check_lever_arm(self) -> KelvinVoigtSpec:
-        _check_arm(self.stiffness, "stiffness", self.lever_arm)
-        _check_arm(self.damping, "damping", self.lever_arm)
-        return self
-
-    @property
-    def fixed(self) -> bool:
-        """Whether every parameter has a single value."""
-        return self.stiffness.fixed and self.damping.fixed
-
-    @property
-    def rotational_stiffness(self) -> RangedQuantity:
-        """Stiffness at the pivot, in N*m/rad: ``k r^2`` for a linear one."""
-        return at_pivot(self.stiffness, self.lever_arm, "N*m/rad")
-
-    @property
-    def rotational_damping(self) -> RangedQuantity:
-        """Damping at the pivot, in N*m*s/rad: ``b r^2`` for a linear one."""
-        return at_pivot(self.damping, self.lever_arm, "N*m*s/rad")
+    stiffness: Stiffness = Field(description=_STIFFNESS.format(which=""))
+    damping: Damping = Field(description=_DAMPING.format(which=""))
 
 
-EnvironmentSpec = Annotated[ElasticSpec | KelvinVoigtSpec, Discriminator("model")]
+class MaxwellSpec(AbstractEnvironmentSpec):
+    """Maxwell environment, a spring and a damper in a row: ``F + (b/k) dF = b ddelta``."""
+
+    remembers: ClassVar[bool] = True
+    has_rest: ClassVar[bool] = False
+
+    model: Literal["maxwell"] = Field(
+        description="law of the environment: maxwell, F + (b/k) dF/dt = b ddelta/dt; it has no "
+        "rest position, and must be the only environment that controllers touch"
+    )
+    stiffness: Stiffness = Field(description=_STIFFNESS.format(which=" k of the spring"))
+    damping: PositiveDamping = Field(description=_DAMPING.format(which=" b of the damper, > 0,"))
+
+
+class KelvinBoltzmannSpec(AbstractEnvironmentSpec):
+    """Kelvin-Boltzmann environment, the standard linear solid (thesis 2.5)."""
+
+    remembers: ClassVar[bool] = True
+
+    model: Literal["kelvin-boltzmann"] = Field(
+        description="law of the environment: kelvin-boltzmann, a spring k2 in a row with a spring "
+        "k1 beside a damper b"
+    )
+    parallel_stiffness: Stiffness = Field(
+        description=_STIFFNESS.format(which=" k1 of the spring beside the damper,")
+    )
+    series_stiffness: Stiffness = Field(
+        description=_STIFFNESS.format(which=" k2 of the spring in a row with both,")
+    )
+    damping: PositiveDamping = Field(description=_DAMPING.format(which=" b of the damper, > 0,"))
+
+
+EnvironmentSpec = Annotated[
+    ElasticSpec | KelvinVoigtSpec | MaxwellSpec | KelvinBoltzmannSpec, Discriminator("model")
+]
+
+
+def _quantities(values: tuple[Fraction, Fraction, Fraction], unit: str) -> RangedQuantity:
+    nominal, low, high = (Quantity(f"{float(v):.6g} {unit}", v, unit) for v in values)
+    return RangedQuantity(nominal=nominal, range=(low, high))
+
+
+def turn(value: Number, radius: Number) -> Number:
+    """Convert a linear stiffness or damping to the pivot: ``k r^2`` (thesis 6.3.1.1)."""
+    return value * radius**2
+
+
+def unit_at_pivot(quantity: Quantity) -> str:
+    """Return the unit of a stiffness or damping at the pivot."""
+    stiff = any(
+        kind.accepts(quantity.dimension) for kind in (kinds.LINEAR_STIFFNESS, kinds.STIFFNESS)
+    )
+    return (kinds.STIFFNESS if stiff else kinds.DAMPING).units[0]
 
 
 def is_linear(quantity: Quantity) -> bool:
@@ -109,34 +183,3 @@ def _check_arm(quantity: RangedQuantity, name: str, arm: Quantity | None) -> Non
             "remove lever_arm, or write the linear value (N/m, N*s/m)",
             name,
         )
-
-
-def at_pivot(quantity: RangedQuantity, arm: Quantity | None, unit: str) -> RangedQuantity:
-    """Convert a linear stiffness or damping to the pivot, exactly.
-
-    Parameters
-    ----------
-    quantity : RangedQuantity
-        In N/m or N*s/m if there is a lever arm; returned unchanged otherwise.
-    arm : Quantity or None
-        Distance ``r`` from the pivot to the contact point.
-    unit : str
-        Unit of the result, N*m/rad or N*m*s/rad.
-
-    Returns
-    -------
-    RangedQuantity
-        Each value times ``r^2`` (thesis 6.3.1: 747.1461 N/m at 0.24 m is 43.0356 N*m/rad).
-    """
-    if arm is None:
-        return quantity
-    low, high = quantity.range
-    return RangedQuantity(
-        nominal=_turned(quantity.nominal, arm.exact, unit),
-        range=(_turned(low, arm.exact, unit), _turned(high, arm.exact, unit)),
-    )
-
-
-def _turned(linear: Quantity, radius: Fraction, unit: str) -> Quantity:
-    value = linear.exact * radius**2
-    return Quantity(f"{float(value):.6g} {unit}", value, unit)

@@ -69,7 +69,17 @@ def all_of(*reads: Callable[[], _T]) -> list[_T]:
 
 
 def did_you_mean(word: str, choices: Collection[str], noun: str = "write one of") -> str:
-    """Suggest the nearest choice, and list them all if they are few."""
+    """Suggest the nearest choice, and list them all if they are few.
+
+    Parameters
+    ----------
+    word : str
+        What is written.
+    choices : collection of str
+        What could be.
+    noun : str
+        How the list begins.
+    """
     alike = [choice for choice in choices if choice.lower() == word.lower()]
     near = alike or difflib.get_close_matches(word, choices, n=1)
     more = ", ..." * (len(choices) > MAX_LISTED)
@@ -152,7 +162,17 @@ def _without_tag(location: Location) -> Location:
 
 
 def place_of(root: Node, location: Location, at_key: bool) -> Position:
-    """Position of the node, or of the nearest one above it that the file holds."""
+    """Position of the node, or of the nearest one above it that the file holds.
+
+    Parameters
+    ----------
+    root : Node
+        The document.
+    location : tuple
+        Keys and indices from there.
+    at_key : bool
+        Return the place of the key, not that of its value.
+    """
     node, place = root, root.position
     for depth, part in enumerate(location):
         if isinstance(node, Mapping) and part in node.entries:

@@ -66,7 +66,17 @@ class GoalsSpec(SpecModel):
 
 
 def check_applicable(goals: GoalsSpec | None, types: set[str], *at: str) -> None:
-    """Report a fault if a goal is for another type of controller than there is."""
+    """Report a fault if a goal is for another type of controller than there is.
+
+    Parameters
+    ----------
+    goals : GoalsSpec or None
+        What is wanted.
+    types : set of str
+        Of the controllers that the goals would apply to.
+    *at : str
+        Where they stand in the spec.
+    """
     if goals is None:
         return
     if types <= {"position"}:

@@ -11,6 +11,7 @@ from pydantic import Field, model_validator
 from nrs_design.spec.certification import CertificationSpec
 from nrs_design.spec.controllers import (
     ControllerSpec,
+    IdleStatesSpec,
     PositionControllerSpec,
 )
 from nrs_design.spec.dwell import DwellObstacle, find_changing_contact
@@ -49,6 +50,11 @@ class InteractionDesignSpec(SpecModel):
     controllers: Annotated[
         dict[Label, ControllerSpec], Field(min_length=1, max_length=MAX_ENTRIES)
     ] = Field(description="what the robot switches between: name -> controller")
+    idle_states: IdleStatesSpec | None = Field(
+        default=None,
+        description="what the states of impedance controllers do while a position or force "
+        "controller is active; required where both kinds are there",
+    )
     goals: GoalsSpec | None = Field(
         default=None,
         description="what every impedance and force controller must achieve; the gate enforces it",
@@ -71,7 +77,13 @@ class InteractionDesignSpec(SpecModel):
     def _check_controllers(self) -> InteractionDesignSpec:
         dwell_times = self.switching.dwell_times()
         all_of(
-            lambda: _check_mixture(self.controllers),
+            partial(
+                _check_mixture,
+                self.controllers,
+                self.environments,
+                self.idle_states,
+                self.coordinates,
+            ),
             *(
                 partial(_check_references, *item, self.environments)
                 for item in self.controllers.items()
@@ -81,6 +93,7 @@ class InteractionDesignSpec(SpecModel):
                 for name, c in self.controllers.items()
                 if not isinstance(c, PositionControllerSpec)
             ),
+            partial(_check_memories, self.controllers, self.environments, self.coordinates),
             lambda: check_applicable(
                 self.goals, {c.type for c in self.controllers.values()}, "goals"
             ),
@@ -97,18 +110,52 @@ class InteractionDesignSpec(SpecModel):
         return find_changing_contact(self.controllers, self.environments)
 
 
-def _check_mixture(controllers: dict[str, ControllerSpec]) -> None:
-    """Impedance loops and position/force loops have different states."""
+def _check_mixture(
+    controllers: dict[str, ControllerSpec],
+    environments: dict[str, EnvironmentSpec],
+    idle: IdleStatesSpec | None,
+    coordinates: str,
+) -> None:
+    """Impedance controllers have states that position and force controllers do not use."""
     first_name, first = next(iter(controllers.items()))
-    for name, controller in controllers.items():
-        if (controller.type == "impedance") != (first.type == "impedance"):
+    others = (
+        (name, controller.type)
+        for name, controller in controllers.items()
+        if (controller.type == "impedance") != (first.type == "impedance")
+    )
+    name, kind = next(others, (None, None))
+    if idle is None and name is not None:
+        raise fault(
+            f"{kind} is mixed with {first.type} ({first_name!r}), and it is not said what the "
+            "states of impedance controllers do meanwhile",
+            "add `idle_states: {decay: 20 1/s}`, or use one kind of controller",
+            "controllers",
+            name,
+            "type",
+        )
+    if idle is None:
+        return
+    if name is None:
+        raise fault(
+            "idle_states without impedance controllers beside position or force controllers",
+            "remove idle_states",
+            "idle_states",
+        )
+    if coordinates == "force":
+        raise fault(
+            "force coordinates do not apply to impedance controllers beside others",
+            "use `coordinates: deflection`",
+            "coordinates",
+        )
+    for contact, environment in environments.items():
+        if environment.remembers:
             raise fault(
-                f"{controller.type} is mixed with {first.type} ({first_name!r}): their loops have "
-                "different states",
-                "use impedance controllers only, or position and force controllers only",
-                "controllers",
-                name,
-                "type",
+                f"{contact!r}, which is {environment.model}, is not modelled for impedance "
+                "controllers beside others",
+                "use elastic or kelvin-voigt environments, or one kind of controller",
+                "environments",
+                contact,
+                "model",
             )
 
 
@@ -148,6 +195,49 @@ def _check_references(
             name,
             "contacts",
         )
+
+
+def _check_memories(
+    controllers: dict[str, ControllerSpec],
+    environments: dict[str, EnvironmentSpec],
+    coordinates: str,
+) -> None:
+    """Refuse what is not modelled about environments that remember."""
+    touched: dict[str, EnvironmentSpec] = {}
+    for name, controller in controllers.items():
+        contacts = () if isinstance(controller, PositionControllerSpec) else controller.contacts
+        for contact in contacts:
+            environment = environments.get(contact)
+            if environment is None or not environment.remembers:
+                touched |= {} if environment is None else {contact: environment}
+                continue
+            touched[contact] = environment
+            if controller.type == "force":
+                raise fault(
+                    f"force control in contact with {contact!r} is not modelled: its law, "
+                    f"{environment.model}, remembers",
+                    "use an elastic environment for force controllers",
+                    "controllers",
+                    name,
+                    "contacts" if "contacts" in controller.model_fields_set else "environment",
+                )
+    for name, environment in touched.items():
+        if not environment.has_rest and len(touched) > 1:
+            others = ", ".join(other for other in touched if other != name)
+            raise fault(
+                f"{environment.model} has no rest position, so {name!r} shares no deflection with "
+                f"{others}",
+                "let the controllers touch no other environment, or write a spec for each",
+                "environments",
+                name,
+                "model",
+            )
+        if environment.remembers and coordinates == "force":
+            raise fault(
+                f"force coordinates do not apply to {name!r}, which is {environment.model}",
+                "use `coordinates: deflection`",
+                "coordinates",
+            )
 
 
 def _check_dwell_time(

@@ -31,6 +31,12 @@ ZERO = QuantityKind(
     "56.9706 1/s",
     {"rad/s": "a zero is a rate: write '{value} 1/s'"},
 )
+DECAY = QuantityKind(
+    "a rate of decay",
+    ("1/s",),
+    "20 1/s",
+    {"s": "that is a time: write the rate, one over it", "rad/s": "write '{value} 1/s'"},
+)
 ANGULAR_VELOCITY = QuantityKind(
     "an angular velocity",
     ("rad/s", "deg/s"),

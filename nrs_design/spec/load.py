@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 import json
 import os
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
 from pydantic import ValidationError
@@ -51,16 +51,24 @@ class LoadedSpec:
         The file's text.
     spec : InteractionDesignSpec, SwitchedSystemSpec or RobotSpec
         What it says.
+    parsed : Mapping, Sequence or Scalar, optional
+        The text as a tree, for positions; parsed once more where it is not given.
     """
 
     path: Path
     sha256: str
     text: str
     spec: Spec
+    parsed: Node | None = field(default=None, repr=False, compare=False)
+
+    @property
+    def root(self) -> Node:
+        """The text as a tree, in which everything has its line and column."""
+        return self.parsed or parse_document(self.text, self.path)
 
     def place(self, *at: str | int) -> Position:
         """Line and column of a key or an item, or of what holds it if it is not written out."""
-        return place_of(parse_document(self.text, self.path), at, at_key=True)
+        return place_of(self.root, at, at_key=True)
 
 
 def read_spec(path: str | os.PathLike[str]) -> LoadedSpec:
@@ -85,7 +93,7 @@ def read_spec(path: str | os.PathLike[str]) -> LoadedSpec:
     _, text = read_text(file)
     root, syntax = read_document(text, file)
     spec = _validate(root, syntax, file)
-    return LoadedSpec(file, hash_meaning(to_data(root)), text, spec)
+    return LoadedSpec(file, hash_meaning(to_data(root)), text, spec, root)
 
 
 def load_spec(path: str | os.PathLike[str]) -> Spec:

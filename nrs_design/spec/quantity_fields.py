@@ -26,7 +26,21 @@ from nrs_design.spec.quantity import (
 def read_quantity(
     value: object, kind: QuantityKind, *at: int | str, positive: bool, signed: bool = False
 ) -> Quantity:
-    """Read a quantity of a kind from text, and check its sign unless it is ``signed``."""
+    """Read a quantity of a kind from text, and check its sign unless it is ``signed``.
+
+    Parameters
+    ----------
+    value : object
+        As the document gives it.
+    kind : QuantityKind
+        What is measured.
+    *at : int or str
+        Where it stands, for faults.
+    positive : bool
+        Refuse zero too.
+    signed : bool
+        Allow negative ones.
+    """
 
     def read() -> Quantity:
         if isinstance(value, Quantity):
@@ -171,7 +185,17 @@ Attempt = Quantity | PydanticCustomError
 
 
 def read_entries(value: object, keys: tuple[str, ...], reader: Reader) -> object:
-    """Read the entries that are quantities; what else is wrong is left to the model."""
+    """Read the entries that are quantities; what else is wrong is left to the model.
+
+    Parameters
+    ----------
+    value : object
+        A mapping, as the document gives it.
+    keys : tuple of str
+        The entries that are read.
+    reader : callable
+        Reads one of them.
+    """
     if not isinstance(value, dict):
         return value
     return value | {key: _attempt(reader, value[key]) for key in value if key in keys}
@@ -225,6 +249,7 @@ Duration = Annotated[Quantity, _quantity(kinds.DURATION), _schema(kinds.DURATION
 DerivativeGain = Annotated[
     Quantity, _quantity(kinds.DERIVATIVE_GAIN), _schema(kinds.DERIVATIVE_GAIN)
 ]
+Decay = Annotated[Quantity, _quantity(kinds.DECAY, positive=False), _schema(kinds.DECAY)]
 Zero = Annotated[Quantity, _quantity(kinds.ZERO), _schema(kinds.ZERO)]
 AngularVelocity = Annotated[
     Quantity, _quantity(kinds.ANGULAR_VELOCITY), _schema(kinds.ANGULAR_VELOCITY)
@@ -239,6 +264,9 @@ Stiffness = Annotated[
 ]
 Damping = Annotated[
     RangedQuantity, _ranged(kinds.DAMPING, positive=False), _ranged_schema(kinds.DAMPING)
+]
+PositiveDamping = Annotated[
+    RangedQuantity, _ranged(kinds.DAMPING, positive=True), _ranged_schema(kinds.DAMPING)
 ]
 Mass = Annotated[Quantity, _quantity(kinds.MASS, positive=False), _schema(kinds.MASS)]
 Length = Annotated[Quantity, _quantity(kinds.LENGTH), _schema(kinds.LENGTH)]

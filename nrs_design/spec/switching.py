@@ -277,7 +277,17 @@ def check_denominators(numbers: Iterable[Fraction], *at: int | str) -> None:
 
 
 def check_names(switching: SwitchingSpec, names: Collection[str], noun: str) -> None:
-    """Report a fault if a rule names something that does not exist, or cannot be kept."""
+    """Report a fault if a rule names something that does not exist, or cannot be kept.
+
+    Parameters
+    ----------
+    switching : SwitchingSpec
+        The rules.
+    names : collection of str
+        What there is.
+    noun : str
+        Modes or controllers, for faults.
+    """
     places = [at for at, _ in switching.dwell_times()]
     all_of(
         *(partial(_check_name, name, names, noun, *at) for at in places for name in at[1:]),

@@ -1,4 +1,4 @@
-"""From a spec (and the designed gains) to the exact switched system that it describes."""
+"""From a spec, its plant and the designed gains to the exact switched system they describe."""
 
 from __future__ import annotations
 
@@ -9,7 +9,8 @@ from fractions import Fraction
 from nrs_design.controllers.controller_design import ControllerDesign
 from nrs_design.controllers.gains import design_from_gains
 from nrs_design.errors import AssemblyError
-from nrs_design.models.plant import build_plant
+from nrs_design.models.plant import Plant, build_plant
+from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.system import Mode, SwitchedSystem, Time
 from nrs_design.spec import (
     ImpedanceControllerSpec,
@@ -25,18 +26,22 @@ from nrs_design.switched.constraints import assemble_switching
 from nrs_design.switched.gain_box import gain_boxes
 from nrs_design.switched.parameters import corner_modes, fixed_parameter, read_parameters
 
-__all__ = ["GIVEN_MATRICES", "assemble", "from_design", "from_matrices", "has_ranges"]
+__all__ = ["GIVEN_MATRICES", "assemble", "assemble_from_text", "assemble_matrices", "has_ranges"]
 
 DECLARED = Fraction(1)
 
 
-def assemble(
+def assemble_from_text(
     spec: Spec,
     gains: Mapping[str, Mapping[str, str]],
     coordinates: str | None,
     scale: Fraction = DECLARED,
+    plant: Plant | None = None,
 ) -> SwitchedSystem:
-    """Assemble the switched system of a spec from its text and the designed gains.
+    """Assemble the switched system of a spec from the gains that a certificate quotes.
+
+    This is the way of a re-check, where gains are a stranger's text: they are read, and held
+    against the spec. Who has the design in hand calls `assemble`.
 
     Parameters
     ----------
@@ -49,6 +54,8 @@ def assemble(
     scale : Fraction
         Not negative: every declared range is stretched by it about its nominal value. 0 leaves the
         nominal values only.
+    plant : Plant, optional
+        Built from this very spec, where it is in hand; by default it is built here.
 
     Raises
     ------
@@ -56,15 +63,14 @@ def assemble(
         If gains or coordinates do not fit the spec, if a stiffness or a gain does not stay
         positive, or if the rules of switching make too many switches.
     """
-    if scale < 0:
-        raise AssemblyError(f"ranges cannot be scaled by {scale}", remedy="give a scale >= 0")
     if isinstance(spec, SwitchedSystemSpec):
         if gains or coordinates is not None:
             raise AssemblyError("given matrices have neither gains nor coordinates")
-        return from_matrices(spec, scale)
+        return assemble_matrices(spec, scale)
     if isinstance(spec, RobotSpec):
         raise AssemblyError("a robot spec has no modes")
-    return from_design(spec, design_from_gains(spec, gains), coordinates, scale)
+    design = design_from_gains(spec, gains)
+    return assemble(spec, plant or build_plant(spec), design, coordinates, scale)
 
 
 def has_ranges(spec: Spec) -> bool:
@@ -90,11 +96,19 @@ def _touched(spec: InteractionDesignSpec) -> set[str]:
     }
 
 
-def from_matrices(spec: SwitchedSystemSpec, scale: Fraction = DECLARED) -> SwitchedSystem:
-    """Return the system of a `switched-system` spec, one mode for each corner of its boxes."""
+def assemble_matrices(spec: SwitchedSystemSpec, scale: Fraction = DECLARED) -> SwitchedSystem:
+    """Return the system of a `switched-system` spec, one mode for each corner of its boxes.
+
+    Raises
+    ------
+    AssemblyError
+        If the scale is negative, or the rules of switching make too many switches.
+    """
+    _check_scale(scale)
     parameters = read_parameters(spec, scale)
     modes: list[Mode] = []
     groups = {}
+    resets = ((r.source, r.target, RationalMatrix.from_rows(r.map)) for r in spec.resets)
     for mode in spec.modes:
         corners, groups[mode.name] = corner_modes(mode, parameters)
         modes += corners
@@ -105,23 +119,52 @@ def from_matrices(spec: SwitchedSystemSpec, scale: Fraction = DECLARED) -> Switc
         tuple(modes),
         assume_matrices(spec, parameters, scale),
         replace(
-            assemble_switching(spec.switching, groups, spec.resets),
+            assemble_switching(spec.switching, groups, resets),
             fixed_parameter=fixed_parameter(parameters),
         ),
     )
 
 
-def from_design(
+def assemble(
     spec: InteractionDesignSpec,
+    plant: Plant,
     design: ControllerDesign,
     coordinates: str | None,
     scale: Fraction = DECLARED,
 ) -> SwitchedSystem:
-    """Return the closed loop of an interaction design, one mode for each corner of its boxes."""
+    """Return the closed loop of an interaction design, one mode for each corner of its boxes.
+
+    Parameters
+    ----------
+    spec : InteractionDesignSpec
+        With the name, the rules of switching and the ranges of gains.
+    plant : Plant
+        As `nrs_design.models.plant.build_plant` makes it of this spec.
+    design : ControllerDesign
+        The gains that ship.
+    coordinates : {"deflection", "force"} or None
+        Last state of an impedance mode; None is refused.
+    scale : Fraction
+        Not negative: every declared range is stretched by it about its nominal value.
+
+    Raises
+    ------
+    AssemblyError
+        If the coordinates are unknown, if a stiffness or a gain does not stay positive, or if the
+        rules of switching make too many switches.
+    """
+    _check_scale(scale)
     if coordinates not in ("deflection", "force"):
         raise AssemblyError(f"unknown coordinates {coordinates!r}: deflection or force")
-    plant = build_plant(spec).scaled(scale, _touched(spec))
+    plant = plant.scaled(scale, _touched(spec))
     loop = plant.motion_loop(design.motion.Kp, design.motion.Kd)
     boxes = gain_boxes(spec, design, scale)
-    system = close_loop(spec.name, plant, loop, design, coordinates, spec.switching, boxes)
+    system = close_loop(
+        spec.name, plant, loop, design, coordinates, spec.switching, boxes, spec.idle_states
+    )
     return replace(system, assumptions=(*system.assumptions, *scale_texts(scale)))
+
+
+def _check_scale(scale: Fraction) -> None:
+    if scale < 0:
+        raise AssemblyError(f"ranges cannot be scaled by {scale}", remedy="give a scale >= 0")

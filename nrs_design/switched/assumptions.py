@@ -25,7 +25,17 @@ GIVEN_MATRICES = (
 def assume_matrices(
     spec: SwitchedSystemSpec, parameters: Sequence[Parameter], scale: Fraction
 ) -> tuple[str, ...]:
-    """Say what holds for a `switched-system` spec."""
+    """Say what holds for a `switched-system` spec.
+
+    Parameters
+    ----------
+    spec : SwitchedSystemSpec
+        With the rules of switching.
+    parameters : sequence of Parameter
+        Where they lie, already scaled.
+    scale : Fraction
+        By how much they are.
+    """
     return (
         GIVEN_MATRICES[0],
         *map(_parameter_text, parameters),

@@ -1,7 +1,10 @@
 """Close the loop around every contact: the modes of one robot axis, exactly.
 
 State of an impedance mode: ``[xp, vm, delta]``, the motion loop, the admittance velocity (absent
-with zero virtual inertia) and the deflection. State of a position or force mode: ``xp`` alone.
+with zero virtual inertia) and the deflection (of the spring alone in a Maxwell environment), and
+behind them one more state for every touched environment that has one, a memory. While another
+environment is touched, a memory decays as it does without force. State of a position or force
+mode: ``xp`` alone.
 """
 
 from __future__ import annotations
@@ -15,15 +18,25 @@ from itertools import chain
 from nrs_design.controllers.controller_design import Controller, ControllerDesign
 from nrs_design.controllers.laws import Admittance, PositionControl, ProportionalForce
 from nrs_design.errors import AssemblyError
-from nrs_design.models.environment import Contact
+from nrs_design.models.contact.environment import Environment
+from nrs_design.models.contact.law import AbstractLinearLaw
 from nrs_design.models.motion_loop import MotionLoop
 from nrs_design.models.plant import Plant
 from nrs_design.proof.matrix import RationalMatrix, multiply
 from nrs_design.proof.system import Mode, SwitchedSystem, Time
-from nrs_design.spec import SwitchingSpec
+from nrs_design.spec import IdleStatesSpec, SwitchingSpec
 from nrs_design.switched.assumptions import CONTINUOUS, rule_texts
 from nrs_design.switched.constraints import assemble_switching
 from nrs_design.switched.gain_box import GainBox
+from nrs_design.switched.mixture import (
+    check_mixture,
+    idle_size,
+    impedance_rows,
+    mixture_states,
+    mixture_texts,
+    resets_of,
+    with_idle,
+)
 from nrs_design.switched.parameter_box import Axis, box_corners
 from nrs_design.switched.parameters import Corner
 
@@ -74,14 +87,15 @@ def close_loop(
     coordinates: str,
     rules: SwitchingSpec | None = None,
     boxes: Mapping[str, GainBox] | None = None,
+    idle: IdleStatesSpec | None = None,
 ) -> SwitchedSystem:
     """Assemble every mode of an interaction design.
 
     One mode for each controller and each corner of the box of its gains and of the parameters of
-    each environment that it may touch. Every entry of A is affine in stiffness, in damping, in Bt
-    and in 1/Mt (without inertia: in 1/Bt), each for itself, so A is a convex combination of the
-    corners in the whole box, and what decreases in the corners decreases there, however fast the
-    parameters move.
+    each environment that it may touch. Every entry of A is affine in stiffness, in damping (or in
+    one over it, as the law of the environment says), in Bt and in 1/Mt (without inertia: in 1/Bt),
+    each for itself, so A is a convex combination of the corners in the whole box, and what
+    decreases in the corners decreases there, however fast the parameters move.
 
     Parameters
     ----------
@@ -100,6 +114,9 @@ def close_loop(
         Rules for the change of controllers; by default any may follow any other at any time.
     boxes : mapping, optional
         Where the gains of impedance controllers may be, by name; by default, at what ships.
+    idle : IdleStatesSpec, optional
+        What the states of impedance controllers do while another kind of controller is active; by
+        default there is one kind only.
 
     Raises
     ------
@@ -109,9 +126,21 @@ def close_loop(
     motion = realize(loop)
     rules = rules or SwitchingSpec()
     boxes = boxes or {}
+    touched = _touched(design, plant)
+    _check_coordinates(coordinates, touched)
+    count = 0
+    if idle is not None:
+        check_mixture(coordinates, touched)
+        count = idle_size(design)
+    memories = tuple(e for e in touched if e.creep is not None)
     parts = {
         controller.name: tuple(
-            _controller_modes(controller, plant, motion, coordinates, boxes.get(controller.name))
+            _controller_modes(
+                controller,
+                plant,
+                _Surroundings(motion, coordinates, memories, idle, count),
+                boxes.get(controller.name),
+            )
         )
         for controller in design.controllers
     }
@@ -123,112 +152,237 @@ def close_loop(
             remedy="give all impedance controllers a virtual inertia Mt > 0, or none of them",
             at=("controllers",),
         )
-    states = _state_names(motion.order, sizes[0], coordinates)
-    assumptions = _assumptions(design, coordinates, rules, boxes, given=loop.given)
+    states = _state_names(motion.order, sizes[0], coordinates, touched)
+    if idle is not None:
+        states = mixture_states(motion.order, count)
+    assumptions = _assumptions(design, coordinates, rules, boxes, touched, idle, given=loop.given)
     groups = {key: tuple(Corner(mode.name) for mode in part) for key, part in parts.items()}
-    switching = assemble_switching(rules, groups)
+    reset = idle is not None and idle.reset
+    resets = resets_of(design, motion.order, count) if reset else ()
+    switching = assemble_switching(rules, groups, resets)
     return SwitchedSystem(name, Time.CONTINUOUS, states, modes, assumptions, switching)
 
 
+def _touched(design: ControllerDesign, plant: Plant) -> tuple[Environment, ...]:
+    """Return what some controller touches, in the order of the spec."""
+    names = {contact for controller in design.controllers for contact in controller.contacts}
+    return tuple(environment for environment in plant.environments if environment.name in names)
+
+
+def _check_coordinates(coordinates: str, touched: tuple[Environment, ...]) -> None:
+    for environment in touched:
+        law = environment.law
+        if coordinates == "force" and law.remembers:
+            raise AssemblyError(
+                f"force coordinates do not apply to environment {environment.name}, which is "
+                f"{law.name}",
+                remedy="use coordinates: deflection",
+                at=("coordinates",),
+            )
+        if not law.has_rest and len(touched) > 1:
+            raise AssemblyError(
+                f"environment {environment.name} has no rest position ({law.name}), so it shares "
+                "no deflection with another environment",
+                remedy="let the controllers touch no other environment, or write a spec for each",
+                at=("environments", environment.name),
+            )
+
+
+@dataclass(frozen=True, slots=True)
+class _Surroundings:
+    """What all modes share: motion loop, coordinates, memories, idle states and their count."""
+
+    motion: Realization
+    coordinates: str
+    memories: tuple[Environment, ...]
+    idle: IdleStatesSpec | None
+    count: int
+
+    def padded(self, rows: list[Row]) -> list[Row]:
+        """Return a mode of a position or force controller, with idle states if there are any."""
+        return rows if self.idle is None else with_idle(rows, self.count, self.idle.decay.exact)
+
+
 def _controller_modes(
-    controller: Controller,
-    plant: Plant,
-    motion: Realization,
-    coordinates: str,
-    box: GainBox | None,
+    controller: Controller, plant: Plant, around: _Surroundings, box: GainBox | None
 ) -> Iterator[Mode]:
     law = controller.law
     if isinstance(law, PositionControl):
-        yield Mode(controller.name, RationalMatrix.from_rows(motion.A))
+        alone = around.padded([list(row) for row in around.motion.A])
+        yield Mode(controller.name, RationalMatrix.from_rows(alone))
         return
     gains: tuple[Axis, ...] = ()
     if isinstance(law, Admittance):
         gains = (box or GainBox.point(law)).axes
     for environment in map(plant.environment, controller.contacts):
         name = f"{controller.name}/{environment.name}"
-        axes = (Axis("k", environment.stiffness), Axis("b", environment.damping), *gains)
-        rows_at = partial(_rows_at, law, environment.name, motion, coordinates)
-        for corner in box_corners(axes, rows_at, name):
-            label = f"{name}/{corner.label}" if corner.label else name
-            yield Mode(label, RationalMatrix.from_rows(corner.rows))
+        axes = (*_contact_axes(environment, around.memories), *gains)
+        rows_at = partial(_rows_at, law, environment, around)
+        for label, rows in box_corners(axes, rows_at, name):
+            yield Mode(f"{name}/{label}" if label else name, RationalMatrix.from_rows(rows))
+
+
+def _contact_axes(environment: Environment, memories: tuple[Environment, ...]) -> Iterator[Axis]:
+    """Yield the parameters of a contact, and the rates of the memories that it leaves alone.
+
+    A rate is a ratio of parameters, but they occur nowhere else in this mode: it is one axis.
+    """
+    law = environment.law
+    for symbol, interval in zip(law.parameters(), environment.ranges, strict=True):
+        yield Axis(symbol, interval, inverse=symbol in law.inverse)
+    for other in memories:
+        if other != environment and other.creep is not None:
+            yield Axis(_rate(other), other.creep)
+
+
+def _rate(environment: Environment) -> str:
+    return f"r-{environment.name}"
 
 
 def _rows_at(
     law: Admittance | ProportionalForce,
-    environment: str,
-    motion: Realization,
-    coordinates: str,
+    environment: Environment,
+    around: _Surroundings,
     values: Mapping[str, Fraction],
 ) -> list[Row]:
     """Return A at the given parameters of the contact and, in impedance control, gains."""
-    contact = Contact(environment, values["k"], values["b"])
+    motion = around.motion
+    contact = environment.law(*(values[symbol] for symbol in environment.law.parameters()))
     if isinstance(law, ProportionalForce):
-        return force_mode(motion, law, contact)
-    rows = impedance_mode(motion, Admittance(values["Mt"], values["Bt"]), contact)
-    return to_force_coordinates(rows, motion, contact) if coordinates == "force" else rows
+        return around.padded(force_mode(motion, law, contact, environment.name))
+    gains = Admittance(values["Mt"], values["Bt"])
+    if around.idle is not None:
+        return impedance_rows(motion.A, list(motion.C), gains, contact)
+    rows = impedance_mode(motion, gains, contact)
+    if around.coordinates == "force":
+        return to_force_coordinates(rows, motion, contact)
+    memories = around.memories
+    return _with_memories(rows, environment, memories, values) if memories else rows
 
 
-def impedance_mode(motion: Realization, law: Admittance, contact: Contact) -> list[Row]:
+def _with_memories(
+    rows: list[Row],
+    touched: Environment,
+    memories: tuple[Environment, ...],
+    values: Mapping[str, Fraction],
+) -> list[Row]:
+    """Put the memory of the touched environment, if any, in its place among all memories."""
+    common = len(rows) - len(touched.law.states) + 1
+    size = common + len(memories)
+    places = [*range(common), *(common + i for i, e in enumerate(memories) if e == touched)]
+    full = [[Fraction(0)] * size for _ in range(size)]
+    for i, row in zip(places, rows, strict=True):
+        for j, entry in zip(places, row, strict=True):
+            full[i][j] = entry
+    for i, environment in enumerate(memories, common):
+        if environment != touched:
+            full[i][i] = -values[_rate(environment)]
+    return full
+
+
+def impedance_mode(motion: Realization, law: Admittance, contact: AbstractLinearLaw) -> list[Row]:
     """Return A of an impedance mode in deflection coordinates (thesis 6.28).
 
-    ``xp' = Ap xp + Bp (vc - vm)``, ``Mt vm' = -Bt vm + F``, ``delta' = Cp xp``,
-    ``F = k delta + b delta'``. With ``Mt = 0`` the velocity is ``vm = F / Bt``.
+    ``xp' = Ap xp + Bp (vc - vm)``, ``Mt vm' = -Bt vm + F``, and the law of the contact from
+    ``v = Cp xp`` to F. With ``Mt = 0`` the velocity is ``vm = F / Bt``.
+
+    Parameters
+    ----------
+    motion : Realization
+        Of the motion loop.
+    law : Admittance
+        With its gains.
+    contact : AbstractLinearLaw
+        Of the environment, at fixed parameters.
     """
-    n = motion.order
-    has_mass = law.Mt != 0
-    size = n + 1 + has_mass
-    force = [contact.damping * c for c in motion.C] + [Fraction(0)] * has_mass + [contact.stiffness]
-    rows = [[*row, *[Fraction(0)] * (size - n)] for row in motion.A]
-    if has_mass:
+    reaction = contact.reaction
+    n, m = motion.order, len(reaction.B)
+    none = [Fraction(0)] * (law.Mt != 0)
+    force = [*(reaction.D * c for c in motion.C), *none, *reaction.C]
+    rows = [[*row, *none, *[Fraction(0)] * m] for row in motion.A]
+    if law.Mt != 0:
         rows[-1][n] -= 1
         velocity = [f / law.Mt for f in force]
         velocity[n] -= law.Bt / law.Mt
         rows.append(velocity)
     else:
         rows[-1] = [entry - f / law.Bt for entry, f in zip(rows[-1], force, strict=True)]
-    rows.append([*motion.C, *[Fraction(0)] * (size - n)])
+    for gain, row in zip(reaction.B, reaction.A, strict=True):
+        rows.append([*(gain * c for c in motion.C), *none, *row])
     return rows
 
 
-def to_force_coordinates(rows: list[Row], motion: Realization, contact: Contact) -> list[Row]:
-    """Replace the last state delta by the force ``F = k delta + b Cp xp`` (similarity T A T^-1)."""
+def to_force_coordinates(
+    rows: list[Row], motion: Realization, contact: AbstractLinearLaw
+) -> list[Row]:
+    """Replace the last state delta by the force ``F = k delta + b Cp xp`` (similarity T A T^-1).
+
+    Parameters
+    ----------
+    rows : list of list of Fraction
+        A in deflection coordinates.
+    motion : Realization
+        Of the motion loop.
+    contact : AbstractLinearLaw
+        Of the environment, at fixed parameters.
+    """
+    (stiffness,), damping = contact.reaction.C, contact.reaction.D
     size, n = len(rows), motion.order
     T = [[Fraction(int(i == j)) for j in range(size)] for i in range(size)]
     inverse = [list(row) for row in T]
-    T[-1][:n] = [contact.damping * c for c in motion.C]
-    T[-1][-1] = contact.stiffness
-    inverse[-1][:n] = [-contact.damping * c / contact.stiffness for c in motion.C]
-    inverse[-1][-1] = 1 / contact.stiffness
+    T[-1][:n] = [damping * c for c in motion.C]
+    T[-1][-1] = stiffness
+    inverse[-1][:n] = [-damping * c / stiffness for c in motion.C]
+    inverse[-1][-1] = 1 / stiffness
     return multiply(multiply(T, rows), inverse)
 
 
-def force_mode(motion: Realization, law: ProportionalForce, contact: Contact) -> list[Row]:
+def force_mode(
+    motion: Realization, law: ProportionalForce, contact: AbstractLinearLaw, environment: str
+) -> list[Row]:
     """Return A of a force mode, ``Ap - Bp Kp k Cp`` (thesis 6.46).
+
+    Parameters
+    ----------
+    motion : Realization
+        Of the motion loop.
+    law : ProportionalForce
+        With its gain.
+    contact : AbstractLinearLaw
+        Of the environment, at fixed parameters.
+    environment : str
+        Its name, for errors.
 
     Raises
     ------
     AssemblyError
-        If the environment is damped: its force then depends on the input itself.
+        If the environment of that name is no spring: with damping, its force depends on the input
+        itself; with a memory, on more than the position.
     """
-    if contact.damping != 0:
+    reaction = contact.reaction
+    if reaction.D != 0 or contact.remembers:
         raise AssemblyError(
-            f"force control in contact with {contact.label}, which has damping, is not modelled",
+            f"force control in contact with {environment}, which has damping, is not modelled",
             remedy="use an elastic environment for force controllers",
-            at=("environments", contact.label, "damping"),
+            at=("environments", environment, "damping"),
         )
     rows = [list(row) for row in motion.A]
-    gain = law.Kp * contact.stiffness
+    gain = law.Kp * reaction.C[0]
     rows[-1] = [entry - gain * c for entry, c in zip(rows[-1], motion.C, strict=True)]
     return rows
 
 
-def _state_names(motion_order: int, size: int, coordinates: str) -> tuple[str, ...]:
+def _state_names(
+    motion_order: int, size: int, coordinates: str, touched: tuple[Environment, ...]
+) -> tuple[str, ...]:
     names = [f"xp{i + 1}" for i in range(motion_order)]
-    if size - motion_order == 2:
+    if size == motion_order:
+        return tuple(names)
+    memories = [f"{e.name}: {state}" for e in touched for state in e.law.states[1:]]
+    if size - motion_order - len(memories) == 2:
         names.append("vm [rad/s]")
-    if size > motion_order:
-        names.append("F [N*m]" if coordinates == "force" else "delta [rad]")
-    return tuple(names)
+    names.append("F [N*m]" if coordinates == "force" else touched[0].law.states[0])
+    return (*names, *memories)
 
 
 _INPUTS = (
@@ -251,6 +405,8 @@ def _assumptions(
     coordinates: str,
     rules: SwitchingSpec,
     boxes: Mapping[str, GainBox],
+    touched: tuple[Environment, ...],
+    idle: IdleStatesSpec | None,
     *,
     given: bool,
 ) -> tuple[str, ...]:
@@ -288,9 +444,11 @@ def _assumptions(
         *contacts,
         "In contact, the environment follows its linear model; its parameters stay in the "
         "declared ranges and may change arbitrarily fast.",
-        *((last,) if impedance else ()),
+        *((last,) if impedance and all(e.law.has_rest for e in touched) else ()),
+        *_memory_texts(touched),
+        *(mixture_texts(idle, idle_size(design)) if idle is not None else ()),
         *kept,
-        *_switch_texts(rules),
+        *_switch_texts(rules, reset=idle is not None and idle.reset),
         "Continuous time: sampling, delay, quantization, friction and saturation are not modelled.",
         f"{shipped}, or anywhere in their ranges." if ranged else f"{shipped}.",
         *ranges,
@@ -298,12 +456,36 @@ def _assumptions(
     )
 
 
-def _switch_texts(rules: SwitchingSpec) -> tuple[str, ...]:
+def _memory_texts(touched: tuple[Environment, ...]) -> Iterator[str]:
+    """Say what is taken for granted about environments that remember, or forget."""
+    for environment in touched:
+        if not environment.law.has_rest:
+            yield (
+                f"{environment.name} has no rest position: a lasting deflection leaves no force. "
+                "Its state is the stretch of its spring, which stays at a switch and when the "
+                "parameters change; "
+                "that the deflection itself returns to zero is not claimed."
+            )
+        if environment.creep is None:
+            continue
+        yield (
+            f"The damper of {environment.name} keeps its deflection at a switch and when the "
+            "parameters change."
+        )
+        if len(touched) > 1:
+            yield (
+                f"While another environment is touched, {environment.name} is free of force and "
+                "its damper creeps back to rest, b d' = -k1 d, with parameters in their ranges."
+            )
+
+
+def _switch_texts(rules: SwitchingSpec, *, reset: bool) -> tuple[str, ...]:
+    states = "All other states are" if reset else "States are"
     if rules.is_arbitrary:
-        return (f"States are {CONTINUOUS}; any switching signal is possible.",)
+        return (f"{states} {CONTINUOUS}; any switching signal is possible.",)
     environment = (
         "While a controller is active, the environment that it touches may change among its "
         "contacts at any time."
     )
     contacts = () if rules.dwell_time is not None else (environment,)
-    return (f"States are {CONTINUOUS}.", *rule_texts(rules, "controller"), *contacts)
+    return (f"{states} {CONTINUOUS}.", *rule_texts(rules, "controller"), *contacts)

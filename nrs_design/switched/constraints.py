@@ -10,18 +10,19 @@ from typing import TypeVar
 from nrs_design.errors import AssemblyError
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.system import Reset, Stay, Switching
-from nrs_design.spec import DwellTime, ResetSpec, SwitchingSpec
+from nrs_design.spec import DwellTime, SwitchingSpec
 from nrs_design.switched.parameters import Corner, pair_ends
 
 MAX_ASSEMBLED = 200_000
 
 Groups = Mapping[str, Sequence[Corner]]
 Transition = tuple[str, str]
+Jump = tuple[str, str, RationalMatrix]
 T = TypeVar("T")
 
 
 def assemble_switching(
-    rules: SwitchingSpec, groups: Groups, resets: Sequence[ResetSpec] = ()
+    rules: SwitchingSpec, groups: Groups, resets: Iterable[Jump] = ()
 ) -> Switching:
     """Carry the rules of a spec over to the assembled modes.
 
@@ -35,8 +36,8 @@ def assemble_switching(
         In terms of the names of the spec.
     groups : mapping
         What each name stands for, in the order of the assembled modes.
-    resets : sequence of ResetSpec
-        In terms of the same names.
+    resets : iterable of (str, str, RationalMatrix)
+        Source, target and map, in terms of the same names.
 
     Raises
     ------
@@ -68,10 +69,9 @@ def _assembled_stays(
             yield from ((corner.mode, stay) for corner in corners)
 
 
-def _assembled_resets(resets: Sequence[ResetSpec], groups: Groups) -> Iterator[Reset]:
-    for reset in resets:
-        matrix = RationalMatrix.from_rows(reset.map)
-        for source, target in _expand([(reset.source, reset.target)], groups):
+def _assembled_resets(resets: Iterable[Jump], groups: Groups) -> Iterator[Reset]:
+    for before, after, matrix in resets:
+        for source, target in _expand([(before, after)], groups):
             yield Reset(source, target, matrix)
 
 

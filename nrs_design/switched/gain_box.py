@@ -9,10 +9,9 @@ from fractions import Fraction
 from nrs_design.controllers.controller_design import ControllerDesign
 from nrs_design.controllers.float32 import exact_decimal
 from nrs_design.controllers.gain_range import gain_interval
-from nrs_design.controllers.gains import UNITS
 from nrs_design.controllers.laws import Admittance
 from nrs_design.errors import AssemblyError
-from nrs_design.models.environment import Interval
+from nrs_design.models.interval import Interval
 from nrs_design.proof.text import exact_text
 from nrs_design.spec import ImpedanceControllerSpec, InteractionDesignSpec
 from nrs_design.switched.parameter_box import Axis
@@ -78,7 +77,7 @@ class GainBox:
         """Say where the gains of a controller of that name may be, if they have ranges."""
         return tuple(
             f"{gain} of {name} stays in [{_text(interval.low)}, {_text(interval.high)}] "
-            f"{UNITS['impedance', gain]} and may change arbitrarily fast."
+            f"{Admittance.units[gain]} and may change arbitrarily fast."
             for gain, interval in (("Mt", self.Mt), ("Bt", self.Bt))
             if interval.low != interval.high
         )

@@ -14,7 +14,7 @@ from fractions import Fraction
 from itertools import product
 
 from nrs_design.errors import InternalError
-from nrs_design.models.environment import Interval
+from nrs_design.models.interval import Interval
 
 Rows = Sequence[Sequence[Fraction]]
 RowsAt = Callable[[Mapping[str, Fraction]], Rows]
@@ -47,15 +47,7 @@ class Axis:
         return 2 / (1 / self.interval.low + 1 / self.interval.high)
 
 
-@dataclass(frozen=True, slots=True)
-class BoxCorner:
-    """A corner: its label, such as ``k-min/Mt-max`` (empty for a point), and its matrix."""
-
-    label: str
-    rows: Rows
-
-
-def box_corners(axes: Sequence[Axis], rows_at: RowsAt, name: str) -> Iterator[BoxCorner]:
+def box_corners(axes: Sequence[Axis], rows_at: RowsAt, name: str) -> Iterator[tuple[str, Rows]]:
     """Yield the corners of a box, the last axis turning fastest.
 
     Parameters
@@ -67,18 +59,24 @@ def box_corners(axes: Sequence[Axis], rows_at: RowsAt, name: str) -> Iterator[Bo
     name : str
         Of the mode, for errors.
 
+    Yields
+    ------
+    tuple of str and rows
+        The label, such as ``k-min/Mt-max`` (empty for a point), and the matrix.
+
     Raises
     ------
     InternalError
         If the matrix is not affine along each axis.
     """
-    corners = {}
+    labels, corners = [], {}
     for ends in product(*(axis.interval.ends for axis in axes)):
         values = {axis.symbol: value for axis, (_, value) in zip(axes, ends, strict=True)}
-        label = "/".join(f"{a.symbol}-{end}" for a, (end, _) in zip(axes, ends, strict=True) if end)
-        corners[tuple(values.values())] = BoxCorner(label, rows_at(values))
-    check_corners_suffice(axes, rows_at, {key: item.rows for key, item in corners.items()}, name)
-    yield from corners.values()
+        pairs = zip(axes, ends, strict=True)
+        labels.append("/".join(f"{axis.symbol}-{end}" for axis, (end, _) in pairs if end))
+        corners[tuple(values.values())] = rows_at(values)
+    check_corners_suffice(axes, rows_at, corners, name)
+    yield from zip(labels, corners.values(), strict=True)
 
 
 def check_corners_suffice(

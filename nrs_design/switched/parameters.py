@@ -12,7 +12,7 @@ from fractions import Fraction
 from itertools import product
 
 from nrs_design.errors import InternalError
-from nrs_design.models.environment import Interval
+from nrs_design.models.interval import Interval
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.system import FixedParameter, Mode
 from nrs_design.spec import ModeSpec, SwitchedSystemSpec
@@ -115,6 +115,15 @@ def check_affine(middle: Rows, corners: Sequence[Rows], name: str) -> None:
 
     Follows from the construction; it is computed again because a proof for the whole box rests
     on it.
+
+    Parameters
+    ----------
+    middle : rows of Fraction
+        The matrix halfway.
+    corners : sequence of rows
+        The matrices at the corners.
+    name : str
+        Of the mode, for errors.
 
     Raises
     ------

@@ -43,7 +43,7 @@ from nrs_design.proof.evidence.unstable_mode import worst_eigenvalue
 from nrs_design.proof.system_fields import system_fields
 from nrs_design.search.certify import Limits, Method
 from nrs_design.spec import LoadedSpec, read_spec
-from nrs_design.switched.assemble import assemble
+from nrs_design.switched.assemble import assemble_from_text
 from tests.support import (
     COMMUTING,
     FORCE_LIMIT,
@@ -144,7 +144,7 @@ def changed(document, path, value):
 
 def with_modes(document, spec):
     """Copy of a document with the modes that its gains make of a spec."""
-    system = assemble(spec.spec, document["gains"], document["coordinates"])
+    system = assemble_from_text(spec.spec, document["gains"], document["coordinates"])
     return {**document, "modes": system_fields(system)["modes"]}
 
 

@@ -9,7 +9,7 @@ from nrs_design.certificates.certificate import Certificate, content_id, dump
 from nrs_design.certificates.verify import read_document, verify_document
 from nrs_design.search.certify import Limits, Method, certify
 from nrs_design.spec import read_spec
-from nrs_design.switched.assemble import assemble
+from nrs_design.switched.assemble import assemble_from_text
 from tests.proof.tamper import mutations
 from tests.proof.truth import holds
 
@@ -73,7 +73,7 @@ def issue(tmp_path_factory):
         path = folder / "given.nrs.yaml"
         path.write_text(json.dumps({**defaults, **details}))
         spec = read_spec(path)
-        system = assemble(spec.spec, {}, None)
+        system = assemble_from_text(spec.spec, {}, None)
         found = certify(system, method, Limits(optimize_rate=False))
         certificate = Certificate(
             spec.spec.name, spec.sha256, None, {}, system, found.statements, "0"

@@ -11,7 +11,7 @@ import pytest
 from nrs_design.certificates.certificate import content_id
 from nrs_design.proof.bounds import rounded_down, rounded_up
 from nrs_design.spec import read_spec
-from tests.support import COMMUTING, HARD, PRINT_ERROR, ROOT, SOFT_TISSUE, run, write_spec
+from tests.support import COMMUTING, HARD, PRINT_ERROR, ROBOT, ROOT, SOFT_TISSUE, run, write_spec
 
 EXAMPLES = ROOT / "specs" / "examples"
 RANGES = EXAMPLES / "oscillator-range.nrs.yaml"
@@ -515,3 +515,18 @@ def test_dwell_time_in_steps_is_proved_or_refuted(tmp_path):
         assert result.returncode == code, result.stdout
         assert said in result.stdout
         assert run("verify", "reports/steps.cert.json", path.name, cwd=tmp_path).returncode == code
+
+
+@pytest.mark.parametrize(
+    ("spec", "state"),
+    [
+        (ROBOT / "nose.nrs.yaml", "nose: damper deflection"),
+        (ROOT / "docs/examples/mixed-controllers.nrs.yaml", "reference"),
+    ],
+)
+def test_viscoelastic_contact_and_mixed_controllers(tmp_path, spec, state):
+    """From spec to a certificate that holds, and whose states are named."""
+    found = run("certify-switching", spec, "--out", "c.json", cwd=tmp_path)
+    assert found.returncode == 0, found.stderr
+    assert run("verify", "c.json", spec, cwd=tmp_path).returncode == 0
+    assert state in (tmp_path / "c.json").read_text()

@@ -13,7 +13,8 @@ def test_holds(tmp_path):
     done = run("check-lyapunov", EXAMPLE, cwd=tmp_path)
     assert done.returncode == 0, done.stderr
     assert done.stdout.startswith("HOLDS")
-    assert "alpha = 0.105572 1/s" in done.stdout
+    assert "alpha >= 0.105572 1/s" in done.stdout
+    assert "every mode: a, b" in done.stdout
 
 
 def test_rate_that_is_too_fast(tmp_path):
@@ -23,6 +24,19 @@ def test_rate_that_is_too_fast(tmp_path):
     assert document["schema"] == "nrs-design/check-lyapunov/1"
     assert (document["holds"], document["weak"]) == (False, True)
     assert document["counterexample"]["mode"] in ("a", "b")
+    assert document["modes"] == ["a", "b"]
+
+
+def test_decay_that_is_slower_than_asked_is_told(tmp_path):
+    """x' = -x decays, though not at the rate 2: nobody may read that it does not."""
+    file = tmp_path / "a.json"
+    file.write_text('{"A": [[-1]], "P": [[1]], "rate": 2}')
+    done = run("check-lyapunov", file, cwd=tmp_path)
+    assert done.returncode == 1, done.stderr
+    assert "in mode A1 it does not decrease at this rate" in done.stdout
+    assert "x' (A'P + PA + 2 alpha P) x = 2" in done.stdout
+    assert "decreases strictly in every mode, proved at alpha >= 0.999" in done.stdout
+    assert "no decay" not in done.stdout
 
 
 def test_failing_mode_and_vector(tmp_path):
@@ -39,7 +53,7 @@ def test_discrete(tmp_path):
     file.write_text('{"A": [[0.5]], "P": [[1]]}')
     done = run("check-lyapunov", file, "--discrete", cwd=tmp_path)
     assert done.returncode == 0
-    assert "rho = 0.500001 per step" in done.stdout
+    assert "rho <= 0.500001" in done.stdout
 
 
 def test_wrong_input(tmp_path):
@@ -52,3 +66,22 @@ def test_wrong_input(tmp_path):
     for rate in ("-1", "fast", "nan"):
         done = run("check-lyapunov", file, f"--rate={rate}", cwd=tmp_path)
         assert done.returncode == 2, done.stdout
+
+
+def test_large_numbers(tmp_path):
+    file = tmp_path / "a.npz"
+    np.savez(file, A=np.ones((40, 40)) / 3 - 40 * np.eye(40), P=np.eye(40) / 3 + 0.001)
+    done = run("check-lyapunov", file, "--rate", "1", cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    np.savez(file, A=np.ones((30, 30)) / 3 + np.diag(np.arange(30) / 7 - 40), P=-np.eye(30) / 3)
+    done = run("check-lyapunov", file, cwd=tmp_path)
+    assert done.returncode == 1, done.stderr
+    # A vector with integers of more than 4300 digits.
+    n = 24
+    long = [[f"{7 ** (90 - i - j)}.{3 ** (i * j % 9)}" for j in range(n)] for i in range(n)]
+    file = tmp_path / "a.json"
+    file.write_text(json.dumps({"A": [["-1" if i == j else "0" for j in range(n)]
+                                      for i in range(n)], "P": long}))  # fmt: skip
+    for option in ((), ("--json",)):
+        done = run("check-lyapunov", file, *option, cwd=tmp_path)
+        assert done.returncode == 1, done.stderr

@@ -4,7 +4,7 @@ import json
 
 import pytest
 
-from nrs_design.cli.errors import MAX_SHOWN, excerpt
+from nrs_design.cli.errors import MAX_LISTED, MAX_SHOWN, excerpt
 from tests.spec.samples import IMPEDANCE, SWITCHED, spoiled
 from tests.support import COMMUTING, SOFT_TISSUE, run
 from tests.terminal import run_on_terminal
@@ -55,6 +55,13 @@ def test_json_lists_them_all(faulty):
     assert all(fault["message"] and fault["remedy"] for fault in spec["faults"])
     error = json.loads(run("tune", "--json", "a.nrs.yaml", cwd=faulty).stdout)
     assert (error["schema"], error["faults"]) == ("nrs-design/error/1", spec["faults"])
+
+
+def test_json_lists_so_many_faults_and_counts_them_all(tmp_path):
+    text = SWITCHED + "".join(f"key{i}: 1\n" for i in range(MAX_LISTED + 5))
+    (tmp_path / "a.nrs.yaml").write_text(text)
+    (spec,) = json.loads(run("check", "--json", "a.nrs.yaml", cwd=tmp_path).stdout)["specs"]
+    assert (spec["count"], len(spec["faults"])) == (MAX_LISTED + 5, MAX_LISTED)
 
 
 def test_no_more_than_a_screenful(tmp_path):

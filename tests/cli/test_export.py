@@ -110,12 +110,12 @@ def test_valid_certificate_of_other_gains(export, tmp_path, capsys):
     from dataclasses import replace
 
     from nrs_design.search.certify import certify
-    from nrs_design.switched.assemble import assemble
+    from nrs_design.switched.assemble import assemble_from_text
 
     loaded = read_spec(SPEC)
     design = run_certification(loaded)
     gains = {**design.certificate.gains, "insertion": {"Mt": "0.015625", "Bt": "2.125"}}
-    system = assemble(loaded.spec, gains, "deflection")
+    system = assemble_from_text(loaded.spec, gains, "deflection")
     statements = certify(system).statements
     other = replace(design.certificate, gains=gains, system=system, statements=statements)
     Path("mine.json").write_text(dump(other))
@@ -153,7 +153,8 @@ def test_refuted_design_is_not_exported(export, capsys):
 
 
 def test_inconclusive_design_is_not_exported(export, monkeypatch):
-    from nrs_design.search.certify import Certification, CommonQuadraticStatus, Verdict
+    from nrs_design.certificates.certificate import CommonQuadraticStatus, Verdict
+    from nrs_design.search.certification import Certification
 
     def give_up(system, *arguments, **options):
         unknown = CommonQuadraticStatus.UNKNOWN

@@ -1,5 +1,6 @@
 import json
 import os
+import re
 import subprocess
 import sys
 import xml.etree.ElementTree as ET
@@ -9,6 +10,7 @@ import pytest
 
 from nrs_design.cli import main
 from nrs_design.gating.rules import RULES
+from tests.terminal import run_on_terminal
 
 ROOT = Path(__file__).parents[2]
 PRINT_ERROR = ROOT / "docs/examples/thesis-print-error.nrs.yaml"
@@ -88,6 +90,35 @@ def test_as_typed(gate, tmp_path):
     assert [p.name for p in (tmp_path / "reports").iterdir()] == ["stable.cert.json"]
 
 
+def test_quiet_says_only_what_is_not_fulfilled(gate, capsys):
+    assert gate("specs", "--no-reports", "-q") == 0
+    assert capsys.readouterr() == ("", "")
+    assert gate(PRINT_ERROR, "--no-reports", "-q") == 1
+    out, err = capsys.readouterr()
+    assert err == ""
+    assert {line.split(": ")[1] for line in out.splitlines()} == {
+        "NRS101 refuted",
+        "NRS102 refuted",
+    }
+    assert gate("specs", "--locked", "-q", "--json") == 0
+    assert json.loads(capsys.readouterr().out)["passed"]
+
+
+def test_a_narrow_terminal(tmp_path):
+    shown, code = run_on_terminal(50, "gate", PRINT_ERROR, "--no-reports", cwd=tmp_path)
+    assert code == 1
+    assert "\x1b[1;31mrefuted\x1b[0m:" in shown
+    plain = re.sub("\x1b\\[[0-9;?]*[A-Za-z]", "", shown).splitlines()
+    assert any(line.split() == ["verdict", "refuted"] for line in plain)
+    assert max(len(line) for line in plain if "/" not in line) <= 50
+
+
+def test_the_number_of_further_faults_of_a_spec(gate, capsys):
+    Path("specs/broken.nrs.yaml").write_text(BROKEN.replace("switching", "swiching"))
+    assert gate("specs", "--no-reports") == 2
+    assert "; 1 more fault in this file" in capsys.readouterr().out
+
+
 def test_usage(gate):
     assert gate() == 2
     assert gate("specs", "--format", "xml") == 2
@@ -113,8 +144,9 @@ def test_broken_spec_is_worse_than_a_refuted_one(gate, capsys):
 
 
 def test_inconclusive_is_exit_3_and_refuted_is_worse(gate, monkeypatch):
+    from nrs_design.certificates.certificate import CommonQuadraticStatus, Verdict
     from nrs_design.search import certify as module
-    from nrs_design.search.certify import Certification, CommonQuadraticStatus, Verdict
+    from nrs_design.search.certification import Certification
 
     def give_up_on_stable(system, *arguments, **options):
         if system.name != "stable":
@@ -148,6 +180,20 @@ def test_documents_go_to_stdout_and_the_table_to_stderr(gate, capsys, format_):
     assert gate("specs", "--no-reports", "--format", format_, "--out", "ci/gate.out", "-q") == 0
     assert capsys.readouterr() == ("", "")
     assert Path("ci/gate.out").read_text() == out
+
+
+def test_a_document_replaces_documents_only(gate, capsys):
+    """Not the lock that the same run writes, and of other files nothing either."""
+    assert gate("specs", "--no-reports") == 0
+    before = Path("nrs.lock").read_bytes()
+    Path("record.csv").write_text("time,force")
+    for foreign in ("nrs.lock", "record.csv"):
+        assert gate("specs", "--no-reports", "--format", "json", "--out", foreign) == 2
+        assert "not overwritten" in capsys.readouterr().err
+    assert Path("nrs.lock").read_bytes() == before
+    assert Path("record.csv").read_text() == "time,force"
+    for format_ in ("text", "json", "sarif", "junit", "github", "text"):
+        assert gate("specs", "--no-reports", "--format", format_, "--out", "gate.out", "-q") == 0
 
 
 def test_documents_are_the_same_on_repeat(gate, capsys):

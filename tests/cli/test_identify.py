@@ -125,10 +125,23 @@ def test_bad_input_is_one_message(tmp_path, arguments, message):
 def test_a_failed_merge_leaves_the_spec(tmp_path):
     spec = tmp_path / "copy.nrs.yaml"
     shutil.copy(SOFT_TISSUE, spec)
-    result = run("identify", "tissue", NOSE[0], "--write", spec, cwd=tmp_path)
+    arguments = ("identify", "tissue", NOSE[0], "--model", "hunt-crossley", "--write", spec)
+    result = run(*arguments, cwd=tmp_path)
     assert result.returncode == 2
     assert "--model elastic" in result.stderr
     assert spec.read_text() == SOFT_TISSUE.read_text()
+
+
+def test_what_is_chosen_for_the_nose_can_be_proved(tmp_path):
+    spec = tmp_path / "nose.nrs.yaml"
+    shutil.copy(ROOT / "specs/neuroboscope/nose.nrs.yaml", spec)
+    result = run("identify", "tissue", *NOSE, "--write", spec, cwd=tmp_path)
+    assert result.returncode == 0, result.stderr
+    assert "model: kelvin-boltzmann" in spec.read_text()
+    assert "nose-4.csv" in spec.read_text()
+    proved = run("certify-switching", spec, cwd=tmp_path)
+    assert proved.returncode == 0
+    assert proved.stdout.startswith("nose: PROVED")
 
 
 def test_writing_a_law_that_fits_worse_warns(tmp_path):

@@ -52,6 +52,16 @@ def test_the_page_of_another_spec_is_not_overwritten(tmp_path, monkeypatch, form
     assert Path("reports/commuting.html").read_bytes() == page
 
 
+def test_the_page_of_another_spec_is_not_overwritten_by_name(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    for name in ("a.nrs.yaml", "b.nrs.yaml"):
+        Path(name).write_text(Path(COMMUTING).read_text())
+    assert run("a.nrs.yaml", "--out", "page.html").exit_code == 0
+    assert run("a.nrs.yaml", "--out", "page.html").exit_code == 0
+    refused = run("b.nrs.yaml", "--out", "page.html")
+    assert "belongs to a.nrs.yaml" in str(refused.exception)
+
+
 @pytest.mark.parametrize("format_", ["html", "pdf"])
 def test_a_file_that_is_no_report_is_not_overwritten(tmp_path, monkeypatch, format_):
     monkeypatch.chdir(tmp_path)

@@ -126,6 +126,13 @@ def test_balance(tmp_path):
     assert max(found["with_balance"]["rms"]) < min(found["without_balance"]["rms"]) / 4
 
 
+def test_correction_table_replaces_tables_only(tmp_path):
+    record = tmp_path / "record.csv"
+    record.write_text("time,force")
+    assert run("robot", "correction", ROBOT, "--table", "record.csv", cwd=tmp_path).returncode == 2
+    assert record.read_text() == "time,force"
+
+
 def test_correction_table_for_the_controller(tmp_path):
     found = document("correction", "--table", "K.csv", cwd=tmp_path)
     assert found["trajectories"][0]["mean_ratio"] == pytest.approx([1.823, 1.819, 2.282], abs=6e-4)

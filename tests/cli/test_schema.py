@@ -15,6 +15,15 @@ def run(*arguments: str | Path, cwd: Path) -> subprocess.CompletedProcess[str]:
     return subprocess.run(command, capture_output=True, text=True, cwd=cwd, check=False)
 
 
+def test_no_spec_is_overwritten(tmp_path: Path) -> None:
+    spec = tmp_path / "a.nrs.yaml"
+    spec.write_text("kind: switched-system")
+    assert run("schema", "--out", spec.name, cwd=tmp_path).returncode == 2
+    assert spec.read_text() == "kind: switched-system"
+    for _ in range(2):
+        assert run("schema", "--out", "nrs.schema.json", cwd=tmp_path).returncode == 0
+
+
 def test_schema_is_draft_07(tmp_path: Path) -> None:
     assert run("schema", "--out", "nrs.schema.json", cwd=tmp_path).returncode == 0
     schema = json.loads((tmp_path / "nrs.schema.json").read_text())

@@ -9,7 +9,7 @@ from tests.support import FORCE_LIMIT, SOFT_TISSUE
 
 
 def test_order_and_contacts_of_the_spec():
-    design = run_design(read_spec(SOFT_TISSUE))
+    design = run_design(read_spec(SOFT_TISSUE)).design
     assert [(c.name, c.environment, c.contacts) for c in design.controllers] == [
         ("insertion", "soft", ("soft",)),
         ("withdrawal", "soft", ("soft",)),
@@ -18,12 +18,12 @@ def test_order_and_contacts_of_the_spec():
 
 
 def test_position_control_touches_nothing():
-    position, force = run_design(read_spec(FORCE_LIMIT)).controllers
+    position, force = run_design(read_spec(FORCE_LIMIT)).design.controllers
     assert (position.law, position.environment, position.contacts) == (PositionControl(), None, ())
     assert isinstance(force.law, ProportionalForce)
 
 
 def test_frozen():
-    design = run_design(read_spec(FORCE_LIMIT))
+    design = run_design(read_spec(FORCE_LIMIT)).design
     with pytest.raises(FrozenInstanceError):
         design.controllers = ()

@@ -9,11 +9,11 @@ from hypothesis import strategies as st
 from nrs_design.controllers.float32 import to_float32
 from nrs_design.controllers.gain_range import faults_of_ranges, gain_interval
 from nrs_design.errors import CertificateError, DesignError
-from nrs_design.models.environment import Interval
+from nrs_design.models.interval import Interval
 from nrs_design.pipeline import run_design
 from nrs_design.spec import LoadedSpec, Quantity, parse_spec
 from nrs_design.spec.gain_fields import GainSpec
-from nrs_design.switched.assemble import assemble
+from nrs_design.switched.assemble import assemble_from_text
 
 TEXT = """\
 kind: interaction-design
@@ -57,7 +57,7 @@ def test_whatever_is_set_on_the_robot_is_inside(values):
 def test_a_gain_at_the_end_of_its_range_is_inside_after_rounding():
     # 0.01 in single precision is below 0.01.
     spec = loaded("{nominal: 0.01 kg*m^2, range: [0.01 kg*m^2, 0.02 kg*m^2]}", "2.15 N*m*s/rad")
-    law = run_design(spec).controllers[0].law
+    law = run_design(spec).design.controllers[0].law
     assert law.Mt < Fraction("0.01")
     given_gain = spec.spec.controllers["insertion"].Mt
     assert gain_interval(given_gain, law.Mt).low == law.Mt
@@ -78,8 +78,8 @@ def test_gains_of_a_certificate_outside_their_range_are_refused():
     spec = loaded("0.5 kg*m^2", damping).spec
     # Kd and Kp may be anything positive here: the spec fixes neither.
     gains = {"motion": {"Kp": "8", "Kd": "1"}, "insertion": {"Mt": "0.5", "Bt": "2.5"}}
-    assert len(assemble(spec, gains, "deflection").modes) == 2
+    assert len(assemble_from_text(spec, gains, "deflection").modes) == 2
     for value in ("1.5", "3.5"):
         outside = gains | {"insertion": {"Mt": "0.5", "Bt": value}}
         with pytest.raises(CertificateError, match=f"the designed Bt, {value}, is outside"):
-            assemble(spec, outside, "deflection")
+            assemble_from_text(spec, outside, "deflection")

@@ -1,9 +1,11 @@
-from dataclasses import FrozenInstanceError
+from dataclasses import FrozenInstanceError, fields
 from fractions import Fraction
+from typing import get_args
 
 import pytest
 
-from nrs_design.controllers.laws import Admittance, ProportionalDerivative
+from nrs_design.controllers.laws import Admittance, Law, ProportionalDerivative
+from nrs_design.spec.units import parse_unit
 
 
 def test_zero_of_the_thesis():
@@ -16,3 +18,13 @@ def test_laws_are_values():
     assert Admittance(Fraction(1), Fraction(2)) == Admittance(Fraction(1), Fraction(2))
     with pytest.raises(FrozenInstanceError):
         Admittance(Fraction(1), Fraction(2)).Bt = Fraction(3)
+
+
+def test_every_law_has_a_name_of_its_own_and_a_unit_for_every_gain():
+    laws = (ProportionalDerivative, *get_args(Law))
+    assert sorted(law.name for law in laws) == ["force", "impedance", "motion", "position"]
+    for law in laws:
+        assert list(law.units) == [field.name for field in fields(law)]
+    # A torque over an angular velocity.
+    assert parse_unit(Admittance.units["Bt"]).dimension == parse_unit("N*m/(rad/s)").dimension
+    assert Admittance(Fraction(1), Fraction(2)).gains == {"Mt": 1, "Bt": 2}

@@ -28,7 +28,9 @@ from nrs_design.design.measures import (
 )
 from nrs_design.design.transfer import TransferFunction, frequency_response
 from nrs_design.errors import DesignError
-from nrs_design.models.environment import Environment, Interval
+from nrs_design.models.contact import Elastic, KelvinVoigt
+from nrs_design.models.contact.environment import Environment
+from nrs_design.models.interval import Interval
 
 EXACT = TransferFunction((0.9974, 56.822), (0.0351, 1.9974, 56.822))
 # Thesis 6.2 and 6.3.1: half the impedance of 0.3 N m over 8 deg/s; 2 Hz; k_soft and its range.
@@ -49,7 +51,7 @@ GOALS = {
 
 def problem(least=0.01, desired=HALF, **bounds):
     return ImpedanceProblem(
-        loop=ImpedanceLoop(EXACT, float(SOFT.nominal), 0.0),
+        loop=ImpedanceLoop(EXACT, Elastic(float(SOFT.nominal))),
         desired=desired,
         bandwidth=BANDWIDTH,
         mass_bounds=bounds.get("mass", (least, 1.0)),
@@ -58,7 +60,7 @@ def problem(least=0.01, desired=HALF, **bounds):
 
 
 def requirement(goals, desired=HALF, **gains):
-    environment = Environment("soft", SOFT, Interval.point(Fraction(0)))
+    environment = Environment("soft", KelvinVoigt, (SOFT, Interval.point(Fraction(0))))
     corners = corners_of((environment,), "soft", gains)
     return Requirement(EXACT, corners, goals, desired, BANDWIDTH)
 
@@ -69,7 +71,7 @@ def on_grid(goals, Mt, Bt, slack):
     s, G = 1j * omega, frequency_response(EXACT, omega)
     allowed = np.ones(len(Mt), dtype=bool)
     for k in STIFFNESSES:
-        loop = ImpedanceLoop(EXACT, k, 0.0)
+        loop = ImpedanceLoop(EXACT, Elastic(k))
         allowed &= is_stable(loop, Mt, Bt)
         L = G * (k / s) / (Mt[:, None] * s + Bt[:, None])
         S = 1 / (1 + L)
@@ -128,7 +130,7 @@ def test_no_point_of_a_dense_scan_is_better(name):
 def test_the_optimum_meets_its_goals_in_every_corner_by_python_control(name):
     optimum = optimum_of(name)
     for k in STIFFNESSES:
-        loop = ImpedanceLoop(EXACT, k, 0.0)
+        loop = ImpedanceLoop(EXACT, Elastic(k))
         margins = loop_margins(loop, optimum.Mt, optimum.Bt)
         reached = {
             SENSITIVITY_PEAK: margins.sensitivity_peak,
@@ -163,7 +165,7 @@ def test_corners_of_gain_ranges_are_respected():
     assert designed.violation(Mt, Bt)[0] < 0
     low, where = retuned.values(SENSITIVITY_PEAK, Mt, Bt)
     assert low[0] == pytest.approx(
-        loop_margins(ImpedanceLoop(EXACT, STIFFNESSES[2], 0.0), 0.01, 1.3).sensitivity_peak
+        loop_margins(ImpedanceLoop(EXACT, Elastic(STIFFNESSES[2])), 0.01, 1.3).sensitivity_peak
     )
     assert where == ["soft, k = 44.2466 N*m/rad, Bt = 1.3 N*m*s/rad"]
 

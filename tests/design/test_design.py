@@ -7,6 +7,7 @@ import pytest
 from nrs_design.controllers.float32 import is_float32, to_float32
 from nrs_design.design.design import design_controllers, root_locus_design, to_transfer_function
 from nrs_design.design.requirements import desired_impedance
+from nrs_design.errors import DesignError
 from nrs_design.models.motion_loop import MotionLoop
 from nrs_design.models.plant import build_plant
 from nrs_design.spec import load_spec, parse_spec
@@ -44,6 +45,14 @@ def test_motion_gains_follow_the_root_locus_if_none_are_given():
     assert float(motion.Kd) == pytest.approx(wanted.derivative_gain, rel=5e-3)
     assert motion.Kd == 2070
     assert float(motion.zero) == pytest.approx(57.0, rel=1e-6)
+
+
+def test_motion_gains_that_vanish_in_single_precision():
+    text = FORCE_LIMIT.read_text().replace("derivative_gain: 2060", "derivative_gain: 1e-29")
+    text = text.replace("zero: 56.9706", "zero: 1e-29")
+    with pytest.raises(DesignError, match="zero in single precision") as caught:
+        design(text)
+    assert caught.value.at == ("motion_loop",)
 
 
 @pytest.mark.parametrize("digits", [1, 4, 7])

@@ -9,7 +9,7 @@ from tests.support import FORCE_LIMIT, SOFT_TISSUE
 
 def warnings(path):
     loaded = read_spec(path)
-    return [str(doubt) for doubt in run_evidence(loaded, run_design(loaded)).warnings]
+    return [str(doubt) for doubt in run_evidence(run_design(loaded)).warnings]
 
 
 def changed(tmp_path, *replacements, source=SOFT_TISSUE):

@@ -14,7 +14,7 @@ GIVEN = """motion_loop:
 
 def evidence(path):
     loaded = read_spec(path)
-    return run_evidence(loaded, run_design(loaded))
+    return run_evidence(run_design(loaded))
 
 
 def test_motion_loop_of_the_thesis():
@@ -31,7 +31,7 @@ def test_shipped_gains_are_nearly_optimal():
     for item in evidence(SOFT_TISSUE).impedance:
         assert item.optimum.cost <= item.cost < item.optimum.cost * 1.01
         assert item.Bt == pytest.approx(item.optimum.Bt, rel=5e-3)
-        assert item.margins.stiffness_limit > item.problem.loop.stiffness
+        assert item.margins.stiffness_limit > item.problem.loop.contact.stiffness
 
 
 def test_force_loop():

@@ -24,7 +24,9 @@ from nrs_design.design.measures import (
     SENSITIVITY_PEAK,
 )
 from nrs_design.design.transfer import TransferFunction
-from nrs_design.models.environment import Environment, Interval
+from nrs_design.models.contact import Elastic, KelvinVoigt
+from nrs_design.models.contact.environment import Environment
+from nrs_design.models.interval import Interval
 
 EXACT = TransferFunction((0.9974, 56.822), (0.0351, 1.9974, 56.822))
 
@@ -34,8 +36,8 @@ def interval(nominal, low, high):
 
 
 ZERO = Interval.point(Fraction(0))
-SOFT = Environment("soft", interval("43", "41.5", "44.25"), ZERO)
-HAND = Environment("hand", interval("55", "50", "60"), interval("0.2", "0.1", "0.3"))
+SOFT = Environment("soft", KelvinVoigt, (interval("43", "41.5", "44.25"), ZERO))
+HAND = Environment("hand", KelvinVoigt, (interval("55", "50", "60"), interval("0.2", "0.1", "0.3")))
 
 
 def impedance(environments, goals=(), desired=2.15, gains=None):
@@ -53,7 +55,7 @@ def test_margins_are_taken_at_every_corner_of_every_contact():
     points = [(float(k), 0.0) for k in ("43", "41.5", "44.25")]
     points += [(k, b) for k, b in product((50.0, 60.0), (0.1, 0.3))]
     peaks = {
-        point: loop_margins(ImpedanceLoop(EXACT, *point), 0.01, 2.15).sensitivity_peak
+        point: loop_margins(ImpedanceLoop(EXACT, KelvinVoigt(*point)), 0.01, 2.15).sensitivity_peak
         for point in points
     }
     at = max(peaks, key=peaks.__getitem__)
@@ -66,7 +68,7 @@ def test_the_impedance_error_is_taken_in_the_environment_of_the_design_only():
     omega = np.linspace(0, 4 * math.pi, 20_001)
     errors = []
     for k in (43.0, 41.5, 44.25):
-        Z = np.abs(displayed_impedance(ImpedanceLoop(EXACT, k, 0.0), 0.01, 2.15, omega))
+        Z = np.abs(displayed_impedance(ImpedanceLoop(EXACT, Elastic(k)), 0.01, 2.15, omega))
         errors.append(max(Z.max() / 2.15, 2.15 / Z.min()))
     assert found.value == pytest.approx(max(errors), rel=1e-6)
     assert found.where.startswith("soft, ")
@@ -92,7 +94,7 @@ def test_an_impedance_ten_times_off_is_called_so(desired, factor):
 
 def test_an_unstable_corner_is_the_worst():
     """Mt = 0.01, Bt = 1.04: stable up to 75.9 N m/rad."""
-    stiff = Environment("stiff", interval("60", "50", "90"), ZERO)
+    stiff = Environment("stiff", KelvinVoigt, (interval("60", "50", "90"), ZERO))
     found = worst(impedance((SOFT, stiff), ((SENSITIVITY_PEAK, 100.0),)), Bt=1.04)
     assert found[SENSITIVITY_PEAK].value == math.inf
     assert found[SENSITIVITY_PEAK].where == "stiff, k = 90 N*m/rad"

@@ -21,6 +21,7 @@ from nrs_design.design.impedance import (
 )
 from nrs_design.design.transfer import TransferFunction, frequency_response
 from nrs_design.errors import DesignError
+from nrs_design.models.contact import Elastic, KelvinBoltzmann, KelvinVoigt, Maxwell
 
 # Thesis 6.1 as printed, and with the exact coefficients of Kd = 2060, z = 56.9706.
 PRINTED = TransferFunction((0.99, 56.82), (0.0351, 1.99, 56.82))
@@ -41,7 +42,7 @@ PUBLISHED = {
 
 def make_problem(stiffness=SOFT, desired=DESIRED, least=0.0, motion=PRINTED, **changes):
     problem = ImpedanceProblem(
-        loop=ImpedanceLoop(motion, stiffness, 0.0),
+        loop=ImpedanceLoop(motion, Elastic(stiffness)),
         desired=desired,
         bandwidth=BANDWIDTH,
         mass_bounds=(least, 1.0),
@@ -120,7 +121,7 @@ def test_cost_broadcasts():
 
 
 def test_displayed_impedance_and_sensitivity_close_the_loop():
-    loop = ImpedanceLoop(EXACT, SOFT, 0.4)
+    loop = ImpedanceLoop(EXACT, KelvinVoigt(SOFT, 0.4))
     omega = np.array([0.1, 3.0, 12.0, 200.0])
     G = frequency_response(EXACT, omega)
     Ze = SOFT / (1j * omega) + 0.4
@@ -144,12 +145,12 @@ def test_displayed_impedance_and_sensitivity_close_the_loop():
 def test_characteristic_polynomial_has_the_known_eigenvalues(Bt, expected):
     # Ap of the thesis: (tau s^2 + ... )/tau = s^2 + 56.89 s + 1618.80, Cp = [1618.80, 28.416].
     motion = TransferFunction((28.416, 1618.80), (1.0, 56.89, 1618.80))
-    roots = np.roots(characteristic_polynomial(ImpedanceLoop(motion, SOFT, 0.0), 0.01, Bt))
+    roots = np.roots(characteristic_polynomial(ImpedanceLoop(motion, Elastic(SOFT)), 0.01, Bt))
     assert np.sort_complex(roots) == pytest.approx(np.array(expected), rel=2e-3)
 
 
 def test_characteristic_polynomial_without_mass_has_one_degree_less():
-    loop = ImpedanceLoop(EXACT, SOFT, 0.0)
+    loop = ImpedanceLoop(EXACT, Elastic(SOFT))
     light = np.roots(characteristic_polynomial(loop, 1e-9, 2.15))
     none = np.roots(characteristic_polynomial(loop, 0.0, 2.15))
     assert len(none) == 3
@@ -164,7 +165,7 @@ def test_characteristic_polynomial_without_mass_has_one_degree_less():
     damping=st.one_of(st.just(0.0), st.floats(0, 3)),
 )
 def test_stability_agrees_with_computed_roots(Mt, Bt, stiffness, damping):
-    loop = ImpedanceLoop(EXACT, stiffness, damping)
+    loop = ImpedanceLoop(EXACT, KelvinVoigt(stiffness, damping))
     rightmost = np.roots(characteristic_polynomial(loop, Mt, Bt)).real.max()
     assume(abs(rightmost) > 1e-6)
     assert bool(is_stable(loop, Mt, Bt)) == (rightmost < 0)
@@ -175,7 +176,7 @@ def test_cost_is_invariant_to_the_unit_of_torque(factor, Mt, Bt):
     problem = make_problem()
     scaled = replace(
         problem,
-        loop=ImpedanceLoop(PRINTED, SOFT * factor, 0.0),
+        loop=ImpedanceLoop(PRINTED, Elastic(SOFT * factor)),
         desired=DESIRED * factor,
     )
     assert float(impedance_cost(scaled, Mt * factor, Bt * factor)) == pytest.approx(
@@ -197,7 +198,7 @@ def test_optimum_is_stable_and_no_scanned_point_beats_it(
     problem = make_problem(
         desired=desired,
         least=least,
-        loop=ImpedanceLoop(EXACT, stiffness, damping),
+        loop=ImpedanceLoop(EXACT, KelvinVoigt(stiffness, damping)),
         weight_displayed=weight,
         weight_sensitivity=1 - weight,
     )
@@ -280,14 +281,53 @@ def test_problem_refuses_bad_input(changes, message):
 @pytest.mark.parametrize(("stiffness", "damping"), [(0.0, 0.0), (-1.0, 0.0), (1.0, -1.0)])
 def test_loop_refuses_bad_input(stiffness, damping):
     with pytest.raises(DesignError, match="must"):
-        ImpedanceLoop(PRINTED, stiffness, damping)
+        ImpedanceLoop(PRINTED, KelvinVoigt(stiffness, damping))
 
 
 @pytest.mark.parametrize(("Mt", "Bt"), [(-0.1, 1.0), (0.1, 0.0), (math.nan, 1.0)])
 def test_admittance_refuses_bad_input(Mt, Bt):
-    loop = ImpedanceLoop(PRINTED, SOFT, 0.0)
+    loop = ImpedanceLoop(PRINTED, Elastic(SOFT))
     for call in (characteristic_polynomial, open_loop):
         with pytest.raises(DesignError, match="Mt >= 0 and Bt > 0"):
             call(loop, Mt, Bt)
     with pytest.raises(DesignError, match="Mt >= 0 and Bt > 0"):
         impedance_cost(make_problem(), Mt, Bt)
+
+
+@pytest.mark.parametrize(
+    ("contact", "Ze"),
+    [
+        # Thesis 2.5 and table 2.4.
+        (Maxwell(1.129, 120.233), lambda s: 120.233 / (1 + 120.233 / 1.129 * s)),
+        (
+            KelvinBoltzmann(0.233, 0.972, 23.631),
+            lambda s: (0.18795 / s + 19.06169) / (1 + 19.61079 * s),
+        ),
+    ],
+)
+def test_loop_in_viscoelastic_contact(contact, Ze):
+    omega = np.array([0.01, 0.3, 12.0, 200.0])
+    loop = ImpedanceLoop(EXACT, contact)
+    G, Y = frequency_response(EXACT, omega), 1 / (0.01 * 1j * omega + 2.15)
+    L = G * Ze(1j * omega) * Y
+    assert sensitivity(loop, 0.01, 2.15, omega) == pytest.approx(1 / (1 + L), rel=1e-4)
+    displayed = displayed_impedance(loop, 0.01, 2.15, omega)
+    assert displayed == pytest.approx(L / Y / (1 + L), rel=1e-4)
+
+
+def test_cost_in_viscoelastic_contact_is_the_mean_of_its_parts():
+    contact = KelvinBoltzmann(0.233, 0.972, 23.631)
+    problem = replace(make_problem(), loop=ImpedanceLoop(EXACT, contact), desired=0.1)
+    omega = np.linspace(0, BANDWIDTH, 200_001)[1:]
+    shown = np.abs(displayed_impedance(problem.loop, 0.001, 0.09, omega))
+    robust = np.abs(sensitivity(problem.loop, 0.001, 0.09, omega))
+    expected = 0.5 * np.abs(np.log10(0.1 / shown)).mean() + 0.5 * robust.mean()
+    assert float(impedance_cost(problem, 0.001, 0.09)) == pytest.approx(expected, abs=2e-4)
+
+
+@pytest.mark.parametrize(
+    "contact", [Maxwell(1.0, 0.0), Maxwell(0.0, 1.0), KelvinBoltzmann(1.0, 1.0, 0.0)]
+)
+def test_viscoelastic_parameters_are_positive(contact):
+    with pytest.raises(DesignError, match="must be positive"):
+        ImpedanceLoop(EXACT, contact)

@@ -11,6 +11,7 @@ from nrs_design.design.impedance import ImpedanceLoop, displayed_impedance, open
 from nrs_design.design.loops import Loops, extremes, multiply
 from nrs_design.design.margins import loop_margins
 from nrs_design.design.transfer import TransferFunction
+from nrs_design.models.contact import Elastic, KelvinVoigt
 
 EXACT = TransferFunction((0.9974, 56.822), (0.0351, 1.9974, 56.822))
 OMEGA = np.geomspace(1e-3, 1e5, 20_001)
@@ -38,7 +39,7 @@ def rows(loop, admittances):
     Bt=st.floats(0.1, 20),
 )
 def test_each_margin_is_that_of_python_control(stiffness, damping, Mt, Bt):
-    loop = ImpedanceLoop(EXACT, stiffness, damping)
+    loop = ImpedanceLoop(EXACT, KelvinVoigt(stiffness, damping))
     # The others of the batch have another degree, and must not matter.
     found = rows(loop, [(0.0, 2.0), (Mt, Bt), (0.01, 1.0)])
     if not found.stable[1]:
@@ -56,7 +57,9 @@ def test_each_margin_is_that_of_python_control(stiffness, damping, Mt, Bt):
 
 def test_an_unstable_loop_has_the_worst_margins():
     """Mt = 0.01, Bt = 1.04: stable up to 75.9 N m/rad."""
-    unstable, stable = (rows(ImpedanceLoop(EXACT, k, 0.0), [(0.01, 1.04)]) for k in (90.0, 43.0356))
+    unstable, stable = (
+        rows(ImpedanceLoop(EXACT, Elastic(k)), [(0.01, 1.04)]) for k in (90.0, 43.0356)
+    )
     assert unstable.sensitivity_peak() == [math.inf]
     for margin in (Loops.gain_margin, Loops.phase_margin, Loops.delay_margin, Loops.disk_margin):
         assert margin(unstable) == [0.0]
@@ -73,7 +76,7 @@ def test_a_margin_that_nothing_limits_is_infinite():
 
 @pytest.mark.parametrize("Mt", [0.0, 0.01, 0.2])
 def test_extremes_of_the_displayed_impedance_are_those_of_a_grid(Mt):
-    loop = ImpedanceLoop(EXACT, 43.0356, 0.1)
+    loop = ImpedanceLoop(EXACT, KelvinVoigt(43.0356, 0.1))
     Bt, bandwidth = 2.15, 40.0
     batch = rows(loop, [(Mt, Bt)])
     displayed = multiply(batch.numerator, np.array([[Mt, Bt]]))
@@ -87,7 +90,7 @@ def test_extremes_of_the_displayed_impedance_are_those_of_a_grid(Mt):
 
 def test_peaks_are_not_below_those_of_a_grid():
     admittances = [(Mt, Bt) for Mt in (0.0, 0.01, 0.1) for Bt in (1.5, 2.15, 10.0)]
-    loops = rows(ImpedanceLoop(EXACT, 43.0356, 0.0), admittances)
+    loops = rows(ImpedanceLoop(EXACT, Elastic(43.0356)), admittances)
     s = 1j * OMEGA
     for i in np.flatnonzero(loops.stable):
         L = np.polyval(loops.numerator[i], s) / np.polyval(loops.denominator[i], s)

@@ -18,9 +18,10 @@ from nrs_design.design.impedance import (
 from nrs_design.design.margins import loop_margins, stiffness_limit
 from nrs_design.design.transfer import TransferFunction, frequency_response, to_control
 from nrs_design.errors import DesignError
+from nrs_design.models.contact import Elastic, KelvinBoltzmann, KelvinVoigt, Maxwell
 
 EXACT = TransferFunction((0.9974, 56.822), (0.0351, 1.9974, 56.822))
-SOFT = ImpedanceLoop(EXACT, 43.0356, 0.0)
+SOFT = ImpedanceLoop(EXACT, Elastic(43.0356))
 
 masses = st.one_of(st.just(0.0), st.floats(1e-3, 0.05))
 dampings = st.one_of(st.just(0.0), st.floats(0.01, 0.5))
@@ -30,7 +31,9 @@ def bisect_limit(motion, damping, Mt, Bt, high=1e7):
     """Largest stiffness with all roots in the left half plane, by bisection on the roots."""
 
     def stable(k):
-        roots = np.roots(characteristic_polynomial(ImpedanceLoop(motion, k, damping), Mt, Bt))
+        roots = np.roots(
+            characteristic_polynomial(ImpedanceLoop(motion, KelvinVoigt(k, damping)), Mt, Bt)
+        )
         return roots.real.max() < 0
 
     low = 1e-3
@@ -62,21 +65,21 @@ def test_without_mass_the_limit_is_of_the_order_of_1e4_or_above():
 @settings(max_examples=40, deadline=None)
 @given(Mt=masses, Bt=st.floats(0.3, 10), damping=dampings)
 def test_stiffness_limit_agrees_with_bisection(Mt, Bt, damping):
-    found = stiffness_limit(ImpedanceLoop(EXACT, 1.0, damping), Mt, Bt)
+    found = stiffness_limit(ImpedanceLoop(EXACT, KelvinVoigt(1.0, damping)), Mt, Bt)
     assume(0.01 < found < 1e6)
     assert found == pytest.approx(bisect_limit(EXACT, damping, Mt, Bt), rel=1e-5)
 
 
 def test_loop_that_no_stiffness_destabilizes():
     first_order = TransferFunction((1.0,), (0.05, 1.0))
-    assert stiffness_limit(ImpedanceLoop(first_order, 1.0, 0.0), 0.0, 1.0) == math.inf
+    assert stiffness_limit(ImpedanceLoop(first_order, Elastic(1.0)), 0.0, 1.0) == math.inf
 
 
 def test_loop_that_every_stiffness_destabilizes():
     unstable = TransferFunction((1.0,), (1.0, -0.5, 1.0))
-    assert stiffness_limit(ImpedanceLoop(unstable, 1.0, 0.0), 0.0, 1.0) == 0.0
+    assert stiffness_limit(ImpedanceLoop(unstable, Elastic(1.0)), 0.0, 1.0) == 0.0
     reversed_sign = TransferFunction((-1.0,), (0.05, 1.0))
-    assert stiffness_limit(ImpedanceLoop(reversed_sign, 1.0, 0.0), 0.0, 1.0) == 0.0
+    assert stiffness_limit(ImpedanceLoop(reversed_sign, Elastic(1.0)), 0.0, 1.0) == 0.0
 
 
 def test_gain_margin_is_the_stiffness_limit_over_the_stiffness():
@@ -89,7 +92,7 @@ def test_gain_margin_is_the_stiffness_limit_over_the_stiffness():
 @pytest.mark.parametrize("damping", [0.0, 0.3])
 @pytest.mark.parametrize("Mt", [0.0, 0.01])
 def test_margins_agree_with_python_control_and_a_fine_grid(Mt, damping):
-    loop = ImpedanceLoop(EXACT, 43.0356, damping)
+    loop = ImpedanceLoop(EXACT, KelvinVoigt(43.0356, damping))
     margins = loop_margins(loop, Mt, 2.15)
     tf = open_loop(loop, Mt, 2.15)
     gain, phase, distance, *_ = control.stability_margins(to_control(tf))
@@ -121,7 +124,7 @@ def test_delay_margin_brings_a_crossover_onto_the_critical_point():
 def test_delay_margin_takes_the_smallest_over_all_crossovers():
     # A notch at 8 rad/s before a resonance at 10 rad/s: three crossovers, the last one counts.
     resonant = TransferFunction((1.5625, 0.1, 100.0), (1.0, 0.2, 100.0))
-    loop = ImpedanceLoop(resonant, 0.5, 0.0)
+    loop = ImpedanceLoop(resonant, Elastic(0.5))
     margins = loop_margins(loop, 0.0, 1.0)
     _, phases, _, _, at, _ = control.stability_margins(
         to_control(open_loop(loop, 0.0, 1.0)), returnall=True
@@ -136,7 +139,7 @@ def test_delay_margin_takes_the_smallest_over_all_crossovers():
 
 def test_integrator_alone_has_the_margins_of_the_textbook():
     # L = 1/s: no gain limit, 90 degrees, a delay of pi/2 s, |S| below 1 everywhere.
-    loop = ImpedanceLoop(TransferFunction((1.0,), (1.0,)), 1.0, 0.0)
+    loop = ImpedanceLoop(TransferFunction((1.0,), (1.0,)), Elastic(1.0))
     margins = loop_margins(loop, 0.0, 1.0)
     assert margins.gain_margin == math.inf
     assert margins.gain_margin_low == 0.0
@@ -151,7 +154,7 @@ def test_integrator_alone_has_the_margins_of_the_textbook():
 @settings(max_examples=40, deadline=None)
 @given(Mt=masses, Bt=st.floats(0.3, 10), stiffness=st.floats(5, 150), damping=dampings)
 def test_margins_satisfy_the_known_inequalities(Mt, Bt, stiffness, damping):
-    loop = ImpedanceLoop(EXACT, stiffness, damping)
+    loop = ImpedanceLoop(EXACT, KelvinVoigt(stiffness, damping))
     assume(bool(is_stable(loop, Mt, Bt)))
     with warnings.catch_warnings():
         warnings.simplefilter("error")
@@ -167,7 +170,7 @@ def test_margins_satisfy_the_known_inequalities(Mt, Bt, stiffness, damping):
 
 def test_scaling_torque_leaves_the_margins():
     a = loop_margins(SOFT, 0.01, 2.15)
-    b = loop_margins(ImpedanceLoop(EXACT, 430.356, 0.0), 0.1, 21.5)
+    b = loop_margins(ImpedanceLoop(EXACT, Elastic(430.356)), 0.1, 21.5)
     assert a.disk_margin == pytest.approx(b.disk_margin)
     assert a.delay_margin == pytest.approx(b.delay_margin)
     assert 10 * a.stiffness_limit == pytest.approx(b.stiffness_limit)
@@ -175,7 +178,7 @@ def test_scaling_torque_leaves_the_margins():
 
 def test_margins_of_an_unstable_loop_are_refused_with_its_limit():
     with pytest.raises(DesignError, match="unstable at 90 N m/rad") as caught:
-        loop_margins(ImpedanceLoop(EXACT, 90.0, 0.0), 0.01, 1.04)
+        loop_margins(ImpedanceLoop(EXACT, Elastic(90.0)), 0.01, 1.04)
     assert "75.9" in caught.value.remedy
 
 
@@ -184,3 +187,34 @@ def test_bad_admittance_is_refused(Mt, Bt):
     for call in (loop_margins, stiffness_limit):
         with pytest.raises(DesignError, match="Mt >= 0"):
             call(SOFT, Mt, Bt)
+
+
+@pytest.mark.parametrize(
+    "contact", [Maxwell(43.0, 4.0), Maxwell(43.0, 400.0), KelvinBoltzmann(20.0, 43.0, 3.0)]
+)
+@pytest.mark.parametrize("Mt", [0.0, 0.01])
+def test_margins_in_viscoelastic_contact(contact, Mt):
+    loop = ImpedanceLoop(EXACT, contact)
+    margins, tf = loop_margins(loop, Mt, 2.15), open_loop(loop, Mt, 2.15)
+    gain, phase, *_ = control.stability_margins(to_control(tf))
+    assert margins.gain_margin == pytest.approx(gain)
+    if math.isfinite(phase):
+        assert margins.phase_margin == pytest.approx(math.radians(phase))
+    S = 1 / (1 + frequency_response(tf, np.geomspace(1e-3, 1e5, 200_001)))
+    assert margins.sensitivity_peak == pytest.approx(max(1.0, np.abs(S).max()), rel=1e-6)
+    assert margins.disk_margin == pytest.approx(1 / np.abs(S - 0.5).max(), rel=1e-6)
+    # All parameters grow alike: the stiffness is the loop gain.
+    assert margins.stiffness_limit == pytest.approx(43.0 * margins.gain_margin, rel=1e-6)
+
+
+def test_stiffness_limit_in_viscoelastic_contact_by_bisection():
+    def stable(k):
+        contact = KelvinBoltzmann(0.5 * k, k, 0.1 * k)
+        return bool(is_stable(ImpedanceLoop(EXACT, contact), 0.01, 1.04))
+
+    low, high = 1.0, 1e4
+    for _ in range(60):
+        middle = math.sqrt(low * high)
+        low, high = (middle, high) if stable(middle) else (low, middle)
+    loop = ImpedanceLoop(EXACT, KelvinBoltzmann(1.0, 2.0, 0.2))
+    assert stiffness_limit(loop, 0.01, 1.04) == pytest.approx(low, rel=1e-6)

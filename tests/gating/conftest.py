@@ -71,12 +71,8 @@ def project(gated: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Pat
 @pytest.fixture
 def inconclusive(monkeypatch: pytest.MonkeyPatch) -> None:
     """Let every search end without a proof and without a refutation."""
-    from nrs_design.search.certify import (
-        Attempt,
-        Certification,
-        CommonQuadraticStatus,
-        Verdict,
-    )
+    from nrs_design.certificates.certificate import CommonQuadraticStatus, Verdict
+    from nrs_design.search.certification import Attempt, Certification
 
     def give_up(system, *arguments, **options):
         attempts = (Attempt("lmi", "nothing found", 0.25),)

@@ -12,6 +12,7 @@ from nrs_design.gating.locked import run_locked
 from nrs_design.gating.obligations import Status
 from nrs_design.gating.renew import write_lock
 from nrs_design.gating.run import Files, run_gate
+from nrs_design.spec.templates import TEMPLATES
 
 from .conftest import GROWING, HARD, SOFT_TISSUE, STABLE, UNSTABLE
 
@@ -178,6 +179,14 @@ def test_lock_that_says_more_than_its_certificate(check, project, change):
 def test_forged_hash(check, project):
     edit_lock(project, lambda specs: specs[1].update(sha256="0" * 64))
     assert broken(check()) == [("NRS105", "missed")]
+
+
+def test_a_locked_spec_that_is_now_a_robot(check, project):
+    """What makes no claim passes, but not in place of a claim that was locked."""
+    (project / "specs/stable.nrs.yaml").write_text(TEMPLATES["robot"])
+    outcome = check()
+    assert "changed since it was locked" in outcome.specs[-1].obligations[0].message
+    assert outcome.severity == 2
 
 
 def test_dropped_entry(check, project):

@@ -1,6 +1,8 @@
 """Proposals in files of other programs."""
 
 import json
+import struct
+import zlib
 
 import numpy as np
 import pytest
@@ -61,13 +63,20 @@ def test_one_matrix_alone(tmp_path):
     [
         ("a.json", b"{", "cannot be read"),
         ("a.json", b"[]", "expected a JSON object"),
+        ("a.json", b'{"P": [[1]], "A1": [[5]], "A1": [[-1]]}', "occurs twice"),
+        ("a.json", b'{"P": [[1]], "A": {"a": [[5]], "a": [[-1]]}}', "occurs twice"),
+        ("a.json", b'{"P": [[1]], "A": [[-1]], "Time": "discrete"}', "'Time' is not known"),
         ("a.json", b'{"A": [[1]]}', "holds no `P`"),
         ("a.json", b'{"P": [[1]]}', "holds no modes"),
-        ("a.json", b'{"P": [[1]], "A": [], "x": 1}', "holds no modes"),
+        ("a.json", b'{"P": [[1]], "A": []}', "holds no modes"),
         ("a.json", b'{"P": [[1]], "A": [[1]], "A1": [[1]]}', "both `A` and numbered"),
         ("a.json", b'{"P": [[1]], "A": [[1]], "time": "now"}', "`time` is not known"),
         ("a.json", b'{"P": [[NaN]], "A": [[1]]}', "not a finite number"),
         ("a.json", b"\xff", "cannot be read"),
+        ("a.json", b'{"P": [[1]], "A%s": [[1]]}' % (b"1" * 5000), "is not known here"),
+        ("a.json", b'{"P": [[1]], "A": [%s1]}' % (b"1," * 200_000), "more than 200000 entries"),
+        ("a.json", b'{"P": [[1]], "A": [%s[]]}' % (b"[]," * 600_000), "more than 1000000 values"),
+        ("a.json", b" " * (16 * 2**20 + 1), "is larger than"),
         ("a.npz", b"PK", "cannot be read"),
         ("a.mat", b"MATLAB", "cannot be read"),
         ("a.txt", b"", "are not read"),
@@ -84,6 +93,43 @@ def test_pickles_are_never_loaded(tmp_path):
     np.savez(tmp_path / "a.npz", A=np.array([{"evil": 1}], dtype=object), P=P)
     with pytest.raises(DataError, match="cannot be read"):
         read_proposal(tmp_path / "a.npz")
+
+
+def test_an_empty_row_is_a_matrix_of_none(tmp_path):
+    (tmp_path / "a.json").write_text('{"P": [[1]], "A": [[]]}')
+    assert read_proposal(tmp_path / "a.json").modes == {"A1": [[]]}
+
+
+def test_packed_files_are_not_unfolded_beyond_measure(tmp_path):
+    large = np.zeros(34 * 2**20, dtype=np.int8)
+    np.savez_compressed(tmp_path / "a.npz", P=large)
+    scipy.io.savemat(tmp_path / "a.mat", {"P": large}, do_compression=True)
+    many = np.zeros((500, 500), dtype=np.int8)
+    np.savez_compressed(tmp_path / "b.npz", P=many)
+    scipy.io.savemat(tmp_path / "b.mat", {"P": many}, do_compression=True)
+    for name, said in (("a", "unfolds to more"), ("b", "more than 200000 entries")):
+        for suffix in (".npz", ".mat"):
+            with pytest.raises(DataError, match=said):
+                read_proposal(tmp_path / (name + suffix))
+
+
+@pytest.mark.parametrize("order", ["<", ">"])
+@pytest.mark.parametrize("packed", [False, True])
+def test_cells_in_each_other_do_not_exhaust_the_stack(tmp_path, order, packed):
+    (tmp_path / "a.mat").write_bytes(nested_cells(100_000, order, packed))
+    with pytest.raises(DataError, match="matrices in each other"):
+        read_proposal(tmp_path / "a.mat")
+
+
+def nested_cells(depth, order, packed):
+    """Write a MATLAB file with a cell in a cell in a cell ..."""
+    cell = struct.pack(f"{order}II IIII IIii II", 14, 48, 6, 8, 1, 0, 5, 8, 1, 1, 1, 0)
+    content = cell * depth + struct.pack(f"{order}II", 14, 0)
+    if packed:
+        content = zlib.compress(content)
+        content = struct.pack(f"{order}II", 15, len(content)) + content
+    marks = struct.pack(f"{order}HH", 0x100, 0x4D49)
+    return b"MATLAB 5.0 MAT-file".ljust(124) + marks + content
 
 
 def test_missing_file(tmp_path):

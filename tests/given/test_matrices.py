@@ -83,3 +83,10 @@ def test_dt_decides_the_time():
         time_of([sampled], "continuous")
     with pytest.raises(SpecError, match="not known"):
         time_of([sampled], "Discrete")
+
+
+def test_a_common_denominator_is_bounded():
+    rows = [[f"1/{10**90 + 2 * (10 * i + j) + 1}" for j in range(10)] for i in range(10)]
+    with pytest.raises(SpecError, match="2048 binary digits"):
+        read_matrix(rows)
+    assert read_matrix([[5e-324, 1.0]]).denominator == 2**1074

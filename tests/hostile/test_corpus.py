@@ -1,28 +1,39 @@
 """Every command on every hostile input: its exit code, time, memory, words, and what it touches."""
 
-import json
 import os
 from pathlib import Path
 
 import pytest
 
-from tests.hostile.corpus import CERTIFICATES, LARGE_SPECS, LOCKS, NAMES, RECORDS, SPECS, write
+from nrs_design.gating.lock import Lock, dump_lock
+from tests.hostile.corpus import (
+    CERTIFICATES,
+    LARGE_SPECS,
+    LOCKS,
+    NAMES,
+    PROPOSALS,
+    RECORDS,
+    SPECS,
+    write,
+)
 from tests.hostile.running import check
 from tests.support import COMMUTING
 
+# A search takes what it is given, here less than by default.
+SEARCH = ("--budget", "2", "--memory", "0.1")
 SPEC_COMMANDS = (
     ("check", "--json"),
-    ("certify-switching", "--budget", "2"),
-    ("certify-switching", "--budget", "2", "--margin"),
+    ("certify-switching", *SEARCH),
+    ("certify-switching", *SEARCH, "--margin"),
     ("optimize",),
     ("tune",),
-    ("report",),
+    ("report", *SEARCH),
     ("export",),
     ("robot", "check"),
     ("robot", "kinematics"),
-    ("gate",),
-    ("gate", "--format", "github", "--no-reports"),
-    ("gate", "--format", "junit", "--no-reports"),
+    ("gate", *SEARCH),
+    ("gate", *SEARCH, "--format", "github", "--no-reports"),
+    ("gate", *SEARCH, "--format", "junit", "--no-reports"),
     ("gate", "--locked"),
 )
 
@@ -53,7 +64,7 @@ def test_the_decision_about_a_mode_is_bounded(place, case):
 @pytest.mark.parametrize("case", SPECS)
 def test_a_spec_in_every_command(place, case, command):
     write(place / "work/spec.nrs.yaml", SPECS[case]())
-    write(place / "work/nrs.lock", json.dumps({"schema": "nrs-design/lock/2", "specs": []}))
+    write(place / "work/nrs.lock", dump_lock(Lock(specs=[])))
     check(place, *command, "spec.nrs.yaml")
 
 
@@ -94,6 +105,12 @@ def test_a_lock(place, case):
     check(place, "gate", "--locked", "spec.nrs.yaml", codes=(1, 2))
 
 
+@pytest.mark.parametrize("case", PROPOSALS)
+def test_a_proposal(place, case):
+    write(place / "work/p.json", PROPOSALS[case]())
+    check(place, "check-lyapunov", "p.json", codes=(0, 1, 2))
+
+
 @pytest.mark.parametrize("name", NAMES)
 @pytest.mark.parametrize(
     "command",
@@ -119,6 +136,7 @@ def test_a_file_name(place, name, command):
         ("identify", "tissue", "x"),
         ("identify", "actuator", "x"),
         ("verify", "x", str(COMMUTING)),
+        ("check-lyapunov", "x"),
         ("gate", "--locked", "--lock", "x", str(COMMUTING)),
     ],
     ids=" ".join,

@@ -14,6 +14,7 @@ from nrs_design.certificates.certificate import content_id, dump
 from nrs_design.certificates.verify import read_document, verify_document
 from nrs_design.errors import NrsDesignError
 from nrs_design.gating.lock import read_lock
+from nrs_design.given.files import read_proposal
 from nrs_design.identification.datasets.records import read_tissue
 from nrs_design.pipeline import run_certification
 from nrs_design.spec import read_spec
@@ -67,11 +68,19 @@ def certificate_of(spec: Path) -> tuple[bytes, object]:
 
 LOCK = (ROOT / "nrs.lock").read_bytes()
 
+EXAMPLE = ROOT / "docs/examples/lyapunov.json"
+
+
+def read_json_proposal(path: Path) -> object:
+    return read_proposal(path.rename(path.with_suffix(".json")))
+
+
 READERS: dict[str, tuple[Callable[[Path], object], bytes]] = {
     "given matrices": (read_spec, COMMUTING.read_bytes()),
     "interaction design": (read_spec, SOFT_TISSUE.read_bytes()),
     "certificate": (read_document, b'{"a": [1, 2, {"b": "c"}], "d": null}'),
     "lock": (read_lock, LOCK),
+    "proposal": (read_json_proposal, EXAMPLE.read_bytes()),
     "record": (read_tissue, RECORD.encode()),
 }
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from nrs_design.identification.datasets import SinusoidRecord, Source, TissueRecord
 from nrs_design.models.actuator import MotorConstants
-from nrs_design.models.tissue import AbstractTissueLaw, Motion
+from nrs_design.models.contact import AbstractContactLaw, Motion
 from tests.identification import synthetic
 
 # Thesis table 4.1.
@@ -22,7 +22,7 @@ def source(name: str) -> Source:
 
 
 def record(
-    law: AbstractTissueLaw,
+    law: AbstractContactLaw,
     motion: Motion,
     noise: float = 0.0,
     seed: int = 0,

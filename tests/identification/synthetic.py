@@ -23,7 +23,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from nrs_design.models.tissue import AbstractTissueLaw, Elastic, KelvinBoltzmann, Motion
+from nrs_design.models.contact import AbstractContactLaw, Elastic, KelvinBoltzmann, Motion
 from nrs_design.output import write_output
 
 Array = NDArray[np.float64]
@@ -72,13 +72,13 @@ def pressing(duration: float, rate: float, depth: float, period: float, seed: in
 
 
 def tissue_record(
-    law: AbstractTissueLaw, motion: Motion, noise: float, seed: int, resolution: float = 0.0
+    law: AbstractContactLaw, motion: Motion, noise: float, seed: int, resolution: float = 0.0
 ) -> tuple[Motion, Array]:
     """Return what sensors make of a tissue: rounded deflection, and force with noise.
 
     Parameters
     ----------
-    law : AbstractTissueLaw
+    law : AbstractContactLaw
         The true one.
     motion : Motion
         The true deflection.

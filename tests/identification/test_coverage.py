@@ -5,7 +5,7 @@ import pytest
 
 from nrs_design.identification.actuator import identify_actuator
 from nrs_design.identification.tissue import fit_model, fit_record
-from nrs_design.models.tissue import Elastic, HuntCrossley, KelvinVoigt, Maxwell
+from nrs_design.models.contact import Elastic, HuntCrossley, KelvinVoigt, Maxwell
 from tests.identification import synthetic
 from tests.identification.support import MOTOR, quick, record, sinusoids, slow
 

@@ -4,7 +4,7 @@ import pytest
 
 from nrs_design.errors import DataError
 from nrs_design.identification.lever import parse_arm, units_of
-from nrs_design.models.tissue import LAWS, Elastic, HuntCrossley, KelvinVoigt
+from nrs_design.models.contact import LAWS, Elastic, HuntCrossley, KelvinVoigt
 
 
 def test_thesis_arm():

@@ -8,8 +8,9 @@ from nrs_design.errors import DataError, SpecError
 from nrs_design.identification.actuator import identify_actuator
 from nrs_design.identification.tissue import identify_tissue
 from nrs_design.identification.write_spec import merge_actuator, merge_tissue
-from nrs_design.models.tissue import Elastic, KelvinVoigt
+from nrs_design.models.contact import Elastic, KelvinVoigt, Maxwell
 from nrs_design.spec import parse_spec, read_spec
+from nrs_design.spec.environment import KelvinBoltzmannSpec, MaxwellSpec
 from tests.identification import synthetic
 from tests.identification.support import MOTOR, quick, record, sinusoids, slow
 from tests.support import COMMUTING, FORCE_LIMIT, ROBOT, SOFT_TISSUE
@@ -132,11 +133,37 @@ def test_actuator(motor):
     assert len(spec.actuator.provenance) == 5
 
 
+def test_what_is_chosen_for_the_nose(tmp_path, silicone):
+    """Thesis table 2.4: k1 = 0.233, k2 = 0.972, b = 23.631, here in a linear motion."""
+    data = [record(synthetic.NOSE, slow(i), 0.01, i) for i in range(2)]
+    text = merge_tissue(read_spec(SOFT_TISSUE), identify_tissue(data), None, None)
+    soft = merged(tmp_path, text).spec.environments["soft"]
+    assert isinstance(soft, KelvinBoltzmannSpec)
+    written = (soft.parallel_stiffness, soft.series_stiffness, soft.damping)
+    for found, true in zip(written, (0.233, 0.972, 23.631), strict=True):
+        assert found.range[0].si <= true <= found.range[1].si
+    assert soft.damping.nominal.unit == "N*s/m"
+    assert soft.at_pivot()["damping"].nominal.exact == soft.damping.nominal.exact * Fraction(
+        "0.0576"
+    )
+    back = merge_tissue(merged(tmp_path, text), silicone, None, None)
+    assert "parallel_stiffness" not in back
+
+
+def test_maxwell_has_a_place_in_a_spec(tmp_path):
+    data = [record(Maxwell(1.0, 8.0), slow(i), 0.01, i, rotational=True) for i in range(2)]
+    text = merge_tissue(read_spec(SOFT_TISSUE), identify_tissue(data, "maxwell"), None, None)
+    soft = merged(tmp_path, text).spec.environments["soft"]
+    assert isinstance(soft, MaxwellSpec)
+    assert soft.stiffness.nominal.si == pytest.approx(1.0, rel=0.05)
+
+
 def test_laws_without_a_place_in_a_spec():
     data = [record(synthetic.NOSE, slow(i), 0.01, i) for i in range(2)]
-    with pytest.raises(DataError, match="kelvin-boltzmann, has no place") as caught:
-        merge_tissue(read_spec(SOFT_TISSUE), identify_tissue(data), None, None)
-    assert "--model elastic" in caught.value.remedy
+    found = identify_tissue(data, "hunt-crossley")
+    with pytest.raises(DataError, match="hunt-crossley, has no place") as caught:
+        merge_tissue(read_spec(SOFT_TISSUE), found, None, None)
+    assert "--model kelvin-boltzmann" in caught.value.remedy
 
 
 def test_unlimited_ranges_are_not_written():

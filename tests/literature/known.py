@@ -7,13 +7,13 @@ from pathlib import Path
 from ruamel.yaml import YAML
 
 from nrs_design.controllers.laws import Admittance
-from nrs_design.models.environment import Contact
+from nrs_design.models.contact import KelvinVoigt
 from nrs_design.models.motion_loop import MotionLoop
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.system import Mode, SwitchedSystem, Time
 from nrs_design.search.certify import Certification, Verdict, certify
 from nrs_design.spec import parse_exact, parse_spec
-from nrs_design.switched.assemble import GIVEN_MATRICES, assemble
+from nrs_design.switched.assemble import GIVEN_MATRICES, assemble_from_text
 from nrs_design.switched.close_loop import impedance_mode, realize, to_force_coordinates
 from tests.support import holds
 
@@ -68,14 +68,16 @@ def given(name, matrices, time="continuous") -> SwitchedSystem:
     modes = [{"name": f"m{i}", "A": A} for i, A in enumerate(matrices)]
     # JSON is YAML; entries stay texts.
     document = {"kind": "switched-system", "name": name, "time": time, "modes": modes}
-    return assemble(parse_spec(json.dumps({**document, "switching": "arbitrary"})), {}, None)
+    return assemble_from_text(
+        parse_spec(json.dumps({**document, "switching": "arbitrary"})), {}, None
+    )
 
 
 def robot(name, Mt, contacts, coordinates="deflection") -> SwitchedSystem:
     motion, zero = realize(MOTION), parse_exact("0")
     modes = []
     for k, Bt in contacts:
-        contact = Contact("contact", parse_exact(k), zero)
+        contact = KelvinVoigt(parse_exact(k), zero)
         rows = impedance_mode(motion, Admittance(parse_exact(Mt), parse_exact(Bt)), contact)
         if coordinates == "force":
             rows = to_force_coordinates(rows, motion, contact)

@@ -2,9 +2,12 @@ from fractions import Fraction
 
 import pytest
 
-from nrs_design.models.environment import Interval
+from nrs_design.models.contact import LINEAR_LAWS, Elastic
+from nrs_design.models.interval import Interval
 from nrs_design.models.plant import build_plant
 from nrs_design.spec import load_spec, parse_spec
+from nrs_design.spec.environment import AbstractEnvironmentSpec
+from nrs_design.spec.quantity_fields import RangedQuantity
 from tests.support import SOFT_TISSUE
 
 F = Fraction
@@ -31,7 +34,7 @@ def test_soft_tissue_of_the_thesis():
     assert soft.stiffness.nominal == F("747.1461") * F("0.0576")
     assert float(soft.stiffness.nominal) == pytest.approx(43.0356, rel=1e-5)
     assert soft.stiffness.low == F("720.56") * F("0.0576")
-    assert soft.damping == Interval.point(F(0))
+    assert soft.law is Elastic
 
 
 def test_lever_arm_applies_to_stiffness_and_damping():
@@ -42,12 +45,33 @@ def test_lever_arm_applies_to_stiffness_and_damping():
     hand = plant.environment("hand")
     assert float(hand.stiffness.low) == pytest.approx(24.998, abs=1e-3)
     assert float(hand.stiffness.high) == pytest.approx(90.432, abs=1e-3)
-    assert hand.damping == Interval(5 * F("0.0576"), F(0), 10 * F("0.0576"))
+    assert hand.ranges[1] == Interval(5 * F("0.0576"), F(0), 10 * F("0.0576"))
     rotational = plant.environment("rotational")
     assert rotational.stiffness == Interval.point(F(43))
-    assert rotational.damping == Interval.point(F(1, 2))
+    assert rotational.ranges[1] == Interval.point(F(1, 2))
 
 
 def test_unknown_environment():
     with pytest.raises(StopIteration):
         build_plant(load_spec(SOFT_TISSUE)).environment("other")
+
+
+def test_every_environment_of_a_spec_has_its_law():
+    """The spec stands below the models: what both say must agree."""
+    specs = {
+        field.annotation.__args__[0]: spec
+        for spec in AbstractEnvironmentSpec.__subclasses__()
+        if (field := spec.model_fields["model"])
+    }
+    assert specs.keys() == LINEAR_LAWS.keys()
+    for name, law in LINEAR_LAWS.items():
+        spec = specs[name]
+        keys = [k for k, f in spec.model_fields.items() if f.annotation is RangedQuantity]
+        assert tuple(keys) == law.keys
+        assert (spec.remembers, spec.has_rest) == (law.remembers, law.has_rest)
+
+
+def test_ranges_as_declared_are_not_made_anew():
+    plant = build_plant(load_spec(SOFT_TISSUE))
+    assert plant.scaled(Fraction(1), ("soft",)) is plant
+    assert plant.scaled(Fraction(1, 2), ("soft",)) is not plant

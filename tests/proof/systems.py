@@ -5,7 +5,7 @@ from fractions import Fraction
 from functools import cache
 
 from nrs_design.controllers.laws import Admittance
-from nrs_design.models.environment import Contact
+from nrs_design.models.contact import KelvinVoigt
 from nrs_design.proof.evidence import AbstractEvidence
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.system import ARBITRARY, Mode, Reset, Stay, SwitchedSystem, Switching, Time
@@ -89,7 +89,7 @@ def robot(Mt: str, contacts: Sequence[tuple[str, str]]) -> SwitchedSystem:
             impedance_mode(
                 motion,
                 Admittance(Fraction(Mt), Fraction(Bt)),
-                Contact("contact", Fraction(k), Fraction(0)),
+                KelvinVoigt(Fraction(k), Fraction(0)),
             )
             for k, Bt in contacts
         )

@@ -8,7 +8,7 @@ import pytest
 from nrs_design.proof.constant import name_between, system_at
 from nrs_design.proof.system import ARBITRARY, FixedParameter, Stay, Switching
 from nrs_design.spec import parse_spec
-from nrs_design.switched.assemble import assemble
+from nrs_design.switched.assemble import assemble_from_text
 
 TEXT = """\
 kind: switched-system
@@ -26,7 +26,7 @@ switching: RULES
 
 
 def assembled(rules="arbitrary"):
-    return assemble(parse_spec(TEXT.replace("RULES", rules)), {}, None)
+    return assemble_from_text(parse_spec(TEXT.replace("RULES", rules)), {}, None)
 
 
 @pytest.mark.parametrize("share", [Fraction(0), Fraction(1), Fraction(1, 3)])
@@ -45,7 +45,9 @@ def test_matrices_are_those_of_the_spec_at_that_value(share):
 def test_the_parameter_is_known_by_name():
     parameter = FixedParameter("m", Fraction(1, 2), Fraction(2))
     assert assembled().switching.fixed_parameter == parameter
-    nominal = assemble(parse_spec(TEXT.replace("RULES", "arbitrary")), {}, None, Fraction(0))
+    nominal = assemble_from_text(
+        parse_spec(TEXT.replace("RULES", "arbitrary")), {}, None, Fraction(0)
+    )
     assert nominal.switching == ARBITRARY
 
 

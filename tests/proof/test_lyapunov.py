@@ -6,6 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from nrs_design.proof.exact import TooLargeError
 from nrs_design.proof.lyapunov import check_quadratic, indefinite_vector
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.system import Mode, Time
@@ -47,7 +48,8 @@ def test_a_rate_beyond_the_limit_does_not_hold_and_is_shown():
     found = check_quadratic(PAIR, matrix([[1, 0], [0, 5]]), Time.CONTINUOUS, F(1, 9))
     assert not found.holds
     assert found.weak
-    assert found.rate is None
+    assert found.rate is not None
+    assert F("0.1055") < found.rate < F(1, 9)
     assert found.counterexample is not None
     x = found.counterexample.vector
     assert found.counterexample.mode == "m0"
@@ -59,6 +61,11 @@ def test_a_rate_beyond_the_limit_does_not_hold_and_is_shown():
 def test_undamped_oscillation_is_weak():
     found = check_quadratic(modes([[0, 1], [-1, 0]]), matrix([[1, 0], [0, 1]]), Time.CONTINUOUS)
     assert (found.holds, found.weak) == (False, True)
+
+
+def test_no_modes():
+    with pytest.raises(ValueError, match="no mode"):
+        check_quadratic([], matrix([[1]]), Time.CONTINUOUS)
 
 
 def test_indefinite_p_names_no_mode():
@@ -133,3 +140,21 @@ def test_a_null_vector_that_no_decimals_hit_is_given_exactly():
     assert found.counterexample.mode is None
     assert found.counterexample.value == 0
     assert found.counterexample.vector == (Fraction(1, 3), 1)
+
+
+def test_what_is_too_large_is_not_decided():
+    n = 30
+    long = [[F(-n if i == j else 1, 3**300 + i) for j in range(n)] for i in range(n)]
+    P = matrix([[int(i == j) for j in range(n)] for i in range(n)])
+    with pytest.raises(TooLargeError, match="too large"):
+        check_quadratic([Mode("m", RationalMatrix.from_rows(long))], P, Time.CONTINUOUS)
+
+
+def test_a_large_function_holds_without_a_rate():
+    n = 40
+    A = [[F(-n if i == j else 1, 2**50) for j in range(n)] for i in range(n)]
+    P = matrix([[int(i == j) for j in range(n)] for i in range(n)])
+    mode = Mode("m", RationalMatrix.from_rows(A))
+    found = check_quadratic([mode] * 3, P, Time.CONTINUOUS)
+    assert (found.holds, found.rate) == (True, None)
+    assert check_quadratic([mode] * 3, P, Time.CONTINUOUS, F(1, 2**51)).rate == F(1, 2**51)

@@ -32,6 +32,14 @@ switching: arbitrary
 """
 KINDS = {
     "inconclusive": _DWELL.format("2.72"),
+    # Nearly the same stays as in a signal that grows, and a mode that is unstable by itself.
+    "inconclusive-leaving": """\
+time: continuous
+modes:
+  - {name: a, A: [[1]]}
+  - {name: b, A: [[-1]]}
+switching: {dwell_time: {b: 1 s}, longest_dwell_time: {a: 1 s}}
+""",
     "dwell": _DWELL.format("2.76"),
     "dwell-refuted": _DWELL.format("2.7"),
     "polynomial": _PAIR.format(6),
@@ -139,7 +147,7 @@ def report_of(path: Path) -> Report:
     """Take a spec all the way to its report."""
     loaded = read_spec(path)
     result = run_certification(loaded)
-    return build_report(result, run_evidence(loaded, result.design) if result.design else None)
+    return build_report(result, run_evidence(result.designed) if result.designed else None)
 
 
 @pytest.fixture(scope="session")

@@ -1,22 +1,6 @@
 import pytest
 
-from nrs_design.reporting.text import drawable, visible, wrapped
-
-
-@pytest.mark.parametrize(
-    ("text", "shown"),
-    [
-        ("mode a/b", "mode a/b"),
-        ("a\nb\r\nc", "a b c"),
-        ("a\u202eb", "a\\u202eb"),
-        ("\x1b[31m", "\\x1b[31m"),
-        ("\udcff.csv", "\\udcff.csv"),
-        ("שלום", "שלום"),
-        ("中", "中"),
-    ],
-)
-def test_visible_shows_what_has_no_shape(text, shown):
-    assert visible(text) == shown
+from nrs_design.reporting.text import drawable, wrapped
 
 
 def test_drawable_has_letters_of_the_font_only():

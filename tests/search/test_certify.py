@@ -12,18 +12,14 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from nrs_design.certificates.certificate import CommonQuadraticStatus, Verdict
 from nrs_design.errors import DesignError, InternalError
 from nrs_design.pipeline import run_certification
 from nrs_design.proof.evidence import BlockTriangular, CommonQuadratic, Shows
 from nrs_design.proof.system import Switching, Time
 from nrs_design.search import lmi, rungs
-from nrs_design.search.certify import (
-    CommonQuadraticStatus,
-    Limits,
-    Method,
-    Verdict,
-    certify,
-)
+from nrs_design.search.certification import Limits, Method
+from nrs_design.search.certify import certify
 from nrs_design.search.gradient import GradientResult
 from nrs_design.spec import read_spec
 from tests.support import ROOT, dayawansa_martin, family, holds, is_stable_by_lyapunov

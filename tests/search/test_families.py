@@ -10,15 +10,11 @@ from functools import cache
 import numpy as np
 import pytest
 
+from nrs_design.certificates.certificate import CommonQuadraticStatus, Verdict
 from nrs_design.proof.evidence import NoCommonQuadratic
 from nrs_design.proof.system import Time
-from nrs_design.search.certify import (
-    CommonQuadraticStatus,
-    Limits,
-    Method,
-    Verdict,
-    certify,
-)
+from nrs_design.search.certification import Limits, Method
+from nrs_design.search.certify import certify
 from tests.support import family, holds
 
 FEW, MANY = 60, 400

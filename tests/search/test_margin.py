@@ -7,17 +7,12 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from nrs_design.certificates.certificate import CommonQuadraticStatus, Verdict
 from nrs_design.errors import AssemblyError, DesignError
 from nrs_design.pipeline import run_certification, run_margin, run_shortest_dwell
-from nrs_design.proof.system import Switching
-from nrs_design.search.certify import (
-    Certification,
-    CommonQuadraticStatus,
-    Limits,
-    Method,
-    Verdict,
-    certify,
-)
+from nrs_design.proof.system import Stay, Switching
+from nrs_design.search.certification import Certification, Limits, Method
+from nrs_design.search.certify import certify
 from nrs_design.search.margin import (
     DOUBLINGS,
     DWELL_STEPS,
@@ -223,6 +218,26 @@ class TestDwell:
         known = verdict_at(system, lambda time: Verdict.PROVED)
         dwell = find_shortest_dwell(system, undecided, known)
         assert (dwell.proved, dwell.proof) == (own, known)
+
+    @pytest.mark.parametrize(
+        ("verdict", "proved", "refuted"),
+        [(Verdict.PROVED, 3, None), (Verdict.REFUTED, None, 0), (Verdict.INCONCLUSIVE, None, None)],
+    )
+    def test_what_is_known_of_dwell_times_of_their_own(self, verdict, proved, refuted):
+        """Proved for 3 s in one mode and none in the other: that says nothing of 0 s in both."""
+        a, b = (mode.name for mode in GEROMEL_COLANERI.modes)
+        own = ((a, Stay(Fraction(3))), (b, Stay()))
+        system = replace(GEROMEL_COLANERI, switching=Switching(stays=own))
+        dwell = find_shortest_dwell(system, undecided, verdict_at(system, lambda time: verdict))
+        assert (dwell.proved, dwell.refuted) == (proved, refuted)
+
+    def test_dwell_times_of_their_own_are_no_proof_for_less(self):
+        a, b = (mode.name for mode in GEROMEL_COLANERI.modes)
+        own = ((a, Stay(Fraction(3))), (b, Stay(Fraction(4))))
+        system = replace(GEROMEL_COLANERI, switching=Switching(stays=own))
+        known = quick(system)
+        assert known.verdict is Verdict.PROVED
+        assert 2.75084 < find_shortest_dwell(system, quick, known).proved < 2.7525
 
     def test_the_range_searched_is_told(self):
         asked = []

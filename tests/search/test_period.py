@@ -1,9 +1,12 @@
 """Search for growing periodic signals."""
 
+from fractions import Fraction
+
 import numpy as np
 import pytest
 
-from nrs_design.proof.system import Switching
+from nrs_design.proof.matrix import RationalMatrix
+from nrs_design.proof.system import Reset, Switching
 from nrs_design.search.family import Family, floats_in_silence
 from nrs_design.search.period import find_growing_period
 from tests.proof.systems import (
@@ -64,3 +67,13 @@ def test_matrices_that_lie_give_no_verdict(lie):
     system = dayawansa_martin(5)
     with floats_in_silence():
         assert find_growing_period(system, np.array([[[0.1, lie], [-lie, 0.1]]] * 2)) is None
+
+
+def test_resets_that_grow_a_little_need_quick_switching():
+    """1.001 at every switch, exp(-20 t) in between: only switching within 50 us grows."""
+    gain = RationalMatrix.from_rows([[Fraction(1001, 1000)]])
+    resets = (Reset("m0", "m1", gain), Reset("m1", "m0", gain))
+    system = family([[-20]], [["-0.1"]], switching=Switching(resets=resets))
+    evidence = search(system)
+    assert evidence is not None
+    assert evidence.find_fault(system) is None

@@ -7,7 +7,7 @@ from functools import partial
 import numpy as np
 import pytest
 
-from nrs_design.proof.system import Switching
+from nrs_design.proof.system import Stay, Switching
 from nrs_design.search import rungs
 from nrs_design.search.allowance import Allowance, NotAffordableError
 from nrs_design.search.checker import Checker
@@ -50,6 +50,15 @@ def test_a_suspicious_mode_can_be_innocent():
 def test_every_mode_is_examined():
     assert examine_every_mode(Family.of(GOOD)) == (None, "2 modes tested exactly, all stable")
     assert examine_every_mode(Family.of(family(ROTATION)))[0].mode == "m0"
+
+
+def test_modes_that_must_be_left_are_not_called_stable():
+    """The report takes the words "all stable" at the end for a statement about every mode."""
+    rules = Switching(stays=(("m0", Stay(longest=Fraction(1))),))
+    system = replace(family([[1]], [[-1]]), switching=rules)
+    evidence, outcome = examine_every_mode(Family.of(system))
+    assert evidence is None
+    assert outcome.startswith("1 modes tested exactly, all stable; 1 not tested")
 
 
 @pytest.mark.parametrize("optimize_rate", [True, False])

@@ -7,11 +7,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from nrs_design.proof.evidence import CommonPolynomial, ParameterQuadratic
 from nrs_design.proof.system import Switching
 from nrs_design.simulation.norms import (
     diagonal_exponents,
-    function_at,
     level_curve,
     modes_at,
     polynomial_norm,
@@ -20,10 +18,6 @@ from nrs_design.simulation.norms import (
     scaled_matrices,
 )
 from tests.simulation.systems import system
-
-
-def polynomial(Q, degree=2):
-    return CommonPolynomial(degree, Q, 0, (), Fraction(1))
 
 
 def test_quadratic_norm_of_known_vectors():
@@ -35,14 +29,14 @@ def test_quadratic_norm_of_known_vectors():
 
 def test_polynomial_norm_is_the_root_of_the_form():
     # z = (x^2, xy, y^2), V = x^4 + x^2 y^2 + 3 y^4.
-    norm = polynomial_norm(polynomial(((1, 0, 0), (0, 1, 0), (0, 0, 3))), 2)
+    norm = polynomial_norm(((1, 0, 0), (0, 1, 0), (0, 0, 3)), 2, 2)
     values = norm(np.array([[1.0, 0.0], [0.0, 1.0], [1.0, 2.0]]))
     assert values / values[0] == pytest.approx([1.0, 3**0.25, (1 + 4 + 48) ** 0.25])
 
 
 @given(st.floats(1e-6, 1e6), st.floats(-3, 3))
 def test_norms_are_homogeneous(factor, y):
-    norm = polynomial_norm(polynomial(((2, 1, 0), (1, 3, 0), (0, 0, 1))), 2)
+    norm = polynomial_norm(((2, 1, 0), (1, 3, 0), (0, 0, 1)), 2, 2)
     x = np.array([1.0, y])
     assert norm(factor * x) == pytest.approx(factor * norm(x))
 
@@ -50,7 +44,7 @@ def test_norms_are_homogeneous(factor, y):
 def test_integers_beyond_doubles_keep_their_ratios():
     huge = 10**400
     Q = ((huge, 0), (0, 4 * huge))
-    norm = polynomial_norm(polynomial(Q, degree=1), 2)
+    norm = polynomial_norm(Q, 1, 2)
     values = norm(np.eye(2))
     assert values[1] / values[0] == pytest.approx(2.0)
     assert scaled_matrices(Q)[0] == pytest.approx(np.diag([0.25, 1.0]))
@@ -71,11 +65,9 @@ def test_level_curve_of_a_thin_ellipse():
     assert steps.max() < 0.02 * np.abs(points).max()
 
 
-def test_function_and_modes_at_a_value_of_the_parameter():
+def test_modes_at_a_value_of_the_parameter():
     ends = Switching(fixed_ends=(("m0", "m1"),))
     family = system([[-1]], [[-3]], switching=ends)
     middle = modes_at(family, Fraction(1, 4))
     assert middle.modes[0].A.fractions() == [[Fraction(-3, 2)]]
     assert middle.switching.is_arbitrary
-    evidence = ParameterQuadratic(((1,),), ((4,),), 0, Fraction(1))
-    assert function_at(evidence, 0.5) == pytest.approx(np.array([[0.625]]))

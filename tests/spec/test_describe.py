@@ -1,4 +1,6 @@
+from nrs_design.spec import load_spec
 from nrs_design.spec.describe import Row, describe
+from tests.support import ROOT
 
 from .samples import FORCE, IMPEDANCE, SWITCHED, interaction, spoiled, switched
 
@@ -117,3 +119,11 @@ def test_dwell_times() -> None:
     rows = describe(switched(spoiled(discrete, "arbitrary", "{dwell_time: 3 steps}")))
     assert ("switching.dwell_time", "3 steps", "3", "steps") in rows
     assert ("switching", "arbitrary", "", "") in describe(switched(SWITCHED))
+
+
+def test_viscoelastic_environment_and_idle_states() -> None:
+    nose = describe(load_spec(ROOT / "specs/neuroboscope/nose.nrs.yaml"))
+    assert ("environments.nose.series_stiffness", "0.972 N*m/rad", "0.972", "N*m/rad") in nose
+    mixed = describe(load_spec(ROOT / "docs/examples/mixed-controllers.nrs.yaml"))
+    assert ("idle_states.decay", "20 1/s", "20", "1/s") in mixed
+    assert ("idle_states.reset", "false", "", "") in mixed

@@ -10,6 +10,7 @@ from nrs_design.spec import (
     KelvinVoigtSpec,
     PositionControllerSpec,
 )
+from nrs_design.spec.environment import KelvinBoltzmannSpec, MaxwellSpec
 
 from .samples import FORCE, IMPEDANCE, interaction, place_of, refusal, spoiled
 
@@ -45,10 +46,10 @@ def test_linear_stiffness_is_converted_at_the_lever_arm() -> None:
     # Thesis 6.3.1: 747.1461 N/m at 0.24 m is 43.0356 N*m/rad.
     soft = interaction(IMPEDANCE).environments["soft"]
     assert isinstance(soft, ElasticSpec)
-    nominal = soft.rotational_stiffness.nominal
+    nominal = soft.at_pivot()["stiffness"].nominal
     assert nominal.exact == Fraction("747.1461") * Fraction("0.24") ** 2
     assert nominal.text == "43.0356 N*m/rad"
-    assert soft.rotational_stiffness.fixed
+    assert soft.at_pivot()["stiffness"].fixed
 
 
 def test_stiff_specimen_of_the_thesis() -> None:
@@ -58,7 +59,7 @@ def test_stiff_specimen_of_the_thesis() -> None:
         "stiffness: 747.1461 N/m",
         "stiffness: {nominal: 1070.5 N/m, range: [1055.4 N/m, 1079.6 N/m]}",
     )
-    stiffness = interaction(text).environments["soft"].rotational_stiffness
+    stiffness = interaction(text).environments["soft"].at_pivot()["stiffness"]
     assert stiffness.nominal.si == pytest.approx(61.6608, rel=1e-5)
     assert not stiffness.fixed
     assert [q.exact for q in stiffness.range] == [
@@ -70,8 +71,8 @@ def test_stiff_specimen_of_the_thesis() -> None:
 def test_kelvin_voigt() -> None:
     hand = interaction(IMPEDANCE).environments["hand"]
     assert isinstance(hand, KelvinVoigtSpec)
-    assert hand.rotational_stiffness.nominal.exact == 43
-    assert hand.rotational_damping.nominal.exact == Fraction(1, 2)
+    assert hand.at_pivot()["stiffness"].nominal.exact == 43
+    assert hand.at_pivot()["damping"].nominal.exact == Fraction(1, 2)
     linear = interaction(
         spoiled(
             IMPEDANCE,
@@ -80,9 +81,9 @@ def test_kelvin_voigt() -> None:
         )
     ).environments["hand"]
     assert isinstance(linear, KelvinVoigtSpec)
-    assert linear.rotational_stiffness.nominal.exact == Fraction("57.6")
-    assert linear.rotational_damping.nominal.exact == Fraction("0.576")
-    assert linear.rotational_damping.nominal.unit == "N*m*s/rad"
+    assert linear.at_pivot()["stiffness"].nominal.exact == Fraction("57.6")
+    assert linear.at_pivot()["damping"].nominal.exact == Fraction("0.576")
+    assert linear.at_pivot()["damping"].nominal.unit == "N*m*s/rad"
 
 
 def test_position_and_force() -> None:
@@ -315,3 +316,96 @@ def test_entries_are_limited() -> None:
     many = "".join(f"  e{i}: {{model: elastic, stiffness: 1 N*m/rad}}\n" for i in range(65))
     error = refusal(spoiled(IMPEDANCE, "  soft:\n", many + "  soft:\n"))
     assert "environments: more than 64 entries are not read" in error.message
+
+
+BOLTZMANN = (
+    "model: kelvin-boltzmann\n    parallel_stiffness: 4 N/m\n    series_stiffness: 17 N/m\n"
+    "    damping: {nominal: 400 N*s/m, range: [300 N*s/m, 500 N*s/m]}"
+)
+MAXWELL = "model: maxwell\n    stiffness: 700 N/m\n    damping: 40 N*s/m"
+SOFT = "model: elastic\n    stiffness: 747.1461 N/m"
+
+
+def test_kelvin_boltzmann() -> None:
+    nose = interaction(spoiled(IMPEDANCE, SOFT, BOLTZMANN)).environments["soft"]
+    assert isinstance(nose, KelvinBoltzmannSpec)
+    turned = nose.at_pivot()
+    assert list(turned) == ["parallel_stiffness", "series_stiffness", "damping"]
+    assert turned["series_stiffness"].nominal.text == "0.9792 N*m/rad"
+    assert turned["damping"].nominal.unit == "N*m*s/rad"
+    assert [q.exact for q in turned["damping"].range] == [
+        300 * Fraction("0.0576"),
+        500 * Fraction("0.0576"),
+    ]
+    assert not nose.fixed
+
+
+def test_maxwell_alone() -> None:
+    gel = interaction(spoiled(IMPEDANCE, SOFT, MAXWELL)).environments["soft"]
+    assert isinstance(gel, MaxwellSpec)
+    assert gel.at_pivot()["damping"].nominal.exact == 40 * Fraction("0.0576")
+
+
+@pytest.mark.parametrize(
+    ("text", "change", "place", "reason"),
+    [
+        (MAXWELL, ("environment: soft", "environment: soft\n    contacts: [soft, hand]"),
+         "maxwell", "has no rest position, so 'soft' shares no deflection with hand"),
+        (BOLTZMANN, ("switching:", "coordinates: force\nswitching:"),
+         "force", "force coordinates do not apply to 'soft'"),
+        (BOLTZMANN.replace("nominal: 400", "nominal: 0").replace("300", "0"), ("", ""),
+         "0 N*s/m", "must be positive"),
+        (BOLTZMANN.replace("    series_stiffness: 17 N/m\n", ""), ("", ""),
+         "soft", "series_stiffness` is missing"),
+        (BOLTZMANN.replace("17 N/m", "17 N*m/rad"), ("", ""), "17 N*m", "a lever_arm is given"),
+    ],
+)  # fmt: skip
+def test_viscoelastic_refusals(text: str, change: tuple[str, str], place: str, reason: str) -> None:
+    spoilt = spoiled(IMPEDANCE, SOFT, text).replace(*change, 1)
+    faults = refusal(spoilt).faults
+    assert any(reason in fault.message for fault in faults), faults
+    lines = spoilt.splitlines()
+    assert any(place in lines[(fault.line or 0) - 1] for fault in faults)
+
+
+def test_force_control_of_what_remembers_is_refused() -> None:
+    text = FORCE.replace("model: elastic", "model: maxwell\n    damping: 1 N*s/m", 1)
+    assert "force control in contact with 'soft' is not modelled" in refusal(text).message
+
+
+FREE = ("  insertion:", "  free: {type: position}\n  insertion:")
+IDLE = ("switching:", "idle_states: {decay: 20 1/s}\nswitching:")
+
+
+def test_idle_states() -> None:
+    mixed = IMPEDANCE.replace(*FREE, 1).replace(*IDLE, 1)
+    spec = interaction(mixed)
+    assert spec.idle_states is not None
+    assert spec.idle_states.decay.exact == 20
+    assert not spec.idle_states.reset
+    both = interaction(mixed.replace("20 1/s}", "1/2 1/s, reset: true}"))
+    assert both.idle_states is not None
+    assert both.idle_states.reset
+
+
+@pytest.mark.parametrize(
+    ("changes", "place", "reason"),
+    [
+        ((FREE,), "impedance", "it is not said what the states of impedance controllers do"),
+        ((IDLE,), "idle_states", "idle_states without impedance controllers beside"),
+        ((FREE, IDLE, ("switching:", "coordinates: force\nswitching:")), "force", "do not apply"),
+        ((FREE, IDLE, (SOFT, BOLTZMANN)), "boltzmann", "is not modelled for impedance controllers"),
+        ((FREE, IDLE, ("20 1/s", "20 s")), "20 s", "one over it"),
+        ((FREE, IDLE, ("20 1/s", "-20 1/s")), "-20 1/s", "zero or positive"),
+        ((FREE, IDLE, ("decay: 20 1/s", "reset: true")), "idle_states", "decay` is missing"),
+    ],
+)
+def test_mixture_refusals(changes: tuple[tuple[str, str], ...], place: str, reason: str) -> None:
+    text = IMPEDANCE
+    for old, new in changes:
+        assert old in text
+        text = text.replace(old, new, 1)
+    faults = refusal(text).faults
+    assert any(reason in f"{fault.message}; {fault.remedy}" for fault in faults), faults
+    lines = text.splitlines()
+    assert any(place in lines[(fault.line or 0) - 1] for fault in faults), faults

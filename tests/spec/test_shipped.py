@@ -70,7 +70,7 @@ def test_robot_of_the_thesis(name: str) -> None:
     # Kp = 117359.43 in the thesis.
     assert float(loop.derivative_gain.exact * loop.zero.exact) == pytest.approx(117359.43, rel=1e-6)
     assert spec.limits.torque.si / spec.limits.velocity.si == pytest.approx(2.1486, abs=5e-5)
-    soft = spec.environments["soft"].rotational_stiffness
+    soft = spec.environments["soft"].at_pivot()["stiffness"]
     assert soft.nominal.si == pytest.approx(43.0356, abs=5e-5)
     assert [end.value for end in spec.environments["soft"].stiffness.range] == [
         Fraction("720.56"),
@@ -102,7 +102,7 @@ def test_tissue_and_tool_meet_both_environments() -> None:
     # Thesis 6.1 and 6.4.1.
     spec = design("tissue-and-tool")
     stiff = spec.environments["stiff"]
-    assert stiff.rotational_stiffness.nominal.si == pytest.approx(61.6608, abs=5e-5)
+    assert stiff.at_pivot()["stiffness"].nominal.si == pytest.approx(61.6608, abs=5e-5)
     assert [end.value for end in stiff.stiffness.range] == [Fraction("1055.4"), Fraction("1079.6")]
     for name, environment in (("tissue", "soft"), ("tool", "stiff")):
         controller = spec.controllers[name]
@@ -204,7 +204,7 @@ def test_flutter_is_stable_at_both_ends_only() -> None:
 
 def test_tissue_x_withdrawal_covers_tissue_and_tool() -> None:
     spec = design("tissue-x-withdrawal")
-    low, high = spec.environments["tissue"].rotational_stiffness.range
+    low, high = spec.environments["tissue"].at_pivot()["stiffness"].range
     # Thesis 6.3.1 and 6.4.1: 747.1461 and 1070.5 N/m at 0.24 m.
     assert (low.exact, high.exact) == (43, 62)
     assert low.si < 43.0356 < 61.6608 < high.si
@@ -221,7 +221,7 @@ def test_range_of_hands(folder: str, name: str, Mt: str) -> None:
     assert isinstance(spec, InteractionDesignSpec)
     hand = spec.environments["hand"]
     assert [end.value for end in hand.stiffness.range] == [1002 - 568, 1002 + 568]
-    low, high = hand.rotational_stiffness.range
+    low, high = hand.at_pivot()["stiffness"].range
     assert (low.exact, high.exact) == (Fraction("24.9984"), Fraction("90.432"))
     assert gains(spec) == [(Mt, "2.15"), (Mt, "1.04")]
 
@@ -241,7 +241,7 @@ def test_wide_range() -> None:
     spec = load_spec(ROOT / "docs/examples/wide-range.nrs.yaml")
     assert isinstance(spec, InteractionDesignSpec)
     (environment,) = spec.environments.values()
-    assert [end.exact for end in environment.rotational_stiffness.range] == [1, 200]
+    assert [end.exact for end in environment.at_pivot()["stiffness"].range] == [1, 200]
     assert gains(spec) == [("0", "2.15")]
 
 

@@ -8,7 +8,7 @@ from nrs_design.models.plant import build_plant
 from nrs_design.pipeline import run_design
 from nrs_design.proof.system import Time
 from nrs_design.spec import load_spec, parse_spec, read_spec
-from nrs_design.switched.assemble import GIVEN_MATRICES, assemble
+from nrs_design.switched.assemble import GIVEN_MATRICES, assemble_from_text
 from tests.support import COMMUTING, FORCE_LIMIT, SOFT_TISSUE
 
 GIVEN_LOOP = """motion_loop:
@@ -20,12 +20,12 @@ GIVEN_LOOP = """motion_loop:
 
 def design_of(path):
     loaded = read_spec(path)
-    design = run_design(loaded)
+    design = run_design(loaded).design
     return loaded.spec, design, gains_of(design)
 
 
 def test_given_matrices():
-    system = assemble(load_spec(COMMUTING), {}, None)
+    system = assemble_from_text(load_spec(COMMUTING), {}, None)
     assert [mode.name for mode in system.modes] == ["a", "b"]
     assert system.modes[1].A.numerators == ((-2, 3), (-3, -2))
     assert system.time is Time.CONTINUOUS
@@ -38,7 +38,7 @@ def test_decimals_are_read_exactly():
         "kind: switched-system\nname: s\ntime: discrete\nswitching: arbitrary\n"
         "modes: [{name: a, A: [[-0.36, 1e-100], ['1/6', 0.1]]}]\n"
     )
-    system = assemble(spec, {}, None)
+    system = assemble_from_text(spec, {}, None)
     assert system.modes[0].A.fractions() == [
         [Fraction(-9, 25), Fraction(1, 10**100)],
         [Fraction(1, 6), Fraction(1, 10)],
@@ -51,12 +51,12 @@ def test_decimals_are_read_exactly():
 )
 def test_given_matrices_have_no_design(gains, coordinates):
     with pytest.raises(AssemblyError, match="neither gains nor coordinates"):
-        assemble(load_spec(COMMUTING), gains, coordinates)
+        assemble_from_text(load_spec(COMMUTING), gains, coordinates)
 
 
 def test_designs_come_back_from_their_gains():
     spec, _, gains = design_of(SOFT_TISSUE)
-    system = assemble(spec, gains, "deflection")
+    system = assemble_from_text(spec, gains, "deflection")
     assert system.name == "soft-tissue"
     assert system.order == 4
     Bt = Fraction(gains["insertion"]["Bt"])
@@ -68,13 +68,13 @@ def test_designs_come_back_from_their_gains():
 def test_unknown_coordinates(coordinates):
     spec, _, gains = design_of(SOFT_TISSUE)
     with pytest.raises(AssemblyError, match="coordinates"):
-        assemble(spec, gains, coordinates)
+        assemble_from_text(spec, gains, coordinates)
 
 
 def test_missing_gains():
     spec, _, gains = design_of(FORCE_LIMIT)
     with pytest.raises(CertificateError, match="gains"):
-        assemble(spec, {"motion": gains["motion"]}, "deflection")
+        assemble_from_text(spec, {"motion": gains["motion"]}, "deflection")
 
 
 def test_motion_loop_from_the_gains_that_ship():

@@ -7,6 +7,8 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from scipy.integrate import solve_ivp
+from scipy.linalg import expm
 
 from nrs_design.controllers.controller_design import Controller, ControllerDesign
 from nrs_design.controllers.laws import (
@@ -20,7 +22,9 @@ from nrs_design.design.margins import stiffness_limit
 from nrs_design.design.transfer import TransferFunction
 from nrs_design.errors import AssemblyError
 from nrs_design.models.actuator import Actuator
-from nrs_design.models.environment import Contact, Environment, Interval
+from nrs_design.models.contact import Elastic, KelvinBoltzmann, KelvinVoigt, Maxwell
+from nrs_design.models.contact.environment import Environment
+from nrs_design.models.interval import Interval
 from nrs_design.models.motion_loop import MotionLoop
 from nrs_design.models.plant import Plant
 from nrs_design.proof.exact import characteristic_polynomial, is_hurwitz
@@ -38,8 +42,8 @@ F = Fraction
 LOOP = MotionLoop((F("28.416"), F("1618.80")), (F(1), F("56.89"), F("1618.80")))
 MOTION = realize(LOOP)
 # 752.69 N/m at 0.24 m, the stiffness in the printed matrices (43.355 N m/rad).
-PRINTED = Contact("soft", F("752.69") * F("0.24") ** 2, F(0))
-SOFT = Contact("soft", F("43.0356"), F(0))
+PRINTED = KelvinVoigt(F("752.69") * F("0.24") ** 2, F(0))
+SOFT = KelvinVoigt(F("43.0356"), F(0))
 NO_DAMPING = F(0)
 positive = st.fractions("1/100", 100, max_denominator=1000)
 
@@ -69,7 +73,7 @@ class TestPublished:
         assert rows[0] == [0, 1, 0, 0]
         assert rows[1] == [F("-1618.80"), F("-56.89"), -1, 0]
         assert rows[2] == [0, 0, entry, 100]
-        assert rows[3] == [PRINTED.stiffness * F("1618.80"), PRINTED.stiffness * F("28.416"), 0, 0]
+        assert rows[3] == [PRINTED.exact[0] * F("1618.80"), PRINTED.exact[0] * F("28.416"), 0, 0]
         assert float(rows[3][0]) == pytest.approx(70183.13, rel=2e-5)
         assert float(rows[3][1]) == pytest.approx(1231.97, rel=2e-5)
 
@@ -100,14 +104,16 @@ class TestPublished:
         law = Admittance(F("0.01"), F(Bt))
         while high - low > F(1, 1000):
             middle = (low + high) / 2
-            if stable(impedance_mode(MOTION, law, Contact("x", middle, F(damping)))):
+            if stable(impedance_mode(MOTION, law, KelvinVoigt(middle, F(damping)))):
                 low = middle
             else:
                 high = middle
         motion = TransferFunction(
             tuple(map(float, LOOP.numerator)), tuple(map(float, LOOP.denominator))
         )
-        limit = stiffness_limit(ImpedanceLoop(motion, 1.0, float(F(damping))), 0.01, float(F(Bt)))
+        limit = stiffness_limit(
+            ImpedanceLoop(motion, KelvinVoigt(1.0, float(F(damping)))), 0.01, float(F(Bt))
+        )
         assert float(low) == pytest.approx(limit, abs=2e-3)
 
     def test_known_stiffness_limits(self):
@@ -115,8 +121,8 @@ class TestPublished:
         for Bt, limit in (("1.04", "75.9"), ("2.15", "232.3")):
             law = Admittance(F("0.01"), F(Bt))
             margin = F("0.5")
-            assert stable(impedance_mode(MOTION, law, Contact("x", F(limit) - margin, F(0))))
-            assert not stable(impedance_mode(MOTION, law, Contact("x", F(limit) + margin, F(0))))
+            assert stable(impedance_mode(MOTION, law, KelvinVoigt(F(limit) - margin, F(0))))
+            assert not stable(impedance_mode(MOTION, law, KelvinVoigt(F(limit) + margin, F(0))))
 
 
 class TestImpedance:
@@ -124,7 +130,7 @@ class TestImpedance:
     def test_characteristic_polynomial(self, Mt, Bt, k, b, massless):
         """s den(s)(Mt s + Bt) + num(s)(b s + k), over its leading coefficient."""
         law = Admittance(F(0) if massless else Mt, Bt)
-        rows = impedance_mode(MOTION, law, Contact("x", k, b))
+        rows = impedance_mode(MOTION, law, KelvinVoigt(k, b))
         num, den = LOOP.numerator, LOOP.denominator
         free = np.polymul(
             np.array([*den, 0], dtype=object), np.array([law.Mt, law.Bt], dtype=object)
@@ -135,7 +141,7 @@ class TestImpedance:
 
     @given(positive, positive, positive, st.fractions(0, 10, max_denominator=100), st.booleans())
     def test_coordinates_are_similar(self, Mt, Bt, k, b, massless):
-        law, contact = Admittance(F(0) if massless else Mt, Bt), Contact("x", k, b)
+        law, contact = Admittance(F(0) if massless else Mt, Bt), KelvinVoigt(k, b)
         rows = impedance_mode(MOTION, law, contact)
         assert polynomial(to_force_coordinates(rows, MOTION, contact)) == polynomial(rows)
 
@@ -148,7 +154,7 @@ class TestImpedance:
         """What makes the corners of a parameter box enough, in either coordinates."""
         law = Admittance(F(0) if massless else F("0.01"), F(2))
         middle = tuple((a + b) / 2 for a, b in zip(one, other, strict=True))
-        contacts = [Contact("x", *point) for point in (one, middle, other)]
+        contacts = [KelvinVoigt(*point) for point in (one, middle, other)]
         for force in (False, True):
             first, half, last = (self.rows(law, contact, force) for contact in contacts)
             for a, m, b in zip(first, half, last, strict=True):
@@ -159,7 +165,7 @@ class TestImpedance:
         return to_force_coordinates(rows, MOTION, contact) if force else rows
 
     def test_without_inertia(self):
-        rows = impedance_mode(MOTION, Admittance(F(0), F(2)), Contact("x", F(43), F(0)))
+        rows = impedance_mode(MOTION, Admittance(F(0), F(2)), KelvinVoigt(F(43), F(0)))
         assert rows == [
             [0, 1, 0],
             [F("-1618.80"), F("-56.89"), F(-43, 2)],
@@ -167,14 +173,14 @@ class TestImpedance:
         ]
 
     def test_damped_contact(self):
-        rows = impedance_mode(MOTION, Admittance(F(1, 100), F(2)), Contact("x", F(43), F(3)))
+        rows = impedance_mode(MOTION, Admittance(F(1, 100), F(2)), KelvinVoigt(F(43), F(3)))
         assert rows[2] == [300 * F("1618.80"), 300 * F("28.416"), -200, 4300]
 
 
 class TestForce:
     @given(st.fractions(0, 1), positive)
     def test_state_feedback_of_thesis_646(self, Kp, k):
-        rows = force_mode(MOTION, ProportionalForce(Kp), Contact("x", k, F(0)))
+        rows = force_mode(MOTION, ProportionalForce(Kp), Elastic(k), "soft")
         assert rows == [
             [0, 1],
             [F("-1618.80") * (1 + Kp * k), F("-56.89") - Kp * k * F("28.416")],
@@ -182,7 +188,7 @@ class TestForce:
 
     def test_damping_is_not_modelled(self):
         with pytest.raises(AssemblyError, match="damping") as caught:
-            force_mode(MOTION, ProportionalForce(F(1)), Contact("jelly", F(1), F(1)))
+            force_mode(MOTION, ProportionalForce(F(1)), KelvinVoigt(F(1), F(1)), "jelly")
         assert "jelly" in caught.value.message
         assert "elastic" in caught.value.remedy
 
@@ -213,8 +219,10 @@ def impedance(name, Mt, contacts=("soft",)):
 
 
 def assembled(*controllers, coordinates="deflection"):
-    soft = Environment("soft", Interval(F(43), F(41), F(45)), Interval.point(F(0)))
-    hand = Environment("hand", Interval(F(50), F(25), F(90)), Interval(F(1), F(0), F(2)))
+    soft = Environment("soft", Elastic, (Interval(F(43), F(41), F(45)),))
+    hand = Environment(
+        "hand", KelvinVoigt, (Interval(F(50), F(25), F(90)), Interval(F(1), F(0), F(2)))
+    )
     plant = Plant(Actuator(F(1), F(1)), (soft, hand))
     design = ControllerDesign(ProportionalDerivative(F(1), F(1)), controllers)
     return close_loop("robot", plant, LOOP, design, coordinates)
@@ -270,3 +278,153 @@ class TestAssembly:
         law = ProportionalForce(F("0.02"))
         with pytest.raises(AssemblyError, match="damping"):
             assembled(Controller("f", law, "hand", ("hand",)))
+
+
+# Thesis table 2.4, the nose: k1, k2, b and, with a name of its own, Maxwell's k, b.
+NOSE = KelvinBoltzmann(F("0.233"), F("0.972"), F("23.631"))
+GEL = Maxwell(F("1.129"), F("120.233"))
+RANGES = tuple(
+    Interval(value, value * F(8, 10), value * F(12, 10)) for value in (*NOSE.exact, *GEL.exact)
+)
+ENVIRONMENTS = {
+    "nose": Environment("nose", KelvinBoltzmann, RANGES[:3]),
+    "concha": Environment(
+        "concha", KelvinBoltzmann, tuple(map(Interval.point, map(F, (1, 3, 30))))
+    ),
+    "gel": Environment("gel", Maxwell, RANGES[3:]),
+    "tool": Environment("tool", Elastic, (Interval(F(43), F(41), F(45)),)),
+}
+
+
+def viscoelastic(*contacts, Mt="0.01", coordinates="deflection", law=None):
+    plant = Plant(Actuator(F(1), F(1)), tuple(ENVIRONMENTS.values()))
+    law = law or Admittance(F(Mt), F(2))
+    controller = Controller("in", law, contacts[0], contacts)
+    design = ControllerDesign(ProportionalDerivative(F(1), F(1)), (controller,))
+    return close_loop("robot", plant, LOOP, design, coordinates)
+
+
+def product_of(*polynomials):
+    found = objects(F(1))
+    for factor in polynomials:
+        found = np.convolve(found, objects(*factor))
+    return found
+
+
+class TestViscoelastic:
+    @given(k1=positive, k2=positive, b=positive, Mt=positive, Bt=positive, massless=st.booleans())
+    def test_characteristic_polynomial_is_that_of_the_loop(self, k1, k2, b, Mt, Bt, massless):
+        """``den G den Ze / Y + num G num Ze`` with the impedances of thesis 2.5, written out."""
+        Mt = F(0) if massless else Mt
+        for law, above, below in (
+            (KelvinBoltzmann(k1, k2, b), (b * k2, k1 * k2), (b, k1 + k2, F(0))),
+            (Maxwell(k2, b), (k2 * b,), (b, k2)),
+        ):
+            admittance = (Bt,) if massless else (Mt, Bt)
+            free = product_of(LOOP.denominator, below, admittance)
+            contact = product_of(LOOP.numerator, above)
+            free[len(free) - len(contact) :] += contact
+            found = polynomial(impedance_mode(MOTION, Admittance(Mt, Bt), law))
+            assert list(free / free[0]) == found
+
+    @pytest.mark.parametrize("law", [NOSE, GEL], ids=["nose", "gel"])
+    def test_run_of_the_loop_with_the_force_as_the_thesis_writes_it(self, law):
+        """Integrate motion loop, admittance and ``F' = (eta1 delta + eta2 v - F)/eta3``."""
+        A = np.array(impedance_mode(MOTION, Admittance(F("0.01"), F(2)), law), dtype=float)
+        eta1, eta2, eta3 = law.eta if law is NOSE else (0.0, float(law.b), law.relaxation_time)
+        Ap, Cp = np.array(MOTION.A, dtype=float), np.array(MOTION.C, dtype=float)
+
+        def rate(_, x):
+            xp, vm, delta, force = x[:2], x[2], x[3], x[4]
+            v = Cp @ xp
+            dxp = Ap @ xp - np.array([0.0, 1.0]) * vm
+            dF = (eta1 * delta + eta2 * v - force) / eta3
+            return [*dxp, (force - 2.0 * vm) / 0.01, v, dF]
+
+        start = np.zeros(len(A))
+        start[:4] = [1e-3, 0.02, 0.1, 0.3]  # xp, vm, and 0.3 rad or a stretch of 0.3 rad
+        reaction = law.reaction
+        force = sum(float(c) * z for c, z in zip(reaction.C, start[3:], strict=True))
+        times = np.linspace(0, 3, 31)
+        run = solve_ivp(rate, (0, 3), [*start[:4], force], "Radau", times, rtol=1e-10, atol=1e-13)
+        ours = np.array([expm(A * t) @ start for t in times]).T
+        assert ours[:3] == pytest.approx(run.y[:3], abs=1e-8)
+        forces = sum(float(c) * z for c, z in zip(reaction.C, ours[3:], strict=True))
+        assert forces == pytest.approx(run.y[4], abs=1e-8)
+
+    def test_at_rest_the_nose_relaxes_with_its_time_constant(self):
+        """Errata 2.4: eta3 = 19.61 s; with the deflection held, the damper follows it so."""
+        rows = impedance_mode(MOTION, Admittance(F("0.01"), F(2)), NOSE)
+        assert float(-1 / rows[-1][-1]) == pytest.approx(19.61079, rel=3e-5)
+
+    def test_maxwell_has_no_deflection_among_its_states(self):
+        """With it the loop had an eigenvalue zero: it creeps, and nothing drives it back."""
+        rows = impedance_mode(MOTION, Admittance(F("0.01"), F(2)), GEL)
+        assert stable(rows)
+        with_delta = [[*row, F(0)] for row in rows] + [[*MOTION.C, F(0), F(0), F(0)]]
+        assert polynomial(with_delta) == [*polynomial(rows), 0]
+
+    def test_corners_of_every_parameter(self):
+        system = viscoelastic("nose")
+        assert len(system.modes) == 8
+        assert system.modes[0].name == "in/nose/k1-min/k2-min/b-min"
+        assert system.states[3:] == ("delta [rad]", "nose: damper deflection [rad]")
+        assert viscoelastic("nose", Mt="0").states[2:] == system.states[3:]
+        gel = viscoelastic("gel")
+        assert len(gel.modes) == 4
+        assert gel.states == ("xp1", "xp2", "vm [rad/s]", "spring stretch [rad]")
+
+    @given(shares=st.tuples(*[st.fractions(0, 1, max_denominator=50)] * 3))
+    def test_anywhere_in_the_box_is_an_average_of_corners(self, shares):
+        """Affine in k1, k2 and 1/b, each for itself."""
+        k1, k2 = (i.low + t * (i.high - i.low) for i, t in zip(RANGES[:2], shares[:2], strict=True))
+        b = 1 / ((1 - shares[2]) / RANGES[2].low + shares[2] / RANGES[2].high)
+        law = KelvinBoltzmann(k1, k2, b)
+        inside = impedance_mode(MOTION, Admittance(F("0.01"), F(2)), law)
+        weights = [
+            np.prod([t if up else 1 - t for t, up in zip(shares, ups, strict=True)])
+            for ups in product((False, True), repeat=3)
+        ]
+        corners = [mode.A.fractions() for mode in viscoelastic("nose").modes]
+        average = sum(
+            w * objects(*map(list, rows)) for w, rows in zip(weights, corners, strict=True)
+        )
+        assert (average == objects(*map(list, inside))).all()
+
+    def test_what_is_not_touched_creeps_back_alone(self):
+        system = viscoelastic("nose", "tool", "concha")
+        assert system.states[4:] == (
+            "nose: damper deflection [rad]",
+            "concha: damper deflection [rad]",
+        )
+        tool = next(m for m in system.modes if m.name == "in/tool/k-min/r-nose-max").A.fractions()
+        # k1/b of the nose at most, and of the concha.
+        assert tool[4] == [0, 0, 0, 0, -F("0.233") / F("23.631") * F(12, 8), 0]
+        assert tool[5] == [0, 0, 0, 0, 0, F(-1, 30)]
+        assert [row[4:] for row in tool[:4]] == [[0, 0]] * 4
+        plain = impedance_mode(MOTION, Admittance(F("0.01"), F(2)), Elastic(F(41)))
+        assert [row[:4] for row in tool[:4]] == plain
+        concha = next(m for m in system.modes if m.name == "in/concha/r-nose-min").A.fractions()
+        assert concha[4] == [0, 0, 0, 0, -F("0.233") / F("23.631") * F(8, 12), 0]
+        assert concha[5] == [0, 0, 0, F(3, 30), 0, F(-4, 30)]
+
+    def test_assumptions(self):
+        alone = " ".join(viscoelastic("nose").assumptions)
+        assert "The damper of nose keeps its deflection at a switch" in alone
+        assert "creeps back" not in alone
+        both = " ".join(viscoelastic("nose", "tool").assumptions)
+        assert "While another environment is touched, nose is free of force" in both
+        gel = " ".join(viscoelastic("gel").assumptions)
+        assert "that the deflection itself returns to zero is not claimed" in gel
+        assert "The deflection is continuous" not in gel
+
+    @pytest.mark.parametrize("name", ["nose", "gel"])
+    def test_what_is_not_modelled_is_refused(self, name):
+        with pytest.raises(AssemblyError, match="force coordinates do not apply"):
+            viscoelastic(name, coordinates="force")
+        with pytest.raises(AssemblyError, match="is not modelled"):
+            viscoelastic(name, law=ProportionalForce(F("0.02")))
+
+    def test_what_has_no_rest_position_is_touched_alone(self):
+        with pytest.raises(AssemblyError, match="gel has no rest position"):
+            viscoelastic("tool", "gel")

@@ -11,7 +11,7 @@ from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.system import Reset, Stay
 from nrs_design.spec import LoadedSpec, parse_spec
 from nrs_design.switched import constraints
-from nrs_design.switched.assemble import GIVEN_MATRICES, assemble
+from nrs_design.switched.assemble import GIVEN_MATRICES, assemble_from_text
 
 HEAD = "kind: switched-system\nname: s\ntime: continuous\n"
 TWO = "modes:\n  - {name: a, A: [[-1]]}\n  - {name: b, A: [[-2]]}\n"
@@ -47,14 +47,14 @@ RANGE = "{nominal: 43 N*m/rad, range: [40 N*m/rad, 45 N*m/rad]}"
 
 def given(body, rules, time="continuous"):
     text = HEAD.replace("continuous", time) + body + f"switching: {rules}\n"
-    return assemble(parse_spec(text), {}, None)
+    return assemble_from_text(parse_spec(text), {}, None)
 
 
 def pair(rules, stiffness="43 N*m/rad", contacts="[soft]"):
     text = PAIR.replace("RULES", rules).replace("STIFFNESS", stiffness)
     spec = parse_spec(text.replace("CONTACTS", contacts))
-    gains = gains_of(run_design(LoadedSpec("pair", "", text, spec)))
-    return assemble(spec, gains, "deflection")
+    gains = gains_of(run_design(LoadedSpec("pair", "", text, spec)).design)
+    return assemble_from_text(spec, gains, "deflection")
 
 
 def test_dwell_time_in_seconds():

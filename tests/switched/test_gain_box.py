@@ -10,13 +10,14 @@ from hypothesis import strategies as st
 from nrs_design.controllers.gains import gains_of
 from nrs_design.controllers.laws import Admittance
 from nrs_design.errors import AssemblyError
-from nrs_design.models.environment import Contact, Interval
+from nrs_design.models.contact import KelvinVoigt
+from nrs_design.models.interval import Interval
 from nrs_design.models.plant import build_plant
 from nrs_design.pipeline import run_design
 from nrs_design.proof.evidence import CommonQuadratic, UnstableMode
 from nrs_design.search.certify import Limits, Verdict, certify
 from nrs_design.spec import LoadedSpec, parse_spec, read_spec
-from nrs_design.switched.assemble import DECLARED, assemble, has_ranges
+from nrs_design.switched.assemble import DECLARED, assemble_from_text, has_ranges
 from nrs_design.switched.close_loop import impedance_mode, realize, to_force_coordinates
 from nrs_design.switched.gain_box import GainBox
 from tests.proof.truth import combine, decrease, is_definite
@@ -51,7 +52,7 @@ def loaded(**fields):
 
 
 def assembled(spec, coordinates="deflection", scale=DECLARED):
-    return assemble(spec.spec, gains_of(run_design(spec)), coordinates, scale)
+    return assemble_from_text(spec.spec, gains_of(run_design(spec).design), coordinates, scale)
 
 
 class TestPublished:
@@ -101,7 +102,7 @@ class TestCorners:
             law, at = Admittance(F(0), inverse_between(at[3], *d)), [*at[:2], at[3]]
         else:
             law = Admittance(inverse_between(at[2], *BOX[2]), between(at[3], *d))
-        rows = loop_rows(massless, law, Contact("soft", k, b), coordinates)
+        rows = loop_rows(massless, law, KelvinVoigt(k, b), coordinates)
         weights = [F(1)]
         for share in at:
             weights = [w * part for w in weights for part in (1 - share, share)]
@@ -115,7 +116,7 @@ class TestCorners:
         assert isinstance(evidence, CommonQuadratic)
         for at in product((F(0), F(1, 3), F(1, 2), F(1)), repeat=4):
             k, b, m, d = (between(s, *ends) for s, ends in zip(at, BOX, strict=True))
-            rows = loop_rows(False, Admittance(m, d), Contact("soft", k, b), "deflection")
+            rows = loop_rows(False, Admittance(m, d), KelvinVoigt(k, b), "deflection")
             assert is_definite(decrease(rows, evidence.Q, evidence.rate, system.time))
 
 
@@ -142,7 +143,7 @@ SYSTEMS = {
 MOTIONS = {
     massless: realize(build_plant(spec.spec).motion_loop(motion.Kp, motion.Kd))
     for massless, spec in CASES.items()
-    for motion in (run_design(spec).motion,)
+    for motion in (run_design(spec).design.motion,)
 }
 
 

@@ -7,9 +7,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from nrs_design.errors import InternalError
-from nrs_design.models.environment import Interval
+from nrs_design.models.interval import Interval
 from nrs_design.spec import parse_spec
-from nrs_design.switched.assemble import assemble
+from nrs_design.switched.assemble import assemble_from_text
 from nrs_design.switched.parameters import Corner, Parameter, check_affine, corner_modes, pair_ends
 
 ENTRIES = ("0", "k", "-2 - k", "3/4*k - m + 0.5", "(k - r)/3", "m", "1/6", "r + m + k")
@@ -32,7 +32,7 @@ def matrices(system):
 def test_oscillator_of_zelentsovsky():
     # x'' + x' + (2 + k) x with k in [0, 6]: the corners are the two modes of the publication.
     spec = box_system({"k": "{nominal: 3, range: [0, 6]}"}, {"x": "[[0, 1], [-2 - k, -1]]"})
-    system = assemble(spec, {}, None)
+    system = assemble_from_text(spec, {}, None)
     assert matrices(system) == {"x/k-min": [[0, 1], [-2, -1]], "x/k-max": [[0, 1], [-8, -1]]}
     assert system.switching.is_arbitrary
     assert system.states == ("x1", "x2")
@@ -47,7 +47,7 @@ def test_each_mode_has_the_corners_of_what_it_depends_on():
         },
         {"a": '[["k + r"]]', "b": "[[-1]]", "c": "[[k - q]]"},
     )
-    assert matrices(assemble(spec, {}, None)) == {
+    assert matrices(assemble_from_text(spec, {}, None)) == {
         "a/k-min": [[Fraction(1, 3)]],
         "a/k-max": [[Fraction(7, 3)]],
         "b": [[-1]],
@@ -63,7 +63,7 @@ def test_a_constant_parameter_makes_pairs_in_every_mode():
         {"m": "{nominal: 1, range: [0, 2], varies: false}", "k": "{nominal: 1, range: [0, 2]}"},
         {"a": "[[m + k]]", "b": "[[-1]]"},
     )
-    system = assemble(spec, {}, None)
+    system = assemble_from_text(spec, {}, None)
     assert system.switching.fixed_ends == (
         ("a/m-min/k-min", "a/m-max/k-min"),
         ("a/m-min/k-max", "a/m-max/k-max"),
@@ -75,14 +75,14 @@ def test_a_constant_parameter_makes_pairs_in_every_mode():
 
 def test_a_constant_parameter_of_one_value_makes_none():
     spec = box_system({"m": "{nominal: 1, varies: false}"}, {"a": "[[m]]"})
-    system = assemble(spec, {}, None)
+    system = assemble_from_text(spec, {}, None)
     assert matrices(system) == {"a": [[1]]}
     assert system.switching.is_arbitrary
 
 
 def test_a_constant_parameter_is_not_arbitrary_switching():
     spec = box_system({"m": "{nominal: 1, range: [0, 2], varies: false}"}, {"a": "[[m]]"})
-    switching = assemble(spec, {}, None).switching
+    switching = assemble_from_text(spec, {}, None).switching
     assert not switching.is_arbitrary
     assert switching.transitions is None
 

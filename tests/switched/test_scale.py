@@ -8,10 +8,12 @@ from hypothesis import strategies as st
 
 from nrs_design.controllers.gains import gains_of
 from nrs_design.errors import AssemblyError
-from nrs_design.models.environment import Environment, Interval
+from nrs_design.models.contact import KelvinVoigt
+from nrs_design.models.contact.environment import Environment
+from nrs_design.models.interval import Interval
 from nrs_design.pipeline import run_design
 from nrs_design.spec import LoadedSpec, parse_spec
-from nrs_design.switched.assemble import assemble, has_ranges
+from nrs_design.switched.assemble import assemble_from_text, has_ranges
 
 BOX = parse_spec(
     "kind: switched-system\nname: s\ntime: continuous\nswitching: arbitrary\n"
@@ -40,7 +42,7 @@ SCALES = st.fractions(0, 4, max_denominator=9)
 
 @pytest.fixture(scope="module")
 def gains():
-    return gains_of(run_design(LoadedSpec("hand", "", TEXT, HAND)))
+    return gains_of(run_design(LoadedSpec("hand", "", TEXT, HAND)).design)
 
 
 def names(system):
@@ -57,7 +59,7 @@ def test_intervals_keep_their_nominal_value(scale, values):
 
 
 def test_parameters_are_scaled():
-    half = assemble(BOX, {}, None, Fraction(1, 2))
+    half = assemble_from_text(BOX, {}, None, Fraction(1, 2))
     assert names(half) == ["a/k-min/m-min", "a/k-min/m-max", "a/k-max/m-min", "a/k-max/m-max"]
     assert [mode.A.fractions()[0][0] for mode in half.modes] == [
         Fraction(-5, 2),
@@ -72,12 +74,12 @@ def test_parameters_are_scaled():
 
 
 def test_scale_one_is_what_the_spec_says():
-    assert assemble(BOX, {}, None, Fraction(1)) == assemble(BOX, {}, None)
-    assert not any("scaled" in text for text in assemble(BOX, {}, None).assumptions)
+    assert assemble_from_text(BOX, {}, None, Fraction(1)) == assemble_from_text(BOX, {}, None)
+    assert not any("scaled" in text for text in assemble_from_text(BOX, {}, None).assumptions)
 
 
 def test_scale_zero_leaves_the_nominal_values():
-    nominal = assemble(BOX, {}, None, Fraction(0))
+    nominal = assemble_from_text(BOX, {}, None, Fraction(0))
     assert names(nominal) == ["a"]
     assert nominal.modes[0].A.fractions() == [[-4]]
     assert nominal.switching.is_arbitrary
@@ -85,9 +87,9 @@ def test_scale_zero_leaves_the_nominal_values():
 
 
 def test_environments_are_scaled(gains):
-    whole = assemble(HAND, gains, "deflection")
-    double = assemble(HAND, gains, "deflection", Fraction(4, 3))
-    nominal = assemble(HAND, gains, "deflection", Fraction(0))
+    whole = assemble_from_text(HAND, gains, "deflection")
+    double = assemble_from_text(HAND, gains, "deflection", Fraction(4, 3))
+    nominal = assemble_from_text(HAND, gains, "deflection", Fraction(0))
     ends = ["k-min/b-min", "k-min/b-max", "k-max/b-min", "k-max/b-max"]
     assert names(whole) == names(double) == [f"insertion/hand/{end}" for end in ends]
     assert names(nominal) == ["insertion/hand"]
@@ -108,27 +110,29 @@ def test_every_entry_is_affine_in_stiffness_and_damping(coordinates, Mt):
     # `assemble` itself compares the middle of the box with its corners, and raises if it differs.
     text = TEXT.replace("Mt: 0.01 kg", f"Mt: {Mt} kg")
     spec = parse_spec(text)
-    gains = gains_of(run_design(LoadedSpec("hand", "", text, spec)))
-    assert len(assemble(spec, gains, coordinates).modes) == 4
+    gains = gains_of(run_design(LoadedSpec("hand", "", text, spec)).design)
+    assert len(assemble_from_text(spec, gains, coordinates).modes) == 4
 
 
 def test_stiffness_stays_positive(gains):
-    assemble(HAND, gains, "deflection", Fraction("1.99"))
+    assemble_from_text(HAND, gains, "deflection", Fraction("1.99"))
     with pytest.raises(AssemblyError, match="environment hand reaches a stiffness"):
-        assemble(HAND, gains, "deflection", Fraction(2))
+        assemble_from_text(HAND, gains, "deflection", Fraction(2))
 
 
 def test_damping_does_not_become_negative():
     one = Fraction(1)
-    soft = Environment("soft", Interval(3 * one, 2 * one, 4 * one), Interval(one, one / 2, one))
-    assert soft.scaled(Fraction(2)).damping.low == 0
+    soft = Environment(
+        "soft", KelvinVoigt, (Interval(3 * one, 2 * one, 4 * one), Interval(one, one / 2, one))
+    )
+    assert soft.scaled(Fraction(2)).ranges[1].low == 0
     with pytest.raises(AssemblyError, match="environment soft reaches a damping"):
         soft.scaled(Fraction("2.01"))
 
 
 def test_negative_scales_are_refused():
     with pytest.raises(AssemblyError, match="cannot be scaled by -1"):
-        assemble(BOX, {}, None, Fraction(-1))
+        assemble_from_text(BOX, {}, None, Fraction(-1))
 
 
 def test_has_ranges():

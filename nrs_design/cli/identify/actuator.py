@@ -50,10 +50,9 @@ def actuator(
 
     Example: nrs-design identify actuator specs/data/actuator-*hz.csv --report reports/actuator.html
     """
-    from nrs_design.identification.actuator import identify_actuator
+    from nrs_design.identification.actuator import MotorConstants, identify_actuator
     from nrs_design.identification.datasets import FrequencyResponse, read_actuator
     from nrs_design.identification.write_spec import merge_actuator
-    from nrs_design.models.actuator import MotorConstants
     from nrs_design.spec import read_spec
 
     check_report(report)

@@ -45,7 +45,19 @@ def read_all(
     *,
     quiet: bool,
 ) -> list[T]:
-    """Read every file; large ones show how far they are."""
+    """Read every file; large ones show how far they are.
+
+    Parameters
+    ----------
+    paths : sequence of Path
+        The files.
+    read : callable
+        Reads one of them; it takes the columns by name, and a function to tell progress to.
+    entries : sequence of str
+        ``name=column`` each, as the user gave them.
+    quiet : bool
+        Show no progress.
+    """
     from nrs_design.identification.datasets.columns import parse_mapping
 
     mapping = parse_mapping(entries)
@@ -93,7 +105,17 @@ def write_report(path: Path, report: Report) -> None:
 
 
 def write_spec(path: Path, text: str, *, quiet: bool) -> None:
-    """Write a spec that has been merged."""
+    """Write a spec that has been merged.
+
+    Parameters
+    ----------
+    path : Path
+        The spec, which is replaced.
+    text : str
+        Its new text.
+    quiet : bool
+        Do not say so.
+    """
     from nrs_design.output import write_output
 
     write_output(path, text)

@@ -80,7 +80,7 @@ def _print(robot: Robot, survey: WorkspaceSurvey, inertia: list[float]) -> None:
             [
                 f"{corner['phi_deg']:.4g} deg",
                 f"{corner['psi_deg']:.4g} deg",
-                "none" if (depth := corner["deepest_m"]) is None else f"{1e3 * depth:.1f} mm",
+                "no depth" if (depth := corner["deepest_m"]) is None else f"{1e3 * depth:.1f} mm",
             ]
             for corner in _corners(survey)
         ],

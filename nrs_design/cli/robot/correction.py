@@ -32,9 +32,14 @@ def correction(
 
     Example: nrs-design robot correction specs/robots/neuroboscope.nrs.yaml --table correction.csv
     """
-    from nrs_design.models.robot import correction_coefficients, thesis_tilts, tilt_table
-    from nrs_design.models.robot.correction import TABLE_3_5, to_csv
-    from nrs_design.output import write_output
+    from nrs_design.models.robot import (
+        TABLE_3_5,
+        correction_coefficients,
+        thesis_tilts,
+        tilt_table,
+        to_csv,
+    )
+    from nrs_design.output import TABLE, write_output
     from nrs_design.pipeline import run_robot
 
     loaded, _, robot = run_robot(spec)
@@ -42,7 +47,7 @@ def correction(
     tilts = tilt_table(robot, thesis_tilts())
     files: list[str] = []
     if table is not None:
-        write_output(table, to_csv(tilts))
+        write_output(table, to_csv(tilts), replaces=TABLE)
         files.append(str(table))
         note(f"table written to {table}", quiet=quiet)
     if figures is not None:

@@ -88,19 +88,29 @@ def read_pose(text: str, robot: Robot) -> tuple[float, float, float]:
 
 
 def write_figures(folder: Path, figures: Mapping[str, Figure], *, quiet: bool) -> list[str]:
-    """Write every figure as SVG and PNG; return the files."""
-    from nrs_design.output import write_output
+    """Write every figure as SVG and PNG; return the files.
+
+    Parameters
+    ----------
+    folder : Path
+        Where they go.
+    figures : mapping
+        By the name of the file.
+    quiet : bool
+        Do not say where.
+    """
+    from nrs_design.output import PNG, SVG, write_output
     from nrs_design.reporting.svg import to_png, to_svg_file
 
     files: list[str] = []
     for name, figure in figures.items():
-        contents: tuple[tuple[str, str | bytes], ...] = (
-            ("svg", to_svg_file(figure)),
-            ("png", to_png(figure)),
+        contents: tuple[tuple[str, str | bytes, bytes], ...] = (
+            ("svg", to_svg_file(figure), SVG),
+            ("png", to_png(figure), PNG),
         )
-        for suffix, content in contents:
+        for suffix, content, beginning in contents:
             path = folder / f"{name}.{suffix}"
-            write_output(path, content)
+            write_output(path, content, replaces=beginning)
             files.append(str(path))
     note(f"figures written to {folder}", quiet=quiet)
     return files

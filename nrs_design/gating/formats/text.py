@@ -21,13 +21,22 @@ SHORT_ID = 12
 
 def to_text(outcome: GateOutcome) -> str:
     """Return the table, the failures worst first, and a line that sums up."""
-    parts = [*_table([COLUMNS, *map(_row, outcome.specs)])]
-    designed = [_gains(spec) for spec in outcome.specs if spec.gains]
-    if designed:
-        parts += ["", "gains (single-precision numbers, by their shortest decimals):", *designed]
+    parts = [*_table([COLUMNS, *rows_of(outcome)]), *gains_of(outcome)]
     if outcome.broken:
-        parts += ["", *map(_line, outcome.broken)]
-    return "\n".join([*parts, "", _summary(outcome)]) + "\n"
+        parts += ["", *map(line_of, outcome.broken)]
+    return "\n".join([*parts, "", summary_of(outcome)]) + "\n"
+
+
+def rows_of(outcome: GateOutcome) -> list[Sequence[str]]:
+    """Return the cells of the table, a row for each spec; see `COLUMNS`."""
+    return [_row(spec) for spec in outcome.specs]
+
+
+def gains_of(outcome: GateOutcome) -> list[str]:
+    """Return the lines about designed gains, after an empty one; none where there are no gains."""
+    designed = [_gains(spec) for spec in outcome.specs if spec.gains]
+    title = "gains (single-precision numbers, by their shortest decimals):"
+    return ["", title, *designed] if designed else []
 
 
 def _row(spec: SpecOutcome) -> Sequence[str]:
@@ -69,12 +78,14 @@ def _shortest(text: str) -> str:
     return f"{Decimal(found):f}"
 
 
-def _line(item: Obligation) -> str:
+def line_of(item: Obligation) -> str:
+    """Return the line about an obligation that is not fulfilled."""
     place = [item.path.as_posix(), *(str(n) for n in (item.line, item.column) if n is not None)]
     return printable(f"{':'.join(place)}: {item.rule.id} {item.status}: {item.message}")
 
 
-def _summary(outcome: GateOutcome) -> str:
+def summary_of(outcome: GateOutcome) -> str:
+    """Return the line that sums up."""
     counts = ", ".join(f"{n} {verdict}" for verdict, n in count_by_verdict(outcome.specs).items())
     broken = len(outcome.broken)
     total = sum(len(spec.obligations) for spec in outcome.specs)

@@ -5,5 +5,12 @@ from nrs_design.identification.actuator.identify import (
     identify_actuator,
 )
 from nrs_design.identification.actuator.model import ActuatorFit, MotorFigures
+from nrs_design.models.actuator import MotorConstants
 
-__all__ = ["ActuatorFit", "ActuatorIdentification", "MotorFigures", "identify_actuator"]
+__all__ = [
+    "ActuatorFit",
+    "ActuatorIdentification",
+    "MotorConstants",
+    "MotorFigures",
+    "identify_actuator",
+]

@@ -18,6 +18,17 @@ def friction_shape(record: SinusoidRecord, gain: float, tau: float, friction: fl
     It is 1 or -1 against the motion. Where the velocity reaches zero while the command is below
     the friction, the motor sticks, and the friction is just the command. The command is held
     between samples, and a reversal within a step is found exactly. Starts from rest.
+
+    Parameters
+    ----------
+    record : SinusoidRecord
+        With the command.
+    gain : float
+        In (rad/s)/rpm.
+    tau : float
+        Time constant in s.
+    friction : float
+        In rpm of command.
     """
     dt = np.diff(record.time)
     decays = np.exp(-dt / tau).tolist()

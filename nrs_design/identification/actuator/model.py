@@ -80,7 +80,17 @@ class ActuatorFit:
 
 
 def actuator_fit(method: str, logarithms: Array, known: Uncertainty) -> ActuatorFit:
-    """Return a fit from the logarithms of gain, time constant and, if there, friction."""
+    """Return a fit from the logarithms of gain, time constant and, if there, friction.
+
+    Parameters
+    ----------
+    method : str
+        How it was found.
+    logarithms : ndarray
+        Of gain, time constant and, if there, friction.
+    known : Uncertainty
+        Of the logarithms.
+    """
     estimates = known.estimates(logarithms)
     friction = estimates[2] if len(estimates) > 2 else None
     return ActuatorFit(method, estimates[0], estimates[1], friction, known)

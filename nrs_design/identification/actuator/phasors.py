@@ -76,7 +76,17 @@ def phasors_of(record: SinusoidRecord) -> Phasors:
 
 
 def held_amplitude(record: SinusoidRecord, values: Array, frequency: float) -> complex:
-    """Return the amplitude of what is held between the samples of a record, as it acts."""
+    """Return the amplitude of what is held between the samples of a record, as it acts.
+
+    Parameters
+    ----------
+    record : SinusoidRecord
+        With the times of the samples.
+    values : ndarray, shape (n,)
+        Held from each sample to the next.
+    frequency : float
+        In rad/s.
+    """
     late = record.time >= _TRANSIENT * record.time[-1]
     (amplitude, *_), _ = _amplitudes(record.time[late], values[late], frequency, _HARMONICS)
     return amplitude * _hold(record, frequency)

@@ -71,6 +71,17 @@ def simulate_angle(record: SinusoidRecord, gain: float, tau: float, friction: fl
     """Return the angle of the model in rad, shape (n,).
 
     Initial angle and velocity are fitted to the record.
+
+    Parameters
+    ----------
+    record : SinusoidRecord
+        With command and measured angle.
+    gain : float
+        In (rad/s)/rpm.
+    tau : float
+        Time constant in s.
+    friction : float
+        In rpm of command.
     """
     forced = _angle(record, gain, tau, friction, friction_shape(record, gain, tau, friction))
     free = _free(record, tau)

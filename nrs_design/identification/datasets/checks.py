@@ -85,6 +85,15 @@ def check_saturation(table: Table, name: str, values: Array, moving: Array) -> N
 def check_clipped(table: Table, name: str, values: Array) -> None:
     """Check that a sinusoid is not cut off at its extremes.
 
+    Parameters
+    ----------
+    table : Table
+        For the place in errors.
+    name : str
+        Of the column.
+    values : ndarray, shape (n,)
+        The column.
+
     Raises
     ------
     DataError
@@ -102,6 +111,15 @@ def check_clipped(table: Table, name: str, values: Array) -> None:
 
 def check_varies(table: Table, name: str, values: Array) -> None:
     """Check that a column is not constant.
+
+    Parameters
+    ----------
+    table : Table
+        For the place in errors.
+    name : str
+        Of the column.
+    values : ndarray, shape (n,)
+        The column.
 
     Raises
     ------

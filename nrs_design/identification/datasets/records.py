@@ -16,7 +16,7 @@ from nrs_design.identification.datasets.checks import (
     check_varies,
 )
 from nrs_design.identification.datasets.table import Array, Progress, Source, Table, read_table
-from nrs_design.models.tissue.motion import Motion
+from nrs_design.models.contact.motion import Motion
 
 LINEAR = ("time", "deflection", "force")
 ROTATIONAL = ("time", "angle", "torque")

@@ -69,7 +69,17 @@ class Table:
     first_line: int
 
     def fail(self, message: str, row: int, remedy: str) -> NoReturn:
-        """Raise an error about a row, counted from 0."""
+        """Raise an error about a row, counted from 0.
+
+        Parameters
+        ----------
+        message : str
+            What is wrong.
+        row : int
+            Counted from 0.
+        remedy : str
+            What to do about it.
+        """
         raise DataError(message, path=self.source.path, line=self.first_line + row, remedy=remedy)
 
 
@@ -177,7 +187,15 @@ def _names(text: str, path: Path, line: int) -> list[str]:
             line=line,
             remedy="save the columns that are needed, under short names",
         )
-    names = [name.strip() for name in next(csv.reader([text]))]
+    try:
+        names = [name.strip() for name in next(csv.reader([text]))]
+    except csv.Error as error:
+        raise DataError(
+            f"has a header line that is no CSV ({error})",
+            path=path,
+            line=line,
+            remedy="save it with one header line and line ends of one kind",
+        ) from None
     if len(names) == 1:
         for separator, word in ((";", "semicolons"), ("\t", "tabs")):
             if separator in text:

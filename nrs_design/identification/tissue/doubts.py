@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from nrs_design.identification.datasets import TissueRecord
 from nrs_design.identification.rounding import rounding_of_velocity
 from nrs_design.identification.statistics import Uncertainty
-from nrs_design.models.tissue import AbstractTissueLaw, HuntCrossley, KelvinVoigt
+from nrs_design.models.contact import AbstractContactLaw, HuntCrossley, KelvinVoigt
 
 Array = NDArray[np.float64]
 
@@ -23,12 +23,24 @@ _LOADED = 0.1
 
 
 def doubts(
-    law: AbstractTissueLaw,
+    law: AbstractContactLaw,
     record: TissueRecord,
     found: Uncertainty,
     bounds: tuple[Array, Array],
 ) -> tuple[str, ...]:
-    """List what makes a fit doubtful, in words; nothing for a sound one."""
+    """List what makes a fit doubtful, in words; nothing for a sound one.
+
+    Parameters
+    ----------
+    law : AbstractTissueLaw
+        That was fitted.
+    record : TissueRecord
+        To which data.
+    found : Uncertainty
+        Of its parameters.
+    bounds : tuple of ndarray
+        Logarithms between which they were sought: lower, upper.
+    """
     return (
         *_bounds(law, bounds),
         *_errors(law, found),
@@ -37,7 +49,7 @@ def doubts(
     )
 
 
-def _bounds(law: AbstractTissueLaw, bounds: tuple[Array, Array]) -> Iterator[str]:
+def _bounds(law: AbstractContactLaw, bounds: tuple[Array, Array]) -> Iterator[str]:
     logs = np.log(law.values)
     for name, log, low, high in zip(law.parameters(), logs, *bounds, strict=True):
         if min(log - low, high - log) < _NEAR:
@@ -45,14 +57,14 @@ def _bounds(law: AbstractTissueLaw, bounds: tuple[Array, Array]) -> Iterator[str
             yield f"{name} is at the {end} end of its box"
 
 
-def _errors(law: AbstractTissueLaw, found: Uncertainty) -> Iterator[str]:
+def _errors(law: AbstractContactLaw, found: Uncertainty) -> Iterator[str]:
     for name, error in zip(law.parameters(), found.errors, strict=True):
         if not error <= LARGEST_ERROR:
             size = f"{100 * error:.0f} %" if error < 10 else "over 1000 %"
             yield f"{name} has a relative standard error of {size}"
 
 
-def _times(law: AbstractTissueLaw, record: TissueRecord) -> Iterator[str]:
+def _times(law: AbstractContactLaw, record: TissueRecord) -> Iterator[str]:
     tau = law.relaxation_time
     if tau is None:
         return
@@ -66,7 +78,7 @@ def _times(law: AbstractTissueLaw, record: TissueRecord) -> Iterator[str]:
         yield f"the relaxation time ({tau:.3g} s) is below the step of the record ({step:.3g} s)"
 
 
-def _motion(law: AbstractTissueLaw, record: TissueRecord) -> Iterator[str]:
+def _motion(law: AbstractContactLaw, record: TissueRecord) -> Iterator[str]:
     motion = record.motion
     if isinstance(law, KelvinVoigt | HuntCrossley):
         part = rounding_of_velocity(motion.time, motion.deflection)

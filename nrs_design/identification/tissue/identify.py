@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from nrs_design.errors import DataError
 from nrs_design.identification.datasets import TissueRecord
 from nrs_design.identification.tissue.pool import ModelFit, fit_model
-from nrs_design.models.tissue import LAWS
+from nrs_design.models.contact import LAWS
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -12,7 +12,7 @@ from nrs_design.identification.rounding import rounding_scatter
 from nrs_design.identification.statistics import Estimate, Uncertainty, uncertainty
 from nrs_design.identification.tissue.doubts import doubts
 from nrs_design.identification.tissue.starts import box, scan
-from nrs_design.models.tissue import AbstractTissueLaw, Motion
+from nrs_design.models.contact import AbstractContactLaw, Motion
 
 Array = NDArray[np.float64]
 
@@ -31,7 +31,7 @@ class RecordFit:
     ----------
     record : TissueRecord
         The data.
-    law : AbstractTissueLaw
+    law : AbstractContactLaw
         With the fitted parameters.
     uncertainty : Uncertainty
         Of the logarithms of the parameters.
@@ -44,7 +44,7 @@ class RecordFit:
     """
 
     record: TissueRecord
-    law: AbstractTissueLaw
+    law: AbstractContactLaw
     uncertainty: Uncertainty
     rmse: float
     agreeing: int
@@ -76,7 +76,7 @@ class RecordFit:
         return len(self.law.values) + 1
 
 
-def fit_record(kind: type[AbstractTissueLaw], record: TissueRecord) -> RecordFit:
+def fit_record(kind: type[AbstractContactLaw], record: TissueRecord) -> RecordFit:
     """Fit a law by output error.
 
     Minimizes the squared difference of measured and simulated force over the logarithms of the
@@ -86,7 +86,7 @@ def fit_record(kind: type[AbstractTissueLaw], record: TissueRecord) -> RecordFit
     Parameters
     ----------
     kind : type
-        One of `nrs_design.models.tissue.LAWS`.
+        One of `nrs_design.models.contact.LAWS`.
     record : TissueRecord
         n samples.
     """
@@ -117,17 +117,17 @@ def _thin(record: TissueRecord) -> TissueRecord:
     return replace(record, motion=motion, force=record.force[::every])
 
 
-def residuals(law: AbstractTissueLaw, record: TissueRecord) -> Array:
+def residuals(law: AbstractContactLaw, record: TissueRecord) -> Array:
     """Return measured less simulated force, shape (n,)."""
     return record.force - law.simulate(record.motion)
 
 
-def rmse(law: AbstractTissueLaw, record: TissueRecord) -> float:
+def rmse(law: AbstractContactLaw, record: TissueRecord) -> float:
     """Return the root of the mean squared force error."""
     return float(np.sqrt(np.mean(residuals(law, record) ** 2)))
 
 
-def _uncertainty(law: AbstractTissueLaw, record: TissueRecord) -> Uncertainty:
+def _uncertainty(law: AbstractContactLaw, record: TissueRecord) -> Uncertainty:
     J = law.sensitivities(record.motion)
     stiffness = float(np.linalg.norm(record.force) / np.linalg.norm(record.motion.deflection))
     scatter = rounding_scatter(record.motion.deflection, J, stiffness)
@@ -135,11 +135,11 @@ def _uncertainty(law: AbstractTissueLaw, record: TissueRecord) -> Uncertainty:
 
 
 def _search(
-    kind: type[AbstractTissueLaw],
+    kind: type[AbstractContactLaw],
     record: TissueRecord,
-    start: AbstractTissueLaw,
+    start: AbstractContactLaw,
     bounds: tuple[Array, Array],
-) -> AbstractTissueLaw:
+) -> AbstractContactLaw:
     from scipy.optimize import least_squares
 
     scale = float(np.sqrt(np.mean(record.force**2)))
@@ -148,7 +148,7 @@ def _search(
     room = 1e-6 * (high - low)
     x0 = np.clip(np.log(start.values), low + room, high - room)
 
-    def law_at(x: Array) -> AbstractTissueLaw:
+    def law_at(x: Array) -> AbstractContactLaw:
         return kind(*np.exp(x).tolist())
 
     def error(x: Array) -> Array:

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from nrs_design.identification.datasets import TissueRecord
 from nrs_design.identification.statistics import Estimate, student_quantile
 from nrs_design.identification.tissue.output_error import RecordFit, fit_record, rmse
-from nrs_design.models.tissue import AbstractTissueLaw
+from nrs_design.models.contact import AbstractContactLaw
 
 Array = NDArray[np.float64]
 
@@ -29,7 +29,7 @@ class ModelFit:
     ----------
     fits : tuple of RecordFit
         One for each record.
-    law : AbstractTissueLaw
+    law : AbstractContactLaw
         With the pooled parameters.
     estimates : tuple of Estimate
         Pooled parameters with 95 % intervals that contain the spread between records.
@@ -40,7 +40,7 @@ class ModelFit:
     """
 
     fits: tuple[RecordFit, ...]
-    law: AbstractTissueLaw
+    law: AbstractContactLaw
     estimates: tuple[Estimate, ...]
     ranges: tuple[Estimate, ...]
     rmse: tuple[float, ...]
@@ -61,13 +61,13 @@ class ModelFit:
         return tuple(f"{fit.record.name}: {text}" for fit in self.fits for text in fit.doubts)
 
 
-def fit_model(kind: type[AbstractTissueLaw], records: Sequence[TissueRecord]) -> ModelFit:
+def fit_model(kind: type[AbstractContactLaw], records: Sequence[TissueRecord]) -> ModelFit:
     """Fit a law to every record, and pool the parameters.
 
     Parameters
     ----------
     kind : type
-        One of `nrs_design.models.tissue.LAWS`.
+        One of `nrs_design.models.contact.LAWS`.
     records : sequence of TissueRecord
         At least one, all linear or all rotational.
     """

@@ -12,17 +12,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from nrs_design.identification.datasets import TissueRecord
-from nrs_design.models.tissue import (
-    AbstractTissueLaw,
+from nrs_design.models.contact import (
+    AbstractContactLaw,
     Elastic,
     HuntCrossley,
     KelvinBoltzmann,
     KelvinVoigt,
     Maxwell,
 )
-from nrs_design.models.tissue.hunt_crossley import LARGEST_EXPONENT, LEAST_EXPONENT
-from nrs_design.models.tissue.law import DAMPING, STIFFNESS
-from nrs_design.models.tissue.relaxation import relax
+from nrs_design.models.contact.hunt_crossley import LARGEST_EXPONENT, LEAST_EXPONENT
+from nrs_design.models.contact.law import DAMPING, STIFFNESS
+from nrs_design.models.contact.relaxation import relax
 
 Array = NDArray[np.float64]
 
@@ -35,7 +35,7 @@ _STIFFNESS_BOX = 1e4
 _SHORTEST, _LONGEST = 1e-4, 1e3
 
 
-def scan(kind: type[AbstractTissueLaw], record: TissueRecord) -> Iterator[AbstractTissueLaw]:
+def scan(kind: type[AbstractContactLaw], record: TissueRecord) -> Iterator[AbstractContactLaw]:
     """Yield candidates for the start of a search."""
     motion, force = record.motion, record.force
     if kind is Elastic:
@@ -58,7 +58,7 @@ def scan(kind: type[AbstractTissueLaw], record: TissueRecord) -> Iterator[Abstra
                 yield KelvinBoltzmann.from_eta(eta1, (eta1 + arm) * tau, tau)
 
 
-def box(kind: type[AbstractTissueLaw], record: TissueRecord) -> tuple[Array, Array]:
+def box(kind: type[AbstractContactLaw], record: TissueRecord) -> tuple[Array, Array]:
     """Return the bounds of the logarithms of the parameters.
 
     They are so wide that only a parameter which the record does not determine reaches them; the

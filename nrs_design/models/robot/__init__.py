@@ -9,12 +9,14 @@ from nrs_design.models.robot.balance import (
     spring_torque,
 )
 from nrs_design.models.robot.correction import (
+    TABLE_3_5,
     Correction,
     Sine,
     TiltTable,
     correction_coefficients,
     thesis_tilts,
     tilt_table,
+    to_csv,
 )
 from nrs_design.models.robot.dynamics import (
     coriolis_matrix,
@@ -57,6 +59,7 @@ from nrs_design.models.robot.workspace import (
 )
 
 __all__ = [
+    "TABLE_3_5",
     "Balance",
     "Correction",
     "JointMotion",
@@ -106,6 +109,7 @@ __all__ = [
     "thesis_grid",
     "thesis_tilts",
     "tilt_table",
+    "to_csv",
     "torque_shares",
     "workspace_grid",
 ]

@@ -81,7 +81,19 @@ def rigid_body(mass: float, center_of_mass: ArrayLike, inertia: ArrayLike) -> Bo
 
 
 def slender_rod(mass: float, center_of_mass: ArrayLike, length: float, axis: int) -> Body:
-    """Return a thin rod along one axis (0, 1, 2) of its frame: ``m l^2/12`` across it."""
+    """Return a thin rod along one axis (0, 1, 2) of its frame: ``m l^2/12`` across it.
+
+    Parameters
+    ----------
+    mass : float
+        In kg.
+    center_of_mass : array_like, shape (3,)
+        In m.
+    length : float
+        In m.
+    axis : int
+        Along which it lies: 0, 1 or 2.
+    """
     moments = np.full(3, mass * length**2 / 12)
     moments[axis] = 0.0
     return rigid_body(mass, center_of_mass, np.diag(moments))

@@ -159,7 +159,17 @@ class TiltTable:
 def tilt_table(
     robot: Robot, tilts: Iterable[float], sines: Sequence[Sine] = DEPTH_SINES
 ) -> TiltTable:
-    """Return the coefficients for every tilt of the base, in rad."""
+    """Return the coefficients for every tilt of the base, in rad.
+
+    Parameters
+    ----------
+    robot : Robot
+        The mechanism.
+    tilts : iterable of float
+        In rad.
+    sines : sequence of Sine
+        Motions for which the coefficients are fitted; by default three in depth alone.
+    """
     chosen = np.array(list(tilts), dtype=np.float64)
     rows = [correction_coefficients(robot.tilted(float(tilt)), sines) for tilt in chosen]
     return TiltTable(

@@ -106,7 +106,17 @@ def link_forces(body: Body, link: Direction, origin: PlanePoint, plane: Plane) -
 def first_moment(
     body: Body, origin: tuple[Scalar, Scalar], direction: tuple[Scalar, Scalar]
 ) -> Vector:
-    """Return ``integral (u, v, z) dm`` of a link in the frame of its plane, in kg m."""
+    """Return ``integral (u, v, z) dm`` of a link in the frame of its plane, in kg m.
+
+    Parameters
+    ----------
+    body : Body
+        Mass and its distribution.
+    origin : tuple
+        Where the link's frame lies in its plane, in m.
+    direction : tuple
+        Cosine and sine of the link's angle.
+    """
     hx, hy, hz = body.first
     cos, sin = direction
     u = body.mass * origin[0] + hx * cos - hy * sin

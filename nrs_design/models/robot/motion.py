@@ -66,7 +66,17 @@ def joint_driven(closed: Posture, velocity: ArrayLike, acceleration: ArrayLike) 
 def pose_driven(
     closed: Posture, pose: ArrayLike, velocity: ArrayLike, acceleration: ArrayLike
 ) -> Motion:
-    """Return the motion that the rates of (phi, psi, d) make; shapes (..., 3), rad, m and s."""
+    """Return the motion that the rates of (phi, psi, d) make; shapes (..., 3), rad, m and s.
+
+    Parameters
+    ----------
+    closed : Posture
+        At the pose.
+    pose : array_like, shape (..., 3)
+        phi and psi in rad, d in m.
+    velocity, acceleration : array_like, shape (..., 3)
+        Its rates.
+    """
     phi, psi, _ = components(pose)
     v, a = components(velocity), components(acceleration)
     x_1 = np.cos(psi) * v[1]

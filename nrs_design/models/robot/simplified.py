@@ -72,7 +72,17 @@ def simplified_dynamics(
 
 
 def simplified_torque(robot: Robot, pose: ArrayLike, acceleration: ArrayLike) -> Array:
-    """Return ``Ms q'' + Gs`` (thesis 3.29); shapes (..., 3), in rad/s^2 and N m."""
+    """Return ``Ms q'' + Gs`` (thesis 3.29); shapes (..., 3), in rad/s^2 and N m.
+
+    Parameters
+    ----------
+    robot : Robot
+        The mechanism.
+    pose : array_like, shape (..., 3)
+        phi and psi in rad, d in m.
+    acceleration : array_like, shape (..., 3)
+        Of the joints, in rad/s^2.
+    """
     model = simplified_dynamics(robot, pose)
     column = np.asarray(acceleration, dtype=np.float64)[..., None]
     return np.asarray((model.Ms @ column)[..., 0] + model.Gs)

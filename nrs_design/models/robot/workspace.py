@@ -23,7 +23,15 @@ _DEGREE = np.radians(1.0)
 
 
 def pose_grid(phi: ArrayLike, psi: ArrayLike, d: ArrayLike) -> Array:
-    """Return every combination of three lists as poses; shape (len, len, len, 3)."""
+    """Return every combination of three lists as poses; shape (len, len, len, 3).
+
+    Parameters
+    ----------
+    phi, psi : array_like
+        In rad.
+    d : array_like
+        In m.
+    """
     return np.stack(np.meshgrid(phi, psi, d, indexing="ij"), axis=-1)
 
 

@@ -36,11 +36,32 @@ class AbstractEvidence(ABC):
 
     kind: ClassVar[str]
     allows_unequal_modes: ClassVar[bool] = False
+    # What is said of a kind unless it shows more. Its bound holds from the first moment on, with no
+    # constant factor in front; and at the proved rate itself, not only at every slower one.
+    bounds_at_once: ClassVar[bool] = False
+    attains_rate: ClassVar[bool] = False
+    # What is shown of the modes is shown of their convex combinations too.
+    covers_mixtures: ClassVar[bool] = False
 
     @property
     @abstractmethod
     def shows(self) -> Shows:
         """What follows if it holds."""
+
+    @property
+    def is_common_quadratic(self) -> bool:
+        """Whether it holds a common quadratic function, or one for every diagonal block."""
+        return False
+
+    @property
+    def keeps_bound_in_mixtures(self) -> bool:
+        """Whether convex combinations of modes get no further constant factor in discrete time."""
+        return False
+
+    @property
+    def names_unstable_mode(self) -> bool:
+        """Whether it shows that some mode is not stable by itself."""
+        return False
 
     def proved_rate(self, system: SwitchedSystem) -> Fraction | None:
         """Return the rate of decay (alpha in 1/s, or rho per step), if it shows one."""

@@ -33,6 +33,9 @@ class BlockTriangular(AbstractEvidence):
     """
 
     kind: ClassVar[str] = "block-triangular"
+    # Where blocks are coupled, a solution may decay like that rate times a polynomial in time.
+    attains_rate: ClassVar[bool] = False
+    covers_mixtures: ClassVar[bool] = True
 
     blocks: Blocks
     parts: tuple[tuple[int, AbstractEvidence], ...]
@@ -41,6 +44,21 @@ class BlockTriangular(AbstractEvidence):
     def shows(self) -> Shows:
         """What the parts show; they all show the same."""
         return self.parts[0][1].shows
+
+    @property
+    def is_common_quadratic(self) -> bool:
+        """Whether every part is one: then the family has one too."""
+        return all(part.is_common_quadratic for _, part in self.parts)
+
+    @property
+    def keeps_bound_in_mixtures(self) -> bool:
+        """Whether every part does."""
+        return all(part.keeps_bound_in_mixtures for _, part in self.parts)
+
+    @property
+    def names_unstable_mode(self) -> bool:
+        """Whether a part does."""
+        return any(part.names_unstable_mode for _, part in self.parts)
 
     def proved_rate(self, system: SwitchedSystem) -> Fraction | None:
         """Return the slowest of the parts' rates: solutions decay at any slower one."""

@@ -63,6 +63,9 @@ class CommonPolynomial(AbstractEvidence):
     """
 
     kind: ClassVar[str] = "common-polynomial"
+    bounds_at_once: ClassVar[bool] = True
+    attains_rate: ClassVar[bool] = True
+    covers_mixtures: ClassVar[bool] = True
 
     degree: int
     Q: Matrix
@@ -74,6 +77,11 @@ class CommonPolynomial(AbstractEvidence):
     def shows(self) -> Shows:
         """Stability."""
         return Shows.STABILITY
+
+    @property
+    def keeps_bound_in_mixtures(self) -> bool:
+        """False: V need not be convex, but a joint spectral radius is that of the convex hull."""
+        return False
 
     def proved_rate(self, system: SwitchedSystem) -> Fraction:
         """Return the claimed rate."""
@@ -146,7 +154,21 @@ def _is_too_long(mode: Mode, degree: int, Q: IntegerMatrix, time: Time) -> bool:
 def lifted_decrease(
     mode: Mode, degree: int, Q: IntegerMatrix, rate: Fraction, time: Time
 ) -> list[list[int]]:
-    """Return ``-(L'Q + QL + 2 d alpha Q)`` (or ``rho^2d Q - L'QL``), times `lifted_factor`."""
+    """Return ``-(L'Q + QL + 2 d alpha Q)`` (or ``rho^2d Q - L'QL``), times `lifted_factor`.
+
+    Parameters
+    ----------
+    mode : Mode
+        Whose matrix is lifted.
+    degree : int
+        The d of the monomials.
+    Q : integer matrix
+        Of the form on the monomials.
+    rate : Fraction
+        The alpha or rho.
+    time : Time
+        Which of the two forms.
+    """
     N, denominator = mode.A.numerators, mode.A.denominator
     if time is Time.CONTINUOUS:
         return lyapunov_decrease(derivative_lift(N, degree), denominator, Q, degree * rate)
@@ -158,6 +180,11 @@ def lifted_factor(mode: Mode, degree: int, rate: Fraction, time: Time) -> int:
 
     The vanishing forms of a certificate are added to the multiplied decrease. Whatever they are
     multiplied with, they vanish, so no proof depends on it; only a search does.
+
+    Parameters
+    ----------
+    mode, degree, rate, time
+        As for `lifted_decrease`.
     """
     if time is Time.CONTINUOUS:
         return lyapunov_factor(mode.A.denominator, degree * rate)

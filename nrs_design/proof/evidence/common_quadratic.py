@@ -40,6 +40,9 @@ class CommonQuadratic(AbstractEvidence):
     """
 
     kind: ClassVar[str] = "common-quadratic"
+    bounds_at_once: ClassVar[bool] = True
+    attains_rate: ClassVar[bool] = True
+    covers_mixtures: ClassVar[bool] = True
 
     Q: tuple[tuple[int, ...], ...]
     denominator_log2: int
@@ -49,6 +52,16 @@ class CommonQuadratic(AbstractEvidence):
     def shows(self) -> Shows:
         """Stability."""
         return Shows.STABILITY
+
+    @property
+    def is_common_quadratic(self) -> bool:
+        """True: that is what it is."""
+        return True
+
+    @property
+    def keeps_bound_in_mixtures(self) -> bool:
+        """True: the level sets of V are convex."""
+        return True
 
     def proved_rate(self, system: SwitchedSystem) -> Fraction:
         """Return the claimed rate."""
@@ -99,7 +112,17 @@ def find_rate_misfit(rate: Fraction, time: Time) -> str | None:
 
 
 def decay_claim(system: SwitchedSystem, rate: Fraction, norm: str) -> str:
-    """State that every solution decays at a rate in a norm."""
+    """State that every solution decays at a rate in a norm.
+
+    Parameters
+    ----------
+    system : SwitchedSystem
+        With the time axis.
+    rate : Fraction
+        The alpha in 1/s, or rho per step.
+    norm : str
+        In words or symbols.
+    """
     continuous = system.time is Time.CONTINUOUS
     law = "x' = A x" if continuous else "x+ = A x"
     bound = "exp(-alpha t) |x(0)|" if continuous else "rho^t |x(0)|"

@@ -37,6 +37,17 @@ def enclosed_form(
     """Return integers below the true form, for all times from one to another, times a number > 0.
 
     The form ``Q_i - E' Q_j E`` with ``E = G exp(B t)`` is enclosed in balls.
+
+    Parameters
+    ----------
+    edge : Edge
+        Mode, next mode and reset.
+    times : tuple of Fraction
+        The first and the last, in s.
+    Q : mapping
+        The forms by mode.
+    rate : Fraction
+        The alpha in 1/s.
     """
     with precision():
         E = exponential(shifted(edge.source.A, rate), *times)

@@ -48,6 +48,7 @@ class ModePolynomial(AbstractEvidence):
 
     kind: ClassVar[str] = "mode-polynomial"
     allows_unequal_modes: ClassVar[bool] = True
+    attains_rate: ClassVar[bool] = True
 
     degree: int
     quadratic: ModeQuadratic
@@ -59,6 +60,11 @@ class ModePolynomial(AbstractEvidence):
         return Shows.STABILITY
 
     @property
+    def leaving(self) -> tuple[str, ...]:
+        """Modes in which V_i need not decrease, because they have a longest dwell time."""
+        return self.quadratic.leaving
+
+    @property
     def lifted(self) -> ModeQuadratic:
         """The Q_i as evidence for the lifted modes, up to forms that vanish."""
         return replace(self.quadratic, rate=self.quadratic.rate**self.degree)
@@ -66,6 +72,11 @@ class ModePolynomial(AbstractEvidence):
     def fits(self, switching: Switching) -> bool:
         """Tell whether every mode in force is one of the modes."""
         return self.quadratic.fits(switching)
+
+    @property
+    def keeps_bound_in_mixtures(self) -> bool:
+        """True: its bound has a constant factor anyway."""
+        return True
 
     def proved_rate(self, system: SwitchedSystem) -> Fraction:
         """Return the claimed rate."""

@@ -68,6 +68,7 @@ class ModeQuadratic(AbstractEvidence):
 
     kind: ClassVar[str] = "mode-quadratic"
     allows_unequal_modes: ClassVar[bool] = True
+    attains_rate: ClassVar[bool] = True
 
     functions: tuple[tuple[str, Matrix], ...]
     denominator_log2: int
@@ -87,6 +88,11 @@ class ModeQuadratic(AbstractEvidence):
         nothing about it.
         """
         return not switching.fixed_ends
+
+    @property
+    def keeps_bound_in_mixtures(self) -> bool:
+        """True: its bound has a constant factor anyway."""
+        return True
 
     def proved_rate(self, system: SwitchedSystem) -> Fraction:
         """Return the claimed rate."""

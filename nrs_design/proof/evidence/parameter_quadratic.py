@@ -43,6 +43,8 @@ class ParameterQuadratic(AbstractEvidence):
     """
 
     kind: ClassVar[str] = "parameter-quadratic"
+    bounds_at_once: ClassVar[bool] = True
+    attains_rate: ClassVar[bool] = True
 
     low: Matrix
     high: Matrix
@@ -53,6 +55,11 @@ class ParameterQuadratic(AbstractEvidence):
     def shows(self) -> Shows:
         """Stability."""
         return Shows.STABILITY
+
+    @property
+    def keeps_bound_in_mixtures(self) -> bool:
+        """True: it is for continuous time."""
+        return True
 
     def proved_rate(self, system: SwitchedSystem) -> Fraction:
         """Return the claimed rate."""

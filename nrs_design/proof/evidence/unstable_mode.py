@@ -47,6 +47,11 @@ class UnstableMode(AbstractEvidence):
         """Instability."""
         return Shows.INSTABILITY
 
+    @property
+    def names_unstable_mode(self) -> bool:
+        """True: that is what it shows."""
+        return True
+
     def fits(self, switching: Switching) -> bool:
         """Tell whether no rule forces a signal to leave the mode."""
         return switching.stay(self.mode).longest is None

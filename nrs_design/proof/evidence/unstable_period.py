@@ -160,7 +160,19 @@ def expands(
     doublings: int,
     edges: tuple[int, ...] = (),
 ) -> bool:
-    """TRUSTED: decide whether ``|tr M^k| > n`` is certain, k two to the power of doublings."""
+    """TRUSTED: decide whether ``|tr M^k| > n`` is certain, k two to the power of doublings.
+
+    Parameters
+    ----------
+    system : SwitchedSystem
+        The modes.
+    steps : tuple
+        Mode and time of every step of the period, in s or steps.
+    doublings : int
+        How often M is squared.
+    edges : tuple of int
+        Which of several resets each switch takes.
+    """
     with precision():
         power = monodromy(system, steps, edges)
         for _ in range(doublings):
@@ -178,6 +190,11 @@ def monodromy(
 
     Every step is followed by the reset of the switch to the next mode, the last one by that of the
     switch back to the first.
+
+    Parameters
+    ----------
+    system, steps, edges
+        As for `expands`.
     """
     modes, maps = {mode.name: mode for mode in system.modes}, system.switching.maps()
     n = system.order

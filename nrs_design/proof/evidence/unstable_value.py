@@ -52,14 +52,14 @@ class UnstableValue(AbstractEvidence):
     def fits(self, switching: Switching) -> bool:
         """Tell whether there is a constant parameter; one mode alone meets no reset."""
         return bool(switching.fixed_ends) and (
-            not switching.resets or isinstance(self.part, UnstableMode)
+            not switching.resets or self.part.names_unstable_mode
         )
 
     def find_misfit(self, system: SwitchedSystem) -> str | None:
         """Check the share, and the part at that share."""
         if not _is_share(self.share):
             return "the share is not between 0 and 1, or has too many digits"
-        if not isinstance(self.part, PARTS):
+        if type(self.part) not in PARTS:
             return "the part is not of a kind that shows instability"
         return self.part.find_fault(system_at(system, self.share))
 

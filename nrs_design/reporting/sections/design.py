@@ -4,14 +4,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from fractions import Fraction
 from typing import TYPE_CHECKING
 
 from nrs_design.controllers.controller_design import ControllerDesign
-from nrs_design.controllers.gains import MOTION, UNITS, gains_of
-from nrs_design.controllers.laws import Admittance, Law, PositionControl
+from nrs_design.controllers.float32 import exact_decimal
 from nrs_design.design.transfer import TransferFunction, poles
-from nrs_design.models.plant import build_plant
 from nrs_design.reporting.document import Block, Illustration, Paragraph, Section, Table
 from nrs_design.reporting.figures.complex_plane import draw_root_locus
 from nrs_design.reporting.figures.impedance import draw_displayed_impedance, draw_sensitivity
@@ -21,6 +18,7 @@ from nrs_design.spec import ImpedanceControllerSpec, InteractionDesignSpec
 
 if TYPE_CHECKING:
     from nrs_design.design.evidence import DesignEvidence, ForceEvidence, ImpedanceEvidence
+    from nrs_design.pipeline import Designed
 
 # More controllers than these make a table too wide for a page, or a figure too full.
 _COLUMNS = 4
@@ -29,10 +27,15 @@ _CURVES = 6
 _NOMINAL = (
     "Design values in floating point, for contact at the nominal stiffness; no part of the proof."
 )
+_SUDDEN = (
+    "Viscoelastic contact: the stiffness is that which a sudden motion meets, and up to the "
+    "stiffness limit all parameters of the law grow in proportion to it."
+)
 _IMPEDANCE_ROWS: tuple[tuple[str, Callable[[ImpedanceEvidence], str]], ...] = (
     ("Desired impedance [N·m·s/rad]", lambda item: number(item.problem.desired, 5)),
-    ("Nominal stiffness [N·m/rad]", lambda item: number(item.problem.loop.stiffness, 6)),
-    ("Nominal damping [N·m·s/rad]", lambda item: number(item.problem.loop.damping, 5)),
+    ("Nominal stiffness [N·m/rad]", lambda item: number(item.problem.loop.contact.stiffness, 6)),
+    ("Stiffness beside the damper [N·m/rad]", lambda item: _given(item, "parallel_stiffness")),
+    ("Nominal damping [N·m·s/rad]", lambda item: _given(item, "damping", "0")),
     ("Mt at the optimum [kg·m²]", lambda item: number(item.optimum.Mt, 6)),
     ("Bt at the optimum [N·m·s/rad]", lambda item: number(item.optimum.Bt, 6)),
     ("Mt as shipped [kg·m²]", lambda item: number(item.Mt, 6)),
@@ -57,10 +60,9 @@ _FORCE_ROWS: tuple[tuple[str, Callable[[ForceEvidence], str]], ...] = (
 )
 
 
-def design_sections(
-    spec: InteractionDesignSpec, design: ControllerDesign, evidence: DesignEvidence | None
-) -> tuple[Section, ...]:
+def design_sections(designed: Designed, evidence: DesignEvidence | None) -> tuple[Section, ...]:
     """Describe a design; without evidence only its gains."""
+    spec, design = designed.spec, designed.design
     gains = Section("Designed gains", (_gain_table(design), *_ranges(spec, design)))
     if evidence is None:
         text = (
@@ -68,7 +70,7 @@ def design_sections(
             "loops are stable."
         )
         return (Section("Designed gains", (*gains.blocks, Paragraph(text))),)
-    parts = [gains, _motion_section(spec, design, evidence)]
+    parts = [gains, _motion_section(designed, evidence)]
     if evidence.impedance:
         parts.append(_impedance_section(evidence.impedance))
     if evidence.force:
@@ -79,15 +81,13 @@ def design_sections(
 
 
 def _gain_table(design: ControllerDesign) -> Table:
-    laws: dict[str, Law] = {controller.name: controller.law for controller in design.controllers}
     rows = []
-    for name, gains in gains_of(design).items():
-        kind = "motion" if name == MOTION else _kind(laws[name])
-        for gain, text in gains.items():
-            unit = UNITS[kind, gain].replace("*", "·").replace("^2", "²")
-            rows.append((name, gain, number(float(Fraction(text)), 6), unit, text))
-        if not gains:
-            rows.append((name, "none: the motion loop alone", "", "", ""))
+    for name, law in design.laws.items():
+        for gain, value in law.gains.items():
+            unit = law.units[gain].replace("*", "·").replace("^2", "²")
+            rows.append((name, gain, number(float(value), 6), unit, exact_decimal(value)))
+        if not law.gains:
+            rows.append((name, "no gain: the motion loop alone", "", "", ""))
     columns = ("Controller", "Gain", "Value", "Unit", "Exact value that ships (float32)")
     return Table("Gains of one axis", columns, tuple(rows))
 
@@ -113,15 +113,8 @@ def _ranges(spec: InteractionDesignSpec, design: ControllerDesign) -> tuple[Bloc
     return Paragraph(text), Table("Declared ranges of gains", columns, tuple(rows))
 
 
-def _kind(law: Law) -> str:
-    if isinstance(law, PositionControl):
-        return "position"
-    return "impedance" if isinstance(law, Admittance) else "force"
-
-
-def _motion_section(
-    spec: InteractionDesignSpec, design: ControllerDesign, evidence: DesignEvidence
-) -> Section:
+def _motion_section(designed: Designed, evidence: DesignEvidence) -> Section:
+    spec, design = designed.spec, designed.design
     G = evidence.motion
     text = (
         f"Motion loop in use: G(s) = ({polynomial(G.numerator, 6)}) / "
@@ -130,7 +123,7 @@ def _motion_section(
     )
     return Section(
         "Motion loop",
-        (Paragraph(text), _motion_table(design, evidence), _motion_locus(spec, design, evidence)),
+        (Paragraph(text), _motion_table(design, evidence), _motion_locus(designed, evidence)),
     )
 
 
@@ -175,10 +168,8 @@ def _motion_table(design: ControllerDesign, evidence: DesignEvidence) -> Table:
     )
 
 
-def _motion_locus(
-    spec: InteractionDesignSpec, design: ControllerDesign, evidence: DesignEvidence
-) -> Illustration:
-    actuator = build_plant(spec).actuator
+def _motion_locus(designed: Designed, evidence: DesignEvidence) -> Illustration:
+    design, actuator = designed.design, designed.plant.actuator
     gain, zero, Kd = float(actuator.gain), float(design.motion.zero), float(design.motion.Kd)
     lag = float(actuator.time_constant)
     open_loop = TransferFunction((gain, gain * zero), (lag, 1.0, 0.0))
@@ -211,13 +202,24 @@ def _impedance_section(items: tuple[ImpedanceEvidence, ...]) -> Section:
         f"above 1 (gray line) amplifies disturbances of that frequency.{rest}",
         draw_sensitivity(drawn),
     )
+    rows = [(label, [value(item) for item in items]) for label, value in _IMPEDANCE_ROWS]
+    rows = [(label, values) for label, values in rows if any(values)]
     tables = _by_controller(
         "Impedance controllers",
-        [label for label, _ in _IMPEDANCE_ROWS],
+        [label for label, _ in rows],
         [item.name for item in items],
-        [[value(item) for _, value in _IMPEDANCE_ROWS] for item in items],
+        [list(column) for column in zip(*(values for _, values in rows), strict=True)],
     )
-    return Section("Impedance control", (Paragraph(_NOMINAL), *tables, displayed, sensitivity))
+    paragraphs = [Paragraph(_NOMINAL)]
+    if any(item.problem.loop.contact.remembers for item in items):
+        paragraphs.append(Paragraph(_SUDDEN))
+    return Section("Impedance control", (*paragraphs, *tables, displayed, sensitivity))
+
+
+def _given(item: ImpedanceEvidence, key: str, default: str = "") -> str:
+    """Write a parameter of the nominal contact, if its law has it."""
+    value = item.problem.loop.contact.given().get(key)
+    return number(float(value), 5) if value is not None else default
 
 
 def _force_section(evidence: DesignEvidence) -> Section:

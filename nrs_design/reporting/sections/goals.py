@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from nrs_design.design.goals import MEANING, Achieved
+from nrs_design.design.goals import Achieved
+from nrs_design.design.measures import MEANING
 from nrs_design.reporting.document import Block, Bullets, Paragraph, Section, Table
 from nrs_design.spec import InteractionDesignSpec, doubt_spec
 
@@ -32,7 +33,7 @@ def goal_facts(evidence: DesignEvidence | None) -> tuple[tuple[str, str], ...]:
     goals = [f for item in evidence.measured for f in item.achieved if f.goal is not None]
     missed = sum(not found.met for found in goals)
     if not goals:
-        return (("Design goals", "none set"),)
+        return (("Design goals", "no goals set"),)
     return (("Design goals", f"{missed} of {len(goals)} MISSED" if missed else "all met"),)
 
 

@@ -8,14 +8,14 @@ from typing import TYPE_CHECKING
 
 from nrs_design import __version__
 from nrs_design.proof.bounds import at_least, at_most, lower, upper
-from nrs_design.proof.evidence import AbstractEvidence, ModePolynomial, ModeQuadratic, Shows
+from nrs_design.proof.evidence import AbstractEvidence, Shows
 from nrs_design.proof.system import SwitchedSystem, Time
 from nrs_design.reporting.formatting import plural, shortened
 from nrs_design.spec import InteractionDesignSpec, RobotSpec
 
 if TYPE_CHECKING:
     from nrs_design.pipeline import Result
-    from nrs_design.search.certify import Certification
+    from nrs_design.search.certification import Certification
 
 NO_CLAIM = (
     "Neither a proof nor a refutation was found. This is no statement about stability: the modes "
@@ -61,7 +61,7 @@ def facts(result: Result) -> tuple[tuple[str, str], ...]:
         *_provenance(result),
         ("Package", f"nrs-design {__version__}"),
         ("SHA-256 of the spec", result.loaded.sha256),
-        ("Certificate id", result.certificate.id if result.certificate else "none"),
+        ("Certificate id", result.certificate.id if result.certificate else "no certificate"),
     ]
     return tuple(rows)
 
@@ -90,12 +90,9 @@ def _rate(system: SwitchedSystem, evidence: AbstractEvidence | None) -> list[tup
     rate = proved_rate(system, evidence)
     if evidence is None or rate is None:
         return []
-    up_to_a_constant = isinstance(evidence, ModeQuadratic | ModePolynomial)
-    constant = ", up to a constant factor" if up_to_a_constant else ""
-    open_end = ", and any slower one" if evidence.kind == "block-triangular" else ""
-    if open_end:
-        # The slowest block's rate itself is not reached where blocks are coupled.
-        constant = ", not attained, up to a constant factor"
+    constant = "" if evidence.attains_rate else ", not attained"
+    if not evidence.bounds_at_once:
+        constant += ", up to a constant factor"
     if system.time is Time.CONTINUOUS:
         text = at_least(rate, "1/s").removeprefix("= ")
         return [("Proved decay rate alpha", f"{text}{constant}")]

@@ -63,7 +63,17 @@ def modes_section(system: SwitchedSystem, rate: Fraction | None) -> Section:
 
 
 def hardest_modes(system: SwitchedSystem, Q: Array | None, limit: int) -> SwitchedSystem:
-    """Keep the modes that decay the slowest, at most so many, in the order of the system."""
+    """Keep the modes that decay the slowest, at most so many, in the order of the system.
+
+    Parameters
+    ----------
+    system : SwitchedSystem
+        All modes.
+    Q : ndarray or None
+        Of the norm in which they decay; without one, eigenvalues say which are slow.
+    limit : int
+        How many are kept.
+    """
     if len(system.modes) <= limit:
         return system
     if Q is None:

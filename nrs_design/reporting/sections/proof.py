@@ -8,30 +8,21 @@ from nrs_design.certificates.certificate import CommonQuadraticStatus
 from nrs_design.proof.evidence import AbstractEvidence, Shows
 from nrs_design.proof.system import SwitchedSystem, Time
 from nrs_design.reporting.document import Block, Bullets, Paragraph, Section
+from nrs_design.reporting.kinds import page_of
 from nrs_design.reporting.sections.head import NO_CLAIM
-from nrs_design.reporting.sections.meaning import (
-    bound_meaning,
-    corners_meaning,
-    covers_mixtures,
-    decision_meaning,
-    excluded_signals,
-    refutation_limits,
-    refutation_meaning,
-    rules_meaning,
-)
 from nrs_design.spec import InteractionDesignSpec
 from nrs_design.switched.assemble import has_ranges
 from nrs_design.switched.gain_box import KEPT_VELOCITY
 
 if TYPE_CHECKING:
     from nrs_design.pipeline import Result
-    from nrs_design.search.certify import Certification
+    from nrs_design.search.certification import Certification
 
 _NOT_COVERED_BY_A_DESIGN: tuple[str, ...] = (
     "Sampling, delay and quantization of the controller: the proof is in continuous time.",
     "Friction, backlash, and saturation of motor or driver.",
     "Loss of contact: no mode describes a compliant controller in free motion.",
-    "Tissue that does not follow the linear model of the spec, such as viscous creep or a "
+    "Tissue that does not follow the linear law of the spec, such as a creep of another kind or a "
     "stiffness that depends on depth.",
     "Parameter values outside the declared ranges, and motor constants other than those given.",
     "Coupling between the axes of the robot.",
@@ -41,10 +32,6 @@ _NOT_COVERED_BY_A_DESIGN: tuple[str, ...] = (
 _ILLUSTRATIONS = (
     "The figures and the numbers in the tables are floating-point illustrations and no part of "
     "the proof."
-)
-_NO_QUADRATIC = (
-    "That no common quadratic function exists says nothing about stability: a function of another "
-    "kind may exist."
 )
 
 
@@ -63,15 +50,10 @@ def proof_section(result: Result) -> Section:
 
 def _proved(result: Result, evidence: AbstractEvidence) -> tuple[Block, ...]:
     system = result.certification.system
-    design = isinstance(result.loaded.spec, InteractionDesignSpec)
-    proved = [
-        evidence.claim(system),
-        bound_meaning(system, evidence),
-        *rules_meaning(system, evidence),
-        decision_meaning(system, evidence),
-    ]
+    page, design = page_of(system, evidence), isinstance(result.loaded.spec, InteractionDesignSpec)
+    proved = [evidence.claim(system), *page.meaning()]
     if has_ranges(result.loaded.spec):
-        proved.append(corners_meaning(system, evidence))
+        proved += page.between_corners()
     if design:
         proved.append(
             "The gains in the proof are the single-precision numbers listed below, not their "
@@ -80,7 +62,7 @@ def _proved(result: Result, evidence: AbstractEvidence) -> tuple[Block, ...]:
     common = _NOT_COVERED_BY_A_DESIGN if design else _not_covered(system, evidence)
     blocks: list[Block] = [
         Bullets("Proved", tuple(proved)),
-        Bullets("Not proved", (*excluded_signals(system, evidence), *_memory(system), *common)),
+        Bullets("Not proved", (*page.limits(), *_memory(system), *common)),
     ]
     if result.certification.common_quadratic is CommonQuadraticStatus.IMPOSSIBLE:
         blocks.append(
@@ -106,20 +88,20 @@ def _not_covered(system: SwitchedSystem, evidence: AbstractEvidence) -> tuple[st
     return (
         "Whether the matrices describe the real system: they are taken from the spec as they are.",
         f"Inputs, disturbances, and {jumps}.",
-        f"Dynamics outside the modes{outside if covers_mixtures(evidence) else ''}.",
+        f"Dynamics outside the modes{outside if evidence.covers_mixtures else ''}.",
         "Sampling, delay, quantization, friction and saturation, unless the matrices contain them.",
         "The size of the states in physical units.",
     )
 
 
 def _refuted(certification: Certification, evidence: AbstractEvidence) -> tuple[Block, ...]:
-    system = certification.system
+    page = page_of(certification.system, evidence)
     return (
-        Bullets("Refuted", (evidence.claim(system), *refutation_meaning(system, evidence))),
+        Bullets("Refuted", (evidence.claim(certification.system), *page.meaning())),
         Bullets(
             "Not said",
             (
-                *refutation_limits(evidence),
+                *page.limits(),
                 "The figures are floating-point illustrations and no part of the decision.",
             ),
         ),
@@ -135,8 +117,10 @@ def _inconclusive(certification: Certification) -> tuple[Block, ...]:
     if _every_mode_is_stable(certification):
         texts.append("Every mode by itself is stable, which was decided exactly.")
     if certification.common_quadratic is CommonQuadraticStatus.IMPOSSIBLE:
-        texts += [item.claim(certification.system) for item in certification.statements]
-        texts.append(_NO_QUADRATIC)
+        statements = certification.statements
+        pages = [page_of(certification.system, statement) for statement in statements]
+        texts += [statement.claim(certification.system) for statement in statements]
+        texts += dict.fromkeys(text for page in pages for text in page.meaning())
         may = "The system may be stable with a function of another kind"
     else:
         may = (

@@ -8,7 +8,7 @@ from nrs_design.reporting.document import Bullets, Section, Table
 from nrs_design.reporting.formatting import number
 
 if TYPE_CHECKING:
-    from nrs_design.search.certify import Certification
+    from nrs_design.search.certification import Certification
 
 
 def assumptions_section(certification: Certification) -> Section:

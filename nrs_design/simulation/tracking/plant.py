@@ -139,7 +139,19 @@ class Stepper:
 
     @staticmethod
     def at(drives: DriveArrays, h: float, mass: Array, bias: Array) -> Stepper:
-        """Return the stepper for mass matrices and bias of the mechanism."""
+        """Return the stepper for mass matrices and bias of the mechanism.
+
+        Parameters
+        ----------
+        drives : DriveArrays
+            The motors of the joints.
+        h : float
+            Step in s.
+        mass : ndarray, shape (..., 3, 3)
+            Mass matrices.
+        bias : ndarray, shape (..., 3)
+            Torques that do not depend on the acceleration, N m.
+        """
         total = mass + np.eye(3) * drives.inertia[..., None]
         inertia = total + np.eye(3) * (h / 2 * drives.damping)[..., None]
         return Stepper(

@@ -36,6 +36,11 @@ def test_measured_unless_it_says_otherwise(tmp_path):
     assert not read(tmp_path, GOOD).source.synthetic
 
 
+def test_a_line_end_within_the_header(tmp_path):
+    with pytest.raises(DataError, match="header line that is no CSV"):
+        read(tmp_path, GOOD.replace("deflection", "defl\rection"))
+
+
 def test_foreign_names(tmp_path):
     text = GOOD.replace("force_N", "Fz (raw)").replace("time_s", "t")
     found = read(tmp_path, text, ["force_N=Fz (raw)", "time_s = t"])

@@ -3,7 +3,7 @@
 import numpy as np
 
 from nrs_design.identification.tissue import fit_record
-from nrs_design.models.tissue import (
+from nrs_design.models.contact import (
     Elastic,
     HuntCrossley,
     KelvinBoltzmann,

@@ -6,7 +6,7 @@ import pytest
 
 from nrs_design.errors import DataError
 from nrs_design.identification.tissue import identify_tissue
-from nrs_design.models.tissue import LAWS, Elastic, HuntCrossley, KelvinVoigt, Maxwell
+from nrs_design.models.contact import LAWS, Elastic, HuntCrossley, KelvinVoigt, Maxwell
 from tests.identification import synthetic
 from tests.identification.support import quick, record, slow
 

@@ -5,7 +5,7 @@ import pytest
 
 from nrs_design.identification.tissue import fit_record, output_error
 from nrs_design.identification.tissue.output_error import rmse
-from nrs_design.models.tissue import LAWS, Elastic, HuntCrossley, KelvinVoigt, Maxwell
+from nrs_design.models.contact import LAWS, Elastic, HuntCrossley, KelvinVoigt, Maxwell
 from tests.identification import synthetic
 from tests.identification.support import quick, record, slow
 

@@ -5,7 +5,7 @@ import pytest
 
 from nrs_design.identification.statistics import student_quantile
 from nrs_design.identification.tissue import fit_model
-from nrs_design.models.tissue import Elastic
+from nrs_design.models.contact import Elastic
 from tests.identification import synthetic
 from tests.identification.support import quick, record
 

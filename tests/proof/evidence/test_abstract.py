@@ -1,11 +1,20 @@
 """What the trusted walk over the conditions refuses, whatever the evidence says of itself."""
 
 from dataclasses import dataclass, replace
+from fractions import Fraction
 
 import numpy as np
 import pytest
 
-from nrs_design.proof.evidence import AbstractEvidence, Shows
+from nrs_design.proof.evidence import (
+    KINDS,
+    AbstractEvidence,
+    BlockTriangular,
+    CommonPolynomial,
+    CommonQuadratic,
+    Shows,
+    UnstableMode,
+)
 from nrs_design.proof.exact import MAX_WORK
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.system import Mode, Reset, Switching
@@ -139,3 +148,41 @@ def test_the_rate_is_one_of_decay_or_there_is_none(example):
     rate = evidence.proved_rate(system)
     assert (rate is None) == (evidence.shows is not Shows.STABILITY)
     assert rate is None or rate > 0
+
+
+FREE = {"common-quadratic", "common-polynomial", "parameter-quadratic"}
+RULED = {"mode-quadratic", "mode-polynomial"}
+FACTS = {
+    # The careful answer is no; these kinds show more.
+    "allows_unequal_modes": RULED | {"unstable-mode"},
+    "attains_rate": FREE | RULED,
+    "bounds_at_once": FREE,
+    "covers_mixtures": {"common-quadratic", "common-polynomial", "block-triangular"},
+    "is_common_quadratic": {"common-quadratic"},
+    # The blocks of the example have polynomials.
+    "keeps_bound_in_mixtures": {"common-quadratic", "parameter-quadratic"} | RULED,
+    "names_unstable_mode": {"unstable-mode"},
+}
+
+
+@pytest.mark.parametrize("fact", FACTS)
+def test_facts_of_the_kinds(fact):
+    pairs = [genuine(example) for example in SYSTEMS]
+    assert {item.kind for _, item in pairs} == {kind.kind for kind in KINDS}
+    assert {item.kind for _, item in pairs if getattr(item, fact)} == FACTS[fact]
+
+
+@pytest.mark.parametrize("fact", FACTS)
+def test_a_kind_that_says_nothing_of_itself_claims_nothing(fact):
+    assert getattr(Claimed(), fact) is False
+
+
+def test_blocks_say_of_themselves_what_their_parts_do():
+    one, slow = CommonQuadratic(((1,),), 0, Fraction(1)), UnstableMode("m0", "0")
+    form = CommonPolynomial(1, ((1,),), 0, (), Fraction(1))
+    quadratic = BlockTriangular(((0,), (1,)), ((0, one), (1, one)))
+    mixed = BlockTriangular(((0,), (1,)), ((0, one), (1, form)))
+    unstable = BlockTriangular(((0,), (1,)), ((1, slow),))
+    assert [b.is_common_quadratic for b in (quadratic, mixed, unstable)] == [True, False, False]
+    assert [b.keeps_bound_in_mixtures for b in (quadratic, mixed)] == [True, False]
+    assert [b.names_unstable_mode for b in (quadratic, mixed, unstable)] == [False, False, True]

@@ -6,6 +6,7 @@ from time import process_time
 
 import pytest
 
+from nrs_design.certificates.certificate import CommonQuadraticStatus, Verdict
 from nrs_design.proof.evidence import (
     BlockTriangular,
     CommonQuadratic,
@@ -14,7 +15,7 @@ from nrs_design.proof.evidence import (
 )
 from nrs_design.proof.evidence.block_triangular import diagonal_block
 from nrs_design.proof.system import Switching, Time
-from nrs_design.search.certify import CommonQuadraticStatus, Verdict, certify
+from nrs_design.search.certify import certify
 from tests.proof.systems import dayawansa_martin, family, genuine, resets_between
 
 ONE = CommonQuadratic(((1,),), 0, Fraction(1, 2))

@@ -4,10 +4,12 @@ from dataclasses import replace
 
 import pytest
 
+from nrs_design.certificates.certificate import CommonQuadraticStatus
 from nrs_design.proof.evidence import NoCommonQuadratic
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.system import Mode, Switching
-from nrs_design.search.certify import CommonQuadraticStatus, Limits, certify
+from nrs_design.search.certification import Limits
+from nrs_design.search.certify import certify
 from tests.proof.systems import (
     ando_shih,
     dayawansa_martin,

@@ -5,6 +5,7 @@ from fractions import Fraction
 
 import pytest
 
+from nrs_design.certificates.certificate import CommonQuadraticStatus, Verdict
 from nrs_design.proof.evidence import (
     CommonQuadratic,
     UnstableMixture,
@@ -14,7 +15,8 @@ from nrs_design.proof.evidence import (
 )
 from nrs_design.proof.second_opinion import agrees
 from nrs_design.proof.system import FixedParameter, Switching, Time
-from nrs_design.search.certify import CommonQuadraticStatus, Limits, Verdict, certify
+from nrs_design.search.certification import Limits
+from nrs_design.search.certify import certify
 from tests.proof.systems import (
     PAIR,
     PAIRS,

@@ -1,0 +1,35 @@
+"""Laws of contact with tissue, tool or hand (thesis 2.5 and fig. 2.18), one file for each."""
+
+from collections.abc import Mapping
+from types import MappingProxyType
+
+from nrs_design.models.contact.elastic import Elastic
+from nrs_design.models.contact.hunt_crossley import HuntCrossley
+from nrs_design.models.contact.kelvin_boltzmann import KelvinBoltzmann
+from nrs_design.models.contact.kelvin_voigt import KelvinVoigt
+from nrs_design.models.contact.law import AbstractContactLaw, AbstractLinearLaw
+from nrs_design.models.contact.maxwell import Maxwell
+from nrs_design.models.contact.motion import Motion
+
+# By name, the simplest first.
+LAWS: Mapping[str, type[AbstractContactLaw]] = MappingProxyType(
+    {law.name: law for law in (Elastic, KelvinVoigt, Maxwell, KelvinBoltzmann, HuntCrossley)}
+)
+
+# Those that can enter a design and a proof.
+LINEAR_LAWS: Mapping[str, type[AbstractLinearLaw]] = MappingProxyType(
+    {law.name: law for law in LAWS.values() if issubclass(law, AbstractLinearLaw)}
+)
+
+__all__ = [
+    "LAWS",
+    "LINEAR_LAWS",
+    "AbstractContactLaw",
+    "AbstractLinearLaw",
+    "Elastic",
+    "HuntCrossley",
+    "KelvinBoltzmann",
+    "KelvinVoigt",
+    "Maxwell",
+    "Motion",
+]

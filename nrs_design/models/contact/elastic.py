@@ -1,0 +1,50 @@
+"""Elastic tissue, ``F = k delta`` (thesis 2.5)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import TYPE_CHECKING, ClassVar
+
+from nrs_design.models.contact.law import STIFFNESS, AbstractLinearLaw, Number, Reaction
+
+if TYPE_CHECKING:
+    from nrs_design.models.contact.motion import Array, Motion
+
+
+@dataclass(frozen=True)
+class Elastic(AbstractLinearLaw):
+    """A spring.
+
+    Parameters
+    ----------
+    k : float or Fraction
+        Stiffness in N/m (N m/rad).
+    """
+
+    name: ClassVar[str] = "elastic"
+    formula: ClassVar[str] = "F = k δ"
+    kinds: ClassVar[tuple[str, ...]] = (STIFFNESS,)
+    keys: ClassVar[tuple[str, ...]] = ("stiffness",)
+    front: ClassVar[str] = "k"
+
+    k: Number
+
+    def simulate(self, motion: Motion) -> Array:
+        """Return the reaction at the samples, in N (N m)."""
+        return float(self.k) * motion.deflection
+
+    def sensitivities(self, motion: Motion) -> Array:
+        """Return its derivative by log k, shape (n, 1)."""
+        return self.simulate(motion)[:, None]
+
+    @property
+    def impedance(self) -> tuple[tuple[float, ...], tuple[float, ...]]:
+        """``k / s``."""
+        return (0.0, float(self.k)), (1.0, 0.0)
+
+    @property
+    def reaction(self) -> Reaction:
+        """``delta' = v``, ``F = k delta``."""
+        zero, one = Fraction(0), Fraction(1)
+        return Reaction(((zero,),), (one,), self.exact)

@@ -1,0 +1,76 @@
+"""Hunt-Crossley tissue, ``F = rho delta^phi + lam delta^phi ddelta`` (thesis 2.18)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, ClassVar
+
+from nrs_design.models.contact.law import AbstractContactLaw
+
+if TYPE_CHECKING:
+    from nrs_design.models.contact.motion import Array, Motion
+
+# The thesis takes phi between these, and then 1.2.
+LEAST_EXPONENT, LARGEST_EXPONENT = 1.1, 1.3
+
+
+@dataclass(frozen=True)
+class HuntCrossley(AbstractContactLaw):
+    """A spring and a damper that both stiffen with the deflection; no force without contact.
+
+    Parameters
+    ----------
+    rho : float
+        In N/m^phi (N m/rad^phi).
+    lam : float
+        In N s/m^(phi+1) (N m s/rad^(phi+1)).
+    phi : float
+        Exponent.
+    """
+
+    name: ClassVar[str] = "hunt-crossley"
+    formula: ClassVar[str] = "F = ρ δ^φ + λ δ^φ δ' in contact"
+    kinds: ClassVar[tuple[str, ...]] = ("power stiffness", "power damping", "exponent")
+
+    rho: float
+    lam: float
+    phi: float
+
+    def simulate(self, motion: Motion) -> Array:
+        """Return the reaction at the samples, in N (N m); 0 where the deflection is negative."""
+        import numpy as np
+
+        power = np.maximum(motion.deflection, 0.0) ** self.phi
+        return np.asarray(power * (self.rho + self.lam * motion.velocity))
+
+    def sensitivities(self, motion: Motion) -> Array:
+        """Return its derivatives by log rho, log lam and log phi, shape (n, 3)."""
+        import numpy as np
+
+        contact = np.maximum(motion.deflection, 0.0)
+        power = contact**self.phi
+        # delta^phi log(delta) goes to 0 with delta.
+        logarithm = np.log(contact, out=np.zeros_like(contact), where=contact > 0)
+        spring, damper = self.rho * power, self.lam * power * motion.velocity
+        return np.column_stack([spring, damper, self.phi * logarithm * (spring + damper)])
+
+    def at_pivot(self, radius: float) -> HuntCrossley:
+        """Return ``rho r^(phi+1)`` and ``lam r^(phi+2)``; the exponent stays."""
+        return HuntCrossley(
+            self.rho * radius ** (self.phi + 1), self.lam * radius ** (self.phi + 2), self.phi
+        )
+
+    @classmethod
+    def units(cls, *, rotational: bool) -> tuple[str, ...]:
+        """Return the units of rho and lam; the exponent has none."""
+        force, length = ("N*m", "rad") if rotational else ("N", "m")
+        return f"{force}/{length}^φ", f"{force}*s/{length}^(φ+1)", ""
+
+    def tangent(self, deflection: float) -> tuple[float, float]:
+        """Return stiffness and damping of small motions about a deflection.
+
+        ``k = phi rho delta0^(phi-1)`` and ``b = lam delta0^phi``: how this law enters a linear
+        design.
+        """
+        k = self.phi * self.rho * deflection ** (self.phi - 1)
+        return k, self.lam * deflection**self.phi

@@ -1,0 +1,131 @@
+"""Kelvin-Boltzmann tissue, the standard linear solid (thesis 2.5).
+
+In a loop its second state is the deflection d of the damper: ``F = k2 (delta - d)`` and
+``b d' = k2 (delta - d) - k1 d``. With the force for a state, as the thesis writes the law, it would
+jump with k2; d is a position and stays. Every entry is affine in k1, in k2 and in 1/b.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import TYPE_CHECKING, ClassVar
+
+from nrs_design.models.contact.law import (
+    DAMPING,
+    STIFFNESS,
+    AbstractLinearLaw,
+    Number,
+    Reaction,
+)
+
+if TYPE_CHECKING:
+    from nrs_design.models.contact.motion import Array, Motion
+
+
+@dataclass(frozen=True)
+class KelvinBoltzmann(AbstractLinearLaw):
+    """A spring k2 in a row with a spring k1 beside a damper b.
+
+    Parameters
+    ----------
+    k1, k2 : float or Fraction
+        Stiffnesses in N/m (N m/rad).
+    b : float or Fraction
+        Damping in N s/m (N m s/rad).
+    """
+
+    name: ClassVar[str] = "kelvin-boltzmann"
+    formula: ClassVar[str] = "F + η3 F' = η1 δ + η2 δ'"
+    kinds: ClassVar[tuple[str, ...]] = (STIFFNESS, STIFFNESS, DAMPING)
+    keys: ClassVar[tuple[str, ...]] = ("parallel_stiffness", "series_stiffness", "damping")
+    inverse: ClassVar[frozenset[str]] = frozenset({"b"})
+    front: ClassVar[str] = "k2"
+    remembers: ClassVar[bool] = True
+    states: ClassVar[tuple[str, ...]] = ("delta [rad]", "damper deflection [rad]")
+
+    k1: Number
+    k2: Number
+    b: Number
+
+    @classmethod
+    def from_eta(cls, eta1: float, eta2: float, eta3: float) -> KelvinBoltzmann:
+        """Return the elements that have these coefficients.
+
+        ``k2 = eta2/eta3``, ``k1 = eta1 k2/(k2 - eta1)``, ``b = eta3 (k1 + k2)``.
+
+        Parameters
+        ----------
+        eta1 : float
+            In N/m.
+        eta2 : float
+            In N s/m.
+        eta3 : float
+            In s.
+
+        Raises
+        ------
+        ValueError
+            If ``eta2/eta3 <= eta1``: no positive elements have such coefficients.
+        """
+        k2 = eta2 / eta3
+        if not k2 > eta1 > 0:
+            raise ValueError(f"eta2/eta3 = {k2:g} must be above eta1 = {eta1:g}, both positive")
+        k1 = eta1 * k2 / (k2 - eta1)
+        return cls(k1, k2, eta3 * (k1 + k2))
+
+    @property
+    def eta(self) -> tuple[float, float, float]:
+        """Coefficients eta1 in N/m, eta2 in N s/m and eta3 in s (N m/rad, N m s/rad, s)."""
+        k1, k2, b = map(float, self.values)
+        total = k1 + k2
+        return k1 * k2 / total, b * k2 / total, b / total
+
+    @property
+    def relaxation_time(self) -> float:
+        """``eta3`` in s."""
+        return self.eta[2]
+
+    def simulate(self, motion: Motion) -> Array:
+        """Return the reaction at the samples, in N (N m).
+
+        The law is a spring eta1 beside a Maxwell element with stiffness ``k2 - eta1``.
+        """
+        from nrs_design.models.contact.relaxation import relax
+
+        eta1, _, eta3 = self.eta
+        return eta1 * motion.deflection + (float(self.k2) - eta1) * relax(motion, eta3)[0]
+
+    def sensitivities(self, motion: Motion) -> Array:
+        """Return its derivatives by log k1, log k2 and log b, shape (n, 3)."""
+        import numpy as np
+
+        from nrs_design.models.contact.relaxation import relax
+
+        eta1, _, eta3 = self.eta
+        y, slope = relax(motion, eta3)
+        arm = float(self.k2) - eta1
+        # By log eta1, log arm and log eta3, and then by the chain rule.
+        inner = np.column_stack([eta1 * motion.deflection, arm * y, arm * slope])
+        q = float(self.k2 / (self.k1 + self.k2))
+        chain = np.array([[q, 1 - q, 0.0], [q - 1, 2 - q, 0.0], [q - 1, -q, 1.0]])
+        return np.asarray(inner @ chain)
+
+    @property
+    def impedance(self) -> tuple[tuple[float, ...], tuple[float, ...]]:
+        """``(b k2 s + k1 k2) / (s (b s + k1 + k2))``."""
+        k1, k2, b = map(float, self.values)
+        return (0.0, b * k2, k1 * k2), (b, k1 + k2, 0.0)
+
+    @property
+    def reaction(self) -> Reaction:
+        """``delta' = v``, ``b d' = k2 (delta - d) - k1 d``, ``F = k2 (delta - d)``."""
+        k1, k2, b = self.exact
+        zero = Fraction(0)
+        return Reaction(((zero, zero), (k2 / b, -(k1 + k2) / b)), (Fraction(1), zero), (k2, -k2))
+
+    @property
+    def creep(self) -> Fraction:
+        """``k1/b`` in 1/s: without force, the spring k1 pulls the damper back."""
+        k1, _, b = self.exact
+        return k1 / b

@@ -1,0 +1,67 @@
+"""Kelvin-Voigt tissue, ``F = k delta + b ddelta`` (thesis 2.5)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import TYPE_CHECKING, ClassVar
+
+from nrs_design.models.contact.law import (
+    DAMPING,
+    STIFFNESS,
+    AbstractLinearLaw,
+    Number,
+    Reaction,
+)
+
+if TYPE_CHECKING:
+    from nrs_design.models.contact.motion import Array, Motion
+
+
+@dataclass(frozen=True)
+class KelvinVoigt(AbstractLinearLaw):
+    """A spring beside a damper.
+
+    Parameters
+    ----------
+    k : float or Fraction
+        Stiffness in N/m (N m/rad).
+    b : float or Fraction
+        Damping in N s/m (N m s/rad); may be zero.
+    """
+
+    name: ClassVar[str] = "kelvin-voigt"
+    formula: ClassVar[str] = "F = k δ + b δ'"
+    kinds: ClassVar[tuple[str, ...]] = (STIFFNESS, DAMPING)
+    keys: ClassVar[tuple[str, ...]] = ("stiffness", "damping")
+    may_vanish: ClassVar[frozenset[str]] = frozenset({"b"})
+    front: ClassVar[str] = "k"
+
+    k: Number
+    b: Number
+
+    def simulate(self, motion: Motion) -> Array:
+        """Return the reaction at the samples, in N (N m)."""
+        return float(self.k) * motion.deflection + float(self.b) * motion.velocity
+
+    def sensitivities(self, motion: Motion) -> Array:
+        """Return its derivatives by log k and log b, shape (n, 2)."""
+        import numpy as np
+
+        return np.column_stack([float(self.k) * motion.deflection, float(self.b) * motion.velocity])
+
+    @property
+    def impedance(self) -> tuple[tuple[float, ...], tuple[float, ...]]:
+        """``(b s + k) / s``."""
+        return (float(self.b), float(self.k)), (1.0, 0.0)
+
+    @property
+    def by_stiffness(self) -> tuple[tuple[float, ...], tuple[float, ...]]:
+        """The damping is held while the stiffness grows."""
+        return (float(self.b), 0.0), (0.0, 1.0)
+
+    @property
+    def reaction(self) -> Reaction:
+        """``delta' = v``, ``F = k delta + b v``."""
+        k, b = self.exact
+        return Reaction(((Fraction(0),),), (Fraction(1),), (k,), b)

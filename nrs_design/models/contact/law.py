@@ -1,0 +1,173 @@
+"""What all laws of contact have in common.
+
+NumPy is imported where it is used: a certificate is verified without it.
+"""
+
+from __future__ import annotations
+
+import math
+from abc import ABC, abstractmethod
+from dataclasses import astuple, dataclass, fields
+from fractions import Fraction
+from typing import TYPE_CHECKING, ClassVar, Self
+
+from nrs_design.spec import kinds
+from nrs_design.spec.environment import turn
+
+if TYPE_CHECKING:
+    from nrs_design.models.contact.motion import Array, Motion
+
+STIFFNESS, DAMPING = "stiffness", "damping"
+# Units of a linear motion and of a rotation about the pivot.
+_UNITS = {
+    STIFFNESS: (kinds.LINEAR_STIFFNESS.units[0], kinds.STIFFNESS.units[0]),
+    DAMPING: (kinds.LINEAR_DAMPING.units[0], kinds.DAMPING.units[0]),
+}
+
+# A measured or designed value, or an exact one.
+Number = float | Fraction
+Rows = tuple[tuple[Fraction, ...], ...]
+
+
+@dataclass(frozen=True)
+class AbstractContactLaw(ABC):
+    """Reaction force of an environment to its deflection; parameters are positive.
+
+    A law is written for a linear motion (m, N) and for a rotation about the pivot (rad, N m)
+    alike; `at_pivot` converts from one to the other.
+    """
+
+    name: ClassVar[str]
+    formula: ClassVar[str]
+    # What each parameter is, in order: a stiffness, a damping, or something of the law's own.
+    kinds: ClassVar[tuple[str, ...]]
+
+    @abstractmethod
+    def simulate(self, motion: Motion) -> Array:
+        """Return the reaction at the samples, shape (n,), in N (N m), exactly discretized."""
+
+    @abstractmethod
+    def sensitivities(self, motion: Motion) -> Array:
+        """Return the derivatives of `simulate` by the logarithms of the parameters, (n, p)."""
+
+    @abstractmethod
+    def at_pivot(self, radius: float) -> Self:
+        """Return the law of the rotation, for a contact at this distance in m from the pivot."""
+
+    @classmethod
+    @abstractmethod
+    def units(cls, *, rotational: bool) -> tuple[str, ...]:
+        """Return the units of the parameters."""
+
+    @property
+    def relaxation_time(self) -> float | None:
+        """Time constant in s in which the force relaxes at rest; None if it does not."""
+        return None
+
+    @property
+    def values(self) -> tuple[float, ...]:
+        """The parameters in the order of `parameters`."""
+        return tuple(map(float, astuple(self)))
+
+    @classmethod
+    def parameters(cls) -> tuple[str, ...]:
+        """Return the names of the parameters."""
+        return tuple(field.name for field in fields(cls))
+
+
+@dataclass(frozen=True, slots=True)
+class Reaction:
+    """State space of a law, from velocity to force: ``z' = A z + B v``, ``F = C z + D v``.
+
+    Parameters
+    ----------
+    A : tuple of tuple of Fraction
+        Square.
+    B, C : tuple of Fraction
+        Input column and output row.
+    D : Fraction
+        Force per velocity at once.
+    """
+
+    A: Rows
+    B: tuple[Fraction, ...]
+    C: tuple[Fraction, ...]
+    D: Fraction = Fraction(0)
+
+
+@dataclass(frozen=True)
+class AbstractLinearLaw(AbstractContactLaw):
+    """A law that is linear, so that it can enter a design and a proof."""
+
+    # Keys of the parameters in a spec, in their order.
+    keys: ClassVar[tuple[str, ...]]
+    # Parameters in one over which `reaction` is affine, and those that may be zero.
+    inverse: ClassVar[frozenset[str]] = frozenset()
+    may_vanish: ClassVar[frozenset[str]] = frozenset()
+    # The stiffness that a sudden motion meets.
+    front: ClassVar[str]
+    # The states of `reaction`; the first is the one that all environments of a spec share.
+    states: ClassVar[tuple[str, ...]] = ("delta [rad]",)
+    # Whether the force depends on more than the deflection and the velocity of the moment.
+    remembers: ClassVar[bool] = False
+    # Whether the environment returns to where it was: a constant deflection keeps a force.
+    has_rest: ClassVar[bool] = True
+
+    @property
+    @abstractmethod
+    def impedance(self) -> tuple[tuple[float, ...], tuple[float, ...]]:
+        """``Ze = F/v``: numerator and denominator in s, highest power first, of equal length."""
+
+    @property
+    def by_stiffness(self) -> tuple[tuple[float, ...], tuple[float, ...]]:
+        """Numerator of `impedance` as ``held + stiffness grown``.
+
+        Which parameters grow with the stiffness that a sudden motion meets is for the law to say;
+        by default all do, in proportion.
+        """
+        numerator, _ = self.impedance
+        return (0.0,) * len(numerator), tuple(c / self.stiffness for c in numerator)
+
+    @property
+    @abstractmethod
+    def reaction(self) -> Reaction:
+        """The exact state space of `impedance`; affine in each parameter, or in its inverse."""
+
+    @property
+    def creep(self) -> Fraction | None:
+        """Rate in 1/s at which a second state decays while no force acts; None without one."""
+        return None
+
+    @property
+    def exact(self) -> tuple[Fraction, ...]:
+        """The parameters; a float is the binary number that it is."""
+        return tuple(map(Fraction, astuple(self)))
+
+    @property
+    def stiffness(self) -> float:
+        """Stiffness that a sudden motion meets, in N/m (N m/rad)."""
+        return float(getattr(self, self.front))
+
+    def at_pivot(self, radius: float) -> Self:
+        """Return the law with every parameter times ``r^2`` (thesis 6.3.1.1)."""
+        return type(self)(*(turn(value, radius) for value in astuple(self)))
+
+    @classmethod
+    def units(cls, *, rotational: bool) -> tuple[str, ...]:
+        """Return the units of the parameters, as a spec writes them."""
+        return tuple(_UNITS[kind][rotational] for kind in cls.kinds)
+
+    @classmethod
+    def admits(cls, index: int, value: Number) -> bool:
+        """Tell whether a parameter, by its place, may have a value."""
+        positive = value > 0 or (value == 0 and cls.parameters()[index] in cls.may_vanish)
+        return positive and math.isfinite(value)
+
+    def given(self) -> dict[str, str | float]:
+        """Return the law and its parameters by the keys of a spec."""
+        return {"model": self.name, **dict(zip(self.keys, self.values, strict=True))}
+
+    def texts(self) -> tuple[str, ...]:
+        """Return the parameters at the pivot, such as ``k = 43 N*m/rad``, without what is zero."""
+        parts = zip(self.parameters(), self.values, self.units(rotational=True), strict=True)
+        return tuple(f"{name} = {float(v):.6g} {unit}" for name, v, unit in parts if v)

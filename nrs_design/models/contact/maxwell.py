@@ -1,0 +1,81 @@
+"""Maxwell tissue, ``F + (b/k) dF = b ddelta`` (thesis 2.5).
+
+It has no rest position: a constant deflection leaves no force in the end. A loop around it is
+described by the stretch of the spring, ``e' = v - (k/b) e``, ``F = k e``. The deflection follows
+from the motion and acts on nothing; as a state it would add an eigenvalue zero.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import TYPE_CHECKING, ClassVar
+
+from nrs_design.models.contact.law import (
+    DAMPING,
+    STIFFNESS,
+    AbstractLinearLaw,
+    Number,
+    Reaction,
+)
+
+if TYPE_CHECKING:
+    from nrs_design.models.contact.motion import Array, Motion
+
+
+@dataclass(frozen=True)
+class Maxwell(AbstractLinearLaw):
+    """A spring and a damper in a row.
+
+    Parameters
+    ----------
+    k : float or Fraction
+        Stiffness in N/m (N m/rad).
+    b : float or Fraction
+        Damping in N s/m (N m s/rad).
+    """
+
+    name: ClassVar[str] = "maxwell"
+    formula: ClassVar[str] = "F + (b/k) F' = b δ'"
+    kinds: ClassVar[tuple[str, ...]] = (STIFFNESS, DAMPING)
+    keys: ClassVar[tuple[str, ...]] = ("stiffness", "damping")
+    inverse: ClassVar[frozenset[str]] = frozenset({"b"})
+    front: ClassVar[str] = "k"
+    remembers: ClassVar[bool] = True
+    states: ClassVar[tuple[str, ...]] = ("spring stretch [rad]",)
+    has_rest: ClassVar[bool] = False
+
+    k: Number
+    b: Number
+
+    @property
+    def relaxation_time(self) -> float:
+        """``b/k`` in s."""
+        return float(self.b / self.k)
+
+    def simulate(self, motion: Motion) -> Array:
+        """Return the reaction at the samples, in N (N m)."""
+        from nrs_design.models.contact.relaxation import relax
+
+        return float(self.k) * relax(motion, self.relaxation_time)[0]
+
+    def sensitivities(self, motion: Motion) -> Array:
+        """Return its derivatives by log k and log b, shape (n, 2)."""
+        import numpy as np
+
+        from nrs_design.models.contact.relaxation import relax
+
+        y, slope = relax(motion, self.relaxation_time)
+        return np.column_stack([float(self.k) * (y - slope), float(self.k) * slope])
+
+    @property
+    def impedance(self) -> tuple[tuple[float, ...], tuple[float, ...]]:
+        """``k b / (b s + k)``."""
+        k, b = float(self.k), float(self.b)
+        return (0.0, k * b), (b, k)
+
+    @property
+    def reaction(self) -> Reaction:
+        """``e' = v - (k/b) e``, ``F = k e`` with the stretch e of the spring."""
+        k, b = self.exact
+        return Reaction(((-k / b,),), (Fraction(1),), (k,))

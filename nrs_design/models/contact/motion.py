@@ -1,0 +1,58 @@
+"""A measured deflection as what moves a tissue model: piecewise linear between its samples."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING, Literal
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+    Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class Motion:
+    """Deflection over time; the steps need not be equal.
+
+    Between two samples the deflection is taken as linear. Before the first one it is taken to
+    have rested there for long, so that a relaxing element carries no force at the start.
+
+    Parameters
+    ----------
+    time : ndarray, shape (n,)
+        In s, strictly increasing, n >= 2.
+    deflection : ndarray, shape (n,)
+        In m, or in rad at the pivot.
+    """
+
+    time: Array
+    deflection: Array
+
+    def __len__(self) -> int:
+        """Return the number of samples."""
+        return len(self.time)
+
+    @cached_property
+    def steps(self) -> Array:
+        """Time from each sample to the next, shape (n - 1,), in s."""
+        import numpy as np
+
+        return np.diff(self.time)
+
+    @cached_property
+    def increments(self) -> Array:
+        """Change of the deflection from each sample to the next, shape (n - 1,)."""
+        import numpy as np
+
+        return np.diff(self.deflection)
+
+    @cached_property
+    def velocity(self) -> Array:
+        """Velocity at the samples, shape (n,): second-order differences, per s."""
+        import numpy as np
+
+        order: Literal[1, 2] = 2 if len(self) > 2 else 1
+        return np.asarray(np.gradient(self.deflection, self.time, edge_order=order), float)

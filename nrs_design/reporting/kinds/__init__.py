@@ -1,0 +1,56 @@
+"""All that a report says and draws of one kind of evidence: one file each, found by type."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from nrs_design.proof.evidence import (
+    AbstractEvidence,
+    BlockTriangular,
+    CommonPolynomial,
+    CommonQuadratic,
+    ModePolynomial,
+    ModeQuadratic,
+    NoCommonQuadratic,
+    ParameterQuadratic,
+    UnstableMixture,
+    UnstableMode,
+    UnstablePeriod,
+    UnstableValue,
+)
+from nrs_design.proof.system import SwitchedSystem
+from nrs_design.reporting.kinds.abstract import AbstractKindPage
+from nrs_design.reporting.kinds.block_triangular import BlockTriangularPage
+from nrs_design.reporting.kinds.common_polynomial import CommonPolynomialPage
+from nrs_design.reporting.kinds.common_quadratic import CommonQuadraticPage
+from nrs_design.reporting.kinds.mode_polynomial import ModePolynomialPage
+from nrs_design.reporting.kinds.mode_quadratic import ModeQuadraticPage
+from nrs_design.reporting.kinds.no_common_quadratic import NoCommonQuadraticPage
+from nrs_design.reporting.kinds.parameter_quadratic import ParameterQuadraticPage
+from nrs_design.reporting.kinds.unstable_mixture import UnstableMixturePage
+from nrs_design.reporting.kinds.unstable_mode import UnstableModePage
+from nrs_design.reporting.kinds.unstable_period import UnstablePeriodPage
+from nrs_design.reporting.kinds.unstable_value import UnstableValuePage
+
+KINDS: Mapping[type[AbstractEvidence], type[AbstractKindPage[Any]]] = {
+    BlockTriangular: BlockTriangularPage,
+    CommonPolynomial: CommonPolynomialPage,
+    CommonQuadratic: CommonQuadraticPage,
+    ModePolynomial: ModePolynomialPage,
+    ModeQuadratic: ModeQuadraticPage,
+    NoCommonQuadratic: NoCommonQuadraticPage,
+    ParameterQuadratic: ParameterQuadraticPage,
+    UnstableMixture: UnstableMixturePage,
+    UnstableMode: UnstableModePage,
+    UnstablePeriod: UnstablePeriodPage,
+    UnstableValue: UnstableValuePage,
+}
+
+
+def page_of(system: SwitchedSystem, evidence: AbstractEvidence) -> AbstractKindPage[Any]:
+    """Return the page of a statement about a system."""
+    return KINDS[type(evidence)](system, evidence)
+
+
+__all__ = ["KINDS", "AbstractKindPage", "page_of"]

@@ -1,0 +1,167 @@
+"""A quadratic function that depends on a constant parameter: its margin over the parameter."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+
+import numpy as np
+
+from nrs_design.proof.evidence import ParameterQuadratic
+from nrs_design.proof.evidence.fields import rate_words
+from nrs_design.proof.system import SwitchedSystem
+from nrs_design.reporting.document import Illustration, Paragraph, Section, Table
+from nrs_design.reporting.figures.lyapunov import draw_parameter_rates, draw_quadratics
+from nrs_design.reporting.formatting import number
+from nrs_design.reporting.kinds.abstract import AbstractKindPage
+from nrs_design.reporting.kinds.shared import words
+from nrs_design.reporting.kinds.shared.matrix import SCALED, matrix_table
+from nrs_design.reporting.kinds.shared.run import affordable, bounded_run
+from nrs_design.reporting.sections.modes import hardest_modes
+from nrs_design.simulation.norms import Array, modes_at, quadratic_norm, scaled_matrices
+from nrs_design.simulation.rates import mode_rates
+from nrs_design.simulation.switched import worst_direction
+
+_DECIDED = (
+    "the decrease is a polynomial of degree two in the parameter, and integer arithmetic "
+    "decides that its three matrices are positive definite, so that all values between the "
+    "ends are covered. The solver only proposed Q at both ends"
+)
+_POINTS = 61
+_LISTED = 24
+_DRAWN = 8
+# Values of the parameter at which a run may be simulated.
+_VALUES = 21
+
+
+class ParameterQuadraticPage(AbstractKindPage[ParameterQuadratic]):
+    """Q at both ends of the parameter, and the rate of every mode over it."""
+
+    @property
+    def name(self) -> str:
+        """Its kind."""
+        return "quadratic function of a constant parameter"
+
+    def meaning(self) -> tuple[str, ...]:
+        """Say that the parameter must be constant, and that switching is free."""
+        return (
+            f"{words.free_bound(self.system)} Which norm |x| is, depends on the value of the "
+            "parameter.",
+            "The parameter must be constant: one value in all modes and at all times. Which value "
+            "it is, need not be known.",
+            *words.unneeded_rules(self.system),
+            words.decision(_DECIDED),
+        )
+
+    def between_corners(self) -> tuple[str, ...]:
+        """Say that they are covered, for the other parameters while they change."""
+        how = "however fast they change, the constant one excepted"
+        return (words.all_corners(self.system, self.evidence, how),)
+
+    def limits(self) -> tuple[str, ...]:
+        """Name the parameter that changes."""
+        return ("A parameter that changes while the system moves, however slowly.",)
+
+    def sections(self, *, first: bool = True) -> tuple[Section, ...]:
+        """Show Q at both ends, and the decay rate of every mode over the parameter."""
+        system, evidence = self.system, self.evidence
+        low, high = function_at(evidence, 0.0), function_at(evidence, 1.0)
+        text = (
+            "The certificate holds Q at both ends of the parameter's range; between them Q is "
+            f"affine. It is written with denominator 2^{evidence.denominator_log2}; here both "
+            "ends are divided by the largest entry."
+        )
+        ends = draw_quadratics({"low end": low, "high end": high}, system.states)
+        blocks = (
+            Paragraph(text),
+            *matrix_table("Q at the low end", low, system.states),
+            *matrix_table("Q at the high end", high, system.states),
+            Illustration("quadratics", "Matrices at both ends", SCALED, ends),
+            *self._rates(),
+        )
+        return (Section("Lyapunov evidence", blocks),)
+
+    def run(self) -> Section:
+        """Draw a run at the value of the parameter where the decay is slowest."""
+        values = np.linspace(0.0, 1.0, _VALUES)
+        _, rates = parameter_rates(self.system, self.evidence, values)
+        p = float(values[rates.min(axis=1).argmin()])
+        Q, fixed = function_at(self.evidence, p), modes_at(self.system, Fraction(p))
+        hardest = hardest_modes(fixed, Q, affordable(fixed))
+        return bounded_run(
+            fixed,
+            hardest,
+            quadratic_norm(Q),
+            worst_direction(hardest, Q),
+            float(self.evidence.rate),
+            "in the norm of Q(p)",
+            f"The parameter stays at {p:.3g} of its range (0 low end, 1 high end), where the "
+            "decay is slowest. ",
+        )
+
+    def _rates(self) -> tuple[Table, Illustration]:
+        """Return the rates of the slowest modes as a table and as curves."""
+        claimed, values = self.evidence.rate, np.linspace(0.0, 1.0, _POINTS)
+        names, rates = parameter_rates(self.system, self.evidence, values)
+        hardest = np.sort(np.argsort(rates.min(axis=0), kind="stable")[:_DRAWN])
+        some = f" The {_DRAWN} slowest of {len(names)} modes." if len(names) > _DRAWN else ""
+        curves = draw_parameter_rates(
+            [names[i] for i in hardest], values, rates[:, hardest], claimed
+        )
+        return (
+            _table(names, values, rates, rate_words(claimed, self.system.time)),
+            Illustration(
+                "parameter-rates",
+                "Decrease over the parameter",
+                "Half the smallest eigenvalue of the decrease relative to Q, both at the same "
+                "value of the parameter: the rate at which the norm of Q decays at least. All "
+                f"curves lie above the claimed rate, over the whole range.{some}",
+                curves,
+            ),
+        )
+
+
+def function_at(evidence: ParameterQuadratic, p: float) -> Array:
+    """Return Q at one value of the parameter, from 0 (low end) to 1 (high end)."""
+    low, high = scaled_matrices(evidence.low, evidence.high)
+    return (1 - p) * low + p * high
+
+
+def parameter_rates(
+    system: SwitchedSystem, evidence: ParameterQuadratic, values: Array
+) -> tuple[list[str], Array]:
+    """Return how fast the norm of Q(p) decays in every mode, over the parameter p.
+
+    Parameters
+    ----------
+    system : SwitchedSystem
+        With the two ends of the parameter.
+    evidence : ParameterQuadratic
+        Q at both ends.
+    values : ndarray, shape (k,)
+        From 0 (low end) to 1 (high end).
+
+    Returns
+    -------
+    list of str, ndarray of shape (k, m)
+        Names of the modes, and decay rates in 1/s, in floating point.
+    """
+    names = [mode.name for mode in modes_at(system, Fraction(0)).modes]
+    rates = [
+        mode_rates(modes_at(system, Fraction(float(p))), function_at(evidence, float(p)))
+        for p in values
+    ]
+    return names, np.array(rates)
+
+
+def _table(names: list[str], values: Array, rates: Array, claimed: str) -> Table:
+    order = np.argsort(rates.min(axis=0), kind="stable")[:_LISTED]
+    rows = tuple(
+        (
+            names[i],
+            number(float(rates[:, i].min()), 6),
+            number(float(values[rates[:, i].argmin()]), 3),
+        )
+        for i in order
+    )
+    columns = ("Mode", "Smallest decay rate [1/s]", "At the parameter [0 low, 1 high]")
+    return Table(f"Slowest decay over the parameter; claimed: {claimed}", columns, rows)

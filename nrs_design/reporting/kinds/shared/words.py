@@ -1,0 +1,160 @@
+"""Sentences about proofs: what a bound means, on what it rests, how it was decided."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from nrs_design.proof.bounds import rounded_up
+from nrs_design.proof.evidence import AbstractEvidence
+from nrs_design.proof.system import SwitchedSystem, Time
+from nrs_design.reporting.formatting import shortened
+
+# Modes that a sentence names.
+NAMED = 8
+
+
+def decay_factor(system: SwitchedSystem) -> str:
+    """Say by which factor the proved rate shrinks the distance from rest."""
+    continuous = system.time is Time.CONTINUOUS
+    return "exp(-alpha T) in every time T" if continuous else "rho in every step"
+
+
+def free_bound(system: SwitchedSystem) -> str:
+    """Say what a bound means that holds whatever switches happen."""
+    return (
+        "The bound means: measured by |x|, the distance from rest shrinks at least by the factor "
+        f"{decay_factor(system)}, from the first moment on and whatever switches happen. In "
+        "another norm the same rate holds with a constant factor in front."
+    )
+
+
+def ruled_bound(system: SwitchedSystem) -> str:
+    """Say what a bound means that rests on the declared rules of switching."""
+    return (
+        "The bound means: for every signal that keeps the rules, the distance from rest "
+        f"shrinks by the factor {decay_factor(system)}, up to one constant c in front. So it may "
+        "grow for a while, at first or after a switch, but never above c times the bound."
+    )
+
+
+def needed_rules(system: SwitchedSystem, leaving: tuple[str, ...]) -> Iterator[str]:
+    """Say which rules of switching are part of a claim that rests on them.
+
+    Parameters
+    ----------
+    system : SwitchedSystem
+        With its rules.
+    leaving : tuple of str
+        Modes that must be left for the proof to hold.
+    """
+    switching = system.switching
+    if switching.dwell_time > 0:
+        yield (
+            f"The dwell time of {_dwell(system)} is part of the claim: the machine itself must "
+            "refuse to switch earlier."
+        )
+    if any(stay.shortest > 0 for _, stay in switching.stays):
+        yield (
+            "The dwell times of single modes are part of the claim: the machine must refuse to "
+            "leave them earlier."
+        )
+    if leaving:
+        yield (
+            f"The longest dwell time of {shortened(leaving, NAMED)} is part of the "
+            "claim: the machine itself must leave in time. The function may grow there meanwhile."
+        )
+    if switching.transitions is not None:
+        yield "The list of allowed switches is part of the claim as well."
+    if switching.resets:
+        yield "The resets are part of the claim: they must act at every switch."
+
+
+def unneeded_constant(system: SwitchedSystem) -> Iterator[str]:
+    """Say that a proof does not need the constant parameter to be constant."""
+    if system.switching.fixed_ends:
+        yield "The proof does not need the parameter to be constant: it may change freely."
+
+
+def unneeded_rules(system: SwitchedSystem) -> Iterator[str]:
+    """Say that a proof holds without the rules that are declared, if any are."""
+    switching = system.switching
+    # With a constant parameter, the list of transitions only keeps its two ends apart.
+    listed = switching.transitions is not None and not switching.fixed_ends
+    if switching.dwell_time > 0 or switching.stays or listed:
+        yield (
+            "The proof does not need the declared rules of switching: it holds for arbitrary "
+            "switching."
+        )
+
+
+def outside_the_rules(system: SwitchedSystem, leaving: tuple[str, ...]) -> Iterator[str]:
+    """Say which signals a proof that rests on rules does not cover."""
+    switching = system.switching
+    if switching.dwell_time > 0:
+        yield f"Switching earlier than {_dwell(system)} after the last switch."
+    if any(stay.shortest > 0 for _, stay in switching.stays):
+        yield "Leaving a mode before its own dwell time is over."
+    if leaving:
+        yield f"Staying longer than declared in {shortened(leaving, NAMED)}."
+    if switching.transitions is not None:
+        yield "Switches that the spec does not list."
+
+
+def decision(how: str) -> str:
+    """Say how the decision was made; a phrase says what was decided about which numbers."""
+    return (
+        f"The decision is exact: the modes are rational matrices, {how}; a second library agreed."
+    )
+
+
+def ruled_decision(system: SwitchedSystem, how: str) -> str:
+    """Say how the decision was made where exponentials over dwell times may be part of it."""
+    switching = system.switching
+    if system.time is Time.CONTINUOUS and (switching.dwell_time > 0 or switching.stays):
+        how += "; exponentials over the dwell time are enclosed rigorously, in balls"
+    return decision(how)
+
+
+def all_corners(
+    system: SwitchedSystem, evidence: AbstractEvidence, how: str = "however fast they change"
+) -> str:
+    """Say that values between the corners of declared ranges are covered.
+
+    Parameters
+    ----------
+    system : SwitchedSystem
+        What is proved about.
+    evidence : AbstractEvidence
+        What proves it.
+    how : str
+        How values may move.
+    """
+    text = (
+        "Every corner of the declared parameter ranges is a mode. The matrices are affine in each "
+        "parameter alone, or in its inverse, so all values between the corners are covered as "
+        f"well, {how}."
+    )
+    if system.time is Time.DISCRETE and not evidence.keeps_bound_in_mixtures:
+        text += " Between the corners, the bound holds up to a constant factor."
+    return text
+
+
+def allowed_signals(system: SwitchedSystem) -> str:
+    """Say under which switching a refuted claim would have been made."""
+    return "arbitrary switching" if system.switching.is_arbitrary else "the declared switching"
+
+
+NO_FORECAST = (
+    "It is not said that the robot will do this: that depends on whether such a signal ever "
+    "occurs. It is said that no guarantee is possible for all the signals that the spec "
+    "allows."
+)
+ON_THE_BORDER = (
+    "An eigenvalue exactly on the border means that states need not decay; they need not grow "
+    "either."
+)
+
+
+def _dwell(system: SwitchedSystem) -> str:
+    unit = "s" if system.time is Time.CONTINUOUS else "steps"
+    return rounded_up(system.switching.dwell_time, unit)

@@ -1,0 +1,156 @@
+"""What holds for all tissue laws."""
+
+import subprocess
+import sys
+from fractions import Fraction
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from scipy.integrate import solve_ivp
+
+from nrs_design.models.contact import (
+    LAWS,
+    LINEAR_LAWS,
+    Elastic,
+    HuntCrossley,
+    KelvinBoltzmann,
+    KelvinVoigt,
+    Maxwell,
+    Motion,
+)
+from tests.identification.support import wobble
+
+# Thesis tables 2.4 and 2.5.
+SAMPLES = (
+    Elastic(0.207),
+    KelvinVoigt(0.205, 0.341),
+    Maxwell(1.129, 120.233),
+    Maxwell(3.0, 0.4),
+    KelvinBoltzmann(k1=0.233, k2=0.972, b=23.631),
+    KelvinBoltzmann(k1=0.479, k2=3.303, b=0.5),
+    HuntCrossley(rho=0.28, lam=15.328, phi=1.2),
+)
+IDS = [f"{law.name}-{i}" for i, law in enumerate(SAMPLES)]
+
+
+def oracle(law, motion):
+    """Integrate the law as it is printed, force state and all."""
+    slopes = motion.increments / motion.steps
+
+    def velocity(t):
+        i = min(int(np.searchsorted(motion.time, t, side="right")) - 1, len(slopes) - 1)
+        return slopes[max(i, 0)]
+
+    if isinstance(law, Maxwell):
+        tau, stiffness, damping = law.b / law.k, 0.0, law.b
+    else:
+        stiffness, damping, tau = law.eta
+    force = [stiffness * motion.deflection[0]]
+    for i, step in enumerate(motion.steps):
+        slope, begin = slopes[i], motion.deflection[i]
+
+        def rate(t, F, begin=begin, slope=slope):
+            return (stiffness * (begin + slope * t) + damping * slope - F) / tau
+
+        run = solve_ivp(rate, (0, step), [force[-1]], rtol=1e-11, atol=1e-13)
+        force.append(run.y[0, -1])
+    return np.array(force)
+
+
+@pytest.mark.parametrize("law", [law for law in SAMPLES if law.relaxation_time is not None])
+def test_discretization_is_exact_on_uneven_steps(law):
+    motion = wobble(3)
+    assert law.simulate(motion) == pytest.approx(oracle(law, motion), abs=2e-8)
+
+
+@pytest.mark.parametrize("law", SAMPLES, ids=IDS)
+def test_sensitivities_are_the_derivatives(law):
+    motion = wobble(5)
+    logs, h = np.log(law.values), 1e-5
+    for i, column in enumerate(law.sensitivities(motion).T):
+        step = h * (np.arange(len(logs)) == i)
+        above, below = (type(law)(*np.exp(logs + s)).simulate(motion) for s in (step, -step))
+        assert column == pytest.approx((above - below) / (2 * h), abs=1e-7 * np.abs(above).max())
+
+
+@pytest.mark.parametrize("law", SAMPLES, ids=IDS)
+@given(radius=st.floats(0.05, 3.0), seed=st.integers(0, 1000))
+def test_torque_at_the_pivot(law, radius, seed):
+    """Torque is force times lever arm, angle is deflection over lever arm."""
+    motion = wobble(seed)
+    turned = Motion(motion.time, motion.deflection / radius)
+    torque = law.at_pivot(radius).simulate(turned)
+    force = law.simulate(motion)
+    assert torque == pytest.approx(radius * force, abs=1e-9 * radius * np.abs(force).max())
+
+
+@pytest.mark.parametrize("law", SAMPLES, ids=IDS)
+def test_parameters_have_names_and_kinds(law):
+    assert len(law.parameters()) == len(law.kinds) == len(law.values)
+    assert LAWS[law.name] is type(law)
+
+
+@given(scale=st.floats(0.1, 10), seed=st.integers(0, 100))
+def test_linear_laws_are_linear(scale, seed):
+    motion = wobble(seed)
+    twice = Motion(motion.time, scale * motion.deflection)
+    for law in SAMPLES[:-1]:
+        expected = scale * law.simulate(motion)
+        assert law.simulate(twice) == pytest.approx(expected, abs=1e-9 * np.abs(expected).max())
+
+
+LINEAR = [law for law in SAMPLES if law.name in LINEAR_LAWS]
+
+
+def printed_impedance(law, s):
+    """``F/v`` by the law as the thesis prints it, with ``delta = v/s``."""
+    if isinstance(law, Maxwell):
+        return law.b / (1 + law.b / law.k * s)
+    if isinstance(law, KelvinBoltzmann):
+        eta1, eta2, eta3 = law.eta
+        return (eta1 / s + eta2) / (1 + eta3 * s)
+    return law.k / s + (law.b if isinstance(law, KelvinVoigt) else 0.0)
+
+
+@pytest.mark.parametrize("law", LINEAR, ids=lambda law: law.name)
+@pytest.mark.parametrize("s", [0.3, 2j, 1 + 40j])
+def test_impedance_and_state_space_are_the_printed_law(law, s):
+    expected = printed_impedance(law, s)
+    numerator, denominator = law.impedance
+    assert np.polyval(numerator, s) / np.polyval(denominator, s) == pytest.approx(expected)
+    block = law.reaction
+    A, B, C = (np.array(part, dtype=float) for part in (block.A, block.B, block.C))
+    z = np.linalg.solve(s * np.eye(len(B)) - A, B)
+    assert C @ z + float(block.D) == pytest.approx(expected)
+
+
+@pytest.mark.parametrize("law", LINEAR, ids=lambda law: law.name)
+def test_growing_stiffness(law):
+    """Kelvin-Voigt holds its damping; the others grow in proportion, their ratios held."""
+    held, grown = law.by_stiffness
+    stiff = 3 * law.stiffness
+    larger = KelvinVoigt(stiff, law.b) if isinstance(law, KelvinVoigt) else law.at_pivot(3**0.5)
+    s = 0.7j
+    numerator, denominator = larger.impedance
+    expected = np.polyval(numerator, s) / np.polyval(denominator, s)
+    sum_ = np.polyval(held, s) + stiff * np.polyval(grown, s)
+    assert sum_ / np.polyval(law.impedance[1], s) == pytest.approx(expected)
+
+
+@pytest.mark.parametrize("law", LINEAR, ids=lambda law: law.name)
+def test_exact_parameters_stay_exact(law):
+    third = type(law)(*(Fraction(1, 3) for _ in law.values))
+    assert all(entry == 1 or entry.denominator <= 9 for entry in third.reaction.C)
+    assert third.at_pivot(Fraction(1, 2)).exact == (Fraction(1, 12),) * len(law.values)
+    assert third.texts() == tuple(
+        f"{name} = 0.333333 {unit}"
+        for name, unit in zip(law.parameters(), law.units(rotational=True), strict=True)
+    )
+
+
+def test_laws_load_no_numpy():
+    """A certificate is verified without it."""
+    code = "import sys, nrs_design.models.plant; assert 'numpy' not in sys.modules"
+    subprocess.run([sys.executable, "-c", code], check=True)

@@ -1,0 +1,134 @@
+"""One page for each kind of evidence, and nobody else asks which kind it is."""
+
+from __future__ import annotations
+
+import ast
+import re
+from pathlib import Path
+
+import pytest
+
+import nrs_design
+from nrs_design.proof import evidence as proof
+from nrs_design.reporting import kinds
+from nrs_design.reporting.document import Illustration
+from nrs_design.reporting.kinds import KINDS, page_of
+from tests.proof.systems import SYSTEMS, genuine
+
+PACKAGE = Path(nrs_design.__file__).parent
+NAMES = frozenset(kind.__name__ for kind in proof.KINDS)
+TEXTS = frozenset(kind.kind for kind in proof.KINDS)
+
+
+def test_every_kind_has_one_page_of_its_own():
+    assert set(KINDS) == set(proof.KINDS)
+    assert len(set(KINDS.values())) == len(KINDS)
+
+
+def test_a_page_is_in_a_file_that_is_named_like_that_of_its_evidence():
+    for kind, page in KINDS.items():
+        assert page.__module__.rpartition(".")[2] == kind.__module__.rpartition(".")[2]
+    files = {path.stem for path in Path(kinds.__file__).parent.glob("*.py")}
+    assert files - {"__init__", "abstract"} == {kind.kind.replace("-", "_") for kind in KINDS}
+
+
+def test_outside_proof_and_search_only_the_page_names_its_kind():
+    for kind in proof.KINDS:
+        file = kind.kind.replace("-", "_")
+        named = {
+            path.relative_to(PACKAGE).as_posix()
+            for folder in PACKAGE.iterdir()
+            if folder.name not in ("proof", "search")
+            for path in ([folder] if folder.suffix == ".py" else folder.rglob("*.py"))
+            if re.search(rf"\b{kind.__name__}\b", path.read_text("utf-8"))
+        }
+        assert named == {"reporting/kinds/__init__.py", f"reporting/kinds/{file}.py"}
+
+
+@pytest.mark.parametrize("kind", sorted(TEXTS))
+def test_every_page_speaks_in_sentences_and_draws_a_run(kind):
+    example = next(name for name in SYSTEMS if name.split(",")[0] == kind)
+    page = page_of(*genuine(example))
+    assert page.name
+    assert not page.name.endswith(".")
+    sentences = (*page.meaning(), *page.between_corners(), *page.limits())
+    assert page.meaning()
+    assert all(text.endswith(".") for text in sentences)
+    assert all(section.blocks for section in page.sections())
+    assert any(isinstance(block, Illustration) for block in page.run().blocks)
+
+
+def aliases(trees):
+    """Names of kinds, and of all that is assigned from them: unions and tuples of kinds."""
+    known, before = set(NAMES), 0
+    while len(known) > before:
+        before = len(known)
+        for tree in trees:
+            for node in ast.walk(tree):
+                if isinstance(node, ast.Assign | ast.AnnAssign) and node.value is not None:
+                    targets = node.targets if isinstance(node, ast.Assign) else [node.target]
+                    if isinstance(node.value, ast.Tuple | ast.BinOp) and mentions(
+                        node.value, known
+                    ):
+                        known |= {t.id for t in targets if isinstance(t, ast.Name)}
+    return known
+
+
+def mentions(node, known):
+    names = (getattr(part, "id", getattr(part, "attr", None)) for part in ast.walk(node))
+    return any(name in known for name in names)
+
+
+def questions(tree, known):
+    """Yield the lines that ask of what kind some evidence is, other than by a look into a table."""
+    for node in ast.walk(tree):
+        match node:
+            case ast.Call(func=ast.Name("isinstance" | "issubclass"), args=[_, kind]):
+                asks = mentions(kind, known)
+            case ast.MatchClass(cls=kind):
+                asks = mentions(kind, known)
+            case ast.Compare(ops=[ast.Is() | ast.IsNot() | ast.Eq() | ast.NotEq()]):
+                sides = [node.left, *node.comparators]
+                typed = any(isinstance(s, ast.Call) and mentions(s.func, {"type"}) for s in sides)
+                told = any(isinstance(s, ast.Attribute) and s.attr == "kind" for s in sides)
+                asks = (typed and any(mentions(side, known) for side in sides)) or (
+                    told and any(isinstance(s, ast.Constant) and s.value in TEXTS for s in sides)
+                )
+            case _:
+                asks = False
+        if asks:
+            yield node.lineno
+
+
+@pytest.mark.parametrize(
+    ("text", "count"),
+    [
+        ("isinstance(e, CommonQuadratic)", 1),
+        ("isinstance(e, evidence.CommonQuadratic)", 1),
+        ("isinstance(e, ModeQuadratic | ModePolynomial)", 1),
+        ("RULED = (ModeQuadratic, ModePolynomial)\nisinstance(e, RULED)", 1),
+        ("Ruled = ModeQuadratic | ModePolynomial\nMORE = (Ruled, int)\nisinstance(e, MORE)", 1),
+        ("type(e) is UnstableMode", 1),
+        ("e.kind == 'block-triangular'", 1),
+        ("match e:\n  case UnstableMode(mode=name): pass", 1),
+        ("type(e) in PARTS", 0),
+        ("KINDS[type(e)]", 0),
+        ("isinstance(e, AbstractEvidence)", 0),
+        ("kind.kind == fields['kind']", 0),
+        ("block.kind == 'table'", 0),
+    ],
+)
+def test_questions_about_kinds_are_recognized(text, count):
+    tree = ast.parse(text)
+    assert len(list(questions(tree, aliases([tree])))) == count
+
+
+def test_no_code_asks_for_the_kind_of_evidence():
+    trees = {path: ast.parse(path.read_text("utf-8")) for path in PACKAGE.rglob("*.py")}
+    known = aliases(trees.values())
+    asked = [
+        f"{path.relative_to(PACKAGE)}:{line}"
+        for path, tree in sorted(trees.items())
+        for line in questions(tree, known)
+    ]
+    assert asked == []

@@ -1,0 +1,168 @@
+"""Impedance, position and force controllers in one state."""
+
+from fractions import Fraction
+from itertools import product
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from scipy.integrate import solve_ivp
+from scipy.linalg import expm
+
+from nrs_design.controllers.laws import Admittance
+from nrs_design.errors import AssemblyError
+from nrs_design.models.actuator import Actuator
+from nrs_design.models.contact import Elastic, KelvinVoigt
+from nrs_design.models.motion_loop import close_motion_loop
+from nrs_design.models.plant import build_plant
+from nrs_design.pipeline import run_design
+from nrs_design.proof.exact import characteristic_polynomial
+from nrs_design.proof.matrix import RationalMatrix
+from nrs_design.spec import parse_spec, read_spec
+from nrs_design.switched.assemble import assemble
+from nrs_design.switched.close_loop import impedance_mode, realize
+from nrs_design.switched.mixture import impedance_rows, with_idle
+from tests.support import ROOT
+
+F = Fraction
+MIXED = ROOT / "docs" / "examples" / "mixed-controllers.nrs.yaml"
+# Thesis 4.1 and 4.3.
+GAIN, TAU, KD, KP = F("4.8417e-4"), F("0.0351"), F(2060), F("117359.43")
+MOTION = realize(close_motion_loop(Actuator(GAIN, TAU), KP, KD))
+positive = st.fractions("1/100", 100, max_denominator=100)
+
+
+def polynomial(rows):
+    A = RationalMatrix.from_rows(rows)
+    return [F(c, A.denominator**k) for k, c in enumerate(characteristic_polynomial(A.numerators))]
+
+
+def mixed(**changes):
+    text = MIXED.read_text()
+    for old, new in changes.values():
+        assert old in text
+        text = text.replace(old, new)
+    spec = parse_spec(text)
+    loaded = read_spec(MIXED)
+    design = run_design(loaded).design
+    return assemble(spec, build_plant(spec), design, "deflection")
+
+
+@given(k=positive, b=positive, Mt=positive, Bt=positive, massless=st.booleans())
+def test_impedance_mode_has_the_poles_that_it_has_alone(k, b, Mt, Bt, massless):
+    law, contact = Admittance(F(0) if massless else Mt, Bt), KelvinVoigt(k, b)
+    shared = impedance_rows(MOTION.A, list(MOTION.C), law, contact)
+    assert polynomial(shared) == polynomial(impedance_mode(MOTION, law, contact))
+
+
+@pytest.mark.parametrize("massless", [False, True])
+def test_run_against_actuator_and_firmware(massless):
+    """Motor, PD on both errors, admittance and integrated reference, as they are."""
+    k, b, Bt, Mt = 43.0, 0.4, 2.0, 0.0 if massless else 0.01
+    gain, tau, Kd, Kp = map(float, (GAIN, TAU, KD, KP))
+    law = Admittance(F(Mt).limit_denominator(1000), F(2))
+    A = np.array(impedance_rows(MOTION.A, list(MOTION.C), law, KelvinVoigt(F(43), F("0.4"))), float)
+
+    def rate(_, x):
+        theta, omega, vm, r = x
+        force = k * theta + b * omega
+        if massless:
+            vm = force / Bt
+        dr = -vm
+        command = Kp * (r - theta) + Kd * (dr - omega)
+        dvm = 0.0 if massless else (force - Bt * vm) / Mt
+        return [omega, (gain * command - omega) / tau, dvm, dr]
+
+    start = np.array([1e-4, 2e-3, 0.05, 0.02])
+    if massless:
+        start = np.delete(start, 2)
+    C, Ap = np.array(MOTION.C, float), np.array(MOTION.A, float)
+
+    def position_and_velocity(x):
+        return C @ x[:2], C @ (Ap @ x[:2] + np.array([0.0, x[-1]]))
+
+    vm = 0.0 if massless else start[2]
+    begin = [*position_and_velocity(start), vm, start[-1]]
+    times = np.linspace(0, 0.5, 11)
+    run = solve_ivp(rate, (0, 0.5), begin, "Radau", times, rtol=1e-10, atol=1e-13)
+    ours = np.array([position_and_velocity(expm(A * t) @ start) for t in times]).T
+    assert ours == pytest.approx(run.y[:2], abs=1e-7)
+
+
+@given(shares=st.tuples(*[st.fractions(0, 1, max_denominator=20)] * 2))
+def test_affine_in_stiffness_and_damping(shares):
+    law = Admittance(F("0.01"), F(2))
+
+    def at(k, b):
+        rows = impedance_rows(MOTION.A, list(MOTION.C), law, KelvinVoigt(k, b))
+        return np.array(rows, dtype=object)
+
+    s, t = shares
+    corners = [
+        (s if high else 1 - s) * (t if damped else 1 - t) * at(F(20 + 40 * high), F(damped))
+        for high, damped in product((False, True), repeat=2)
+    ]
+    assert (sum(corners) == at(20 + 40 * s, t)).all()
+
+
+def test_idle_states_decay_alone():
+    assert with_idle([[F(1), F(2)], [F(3), F(4)]], 2, F(5)) == [
+        [1, 2, 0, 0],
+        [3, 4, 0, 0],
+        [0, 0, -5, 0],
+        [0, 0, 0, -5],
+    ]
+
+
+def test_the_example_has_one_state_for_all():
+    system = mixed()
+    names = ["approach", "insertion/soft/k-min", "insertion/soft/k-max"]
+    assert [mode.name for mode in system.modes][:3] == names
+    assert system.states == ("xi1", "xi2", "vm [rad/s]", "reference [rad]")
+    approach = system.modes[0].A.fractions()
+    assert [row[:2] for row in approach[:2]] == [list(row) for row in system_motion(system)]
+    assert approach[2:] == [[0, 0, -20, 0], [0, 0, 0, -20]]
+    assert not system.switching.resets
+    texts = " ".join(system.assumptions)
+    assert "act on nothing and decay at 20 1/s" in texts
+    assert "States are continuous at a switch" in texts
+
+
+def system_motion(system):
+    """Motion loop of the example, from its own gains."""
+    plant = build_plant(read_spec(MIXED).spec)
+    design = run_design(read_spec(MIXED)).design
+    return realize(plant.motion_loop(design.motion.Kp, design.motion.Kd)).A
+
+
+def test_resets_lead_from_impedance_controllers_to_the_others():
+    system = mixed(reset=("decay: 20 1/s", "decay: 20 1/s, reset: true"))
+    found = {(reset.source, reset.target) for reset in system.switching.resets}
+    ends = [f"insertion/soft/k-{end}" for end in ("min", "max")]
+    others = ["approach", "hold/soft/k-min", "hold/soft/k-max"]
+    assert found == set(product(ends, others))
+    kept = [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 0, 0], [0, 0, 0, 0]]
+    assert all(reset.map.fractions() == kept for reset in system.switching.resets)
+    texts = " ".join(system.assumptions)
+    assert "they are set to zero" in texts
+    assert "All other states are continuous" in texts
+
+
+def test_what_is_held_is_said_to_be():
+    texts = " ".join(mixed(held=("decay: 20 1/s", "decay: 0 1/s")).assumptions)
+    assert "act on nothing and are held" in texts
+
+
+def test_force_coordinates_are_refused():
+    spec = read_spec(MIXED)
+    with pytest.raises(AssemblyError, match="force coordinates do not apply"):
+        assemble(spec.spec, build_plant(spec.spec), run_design(spec).design, "force")
+
+
+def test_stiff_contact_in_impedance_mode_is_that_of_the_thesis():
+    """Thesis 6.3.1: Mt = 0.01, Bt = 1.04 is stable up to 75.9 N m/rad."""
+    law = Admittance(F("0.01"), F("1.04"))
+    for k, stable in ((F(75), True), (F(77), False)):
+        rows = impedance_rows(MOTION.A, list(MOTION.C), law, Elastic(k))
+        assert (np.linalg.eigvals(np.array(rows, float)).real.max() < 0) == stable

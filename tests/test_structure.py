@@ -1,0 +1,198 @@
+"""The house has floors, and imports point downward only; docs/architecture.md lists them."""
+
+import ast
+import re
+import sys
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+import pytest
+
+from tests.support import ROOT
+
+PACKAGE = ROOT / "nrs_design"
+# Evidence about a block, or at one value, holds evidence of any kind: the table of them all has its
+# reader and its page.
+KNOWN_CYCLES = {
+    ("nrs_design.proof.evidence", "nrs_design.proof.evidence.block_triangular"),
+    ("nrs_design.reporting.kinds", "nrs_design.reporting.kinds.block_triangular"),
+    ("nrs_design.reporting.kinds", "nrs_design.reporting.kinds.unstable_value"),
+}
+STAGES = {"models", "design", "switched", "search"}
+# What a command may use of a stage: its door, or a module of nouns and words.
+DOORS = {
+    "nrs_design.models.robot",
+    "nrs_design.search.certification",
+    "nrs_design.design.measures",
+}
+
+
+@dataclass(frozen=True)
+class Import:
+    source: str
+    target: str
+    line: int
+    typing_only: bool
+
+
+def module_name(path: Path) -> str:
+    parts = path.relative_to(ROOT).with_suffix("").parts
+    return ".".join(parts[:-1] if parts[-1] == "__init__" else parts)
+
+
+FILES = {module_name(path): path for path in sorted(PACKAGE.rglob("*.py"))}
+
+
+def targets(node: ast.AST) -> Iterator[str]:
+    """Modules that a statement imports, as far down as they are modules."""
+    if isinstance(node, ast.Import):
+        yield from (alias.name for alias in node.names)
+    if isinstance(node, ast.ImportFrom):
+        assert node.level == 0
+        assert node.module
+        for alias in node.names:
+            inner = f"{node.module}.{alias.name}"
+            yield inner if inner in FILES else node.module
+
+
+def imports_of(name: str) -> Iterator[Import]:
+    tree = ast.parse(FILES[name].read_text(encoding="utf-8"))
+    for_types = {
+        id(inner)
+        for node in ast.walk(tree)
+        if isinstance(node, ast.If) and ast.unparse(node.test) == "TYPE_CHECKING"
+        for inner in ast.walk(node)
+    }
+    for node in ast.walk(tree):
+        for target in targets(node):
+            yield Import(name, target, node.lineno, id(node) in for_types)
+
+
+IMPORTS = [item for name in FILES for item in imports_of(name)]
+OURS = [item for item in IMPORTS if item.target.split(".")[0] == "nrs_design"]
+
+
+def floor(module: str) -> str:
+    return [*module.split("."), "__init__"][1]
+
+
+def floors() -> list[str]:
+    """The floors of docs/architecture.md, ground floor first."""
+    text = (ROOT / "docs/architecture.md").read_text(encoding="utf-8")
+    rows = re.findall(r"^\| ((?:`\w+`,? ?)+) \|", text, re.MULTILINE)
+    return [name for row in reversed(rows) for name in reversed(re.findall(r"`(\w+)`", row))]
+
+
+def test_every_module_has_a_floor():
+    assert len(floors()) == len(set(floors()))
+    assert set(floors()) == {floor(name) for name in FILES} - {"__init__", "__main__"}
+
+
+def test_imports_point_downward():
+    # The root holds the version, which everyone may quote, and shows the library at the door.
+    rank = {"__init__": -1} | {name: height for height, name in enumerate(floors())}
+    rank["__main__"] = len(rank)
+    up = [
+        item
+        for item in OURS
+        if rank[floor(item.target)] > rank[floor(item.source)] and item.source != "nrs_design"
+    ]
+    assert not up
+    assert {item.target for item in OURS if item.source == "nrs_design"} == {"nrs_design.api"}
+
+
+def test_no_module_imports_itself_by_way_of_others():
+    graph = {name: set() for name in FILES}
+    for item in OURS:
+        if not item.typing_only and (item.target, item.source) not in KNOWN_CYCLES:
+            graph[item.source].add(item.target)
+    while ends := {name for name, after in graph.items() if not after} | (
+        graph.keys() - set().union(*graph.values())
+    ):
+        graph = {name: after - ends for name, after in graph.items() if name not in ends}
+    assert not graph
+
+
+def test_the_proof_stands_on_itself():
+    below = {
+        item.target.split(".")[0]
+        for item in IMPORTS
+        if floor(item.source) == "proof" and not item.target.startswith("nrs_design.proof.")
+    }
+    assert below - sys.stdlib_module_names <= {"flint"}
+
+
+@pytest.mark.parametrize("above", ["cli", "gating", "exporters"])
+def test_stages_are_known_to_the_pipeline_only(above):
+    """A command asks the pipeline; it takes types of a stage, to print them."""
+    inside = [
+        item
+        for item in OURS
+        if floor(item.source) == above
+        and floor(item.target) in STAGES
+        and item.target not in DOORS
+        and not item.typing_only
+    ]
+    assert not inside
+
+
+def test_the_reader_of_imports_sees_them():
+    lazy = {(item.source, item.target) for item in OURS}
+    assert ("nrs_design.pipeline", "nrs_design.search.certify") in lazy
+    assert ("nrs_design.gating.run", "nrs_design.reporting") in lazy
+    typed = {(item.source, item.target) for item in OURS if item.typing_only}
+    assert ("nrs_design.cli.report", "nrs_design.pipeline") in typed
+
+
+def named_paths(page: str) -> set[str]:
+    """Paths of the package that a page names; ``<law>`` stands for any file there."""
+    text = (ROOT / page).read_text(encoding="utf-8")
+    return set(re.findall(r"`((?:nrs_design|tests|docs)/[\w/.<>-]*)`", text))
+
+
+@pytest.mark.parametrize("page", ["CONTRIBUTING.md", "docs/architecture.md"])
+def test_what_the_pages_name_is_there(page):
+    patterns = {path: re.sub("<[a-z]+>", "*", path) for path in named_paths(page)}
+    assert patterns
+    assert [path for path, pattern in patterns.items() if not list(ROOT.glob(pattern))] == []
+
+
+def test_adding_is_cheap():
+    """The table is a promise: at most so many files for each kind of thing."""
+    text = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
+    rows = dict(re.findall(r"^\| an? ([a-z ]+) \| (.*) \|$", text, re.MULTILINE))
+    counts = {what: row.count("`nrs_design/") for what, row in rows.items()}
+    most = {"controller law": 5, "environment law": 4, "figure": 2, "export format": 2}
+    assert {what: counts[what] for what in most} == most
+    assert len(re.findall(r"^\| `nrs_design/\S+` \|", text, re.MULTILINE)) == 6
+
+
+@pytest.mark.parametrize(
+    ("law", "file"), [("Maxwell", "maxwell"), ("KelvinBoltzmann", "kelvin_boltzmann")]
+)
+def test_a_linear_law_of_contact_is_known_to_the_files_of_the_table(law, file):
+    """Others take it from the tables; only the numbers of the dissertation ask for one by name."""
+    known = {
+        path.relative_to(PACKAGE).as_posix()
+        for path in FILES.values()
+        if {law, f"{law}Spec"} & names_in(path) and path.parent.name != "reproduction"
+    }
+    assert known <= {
+        f"models/contact/{file}.py",
+        "models/contact/__init__.py",
+        "spec/environment.py",
+        "identification/tissue/starts.py",
+    }
+
+
+def names_in(path: Path) -> set[str]:
+    """Names that the code of a file uses or imports."""
+    tree = ast.parse(path.read_text(encoding="utf-8"))
+    used = {node.id for node in ast.walk(tree) if isinstance(node, ast.Name)}
+    return used | {
+        alias.name
+        for node in ast.walk(tree)
+        if isinstance(node, ast.ImportFrom)
+        for alias in node.names
+    }

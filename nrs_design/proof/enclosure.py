@@ -44,6 +44,13 @@ def exponential(A: RationalMatrix, begin: Fraction, end: Fraction) -> Any:
 
     The times are those around their middle: ``exp(A t) = exp(A d) exp(A m)`` with d in a ball
     around zero.
+
+    Parameters
+    ----------
+    A : RationalMatrix, shape (n, n)
+        In 1/s.
+    begin, end : Fraction
+        The first and the last time, in s.
     """
     from flint import arb, arb_mat, fmpq
 
@@ -57,7 +64,17 @@ def exponential(A: RationalMatrix, begin: Fraction, end: Fraction) -> Any:
 
 
 def meets(enclosed: Any, M: RationalMatrix, error: Fraction) -> bool:
-    """Tell whether balls overlap, entry by entry, those of one radius around a rational matrix."""
+    """Tell whether balls overlap, entry by entry, those of one radius around a rational matrix.
+
+    Parameters
+    ----------
+    enclosed : flint.arb_mat
+        The balls.
+    M : RationalMatrix
+        Of the same shape.
+    error : Fraction
+        The radius.
+    """
     from flint import arb, fmpq
 
     radius, ours = arb(fmpq(error.numerator, error.denominator)), balls(M)

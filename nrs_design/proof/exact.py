@@ -169,7 +169,15 @@ def transpose(M: IntegerMatrix) -> list[tuple[int, ...]]:
 
 
 def congruence(L: IntegerMatrix, Q: IntegerMatrix, multiply: Product = multiply) -> list[list[int]]:
-    """Return ``L' Q L``."""
+    """Return ``L' Q L``.
+
+    Parameters
+    ----------
+    L, Q : integer matrices
+        Q is square, with as many rows as L.
+    multiply : callable
+        How matrices are multiplied.
+    """
     return multiply(transpose(L), multiply(Q, L))
 
 

@@ -13,7 +13,7 @@ second opinion.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from fractions import Fraction
 from typing import Any
 
@@ -35,6 +35,9 @@ from nrs_design.proof.evidence.unstable_mixture import mixture
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.system import SwitchedSystem, Time
 from nrs_design.proof.taylor import exponential_nearly
+
+# A matrix and a time, of which the exponential is enclosed.
+Exponent = tuple[RationalMatrix, Fraction]
 
 
 def agrees(system: SwitchedSystem, evidence: AbstractEvidence) -> bool:
@@ -66,23 +69,31 @@ def _agrees_on_every_part(system: SwitchedSystem, evidence: BlockTriangular) -> 
     return all(agrees(diagonal_block(system, blocks[k]), part) for k, part in evidence.parts)
 
 
-def _exponents(
-    system: SwitchedSystem, evidence: AbstractEvidence
-) -> set[tuple[RationalMatrix, Fraction]]:
+def _exponents(system: SwitchedSystem, evidence: AbstractEvidence) -> set[Exponent]:
     """Return matrices and times of which flint encloses the exponential."""
-    if system.time is Time.DISCRETE:
+    enclosed = _ENCLOSED.get(type(evidence))
+    if enclosed is None or system.time is Time.DISCRETE:
         return set()
+    return set(enclosed(system, evidence))
+
+
+def _steps(system: SwitchedSystem, evidence: UnstablePeriod) -> Iterator[Exponent]:
     modes = {mode.name: mode.A for mode in system.modes}
-    if isinstance(evidence, UnstablePeriod):
-        return {(modes[name], time) for name, time in evidence.steps}
-    if isinstance(evidence, ModeQuadratic):
-        return {
-            (shifted(modes[name], evidence.rate), time)
-            for name, stay in system.stays().items()
-            for time in (stay.shortest, stay.longest if name in evidence.leaving else None)
-            if time
-        }
-    return set()
+    return ((modes[name], time) for name, time in evidence.steps)
+
+
+def _stays(system: SwitchedSystem, evidence: ModeQuadratic) -> Iterator[Exponent]:
+    modes = {mode.name: mode.A for mode in system.modes}
+    for name, stay in system.stays().items():
+        for time in (stay.shortest, stay.longest if name in evidence.leaving else None):
+            if time:
+                yield shifted(modes[name], evidence.rate), time
+
+
+_ENCLOSED: Mapping[type[AbstractEvidence], Callable[[SwitchedSystem, Any], Iterator[Exponent]]] = {
+    UnstablePeriod: _steps,
+    ModeQuadratic: _stays,
+}
 
 
 def _is_met(A: RationalMatrix, time: Fraction) -> bool:

@@ -5,9 +5,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Mapping
 from itertools import accumulate, combinations_with_replacement
 from operator import mul, sub
+from typing import Any
 
 from nrs_design.proof.evidence import AbstractEvidence, CommonQuadratic
 from nrs_design.proof.evidence.abstract import find_indefinite
@@ -27,10 +28,8 @@ def find_fault(evidence: AbstractEvidence, system: SwitchedSystem) -> str | None
     """
     if (unfit := evidence.find_unfit(system)) is not None:
         return unfit
-    if isinstance(evidence, CommonQuadratic) and system.order >= PACKED_ORDER:
-        forms = evidence.forms(system, multiply_packed)
-    else:
-        forms = evidence.forms(system)
+    packed = _PACKED.get(type(evidence)) if system.order >= PACKED_ORDER else None
+    forms = packed(evidence, system) if packed else evidence.forms(system)
     return find_indefinite(item for item in forms if not is_clearly_positive_definite(item[1]))
 
 
@@ -91,3 +90,14 @@ def multiply_packed(left: IntegerMatrix, right: IntegerMatrix) -> list[list[int]
     halves = sum(half << shift for shift in shifts)
     sums = [sum(map(mul, row, long_rows), halves) for row in left]
     return [[(total >> shift & mask) - half for shift in shifts] for total in sums]
+
+
+def _packed_forms(
+    evidence: CommonQuadratic, system: SwitchedSystem
+) -> Iterator[tuple[str, IntegerMatrix]]:
+    return evidence.forms(system, multiply_packed)
+
+
+_PACKED: Mapping[
+    type[AbstractEvidence], Callable[[Any, SwitchedSystem], Iterator[tuple[str, IntegerMatrix]]]
+] = {CommonQuadratic: _packed_forms}

@@ -17,7 +17,7 @@ from nrs_design.errors import DesignError, InternalError
 from nrs_design.pipeline import run_certification
 from nrs_design.proof.evidence import BlockTriangular, CommonQuadratic, Shows
 from nrs_design.proof.system import Switching, Time
-from nrs_design.search import lmi, rungs
+from nrs_design.search import checker, lmi, rungs
 from nrs_design.search.certification import Limits, Method
 from nrs_design.search.certify import certify
 from nrs_design.search.gradient import GradientResult
@@ -547,7 +547,7 @@ def test_slightly_wrong_answers_do_not_pass(monkeypatch):
 
 def test_a_wrong_check_is_stopped(monkeypatch):
     """If the trusted check accepted anything, flint would still stop a wrong proof."""
-    monkeypatch.setattr(CommonQuadratic, "find_fault", lambda self, system: None)
+    monkeypatch.setattr(checker, "find_fault", lambda evidence, system: None)
     monkeypatch.setattr(rungs, "find_common_quadratic", lambda *arguments, **options: np.eye(2))
     monkeypatch.setattr(rungs, "rate_of", lambda *arguments: 0.5)
     with pytest.raises(InternalError):

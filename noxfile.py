@@ -8,7 +8,8 @@ nox.options.sessions = ["lint", "types", "tests"]
 nox.options.default_venv_backend = "venv"
 
 CONSTRAINTS = ("-c", "constraints.txt")
-SOURCES = ("nrs_design", "tests", "benchmarks", "noxfile.py")
+CHECK_ELSEWHERE = "docs/certificates/check_elsewhere.py"
+SOURCES = ("nrs_design", "tests", "benchmarks", CHECK_ELSEWHERE, "noxfile.py")
 
 
 @nox.session
@@ -28,6 +29,14 @@ def types(session: nox.Session) -> None:
 def tests(session: nox.Session) -> None:
     session.install(".[test]", *CONSTRAINTS)
     session.run("pytest", "-n", "2", "-m", "not slow", *session.posargs)
+
+
+@nox.session
+def coverage(session: nox.Session) -> None:
+    """Every line and every branch of what decides is run by its own tests."""
+    session.install(".[test]", *CONSTRAINTS)
+    session.run("coverage", "run", "-m", "pytest", "-m", "not slow", "tests/proof")
+    session.run("coverage", "report")
 
 
 @nox.session

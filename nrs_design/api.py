@@ -406,8 +406,16 @@ def check_lyapunov(
         raise NrsDesignError(str(error), remedy="correct the matrices or the rate") from None
 
 
-def verify(certificate: str | Path, spec: str | Path) -> Verification:
-    """Re-check a certificate file against its spec, exactly and without a solver.
+def verify(certificate: str | Path, spec: str | Path | None = None) -> Verification:
+    """Re-check a certificate file, exactly and without a solver.
+
+    Parameters
+    ----------
+    certificate : path-like
+        The file.
+    spec : path-like, optional
+        The spec that it must belong to. Without it the proof is checked for the modes that the
+        file holds, whosever they are.
 
     Returns
     -------
@@ -419,7 +427,7 @@ def verify(certificate: str | Path, spec: str | Path) -> Verification:
     SpecError, CertificateError
         If a file cannot be read at all.
     """
-    return verify_file(Path(certificate), read_spec(spec))
+    return verify_file(Path(certificate), None if spec is None else read_spec(spec))
 
 
 def _symmetric_part(P: object) -> RationalMatrix:

@@ -11,8 +11,11 @@ from typing import Any
 
 from nrs_design.proof.evidence import AbstractEvidence, Shows
 from nrs_design.proof.system import SwitchedSystem
+from nrs_design.proof.system_fields import system_fields
 
-SCHEMA = "nrs-design/certificate/3"
+SCHEMA = "nrs-design/certificate/4"
+# It named the modes only; what they are had to be assembled from the spec.
+FORMER = "nrs-design/certificate/3"
 # What says nothing about the claim, so that the id does not cover it.
 UNSIGNED = frozenset({"id", "origin"})
 
@@ -48,11 +51,13 @@ class Certificate:
     gains : mapping
         Designed gains (float32, as exact decimals) by controller; empty for given matrices.
     system : SwitchedSystem
-        Its time axis, names and assumptions are quoted; its matrices are never stored.
+        What the statements are about.
     statements : tuple of AbstractEvidence
         What is shown, each with its numbers; at least one.
     version : str
         Version of this package.
+    schema : str
+        Of the file that it was read from; `FORMER` has no modes and no rules of switching.
     """
 
     spec_name: str
@@ -62,6 +67,7 @@ class Certificate:
     system: SwitchedSystem
     statements: tuple[AbstractEvidence, ...]
     version: str
+    schema: str = SCHEMA
 
     @property
     def verdict(self) -> str:
@@ -115,22 +121,23 @@ def common_quadratic_of(
 def to_document(certificate: Certificate) -> dict[str, Any]:
     """Return the JSON document of a certificate, without its id."""
     system = certificate.system
-    return {
-        "schema": SCHEMA,
+    document = {
+        "schema": certificate.schema,
         "verdict": certificate.verdict,
         "spec": {"name": certificate.spec_name, "sha256": certificate.spec_sha256},
-        "time": str(system.time),
         "coordinates": certificate.coordinates,
-        "states": list(system.states),
-        "modes": [mode.name for mode in system.modes],
         "gains": {name: dict(values) for name, values in certificate.gains.items()},
-        "assumptions": list(system.assumptions),
+        **system_fields(system),
         "statements": [
             {"kind": item.kind, "claim": item.claim(system), **item.to_fields()}
             for item in certificate.statements
         ],
         "package": {"name": "nrs-design", "version": certificate.version},
     }
+    if certificate.schema == FORMER:
+        document["modes"] = [mode.name for mode in system.modes]
+        del document["switching"]
+    return document
 
 
 def content_id(document: Mapping[str, Any]) -> str:

@@ -1,67 +1,56 @@
-"""Re-check a certificate file against its spec: no solver, no floating-point decision.
+"""Re-check a certificate file: its proof, and that its modes are those of a spec.
 
-The matrices are assembled from the spec; the certificate contributes the designed gains, the
-evidence and the rate. Every other field is regenerated and must agree to the letter.
+The proof is that of the certificate's own modes (`nrs_design.certificates.prove`). The second step
+assembles the modes from the spec and the designed gains; they, their names, the rules of switching
+and the assumptions must be the same.
 """
 
 from __future__ import annotations
 
 import json
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import fields
 from pathlib import Path
 from typing import Any, NoReturn
 
-from nrs_design.certificates.certificate import (
-    SCHEMA,
-    UNSIGNED,
-    Certificate,
-    content_id,
-    to_document,
+from nrs_design.certificates.certificate import FORMER
+from nrs_design.certificates.prove import (
+    Verification,
+    check,
+    confirmed,
+    find_altered,
+    held_system,
+    prove,
+    read_gains,
 )
-from nrs_design.errors import DISAGREE, CertificateError, InternalError, NrsDesignError
+from nrs_design.errors import CertificateError
 from nrs_design.files import open_regular, read_json_text
 from nrs_design.models.plant import Plant
-from nrs_design.proof.evidence import AbstractEvidence, Shows, read_evidence
-from nrs_design.proof.evidence.fields import read_text
-from nrs_design.proof.second_opinion import agrees
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.proof.text import quoted
 from nrs_design.spec import LoadedSpec
 from nrs_design.switched.assemble import assemble_from_text
 
+__all__ = ["Verification", "prove", "read_document", "verify", "verify_document"]
+
 MAX_BYTES = 32 * 2**20
-MAX_VERDICTS = 2
-# What a hostile document can raise before the exact check: all of it means rejection.
-_MALFORMED = (
-    LookupError,
-    TypeError,
-    ValueError,
-    ArithmeticError,
-    AttributeError,
-    RecursionError,
-)
-
-
-@dataclass(frozen=True, slots=True)
-class Verification:
-    """Outcome of a re-check: the certificate, and why it is rejected (None if it is valid)."""
-
-    certificate: Certificate | None
-    fault: str | None
 
 
 def verify(
-    path: Path, spec: LoadedSpec, coordinates: str | None = None, plant: Plant | None = None
+    path: Path,
+    spec: LoadedSpec | None = None,
+    coordinates: str | None = None,
+    plant: Plant | None = None,
 ) -> Verification:
-    """Re-check a certificate file against the spec that it is said to belong to.
+    """Re-check a certificate file, and whether it belongs to a spec.
 
     Parameters
     ----------
     path : Path
         Certificate file.
-    spec : LoadedSpec
-        The spec, as read from its own file.
+    spec : LoadedSpec, optional
+        The spec, as read from its own file. Without it the proof is checked, for the modes in the
+        certificate, whosever they are.
     coordinates : {"deflection", "force"}, optional
         That the certificate must be about; those of the spec by default.
     plant : Plant, optional
@@ -71,13 +60,15 @@ def verify(
     ------
     CertificateError
         If the file cannot be read as a certificate of this format at all.
+    InternalError
+        If flint disagrees with what has been accepted.
     """
     return verify_document(read_document(path), spec, coordinates, plant)
 
 
 def verify_document(
     document: Mapping[str, Any],
-    spec: LoadedSpec,
+    spec: LoadedSpec | None = None,
     coordinates: str | None = None,
     plant: Plant | None = None,
 ) -> Verification:
@@ -90,23 +81,26 @@ def verify_document(
     spec, coordinates, plant
         As for `verify`.
     """
-    try:
-        foreign = _find_foreign(document, spec, coordinates)
-        if foreign is not None:
-            return Verification(None, foreign)
-        certificate = _rebuild(document, spec, plant)
-        fault = _find_difference(document, certificate)
-        for statement in certificate.statements:
-            fault = fault or statement.find_fault(certificate.system)
-    except _MALFORMED as error:
-        return Verification(None, f"a field is missing or malformed ({error})")
-    except NrsDesignError as error:
-        return Verification(None, error.message)
-    if fault is None:
-        for statement in certificate.statements:
-            if not agrees(certificate.system, statement):
-                raise InternalError(DISAGREE)
-    return Verification(certificate, fault)
+    if spec is None:
+        return prove(document)
+    return confirmed(lambda: _verify(document, spec, coordinates, plant))
+
+
+def _verify(
+    document: Mapping[str, Any], spec: LoadedSpec, coordinates: str | None, plant: Plant | None
+) -> Verification:
+    if (altered := find_altered(document)) is not None:
+        return altered
+    if (foreign := _find_foreign(document, spec, coordinates)) is not None:
+        return Verification(None, foreign)
+    gains = read_gains(document)
+    system = assemble_from_text(spec.spec, gains, document["coordinates"], plant=plant)
+    if document["schema"] != FORMER:
+        held = held_system(document)
+        for field in fields(SwitchedSystem):
+            if getattr(held, field.name) != getattr(system, field.name):
+                return Verification(None, f"its field {field.name!r} is not that of the spec")
+    return check(document, system)
 
 
 def read_document(path: Path) -> dict[str, Any]:
@@ -155,67 +149,13 @@ def _read_bytes(path: Path) -> bytes:
 def _find_foreign(
     document: Mapping[str, Any], spec: LoadedSpec, coordinates: str | None
 ) -> str | None:
-    """Say why a document is not an unaltered certificate for this spec."""
-    if document.get("id") != content_id(document):
-        return "its content does not match its id: it was altered"
-    if document.get("schema") != SCHEMA:
-        return f"its schema is not {SCHEMA}: another version of nrs-design made it, make it anew"
+    """Say why a certificate is not one for this spec."""
     if document.get("spec") != {"name": spec.spec.name, "sha256": spec.sha256}:
         return "it belongs to another spec, or the spec has changed since"
     wanted = coordinates or getattr(spec.spec, "coordinates", None)
     if document.get("coordinates") != wanted:
         return f"it is about other coordinates than {wanted}"
     return None
-
-
-def _rebuild(document: Mapping[str, Any], spec: LoadedSpec, plant: Plant | None) -> Certificate:
-    coordinates = document["coordinates"]
-    gains = _mapping(document["gains"])
-    system = assemble_from_text(spec.spec, gains, coordinates, plant=plant)
-    return Certificate(
-        spec_name=spec.spec.name,
-        spec_sha256=spec.sha256,
-        coordinates=coordinates,
-        gains=gains,
-        system=system,
-        statements=_statements(document, system),
-        version=read_text(document["package"]["version"]),
-    )
-
-
-def _statements(
-    document: Mapping[str, Any], system: SwitchedSystem
-) -> tuple[AbstractEvidence, ...]:
-    # Each may take seconds: a verdict and a remark on every block, said twice, are enough.
-    if len(document["statements"]) > 2 * (1 + system.order):
-        raise ValueError("it makes too many statements")
-    statements = tuple(read_evidence(fields, system) for fields in document["statements"])
-    if sum(item.shows is not Shows.NO_COMMON_QUADRATIC for item in statements) > MAX_VERDICTS:
-        raise ValueError("it states its verdict too often")
-    if not statements:
-        raise ValueError("it states nothing")
-    return statements
-
-
-def _find_difference(document: Mapping[str, Any], certificate: Certificate) -> str | None:
-    expected = to_document(certificate)
-    for key in sorted(expected.keys() | (document.keys() - UNSIGNED)):
-        # Membership too: a missing field is not the same as one that is null.
-        if (key in document) != (key in expected) or _text_of(document, key) != _text_of(
-            expected, key
-        ):
-            return f"its field {quoted(key)} does not follow from the spec and the evidence"
-    return None
-
-
-def _text_of(document: Mapping[str, Any], key: str) -> str:
-    return json.dumps(document.get(key), sort_keys=True)
-
-
-def _mapping(value: object) -> dict[str, Any]:
-    if not isinstance(value, dict):
-        raise TypeError(f"expected an object, not {quoted(str(value))}")
-    return value
 
 
 def _no_float(text: str) -> NoReturn:

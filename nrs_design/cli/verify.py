@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from nrs_design.cli import exit_codes
-from nrs_design.cli.options import CoordinatesOption, Json, Quiet, SpecFile
+from nrs_design.cli.options import CoordinatesOption, Json, Quiet
 from nrs_design.cli.printing import print_json, say
 
 if TYPE_CHECKING:
@@ -19,7 +19,14 @@ if TYPE_CHECKING:
 
 def verify(
     certificate: Annotated[Path, typer.Argument(metavar="CERT", help="Certificate file.")],
-    spec: SpecFile,
+    spec: Annotated[
+        Path | None,
+        typer.Argument(
+            metavar="SPEC",
+            show_default=False,
+            help="The spec whose modes they must be; without it, only the proof is checked.",
+        ),
+    ] = None,
     coordinates: Annotated[
         CoordinatesOption | None,
         typer.Option(help="Coordinates that the certificate is about, if not those of the spec."),
@@ -27,7 +34,10 @@ def verify(
     as_json: Json = False,
     quiet: Quiet = False,
 ) -> None:
-    """Re-check a certificate against its spec in exact arithmetic, without any solver.
+    """Re-check a certificate in exact arithmetic, and that its modes are those of a spec.
+
+    No solver runs. Without a spec, the proof is checked for the modes that the certificate holds,
+    and the answer says so: whose modes they are is then not known.
 
     Exit code 0: the proof holds. 1: the certificate is rejected, or it holds and refutes. 3: it
     holds, but decides nothing.
@@ -37,7 +47,9 @@ def verify(
     from nrs_design.certificates.verify import verify as verify_file
     from nrs_design.spec import read_spec
 
-    loaded = read_spec(spec)
+    if spec is None and coordinates is not None:
+        raise typer.BadParameter("needs a SPEC to compare with", param_hint="--coordinates")
+    loaded = None if spec is None else read_spec(spec)
     outcome = verify_file(certificate, loaded, None if coordinates is None else str(coordinates))
     checked = outcome.certificate if outcome.fault is None else None
     verdict = checked.verdict if checked else "rejected"
@@ -53,19 +65,23 @@ def verify(
                 "assumptions": list(checked.system.assumptions) if checked else None,
                 "certificate": str(certificate),
                 "certificate_id": checked.id if checked else None,
-                "spec": str(spec),
+                "spec": None if spec is None else str(spec),
             },
         )
     elif checked is None:
         say(f"REJECTED: {outcome.fault}", verdict="rejected")
     elif not quiet:
-        _print(checked, loaded.spec)
+        _print(checked, None if loaded is None else loaded.spec)
     raise typer.Exit(exit_codes.OF_VERDICT.get(verdict, exit_codes.REFUTED))
 
 
-def _print(certificate: Certificate, spec: Spec) -> None:
+def _print(certificate: Certificate, spec: Spec | None) -> None:
     verdict = certificate.verdict
-    say(f"{verdict.upper()}: the certificate holds, checked exactly.", verdict=verdict)
+    if spec is None:
+        say(f"{verdict.upper()} for the modes in the file, checked exactly.", verdict=verdict)
+        say("  not compared with a spec: name it to check that these are its modes and assumptions")
+    else:
+        say(f"{verdict.upper()}: the certificate holds, checked exactly.", verdict=verdict)
     for statement in certificate.statements:
         say(f"  {statement.claim(certificate.system)}")
     if certificate.coordinates:
@@ -77,7 +93,7 @@ def _print(certificate: Certificate, spec: Spec) -> None:
                 say(f"  {name}: {gain} anywhere in [{low}, {high}]")
 
 
-def _ranges(spec: Spec, name: str) -> Iterator[tuple[str, str, str]]:
+def _ranges(spec: Spec | None, name: str) -> Iterator[tuple[str, str, str]]:
     """Yield the gains of a controller that have a range, with its ends as written."""
     controller = getattr(spec, "controllers", {}).get(name)
     for gain in ("Mt", "Bt"):

@@ -11,13 +11,14 @@ neither definiteness nor the Hurwitz property, so all tests run on integers.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from fractions import Fraction
-from itertools import accumulate, combinations_with_replacement
+from itertools import combinations_with_replacement
 from math import gcd, lcm
-from operator import mul, sub
+from operator import mul
 
 IntegerMatrix = Sequence[Sequence[int]]
+Product = Callable[[IntegerMatrix, IntegerMatrix], list[list[int]]]
 
 # Elimination takes about rows^3 steps on numbers that grow with rows times bits: seconds at this.
 MAX_WORK = 10**8
@@ -27,9 +28,6 @@ MAX_SPECTRUM_WORK = 10**9
 LONG_BITS = 3000
 # Modes over a longer common denominator are not added up.
 MAX_DENOMINATOR_BITS = 10**5
-
-# Bits of the smallest diagonal entry in the elimination with rounded numbers: one digit of Python.
-CLEAR_BITS = 28
 
 
 class TooLargeError(ArithmeticError):
@@ -94,9 +92,8 @@ def add(left: IntegerMatrix, right: IntegerMatrix, weight: int = 1) -> list[list
 def is_positive_definite(M: IntegerMatrix) -> bool:
     """Decide whether a symmetric integer matrix is positive definite.
 
-    A matrix that is clearly so is recognized with short numbers; the others are decided by
-    fraction-free elimination (Bareiss 1968): the k-th pivot is the k-th leading principal
-    minor, and by Sylvester's criterion all of them are positive iff M is positive definite.
+    Fraction-free elimination (Bareiss 1968): the k-th pivot is the k-th leading principal minor,
+    and by Sylvester's criterion all of them are positive iff M is positive definite.
 
     Parameters
     ----------
@@ -110,52 +107,13 @@ def is_positive_definite(M: IntegerMatrix) -> bool:
     """
     if not M or not is_symmetric(M):
         raise ValueError("a definiteness test needs a symmetric matrix")
-    upper = [entry for i, row in enumerate(M) for entry in row[i:]]
-    return _is_clearly_positive_definite(upper, len(M)) or _has_positive_minors(upper, len(M))
-
-
-def _is_clearly_positive_definite(upper: Sequence[int], order: int) -> bool:
-    """Tell whether elimination with rounded numbers shows that a matrix is positive definite.
-
-    Rounding down to multiples of 2^s changes a symmetric matrix of order r by an E with entries of
-    size below 2^s, so ``E <= r 2^s I``: what is left after ``r 2^s I`` is subtracted, too, is below
-    the matrix. The matrix itself and every Schur complement is replaced by such a smaller one. If
-    all pivots of these are positive, so are those of the matrix. No is no answer.
-
-    Parameters
-    ----------
-    upper : sequence of int
-        The rows of a symmetric matrix one after the other, each from its diagonal on.
-    order : int
-        Number of its rows.
-    """
-    shift = CLEAR_BITS - min(upper[k] for k in _diagonal(order)).bit_length()
-    entries = [entry << shift if shift >= 0 else entry >> -shift for entry in upper]
-    while order:
-        for k in _diagonal(order):
-            entries[k] -= order
-        pivot, row, rest = entries[0], entries[1:order], entries[order:]
-        if pivot <= 0:
-            return False
-        # In the order of the entries: the pairs of every entry of the row with all from it on.
-        pairs = combinations_with_replacement(row, 2)
-        entries = list(map(sub, rest, [a * b // pivot for a, b in pairs]))
-        order -= 1
-    return True
-
-
-def _diagonal(order: int) -> Iterator[int]:
-    """Return where the diagonal is in an upper triangle that is written row after row."""
-    return accumulate(range(order, 1, -1), initial=0)
-
-
-def _has_positive_minors(upper: Sequence[int], order: int) -> bool:
-    """Decide whether all leading principal minors are positive; parameters as above."""
-    entries, previous = list(upper), 1
+    # The rows one after the other, each from its diagonal on.
+    entries, order, previous = [entry for i, row in enumerate(M) for entry in row[i:]], len(M), 1
     while order:
         pivot, row, rest = entries[0], entries[1:order], entries[order:]
         if pivot <= 0:
             return False
+        # In the order of what is left: every entry of the row with itself and all after it.
         pairs = combinations_with_replacement(row, 2)
         entries = [
             (pivot * entry - a * b) // previous for entry, (a, b) in zip(rest, pairs, strict=True)
@@ -194,10 +152,6 @@ def is_positive_semidefinite(M: IntegerMatrix) -> bool:
 def multiply(left: IntegerMatrix, right: IntegerMatrix) -> list[list[int]]:
     """Return the matrix product.
 
-    Every row of the right factor is written as one long integer, with its entries as digits of a
-    base that no entry of the product can overflow. A row of the product is then a sum of as many
-    long products as it has factors; half of the base makes its digits positive.
-
     Raises
     ------
     ValueError
@@ -205,13 +159,8 @@ def multiply(left: IntegerMatrix, right: IntegerMatrix) -> list[list[int]]:
     """
     if any(len(row) != len(right) for row in left):
         raise ValueError("a product needs as many columns on the left as rows on the right")
-    width = bit_length(left) + bit_length(right) + len(right).bit_length() + 1
-    half, mask = 1 << (width - 1), (1 << width) - 1
-    shifts = range(0, width * len(right[0]), width)
-    long_rows = [sum([a << shift for a, shift in zip(row, shifts, strict=True)]) for row in right]
-    halves = sum(half << shift for shift in shifts)
-    sums = [sum(map(mul, row, long_rows), halves) for row in left]
-    return [[(total >> shift & mask) - half for shift in shifts] for total in sums]
+    columns = transpose(right)
+    return [[sum(map(mul, row, column)) for column in columns] for row in left]
 
 
 def transpose(M: IntegerMatrix) -> list[tuple[int, ...]]:
@@ -219,13 +168,25 @@ def transpose(M: IntegerMatrix) -> list[tuple[int, ...]]:
     return list(zip(*M, strict=True))
 
 
-def congruence(L: IntegerMatrix, Q: IntegerMatrix) -> list[list[int]]:
-    """Return ``L' Q L``."""
+def congruence(L: IntegerMatrix, Q: IntegerMatrix, multiply: Product = multiply) -> list[list[int]]:
+    """Return ``L' Q L``.
+
+    Parameters
+    ----------
+    L, Q : integer matrices
+        Q is square, with as many rows as L.
+    multiply : callable
+        How matrices are multiplied.
+    """
     return multiply(transpose(L), multiply(Q, L))
 
 
 def lyapunov_decrease(
-    N: IntegerMatrix, denominator: int, Q: IntegerMatrix, rate: Fraction
+    N: IntegerMatrix,
+    denominator: int,
+    Q: IntegerMatrix,
+    rate: Fraction,
+    multiply: Product = multiply,
 ) -> list[list[int]]:
     """Form ``-(A'Q + QA + 2 rate Q)`` for ``A = N / denominator``, times `lyapunov_factor`.
 
@@ -237,6 +198,8 @@ def lyapunov_decrease(
         Positive.
     rate : Fraction
         The claimed decay rate alpha, in 1/s.
+    multiply : callable
+        How matrices are multiplied; only a search has reason to ask for another way.
     """
     QN = multiply(Q, N)
     p, q = 2 * rate.numerator * denominator, rate.denominator
@@ -257,7 +220,11 @@ def lyapunov_factor(denominator: int, rate: Fraction) -> int:
 
 
 def stein_decrease(
-    N: IntegerMatrix, denominator: int, Q: IntegerMatrix, factor: Fraction
+    N: IntegerMatrix,
+    denominator: int,
+    Q: IntegerMatrix,
+    factor: Fraction,
+    multiply: Product = multiply,
 ) -> list[list[int]]:
     """Form ``factor^2 Q - A'QA`` for ``A = N / denominator``, times `stein_factor`.
 
@@ -269,12 +236,14 @@ def stein_decrease(
         Positive.
     factor : Fraction
         The claimed contraction rho per step.
+    multiply : callable
+        How matrices are multiplied; only a search has reason to ask for another way.
     """
     p = factor.numerator**2 * denominator**2
     q = factor.denominator**2
     return [
         [p * before - q * after for before, after in zip(*rows, strict=True)]
-        for rows in zip(Q, congruence(N, Q), strict=True)
+        for rows in zip(Q, congruence(N, Q, multiply), strict=True)
     ]
 
 

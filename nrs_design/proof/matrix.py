@@ -69,6 +69,11 @@ class RationalMatrix:
         """Rows and columns."""
         return len(self.numerators), len(self.numerators[0])
 
+    @property
+    def is_well_formed(self) -> bool:
+        """Whether it has rows of one length, and its denominator keeps the signs of the rest."""
+        return self.denominator > 0 and len(set(map(len, self.numerators))) == 1
+
     def fractions(self) -> list[list[Fraction]]:
         """Return the entries as reduced fractions."""
         return [[Fraction(entry, self.denominator) for entry in row] for row in self.numerators]

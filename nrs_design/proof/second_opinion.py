@@ -5,32 +5,42 @@ this program or of flint, and never a verdict.
 
 How far it goes: stable modes and averages are decided anew from the matrices; for a common
 quadratic function the conditions are formed and decided anew; for every other kind flint decides
-the definiteness of the forms that our code made. There is no second opinion where flint itself has
-the first one: enclosures of exponentials (dwell times in continuous time) and growing periods.
+the definiteness of the forms that our code made. Where flint has the first word, on exponentials,
+a Taylor series in Python integers has the second: at both ends of every stay, its enclosure must
+meet that of flint. What flint makes of an exponential (times in between, products, traces) has no
+second opinion.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from fractions import Fraction
 from typing import Any
 
 from nrs_design.proof.constant import system_at
+from nrs_design.proof.enclosure import eigenvalues, exponential, meets, precision
 from nrs_design.proof.evidence import (
     AbstractEvidence,
     BlockTriangular,
     CommonQuadratic,
+    ModeQuadratic,
     UnstableMixture,
     UnstableMode,
+    UnstablePeriod,
     UnstableValue,
 )
 from nrs_design.proof.evidence.block_triangular import diagonal_block
+from nrs_design.proof.evidence.flow import shifted
 from nrs_design.proof.evidence.unstable_mixture import mixture
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.system import SwitchedSystem, Time
+from nrs_design.proof.taylor import exponential_nearly
 
 
 def agrees(system: SwitchedSystem, evidence: AbstractEvidence) -> bool:
-    """Tell whether flint, too, accepts evidence that the trusted check has accepted."""
+    """Tell whether the second opinion, too, is that evidence holds which the check has accepted."""
+    if not all(_is_met(A, time) for A, time in _exponents(system, evidence)):
+        return False
     return _OPINIONS.get(type(evidence), _has_positive_forms)(system, evidence)
 
 
@@ -54,6 +64,32 @@ def _is_value_unstable(system: SwitchedSystem, evidence: UnstableValue) -> bool:
 def _agrees_on_every_part(system: SwitchedSystem, evidence: BlockTriangular) -> bool:
     blocks = evidence.blocks
     return all(agrees(diagonal_block(system, blocks[k]), part) for k, part in evidence.parts)
+
+
+def _exponents(
+    system: SwitchedSystem, evidence: AbstractEvidence
+) -> set[tuple[RationalMatrix, Fraction]]:
+    """Return matrices and times of which flint encloses the exponential."""
+    if system.time is Time.DISCRETE:
+        return set()
+    modes = {mode.name: mode.A for mode in system.modes}
+    if isinstance(evidence, UnstablePeriod):
+        return {(modes[name], time) for name, time in evidence.steps}
+    if isinstance(evidence, ModeQuadratic):
+        return {
+            (shifted(modes[name], evidence.rate), time)
+            for name, stay in system.stays().items()
+            for time in (stay.shortest, stay.longest if name in evidence.leaving else None)
+            if time
+        }
+    return set()
+
+
+def _is_met(A: RationalMatrix, time: Fraction) -> bool:
+    """Tell whether flint's enclosure of ``exp(A t)`` and that of a Taylor series overlap."""
+    M, error = exponential_nearly(A, time)
+    with precision():
+        return meets(exponential(A, time, time), M, error)
 
 
 def _decreases_everywhere(system: SwitchedSystem, evidence: CommonQuadratic) -> bool:
@@ -99,7 +135,7 @@ def _has_positive_spectrum(M: Any) -> bool:
 
 def _is_surely_stable(A: RationalMatrix, time: Time) -> bool:
     """Tell whether rigorous enclosures of all eigenvalues lie in the stable region."""
-    roots: list[Any] = _matrix(A.numerators).charpoly().complex_roots()
+    balls = eigenvalues(A)
     if time is Time.CONTINUOUS:
-        return all(root.real < 0 for root, _ in roots)
-    return all(abs(root / A.denominator) < 1 for root, _ in roots)
+        return all(ball.real < 0 for ball in balls)
+    return all(abs(ball) < 1 for ball in balls)

@@ -213,6 +213,11 @@ class SwitchedSystem:
     def find_contradiction(self) -> str | None:
         """TRUSTED: say why the rules of switching make no sense for these modes, or None."""
         names = {mode.name for mode in self.modes}
+        return (
+            self._find_odd_stay(names) or self._find_odd_switch(names) or self._find_odd_ends(names)
+        )
+
+    def _find_odd_stay(self, names: set[str]) -> str | None:
         own = self.switching.stays
         if len(dict(own)) < len(own) or not dict(own).keys() <= names:
             return "the dwell times are not those of modes"
@@ -220,7 +225,23 @@ class SwitchedSystem:
             shortest, longest = self._at_least_a_step(stay).shortest, stay.longest
             if longest is not None and longest < shortest:
                 return f"mode {name} must be left before it may be"
+        if min((self.switching.dwell_time, *(stay.shortest for _, stay in own))) < 0:
+            return "a dwell time is negative"
+        return None
+
+    def _find_odd_switch(self, names: set[str]) -> str | None:
+        for source, target in self.switching.transitions or ():
+            if source == target or not {source, target} <= names:
+                return "a transition does not lead from one mode to another"
         for reset in self.switching.resets:
             if reset.source == reset.target or not {reset.source, reset.target} <= names:
                 return "a reset does not lead from one mode to another"
+            if not reset.map.is_well_formed:
+                return "a reset is not a matrix over a positive denominator"
+        return None
+
+    def _find_odd_ends(self, names: set[str]) -> str | None:
+        ends = [name for pair in self.switching.fixed_ends for name in pair]
+        if ends and sorted(ends) != sorted(names):
+            return "the modes are not the ends of one constant parameter"
         return None

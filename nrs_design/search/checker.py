@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from nrs_design.proof.evidence import AbstractEvidence
 from nrs_design.proof.system import SwitchedSystem
+from nrs_design.search.fast_check import find_fault
 
 
 class Checker:
@@ -27,7 +28,7 @@ class Checker:
         """Say why evidence does not hold for the system, or None if it holds."""
         if any(evidence is passed for passed in self._passed):
             return None
-        fault = evidence.find_fault(self.system)
+        fault = find_fault(evidence, self.system)
         if fault is None:
             self._passed.append(evidence)
         return fault

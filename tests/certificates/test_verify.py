@@ -9,8 +9,8 @@ same spec, and `verify` says in its answer what it has checked (`TestLegitimate`
   proof nor the norm in the claim depends on it;
 - the numbers of any evidence and its ``rate``: others, if they prove what the (regenerated) claim
   says;
-- ``gains`` of which the spec fixes only the bounds: other single-precision numbers, or the same
-  ones written otherwise, for which the evidence still holds;
+- ``gains`` of which the spec fixes only the bounds: other single-precision numbers with their own
+  modes, or the same ones written otherwise, for which the evidence still holds;
 - ``statements``: some left out, said twice or in another order, if they carry the same verdict;
 - an unstable mode: any other mode that is unstable, with its own eigenvalue.
 
@@ -28,7 +28,7 @@ from pathlib import Path
 
 import pytest
 
-from nrs_design.certificates.certificate import content_id, dump
+from nrs_design.certificates.certificate import FORMER, content_id, dump
 from nrs_design.certificates.verify import (
     Verification,
     read_document,
@@ -40,8 +40,10 @@ from nrs_design.errors import CertificateError
 from nrs_design.pipeline import run_certification
 from nrs_design.proof.evidence import CommonQuadratic, UnstableMode
 from nrs_design.proof.evidence.unstable_mode import worst_eigenvalue
+from nrs_design.proof.system_fields import system_fields
 from nrs_design.search.certify import Limits, Method
 from nrs_design.spec import LoadedSpec, read_spec
+from nrs_design.switched.assemble import assemble_from_text
 from tests.support import (
     COMMUTING,
     FORCE_LIMIT,
@@ -80,6 +82,7 @@ ANY_RATE = Limits(optimize_rate=False)
 FIRST = ("statements", 0)
 Q = (*FIRST, "Q")
 DROP = object()
+NOT_ITS_MODES = "its field 'modes' is not that of the spec"
 
 
 @pytest.fixture(scope="module", params=SPECS)
@@ -137,6 +140,12 @@ def changed(document, path, value):
     else:
         parent[path[-1]] = value
     return tampered
+
+
+def with_modes(document, spec):
+    """Copy of a document with the modes that its gains make of a spec."""
+    system = assemble_from_text(spec.spec, document["gains"], document["coordinates"])
+    return {**document, "modes": system_fields(system)["modes"]}
 
 
 def restate(document, **fields):
@@ -263,7 +272,9 @@ class TestLegitimate:
         # One unit in the last place of the single-precision 2.15.
         other = Fraction(document["gains"]["insertion"]["Bt"]) + Fraction(1, 2**22)
         tampered = changed(document, ("gains", "insertion", "Bt"), exact_decimal(other))
-        assert self.accept(tampered, spec).gains["insertion"]["Bt"] == exact_decimal(other)
+        assert verify_document(resign(tampered), spec).fault == NOT_ITS_MODES
+        own = with_modes(tampered, spec)
+        assert self.accept(own, spec).gains["insertion"]["Bt"] == exact_decimal(other)
 
     def test_same_gain_written_otherwise(self, impedance):
         document, spec = impedance
@@ -354,7 +365,8 @@ class TestForgery:
         unstable = write_spec(tmp_path / "b.yaml", [[1, 0], [0, -1]])
         assert "another spec" in verify_document(document, unstable).fault
         moved = {**document, "spec": {"name": "given", "sha256": unstable.sha256}}
-        self.reject(moved, unstable, "does not decrease")
+        self.reject(moved, unstable, NOT_ITS_MODES)
+        self.reject(with_modes(moved, unstable), unstable, "does not decrease")
 
     def test_comments_and_line_ends_are_no_other_spec(self, tmp_path):
         path = tmp_path / "a.yaml"
@@ -461,7 +473,8 @@ class TestForgery:
     def test_gain_for_which_the_evidence_does_not_hold(self, impedance):
         document, spec = impedance
         tampered = changed(document, ("gains", "withdrawal", "Bt"), "0.125")
-        self.reject(tampered, spec, "does not decrease")
+        self.reject(tampered, spec, NOT_ITS_MODES)
+        self.reject(with_modes(tampered, spec), spec, "does not decrease")
 
     def test_gain_that_overflows_the_other(self, tmp_path):
         """With only the zero fixed, Kp = Kd z leaves single precision."""
@@ -483,7 +496,7 @@ class TestForgery:
         assert document["coordinates"] == "deflection"
         self.reject({**document, "coordinates": "force"}, spec, "other coordinates")
         fault = verify_document(resign({**document, "coordinates": "force"}), spec, "force").fault
-        assert "does not follow" in fault
+        assert fault == "its field 'states' is not that of the spec"
 
     @pytest.mark.parametrize("coordinates", ["deflection", "force", ""])
     def test_coordinates_of_given_matrices(self, given, coordinates):
@@ -495,7 +508,7 @@ class TestForgery:
         document, spec = given
         self.reject({**document, "gains": gains}, spec, "")
 
-    @pytest.mark.parametrize("schema", ["nrs-design/certificate/2", "nrs-design/certificate/4", 2])
+    @pytest.mark.parametrize("schema", ["nrs-design/certificate/2", "nrs-design/certificate/5", 2])
     def test_other_schema(self, given, schema):
         document, spec = given
         self.reject({**document, "schema": schema}, spec, "schema")
@@ -604,3 +617,35 @@ def test_wrong_kind_of_spec(name, other):
     assert (verify_document(document, spec).fault is None) == (name == other)
     moved = {**document, "spec": {"name": spec.spec.name, "sha256": spec.sha256}}
     assert (verify_document(resign(moved), spec).fault is None) == (name == other)
+
+
+class TestFormerSchema:
+    """It names the modes only, so nothing is proved without the spec that makes them."""
+
+    def former(self, document):
+        names = [mode["name"] for mode in document["modes"]]
+        kept = {key: value for key, value in document.items() if key != "switching"}
+        return resign({**kept, "schema": FORMER, "modes": names})
+
+    def test_holds_for_its_spec(self, pair):
+        document, spec = pair
+        old = self.former(document)
+        outcome = verify_document(old, spec)
+        assert outcome.fault is None
+        assert is_true(outcome)
+        # It is known by its own id.
+        assert outcome.certificate.id == old["id"]
+
+    def test_needs_its_spec(self, pair):
+        fault = verify_document(self.former(pair[0])).fault
+        assert "holds no modes" in fault
+        assert "make it anew" in fault
+
+    def test_other_modes(self, pair):
+        document, spec = pair
+        old = self.former(document)
+        for names in (old["modes"][1:], old["modes"][::-1], document["modes"]):
+            if names != old["modes"]:
+                assert verify_document(resign({**old, "modes": names}), spec).fault is not None
+        mixed = {**old, "switching": document["switching"]}
+        assert verify_document(resign(mixed), spec).fault is not None

@@ -78,8 +78,8 @@ def test_claim_for_a_narrow_range_is_none_for_a_wide_one(issue):
         ("assumptions", lambda texts: texts[:-1]),
         ("assumptions", lambda texts: [t.replace("[1.75, 2.5]", "[0.5, 9]") for t in texts]),
         ("assumptions", lambda texts: [t for t in texts if "stays in" not in t]),
-        ("modes", lambda names: names[:-1]),
-        ("modes", lambda names: [*names, "insertion/soft/Bt-middle"]),
+        ("modes", lambda modes: modes[:-1]),
+        ("modes", lambda modes: [*modes, {**modes[0], "name": "insertion/soft/Bt-middle"}]),
     ],
 )
 def test_what_the_claim_takes_for_granted_cannot_be_changed(issue, field, change):

@@ -36,6 +36,42 @@ def test_refutation_holds(certified):
     assert result.stdout.startswith("REFUTED: the certificate holds")
 
 
+@pytest.mark.parametrize(
+    ("name", "code", "verdict"),
+    [
+        ("soft-tissue", 0, "PROVED"),
+        ("thesis-print-error", 1, "REFUTED"),
+        ("commuting", 0, "PROVED"),
+    ],
+)
+def test_without_a_spec_the_proof_is_checked_and_no_more(certified, name, code, verdict):
+    result = run("verify", f"{name}.json", cwd=certified)
+    assert result.returncode == code, result.stderr
+    first, second, *_ = result.stdout.splitlines()
+    assert first == f"{verdict} for the modes in the file, checked exactly."
+    assert second.startswith("  not compared with a spec")
+    document = json.loads(run("verify", "--json", f"{name}.json", cwd=certified).stdout)
+    assert (document["verdict"], document["spec"]) == (verdict.lower(), None)
+
+
+def test_without_a_spec_what_is_altered_is_rejected(certified, tmp_path):
+    document = json.loads((certified / "commuting.json").read_text())
+    document["modes"][0]["numerators"][0][0] *= -1
+    (tmp_path / "c.json").write_text(json.dumps(document))
+    assert "REJECTED: its content" in run("verify", "c.json", cwd=tmp_path).stdout
+    document["id"] = content_id(document)
+    (tmp_path / "c.json").write_text(json.dumps(document))
+    result = run("verify", "c.json", cwd=tmp_path)
+    assert result.returncode == 1
+    assert "REJECTED: V does not decrease" in result.stdout
+
+
+def test_coordinates_need_a_spec(certified):
+    result = run("verify", "soft-tissue.json", "--coordinates", "force", cwd=certified)
+    assert result.returncode == 2
+    assert "needs a SPEC" in result.stderr
+
+
 def test_quiet(certified):
     result = run("verify", "-q", "commuting.json", COMMUTING, cwd=certified)
     assert (result.returncode, result.stdout, result.stderr) == (0, "", "")
@@ -145,7 +181,7 @@ def test_changed_spec(certified, tmp_path):
 def test_disagreement_is_an_internal_error(certified):
     """Flint says no where the integer check says yes: exit code 4 and no verdict."""
     program = (
-        "import sys; from nrs_design.certificates import second_opinion as s; "
+        "import sys; from nrs_design.proof import second_opinion as s; "
         "s._has_positive_spectrum = lambda M: False; "
         "sys.argv = ['nrs-design', *sys.argv[1:]]; from nrs_design.cli import main; main()"
     )

@@ -104,6 +104,21 @@ def fake(**fields: object) -> str:
     return json.dumps({**document, "id": content_id(document)})
 
 
+def own_modes(*matrices: list[list[int]]) -> dict[str, object]:
+    """Return the fields of a system whose modes are these."""
+    return {
+        "time": "continuous",
+        "states": [f"x{i}" for i in range(len(matrices[0]))],
+        "modes": [
+            {"name": f"m{i}", "numerators": rows, "denominator": 1}
+            for i, rows in enumerate(matrices)
+        ],
+        "switching": "arbitrary",
+        "assumptions": [],
+        "verdict": "proved",
+    }
+
+
 def unstable(mode: str) -> dict[str, object]:
     return {"kind": "unstable-mode", "mode": mode}
 
@@ -125,6 +140,20 @@ CERTIFICATES: dict[str, Callable[[], str | bytes]] = {
                 "rate": "1",
             }
         ]
+    ),
+    "huge modes": lambda: fake(**own_modes([[1 << 12_000] * 40] * 40)),
+    "many modes": lambda: fake(
+        **own_modes(*[[[-1]]] * 20_000),
+        statements=[
+            {
+                "kind": "mode-quadratic",
+                "rate": "1/2",
+                "functions": [
+                    {"mode": f"m{i}", "Q": {"numerators": [[1]], "denominator_log2": 0}}
+                    for i in range(20_000)
+                ],
+            }
+        ],
     ),
 }
 

@@ -134,6 +134,14 @@ def test_the_verdict_comes_with_its_reason(A, P, time):
         assert check_quadratic(modes(A), RationalMatrix.from_rows(P), time, found.rate).holds
 
 
+def test_a_null_vector_that_no_decimals_hit_is_given_exactly():
+    P = RationalMatrix(((9, -3), (-3, 1)))
+    found = check_quadratic([Mode("m", RationalMatrix(((-1, 0), (0, -1))))], P, Time.CONTINUOUS)
+    assert found.counterexample.mode is None
+    assert found.counterexample.value == 0
+    assert found.counterexample.vector == (Fraction(1, 3), 1)
+
+
 def test_what_is_too_large_is_not_decided():
     n = 30
     long = [[F(-n if i == j else 1, 3**300 + i) for j in range(n)] for i in range(n)]

@@ -11,6 +11,7 @@ from nrs_design.proof.exact import is_positive_definite
 from nrs_design.proof.second_opinion import _has_positive_spectrum, agrees
 from nrs_design.proof.system import Time
 from nrs_design.search.certify import certify
+from tests.proof.systems import genuine
 from tests.support import family
 
 INTS = st.integers(-9, 9)
@@ -62,3 +63,20 @@ def test_veto_on_a_stable_mode_called_unstable():
     assert not agrees(STABLE, UnstableMode("m0", "0"))
     discrete = family([["1/2"]], time=Time.DISCRETE)
     assert not agrees(discrete, UnstableMode("m0", "0"))
+
+
+@pytest.mark.parametrize(
+    "example", ["mode-quadratic, dwell", "mode-quadratic, left in time", "unstable-period"]
+)
+def test_no_exponential_without_a_taylor_series(monkeypatch, example):
+    """An enclosure by flint that is a little off meets with a veto."""
+    system, evidence = genuine(example)
+    assert agrees(system, evidence)
+    exp = flint.arb_mat.exp
+
+    class Off(flint.arb_mat):
+        def exp(self):
+            return exp(self) * (1 + flint.arb(2) ** -150)
+
+    monkeypatch.setattr(flint, "arb_mat", Off)
+    assert not agrees(system, evidence)

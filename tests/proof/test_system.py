@@ -4,8 +4,9 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
-from nrs_design.proof.system import Switching, Time
-from tests.support import family
+from nrs_design.proof.matrix import RationalMatrix
+from nrs_design.proof.system import Reset, Stay, Switching, Time
+from tests.proof.systems import family
 
 
 def test_order_is_the_number_of_states():
@@ -28,3 +29,27 @@ def test_dwell_time_of_numpy_becomes_one_of_python():
     switching = Switching(np.int64(3))
     assert switching == Switching(Fraction(3))
     assert type(switching.dwell_time.numerator) is int
+
+
+@pytest.mark.parametrize(
+    ("rules", "reason"),
+    [
+        ({"dwell_time": Fraction(-1)}, "a dwell time is negative"),
+        ({"stays": (("m0", Stay(Fraction(-1))),)}, "a dwell time is negative"),
+        ({"transitions": (("m0", "m0"),)}, "a transition does not lead"),
+        ({"transitions": (("m0", "m9"),)}, "a transition does not lead"),
+        ({"resets": (Reset("m0", "m1", RationalMatrix(((1,),), 0)),)}, "not a matrix over"),
+        ({"resets": (Reset("m0", "m1", RationalMatrix(((1,),), -1)),)}, "not a matrix over"),
+        ({"resets": (Reset("m0", "m1", RationalMatrix(((1,), (1, 2)))),)}, "not a matrix over"),
+        ({"fixed_ends": (("m0", "m0"),)}, "not the ends of one"),
+        ({"fixed_ends": (("m0", "m1"), ("m0", "m1"))}, "not the ends of one"),
+    ],
+)
+def test_rules_that_make_no_sense(rules, reason):
+    found = family([[-1]], [[-1]], switching=Switching(**rules)).find_contradiction()
+    assert reason in str(found)
+
+
+def test_rules_that_make_sense():
+    rules = Switching(Fraction(1), (("m0", "m1"),), fixed_ends=(("m0", "m1"),))
+    assert family([[-1]], [[-1]], switching=rules).find_contradiction() is None

@@ -19,9 +19,9 @@ WRONG = replace(GOOD, rate=Fraction(2))
 
 def test_what_holds_is_checked_once(monkeypatch):
     calls = []
-    find_fault = CommonQuadratic.find_fault
+    find_unfit = CommonQuadratic.find_unfit
     monkeypatch.setattr(
-        CommonQuadratic, "find_fault", lambda self, s: calls.append(s) or find_fault(self, s)
+        CommonQuadratic, "find_unfit", lambda self, s: calls.append(s) or find_unfit(self, s)
     )
     checker = Checker(SYSTEM)
     assert [checker.find_fault(GOOD), checker.find_fault(GOOD)] == [None, None]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from enum import StrEnum
 from fractions import Fraction
 from typing import Any, ClassVar, Self
@@ -11,12 +11,10 @@ from typing import Any, ClassVar, Self
 from nrs_design.proof.evidence.fields import find_unreadable
 from nrs_design.proof.exact import (
     IntegerMatrix,
-    TooLargeError,
     is_positive_definite,
     is_symmetric,
     is_too_large,
 )
-from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.system import SwitchedSystem, Switching
 
 
@@ -121,12 +119,17 @@ class AbstractEvidence(ABC):
 
     def find_fault(self, system: SwitchedSystem) -> str | None:
         """TRUSTED: say why the evidence does not hold for the system, or None if it holds."""
+        unfit = self.find_unfit(system)
+        return find_indefinite(self.forms(system)) if unfit is None else unfit
+
+    def find_unfit(self, system: SwitchedSystem) -> str | None:
+        """TRUSTED: say what, other than a form, keeps the evidence from holding, or None."""
         if not system.modes:
             return "the system has no modes"
         if len({mode.name for mode in system.modes}) < len(system.modes):
             return "two modes of the system have the same name"
         for mode in system.modes:
-            if not _is_well_formed(mode.A):
+            if not mode.A.is_well_formed or mode.A.shape[0] != mode.A.shape[1]:
                 return f"mode {mode.name} is not a square matrix over a positive denominator"
         if (unreadable := find_unreadable(self)) is not None:
             return unreadable
@@ -136,21 +139,14 @@ class AbstractEvidence(ABC):
             return f"evidence of kind {self.kind} does not cover this kind of switching"
         if not system.is_uniform and not self.allows_unequal_modes:
             return f"evidence of kind {self.kind} needs modes of equal size"
-        try:
-            misfit = self.find_misfit(system)
-        except TooLargeError as error:
-            return str(error)
-        if misfit is not None:
-            return misfit
-        for failure, form in self.forms(system):
-            if is_too_large(form):
-                return f"{failure}, or it does but its numbers are too large to check"
-            if not is_symmetric(form) or not is_positive_definite(form):
-                return failure
-        return None
+        return self.find_misfit(system)
 
 
-def _is_well_formed(A: RationalMatrix) -> bool:
-    """Tell whether a matrix is square, and its denominator keeps the signs of its numerators."""
-    rows = A.numerators
-    return A.denominator > 0 and len(rows) > 0 and all(len(row) == len(rows) for row in rows)
+def find_indefinite(forms: Iterable[tuple[str, IntegerMatrix]]) -> str | None:
+    """TRUSTED: name the failure of the first form that is not positive definite, or None."""
+    for failure, form in forms:
+        if is_too_large(form):
+            return f"{failure}, or it does but its numbers are too large to check"
+        if not is_symmetric(form) or not is_positive_definite(form):
+            return failure
+    return None

@@ -16,7 +16,9 @@ from nrs_design.proof.evidence.fields import (
 )
 from nrs_design.proof.exact import (
     IntegerMatrix,
+    Product,
     lyapunov_decrease,
+    multiply,
     stein_decrease,
 )
 from nrs_design.proof.system import SwitchedSystem, Time
@@ -71,13 +73,16 @@ class CommonQuadratic(AbstractEvidence):
             return f"Q is not a {system.order} x {system.order} matrix"
         return find_rate_misfit(self.rate, system.time)
 
-    def forms(self, system: SwitchedSystem) -> Iterator[tuple[str, IntegerMatrix]]:
+    def forms(
+        self, system: SwitchedSystem, multiply: Product = multiply
+    ) -> Iterator[tuple[str, IntegerMatrix]]:
         """Yield Q and the decrease in every mode."""
         yield "Q is not symmetric and positive definite", self.Q
         form = lyapunov_decrease if system.time is Time.CONTINUOUS else stein_decrease
         for mode in system.modes:
             failure = f"V does not decrease at the claimed rate in mode {mode.name}"
-            yield failure, form(mode.A.numerators, mode.A.denominator, self.Q, self.rate)
+            N, denominator = mode.A.numerators, mode.A.denominator
+            yield failure, form(N, denominator, self.Q, self.rate, multiply)
 
     def claim(self, system: SwitchedSystem) -> str:
         """State the bound on every solution."""

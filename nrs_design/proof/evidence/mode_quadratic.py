@@ -38,6 +38,7 @@ MAX_DWELL_STEPS = 4096
 MAX_PIECES = 4096
 MAX_ENCLOSED = 2**18
 MAX_NAMED = 8
+MAX_SWITCHES = 2**20
 MAX_POWER_BITS = 10**6
 
 
@@ -253,7 +254,15 @@ class ModeQuadratic(AbstractEvidence):
 
 
 def find_odd_switch(system: SwitchedSystem) -> str | None:
-    """Say which switch has no reset between modes of different sizes, or one that does not fit."""
+    """Say which switch has no reset between modes of different sizes, or one that does not fit.
+
+    So many switches that checking them would take minutes are refused, too.
+    """
+    count, transitions = len(system.modes), system.switching.transitions
+    switches = count * (count - 1) if transitions is None else len(transitions)
+    switches += len(system.switching.resets)
+    if switches > MAX_SWITCHES or switches * system.order**3 > MAX_WORK:
+        return "there are too many switches to check"
     for edge in system.edges():
         given = edge.source.A.shape if edge.map is None else edge.map.shape
         if given != (edge.target.A.shape[0], edge.source.A.shape[0]):

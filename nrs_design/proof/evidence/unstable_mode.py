@@ -6,6 +6,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any, ClassVar, Self
 
+from nrs_design.proof.enclosure import eigenvalues
 from nrs_design.proof.evidence.abstract import AbstractEvidence, Shows
 from nrs_design.proof.evidence.fields import read_text
 from nrs_design.proof.exact import (
@@ -135,11 +136,8 @@ def worst_eigenvalue(A: RationalMatrix, time: Time) -> str:
     TooLargeError
         If that would take more than some seconds.
     """
-    from flint import fmpz_mat
-
     _check_size(A)
-    roots: list[Any] = fmpz_mat([list(row) for row in A.numerators]).charpoly().complex_roots()
-    centers = [complex(root / A.denominator) for root, _ in roots]
+    centers = [complex(ball) for ball in eigenvalues(A)]
     z = max(centers, key=lambda z: z.real if time is Time.CONTINUOUS else abs(z))
     if abs(z.imag) <= 1e-14 * abs(z):
         return f"{z.real:.6g}"

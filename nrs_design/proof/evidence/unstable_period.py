@@ -8,6 +8,7 @@ from fractions import Fraction
 from typing import Any, ClassVar, Self
 
 from nrs_design.proof.bounds import nearly
+from nrs_design.proof.enclosure import balls, exponential, precision
 from nrs_design.proof.evidence.abstract import AbstractEvidence, Shows
 from nrs_design.proof.evidence.fields import read_integer, read_ratio, read_text
 from nrs_design.proof.exact import IntegerMatrix
@@ -18,7 +19,6 @@ MAX_STEPS = 1024
 MAX_WORK = 5_000_000
 MAX_DWELL = 4096
 MAX_DOUBLINGS = 60
-PRECISION = 300
 
 
 @dataclass(frozen=True, slots=True)
@@ -26,8 +26,8 @@ class UnstablePeriod(AbstractEvidence):
     """The monodromy matrix M of a periodic signal has a spectral radius above one.
 
     All eigenvalues at most one in modulus would give ``|tr M^k| <= n`` for every k. M is enclosed
-    in balls (exponentials by `flint.arb_mat.exp`), and ``|tr M^k| > n`` holds for the whole
-    enclosure with the stated power of two k.
+    in balls (`nrs_design.proof.enclosure`), and ``|tr M^k| > n`` holds for the whole enclosure with
+    the stated power of two k.
 
     Parameters
     ----------
@@ -173,17 +173,12 @@ def expands(
     edges : tuple of int
         Which of several resets each switch takes.
     """
-    from flint import ctx
-
-    before, ctx.prec = ctx.prec, PRECISION
-    try:
+    with precision():
         power = monodromy(system, steps, edges)
         for _ in range(doublings):
             power = power * power
         trace = sum((power[i, i] for i in range(system.order)), start=0 * power[0, 0])
         return bool(abs(trace) > system.order)
-    finally:
-        ctx.prec = before
 
 
 def monodromy(
@@ -201,30 +196,17 @@ def monodromy(
     system, steps, edges
         As for `expands`.
     """
-    from flint import arb_mat, fmpq, fmpq_mat
-
     modes, maps = {mode.name: mode for mode in system.modes}, system.switching.maps()
-    product = arb_mat(fmpq_mat(system.order, system.order, _identity(system.order)))
+    n = system.order
+    product = balls(RationalMatrix.from_rows([[int(i == j) for j in range(n)] for i in range(n)]))
     switches = _switches([name for name, _ in steps])
     for (name, dwell), switch, edge in zip(
         steps, switches, edges or (0,) * len(steps), strict=True
     ):
-        exact = _fmpq_matrix(modes[name].A)
-        if system.time is Time.CONTINUOUS:
-            factor = arb_mat(exact * fmpq(dwell.numerator, dwell.denominator)).exp()
-        else:
-            factor = arb_mat(exact) ** int(dwell)
+        A = modes[name].A
+        continuous = system.time is Time.CONTINUOUS
+        factor = exponential(A, dwell, dwell) if continuous else balls(A) ** int(dwell)
         product = factor * product
         if switch in maps:
-            product = arb_mat(_fmpq_matrix(maps[switch][edge])) * product
+            product = balls(maps[switch][edge]) * product
     return product
-
-
-def _fmpq_matrix(A: RationalMatrix) -> Any:
-    from flint import fmpq, fmpq_mat
-
-    return fmpq_mat(*A.shape, [fmpq(v, A.denominator) for row in A.numerators for v in row])
-
-
-def _identity(n: int) -> list[int]:
-    return [int(i == j) for i in range(n) for j in range(n)]

@@ -25,9 +25,10 @@ def recheck_section(result: Result) -> Section:
             Paragraph("This page is no proof; the certificate is. To check it again, run:"),
             Bullets("", (f"nrs-design verify {name}.cert.json {spec}",)),
             Paragraph(
-                "This assembles the modes anew from the spec and decides everything in exact "
-                "arithmetic; it runs no solver and uses no number of this page. The id of the "
-                "certificate and the hash of the spec must be those at the head of this report. "
+                "This decides everything in exact arithmetic for the modes in the certificate, and "
+                "compares them with those of the spec; it runs no solver and uses no number of "
+                "this page. The id of the certificate and the hash of the spec must be those at "
+                "the head of this report. "
                 f"The certificate is the file that nrs-design certify-switching {spec} writes."
             ),
         ),

@@ -20,6 +20,13 @@ from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.system import Mode, Reset, Switching
 from tests.proof.systems import SYSTEMS, family, genuine, matrix
 
+
+def twice(system):
+    """Return a system with every mode once more, under another name."""
+    again = tuple(replace(mode, name=f"{mode.name} again") for mode in system.modes)
+    return replace(system, modes=(*system.modes, *again))
+
+
 SYSTEM = family([[-1, 0], [0, -1]], [[-2, 0], [0, -1]])
 
 
@@ -116,6 +123,31 @@ def test_resets_and_unequal_modes_must_be_asked_for():
     resets = Switching(resets=(Reset("m0", "m1", matrix([[2, 0], [0, 2]])),))
     assert "does not cover" in Claimed().find_fault(replace(SYSTEM, switching=resets))
     assert "equal size" in Claimed().find_fault(family([[-1]], [[-1, 0], [0, -1]]))
+
+
+def test_evidence_about_every_mode_holds_for_its_equals_too():
+    system, evidence = genuine("common-quadratic")
+    assert evidence.spread(system, twice(system)) is evidence
+    assert evidence.find_fault(twice(system)) is None
+
+
+@pytest.mark.parametrize(
+    "example",
+    ["common-quadratic", "common-polynomial", "mode-quadratic, discrete", "block-triangular"],
+)
+def test_what_is_spread_over_equal_modes_holds_for_all(example):
+    system, evidence = genuine(example)
+    spread = evidence.spread(system, twice(system))
+    assert spread.find_fault(twice(system)) is None
+    assert spread.proved_rate(twice(system)) == evidence.proved_rate(system)
+
+
+@pytest.mark.parametrize("example", SYSTEMS)
+def test_the_rate_is_one_of_decay_or_there_is_none(example):
+    system, evidence = genuine(example)
+    rate = evidence.proved_rate(system)
+    assert (rate is None) == (evidence.shows is not Shows.STABILITY)
+    assert rate is None or rate > 0
 
 
 FREE = {"common-quadratic", "common-polynomial", "parameter-quadratic"}

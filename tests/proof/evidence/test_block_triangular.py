@@ -142,3 +142,10 @@ def test_the_diagonal_block_of_a_family():
     block = diagonal_block(CASCADE, (1,))
     assert [mode.A.fractions() for mode in block.modes] == [[[-2]], [[-1]]]
     assert block.states == ("x2",)
+
+
+def test_no_rate_follows_from_a_part_without_one():
+    system = family([[1, 0], [0, -1]])
+    evidence = BlockTriangular(((0,), (1,)), ((0, UnstableMode("m0", "1")),))
+    assert evidence.find_fault(system) is None
+    assert evidence.proved_rate(system) is None

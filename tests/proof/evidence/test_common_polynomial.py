@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 from fractions import Fraction
+from math import comb
 from time import process_time
 
 import pytest
@@ -136,3 +137,14 @@ def test_giant_integers_do_not_hang():
     start = process_time()
     replace(evidence, Q=giant).find_fault(system)
     assert process_time() - start < 1
+
+
+def test_numbers_that_would_take_minutes_are_refused():
+    size = comb(7, 4)
+    Q = tuple(tuple(2**2400 * (i == j) for j in range(size)) for i in range(size))
+    zero = tuple((0,) * size for _ in range(size))
+    system = family([[-int(i == j) for j in range(4)] for i in range(4)])
+    evidence = CommonPolynomial(4, Q, 0, (zero,), Fraction(1, 2))
+    assert evidence.find_fault(system) == "its numbers are too large to check"
+    small = tuple(tuple(int(i == j) for j in range(size)) for i in range(size))
+    assert replace(evidence, Q=small).find_fault(system) is None

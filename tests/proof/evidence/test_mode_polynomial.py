@@ -133,3 +133,10 @@ def test_resets_are_lifted_too_between_modes_of_different_sizes():
     grown = resets_between(("m0", "m1", [["8", "1/2"]]), ("m1", "m0", [["1"], ["1/3"]]))
     worse = replace(system, switching=Switching(resets=grown))
     assert found.evidence.find_fault(worse) is not None
+
+
+def test_the_modes_that_must_be_left_are_those_of_its_functions():
+    _, evidence = genuine("mode-polynomial")
+    assert evidence.leaving == evidence.quadratic.leaving
+    left = replace(evidence, quadratic=replace(evidence.quadratic, leaving=("m0",)))
+    assert left.leaving == ("m0",)

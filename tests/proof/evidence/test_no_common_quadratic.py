@@ -6,7 +6,8 @@ import pytest
 
 from nrs_design.certificates.certificate import CommonQuadraticStatus
 from nrs_design.proof.evidence import NoCommonQuadratic
-from nrs_design.proof.system import Switching
+from nrs_design.proof.matrix import RationalMatrix
+from nrs_design.proof.system import Mode, Switching
 from nrs_design.search.certification import Limits
 from nrs_design.search.certify import certify
 from tests.proof.systems import (
@@ -83,3 +84,12 @@ def test_it_says_nothing_about_stability_and_holds_under_any_switching():
         assert evidence.find_fault(replace(system, switching=switching)) is None
     assert evidence.proved_rate(system) is None
     assert str(evidence.shows) == "no common quadratic function"
+
+
+def test_denominators_without_a_common_one_are_refused():
+    coprime = enumerate((2**40_000, 3**20_000))
+    modes = tuple(Mode(f"m{i}", RationalMatrix(((1,),), q)) for i, q in coprime)
+    system = replace(family([[1]]), modes=modes)
+    evidence = NoCommonQuadratic((("m0", ((1,),)), ("m1", ((1,),))))
+    assert evidence.find_fault(system) == "the numbers of the modes are too large to check"
+    assert replace(evidence, factors=evidence.factors[:1]).find_fault(system) is None

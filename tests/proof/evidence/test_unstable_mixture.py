@@ -7,7 +7,9 @@ from time import process_time
 import pytest
 
 from nrs_design.proof.evidence import UnstableMixture, read_evidence
-from nrs_design.proof.system import Switching, Time
+from nrs_design.proof.exact import TooLargeError
+from nrs_design.proof.matrix import RationalMatrix
+from nrs_design.proof.system import Mode, Switching, Time
 from nrs_design.search.certify import Method, Verdict, certify
 from tests.proof.systems import family, genuine, resets_between, shears
 
@@ -90,3 +92,18 @@ def test_an_unknown_mode_in_a_file_is_no_crash():
     with pytest.raises(KeyError):
         read_evidence({"kind": "unstable-mixture", "weights": [["m9", "1"]]}, shears())
     assert replace(mixed(1), weights=(("m9", Fraction(1)),)).find_fault(shears()) is not None
+
+
+def test_numbers_that_would_take_minutes_are_refused():
+    half = (("m0", Fraction(1, 2)), ("m1", Fraction(1, 2)))
+    evidence = UnstableMixture(half, "1")
+    ones = ((1, 0), (0, 1))
+    coprime = RationalMatrix(ones, 2**60_000), RationalMatrix(ones, 3**40_000)
+    long = RationalMatrix(((2**400_000, 1), (0, 1))), RationalMatrix(ones)
+    for matrices in (coprime, long):
+        modes = tuple(Mode(f"m{i}", A) for i, A in enumerate(matrices))
+        system = replace(shears(), modes=modes)
+        fault = evidence.find_fault(system)
+        assert fault == "the numbers of the combination are too large to check"
+        with pytest.raises((ValueError, TooLargeError), match="too large"):
+            UnstableMixture.from_fields(evidence.to_fields(), system)

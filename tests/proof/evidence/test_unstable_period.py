@@ -312,3 +312,8 @@ def test_the_reset_that_is_taken_is_in_the_file():
 def test_an_edge_against_the_transitions_refutes_nothing():
     one_way = must_leave(4, transitions=(("m1", "m0"),))
     assert "does not cover" in signal((0, 4), (1, 1)).find_fault(one_way)
+
+
+def test_a_signal_that_is_too_long_is_not_looked_at():
+    steps = (("m0", Fraction(1)), ("m1", Fraction(1))) * 513
+    assert "does not cover" in UnstablePeriod(steps, 3).find_fault(branicky())

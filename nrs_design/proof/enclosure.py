@@ -1,0 +1,130 @@
+"""TRUSTED: what flint encloses in balls, and how a ball becomes integers that are surely below.
+
+The one file of the proof where a library has the first word. A matrix of balls contains the true
+one: what is shown for every matrix in it is shown for that.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from fractions import Fraction
+from typing import Any
+
+from nrs_design.proof.exact import IntegerMatrix
+from nrs_design.proof.matrix import RationalMatrix
+
+PRECISION = 300
+MIDPOINT_BITS = 160
+# Balls beyond this fail; what is nearer to zero than its inverse counts as zero with that radius.
+RANGE_LOG2 = 32_768
+
+
+@contextmanager
+def precision(bits: int = PRECISION) -> Iterator[None]:
+    """Let flint compute with so many bits meanwhile."""
+    from flint import ctx
+
+    before, ctx.prec = ctx.prec, bits
+    try:
+        yield
+    finally:
+        ctx.prec = before
+
+
+def balls(A: RationalMatrix) -> Any:
+    """Return a matrix of balls around a rational matrix, at the current precision."""
+    from flint import arb_mat
+
+    return arb_mat(_fmpq_matrix(A))
+
+
+def exponential(A: RationalMatrix, begin: Fraction, end: Fraction) -> Any:
+    """Return balls that contain ``exp(A t)`` for all t from begin to end.
+
+    The times are those around their middle: ``exp(A t) = exp(A d) exp(A m)`` with d in a ball
+    around zero.
+
+    Parameters
+    ----------
+    A : RationalMatrix, shape (n, n)
+        In 1/s.
+    begin, end : Fraction
+        The first and the last time, in s.
+    """
+    from flint import arb, arb_mat, fmpq
+
+    middle, half = (begin + end) / 2, (end - begin) / 2
+    exact = _fmpq_matrix(A)
+    E = arb_mat(exact * fmpq(middle.numerator, middle.denominator)).exp()
+    if half > 0:
+        ball = arb(fmpq(half.numerator, half.denominator))
+        E = (arb_mat(exact) * (-ball).union(ball)).exp() * E
+    return E
+
+
+def meets(enclosed: Any, M: RationalMatrix, error: Fraction) -> bool:
+    """Tell whether balls overlap, entry by entry, those of one radius around a rational matrix.
+
+    Parameters
+    ----------
+    enclosed : flint.arb_mat
+        The balls.
+    M : RationalMatrix
+        Of the same shape.
+    error : Fraction
+        The radius.
+    """
+    from flint import arb, fmpq
+
+    radius, ours = arb(fmpq(error.numerator, error.denominator)), balls(M)
+    around, (rows, columns) = (-radius).union(radius), M.shape
+    return all(
+        (ours[i, j] + around).overlaps(enclosed[i, j]) for i in range(rows) for j in range(columns)
+    )
+
+
+def eigenvalues(A: RationalMatrix) -> list[Any]:
+    """Return complex balls that contain all eigenvalues, each as often as it occurs."""
+    from flint import fmpz_mat
+
+    rows = [list(row) for row in A.numerators]
+    roots: list[Any] = fmpz_mat(rows).charpoly().complex_roots()
+    return [root / A.denominator for root, count in roots for _ in range(count)]
+
+
+def lower_integers(form: Any) -> IntegerMatrix:
+    """Return integers that are below a symmetric matrix of balls times a number > 0.
+
+    If every entry is within r of a rational midpoint, then the smallest eigenvalue is at least that
+    of the midpoint minus n r, so that much is subtracted from the diagonal.
+    """
+    n = form.nrows()
+    rows = [[form[i, j] for j in range(n)] for i in range(n)]
+    if any(not ball.abs_upper() < 2**RANGE_LOG2 for row in rows for ball in row):
+        return [[0] * n for _ in range(n)]
+    mids = [[_fraction(ball.mid()) for ball in row] for row in rows]
+    radius = max(_fraction(ball.rad()) for row in rows for ball in row)
+    # Both a midpoint and a radius may have been taken for zero.
+    radius += 2 * Fraction(1, 2**RANGE_LOG2)
+    # Both triangles enclose the same number: take the upper one, and let the radius cover it.
+    scale = 2**MIDPOINT_BITS
+    largest = max(abs(v) for row in mids for v in row) or Fraction(1)
+    unit = Fraction(scale) / largest
+    slack = n * (radius * unit + 1)
+    rounded = [[round(mids[min(i, j)][max(i, j)] * unit) for j in range(n)] for i in range(n)]
+    return [[rounded[i][j] - (int(slack) + 1 if i == j else 0) for j in range(n)] for i in range(n)]
+
+
+def _fraction(ball: Any) -> Fraction:
+    """Return an exact ball (of radius zero) as a fraction, or zero for one very near to it."""
+    mantissa, exponent = ball.man_exp()
+    if int(mantissa).bit_length() + int(exponent) < -RANGE_LOG2:
+        return Fraction(0)
+    return Fraction(int(mantissa)) * Fraction(2) ** int(exponent)
+
+
+def _fmpq_matrix(A: RationalMatrix) -> Any:
+    from flint import fmpq, fmpq_mat
+
+    return fmpq_mat(*A.shape, [fmpq(v, A.denominator) for row in A.numerators for v in row])

@@ -1,0 +1,188 @@
+"""The switched system in a certificate file: its exact modes and its rules of switching."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from fractions import Fraction
+from typing import Any
+
+from nrs_design.proof.evidence.fields import (
+    MAX_INTEGER_BITS,
+    read_integer,
+    read_ratio,
+    read_text,
+)
+from nrs_design.proof.exact import bit_length
+from nrs_design.proof.matrix import RationalMatrix
+from nrs_design.proof.system import (
+    ARBITRARY,
+    FixedParameter,
+    Mode,
+    Reset,
+    Stay,
+    SwitchedSystem,
+    Switching,
+    Time,
+)
+from nrs_design.proof.text import quoted
+
+# The word for switching without rules.
+WITHOUT_RULES = "arbitrary"
+# Deciding a form for every mode takes about rows^3 steps each on their numbers: a minute at this.
+MAX_FAMILY_WORK = 10**10
+
+Fields = dict[str, Any]
+
+
+def system_fields(system: SwitchedSystem) -> Fields:
+    """Return what a certificate says about its system, apart from the name.
+
+    Raises
+    ------
+    ValueError
+        If a number of a mode or a reset has more digits than a file holds.
+    """
+    return {
+        "time": str(system.time),
+        "states": list(system.states),
+        "modes": [{"name": mode.name, **_matrix_fields(mode.A)} for mode in system.modes],
+        "switching": _switching_fields(system.switching),
+        "assumptions": list(system.assumptions),
+    }
+
+
+def read_system(name: str, fields: Mapping[str, Any]) -> SwitchedSystem:
+    """Read the system that `system_fields` has written.
+
+    Parameters
+    ----------
+    name : str
+        Of the spec that it comes from.
+    fields : mapping
+        Of a certificate; other keys are not looked at.
+
+    Raises
+    ------
+    KeyError, TypeError, ValueError
+        If a field is missing or malformed, a matrix has no shape or no positive denominator, two
+        modes have one name, or the modes are too large to check.
+    """
+    modes = tuple(
+        Mode(read_text(item["name"]), _read_matrix(item)) for item in _read_list(fields["modes"])
+    )
+    states = _read_texts(fields["states"])
+    _check_modes(modes, len(states))
+    return SwitchedSystem(
+        name=name,
+        time=Time(read_text(fields["time"])),
+        states=states,
+        modes=modes,
+        assumptions=_read_texts(fields["assumptions"]),
+        switching=_read_switching(fields["switching"]),
+    )
+
+
+def _check_modes(modes: Sequence[Mode], states: int) -> None:
+    sizes = [len(mode.A.numerators) for mode in modes]
+    if len({mode.name for mode in modes}) < len(modes):
+        raise ValueError("two modes have the same name")
+    if any(mode.A.shape != (size, size) for mode, size in zip(modes, sizes, strict=True)):
+        raise ValueError("a mode is not square")
+    if max(sizes, default=0) != states:
+        raise ValueError("the largest mode does not have the states that are named")
+    numbers = zip(sizes, (bit_length(mode.A.numerators) for mode in modes), strict=True)
+    if sum(size**3 * bits for size, bits in numbers) > MAX_FAMILY_WORK:
+        raise ValueError("the modes are too large to check")
+
+
+def _switching_fields(switching: Switching) -> Fields | str:
+    if switching.is_arbitrary:
+        return WITHOUT_RULES
+    parameter, transitions = switching.fixed_parameter, switching.transitions
+    return {
+        "dwell_time": str(switching.dwell_time),
+        "stays": [
+            {"mode": name, "shortest": str(stay.shortest), "longest": _text(stay.longest)}
+            for name, stay in switching.stays
+        ],
+        "transitions": None if transitions is None else [list(pair) for pair in transitions],
+        "resets": [
+            {"from": reset.source, "to": reset.target, **_matrix_fields(reset.map)}
+            for reset in switching.resets
+        ],
+        "constant": [list(pair) for pair in switching.fixed_ends],
+        "parameter": None
+        if parameter is None
+        else {"name": parameter.name, "low": str(parameter.low), "high": str(parameter.high)},
+    }
+
+
+def _read_switching(fields: Any) -> Switching:
+    if fields == WITHOUT_RULES:
+        return ARBITRARY
+    transitions, parameter = fields["transitions"], fields["parameter"]
+    return Switching(
+        dwell_time=read_ratio(fields["dwell_time"]),
+        transitions=None if transitions is None else _read_pairs(transitions),
+        resets=tuple(
+            Reset(read_text(item["from"]), read_text(item["to"]), _read_matrix(item))
+            for item in _read_list(fields["resets"])
+        ),
+        fixed_ends=_read_pairs(fields["constant"]),
+        fixed_parameter=None
+        if parameter is None
+        else FixedParameter(
+            read_text(parameter["name"]),
+            _read_signed(parameter["low"]),
+            _read_signed(parameter["high"]),
+        ),
+        stays=tuple(
+            (read_text(item["mode"]), _read_stay(item)) for item in _read_list(fields["stays"])
+        ),
+    )
+
+
+def _read_stay(fields: Mapping[str, Any]) -> Stay:
+    longest = fields["longest"]
+    return Stay(read_ratio(fields["shortest"]), None if longest is None else read_ratio(longest))
+
+
+def _matrix_fields(A: RationalMatrix) -> Fields:
+    if max(bit_length(A.numerators), A.denominator.bit_length()) > MAX_INTEGER_BITS:
+        raise ValueError("a number of a mode or a reset has more digits than a certificate holds")
+    return {"numerators": [list(row) for row in A.numerators], "denominator": A.denominator}
+
+
+def _read_matrix(fields: Mapping[str, Any]) -> RationalMatrix:
+    rows = tuple(
+        tuple(read_integer(entry) for entry in _read_list(row))
+        for row in _read_list(fields["numerators"])
+    )
+    denominator = read_integer(fields["denominator"])
+    if denominator <= 0 or not rows or not rows[0] or len(set(map(len, rows))) != 1:
+        raise ValueError("a matrix has rows of different lengths, or no positive denominator")
+    return RationalMatrix(rows, denominator)
+
+
+def _read_signed(value: object) -> Fraction:
+    """Read a ratio of integers, such as -3/8."""
+    text = read_text(value)
+    return -read_ratio(text[1:]) if text.startswith("-") else read_ratio(text)
+
+
+def _read_pairs(value: object) -> tuple[tuple[str, str], ...]:
+    return tuple((read_text(first), read_text(second)) for first, second in _read_list(value))
+
+
+def _read_texts(value: object) -> tuple[str, ...]:
+    return tuple(read_text(item) for item in _read_list(value))
+
+
+def _read_list(value: object) -> list[Any]:
+    if not isinstance(value, list):
+        raise TypeError(f"expected a list, not {quoted(str(value))}")
+    return value
+
+
+def _text(number: Fraction | None) -> str | None:
+    return None if number is None else str(number)

@@ -1,0 +1,67 @@
+"""Matrix exponentials in Python integers: a Taylor series, its remainder bounded, and squaring.
+
+It has no first word. Where flint encloses an exponential, this must meet the enclosure.
+"""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from math import ceil
+
+from nrs_design.proof.exact import IntegerMatrix, multiply
+from nrs_design.proof.matrix import RationalMatrix
+
+# Numbers are integers over two to this power.
+BITS = 256
+UNIT = 2**BITS
+# The series is summed for an exponent with row sums of at most two to minus this power.
+SMALL = 8
+TERMS = 24
+
+
+def exponential_nearly(A: RationalMatrix, time: Fraction) -> tuple[RationalMatrix, Fraction]:
+    """Return M and e such that the row sums of ``|exp(A t) - M|`` are at most e.
+
+    ``exp(A t) = exp(X)^(2^h)`` with ``|X| <= 2^-8`` in the norm of the largest row sum. In units:
+    rounding X changes it by at most n, and so exp(X) by less than 2 n; the n rounded entries of a
+    row in each of Horner's steps add up to less than 2 n, because a step makes earlier errors
+    smaller by half; the terms from the 25th on are less than 1. A square has at most the error
+    ``2 |E| e + e^2``, and n from rounding.
+
+    Parameters
+    ----------
+    A : RationalMatrix, shape (n, n)
+        In 1/s.
+    time : Fraction
+        In s; not negative.
+    """
+    n = A.shape[0]
+    size = max(sum(map(abs, row)) for row in A.numerators) * time / A.denominator
+    halvings = ceil(size * 2**SMALL).bit_length()
+    scale = time * UNIT / A.denominator / 2**halvings
+    X = [[round(entry * scale) for entry in row] for row in A.numerators]
+    E = _identity(n)
+    for k in range(TERMS, 0, -1):
+        E = _plus_identity(_divided(multiply(X, E), k * UNIT))
+    error = Fraction(4 * n + 1)
+    for _ in range(halvings):
+        norm = Fraction(max(sum(map(abs, row)) for row in E), UNIT)
+        # An upper bound of few digits, so that exact errors do not become long.
+        error = Fraction(ceil(2 * norm * error + error**2 / UNIT + n))
+        E = _divided(multiply(E, E), UNIT)
+    return RationalMatrix(tuple(map(tuple, E)), UNIT), error / UNIT
+
+
+def _identity(n: int) -> IntegerMatrix:
+    return [[UNIT * (i == j) for j in range(n)] for i in range(n)]
+
+
+def _plus_identity(M: list[list[int]]) -> IntegerMatrix:
+    for i, row in enumerate(M):
+        row[i] += UNIT
+    return M
+
+
+def _divided(M: IntegerMatrix, divisor: int) -> list[list[int]]:
+    """Return a quotient, each entry of which is less than one below."""
+    return [[entry // divisor for entry in row] for row in M]

@@ -1,0 +1,165 @@
+"""Certificates by themselves: the proof holds for the modes in the file, and for no others.
+
+Without a spec, whoever writes a file may put any system into it. What must never happen is that
+something is accepted that is false of the modes that the file shows.
+"""
+
+import copy
+import json
+
+import pytest
+
+from nrs_design.certificates.certificate import content_id
+from nrs_design.certificates.prove import prove
+from nrs_design.certificates.verify import verify_document
+from tests.certificates.test_verify import (
+    SPECS,
+    at,
+    changed,
+    is_true,
+    leaves,
+    mutations,
+    resign,
+    signed,
+)
+
+SYSTEM = ("time", "states", "modes", "switching", "assumptions")
+
+
+@pytest.fixture(scope="module", params=SPECS)
+def pair(request):
+    return signed(request.param)
+
+
+def test_a_certificate_is_proved_without_its_spec(pair):
+    document, spec = pair
+    alone, beside = prove(document), verify_document(document, spec)
+    assert alone.fault is None
+    assert alone.certificate == beside.certificate
+    assert alone.certificate.verdict == document["verdict"]
+
+
+def test_every_change_is_noticed_by_the_id(pair):
+    document, _ = pair
+    for path in leaves(document):
+        if path != ("id",):
+            tampered = changed(document, path, "other")
+            assert prove(tampered).fault == "its content does not match its id: it was altered"
+
+
+@pytest.mark.parametrize("field", SYSTEM)
+def test_every_re_signed_change_of_the_system_is_noticed_beside_its_spec(pair, field):
+    document, spec = pair
+    for path in leaves(document[field], (field,)):
+        for value in mutations(at(document, path)):
+            tampered = resign(changed(document, path, value))
+            assert verify_document(tampered, spec).fault is not None, (path, value)
+
+
+@pytest.mark.parametrize("field", ["time", "states", "modes", "switching"])
+def test_every_re_signed_change_of_the_system_is_rejected_or_true(pair, field):
+    document, _ = pair
+    for path in leaves(document[field], (field,)):
+        for value in mutations(at(document, path)):
+            outcome = prove(resign(changed(document, path, value)))
+            assert outcome.fault is not None or is_true(outcome), (path, value)
+
+
+def altered(document, *path_and_value):
+    *path, value = path_and_value
+    return resign(changed(document, tuple(path), value))
+
+
+@pytest.mark.parametrize(
+    ("path", "value", "reason"),
+    [
+        (("modes", 0, "denominator"), 0, "no positive denominator"),
+        (("modes", 0, "denominator"), -1, "no positive denominator"),
+        (("modes", 0, "numerators"), [[1, 2], [3]], "different lengths"),
+        (("modes", 0, "numerators"), [[1, 2, 3], [4, 5, 6]], "not square"),
+        (("modes", 0, "numerators"), [], "different lengths"),
+        (("modes", 0, "numerators"), [[]], "different lengths"),
+        (("modes", 0, "numerators"), [[True, 0], [0, 1]], "expected an integer"),
+        (("modes", 0, "numerators"), {"0": 1}, "expected a list"),
+        (("modes", 0, "name"), "b", "two modes have the same name"),
+        (("modes",), [], "largest mode"),
+        (("states",), ["x1"], "largest mode"),
+        (("states",), ["x1", "x2", "x3"], "largest mode"),
+        (("states",), "x1", "expected a list"),
+        (("time",), "both", "not a valid Time"),
+        (("switching",), "free", "malformed"),
+        (("switching",), {}, "malformed"),
+        (("switching",), None, "malformed"),
+    ],
+)
+def test_malformed_systems(path, value, reason):
+    document, _ = signed("given")
+    fault = prove(altered(document, *path, value)).fault
+    assert fault is not None
+    assert reason in fault
+
+
+RULES = {
+    "dwell_time": "0",
+    "stays": [],
+    "transitions": None,
+    "resets": [],
+    "constant": [],
+    "parameter": None,
+}
+ZERO_MAP = {"numerators": [[9, 0], [0, 9]], "denominator": 0}
+
+
+@pytest.mark.parametrize(
+    ("rules", "reason"),
+    [
+        ({}, "'switching' does not follow"),  # the same as arbitrary, which has a word of its own
+        ({"dwell_time": "-1"}, "not a ratio"),
+        ({"dwell_time": "2/2"}, "'switching' does not follow"),
+        ({"transitions": [["a", "z"]]}, "a transition does not lead"),
+        ({"transitions": [["a", "a"]]}, "a transition does not lead"),
+        ({"transitions": [["a"]]}, "malformed"),
+        ({"resets": [{"from": "a", "to": "b", **ZERO_MAP}]}, "no positive denominator"),
+        ({"resets": [{"from": "a", "to": "b", **ZERO_MAP, "denominator": 1}]}, "does not cover"),
+        ({"resets": [{"from": "a", "to": "z", **ZERO_MAP, "denominator": 1}]}, "a reset does not"),
+        ({"stays": [{"mode": "z", "shortest": "1", "longest": None}]}, "not those of modes"),
+        ({"stays": [{"mode": "a", "shortest": "2", "longest": "1"}]}, "must be left before"),
+        ({"constant": [["a", "z"]]}, "not the ends of one constant parameter"),
+        ({"constant": [["a", "b"], ["a", "b"]]}, "not the ends of one constant parameter"),
+        ({"parameter": {"name": "k", "low": "--1", "high": "1"}}, "not a ratio"),
+    ],
+)
+def test_rules_that_make_no_sense(rules, reason):
+    document, _ = signed("given")
+    assert [mode["name"] for mode in document["modes"]] == ["a", "b"]
+    fault = prove(altered(document, "switching", {**RULES, **rules})).fault
+    assert fault is not None
+    assert reason in fault
+
+
+def test_another_stable_system_is_proved_and_is_not_that_of_the_spec():
+    """Why the second step is needed: a file may be right about modes that are nobody's."""
+    document, spec = signed("given")
+    slower = copy.deepcopy(document["modes"])
+    for mode in slower:
+        mode["numerators"] = [[2 * entry for entry in row] for row in mode["numerators"]]
+    forged = resign({**document, "modes": slower})
+    assert prove(forged).fault is None
+    assert verify_document(forged, spec).fault == "its field 'modes' is not that of the spec"
+
+
+def test_modes_that_would_take_hours_are_refused():
+    document, _ = signed("given")
+    n = 200
+    rows = [[10**1000 * (i == j) for j in range(n)] for i in range(n)]
+    modes = [{"name": "a", "numerators": rows, "denominator": 1}]
+    states = [f"x{i}" for i in range(n)]
+    fault = prove(resign({**document, "modes": modes, "states": states})).fault
+    assert "too large to check" in fault
+
+
+def test_what_is_written_is_json():
+    document, _ = signed("dwell")
+    assert json.loads(json.dumps(document)) == document
+    assert document["id"] == content_id(document)
+    assert document["switching"] == {**RULES, "dwell_time": document["switching"]["dwell_time"]}

@@ -1,0 +1,60 @@
+"""The proof is the ground floor: it stands on the standard library, and on flint in two files."""
+
+import ast
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+import nrs_design.proof
+
+ROOT = Path(nrs_design.proof.__file__).parent
+FILES = sorted(path.relative_to(ROOT).as_posix() for path in ROOT.rglob("*.py"))
+# Enclosures, and what has a veto only.
+ON_FLINT = {"enclosure.py", "second_opinion.py"}
+
+
+def imports(node):
+    """Yield the full names that a piece of code imports."""
+    for item in ast.walk(node):
+        if isinstance(item, ast.Import):
+            yield from (alias.name for alias in item.names)
+        if isinstance(item, ast.ImportFrom):
+            assert item.level == 0
+            yield item.module
+
+
+@pytest.mark.parametrize("name", FILES)
+def test_imports(name):
+    tree = ast.parse((ROOT / name).read_text(encoding="utf-8"))
+    foreign = {
+        module
+        for module in imports(tree)
+        if module.split(".")[0] not in sys.stdlib_module_names
+        and not module.startswith("nrs_design.proof.")
+    }
+    assert foreign <= ({"flint"} if name in ON_FLINT else set())
+    # Inside functions only, so that nobody pays for it who needs no enclosure.
+    assert not any(
+        module == "flint"
+        for statement in tree.body
+        if not isinstance(statement, ast.FunctionDef)
+        for module in imports(statement)
+    )
+
+
+def test_the_whole_proof_loads_nothing_else():
+    script = (
+        "import sys, importlib\n"
+        f"for name in {FILES!r}:\n"
+        "    parts = name.removesuffix('.py').split('/')\n"
+        "    importlib.import_module('.'.join(['nrs_design.proof', *parts]))\n"
+        "print(*sorted({name.split('.')[0] for name in sys.modules}))\n"
+        "print(*sorted(name for name in sys.modules if name.startswith('nrs_design.')))\n"
+    )
+    done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True)
+    assert not done.stderr
+    top, ours = (line.split() for line in done.stdout.splitlines())
+    assert not {"numpy", "scipy", "flint", "pydantic", "typer"} & set(top)
+    assert all(name.startswith("nrs_design.proof") for name in ours)

@@ -1,0 +1,84 @@
+"""Systems in certificate files: what is written is read, and nothing that is malformed."""
+
+import json
+from dataclasses import replace
+from fractions import Fraction
+
+import pytest
+
+from nrs_design.proof.matrix import RationalMatrix
+from nrs_design.proof.system import FixedParameter, Mode, Reset, Stay, Switching
+from nrs_design.proof.system_fields import read_system, system_fields
+from tests.proof.systems import SYSTEMS, family, genuine
+
+RESET = Reset("m0", "m1", RationalMatrix(((1, -2), (0, 3)), 4))
+RULES = Switching(
+    dwell_time=Fraction(1, 3),
+    transitions=(("m0", "m1"), ("m1", "m0")),
+    resets=(RESET, RESET),
+    fixed_ends=(("m0", "m1"),),
+    fixed_parameter=FixedParameter("k", Fraction(-3, 8), Fraction(5)),
+    stays=(("m0", Stay(Fraction(1, 2))), ("m1", Stay(Fraction(1), Fraction(7, 2)))),
+)
+RULED = family([[-1, 0], [0, -1]], [["-1/2", 1], [0, -2]], switching=RULES)
+
+
+def stored(system):
+    return json.loads(json.dumps(system_fields(system)))
+
+
+@pytest.mark.parametrize("system", [*(genuine(name)[0] for name in SYSTEMS), RULED], ids=str)
+def test_what_is_written_is_read(system):
+    assert read_system(system.name, stored(system)) == system
+
+
+def test_without_rules_there_is_a_word():
+    assert stored(genuine("common-quadratic")[0])["switching"] == "arbitrary"
+
+
+@pytest.mark.parametrize("value", [2**14_000, -(2**14_000)])
+def test_numbers_that_python_would_not_read_back_are_not_written(value):
+    system = replace(RULED, modes=(Mode("m0", RationalMatrix(((value,),))),))
+    with pytest.raises(ValueError, match="more digits"):
+        system_fields(system)
+    with pytest.raises(ValueError, match="more digits"):
+        system_fields(replace(system, modes=(Mode("m0", RationalMatrix(((1,),), abs(value))),)))
+
+
+@pytest.mark.parametrize(
+    ("field", "value", "reason"),
+    [
+        ("modes", [], "largest mode"),
+        ("modes", {}, "expected a list"),
+        ("modes", [{"name": "m0", "numerators": [[1, 2]], "denominator": 1}], "not square"),
+        ("modes", [{"name": "m0", "numerators": [[1], [1, 2]], "denominator": 1}], "lengths"),
+        ("modes", [{"name": "m0", "numerators": [[1]], "denominator": 0}], "positive denominator"),
+        ("modes", [{"name": 3, "numerators": [[1]], "denominator": 1}], "expected a text"),
+        ("states", ["x"], "largest mode"),
+        ("states", [1, 2], "expected a text"),
+        ("time", "never", "not a valid Time"),
+        ("switching", {**stored(RULED)["switching"], "dwell_time": "-1"}, "not a ratio"),
+        ("switching", {**stored(RULED)["switching"], "constant": "ab"}, "expected a list"),
+    ],
+)
+def test_malformed_systems(field, value, reason):
+    with pytest.raises((ValueError, TypeError), match=reason):
+        read_system("x", {**stored(RULED), field: value})
+
+
+def test_two_modes_of_one_name():
+    fields = stored(RULED)
+    fields["modes"][1]["name"] = "m0"
+    with pytest.raises(ValueError, match="the same name"):
+        read_system("x", fields)
+
+
+def test_modes_that_would_take_hours():
+    n = 200
+    rows = [[10**1000 * (i == j) for j in range(n)] for i in range(n)]
+    fields = stored(RULED) | {
+        "states": [f"x{i}" for i in range(n)],
+        "modes": [{"name": "m0", "numerators": rows, "denominator": 1}],
+    }
+    with pytest.raises(ValueError, match="too large to check"):
+        read_system("x", fields)

@@ -1,0 +1,84 @@
+"""Exponentials by a Taylor series: exact cases, an oracle of many digits, and stiff ones."""
+
+from fractions import Fraction
+from math import factorial
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from nrs_design.proof.enclosure import exponential, meets, precision
+from nrs_design.proof.matrix import RationalMatrix
+from nrs_design.proof.taylor import UNIT, exponential_nearly
+
+DIGITS = Fraction(1, 10**60)
+
+
+def entries(M):
+    return [entry for row in M.fractions() for entry in row]
+
+
+def e_to_the(x):
+    """The series in fractions with more terms than needed, for ``|x| <= 10``."""
+    return sum((Fraction(x) ** k / factorial(k) for k in range(150)), Fraction(0))
+
+
+@pytest.mark.parametrize("x", ["0", "1", "-1", "10", "-10", "1/3", "-7/2"])
+def test_numbers(x):
+    M, error = exponential_nearly(
+        RationalMatrix(((Fraction(x).numerator,),), Fraction(x).denominator), Fraction(1)
+    )
+    assert error < DIGITS
+    assert abs(entries(M)[0] - e_to_the(Fraction(x))) <= error + Fraction(1, 10**80)
+
+
+def test_nilpotent_matrices_are_polynomials_of_the_time():
+    A = RationalMatrix(((0, 1, 0), (0, 0, 1), (0, 0, 0)))
+    M, error = exponential_nearly(A, Fraction(7, 2))
+    exact = [1, Fraction(7, 2), Fraction(49, 8), 0, 1, Fraction(7, 2), 0, 0, 1]
+    assert error < DIGITS
+    for found, known in zip(entries(M), exact, strict=True):
+        assert abs(found - known) <= error
+
+
+def test_no_time_leaves_everything_as_it_is():
+    M, error = exponential_nearly(RationalMatrix(((5, -3), (2, 9))), Fraction(0))
+    assert M.fractions() == [[1, 0], [0, 1]]
+    assert error <= Fraction(9, UNIT)
+
+
+@given(
+    st.integers(1, 4).flatmap(
+        lambda n: st.lists(
+            st.lists(st.integers(-99, 99), min_size=n, max_size=n), min_size=n, max_size=n
+        )
+    ),
+    st.integers(1, 99),
+    st.fractions(min_value=0, max_value=4),
+)
+def test_the_semigroup_property_and_flint(rows, denominator, time):
+    """``exp(A t) = exp(A t/2)^2`` within the errors; and flint's balls are met, tightly."""
+    A = RationalMatrix(tuple(map(tuple, rows)), denominator)
+    (whole, error), (half, small) = (exponential_nearly(A, t) for t in (time, time / 2))
+    n, H = len(rows), half.fractions()
+    norm = max(sum(map(abs, row)) for row in H)
+    for i, row in enumerate(whole.fractions()):
+        for j, entry in enumerate(row):
+            square = sum(H[i][k] * H[k][j] for k in range(n))
+            assert abs(entry - square) <= error + 2 * norm * small + small**2
+    with precision():
+        assert meets(exponential(A, time, time), whole, error)
+        for sign in (-1, 1):
+            moved = [
+                [e + sign * (3 * error + DIGITS * norm**2) for e in r] for r in whole.fractions()
+            ]
+            assert not meets(exponential(A, time, time), RationalMatrix.from_rows(moved), error)
+
+
+def test_a_fast_decay_over_a_long_time():
+    # Slow and fast: exp(-1) and exp(-4096), in coordinates that mix them.
+    A = RationalMatrix(((-4097, 4095), (4095, -4097)), 2)
+    M, error = exponential_nearly(A, Fraction(1))
+    half = e_to_the(-1) / 2
+    assert error < DIGITS
+    assert all(abs(entry - half) <= error + Fraction(1, 10**80) for entry in entries(M))

@@ -1,0 +1,27 @@
+"""Exact numbers as words."""
+
+from fractions import Fraction
+
+import pytest
+
+from nrs_design.proof.text import exact_text, quoted
+
+
+@pytest.mark.parametrize(
+    ("number", "text"),
+    [
+        (Fraction(5), "5"),
+        (Fraction(1, 8), "0.125"),
+        (Fraction(1, 3), "1/3"),
+        (Fraction(10) ** 400, "1" + "0" * 400),
+        (-(Fraction(10) ** 400), "-1" + "0" * 400),
+    ],
+)
+def test_a_number_is_written_exactly(number, text):
+    assert exact_text(number) == text
+    assert Fraction(text) == number
+
+
+def test_foreign_text_is_short_and_harmless():
+    assert quoted("a\x1b[2J") == repr("a\x1b[2J")
+    assert len(quoted("x" * 1000)) < 50

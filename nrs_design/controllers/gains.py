@@ -17,6 +17,7 @@ from nrs_design.controllers.laws import (
 from nrs_design.errors import CertificateError
 from nrs_design.spec import (
     ForceControllerSpec,
+    IdleStatesSpec,
     ImpedanceControllerSpec,
     InteractionDesignSpec,
     PositionControllerSpec,
@@ -57,6 +58,11 @@ def design_from_gains(
         _controller(name, controller, gains) for name, controller in spec.controllers.items()
     )
     return ControllerDesign(motion, controllers)
+
+
+def idle_decay(idle: IdleStatesSpec) -> Fraction:
+    """Return the rate in 1/s that the robot holds: a single-precision number, as gains are."""
+    return to_float32(idle.decay.exact)
 
 
 def motion_gains_fixed_by(spec: InteractionDesignSpec, motion: ProportionalDerivative) -> bool:

@@ -79,7 +79,9 @@ def _certified_afresh(loaded: LoadedSpec, progress: Progress) -> Export:
     verdict = str(result.certification.verdict)
     if result.design is None or result.certificate is None or verdict != "proved":
         return Export(verdict, None, None, f"the design is not proved: {verdict}")
-    return _proved(result.design, result.certificate)
+    spec = loaded.spec
+    assert isinstance(spec, InteractionDesignSpec)
+    return _proved(spec, result.design, result.certificate)
 
 
 def _certified_by(file: Path, designed: Designed) -> Export:
@@ -94,8 +96,11 @@ def _certified_by(file: Path, designed: Designed) -> Export:
         fault = f"is about {found.coordinates} coordinates, not those of the spec"
     if fault is not None:
         return Export("rejected", None, None, f"{file} {fault}")
-    return _proved(designed.design, found)
+    return _proved(designed.spec, designed.design, found)
 
 
-def _proved(design: ControllerDesign, certificate: Certificate) -> Export:
-    return Export("proved", build_record(design, certificate), certificate)
+def _proved(
+    spec: InteractionDesignSpec, design: ControllerDesign, certificate: Certificate
+) -> Export:
+    record = build_record(design, certificate, spec.idle_states)
+    return Export("proved", record, certificate)

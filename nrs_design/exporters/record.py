@@ -13,11 +13,12 @@ from nrs_design import __version__
 from nrs_design.certificates.certificate import Certificate
 from nrs_design.controllers.controller_design import ControllerDesign
 from nrs_design.controllers.float32 import exact_decimal
-from nrs_design.controllers.gains import gains_of
+from nrs_design.controllers.gains import gains_of, idle_decay
 from nrs_design.controllers.laws import AbstractLaw
 from nrs_design.errors import CertificateError
 from nrs_design.proof.evidence.fields import rate_text
 from nrs_design.proof.system import Time
+from nrs_design.spec import IdleStatesSpec
 
 Sha256 = Annotated[str, Field(pattern="^[0-9a-f]{64}$")]
 
@@ -68,6 +69,16 @@ class CompliantController(_Frozen):
     gains: tuple[Gain, ...]
 
 
+class IdleStates(_Frozen):
+    """What the states of impedance controllers do while another kind of controller is active.
+
+    The robot must do it: the proof is about controllers that let them decay, or reset them.
+    """
+
+    decay: Gain
+    reset: bool
+
+
 class SpecReference(_Frozen):
     """The spec that the design belongs to."""
 
@@ -109,10 +120,14 @@ class ExportRecord(_Frozen):
     spec: SpecReference
     motion: MotionController
     controllers: tuple[CompliantController, ...] = Field(min_length=1)
+    # Only where impedance controllers stand beside others.
+    idle_states: IdleStates | None = None
     proof: Proof
 
 
-def build_record(design: ControllerDesign, certificate: Certificate) -> ExportRecord:
+def build_record(
+    design: ControllerDesign, certificate: Certificate, idle: IdleStatesSpec | None
+) -> ExportRecord:
     """Put a design and its proof together.
 
     Parameters
@@ -121,6 +136,8 @@ def build_record(design: ControllerDesign, certificate: Certificate) -> ExportRe
         The gains that ship.
     certificate : Certificate
         Made or re-checked just now; it must prove stability of exactly these gains.
+    idle : IdleStatesSpec or None
+        Of the spec that the certificate is about.
 
     Raises
     ------
@@ -148,6 +165,7 @@ def build_record(design: ControllerDesign, certificate: Certificate) -> ExportRe
             )
             for controller in design.controllers
         ),
+        idle_states=None if idle is None else _idle_states(idle),
         proof=Proof.model_validate(
             {
                 "claim": evidence.claim(certificate.system),
@@ -174,6 +192,10 @@ def find_mismatch(design: ControllerDesign, certificate: Certificate) -> str | N
 def dump_record(record: ExportRecord) -> str:
     """Return the JSON text of a record."""
     return json.dumps(record.model_dump(mode="json", by_alias=True), indent=2) + "\n"
+
+
+def _idle_states(idle: IdleStatesSpec) -> IdleStates:
+    return IdleStates(decay=_gain("decay", "1/s", idle_decay(idle)), reset=idle.reset)
 
 
 def _gains(law: AbstractLaw) -> tuple[Gain, ...]:

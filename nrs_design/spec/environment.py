@@ -58,6 +58,11 @@ class AbstractEnvironmentSpec(SpecModel):
         """Whether every parameter has a single value."""
         return all(quantity.fixed for quantity in self.parameters().values())
 
+    @property
+    def is_spring(self) -> bool:
+        """Whether the force follows from the deflection of the moment, in the whole range."""
+        return not self.remembers
+
     def parameters(self) -> dict[str, RangedQuantity]:
         """Return the parameters of the law as written, by their keys."""
         values = ((name, getattr(self, name)) for name in type(self).model_fields)
@@ -105,6 +110,11 @@ class KelvinVoigtSpec(AbstractEnvironmentSpec):
     )
     stiffness: Stiffness = Field(description=_STIFFNESS.format(which=""))
     damping: Damping = Field(description=_DAMPING.format(which=""))
+
+    @property
+    def is_spring(self) -> bool:
+        """Whether there is no damping."""
+        return not any(q.exact for q in (self.damping.nominal, *self.damping.range))
 
 
 class MaxwellSpec(AbstractEnvironmentSpec):

@@ -93,6 +93,10 @@ class InteractionDesignSpec(SpecModel):
                 for name, c in self.controllers.items()
                 if not isinstance(c, PositionControllerSpec)
             ),
+            *(
+                partial(_check_springs, *item, self.environments)
+                for item in self.controllers.items()
+            ),
             partial(_check_memories, self.controllers, self.environments, self.coordinates),
             lambda: check_applicable(
                 self.goals, {c.type for c in self.controllers.values()}, "goals"
@@ -197,30 +201,40 @@ def _check_references(
         )
 
 
+def _check_springs(
+    name: str, controller: ControllerSpec, environments: dict[str, EnvironmentSpec]
+) -> None:
+    """Refuse force control of what is no spring: its force is not that of the position alone."""
+    if controller.type != "force":
+        return
+    for contact in controller.contacts:
+        environment = environments.get(contact)
+        if environment is None or environment.is_spring:
+            continue
+        what = "remembers" if environment.remembers else "has damping"
+        raise fault(
+            f"force control in contact with {contact!r} is not modelled: it is "
+            f"{environment.model}, and {what}",
+            "use an elastic environment for force controllers",
+            "controllers",
+            name,
+            "contacts" if "contacts" in controller.model_fields_set else "environment",
+        )
+
+
 def _check_memories(
     controllers: dict[str, ControllerSpec],
     environments: dict[str, EnvironmentSpec],
     coordinates: str,
 ) -> None:
     """Refuse what is not modelled about environments that remember."""
-    touched: dict[str, EnvironmentSpec] = {}
-    for name, controller in controllers.items():
-        contacts = () if isinstance(controller, PositionControllerSpec) else controller.contacts
-        for contact in contacts:
-            environment = environments.get(contact)
-            if environment is None or not environment.remembers:
-                touched |= {} if environment is None else {contact: environment}
-                continue
-            touched[contact] = environment
-            if controller.type == "force":
-                raise fault(
-                    f"force control in contact with {contact!r} is not modelled: its law, "
-                    f"{environment.model}, remembers",
-                    "use an elastic environment for force controllers",
-                    "controllers",
-                    name,
-                    "contacts" if "contacts" in controller.model_fields_set else "environment",
-                )
+    touched = {
+        contact: environments[contact]
+        for controller in controllers.values()
+        if not isinstance(controller, PositionControllerSpec)
+        for contact in controller.contacts
+        if contact in environments
+    }
     for name, environment in touched.items():
         if not environment.has_rest and len(touched) > 1:
             others = ", ".join(other for other in touched if other != name)

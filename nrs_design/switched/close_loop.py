@@ -16,6 +16,7 @@ from functools import partial
 from itertools import chain
 
 from nrs_design.controllers.controller_design import Controller, ControllerDesign
+from nrs_design.controllers.gains import idle_decay
 from nrs_design.controllers.laws import Admittance, PositionControl, ProportionalForce
 from nrs_design.errors import AssemblyError
 from nrs_design.models.contact.environment import Environment
@@ -200,7 +201,7 @@ class _Surroundings:
 
     def padded(self, rows: list[Row]) -> list[Row]:
         """Return a mode of a position or force controller, with idle states if there are any."""
-        return rows if self.idle is None else with_idle(rows, self.count, self.idle.decay.exact)
+        return rows if self.idle is None else with_idle(rows, self.count, idle_decay(self.idle))
 
 
 def _controller_modes(
@@ -391,12 +392,13 @@ _INPUTS = (
     "Under a constant command the modes may rest at different points. Where stability is proved, "
     "bounded inputs keep the state bounded; how far it goes, and that it settles, is not claimed.",
 )
-_CONTACT_KEPT = (
-    (Admittance, "Contact is not lost: free motion is not one of the modes."),
-    (
-        ProportionalForce,
-        "Contact is not lost while force is controlled: the environment would pull as it pushes.",
-    ),
+_KEPT_ALWAYS = "Contact is not lost: free motion is not one of the modes."
+_KEPT_IN_IMPEDANCE = (
+    "Contact is not lost while an impedance controller is active: free motion under one is not one "
+    "of the modes."
+)
+_KEPT_IN_FORCE = (
+    "Contact is not lost while force is controlled: the environment would pull as it pushes."
 )
 
 
@@ -419,7 +421,10 @@ def _assumptions(
     )
     kept = tuple(
         text
-        for law, text in _CONTACT_KEPT
+        for law, text in (
+            (Admittance, _KEPT_ALWAYS if idle is None else _KEPT_IN_IMPEDANCE),
+            (ProportionalForce, _KEPT_IN_FORCE),
+        )
         if any(isinstance(c.law, law) for c in design.controllers)
     )
     impedance = any(isinstance(c.law, Admittance) for c in design.controllers)
@@ -464,7 +469,8 @@ def _memory_texts(touched: tuple[Environment, ...]) -> Iterator[str]:
                 f"{environment.name} has no rest position: a lasting deflection leaves no force. "
                 "Its state is the stretch of its spring, which stays at a switch and when the "
                 "parameters change; "
-                "that the deflection itself returns to zero is not claimed."
+                "that the deflection itself returns to zero is not claimed, nor that it stays "
+                "bounded under a command or other input."
             )
         if environment.creep is None:
             continue

@@ -13,12 +13,13 @@ from collections.abc import Iterator
 from fractions import Fraction
 
 from nrs_design.controllers.controller_design import ControllerDesign
+from nrs_design.controllers.float32 import exact_decimal
+from nrs_design.controllers.gains import idle_decay
 from nrs_design.controllers.laws import Admittance
 from nrs_design.errors import AssemblyError
 from nrs_design.models.contact.environment import Environment
 from nrs_design.models.contact.law import AbstractLinearLaw
 from nrs_design.proof.matrix import RationalMatrix
-from nrs_design.proof.text import exact_text
 from nrs_design.spec import IdleStatesSpec
 
 Row = list[Fraction]
@@ -136,8 +137,8 @@ def mixture_states(order: int, count: int) -> tuple[str, ...]:
 def mixture_texts(idle: IdleStatesSpec, count: int) -> Iterator[str]:
     """Say what is taken for granted about the states of impedance controllers."""
     what = "the position reference" if count == 1 else "the velocity vm and the position reference"
-    decay = idle.decay.exact
-    meanwhile = f"decay at {exact_text(decay)} 1/s" if decay else "are held"
+    decay = idle_decay(idle)
+    meanwhile = f"decay at {exact_decimal(decay)} 1/s" if decay else "are held"
     yield (
         f"Impedance controllers integrate their velocity to a position reference of the motion "
         f"loop. While a position or force controller is active, {what} of the impedance "
@@ -149,6 +150,11 @@ def mixture_texts(idle: IdleStatesSpec, count: int) -> Iterator[str]:
             "set to zero: an impedance controller starts from the rest position, with vm = 0."
         )
     yield (
-        "The reference, and with it the velocity, may jump at a switch between an impedance "
-        "controller and another; position and motion state xi do not."
+        "The commanded position is that at which the contact carries no force; position and "
+        "reference are counted from it."
+    )
+    yield (
+        "The reference that the motion loop follows, and with it the velocity, may jump at a "
+        "switch; position and motion state xi do not: the PD differentiates the jump. A controller "
+        "that leaves this kick out is not covered."
     )

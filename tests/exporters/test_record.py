@@ -14,7 +14,7 @@ from nrs_design.errors import CertificateError, DesignError
 from nrs_design.exporters.export import export_design
 from nrs_design.exporters.record import ExportRecord, Gain, build_record, dump_record
 from nrs_design.pipeline import run_certification
-from nrs_design.spec import read_spec
+from nrs_design.spec import parse_spec, read_spec
 
 SPECS = Path(__file__).parents[2] / "specs"
 
@@ -26,7 +26,7 @@ def result():
 
 @pytest.fixture
 def record(result):
-    return build_record(result.design, result.certificate)
+    return build_record(result.design, result.certificate, None)
 
 
 @given(st.floats(width=32, allow_nan=False, allow_infinity=False))
@@ -110,10 +110,10 @@ def test_record_is_frozen_and_strict(record):
 def test_certificate_of_other_gains_is_refused(result):
     gains = {**result.certificate.gains, "insertion": {"Mt": "0.5", "Bt": "2"}}
     with pytest.raises(CertificateError, match="other gains of insertion"):
-        build_record(result.design, replace(result.certificate, gains=gains))
+        build_record(result.design, replace(result.certificate, gains=gains), None)
     fewer = {"motion": result.certificate.gains["motion"]}
     with pytest.raises(CertificateError, match="other gains"):
-        build_record(result.design, replace(result.certificate, gains=fewer))
+        build_record(result.design, replace(result.certificate, gains=fewer), None)
 
 
 def test_certificate_that_refutes_is_refused(result):
@@ -121,7 +121,7 @@ def test_certificate_that_refutes_is_refused(result):
 
     refuting = replace(result.certificate, statements=(UnstableMode("insertion", "1"),))
     with pytest.raises(CertificateError, match="does not prove stability"):
-        build_record(result.design, refuting)
+        build_record(result.design, refuting, None)
 
 
 def test_force_and_position_controllers():
@@ -136,3 +136,25 @@ def test_given_matrices_have_no_gains():
     with pytest.raises(DesignError, match="no gains") as caught:
         export_design(read_spec(SPECS / "examples/commuting.nrs.yaml"))
     assert caught.value.remedy
+
+
+def test_idle_states_are_exported_as_they_are_proved():
+    """0.1 is no single-precision number: the robot and the proof hold the one next to it."""
+    text = (SPECS.parent / "docs/examples/mixed-controllers.nrs.yaml").read_text()
+    assert "decay: 20 1/s" in text
+    spec = parse_spec(text.replace("decay: 20 1/s", "decay: 0.1 1/s, reset: false"))
+    loaded = replace(
+        read_spec(SPECS.parent / "docs/examples/mixed-controllers.nrs.yaml"), spec=spec
+    )
+    record = export_design(loaded).record
+    assert record is not None
+    idle = record.idle_states
+    assert idle is not None
+    assert not idle.reset
+    assert (idle.decay.name, idle.decay.unit) == ("decay", "1/s")
+    assert idle.decay.float32_bits == "0x3dcccccd"
+    assert f"decay at {idle.decay.exact} 1/s" in " ".join(record.proof.assumptions)
+
+
+def test_one_kind_of_controller_has_no_idle_states(record):
+    assert json.loads(dump_record(record))["idle_states"] is None

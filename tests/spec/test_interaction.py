@@ -368,9 +368,26 @@ def test_viscoelastic_refusals(text: str, change: tuple[str, str], place: str, r
     assert any(place in lines[(fault.line or 0) - 1] for fault in faults)
 
 
-def test_force_control_of_what_remembers_is_refused() -> None:
-    text = FORCE.replace("model: elastic", "model: maxwell\n    damping: 1 N*s/m", 1)
-    assert "force control in contact with 'soft' is not modelled" in refusal(text).message
+@pytest.mark.parametrize(
+    ("law", "why"),
+    [
+        ("maxwell\n    damping: 1 N*s/m", "remembers"),
+        ("kelvin-voigt\n    damping: 1 N*s/m", "has damping"),
+        (
+            "kelvin-voigt\n    damping: {nominal: 0 N*s/m, range: [0 N*s/m, 1 N*s/m]}",
+            "has damping",
+        ),
+    ],
+)
+def test_force_control_of_what_is_no_spring_is_refused(law: str, why: str) -> None:
+    found = refusal(spoiled(FORCE, "model: elastic", f"model: {law}"))
+    assert "force control in contact with 'soft' is not modelled" in found.message
+    assert why in found.message
+
+
+def test_force_control_of_a_kelvin_voigt_spring_is_allowed() -> None:
+    text = spoiled(FORCE, "model: elastic", "model: kelvin-voigt\n    damping: 0 N*s/m")
+    assert interaction(text).environments["soft"].is_spring
 
 
 FREE = ("  insertion:", "  free: {type: position}\n  insertion:")

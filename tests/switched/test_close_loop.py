@@ -416,6 +416,7 @@ class TestViscoelastic:
         assert "While another environment is touched, nose is free of force" in both
         gel = " ".join(viscoelastic("gel").assumptions)
         assert "that the deflection itself returns to zero is not claimed" in gel
+        assert "nor that it stays bounded under a command" in gel
         assert "The deflection is continuous" not in gel
 
     @pytest.mark.parametrize("name", ["nose", "gel"])

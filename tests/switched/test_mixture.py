@@ -154,6 +154,23 @@ def test_what_is_held_is_said_to_be():
     assert "act on nothing and are held" in texts
 
 
+def test_decay_is_the_single_precision_number_that_the_robot_holds():
+    system = mixed(slow=("decay: 20 1/s", "decay: 0.1 1/s"))
+    held = F(13421773, 2**27)
+    assert abs(held - F("0.1")) < F(1, 10**8)
+    assert system.modes[0].A.fractions()[2][2] == -held
+    assert "decay at 0.100000001490116119384765625 1/s" in " ".join(system.assumptions)
+
+
+def test_what_is_taken_for_granted_about_switches_between_kinds():
+    texts = " ".join(mixed().assumptions)
+    # The position mode is free motion, and has a command of its own.
+    assert "Contact is not lost: free motion is not one of the modes" not in texts
+    assert "Contact is not lost while an impedance controller is active" in texts
+    assert "The commanded position is that at which the contact carries no force" in texts
+    assert "A controller that leaves this kick out is not covered" in texts
+
+
 def test_force_coordinates_are_refused():
     spec = read_spec(MIXED)
     with pytest.raises(AssemblyError, match="force coordinates do not apply"):

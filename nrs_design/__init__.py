@@ -9,16 +9,18 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from nrs_design.api import Decision, Study, certify, check_lyapunov, load, verify
+    from nrs_design.search.gradient_settings import Gradient
 
 __version__ = "0.1.0"
 
-__all__ = ["Decision", "Study", "certify", "check_lyapunov", "load", "verify"]
+__all__ = ["Decision", "Gradient", "Study", "certify", "check_lyapunov", "load", "verify"]
 
 
 def __getattr__(name: str) -> Any:
     if name not in __all__:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    return getattr(import_module("nrs_design.api"), name)
+    home = "nrs_design.search.gradient_settings" if name == "Gradient" else "nrs_design.api"
+    return getattr(import_module(home), name)
 
 
 def __dir__() -> list[str]:

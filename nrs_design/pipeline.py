@@ -34,6 +34,7 @@ from nrs_design.switched.assemble import assemble, assemble_matrices, has_ranges
 if TYPE_CHECKING:
     from nrs_design.design.evidence import DesignEvidence
     from nrs_design.models.robot import Robot
+    from nrs_design.search.comparison import MethodRun
 
 Progress = Callable[[str], None]
 
@@ -286,6 +287,47 @@ def run_certification(
         else None
     )
     return Result(loaded, designed, coordinates, certification, certificate)
+
+
+def run_comparison(
+    loaded: LoadedSpec,
+    limits: Limits,
+    coordinates: str | None = None,
+    progress: Progress = _silent,
+) -> tuple[SwitchedSystem, tuple[MethodRun, ...]]:
+    """Compare the gradient iteration with the LMI on the modes of a spec.
+
+    Parameters
+    ----------
+    loaded : LoadedSpec
+        As `nrs_design.spec.read_spec` gives it.
+    limits : Limits
+        How far each search goes.
+    coordinates : {"deflection", "force"}, optional
+        Overrides what the spec says.
+    progress : callable
+        Told the name of each step.
+
+    Returns
+    -------
+    SwitchedSystem
+        The exact modes.
+    tuple of MethodRun
+        The LMI first.
+
+    Raises
+    ------
+    DesignError, AssemblyError
+        If the spec has no design, or its modes make no switched system that both methods are for.
+    """
+    from nrs_design.search.comparison import compare_methods
+
+    designed = run_design(loaded)
+    if designed is not None:
+        coordinates = coordinates or designed.spec.coordinates
+    with placed(loaded):
+        system = _assemble(loaded, designed, coordinates)
+        return system, compare_methods(system, limits, progress)
 
 
 def _assemble(

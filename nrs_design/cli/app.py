@@ -29,6 +29,7 @@ COMMANDS = (
     "optimize",
     "tune",
     "certify-switching",
+    "compare-methods",
     "verify",
     "check-lyapunov",
     "report",

@@ -9,6 +9,7 @@ from nrs_design.reporting.sections.design import design_sections
 from nrs_design.reporting.sections.evidence import evidence_sections
 from nrs_design.reporting.sections.goals import goal_facts
 from nrs_design.reporting.sections.head import claim_of, facts, proved_rate, remarks_of
+from nrs_design.reporting.sections.methods import methods_section
 from nrs_design.reporting.sections.modes import modes_section
 from nrs_design.reporting.sections.proof import proof_section
 from nrs_design.reporting.sections.recheck import recheck_section
@@ -16,15 +17,18 @@ from nrs_design.reporting.sections.search import assumptions_section, rungs_sect
 
 if TYPE_CHECKING:
     import datetime
+    from collections.abc import Sequence
 
     from nrs_design.design.evidence import DesignEvidence
     from nrs_design.pipeline import Result
+    from nrs_design.search.comparison import MethodRun
 
 
 def build_report(
     result: Result,
     evidence: DesignEvidence | None = None,
     *,
+    comparison: Sequence[MethodRun] = (),
     times: bool = False,
     date: datetime.date | None = None,
 ) -> Report:
@@ -37,6 +41,8 @@ def build_report(
     evidence : DesignEvidence, optional
         As `nrs_design.pipeline.run_evidence` gives it. Without it the report has no margins and
         no design figures.
+    comparison : sequence of MethodRun, optional
+        As `nrs_design.pipeline.run_comparison` gives them.
     times : bool
         Add how long every rung of the search took. The same spec then gives another page each
         time.
@@ -64,6 +70,7 @@ def build_report(
             *evidence_sections(certification),
             assumptions_section(certification),
             rungs_section(certification, times=times),
+            *((methods_section(comparison, times=times),) if comparison else ()),
             recheck_section(result),
         ),
         date=date,

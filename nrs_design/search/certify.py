@@ -31,6 +31,7 @@ from nrs_design.search.allowance import Allowance, Cost, NotAffordableError
 from nrs_design.search.certification import Attempt, Certification, Limits, Method
 from nrs_design.search.checker import Checker
 from nrs_design.search.family import Family, floats_in_silence
+from nrs_design.search.gradient_settings import Gradient
 from nrs_design.search.limits import rate_limit
 from nrs_design.search.mode_quadratic import functions_cost
 from nrs_design.search.polynomial import highest_degree, polynomial_cost
@@ -54,7 +55,7 @@ from nrs_design.search.rungs import (
     search_switching_at_values,
     search_value,
 )
-from nrs_design.search.structure import merge_equal_modes, triangular_blocks
+from nrs_design.search.structure import merge_equal_modes, stand_in, triangular_blocks
 
 Progress = Callable[[str], None]
 
@@ -93,7 +94,8 @@ def certify(
     Raises
     ------
     DesignError
-        If the rung is not defined in discrete time.
+        If the method does not apply to the system, or settings of the gradient iteration do not
+        apply to the method or the modes.
     InternalError
         If two exact computations disagree.
     """
@@ -104,8 +106,10 @@ def certify(
             f"the method {method} does not apply to this kind of switching and time",
             remedy="use --method auto",
         )
+    _check_gradient(system, method, limits.gradient)
     simple = system.switching.is_arbitrary and system.is_uniform
     merged = merge_equal_modes(system) if simple else system
+    limits = _limits_for(merged, system, limits)
     blocks = triangular_blocks(merged) if simple else (tuple(range(system.order)),)
     checker = Checker(system)
     if len(blocks) == 1:
@@ -139,12 +143,34 @@ def _certify_block(
     """Certify the family of one diagonal block."""
     full = diagonal_block(system, block)
     merged = merge_equal_modes(full)
+    limits = _limits_for(merged, full, limits)
     result = _climb(Checker(merged), method, limits, allowance, progress)
     return replace(
         result,
         system=full,
         statements=_spread(result.statements, merged, full),
     )
+
+
+def _check_gradient(system: SwitchedSystem, method: Method, gradient: Gradient) -> None:
+    """Refuse settings of the gradient iteration that would not be kept."""
+    if gradient != Gradient() and method not in {Method.AUTO, Method.GRADIENT}:
+        raise DesignError(
+            f"the method {method} has no use for settings of the gradient iteration",
+            remedy="use --method gradient, or leave them out",
+        )
+    names = [mode.name for mode in system.modes]
+    if gradient.start is not None and gradient.start not in names:
+        raise DesignError(
+            f"the gradient iteration cannot start with mode {gradient.start!r}: there is none",
+            remedy=f"one of {', '.join(names)}",
+        )
+
+
+def _limits_for(merged: SwitchedSystem, system: SwitchedSystem, limits: Limits) -> Limits:
+    """Let the gradient iteration start with the mode that stands for the wanted one."""
+    start = stand_in(limits.gradient.start, system, merged)
+    return replace(limits, gradient=replace(limits.gradient, start=start))
 
 
 def _climb(
@@ -196,7 +222,12 @@ def _rungs(
         yield "lmi, raw", search_raw
         yield "lmi, preconditioned", search_preconditioned
     if Method.GRADIENT in wanted and not remarks:
-        yield "gradient", search_by_gradient
+        yield (
+            "gradient",
+            partial(
+                search_by_gradient, settings=limits.gradient, optimize_rate=limits.optimize_rate
+            ),
+        )
     yield "every mode", examine_every_mode
     if Method.VALUE in wanted:
         yield "constant values", search_value
@@ -285,11 +316,9 @@ def _applicable(system: SwitchedSystem) -> set[Method]:
     if any(not (fits and is_stable(mode.A, system.time)) for mode, fits in left):
         return wanted | ({Method.PERIOD} if system.is_uniform else set())
     if system.is_uniform and not switching.resets:
-        wanted |= {Method.LMI, Method.OBSTRUCTION, Method.POLYNOMIAL}
+        wanted |= {Method.LMI, Method.OBSTRUCTION, Method.POLYNOMIAL, Method.GRADIENT}
     if system.is_uniform:
         wanted |= {Method.PERIOD}
-    if system.time is Time.CONTINUOUS and system.is_uniform and not switching.resets:
-        wanted |= {Method.GRADIENT}
     if switching.is_arbitrary:
         wanted -= {Method.MODE_QUADRATIC} if system.time is Time.CONTINUOUS else set()
         wanted |= {Method.MIXTURE} if system.time is Time.CONTINUOUS else set()

@@ -23,7 +23,8 @@ from nrs_design.search.allowance import Cost, NotAffordableError
 from nrs_design.search.balance import mean_norm, mean_norm_coordinates, scale
 from nrs_design.search.decay import largest_position, rate_at, rate_of
 from nrs_design.search.family import Family
-from nrs_design.search.gradient import iterate_gradient
+from nrs_design.search.gradient import find_by_gradient, find_faster_by_gradient
+from nrs_design.search.gradient_settings import Gradient
 from nrs_design.search.lmi import find_common_quadratic, margins, solve_by_clarabel
 from nrs_design.search.mixture import find_unstable_mixture
 from nrs_design.search.mode_quadratic import find_mode_functions
@@ -127,16 +128,29 @@ def decide_one_state(family: Family) -> Finding:
     return (evidence, "found") if fault is None else (None, fault)
 
 
-def search_by_gradient(family: Family) -> Finding:
-    """Search by the Liberzon-Tempo iteration."""
+def search_by_gradient(
+    family: Family, *, settings: Gradient | None = None, optimize_rate: bool = False
+) -> Finding:
+    """Search by the Liberzon-Tempo iteration; then, if asked to, raise the rate."""
     if not np.isfinite(family.limit):
         return None, OUT_OF_RANGE
+    settings = settings or Gradient()
     # The rungs below need time as well.
-    result = iterate_gradient(family.matrices, allowance=family.allowance.part(0.5))
+    allowance = family.allowance.part(0.5)
+    result = find_by_gradient(family, settings, allowance)
     if result.Q is None:
         return None, f"not converged after {result.updates} updates"
     evidence, outcome = _round_at_own_rate(family, result.Q)
-    return evidence, f"{outcome} after {result.updates} updates"
+    outcome = f"{outcome} after {result.updates} updates"
+    if optimize_rate and evidence is not None:
+        faster = find_faster_by_gradient(family, settings, result.Q, allowance)
+        better = None if faster.Q is None else _round_at_own_rate(family, faster.Q)[0]
+        if better is not None:
+            return (
+                better,
+                f"{outcome}, with a decay rate near the largest after {faster.updates} more",
+            )
+    return evidence, outcome
 
 
 def search_raw(family: Family) -> Finding:

@@ -1,0 +1,130 @@
+"""The gradient iteration beside the LMI: one run of each, on the same system."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from itertools import product
+
+import numpy as np
+
+from nrs_design.errors import DesignError
+from nrs_design.proof.evidence import CommonQuadratic
+from nrs_design.proof.system import SwitchedSystem
+from nrs_design.search.certification import Certification, Limits, Method
+from nrs_design.search.certify import certify
+from nrs_design.search.gradient_settings import Coordinates, Gradient, Order
+
+Progress = Callable[[str], None]
+# Updates and the largest v after them.
+History = tuple[tuple[int, float], ...]
+
+
+@dataclass(frozen=True, slots=True)
+class MethodRun:
+    """How one method fared.
+
+    Parameters
+    ----------
+    method : Method
+        ``lmi`` or ``gradient``.
+    certification : Certification
+        Its verdict; whatever it found has passed the exact check.
+    seconds : float
+        Time of the search and of the checks of its candidates.
+    coordinates : Coordinates or None
+        Where the iteration ran; None for the LMI.
+    order : Order or None
+        In which it took the modes; None for the LMI.
+    histories : tuple of tuple of (int, float)
+        The largest v over all modes against updates, for every block of the states that was
+        searched on its own.
+    """
+
+    method: Method
+    certification: Certification
+    seconds: float
+    coordinates: Coordinates | None = None
+    order: Order | None = None
+    histories: tuple[History, ...] = ()
+
+    @property
+    def name(self) -> str:
+        """Method, coordinates and order in words."""
+        return ", ".join(filter(None, (self.method, self.coordinates, self.order)))
+
+    @property
+    def updates(self) -> int | None:
+        """Updates that were made, or None for the LMI."""
+        return sum(history[-1][0] for history in self.histories) if self.histories else None
+
+    @property
+    def outcome(self) -> str:
+        """How the search ended, in words."""
+        tried = [step for step in self.certification.attempts if str(self.method) in step.step]
+        return "; ".join(dict.fromkeys(step.outcome for step in tried)) or "not needed"
+
+    @property
+    def condition(self) -> float | None:
+        """Condition number of Q, in the states of the modes; None without a single Q."""
+        evidence = self.certification.evidence
+        if not isinstance(evidence, CommonQuadratic):
+            return None
+        largest = max(abs(entry) for row in evidence.Q for entry in row)
+        scaled = np.array([[entry / largest for entry in row] for row in evidence.Q])
+        return float(np.linalg.cond(scaled))
+
+
+def compare_methods(
+    system: SwitchedSystem, limits: Limits, progress: Progress = lambda step: None
+) -> tuple[MethodRun, ...]:
+    """Run the LMI once, and the iteration in all coordinates and orders.
+
+    Parameters
+    ----------
+    system : SwitchedSystem
+        Exact modes.
+    limits : Limits
+        How far each search goes; coordinates and order of its gradient settings are replaced.
+    progress : callable
+        Told the name of each run as it begins.
+
+    Raises
+    ------
+    DesignError
+        If the methods do not apply to the system, or there is no mode to start with.
+    """
+    progress("lmi")
+    try:
+        known = certify(system, Method.LMI, replace(limits, gradient=Gradient()))
+    except DesignError as error:
+        raise DesignError(
+            "LMI and gradient iteration look for one quadratic function for all modes, which does "
+            "not apply to this kind of switching",
+            remedy="use `nrs-design certify-switching`",
+        ) from error
+    runs = [MethodRun(Method.LMI, known, _seconds(known))]
+    for coordinates, order in product(Coordinates, Order):
+        progress(f"gradient, {coordinates}, {order}")
+        runs.append(_run_gradient(system, limits, coordinates, order))
+    return tuple(runs)
+
+
+def _run_gradient(
+    system: SwitchedSystem, limits: Limits, coordinates: Coordinates, order: Order
+) -> MethodRun:
+    histories: list[list[tuple[int, float]]] = []
+
+    def tell(updates: int, largest: float) -> None:
+        if not updates:
+            histories.append([])
+        histories[-1].append((updates, largest))
+
+    gradient = replace(limits.gradient, coordinates=coordinates, order=order, tell=tell)
+    found = certify(system, Method.GRADIENT, replace(limits, gradient=gradient))
+    told = tuple(map(tuple, histories))
+    return MethodRun(Method.GRADIENT, found, _seconds(found), coordinates, order, told)
+
+
+def _seconds(found: Certification) -> float:
+    return sum(attempt.seconds for attempt in found.attempts)

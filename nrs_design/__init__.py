@@ -8,8 +8,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from nrs_design.api import Decision, Study, certify, check_lyapunov, load, verify
-    from nrs_design.search.gradient_settings import Gradient
+    from nrs_design.api import Decision, Gradient, Study, certify, check_lyapunov, load, verify
 
 __version__ = "0.1.0"
 
@@ -19,8 +18,7 @@ __all__ = ["Decision", "Gradient", "Study", "certify", "check_lyapunov", "load",
 def __getattr__(name: str) -> Any:
     if name not in __all__:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    home = "nrs_design.search.gradient_settings" if name == "Gradient" else "nrs_design.api"
-    return getattr(import_module(home), name)
+    return getattr(import_module("nrs_design.api"), name)
 
 
 def __dir__() -> list[str]:

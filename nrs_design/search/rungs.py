@@ -131,7 +131,17 @@ def decide_one_state(family: Family) -> Finding:
 def search_by_gradient(
     family: Family, *, settings: Gradient | None = None, optimize_rate: bool = False
 ) -> Finding:
-    """Search by the Liberzon-Tempo iteration; then, if asked to, raise the rate."""
+    """Search by the Liberzon-Tempo iteration; then, if asked to, raise the rate.
+
+    Parameters
+    ----------
+    family : Family
+        The modes.
+    settings : Gradient, optional
+        How to iterate.
+    optimize_rate : bool
+        Look for a large rate.
+    """
     if not np.isfinite(family.limit):
         return None, OUT_OF_RANGE
     settings = settings or Gradient()

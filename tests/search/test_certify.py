@@ -17,7 +17,7 @@ from nrs_design.errors import DesignError, InternalError
 from nrs_design.pipeline import run_certification
 from nrs_design.proof.evidence import BlockTriangular, CommonQuadratic, Shows
 from nrs_design.proof.system import Switching, Time
-from nrs_design.search import checker, lmi, rungs
+from nrs_design.search import checker, gradient, lmi, rungs
 from nrs_design.search.certification import Limits, Method
 from nrs_design.search.certify import certify
 from nrs_design.search.gradient import GradientResult
@@ -308,9 +308,9 @@ class TestMethods:
         assert result.verdict is Verdict.INCONCLUSIVE
         assert any("not converged" in attempt.outcome for attempt in result.attempts)
 
-    def test_gradient_is_refused_in_discrete_time(self):
-        with pytest.raises(DesignError, match="gradient does not apply") as caught:
-            certify(family([["1/2"]], time=Time.DISCRETE), Method.GRADIENT)
+    def test_a_method_that_does_not_apply_is_refused(self):
+        with pytest.raises(DesignError, match="mixture does not apply") as caught:
+            certify(family([["1/2"]], time=Time.DISCRETE), Method.MIXTURE)
         assert caught.value.remedy == "use --method auto"
 
     def test_steps_are_told_and_timed(self):
@@ -493,9 +493,7 @@ class TestLyingSolvers:
         monkeypatch.setattr(
             rungs, "_seems_stable", lambda family: np.ones(len(family.matrices), bool)
         )
-        monkeypatch.setattr(
-            rungs, "iterate_gradient", lambda matrices, **options: GradientResult(None, 0)
-        )
+        monkeypatch.setattr(gradient, "iterate_gradient", lambda *_: GradientResult(None, 0))
 
     def test_the_solver(self, monkeypatch, lie, name):
         monkeypatch.setattr(lmi, "_solve", lambda matrices, *rest: LIES[lie](matrices.shape[1]))
@@ -510,10 +508,10 @@ class TestLyingSolvers:
         self.never_wrong(name)
 
     def test_the_gradient(self, monkeypatch, lie, name):
-        def answer(matrices, **options):
+        def answer(matrices, *_):
             return GradientResult(LIES[lie](matrices.shape[1]), 1)
 
-        monkeypatch.setattr(rungs, "iterate_gradient", answer)
+        monkeypatch.setattr(gradient, "iterate_gradient", answer)
         monkeypatch.setattr(rungs, "find_common_quadratic", lambda *arguments, **options: None)
         self.never_wrong(name)
 

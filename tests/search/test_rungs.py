@@ -8,7 +8,7 @@ import pytest
 from nrs_design.errors import DesignError
 from nrs_design.proof.evidence import UnstablePeriod
 from nrs_design.proof.system import Switching
-from nrs_design.search import mode_quadratic, obstruction, polynomial, rungs
+from nrs_design.search import gradient, mode_quadratic, obstruction, polynomial, rungs
 from nrs_design.search.allowance import Allowance, NotAffordableError
 from nrs_design.search.certify import Limits, Method, Verdict, certify
 from nrs_design.search.checker import Checker
@@ -43,7 +43,7 @@ def test_a_lying_semidefinite_solver_never_decides(monkeypatch, value):
 def test_a_lying_quadratic_search_never_decides(monkeypatch, value):
     monkeypatch.setattr(rungs, "find_common_quadratic", lying((2, 2), value))
     monkeypatch.setattr(
-        rungs, "iterate_gradient", lambda *_, **__: GradientResult(np.full((2, 2), value), 0)
+        gradient, "iterate_gradient", lambda *_: GradientResult(np.full((2, 2), value), 0)
     )
     for method in (Method.LMI, Method.GRADIENT):
         found = certify(dayawansa_martin(12), method, Limits(optimize_rate=False))

@@ -11,6 +11,8 @@ from nrs_design.reproduction import (
     correction,
     experiments,
     force_loop,
+    gradient,
+    hands_on,
     impedance,
     modes,
     robot_dynamics,
@@ -39,7 +41,9 @@ TOPICS = (
     modes,
     force_loop,
     switching,
+    gradient,
     experiments,
+    hands_on,
 )
 
 

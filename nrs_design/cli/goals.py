@@ -11,14 +11,12 @@ from nrs_design.cli.printing import note, say
 from nrs_design.cli.tables import print_table
 
 if TYPE_CHECKING:
-    from nrs_design.design.evidence import DesignEvidence, ForceEvidence, ImpedanceEvidence
+    from nrs_design.design.evidence import AbstractControllerEvidence, DesignEvidence
     from nrs_design.design.goals import Achieved
     from nrs_design.spec import Spec
 
-    Item = ImpedanceEvidence | ForceEvidence
 
-
-def print_goals(name: str, items: Iterable[Item]) -> None:
+def print_goals(name: str, items: Iterable[AbstractControllerEvidence]) -> None:
     """Print what the spec asks for beside what is achieved at worst; nothing without goals."""
     from nrs_design.design.measures import MEANING
 
@@ -55,13 +53,13 @@ def warnings_of(spec: Spec, evidence: DesignEvidence) -> list[str]:
     return [str(doubt) for doubt in (*doubt_spec(spec), *evidence.warnings)]
 
 
-def exit_code(items: Iterable[Item]) -> int:
+def exit_code(items: Iterable[AbstractControllerEvidence]) -> int:
     """Return 1 if a goal is missed."""
     met = all(found.met for item in items for found in item.achieved)
     return exit_codes.PROVED if met else exit_codes.REFUTED
 
 
-def goals_summary(item: Item) -> list[dict[str, Any]]:
+def goals_summary(item: AbstractControllerEvidence) -> list[dict[str, Any]]:
     """Return everything that was measured, with its goal if there is one, in SI units."""
     return [_summary(found) for found in item.achieved]
 

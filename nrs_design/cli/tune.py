@@ -63,9 +63,9 @@ def tune(spec: SpecFile, as_json: Json = False, quiet: Quiet = False) -> None:
         print_json("tune", content | _summary(designed.design, evidence) | {"warnings": warnings})
     elif not quiet:
         _print(loaded.spec.name, designed.design, evidence)
-        print_goals(loaded.spec.name, evidence.force)
+        print_goals(loaded.spec.name, evidence.tuned)
         print_warnings(warnings, quiet=quiet)
-    raise typer.Exit(exit_code(evidence.force))
+    raise typer.Exit(exit_code(evidence.tuned))
 
 
 def _summary(design: ControllerDesign, evidence: DesignEvidence) -> dict[str, Any]:

@@ -26,6 +26,10 @@ from nrs_design.spec.switching import SwitchingSpec
 from nrs_design.spec.units import BASE_UNITS
 
 MAX_LISTED = 20
+# Keys of a controller that are listed in a way of their own, and the kinds of gains.
+_TARGETS = frozenset({"desired_impedance", "desired_impedance_ratio"})
+_LISTED = _TARGETS | {"type", "environment", "contacts", "goals"}
+_GAINS = (kinds.INERTIA, kinds.IMPEDANCE, kinds.FORCE_GAIN)
 
 
 class Row(NamedTuple):
@@ -156,21 +160,32 @@ def _ranged(name: str, written: RangedQuantity, si: RangedQuantity, unit: str) -
 
 def _controller(name: str, controller: ControllerSpec, limits: LimitsSpec) -> Iterator[Row]:
     yield Row(f"{name}.type", controller.type, "", "")
-    if controller.type == "position":
+    if controller.environment is None:
         return
     yield Row(f"{name}.environment", controller.environment, "", "")
     yield Row(f"{name}.contacts", ", ".join(controller.contacts), "", "")
     if controller.type == "impedance":
         yield _desired_impedance(f"{name}.desired_impedance", controller, limits)
-        yield from _gain(f"{name}.Mt", controller.Mt, kinds.INERTIA)
-        yield from _gain(f"{name}.Bt", controller.Bt, kinds.IMPEDANCE)
-        yield _number(f"{name}.weights.displayed", controller.weights.displayed)
-        yield _number(f"{name}.weights.sensitivity", controller.weights.sensitivity)
-    elif controller.proportional_gain is not None:
-        yield _row(f"{name}.proportional_gain", controller.proportional_gain, kinds.FORCE_GAIN)
-    elif controller.damping_ratio is not None:
-        yield _number(f"{name}.damping_ratio", controller.damping_ratio)
+    for key in type(controller).model_fields:
+        if key not in _LISTED:
+            yield from _own_field(f"{name}.{key}", getattr(controller, key))
     yield from _goals(f"{name}.goals", controller.goals)
+
+
+def _own_field(name: str, value: object) -> Iterator[Row]:
+    """List what only one type of controller has."""
+    if isinstance(value, GainSpec):
+        yield from _gain(name, value, _gain_unit(value.min))
+    elif isinstance(value, Quantity):
+        yield _quantity(name, value, _gain_unit(value))
+    else:
+        yield from describe_model(value, name)
+
+
+def _gain_unit(quantity: Quantity) -> str:
+    """Return the unit in which a gain is shown."""
+    known = (kind.si_unit for kind in _GAINS if kind.accepts(quantity.dimension))
+    return next(known, si_unit(quantity.dimension))
 
 
 def _goals(name: str, goals: GoalsSpec | None) -> Iterator[Row]:
@@ -187,22 +202,26 @@ def _desired_impedance(name: str, controller: ImpedanceControllerSpec, limits: L
     return Row(name, written, _text(value), kinds.IMPEDANCE.si_unit)
 
 
-def _gain(name: str, gain: GainSpec, kind: QuantityKind) -> Iterator[Row]:
+def _gain(name: str, gain: GainSpec, unit: str) -> Iterator[Row]:
     if gain.fixed:
-        yield _row(name, gain.min, kind)
+        yield _quantity(name, gain.min, unit)
     else:
-        yield _interval(name, gain.min, gain.max, kind)
+        yield _interval(name, gain.min, gain.max, unit)
     if gain.range is not None:
-        yield _interval(f"{name}.range", *gain.range, kind)
+        yield _interval(f"{name}.range", *gain.range, unit)
 
 
-def _interval(name: str, low: Quantity, high: Quantity, kind: QuantityKind) -> Row:
+def _interval(name: str, low: Quantity, high: Quantity, unit: str) -> Row:
     value = f"[{_text(low.si)}, {_text(high.si)}]"
-    return Row(name, f"[{low.text}, {high.text}]", value, kind.si_unit)
+    return Row(name, f"[{low.text}, {high.text}]", value, unit)
 
 
 def _row(name: str, quantity: Quantity, kind: QuantityKind) -> Row:
-    return Row(name, quantity.text, _text(quantity.si), kind.si_unit)
+    return _quantity(name, quantity, kind.si_unit)
+
+
+def _quantity(name: str, quantity: Quantity, unit: str) -> Row:
+    return Row(name, quantity.text, _text(quantity.si), unit)
 
 
 def _number(name: str, number: Fraction) -> Row:

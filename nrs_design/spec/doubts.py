@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from nrs_design.spec.controllers import PositionControllerSpec
 from nrs_design.spec.interaction import InteractionDesignSpec
 from nrs_design.spec.load import Spec
 
@@ -35,10 +34,7 @@ def doubt_spec(spec: Spec) -> Iterator[Doubt]:
     if not isinstance(spec, InteractionDesignSpec):
         return
     touched = {
-        contact
-        for controller in spec.controllers.values()
-        if not isinstance(controller, PositionControllerSpec)
-        for contact in controller.contacts
+        contact for controller in spec.controllers.values() for contact in controller.contacts
     }
     for name in spec.environments:
         if name not in touched:

@@ -13,9 +13,7 @@ from nrs_design.models.plant import Plant, build_plant
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.system import Mode, SwitchedSystem, Time
 from nrs_design.spec import (
-    ImpedanceControllerSpec,
     InteractionDesignSpec,
-    PositionControllerSpec,
     RobotSpec,
     Spec,
     SwitchedSystemSpec,
@@ -80,20 +78,15 @@ def has_ranges(spec: Spec) -> bool:
     if isinstance(spec, RobotSpec):
         return False
     return any(not spec.environments[name].fixed for name in _touched(spec)) or any(
-        controller.Mt.ranged or controller.Bt.ranged
+        gain.ranged
         for controller in spec.controllers.values()
-        if isinstance(controller, ImpedanceControllerSpec)
+        for gain in controller.gains().values()
     )
 
 
 def _touched(spec: InteractionDesignSpec) -> set[str]:
     """Names of the environments that some controller touches."""
-    return {
-        contact
-        for controller in spec.controllers.values()
-        if not isinstance(controller, PositionControllerSpec)
-        for contact in controller.contacts
-    }
+    return {contact for controller in spec.controllers.values() for contact in controller.contacts}
 
 
 def assemble_matrices(spec: SwitchedSystemSpec, scale: Fraction = DECLARED) -> SwitchedSystem:

@@ -7,6 +7,7 @@ jump with k2; d is a position and stays. Every entry is affine in k1, in k2 and 
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import TYPE_CHECKING, ClassVar
@@ -18,6 +19,7 @@ from nrs_design.models.contact.law import (
     Number,
     Reaction,
 )
+from nrs_design.models.linear_form import LinearForm, combine
 
 if TYPE_CHECKING:
     from nrs_design.models.contact.motion import Array, Motion
@@ -117,12 +119,11 @@ class KelvinBoltzmann(AbstractLinearLaw):
         k1, k2, b = map(float, self.values)
         return (0.0, b * k2, k1 * k2), (b, k1 + k2, 0.0)
 
-    @property
-    def reaction(self) -> Reaction:
-        """``delta' = v``, ``b d' = k2 (delta - d) - k1 d``, ``F = k2 (delta - d)``."""
-        k1, k2, b = self.exact
-        zero = Fraction(0)
-        return Reaction(((zero, zero), (k2 / b, -(k1 + k2) / b)), (Fraction(1), zero), (k2, -k2))
+    def react(self, velocity: LinearForm, states: Sequence[LinearForm]) -> Reaction:
+        """Return ``F = k2 (delta - d)``, ``delta' = v`` and ``b d' = k2 (delta - d) - k1 d``."""
+        (k1, k2, b), (delta, d) = self.exact, states
+        rate = combine((k2 / b, delta), (-(k1 + k2) / b, d))
+        return combine((k2, delta), (-k2, d)), [velocity, rate]
 
     @property
     def creep(self) -> Fraction:

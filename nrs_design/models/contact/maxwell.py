@@ -7,6 +7,7 @@ from the motion and acts on nothing; as a state it would add an eigenvalue zero.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import TYPE_CHECKING, ClassVar
@@ -18,6 +19,7 @@ from nrs_design.models.contact.law import (
     Number,
     Reaction,
 )
+from nrs_design.models.linear_form import LinearForm, combine
 
 if TYPE_CHECKING:
     from nrs_design.models.contact.motion import Array, Motion
@@ -74,8 +76,7 @@ class Maxwell(AbstractLinearLaw):
         k, b = float(self.k), float(self.b)
         return (0.0, k * b), (b, k)
 
-    @property
-    def reaction(self) -> Reaction:
-        """``e' = v - (k/b) e``, ``F = k e`` with the stretch e of the spring."""
-        k, b = self.exact
-        return Reaction(((-k / b,),), (Fraction(1),), (k,))
+    def react(self, velocity: LinearForm, states: Sequence[LinearForm]) -> Reaction:
+        """Return ``F = k e`` and ``e' = v - (k/b) e`` with the stretch e of the spring."""
+        (k, b), (e,) = self.exact, states
+        return combine((k, e)), [combine((Fraction(1), velocity), (-k / b, e))]

@@ -5,7 +5,7 @@ from __future__ import annotations
 from fractions import Fraction
 from typing import Annotated, ClassVar, Literal
 
-from pydantic import Discriminator, Field, field_validator, model_validator
+from pydantic import ConfigDict, Discriminator, Field, field_validator, model_validator
 
 from nrs_design.spec.faults import fault
 from nrs_design.spec.fields import Label, Positive, UnitFraction, Weight
@@ -69,6 +69,9 @@ class AbstractControllerSpec(SpecModel):
 class ImpedanceControllerSpec(AbstractControllerSpec):
     """Admittance ``1/(Mt s + Bt)`` that makes the robot display an impedance (thesis 6.3.1)."""
 
+    model_config = ConfigDict(
+        json_schema_extra={"not": {"required": ["desired_impedance", "desired_impedance_ratio"]}}
+    )
     commands: ClassVar[Command] = "velocity"
 
     type: Literal["impedance"] = Field(description="impedance: admittance Y = 1/(Mt s + Bt)")
@@ -115,6 +118,11 @@ class ImpedanceControllerSpec(AbstractControllerSpec):
 class ForceControllerSpec(AbstractControllerSpec):
     """Proportional force controller of the hybrid scheme (thesis 6.3.3)."""
 
+    model_config = ConfigDict(
+        json_schema_extra={
+            "oneOf": [{"required": ["proportional_gain"]}, {"required": ["damping_ratio"]}]
+        }
+    )
     commands: ClassVar[Command] = "position"
 
     type: Literal["force"] = Field(description="force: u = Kp (Fd - F)")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from itertools import chain
 
 from nrs_design.controllers.controller_design import ControllerDesign
 from nrs_design.controllers.float32 import exact_decimal
@@ -83,7 +84,10 @@ def assume_loop(loop: Assumed) -> tuple[str, ...]:
         *_INPUTS,
         "The axes of the robot do not act on each other.",
         *_contact_texts(loop),
-        *_memory_texts(loop.touched),
+        *chain.from_iterable(
+            environment.law.memory_texts(environment.name, alone=len(loop.touched) == 1)
+            for environment in loop.touched
+        ),
         *(_idle_texts(loop.idle, loop.law) if loop.idle is not None else ()),
         *_kept_texts(loop),
         *_switch_texts(loop.rules, reset=loop.idle is not None and loop.idle.reset),
@@ -101,30 +105,6 @@ def _contact_texts(loop: Assumed) -> Iterator[str]:
     integrated = any(c.law.commands == "velocity" for c in loop.design.controllers)
     if integrated and all(e.law.has_rest for e in loop.touched):
         yield _AT_A_SWITCH[loop.coordinates]
-
-
-def _memory_texts(touched: tuple[Environment, ...]) -> Iterator[str]:
-    """Say what is taken for granted about environments that remember, or forget."""
-    for environment in touched:
-        if not environment.law.has_rest:
-            yield (
-                f"{environment.name} has no rest position: a lasting deflection leaves no force. "
-                "Its state is the stretch of its spring, which stays at a switch and when the "
-                "parameters change; "
-                "that the deflection itself returns to zero is not claimed, nor that it stays "
-                "bounded under a command or other input."
-            )
-        if environment.creep is None:
-            continue
-        yield (
-            f"The damper of {environment.name} keeps its deflection at a switch and when the "
-            "parameters change."
-        )
-        if len(touched) > 1:
-            yield (
-                f"While another environment is touched, {environment.name} is free of force and "
-                "its damper creeps back to rest, b d' = -k1 d, with parameters in their ranges."
-            )
 
 
 def _idle_texts(idle: IdleStatesSpec, law: CompliantLaw) -> Iterator[str]:

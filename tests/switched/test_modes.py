@@ -1,6 +1,8 @@
 """State matrices entry by entry, against the published ones and against other formulas."""
 
+from dataclasses import dataclass
 from fractions import Fraction
+from types import MappingProxyType
 
 import numpy as np
 import pytest
@@ -8,6 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from nrs_design.controllers.laws import (
+    AbstractCompliantLaw,
     Admittance,
     ProportionalForce,
 )
@@ -16,6 +19,7 @@ from nrs_design.design.margins import stiffness_limit
 from nrs_design.design.transfer import TransferFunction
 from nrs_design.errors import AssemblyError
 from nrs_design.models.contact import Elastic, KelvinVoigt
+from nrs_design.models.linear_form import combine
 from nrs_design.models.motion_loop import MotionLoop, realize
 from nrs_design.proof.exact import characteristic_polynomial, is_hurwitz
 from nrs_design.proof.matrix import RationalMatrix
@@ -181,6 +185,39 @@ class TestForce:
             position_mode(MOTION, ProportionalForce(F(1)), KelvinVoigt(F(1), F(1)), "jelly")
         assert "jelly" in caught.value.message
         assert "elastic" in caught.value.remedy
+
+
+@dataclass(frozen=True, slots=True)
+class IntegralForce(AbstractCompliantLaw):
+    """A law with a state of its own over a position: ``-Kp F - Ki int F``."""
+
+    name = "integral-force"
+    units = MappingProxyType({"Kp": "rad/(N*m)", "Ki": "rad/(N*m*s)"})
+    commands = "position"
+
+    Kp: Fraction
+    Ki: Fraction
+
+    @property
+    def states(self):
+        return ("integral of F [N*m*s]",)
+
+    def respond(self, force, states):
+        return combine((-self.Kp, force), (-self.Ki, states[0])), [force]
+
+    @classmethod
+    def contact_text(cls, *, alone):
+        return None
+
+
+class TestOwnStates:
+    @given(Kp=positive, Ki=positive, k=positive)
+    def test_integral_of_the_force(self, Kp, Ki, k):
+        """``s den(s) + k (Kp s + Ki) num(s)``."""
+        rows = position_mode(MOTION, IntegralForce(Kp, Ki), Elastic(k))
+        assert [row[-1] for row in rows] == [0, -Ki, 0]
+        loop = np.polymul(objects(*LOOP.numerator), objects(k * Kp, k * Ki))
+        assert polynomial(rows) == list(np.polyadd(objects(*LOOP.denominator, 0), loop))
 
 
 class TestPlaces:

@@ -81,15 +81,15 @@ class AbstractCompliantLaw(AbstractLaw, Generic[S]):
         return None
 
     @classmethod
+    @abstractmethod
     def contact_text(cls, *, alone: bool) -> str | None:
-        """Say what is taken for granted about contact while it is active.
+        """Say what is taken for granted about contact while it is active; None for nothing.
 
         Parameters
         ----------
         alone : bool
             Whether all controllers give the motion loop the same kind of command.
         """
-        return None
 
     @property
     def retuned_text(self) -> str:

@@ -23,3 +23,7 @@ class PositionControl(AbstractCompliantLaw[PositionControllerSpec]):
     def respond(self, force: LinearForm, states: Sequence[LinearForm]) -> Response:
         """Return no correction."""
         return zero(len(force)), []
+
+    @classmethod
+    def contact_text(cls, *, alone: bool) -> None:
+        """Take nothing for granted: free motion is this very mode."""

@@ -49,7 +49,22 @@ def choose(task: Task, given: ForceControllerSpec) -> Choice:
 
 
 def examine(task: Task, given: ForceControllerSpec, controller: Controller) -> ForceEvidence:
-    """Close the loop in nominal contact, and measure it in all contacts."""
+    """Close the loop in nominal contact, and measure it in all contacts.
+
+    Parameters
+    ----------
+    task : Task
+        What the gains were chosen for.
+    given : ForceControllerSpec
+        What the spec says of the controller.
+    controller : Controller
+        With the gains that ship.
+
+    Raises
+    ------
+    DesignError
+        If the nominal loop is unstable.
+    """
     contacts = tuple(map(task.plant.environment, given.contacts))
     goals = goals_of(task.spec, given, FORCE_MEASURES)
     requirement = Requirement(task.motion, corners_of(contacts, given.environment, {}), goals)

@@ -94,7 +94,22 @@ def choose(task: Task, given: ImpedanceControllerSpec) -> Choice:
 def examine(
     task: Task, given: ImpedanceControllerSpec, controller: Controller
 ) -> ImpedanceEvidence:
-    """Compute cost, margins and stiffness limits, and measure the loop in all contacts."""
+    """Compute cost, margins and stiffness limits, and measure the loop in all contacts.
+
+    Parameters
+    ----------
+    task : Task
+        What the gains were chosen for.
+    given : ImpedanceControllerSpec
+        What the spec says of the controller.
+    controller : Controller
+        With the gains that ship.
+
+    Raises
+    ------
+    DesignError
+        If the nominal loop is unstable.
+    """
     problem = impedance_problem(task, given)
     shipped = controller.law.gains
     Mt, Bt = float(shipped["Mt"]), float(shipped["Bt"])

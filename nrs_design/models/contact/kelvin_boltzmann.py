@@ -7,7 +7,7 @@ jump with k2; d is a position and stays. Every entry is affine in k1, in k2 and 
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import TYPE_CHECKING, ClassVar
@@ -112,6 +112,19 @@ class KelvinBoltzmann(AbstractLinearLaw):
         q = float(self.k2 / (self.k1 + self.k2))
         chain = np.array([[q, 1 - q, 0.0], [q - 1, 2 - q, 0.0], [q - 1, -q, 1.0]])
         return np.asarray(inner @ chain)
+
+    @classmethod
+    def memory_texts(cls, environment: str, *, alone: bool) -> Iterator[str]:
+        """Say what the damper does at a switch, and while it is left alone."""
+        yield (
+            f"The damper of {environment} keeps its deflection at a switch and when the "
+            "parameters change."
+        )
+        if not alone:
+            yield (
+                f"While another environment is touched, {environment} is free of force and "
+                "its damper creeps back to rest, b d' = -k1 d, with parameters in their ranges."
+            )
 
     @property
     def impedance(self) -> tuple[tuple[float, ...], tuple[float, ...]]:

@@ -34,6 +34,7 @@ class KelvinVoigt(AbstractLinearLaw):
     name: ClassVar[str] = "kelvin-voigt"
     formula: ClassVar[str] = "F = k δ + b δ'"
     kinds: ClassVar[tuple[str, ...]] = (STIFFNESS, DAMPING)
+    takes_velocity: ClassVar[bool] = True
     keys: ClassVar[tuple[str, ...]] = ("stiffness", "damping")
     may_vanish: ClassVar[frozenset[str]] = frozenset({"b"})
     front: ClassVar[str] = "k"

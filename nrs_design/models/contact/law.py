@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 from abc import ABC, abstractmethod
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import astuple, dataclass, fields
 from fractions import Fraction
 from typing import TYPE_CHECKING, ClassVar, Self
@@ -44,6 +44,8 @@ class AbstractContactLaw(ABC):
     formula: ClassVar[str]
     # What each parameter is, in order: a stiffness, a damping, or something of the law's own.
     kinds: ClassVar[tuple[str, ...]]
+    # Whether the reaction takes the velocity itself, which a record has by differences only.
+    takes_velocity: ClassVar[bool] = False
 
     @abstractmethod
     def simulate(self, motion: Motion) -> Array:
@@ -134,6 +136,26 @@ class AbstractLinearLaw(AbstractContactLaw):
     def creep(self) -> Fraction | None:
         """Rate in 1/s at which a second state decays while no force acts; None without one."""
         return None
+
+    @classmethod
+    def memory_texts(cls, environment: str, *, alone: bool) -> Iterator[str]:
+        """Say what is taken for granted about an environment that remembers.
+
+        Parameters
+        ----------
+        environment : str
+            Its name.
+        alone : bool
+            Whether no other environment is touched.
+        """
+        if cls.remembers:
+            kept = " and ".join(cls.states)
+            yield f"{environment} keeps {kept} at a switch and when the parameters change."
+        if cls.remembers and not alone:
+            yield (
+                f"While another environment is touched, {environment} is free of force, with "
+                "parameters in their ranges."
+            )
 
     @property
     def exact(self) -> tuple[Fraction, ...]:

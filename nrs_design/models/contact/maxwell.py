@@ -7,7 +7,7 @@ from the motion and acts on nothing; as a state it would add an eigenvalue zero.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import TYPE_CHECKING, ClassVar
@@ -69,6 +69,17 @@ class Maxwell(AbstractLinearLaw):
 
         y, slope = relax(motion, self.relaxation_time)
         return np.column_stack([float(self.k) * (y - slope), float(self.k) * slope])
+
+    @classmethod
+    def memory_texts(cls, environment: str, *, alone: bool) -> Iterator[str]:
+        """Say what is known of the deflection, which is no state."""
+        yield (
+            f"{environment} has no rest position: a lasting deflection leaves no force. "
+            "Its state is the stretch of its spring, which stays at a switch and when the "
+            "parameters change; "
+            "that the deflection itself returns to zero is not claimed, nor that it stays "
+            "bounded under a command or other input."
+        )
 
     @property
     def impedance(self) -> tuple[tuple[float, ...], tuple[float, ...]]:

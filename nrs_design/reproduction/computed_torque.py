@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from nrs_design.design.root_locus import design_pd
 from nrs_design.reproduction import thesis
-from nrs_design.reproduction.row import Row, Tolerance, reproduced
+from nrs_design.reproduction.comparison import Comparison, Tolerance, reproduced
 
 TOLERANCE = Tolerance(1e-4)
 
 
-def rows() -> tuple[Row, ...]:
+def rows() -> tuple[Comparison, ...]:
     """Recompute 4.14 and 4.15 from damping ratio and settling time."""
     wanted = design_pd(
         float(thesis.ACTUATOR.gain),

@@ -6,10 +6,10 @@ from math import degrees, exp, pi, sqrt
 
 from nrs_design.design.root_locus import PdDesign, design_pd, motion_loop_response
 from nrs_design.reproduction import thesis
-from nrs_design.reproduction.row import Row, Tolerance, misprint, reproduced
+from nrs_design.reproduction.comparison import Comparison, Tolerance, misprint, reproduced
 
 
-def rows() -> tuple[Row, ...]:
+def rows() -> tuple[Comparison, ...]:
     """Recompute the design by angle and magnitude condition, then what it really gives."""
     return (*_design(), *_closed_loop())
 
@@ -19,7 +19,7 @@ def _pd(time_constant: float) -> PdDesign:
     return design_pd(gain, time_constant, thesis.DAMPING_RATIO, thesis.SETTLING_TIME)
 
 
-def _design() -> tuple[Row, ...]:
+def _design() -> tuple[Comparison, ...]:
     # The thesis places the zero with the pole of 4.26b, the gain with the rounded 0.0351 s of 4.29.
     unrounded, rounded = _pd(1 / thesis.BREAK_FREQUENCY), _pd(float(thesis.ACTUATOR.time_constant))
     return (
@@ -66,7 +66,7 @@ def _design() -> tuple[Row, ...]:
     )
 
 
-def _closed_loop() -> tuple[Row, ...]:
+def _closed_loop() -> tuple[Comparison, ...]:
     loop = thesis.EXACT_LOOP
     response = motion_loop_response(loop)
     second_order = exp(-pi * thesis.DAMPING_RATIO / sqrt(1 - thesis.DAMPING_RATIO**2))

@@ -26,7 +26,7 @@ def matrix_fields(Q: Matrix, denominator_log2: int) -> dict[str, Any]:
     return {"numerators": [list(row) for row in Q], "denominator_log2": denominator_log2}
 
 
-def read_matrix(fields: Mapping[str, Any]) -> tuple[Matrix, int]:
+def read_dyadic(fields: Mapping[str, Any]) -> tuple[Matrix, int]:
     """Read a dyadic matrix: its integer numerators, and the logarithm of its denominator."""
     denominator_log2 = read_integer(fields["denominator_log2"])
     if denominator_log2 < 0:

@@ -22,7 +22,7 @@ from nrs_design.simulation.periodic import (
     periodic_run,
     steps_of_mixture,
 )
-from nrs_design.simulation.switched import eigenvalues
+from nrs_design.simulation.switched import mode_eigenvalues
 
 
 class UnstableMixturePage(AbstractKindPage[UnstableMixture]):
@@ -88,7 +88,7 @@ class UnstableMixturePage(AbstractKindPage[UnstableMixture]):
             "The modes that have a share in it, and their average, which is not stable.",
             draw_eigenvalues(
                 [*(mode.name for mode in modes), "average"],
-                [*eigenvalues(mixed), average],
+                [*mode_eigenvalues(mixed), average],
                 mixed.time,
                 None,
             ),

@@ -137,7 +137,7 @@ def ruled_run(
 def unbounded_run(system: SwitchedSystem) -> Section:
     """Draw a bad run of a system of which nothing is proved."""
     arbitrary = system.switching.is_arbitrary
-    hardest = hardest_modes(system, None, affordable(system) if arbitrary else _RULED_MODES)
+    hardest = hardest_modes(system, None, trials_per_step(system) if arbitrary else _RULED_MODES)
     step = fine_step(hardest)
     functions = euclidean(hardest)
     if arbitrary:
@@ -181,7 +181,7 @@ def bound_line(response: TimeResponse, rate: float, time: Time, label: str) -> B
     return f"{label}rho^t", rate**response.time
 
 
-def affordable(system: SwitchedSystem) -> int:
+def trials_per_step(system: SwitchedSystem) -> int:
     """Return how many modes a greedy run can try at every step."""
     return max(8, min(256, _EFFORT // system.order**2))
 

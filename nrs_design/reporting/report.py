@@ -11,8 +11,7 @@ from nrs_design.reporting.sections.goals import goal_facts
 from nrs_design.reporting.sections.head import claim_of, facts, proved_rate, remarks_of
 from nrs_design.reporting.sections.modes import modes_section
 from nrs_design.reporting.sections.proof import proof_section
-from nrs_design.reporting.sections.recheck import recheck_section
-from nrs_design.reporting.sections.search import assumptions_section, rungs_section
+from nrs_design.reporting.sections.tail import assumptions_section, recheck_section, rungs_section
 
 if TYPE_CHECKING:
     import datetime

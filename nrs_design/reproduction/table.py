@@ -7,7 +7,6 @@ from collections.abc import Callable
 from nrs_design.reproduction import (
     actuator,
     balance,
-    computed_torque,
     correction,
     experiments,
     force_loop,
@@ -30,7 +29,6 @@ TOPICS = (
     robot_dynamics,
     correction,
     actuator,
-    computed_torque,
     root_locus,
     tracking,
     balance,

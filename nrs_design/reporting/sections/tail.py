@@ -1,13 +1,14 @@
-"""What is taken for granted, and what was tried."""
+"""The end of the report: what is taken for granted, what was tried, how to check again."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from nrs_design.reporting.document import Bullets, Section, Table
+from nrs_design.reporting.document import Bullets, Paragraph, Section, Table
 from nrs_design.reporting.formatting import number
 
 if TYPE_CHECKING:
+    from nrs_design.pipeline import Result
     from nrs_design.search.certification import Certification
 
 
@@ -32,3 +33,28 @@ def rungs_section(certification: Certification, *, times: bool) -> Section:
         for attempt in certification.attempts
     )
     return Section("Rungs tried", (Table("In the order tried", columns, rows),))
+
+
+def recheck_section(result: Result) -> Section:
+    """Tell how to check the certificate again without trusting this report."""
+    name, spec = result.loaded.spec.name, result.loaded.path.name
+    if result.certificate is None:
+        text = (
+            "There is no certificate to check. After a change of the spec, run nrs-design "
+            f"certify-switching {spec} again."
+        )
+        return Section("How to check again", (Paragraph(text),))
+    return Section(
+        "How to check again",
+        (
+            Paragraph("This page is no proof; the certificate is. To check it again, run:"),
+            Bullets("", (f"nrs-design verify {name}.cert.json {spec}",)),
+            Paragraph(
+                "This decides everything in exact arithmetic for the modes in the certificate, and "
+                "compares them with those of the spec; it runs no solver and uses no number of "
+                "this page. The id of the certificate and the hash of the spec must be those at "
+                "the head of this report. "
+                f"The certificate is the file that nrs-design certify-switching {spec} writes."
+            ),
+        ),
+    )

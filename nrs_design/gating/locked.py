@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from nrs_design import __version__
 from nrs_design.certificates.certificate import Certificate
@@ -15,7 +16,9 @@ from nrs_design.gating.obligations import GateOutcome, Obligation, SpecOutcome, 
 from nrs_design.gating.rules import LOCKED, RULES, SWITCHING_STABLE
 from nrs_design.spec import InteractionDesignSpec, LoadedSpec, RobotSpec, read_spec
 
-Progress = Callable[[str], None]
+if TYPE_CHECKING:
+    from nrs_design.pipeline import Progress
+
 RENEW = "run nrs-design gate without --locked"
 PRUNE = "run nrs-design gate with --prune"
 

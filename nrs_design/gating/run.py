@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from collections import Counter
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -26,6 +26,7 @@ from nrs_design.output import CERTIFICATE, PAGE, write_output
 from nrs_design.ownership import REMEDY, check_owner, origin_of
 from nrs_design.pipeline import (
     Overrides,
+    Progress,
     Result,
     limits_of,
     run_analysis,
@@ -36,8 +37,6 @@ from nrs_design.spec import LoadedSpec, RobotSpec, read_spec
 
 if TYPE_CHECKING:
     from nrs_design.design.analysis import DesignAnalysis
-
-Progress = Callable[[str], None]
 
 
 @dataclass(frozen=True, slots=True)

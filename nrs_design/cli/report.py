@@ -50,7 +50,7 @@ def report(
         typer.Option(
             formats=["%Y-%m-%d"],
             metavar="YYYY-MM-DD",
-            help="Write this date on the page or document; without it there is none.",
+            help="Write this date on the page or document; without it there is no date.",
         ),
     ] = None,
     max_degree: MaxDegree = None,

@@ -73,7 +73,7 @@ def _elements(name: str, experiment: int, eta: tuple[float, float, float]) -> Co
         found = ", ".join(format_number(value) for value in law.values)
         note = "so the records do not determine it, and the specimen is elastic."
     else:
-        found = f"none: eta2/eta3 = {eta2 / eta3:.4g} N/m"
+        found = f"no such law: eta2/eta3 = {eta2 / eta3:.4g} N/m"
         note = "and below eta1 at high frequency: no springs and dampers behave so."
     return claim(
         f"k1, k2, b of the {name} specimen, experiment {experiment}",

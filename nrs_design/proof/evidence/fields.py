@@ -43,7 +43,7 @@ def read_integers(value: Any) -> Matrix:
 
 
 def read_integer(value: object) -> int:
-    """Read an integer; a truth value is none."""
+    """Read an integer; a truth value is not one."""
     if type(value) is not int:
         raise TypeError(f"expected an integer, not {quoted(str(value))}")
     return value

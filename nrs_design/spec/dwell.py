@@ -7,10 +7,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
-from nrs_design.spec.controllers import ControllerSpec
-from nrs_design.spec.environment import EnvironmentSpec
-from nrs_design.spec.parameters import ParameterSpec
+if TYPE_CHECKING:
+    from nrs_design.spec.controllers import ControllerSpec
+    from nrs_design.spec.environment import EnvironmentSpec
+    from nrs_design.spec.parameters import ParameterSpec
 
 
 @dataclass(frozen=True, slots=True)

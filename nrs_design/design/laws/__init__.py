@@ -6,7 +6,7 @@ from types import MappingProxyType
 from nrs_design.design.laws import force, impedance, position
 from nrs_design.design.laws.law import LawDesign
 
-# By the type of a controller in a spec; evidence is shown in this order.
+# By the type of a controller in a spec; analyses are shown in this order.
 LAW_DESIGNS: Mapping[str, LawDesign] = MappingProxyType(
     {"impedance": impedance.DESIGN, "force": force.DESIGN, "position": position.DESIGN}
 )

@@ -1,4 +1,4 @@
-"""Choose the gain of a force controller, and examine it."""
+"""Choose the gain of a force controller, and analyze it."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from nrs_design.controllers.laws import ProportionalForce
 from nrs_design.design.force_loop import ForceLoop, design_force_gain, force_loop_response
 from nrs_design.design.goals import Requirement, achieve_force, corners_of
 from nrs_design.design.laws.law import (
-    AbstractControllerEvidence,
+    AbstractControllerAnalysis,
     Choice,
     LawDesign,
     Task,
@@ -22,13 +22,13 @@ from nrs_design.spec import ForceControllerSpec
 
 
 @dataclass(frozen=True)
-class ForceEvidence(AbstractControllerEvidence):
+class ForceAnalysis(AbstractControllerAnalysis):
     """One force controller.
 
     Parameters
     ----------
     name, achieved
-        As for `AbstractControllerEvidence`.
+        As for `AbstractControllerAnalysis`.
     stiffness : float
         Of nominal contact, in N m/rad.
     loop : ForceLoop
@@ -48,7 +48,7 @@ def choose(task: Task, given: ForceControllerSpec) -> Choice:
     return ProportionalForce(to_float32(round_significant(gain, task.digits))), None
 
 
-def examine(task: Task, given: ForceControllerSpec, controller: Controller) -> ForceEvidence:
+def analyze(task: Task, given: ForceControllerSpec, controller: Controller) -> ForceAnalysis:
     """Close the loop in nominal contact, and measure it in all contacts.
 
     Parameters
@@ -73,7 +73,7 @@ def examine(task: Task, given: ForceControllerSpec, controller: Controller) -> F
     with naming(controller.name):
         loop = force_loop_response(task.motion, stiffness, gain)
     achieved = achieve_force(requirement, FORCE_MEASURES, gain)
-    return ForceEvidence(controller.name, achieved, stiffness, loop)
+    return ForceAnalysis(controller.name, achieved, stiffness, loop)
 
 
-DESIGN = LawDesign(choose, examine)
+DESIGN = LawDesign(choose, analyze)

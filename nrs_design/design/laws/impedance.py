@@ -1,4 +1,4 @@
-"""Choose the gains of an impedance controller, and examine them."""
+"""Choose the gains of an impedance controller, and analyze them."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from nrs_design.design.impedance import (
     optimize_impedance,
 )
 from nrs_design.design.laws.law import (
-    AbstractControllerEvidence,
+    AbstractControllerAnalysis,
     Choice,
     LawDesign,
     Task,
@@ -35,13 +35,13 @@ from nrs_design.spec import Doubt, GainSpec, ImpedanceControllerSpec, Interactio
 
 
 @dataclass(frozen=True)
-class ImpedanceEvidence(AbstractControllerEvidence):
+class ImpedanceAnalysis(AbstractControllerAnalysis):
     """One impedance controller.
 
     Parameters
     ----------
     name, achieved
-        As for `AbstractControllerEvidence`.
+        As for `AbstractControllerAnalysis`.
     given : ImpedanceControllerSpec
         What the spec says of it.
     problem : ImpedanceProblem
@@ -91,9 +91,9 @@ def choose(task: Task, given: ImpedanceControllerSpec) -> Choice:
     return law, optimum
 
 
-def examine(
+def analyze(
     task: Task, given: ImpedanceControllerSpec, controller: Controller
-) -> ImpedanceEvidence:
+) -> ImpedanceAnalysis:
     """Compute cost, margins and stiffness limits, and measure the loop in all contacts.
 
     Parameters
@@ -120,7 +120,7 @@ def examine(
         stiffness_limit(problem.loop, float(mass), float(damping))
         for (_, mass), (_, damping) in product(*(interval.ends for interval in ranges))
     )
-    return ImpedanceEvidence(
+    return ImpedanceAnalysis(
         name=controller.name,
         achieved=achieve_impedance(_requirement(task, given), IMPEDANCE_MEASURES, Mt, Bt),
         given=given,
@@ -136,7 +136,7 @@ def examine(
     )
 
 
-DESIGN = LawDesign(choose, examine)
+DESIGN = LawDesign(choose, analyze)
 
 
 def impedance_problem(task: Task, given: ImpedanceControllerSpec) -> ImpedanceProblem:

@@ -51,7 +51,7 @@ class Task:
 
 
 @dataclass(frozen=True)
-class AbstractControllerEvidence(ABC):
+class AbstractControllerAnalysis(ABC):
     """What the gains of one controller achieve.
 
     Parameters
@@ -76,19 +76,19 @@ Choice = tuple[CompliantLaw, ImpedanceOptimum | None]
 
 @dataclass(frozen=True)
 class LawDesign:
-    """How the gains of one law are chosen and examined.
+    """How the gains of one law are chosen and analyzed.
 
     Parameters
     ----------
     choose : callable
         Gives the law for a task and the spec of a controller.
-    examine : callable or None
-        Gives the evidence for a task, the spec of a controller and the controller; None where
+    analyze : callable or None
+        gives the analysis for a task, the spec of a controller and the controller; None where
         nothing is measured.
     """
 
     choose: Callable[[Task, Any], Choice]
-    examine: Callable[[Task, Any, Controller], AbstractControllerEvidence] | None = None
+    analyze: Callable[[Task, Any, Controller], AbstractControllerAnalysis] | None = None
 
 
 @contextmanager

@@ -9,27 +9,27 @@ from typing import TypeVar
 from nrs_design.controllers.controller_design import ControllerDesign
 from nrs_design.design.design import root_locus_design
 from nrs_design.design.laws import LAW_DESIGNS
-from nrs_design.design.laws.force import ForceEvidence
-from nrs_design.design.laws.impedance import ImpedanceEvidence
-from nrs_design.design.laws.law import AbstractControllerEvidence, Task
+from nrs_design.design.laws.force import ForceAnalysis
+from nrs_design.design.laws.impedance import ImpedanceAnalysis
+from nrs_design.design.laws.law import AbstractControllerAnalysis, Task
 from nrs_design.design.root_locus import MotionLoopResponse, PdDesign, motion_loop_response
 from nrs_design.design.transfer import TransferFunction
 from nrs_design.models.plant import Plant
 from nrs_design.spec import Doubt, InteractionDesignSpec
 
 __all__ = [
-    "AbstractControllerEvidence",
-    "DesignEvidence",
-    "ForceEvidence",
-    "ImpedanceEvidence",
-    "examine_design",
+    "AbstractControllerAnalysis",
+    "DesignAnalysis",
+    "ForceAnalysis",
+    "ImpedanceAnalysis",
+    "analyze_design",
 ]
 
-E = TypeVar("E", bound=AbstractControllerEvidence)
+E = TypeVar("E", bound=AbstractControllerAnalysis)
 
 
 @dataclass(frozen=True, slots=True)
-class DesignEvidence:
+class DesignAnalysis:
     """Everything a person wants to see beside the gains.
 
     Parameters
@@ -42,7 +42,7 @@ class DesignEvidence:
         Whether G follows from the PD gains, or the spec states it.
     reached : MotionLoopResponse
         Poles, damping and overshoot that G really has.
-    measured : tuple of AbstractControllerEvidence
+    measured : tuple of AbstractControllerAnalysis
         One for each controller that goals are for, law by law.
     """
 
@@ -50,20 +50,20 @@ class DesignEvidence:
     motion: TransferFunction
     motion_source: str
     reached: MotionLoopResponse
-    measured: tuple[AbstractControllerEvidence, ...]
+    measured: tuple[AbstractControllerAnalysis, ...]
 
     @property
-    def impedance(self) -> tuple[ImpedanceEvidence, ...]:
+    def impedance(self) -> tuple[ImpedanceAnalysis, ...]:
         """The impedance controllers."""
-        return self._of(ImpedanceEvidence)
+        return self._of(ImpedanceAnalysis)
 
     @property
-    def force(self) -> tuple[ForceEvidence, ...]:
+    def force(self) -> tuple[ForceAnalysis, ...]:
         """The force controllers."""
-        return self._of(ForceEvidence)
+        return self._of(ForceAnalysis)
 
     @property
-    def tuned(self) -> tuple[AbstractControllerEvidence, ...]:
+    def tuned(self) -> tuple[AbstractControllerAnalysis, ...]:
         """All but the impedance controllers, whose gains are optimized instead."""
         return tuple(item for item in self.measured if item not in self.impedance)
 
@@ -76,9 +76,9 @@ class DesignEvidence:
         return tuple(item for item in self.measured if isinstance(item, kind))
 
 
-def examine_design(
+def analyze_design(
     spec: InteractionDesignSpec, plant: Plant, design: ControllerDesign
-) -> DesignEvidence:
+) -> DesignAnalysis:
     """Compute poles, costs and margins of a design.
 
     Parameters
@@ -96,7 +96,7 @@ def examine_design(
         If a nominal loop is unstable, so that it has no margins.
     """
     task = Task(spec, plant, plant.motion_loop(design.motion.Kp, design.motion.Kd))
-    return DesignEvidence(
+    return DesignAnalysis(
         wanted=root_locus_design(spec),
         motion=task.motion,
         motion_source="designed" if spec.motion_loop.transfer_function is None else "given",
@@ -105,8 +105,8 @@ def examine_design(
     )
 
 
-def _measured(task: Task, design: ControllerDesign) -> Iterator[AbstractControllerEvidence]:
+def _measured(task: Task, design: ControllerDesign) -> Iterator[AbstractControllerAnalysis]:
     for kind, law in LAW_DESIGNS.items():
         for controller in design.controllers:
-            if law.examine is not None and controller.law.name == kind:
-                yield law.examine(task, task.spec.controllers[controller.name], controller)
+            if law.analyze is not None and controller.law.name == kind:
+                yield law.analyze(task, task.spec.controllers[controller.name], controller)

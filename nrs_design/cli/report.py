@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from datetime import datetime
 from enum import StrEnum
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -10,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from nrs_design.cli import exit_codes
-from nrs_design.cli.options import Budget, Json, MaxDegree, Memory, Quiet, SpecFile
+from nrs_design.cli.options import Budget, Date, Json, MaxDegree, Memory, Quiet, SpecFile
 from nrs_design.cli.printing import note, print_json, progress, say
 from nrs_design.errors import DesignError
 
@@ -45,14 +44,7 @@ def report(
         bool,
         typer.Option("--times", help="Add the time of every rung; pages then differ each time."),
     ] = False,
-    date: Annotated[
-        datetime | None,
-        typer.Option(
-            formats=["%Y-%m-%d"],
-            metavar="YYYY-MM-DD",
-            help="Write this date on the page or document; without it there is no date.",
-        ),
-    ] = None,
+    date: Date = None,
     max_degree: MaxDegree = None,
     budget: Budget = None,
     memory: Memory = None,

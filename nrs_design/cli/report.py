@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 REPORTS = Path("reports")
 
 
-class FormatOption(StrEnum):
+class ReportFormat(StrEnum):
     """File formats of a report."""
 
     HTML = "html"
@@ -32,8 +32,8 @@ class FormatOption(StrEnum):
 def report(
     spec: SpecFile,
     file_format: Annotated[
-        FormatOption, typer.Option("--format", help="A page, a document, or one image per figure.")
-    ] = FormatOption.HTML,
+        ReportFormat, typer.Option("--format", help="A page, a document, or one image per figure.")
+    ] = ReportFormat.HTML,
     out: Annotated[
         Path | None,
         typer.Option(
@@ -104,19 +104,19 @@ def _analysis(result: Result, *, quiet: bool) -> DesignAnalysis | None:
         return None
 
 
-def _write(report: Report, file_format: FormatOption, out: Path | None, spec: Path) -> list[Path]:
+def _write(report: Report, file_format: ReportFormat, out: Path | None, spec: Path) -> list[Path]:
     from nrs_design.output import PAGE, PDF, PNG, write_output
     from nrs_design.ownership import origin_of
     from nrs_design.reporting import render_html, render_pdf, render_png
 
-    if file_format is FormatOption.PNG:
+    if file_format is ReportFormat.PNG:
         folder = out or REPORTS / report.name
         images = {folder / f"{name}.png": data for name, data in render_png(report).items()}
         for path, data in images.items():
             write_output(path, data, replaces=PNG)
         return list(images)
     path = out or REPORTS / f"{report.name}.{file_format}"
-    if file_format is FormatOption.PDF:
+    if file_format is ReportFormat.PDF:
         write_output(path, render_pdf(report), replaces=PDF)
     else:
         write_output(path, render_html(report, origin_of(spec, path)), replaces=PAGE)

@@ -90,7 +90,7 @@ def check_report(path: Path | None) -> None:
     """Refuse a file type that cannot be written, before the work is done."""
     if path is not None and path.suffix.lower() not in (".html", ".pdf"):
         raise OutputError(
-            f"{path.suffix or 'no ending'} is no type of report",
+            f"{path.suffix or 'no ending'} is not a type of report",
             path=path,
             remedy="name a file that ends in .html or .pdf",
         )

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from nrs_design.gating.obligations import GateOutcome
 
 # Highest degree, budget and memory, as far as they are given.
-Search = tuple[int | None, float | None, float | None]
+SearchLimits = tuple[int | None, float | None, float | None]
 
 # By severity of the worst obligation, from none to a defect of this program.
 OF_SEVERITY = (
@@ -153,7 +153,7 @@ def _certify(
     paths: list[Path],
     lock: Path,
     reports: Path,
-    search: Search,
+    search: SearchLimits,
     *,
     html: bool,
     prune: bool,

@@ -19,8 +19,9 @@ from nrs_design.models.plant import Plant, build_plant
 from nrs_design.proof.bounds import nearly
 from nrs_design.proof.system import SwitchedSystem, Time
 from nrs_design.search.allowance import GIGABYTE
-from nrs_design.search.certification import Certification, Limits, Method
+from nrs_design.search.certification import Certification, Limits
 from nrs_design.search.margin import BoxMargin, DwellMargin, find_margin, find_shortest_dwell
+from nrs_design.search.method import Method
 from nrs_design.spec import (
     InteractionDesignSpec,
     LoadedSpec,

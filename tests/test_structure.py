@@ -24,6 +24,7 @@ STAGES = {"models", "design", "switched", "search"}
 DOORS = {
     "nrs_design.models.robot",
     "nrs_design.search.certification",
+    "nrs_design.search.method",
     "nrs_design.design.measures",
 }
 

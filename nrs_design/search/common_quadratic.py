@@ -134,7 +134,16 @@ def _at_own_rate(
 def round_quadratic(family: Family, Q: Array, claim: Fraction) -> Iterator[CommonQuadratic]:
     """Yield roundings that floating point thinks worth the time of the exact check, and the last.
 
-    Q is in the coordinates of the family. The scale of Q is free: common factors of two go.
+    The scale of a quadratic function is free: common factors of two go.
+
+    Parameters
+    ----------
+    family : Family
+        The modes.
+    Q : ndarray, shape (n, n)
+        In the coordinates of the family.
+    claim : Fraction
+        The rate to claim.
     """
     largest = np.abs(Q).max()
     if not np.isfinite(largest) or largest == 0:

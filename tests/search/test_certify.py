@@ -20,9 +20,10 @@ from nrs_design.proof.system import Switching, Time
 from nrs_design.search import certify as certify_module
 from nrs_design.search import common_quadratic, ladder, lmi, unstable_mode
 from nrs_design.search.candidates import Candidate
-from nrs_design.search.certification import Limits, Method
+from nrs_design.search.certification import Limits
 from nrs_design.search.certify import certify, first_accepted
 from nrs_design.search.gradient import GradientResult
+from nrs_design.search.method import Method
 from nrs_design.spec import read_spec
 from tests.support import ROOT, dayawansa_martin, family, holds, is_stable_by_lyapunov
 

@@ -10,11 +10,12 @@ from nrs_design.proof.evidence import UnstablePeriod
 from nrs_design.proof.system import Switching
 from nrs_design.search import common_quadratic, mode_quadratic, obstruction, polynomial
 from nrs_design.search.allowance import Allowance, NotAffordableError
-from nrs_design.search.certification import Limits, Method
+from nrs_design.search.certification import Limits
 from nrs_design.search.certify import Verdict, certify
 from nrs_design.search.family import Family
 from nrs_design.search.gradient import GradientResult
 from nrs_design.search.ladder import LADDER, applicable_methods, steps
+from nrs_design.search.method import Method
 from nrs_design.search.mixture import search_mixture
 from nrs_design.search.obstruction import search_obstruction
 from nrs_design.search.period import search_period

@@ -38,6 +38,7 @@ from nrs_design.search.polynomial import (
     polynomial_cost,
     round_polynomial,
 )
+from nrs_design.search.raw import find_raw_quadratic
 from nrs_design.search.rounding import round_rate, round_to_evidence
 from nrs_design.search.unstable_value import (
     find_unstable_switching,
@@ -140,13 +141,13 @@ def search_by_gradient(family: Family) -> Finding:
 
 
 def search_raw(family: Family) -> Finding:
-    """Search by a general solver in the coordinates of the spec, without balancing."""
+    """Search by CVXPY in the coordinates of the spec, without balancing."""
     time = family.system.time
     if not np.isfinite(family.limit):
         return None, OUT_OF_RANGE
     matrices = scale(family.matrices, -family.exponents)
     least = rate_at(0.0, family.limit, time)
-    Q = find_common_quadratic(matrices, time, least, solve_by_clarabel, family.allowance)
+    Q = find_raw_quadratic(matrices, time, least, family.allowance)
     if Q is None:
         return None, "the solver found no candidate with positive margins"
     shifts = family.exponents[:, None] + family.exponents[None, :]

@@ -21,7 +21,7 @@ from nrs_design.spec import LoadedSpec, read_spec
 if TYPE_CHECKING:
     from nrs_design.certificates.verify import Verification
     from nrs_design.controllers.controller_design import ControllerDesign
-    from nrs_design.design.evidence import DesignEvidence
+    from nrs_design.design.analysis import DesignAnalysis
     from nrs_design.models.plant import Plant
     from nrs_design.models.robot import Robot
     from nrs_design.search.margin import BoxMargin, DwellMargin
@@ -168,7 +168,7 @@ def run_design(loaded: LoadedSpec) -> Designed | None:
         return Designed(loaded, spec, plant, design_controllers(spec, plant))
 
 
-def run_evidence(designed: Designed) -> DesignEvidence:
+def run_analysis(designed: Designed) -> DesignAnalysis:
     """Compute what a design achieves.
 
     Raises
@@ -176,10 +176,10 @@ def run_evidence(designed: Designed) -> DesignEvidence:
     DesignError
         If a nominal loop is unstable, so that it has no margins.
     """
-    from nrs_design.design.evidence import examine_design
+    from nrs_design.design.analysis import analyze_design
 
     with placed(designed.loaded):
-        return examine_design(designed.spec, designed.plant, designed.design)
+        return analyze_design(designed.spec, designed.plant, designed.design)
 
 
 @dataclass(frozen=True, slots=True)

@@ -20,8 +20,8 @@ from nrs_design.spec.document import (
     Position,
     Scalar,
     parse_document,
-    read_document,
-    read_text,
+    parse_with_faults,
+    read_source,
     to_data,
 )
 from nrs_design.spec.faults import did_you_mean, file_faults, place_of
@@ -33,7 +33,7 @@ if TYPE_CHECKING:
 
     Spec = InteractionDesignSpec | SwitchedSystemSpec | RobotSpec
 
-KINDS = ("interaction-design", "switched-system", "robot")
+SPEC_KINDS = ("interaction-design", "switched-system", "robot")
 
 
 @dataclass(frozen=True)
@@ -89,8 +89,8 @@ def read_spec(path: str | os.PathLike[str]) -> LoadedSpec:
         With path, line, column, message and remedy, if anything about the file is wrong.
     """
     file = Path(path)
-    _, text = read_text(file)
-    root, syntax = read_document(text, file)
+    _, text = read_source(file)
+    root, syntax = parse_with_faults(text, file)
     spec = _validate(root, syntax, file)
     return LoadedSpec(file, hash_meaning(to_data(root)), text, spec, root)
 
@@ -115,7 +115,7 @@ def parse_spec(text: str, path: Path | None = None) -> Spec:
     SpecError
         With line, column, message and remedy.
     """
-    return _validate(*read_document(text, path), path)
+    return _validate(*parse_with_faults(text, path), path)
 
 
 def model_of(kind: str) -> type[Spec]:
@@ -180,10 +180,10 @@ def _kind_of(root: Node, path: Path | None, syntax: tuple[Fault, ...]) -> str:
                 path=path,
                 remedy="name the spec that it is for",
             )
-        raise refuse("`kind` is missing", f"add `kind: ` with one of {', '.join(KINDS)}", root)
+        raise refuse("`kind` is missing", f"add `kind: ` with one of {', '.join(SPEC_KINDS)}", root)
     if not isinstance(kind, Scalar):
         raise refuse("kind: expected a single text", "write one value", kind)
-    if kind.text not in KINDS:
+    if kind.text not in SPEC_KINDS:
         message = f"kind: {quoted(kind.text)} is not known"
-        raise refuse(message, did_you_mean(kind.text, KINDS), kind)
+        raise refuse(message, did_you_mean(kind.text, SPEC_KINDS), kind)
     return kind.text

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from nrs_design.pipeline import run_certification, run_evidence
+from nrs_design.pipeline import run_analysis, run_certification
 from nrs_design.reporting import Report, build_report, render_html
 from nrs_design.search.certification import Limits
 from nrs_design.spec import read_spec
@@ -149,7 +149,7 @@ def report_of(path: Path) -> Report:
     loaded = read_spec(path)
     # No case needs more, and the one without a verdict would try them all.
     result = run_certification(loaded, limits=Limits(max_degree=6))
-    return build_report(result, run_evidence(result.designed) if result.designed else None)
+    return build_report(result, run_analysis(result.designed) if result.designed else None)
 
 
 @pytest.fixture(scope="session")

@@ -61,7 +61,7 @@ def _fastest(family: Family) -> Iterator[Candidate[CommonQuadratic]]:
     )
     try:
         for Q, claim in found:
-            for evidence in _roundings(family, Q, claim):
+            for evidence in round_quadratic(family, Q, claim):
                 yield Candidate(evidence, "found with the largest decay rate")
     except NotAffordableError:
         return
@@ -127,14 +127,23 @@ def _at_own_rate(
     """Yield roundings of a function at rates just below the one that it shows itself."""
     rate, time = rate_of(family.matrices, Q, family.system.time), family.system.time
     for claim in claims(1.0, rate, time):
-        for evidence in _roundings(family, Q, claim):
+        for evidence in round_quadratic(family, Q, claim):
             yield Candidate(evidence, words)
 
 
-def _roundings(family: Family, Q: Array, claim: Fraction) -> Iterator[CommonQuadratic]:
+def round_quadratic(family: Family, Q: Array, claim: Fraction) -> Iterator[CommonQuadratic]:
     """Yield roundings that floating point thinks worth the time of the exact check, and the last.
 
-    Q is in the coordinates of the family. The scale of Q is free: common factors of two go.
+    The scale of a quadratic function is free: common factors of two go.
+
+    Parameters
+    ----------
+    family : Family
+        The modes.
+    Q : ndarray, shape (n, n)
+        In the coordinates of the family.
+    claim : Fraction
+        The rate to claim.
     """
     largest = np.abs(Q).max()
     if not np.isfinite(largest) or largest == 0:

@@ -1,7 +1,7 @@
 """Search for a common quadratic Lyapunov function by semidefinite programming (untrusted).
 
 Margin form: maximize t subject to ``0 <= Q <= I`` and a decrease of at least t in every mode.
-Only the modes that the last candidate violates enter the solver. A solver's status is never
+Only the modes that the last solution violates enter the solver. A solver's status is never
 evidence: whatever it returns goes through the exact check.
 """
 
@@ -93,7 +93,7 @@ def find_common_quadratic(
     Returns
     -------
     ndarray, shape (n, n), or None
-        A candidate with positive margins in floating point, or None.
+        A solution with positive margins in floating point, or None.
 
     Raises
     ------

@@ -41,7 +41,8 @@ from nrs_design.pipeline import run_certification
 from nrs_design.proof.evidence import CommonQuadratic, UnstableMode
 from nrs_design.proof.evidence.unstable_mode import worst_eigenvalue
 from nrs_design.proof.system_fields import system_fields
-from nrs_design.search.certify import Limits, Method
+from nrs_design.search.certify import Limits
+from nrs_design.search.method import Method
 from nrs_design.spec import LoadedSpec, read_spec
 from nrs_design.switched.assemble import assemble_from_text
 from tests.support import (

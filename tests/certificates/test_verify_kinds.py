@@ -7,7 +7,8 @@ import pytest
 
 from nrs_design.certificates.certificate import Certificate, content_id, dump
 from nrs_design.certificates.verify import read_document, verify_document
-from nrs_design.search.certify import Limits, Method, certify
+from nrs_design.search.certify import Limits, certify
+from nrs_design.search.method import Method
 from nrs_design.spec import read_spec
 from nrs_design.switched.assemble import assemble_from_text
 from tests.proof.tamper import mutations

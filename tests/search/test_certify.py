@@ -17,10 +17,13 @@ from nrs_design.errors import DesignError, InternalError
 from nrs_design.pipeline import run_certification
 from nrs_design.proof.evidence import BlockTriangular, CommonQuadratic, Shows
 from nrs_design.proof.system import Switching, Time
-from nrs_design.search import checker, lmi, rungs
-from nrs_design.search.certification import Limits, Method
-from nrs_design.search.certify import certify
+from nrs_design.search import certify as certify_module
+from nrs_design.search import common_quadratic, ladder, lmi, unstable_mode
+from nrs_design.search.candidates import Candidate
+from nrs_design.search.certification import Limits
+from nrs_design.search.certify import certify, first_accepted
 from nrs_design.search.gradient import GradientResult
+from nrs_design.search.method import Method
 from nrs_design.spec import read_spec
 from tests.support import ROOT, dayawansa_martin, family, holds, is_stable_by_lyapunov
 
@@ -491,10 +494,12 @@ class TestLyingSolvers:
     @pytest.fixture(autouse=True)
     def _only_the_lie(self, monkeypatch):
         monkeypatch.setattr(
-            rungs, "_seems_stable", lambda family: np.ones(len(family.matrices), bool)
+            unstable_mode, "seems_stable", lambda family: np.ones(len(family.matrices), bool)
         )
         monkeypatch.setattr(
-            rungs, "iterate_gradient", lambda matrices, **options: GradientResult(None, 0)
+            common_quadratic,
+            "iterate_gradient",
+            lambda matrices, **options: GradientResult(None, 0),
         )
 
     def test_the_solver(self, monkeypatch, lie, name):
@@ -505,16 +510,17 @@ class TestLyingSolvers:
         def answer(matrices, *rest, **options):
             return LIES[lie](matrices.shape[1])
 
-        monkeypatch.setattr(rungs, "find_common_quadratic", answer)
-        monkeypatch.setattr("nrs_design.search.decay.find_common_quadratic", answer)
+        monkeypatch.setattr(common_quadratic, "find_common_quadratic", answer)
         self.never_wrong(name)
 
     def test_the_gradient(self, monkeypatch, lie, name):
         def answer(matrices, **options):
             return GradientResult(LIES[lie](matrices.shape[1]), 1)
 
-        monkeypatch.setattr(rungs, "iterate_gradient", answer)
-        monkeypatch.setattr(rungs, "find_common_quadratic", lambda *arguments, **options: None)
+        monkeypatch.setattr(common_quadratic, "iterate_gradient", answer)
+        monkeypatch.setattr(
+            common_quadratic, "find_common_quadratic", lambda *arguments, **options: None
+        )
         self.never_wrong(name)
 
     def test_every_semidefinite_program(self, monkeypatch, lie, name):
@@ -547,8 +553,85 @@ def test_slightly_wrong_answers_do_not_pass(monkeypatch):
 
 def test_a_wrong_check_is_stopped(monkeypatch):
     """If the trusted check accepted anything, flint would still stop a wrong proof."""
-    monkeypatch.setattr(checker, "find_fault", lambda evidence, system: None)
-    monkeypatch.setattr(rungs, "find_common_quadratic", lambda *arguments, **options: np.eye(2))
-    monkeypatch.setattr(rungs, "rate_of", lambda *arguments: 0.5)
+    monkeypatch.setattr(certify_module, "find_fault", lambda evidence, system: None)
+    monkeypatch.setattr(
+        common_quadratic, "find_common_quadratic", lambda *arguments, **options: np.eye(2)
+    )
+    monkeypatch.setattr(common_quadratic, "rate_of", lambda *arguments: 0.5)
     with pytest.raises(InternalError):
         certify(NOT_QUADRATIC, limits=ANY_RATE)
+
+
+GOOD = CommonQuadratic(((1, 0), (0, 1)), 0, Fraction(1, 2))
+WRONG = replace(GOOD, rate=Fraction(2))
+ROUND = family([[-1, 1], [-1, -2]], [[-2, 1], [-1, -1]])
+
+
+class TestFirstAccepted:
+    """The one place where candidates become evidence."""
+
+    def take(self, candidates, ended=None):
+        asked = []
+
+        def search():
+            for candidate in candidates:
+                asked.append(candidate)
+                yield Candidate(candidate, "as proposed")
+            return ended
+
+        return first_accepted(search(), ROUND), asked
+
+    def test_the_first_that_holds_is_taken_and_no_more_are_asked_for(self):
+        taken, asked = self.take([WRONG, GOOD, replace(GOOD, rate=Fraction(1, 4))])
+        assert taken == (GOOD, "as proposed")
+        assert taken[0] is GOOD
+        assert asked == [WRONG, GOOD]
+
+    def test_each_candidate_is_checked_once(self, monkeypatch):
+        calls = []
+        find_unfit = CommonQuadratic.find_unfit
+        monkeypatch.setattr(
+            CommonQuadratic, "find_unfit", lambda self, s: calls.append(self) or find_unfit(self, s)
+        )
+        monkeypatch.setattr(ladder, "LADDER", one_rung([WRONG, GOOD]))
+        assert certify(ROUND).evidence is GOOD
+        assert calls == [WRONG, GOOD]
+
+    def test_the_search_says_why_there_is_none(self):
+        assert self.take([], "nothing looked right") == ((None, "nothing looked right"), [])
+        assert self.take([WRONG], "all looked wrong")[0] == (None, "all looked wrong")
+
+    def test_or_the_check_says_why_the_last_was_refused(self):
+        (nothing, words), _ = self.take([GOOD, WRONG][1:])
+        assert nothing is None
+        assert words.startswith("a candidate was found, but V does not decrease")
+
+
+def one_rung(lies):
+    """A ladder with one rung, which proposes what it is told to."""
+
+    def search(family):
+        yield from (Candidate(lie, "trust me") for lie in lies)
+        return None
+
+    return (ladder.Rung("lies", Method.LMI, lambda facts: True, search),)
+
+
+@pytest.mark.parametrize("lie", [WRONG, replace(GOOD, Q=((1, 0), (0, -1)))])
+@pytest.mark.parametrize("twice", [False, True])
+def test_a_search_that_lies_proves_nothing(monkeypatch, lie, twice):
+    monkeypatch.setattr(ladder, "LADDER", one_rung([lie]))
+    system = replace(ROUND, modes=(*ROUND.modes, replace(ROUND.modes[0], name="again")))
+    found = certify(system if twice else ROUND)
+    assert (found.verdict, found.statements) == (Verdict.INCONCLUSIVE, ())
+    (attempt,) = found.attempts
+    assert attempt.outcome.startswith("a candidate was found, but ")
+
+
+def test_evidence_that_does_not_hold_for_all_modes_is_found_out(monkeypatch):
+    """Merged modes get what holds for them; what is made of it for all modes is checked again."""
+    twice = replace(ROUND, modes=(*ROUND.modes, replace(ROUND.modes[0], name="again")))
+    monkeypatch.setattr(CommonQuadratic, "spread", lambda self, merged, system: WRONG)
+    assert certify(ROUND, Method.LMI).verdict is Verdict.PROVED
+    with pytest.raises(InternalError, match="does not hold"):
+        certify(twice, Method.LMI)

@@ -1,4 +1,4 @@
-"""How many families with a proof by LMI does the gradient iteration settle, and in what time?"""
+"""Settle by the gradient iteration what the LMI proves: which share, and in what time."""
 
 from __future__ import annotations
 
@@ -8,9 +8,10 @@ from benchmarks.families import to_system
 from benchmarks.measure import Finding
 from benchmarks.random_families import COUNT, DECIMALS, QUICK_COUNT, draw_families
 from nrs_design.proof.system import SwitchedSystem
-from nrs_design.search.certification import Limits, Method
+from nrs_design.search.certification import Limits
 from nrs_design.search.certify import certify
 from nrs_design.search.gradient_settings import Coordinates, Gradient, Order
+from nrs_design.search.method import Method
 
 # Numbers of states that are counted together.
 ORDERS = ((2, 4), (5, 8), (9, 12))

@@ -7,7 +7,7 @@ from nrs_design.design.margins import stiffness_limit
 from nrs_design.design.root_locus import motion_loop_response
 from nrs_design.models.contact import Elastic
 from nrs_design.reproduction import thesis
-from nrs_design.reproduction.row import Row, Tolerance, derived
+from nrs_design.reproduction.comparison import Comparison, Tolerance, derived
 
 # Mt in kg m^2 and Bt in kg m^2/s of each experiment.
 ADMITTANCES = ((1, 4), (2, 4), (3, 4), (1, 8), (2, 8), (3, 8))
@@ -16,7 +16,7 @@ PRINTED = "Mt 1, 2, 3, 1, 2, 3; Bt 4, 4, 4, 8, 8, 8"
 LOOP = ImpedanceLoop(thesis.EXACT_LOOP, Elastic(float(thesis.SOFT)))
 
 
-def rows() -> tuple[Row, Row]:
+def rows() -> tuple[Comparison, Comparison]:
     """Compute the poles of G Y and the stiffness of a hand that destabilizes the robot."""
     poles = tuple(-Bt / Mt for Mt, Bt in ADMITTANCES)
     motion = motion_loop_response(thesis.EXACT_LOOP).poles

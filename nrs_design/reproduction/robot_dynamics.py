@@ -12,14 +12,14 @@ from nrs_design.models.robot import (
     torque_shares,
 )
 from nrs_design.reproduction import thesis
-from nrs_design.reproduction.neuroboscope import robot
-from nrs_design.reproduction.row import (
-    Row,
+from nrs_design.reproduction.comparison import (
+    Comparison,
     Tolerance,
     derived,
     omitted,
     reproduced,
 )
+from nrs_design.reproduction.neuroboscope import robot
 
 _FIGURE = "The trajectory of figure 3.7 is not in the text."
 # Quantity, section, print, unit.
@@ -40,7 +40,7 @@ NEEDS_THE_FIGURE = (
 )
 
 
-def rows() -> tuple[Row, ...]:
+def rows() -> tuple[Comparison, ...]:
     """Recompute torque shares and inertia ratios, and list what lacks its trajectory."""
     return (
         _shares(robot()),
@@ -50,7 +50,7 @@ def rows() -> tuple[Row, ...]:
     )
 
 
-def _shares(ours: Robot) -> Row:
+def _shares(ours: Robot) -> Comparison:
     means = torque_shares(ours, thesis_grid()).means
     return reproduced(
         "torque shares of gravity, Coriolis and inertia",
@@ -64,7 +64,7 @@ def _shares(ours: Robot) -> Row:
     )
 
 
-def _angular_velocity(ours: Robot) -> Row:
+def _angular_velocity(ours: Robot) -> Comparison:
     poses = thesis_grid()
     right = simplified_dynamics(ours, poses).Ms
     printed = simplified_dynamics(ours, poses, printed=True).Ms
@@ -81,7 +81,7 @@ def _angular_velocity(ours: Robot) -> Row:
     )
 
 
-def _inertia_ratio(ours: Robot) -> tuple[Row, ...]:
+def _inertia_ratio(ours: Robot) -> tuple[Comparison, ...]:
     reflected = 1 / (905**2 * thesis.MOTOR.inertia)
     full = float(mass_matrix(ours, ours.home)[0, 0])
     return (

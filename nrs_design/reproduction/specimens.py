@@ -5,8 +5,8 @@ from __future__ import annotations
 from statistics import fmean
 
 from nrs_design.models.contact import Elastic, KelvinBoltzmann
-from nrs_design.reproduction.row import (
-    Row,
+from nrs_design.reproduction.comparison import (
+    Comparison,
     Tolerance,
     derived,
     format_number,
@@ -53,16 +53,16 @@ _SHORT = 1e-5
 ARM = 0.24
 
 
-def rows() -> tuple[Row, ...]:
+def rows() -> tuple[Comparison, ...]:
     """Recompute the means; the fits themselves rest on records that are not printed."""
     return tuple(row for name, (fits, mean) in FITS.items() for row in _specimen(name, fits, mean))
 
 
-def _specimen(name: str, fits: tuple[str, ...], mean: str) -> tuple[Row, ...]:
+def _specimen(name: str, fits: tuple[str, ...], mean: str) -> tuple[Comparison, ...]:
     return (*_means(name, fits, mean), _voigt(name), *_boltzmann(name), *_measured(name))
 
 
-def _voigt(name: str) -> Row:
+def _voigt(name: str) -> Comparison:
     """Return the time constants of the Kelvin-Voigt fits."""
     times = [b / k for k, b in VOIGT[name]]
     same = [k == eta[0] and b == eta[1] for (k, b), eta in zip(VOIGT[name], ETA[name], strict=True)]
@@ -78,14 +78,14 @@ def _voigt(name: str) -> Row:
     )
 
 
-def _boltzmann(name: str) -> tuple[Row, ...]:
+def _boltzmann(name: str) -> tuple[Comparison, ...]:
     """Return the elements behind the printed coefficients, where there are any."""
     return tuple(
         _elements(name, experiment, eta) for experiment, eta in enumerate(ETA[name], start=1)
     )
 
 
-def _elements(name: str, experiment: int, eta: tuple[float, float, float]) -> Row:
+def _elements(name: str, experiment: int, eta: tuple[float, float, float]) -> Comparison:
     eta1, eta2, eta3 = eta
     exists = eta2 / eta3 > eta1
     if exists:
@@ -93,7 +93,7 @@ def _elements(name: str, experiment: int, eta: tuple[float, float, float]) -> Ro
         found = ", ".join(format_number(value) for value in law.values)
         note = "so the records do not determine it, and the specimen is elastic."
     else:
-        found = f"none: eta2/eta3 = {eta2 / eta3:.4g} N/m"
+        found = f"no such law: eta2/eta3 = {eta2 / eta3:.4g} N/m"
         note = "and below eta1 at high frequency: no springs and dampers behave so."
     return derived(
         f"k1, k2, b of the {name} specimen, experiment {experiment}",
@@ -107,7 +107,7 @@ def _elements(name: str, experiment: int, eta: tuple[float, float, float]) -> Ro
     )
 
 
-def _measured(name: str) -> tuple[Row, ...]:
+def _measured(name: str) -> tuple[Comparison, ...]:
     return tuple(
         omitted(
             f"RMSE of the {law} law, {name} specimen, each experiment",
@@ -120,7 +120,7 @@ def _measured(name: str) -> tuple[Row, ...]:
     )
 
 
-def _means(name: str, fits: tuple[str, ...], mean: str) -> tuple[Row, ...]:
+def _means(name: str, fits: tuple[str, ...], mean: str) -> tuple[Comparison, ...]:
     return (
         omitted(
             f"elastic fits, {name} specimen",
@@ -141,7 +141,7 @@ def _means(name: str, fits: tuple[str, ...], mean: str) -> tuple[Row, ...]:
     )
 
 
-def _at_pivot(name: str, fits: tuple[str, ...]) -> Row:
+def _at_pivot(name: str, fits: tuple[str, ...]) -> Comparison:
     turned = Elastic(fmean(map(float, fits))).at_pivot(ARM)
     printed = {"soft": "43.0356", "stiff": "61.6608"}[name]
     return reproduced(

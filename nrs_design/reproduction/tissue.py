@@ -6,10 +6,10 @@ from collections.abc import Mapping
 from statistics import fmean
 
 from nrs_design.models.contact import KelvinBoltzmann, Maxwell
-from nrs_design.reproduction.row import (
-    Row,
+from nrs_design.reproduction.comparison import (
+    Comparison,
+    PrintVerdict,
     Tolerance,
-    Verdict,
     claim,
     derived,
     format_number,
@@ -50,7 +50,7 @@ _TABLE = {"nose": "table 2.4", "concha": "table 2.5"}
 _RECORD = "The length of the records is not printed."
 
 
-def rows() -> tuple[Row, ...]:
+def rows() -> tuple[Comparison, ...]:
     """Convert the coefficients, and hold the text against the tables."""
     return tuple(
         row
@@ -67,7 +67,7 @@ def rows() -> tuple[Row, ...]:
     )
 
 
-def _eta(tissue: str) -> Row:
+def _eta(tissue: str) -> Comparison:
     law = BOLTZMANN[tissue]
     return derived(
         f"eta1, eta2, eta3 of the {tissue}",
@@ -81,7 +81,7 @@ def _eta(tissue: str) -> Row:
     )
 
 
-def _round_trip(tissue: str) -> Row:
+def _round_trip(tissue: str) -> Comparison:
     law = BOLTZMANN[tissue]
     back = KelvinBoltzmann.from_eta(*law.eta)
     printed = (f"{law.k1:g}", f"{law.k2:g}", f"{law.b:g}")
@@ -95,7 +95,7 @@ def _round_trip(tissue: str) -> Row:
     )
 
 
-def _memory(tissue: str) -> Row:
+def _memory(tissue: str) -> Comparison:
     """Show what k2 and the elastic fit together imply."""
     law, elastic = BOLTZMANN[tissue], ELASTIC[tissue]
     relaxed = law.eta[0]
@@ -111,7 +111,7 @@ def _memory(tissue: str) -> Row:
     )
 
 
-def _maxwell(tissue: str) -> Row:
+def _maxwell(tissue: str) -> Comparison:
     law = MAXWELL[tissue]
     return derived(
         f"relaxation time b/k of the Maxwell {tissue}",
@@ -124,7 +124,7 @@ def _maxwell(tissue: str) -> Row:
     )
 
 
-def _voigt(tissue: str) -> Row:
+def _voigt(tissue: str) -> Comparison:
     k, b = VOIGT[tissue]
     others = [damping / stiffness for stiffness, damping in VOIGT.values()]
     return derived(
@@ -138,7 +138,7 @@ def _voigt(tissue: str) -> Row:
     )
 
 
-def _worst(tissue: str) -> Row:
+def _worst(tissue: str) -> Comparison:
     means = {law: fmean(values) for law, values in RMSE[tissue].items()}
     worst, best = max(means, key=means.__getitem__), min(means, key=means.__getitem__)
     said = {"nose": "Maxwell", "concha": "Kelvin-Voigt"}[tissue]
@@ -147,13 +147,13 @@ def _worst(tissue: str) -> Row:
         "2.5",
         said,
         f"{worst} ({means[worst]:.4f} N m)",
-        verdict=Verdict.PRINT_IS_WRONG,
+        verdict=PrintVerdict.PRINT_IS_WRONG,
         holds=worst != said,
         note=f"From {_TABLE[tissue]}; the least mean is that of {best} ({means[best]:.4f} N m).",
     )
 
 
-def _measured(tissue: str) -> tuple[Row, ...]:
+def _measured(tissue: str) -> tuple[Comparison, ...]:
     return tuple(
         omitted(
             f"RMSE of the {law} {tissue}, each experiment",

@@ -11,9 +11,10 @@ import numpy as np
 from nrs_design.errors import DesignError
 from nrs_design.proof.evidence import CommonQuadratic
 from nrs_design.proof.system import SwitchedSystem
-from nrs_design.search.certification import Certification, Limits, Method
+from nrs_design.search.certification import Certification, Limits
 from nrs_design.search.certify import certify
 from nrs_design.search.gradient_settings import Coordinates, Gradient, Order
+from nrs_design.search.method import Method
 
 Progress = Callable[[str], None]
 # Updates and the largest v after them.

@@ -15,9 +15,10 @@ from numpy.typing import NDArray
 from nrs_design.proof.system import Time
 from nrs_design.search.allowance import Allowance, NotAffordableError
 from nrs_design.search.balance import mean_norm, own_norm, round_coordinates
-from nrs_design.search.decay import rate_at, rate_of
+from nrs_design.search.decay import rate_of
 from nrs_design.search.family import Family
 from nrs_design.search.gradient_settings import Coordinates, Gradient, Order
+from nrs_design.search.rounding import rate_at
 
 # Seconds per round and per multiplication in it.
 PER_ROUND = 2e-5
@@ -41,17 +42,13 @@ class GradientResult:
     updates: int
 
 
-def find_by_gradient(
-    family: Family, settings: Gradient, allowance: Allowance | None = None
-) -> GradientResult:
-    """Run the iteration in the coordinates of the settings; Q is for those of the family.
+def find_by_gradient(family: Family, allowance: Allowance | None = None) -> GradientResult:
+    """Run the iteration in the coordinates of its settings; Q is for those of the family.
 
     Parameters
     ----------
     family : Family
-        Stable modes.
-    settings : Gradient
-        How to iterate.
+        Stable modes, with the settings.
     allowance : Allowance, optional
         Time; unlimited by default.
 
@@ -60,12 +57,12 @@ def find_by_gradient(
     NotAffordableError
         If the time is over.
     """
-    T = _coordinates(family, settings, mean_norm(family.matrices, family.system.time))
-    return _iterate_in(T, family, family.matrices, settings, allowance)
+    T = _coordinates(family, mean_norm(family.matrices, family.system.time))
+    return _iterate_in(T, family, family.matrices, family.gradient, allowance)
 
 
 def find_faster_by_gradient(
-    family: Family, settings: Gradient, found: Matrices, allowance: Allowance | None = None
+    family: Family, found: Matrices, allowance: Allowance | None = None
 ) -> GradientResult:
     """Bisect for the largest rate at which the iteration still ends.
 
@@ -73,7 +70,7 @@ def find_faster_by_gradient(
 
     Parameters
     ----------
-    family, settings, allowance
+    family, allowance
         As for `find_by_gradient`; if the time is over, the bisection ends early.
     found : ndarray, shape (n, n)
         A Q for some rate.
@@ -83,13 +80,13 @@ def find_faster_by_gradient(
     GradientResult
         The Q of the largest rate, and all updates that were made on the way.
     """
-    settings, time = settings.briefly(RATE_UPDATES), family.system.time
+    settings, time = family.gradient.briefly(RATE_UPDATES), family.system.time
     best, updates = found, 0
     low, high = _position(family, best), 1.0
     while high - low > RATE_RESOLUTION:
         middle = (low + high) / 2
         shifted = _shift(family.matrices, time, rate_at(middle, family.limit, time))
-        T = _coordinates(family, settings, best)
+        T = _coordinates(family, best)
         try:
             result = _iterate_in(T, family, shifted, settings, allowance)
         except NotAffordableError:
@@ -233,11 +230,12 @@ def _shift(matrices: Matrices, time: Time, rate: float) -> Matrices:
     return np.asarray(matrices + rate * np.eye(matrices.shape[-1]))
 
 
-def _coordinates(family: Family, settings: Gradient, norm: Matrices) -> Matrices:
+def _coordinates(family: Family, norm: Matrices) -> Matrices:
     """Return T such that the iteration runs in z, ``x = T z``; in mean norm, `norm` is round."""
-    if settings.coordinates == Coordinates.MEAN_NORM:
+    wanted = family.gradient.coordinates
+    if wanted == Coordinates.MEAN_NORM:
         return round_coordinates(norm)
-    if settings.coordinates == Coordinates.GIVEN:
+    if wanted == Coordinates.GIVEN:
         return np.diag(np.ldexp(1.0, -family.exponents))
     return np.eye(len(norm))
 

@@ -50,7 +50,7 @@ def test_specimens(name, value):
 def test_printed_coefficients_without_elements():
     rows = specimens.rows()
     assert {row.verdict for row in rows} == {"reproduced", "derived", "needs data"}
-    without = {row.name for row in rows if row.value and row.value.startswith("none: ")}
+    without = {row.name for row in rows if row.value and row.value.startswith("no such law: ")}
     assert without == {f"k1, k2, b of the stiff specimen, experiment {i}" for i in (2, 3)}
 
 

@@ -4,9 +4,10 @@ import pytest
 
 from nrs_design.errors import DesignError
 from nrs_design.proof.system import Time
-from nrs_design.search.certification import Limits, Method
+from nrs_design.search.certification import Limits
 from nrs_design.search.comparison import compare_methods
 from nrs_design.search.gradient_settings import Gradient
+from nrs_design.search.method import Method
 from tests.support import dayawansa_martin, family, holds
 
 QUICK = Limits(optimize_rate=False, gradient=Gradient(max_updates=500))

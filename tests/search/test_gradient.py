@@ -12,7 +12,7 @@ from nrs_design.reproduction import thesis
 from nrs_design.reproduction.matrices import impedance_rows
 from nrs_design.search.allowance import Allowance, NotAffordableError
 from nrs_design.search.balance import own_norm
-from nrs_design.search.certification import Limits, Method
+from nrs_design.search.certification import Limits
 from nrs_design.search.certify import certify
 from nrs_design.search.decay import rate_of
 from nrs_design.search.family import Family
@@ -22,6 +22,7 @@ from nrs_design.search.gradient import (
     iterate_gradient,
 )
 from nrs_design.search.gradient_settings import Coordinates, Gradient, Order
+from nrs_design.search.method import Method
 from tests.support import dayawansa_martin, family, holds
 
 PAIR = np.array([[[-1.0, -1.0], [1.0, -1.0]], [[-1.0, -5.0], [0.2, -1.0]]])
@@ -159,12 +160,12 @@ class TestPairsOfTheThesis:
 
     def test_the_states_as_printed_end_nowhere(self, pair, start, order):
         settings = self.settings("given", start, order)
-        assert find_by_gradient(Family.of(pair()), settings).Q is None
+        assert find_by_gradient(Family.of(pair(), gradient=settings)).Q is None
 
     @pytest.mark.parametrize("coordinates", ["balanced", "mean-norm"])
     def test_other_coordinates_end_soon(self, pair, start, order, coordinates):
         settings = self.settings(coordinates, start, order)
-        result = find_by_gradient(Family.of(pair()), settings)
+        result = find_by_gradient(Family.of(pair(), gradient=settings))
         assert result.Q is not None
         assert result.updates < 300
 
@@ -201,17 +202,17 @@ def test_the_rate_is_raised_when_asked(matrices, time):
 
 def test_the_bisection_for_the_rate_ends_early_without_time():
     ring = Family.of(family(*PAIR.tolist()))
-    found = find_by_gradient(ring, Gradient()).Q
+    found = find_by_gradient(ring).Q
     ticks = iter(range(10_000))
     allowance = Allowance(5.0, clock=lambda: float(next(ticks)))
-    result = find_faster_by_gradient(ring, Gradient(), found, allowance)
+    result = find_faster_by_gradient(ring, found, allowance)
     np.testing.assert_array_equal(result.Q, found)
 
 
 def test_raising_the_rate_never_lowers_it():
     pair = Family.of(family(*PAIR.tolist()))
-    found = find_by_gradient(pair, Gradient()).Q
-    faster = find_faster_by_gradient(pair, Gradient(), found).Q
+    found = find_by_gradient(pair).Q
+    faster = find_faster_by_gradient(pair, found).Q
     rates = [rate_of(pair.matrices, Q, Time.CONTINUOUS) for Q in (found, faster)]
     assert rates[0] <= rates[1]
 

@@ -20,7 +20,7 @@ STANDARD = 1e-3
 CUT_OFF = "Cut off in print, not rounded."
 
 
-class Verdict(StrEnum):
+class PrintVerdict(StrEnum):
     """What the comparison of print and recomputed value says."""
 
     REPRODUCED = "reproduced"
@@ -32,7 +32,7 @@ class Verdict(StrEnum):
 
 
 @dataclass(frozen=True, slots=True)
-class Row:
+class Comparison:
     """One line of the table.
 
     Parameters
@@ -50,7 +50,7 @@ class Row:
     deviation : float or None
         Difference between value and print over the print (the difference itself where the print
         is zero), the largest one of several numbers; None where the print is not a number.
-    verdict : Verdict
+    verdict : PrintVerdict
         ``drift`` says that the package no longer computes what this row has on record.
     note : str
         Where the print is wrong: what is right, and why.
@@ -64,7 +64,7 @@ class Row:
     value: str | None
     unit: str
     deviation: float | None
-    verdict: Verdict
+    verdict: PrintVerdict
     note: str
     tolerance: str = ""
 
@@ -101,13 +101,13 @@ def reproduced(
     *,
     right: Printed | None = None,
     note: str = "",
-) -> Row:
+) -> Comparison:
     """Return the row of a print that the recomputed value confirms.
 
     Parameters
     ----------
     name, section, unit, note : str
-        See `Row`.
+        See `Comparison`.
     printed : str or tuple of str
         Numbers, ``a +- bj`` for a pair of poles.
     value : number or sequence of numbers
@@ -120,7 +120,7 @@ def reproduced(
     values, target = _sequence(value), _numbers(right or printed)
     near = not _is_numeric(printed) or meets_standard(values, printed)
     agrees = near and tolerance.allows(values, target)
-    verdict = Verdict.REPRODUCED if agrees else Verdict.DRIFT
+    verdict = PrintVerdict.REPRODUCED if agrees else PrintVerdict.DRIFT
     if agrees and _is_cut_off(values, printed):
         note = f"{note} {CUT_OFF}".strip()
     return _row(name, section, printed, values, unit, verdict, note, tolerance)
@@ -137,7 +137,7 @@ def derived(
     tolerance: Tolerance | None = None,
     holds: bool = True,
     note: str,
-) -> Row:
+) -> Comparison:
     """Return the row of a result that the thesis prints no number for.
 
     Parameters
@@ -158,13 +158,13 @@ def derived(
         What it means.
     """
     if isinstance(value, str):
-        verdict = Verdict.DERIVED if holds else Verdict.DRIFT
-        return Row(name, section, printed, value, unit, None, verdict, note)
+        verdict = PrintVerdict.DERIVED if holds else PrintVerdict.DRIFT
+        return Comparison(name, section, printed, value, unit, None, verdict, note)
     values, tolerance = _sequence(value), tolerance or Tolerance(STANDARD)
     confirmed = holds and tolerance.allows(values, _numbers(right or ()))
-    verdict = Verdict.DERIVED if confirmed else Verdict.DRIFT
+    verdict = PrintVerdict.DERIVED if confirmed else PrintVerdict.DRIFT
     text = ", ".join(format_number(number) for number in values)
-    return Row(name, section, printed, text, unit, None, verdict, note, str(tolerance))
+    return Comparison(name, section, printed, text, unit, None, verdict, note, str(tolerance))
 
 
 def near(
@@ -176,7 +176,7 @@ def near(
     tolerance: Tolerance,
     *,
     note: str,
-) -> Row:
+) -> Comparison:
     """Return the row of a print that is met but for data which the thesis does not give.
 
     Parameters
@@ -188,7 +188,7 @@ def near(
     """
     values = _sequence(value)
     confirmed = tolerance.allows(values, _numbers(printed)) and not meets_standard(values, printed)
-    verdict = Verdict.NEEDS_DATA if confirmed else Verdict.DRIFT
+    verdict = PrintVerdict.NEEDS_DATA if confirmed else PrintVerdict.DRIFT
     return _row(name, section, printed, values, unit, verdict, note, tolerance)
 
 
@@ -202,7 +202,7 @@ def misprint(
     *,
     right: Printed,
     note: str,
-) -> Row:
+) -> Comparison:
     """Return the row of a print that is wrong; parameters as in `reproduced`.
 
     The row is a drift if the value leaves the tolerance around what is `right`, or if the print
@@ -220,7 +220,7 @@ def misprint(
     values = _sequence(value)
     confirmed = tolerance.allows(values, _numbers(right))
     printed_right = _is_numeric(printed) and meets_standard(values, printed)
-    verdict = Verdict.PRINT_IS_WRONG if confirmed and not printed_right else Verdict.DRIFT
+    verdict = PrintVerdict.PRINT_IS_WRONG if confirmed and not printed_right else PrintVerdict.DRIFT
     return _row(name, section, printed, values, unit, verdict, note, tolerance)
 
 
@@ -261,26 +261,26 @@ def claim(
     value: str,
     unit: str = "",
     *,
-    verdict: Verdict,
+    verdict: PrintVerdict,
     holds: bool,
     note: str,
-) -> Row:
+) -> Comparison:
     """Return the row of a statement in words.
 
     Parameters
     ----------
     name, section, printed, value, unit, note : str
-        See `Row`; `value` says what was found.
-    verdict : Verdict
+        See `Comparison`; `value` says what was found.
+    verdict : PrintVerdict
         What is on record.
     holds : bool
         Whether the computation still says so; if not, the row is a drift.
     """
-    verdict = verdict if holds else Verdict.DRIFT
-    return Row(name, section, printed, value, unit, None, verdict, note)
+    verdict = verdict if holds else PrintVerdict.DRIFT
+    return Comparison(name, section, printed, value, unit, None, verdict, note)
 
 
-def hardware_only(name: str, section: str, printed: str, unit: str, note: str = "") -> Row:
+def hardware_only(name: str, section: str, printed: str, unit: str, note: str = "") -> Comparison:
     """Return the row of a measurement on the robot.
 
     Parameters
@@ -290,10 +290,10 @@ def hardware_only(name: str, section: str, printed: str, unit: str, note: str = 
     note : str
         What it would take.
     """
-    return Row(name, section, printed, None, unit, None, Verdict.HARDWARE_ONLY, note)
+    return Comparison(name, section, printed, None, unit, None, PrintVerdict.HARDWARE_ONLY, note)
 
 
-def omitted(name: str, section: str, printed: str, unit: str, note: str) -> Row:
+def omitted(name: str, section: str, printed: str, unit: str, note: str) -> Comparison:
     """Return the row of a number whose data the thesis does not give.
 
     Parameters
@@ -303,12 +303,12 @@ def omitted(name: str, section: str, printed: str, unit: str, note: str) -> Row:
     note : str
         What is missing.
     """
-    return Row(name, section, printed, None, unit, None, Verdict.NEEDS_DATA, note)
+    return Comparison(name, section, printed, None, unit, None, PrintVerdict.NEEDS_DATA, note)
 
 
-def drifted(rows: Sequence[Row]) -> tuple[Row, ...]:
+def drifted(rows: Sequence[Comparison]) -> tuple[Comparison, ...]:
     """Return the rows that no longer agree with what is on record."""
-    return tuple(row for row in rows if row.verdict is Verdict.DRIFT)
+    return tuple(row for row in rows if row.verdict is PrintVerdict.DRIFT)
 
 
 def format_number(value: Number, digits: int = DIGITS) -> str:
@@ -324,15 +324,15 @@ def _row(
     printed: Printed,
     values: Sequence[Number],
     unit: str,
-    verdict: Verdict,
+    verdict: PrintVerdict,
     note: str,
     tolerance: Tolerance,
-) -> Row:
+) -> Comparison:
     text = printed if isinstance(printed, str) else ", ".join(printed)
     deviation = _deviation(values, _numbers(printed)) if _is_numeric(printed) else None
     digits = max(DIGITS, _significant_digits(text)) if _is_numeric(printed) else DIGITS
     value = ", ".join(format_number(number, digits) for number in values)
-    return Row(name, section, text, value, unit, deviation, verdict, note, str(tolerance))
+    return Comparison(name, section, text, value, unit, deviation, verdict, note, str(tolerance))
 
 
 def _deviation(values: Sequence[Number], printed: Sequence[Number]) -> float | None:

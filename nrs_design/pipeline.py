@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from fractions import Fraction
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -314,6 +315,7 @@ def run_comparison(
     DesignError, AssemblyError
         If the spec has no design, or its modes make no switched system that both methods are for.
     """
+    from nrs_design.search.certify import certify
     from nrs_design.search.comparison import compare_methods
 
     designed = run_design(loaded)
@@ -321,7 +323,8 @@ def run_comparison(
         coordinates = coordinates or designed.spec.coordinates
     with placed(loaded):
         system = _assemble(loaded, designed, coordinates)
-        return system, compare_methods(system, limits, progress)
+        runs = compare_methods(partial(certify, system), limits, progress)
+        return system, runs
 
 
 def _gains(designed: Designed | None) -> Gains:

@@ -10,13 +10,12 @@ import numpy as np
 
 from nrs_design.errors import DesignError
 from nrs_design.proof.evidence import CommonQuadratic
-from nrs_design.proof.system import SwitchedSystem
 from nrs_design.search.certification import Certification, Limits
-from nrs_design.search.certify import certify
 from nrs_design.search.gradient_settings import Coordinates, Gradient, Order
 from nrs_design.search.method import Method
 
 Progress = Callable[[str], None]
+Decide = Callable[[Method, Limits], Certification]
 # Updates and the largest v after them.
 History = tuple[tuple[int, float], ...]
 
@@ -77,14 +76,14 @@ class MethodRun:
 
 
 def compare_methods(
-    system: SwitchedSystem, limits: Limits, progress: Progress = lambda step: None
+    decide: Decide, limits: Limits, progress: Progress = lambda step: None
 ) -> tuple[MethodRun, ...]:
     """Run the LMI once, and the iteration in all coordinates and orders.
 
     Parameters
     ----------
-    system : SwitchedSystem
-        Exact modes.
+    decide : callable
+        Decides the system by one method, within limits, and checks exactly what that finds.
     limits : Limits
         How far each search goes; coordinates and order of its gradient settings are replaced.
     progress : callable
@@ -97,7 +96,7 @@ def compare_methods(
     """
     progress("lmi")
     try:
-        known = certify(system, Method.LMI, replace(limits, gradient=Gradient()))
+        known = decide(Method.LMI, replace(limits, gradient=Gradient()))
     except DesignError as error:
         raise DesignError(
             "LMI and gradient iteration look for one quadratic function for all modes, which does "
@@ -107,12 +106,12 @@ def compare_methods(
     runs = [MethodRun(Method.LMI, known, _seconds(known))]
     for coordinates, order in product(Coordinates, Order):
         progress(f"gradient, {coordinates}, {order}")
-        runs.append(_run_gradient(system, limits, coordinates, order))
+        runs.append(_run_gradient(decide, limits, coordinates, order))
     return tuple(runs)
 
 
 def _run_gradient(
-    system: SwitchedSystem, limits: Limits, coordinates: Coordinates, order: Order
+    decide: Decide, limits: Limits, coordinates: Coordinates, order: Order
 ) -> MethodRun:
     histories: list[list[tuple[int, float]]] = []
 
@@ -122,7 +121,7 @@ def _run_gradient(
         histories[-1].append((updates, largest))
 
     gradient = replace(limits.gradient, coordinates=coordinates, order=order, tell=tell)
-    found = certify(system, Method.GRADIENT, replace(limits, gradient=gradient))
+    found = decide(Method.GRADIENT, replace(limits, gradient=gradient))
     told = tuple(map(tuple, histories))
     return MethodRun(Method.GRADIENT, found, _seconds(found), coordinates, order, told)
 

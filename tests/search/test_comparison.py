@@ -1,10 +1,13 @@
 """The gradient iteration beside the LMI."""
 
+from functools import partial
+
 import pytest
 
 from nrs_design.errors import DesignError
 from nrs_design.proof.system import Time
 from nrs_design.search.certification import Limits
+from nrs_design.search.certify import certify
 from nrs_design.search.comparison import compare_methods
 from nrs_design.search.gradient_settings import Gradient
 from nrs_design.search.method import Method
@@ -22,7 +25,7 @@ QUICK = Limits(optimize_rate=False, gradient=Gradient(max_updates=500))
 )
 def test_every_run_is_checked_and_tells_its_way(system):
     told = []
-    lmi, *iterations = compare_methods(system, QUICK, told.append)
+    lmi, *iterations = compare_methods(partial(certify, system), QUICK, told.append)
     assert told == [lmi.name, *(run.name for run in iterations)]
     assert len(iterations) == 6
     assert (lmi.method, lmi.updates) == (Method.LMI, None)
@@ -38,7 +41,7 @@ def test_every_run_is_checked_and_tells_its_way(system):
 
 def test_blocks_are_told_apart():
     one, two = [[-1, -1, 1], [1, -1, 1], [0, 0, -1]], [[-1, -5, 0], ["1/5", -1, 0], [0, 0, -3]]
-    run = compare_methods(family(one, two), QUICK)[1]
+    run = compare_methods(partial(certify, family(one, two)), QUICK)[1]
     assert len(run.histories) == 2
     assert run.updates == sum(history[-1][0] for history in run.histories)
     assert run.condition is None
@@ -46,12 +49,15 @@ def test_blocks_are_told_apart():
 
 
 def test_a_refuted_mode_leaves_nothing_to_iterate():
-    run = compare_methods(family([[1, 0], [1, -1]], [[-1, 1], [0, -1]]), QUICK)[1]
+    unstable = family([[1, 0], [1, -1]], [[-1, 1], [0, -1]])
+    run = compare_methods(partial(certify, unstable), QUICK)[1]
     assert (run.certification.verdict, run.updates) == ("refuted", None)
     assert run.outcome == "not needed"
 
 
 def test_a_start_that_there_is_not():
     with pytest.raises(DesignError, match="cannot start with mode 'nobody'") as caught:
-        compare_methods(dayawansa_martin(5), Limits(gradient=Gradient(start="nobody")))
+        compare_methods(
+            partial(certify, dayawansa_martin(5)), Limits(gradient=Gradient(start="nobody"))
+        )
     assert caught.value.remedy

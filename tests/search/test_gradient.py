@@ -146,8 +146,8 @@ def test_history_begins_at_zero_ends_below_and_thins_out():
     assert (told[-1][1] <= 1e-9) == (result.Q is not None)
 
 
-# Recomputed in coordinates with and without balancing: of these pairs none ends as printed within
-# 2,000,000 updates, for relaxations 0.5, 1 and 1.9, radii 0.01, 1 and 1000, both starts and orders.
+# In the states of the thesis neither pair ends within 2,000,000 updates, for relaxations 0.5, 1 and
+# 1.9, radii 0.01, 1 and 1000, both starts and orders.
 @pytest.mark.parametrize("order", Order)
 @pytest.mark.parametrize("start", ["m1", "m2"])
 @pytest.mark.parametrize("pair", [withdrawal, tool])

@@ -39,9 +39,12 @@ def methods_section(runs: Sequence[MethodRun], *, times: bool = False) -> Sectio
     times : bool
         Add how long each took; that differs from run to run.
     """
-    columns = (*COLUMNS, "time [ms]") if times else COLUMNS
-    rows = tuple((*cells_of(run), number(1e3 * run.seconds, 3))[: len(columns)] for run in runs)
-    table = Table("One common quadratic function, searched in several ways", columns, rows)
+    rows = [("Method", "Outcome", "Proved rate", "Condition of Q", "Time [ms]")]
+    for run in runs:
+        seconds = number(1e3 * run.seconds, 3)
+        rows.append((run.name, run.outcome, _rate(run), _condition(run), seconds))
+    head, *body = (row if times else row[:-1] for row in rows)
+    table = Table("One common quadratic function, searched in several ways", head, tuple(body))
     figure = Illustration(
         "methods", "Way of the gradient iteration", _CAPTION, draw_histories(runs)
     )
@@ -50,15 +53,23 @@ def methods_section(runs: Sequence[MethodRun], *, times: bool = False) -> Sectio
 
 
 def cells_of(run: MethodRun) -> tuple[str, ...]:
-    """Write one run in the columns of the table."""
-    evidence, system = run.certification.evidence, run.certification.system
-    rate = None if evidence is None else evidence.proved_rate(system)
+    """Write one run in `COLUMNS`."""
     return (
         str(run.method),
         str(run.coordinates or ""),
         str(run.order or ""),
         run.outcome,
         "" if run.updates is None else str(run.updates),
-        "none" if rate is None else rate_words(rate, system.time),
-        "" if run.condition is None else f"{run.condition:.3g}",
+        _rate(run),
+        _condition(run),
     )
+
+
+def _rate(run: MethodRun) -> str:
+    evidence, system = run.certification.evidence, run.certification.system
+    rate = None if evidence is None else evidence.proved_rate(system)
+    return "none" if rate is None else rate_words(rate, system.time)
+
+
+def _condition(run: MethodRun) -> str:
+    return "" if run.condition is None else f"{run.condition:.3g}"

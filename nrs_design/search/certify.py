@@ -25,11 +25,12 @@ from nrs_design.proof.second_opinion import agrees
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.search.allowance import Allowance, NotAffordableError
 from nrs_design.search.candidates import Candidates, Search
-from nrs_design.search.certification import Attempt, Certification, Limits, Method
+from nrs_design.search.certification import Attempt, Certification, Limits
 from nrs_design.search.family import Family, floats_in_silence
 from nrs_design.search.fast_check import find_fault
 from nrs_design.search.ladder import applicable_methods, steps
-from nrs_design.search.limits import rate_limit
+from nrs_design.search.method import Method
+from nrs_design.search.rate_limit import rate_limit
 from nrs_design.search.structure import merge_equal_modes, triangular_blocks
 
 Progress = Callable[[str], None]

@@ -10,7 +10,8 @@ from nrs_design.models.motion_loop import Realization
 from nrs_design.proof.evidence import AbstractEvidence
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.system import ARBITRARY, Mode, Reset, Stay, SwitchedSystem, Switching, Time
-from nrs_design.search.certify import Limits, Method, certify
+from nrs_design.search.certify import Limits, certify
+from nrs_design.search.method import Method
 from nrs_design.switched.modes import velocity_mode
 
 Entry = int | str | Fraction

@@ -140,6 +140,13 @@ def test_stages_are_known_to_the_pipeline_only(above):
     assert not inside
 
 
+def test_a_report_assembles_and_searches_nothing():
+    """It shows what the pipeline gives it, and draws the curves of a design."""
+    below = {item.target for item in OURS if floor(item.source) == "reporting"}
+    stages = {name for name in below if floor(name) in ("switched", "search")}
+    assert stages == {"nrs_design.search.certification"}
+
+
 VERBS = {
     ("nrs_design.models.plant", "build_plant"),
     ("nrs_design.design.design", "design_controllers"),

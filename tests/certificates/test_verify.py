@@ -611,13 +611,16 @@ class TestFiles:
 
 
 @pytest.mark.parametrize("name", SPECS)
-@pytest.mark.parametrize("other", SPECS)
-def test_wrong_kind_of_spec(name, other):
+def test_wrong_kind_of_spec(name):
     document, _ = signed(name)
-    spec = read_spec(SPECS[other])
-    assert (verify_document(document, spec).fault is None) == (name == other)
-    moved = {**document, "spec": {"name": spec.spec.name, "sha256": spec.sha256}}
-    assert (verify_document(resign(moved), spec).fault is None) == (name == other)
+    accepted = []
+    for other in SPECS:
+        spec = read_spec(SPECS[other])
+        moved = {**document, "spec": {"name": spec.spec.name, "sha256": spec.sha256}}
+        for given in (document, resign(moved)):
+            if verify_document(given, spec).fault is None:
+                accepted.append(other)
+    assert accepted == [name, name]
 
 
 class TestFormerSchema:

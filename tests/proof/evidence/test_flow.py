@@ -17,12 +17,20 @@ def times(X, Y):
     return [[sum(X[i][k] * Y[k][j] for k in n) for j in n] for i in n]
 
 
-@pytest.mark.parametrize("exponent", range(9))
-def test_a_power_is_a_product_of_as_many_factors(exponent):
-    product = [[Fraction(1), Fraction(0)], [Fraction(0), Fraction(1)]]
-    for _ in range(exponent):
-        product = times(product, A.fractions())
-    assert power(A, exponent).fractions() == product
+@pytest.mark.parametrize(
+    "M",
+    [
+        A,
+        RationalMatrix.from_rows([[3]]),
+        RationalMatrix.from_rows([[0, 1, 2], [3, 0, 1], [1, 1, 1]]),
+    ],
+)
+def test_a_power_is_a_product_of_as_many_factors(M):
+    n = range(M.shape[0])
+    product = [[Fraction(int(i == j)) for j in n] for i in n]
+    for exponent in range(9):
+        assert power(M, exponent).fractions() == product
+        product = times(product, M.fractions())
 
 
 def test_a_shift_is_added_to_the_diagonal():

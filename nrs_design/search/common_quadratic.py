@@ -18,6 +18,7 @@ from nrs_design.search.decay import fastest_first, rate_of
 from nrs_design.search.family import Family
 from nrs_design.search.gradient import iterate_gradient
 from nrs_design.search.lmi import find_common_quadratic, margins, solve_by_clarabel
+from nrs_design.search.raw import find_raw_quadratic
 from nrs_design.search.rounding import BITS, claims, digits, rate_at, round_rate, unscale
 
 BACK_OFF = Fraction(1999, 2000)
@@ -91,13 +92,13 @@ def search_by_gradient(family: Family) -> Candidates[CommonQuadratic]:
 
 
 def search_raw(family: Family) -> Candidates[CommonQuadratic]:
-    """Search by a general solver in the coordinates of the spec, without balancing."""
+    """Search by CVXPY in the coordinates of the spec, without balancing."""
     time = family.system.time
     if not np.isfinite(family.limit):
         return OUT_OF_RANGE
     matrices = scale(family.matrices, -family.exponents)
     least = rate_at(0.0, family.limit, time)
-    Q = find_common_quadratic(matrices, time, least, solve_by_clarabel, family.allowance)
+    Q = find_raw_quadratic(matrices, time, least, family.allowance)
     if Q is None:
         return NO_MARGIN
     shifts = family.exponents[:, None] + family.exponents[None, :]

@@ -73,7 +73,7 @@ def test_help_before_a_command_lists_all(tmp_path):
 def test_an_easy_proof_loads_no_solver(tmp_path):
     result, facts = loaded_by(tmp_path, "certify-switching", COMMUTING)
     assert result.returncode == 0, result.stderr
-    assert not {"scipy", "clarabel", "control", "matplotlib"} & set(facts["modules"])
+    assert not {"scipy", "clarabel", "control", "cvxpy", "matplotlib"} & set(facts["modules"])
 
 
 @pytest.mark.parametrize("command", ["certify-switching", "verify"])

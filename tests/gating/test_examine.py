@@ -100,6 +100,7 @@ def ranges(highest, limit):
     loop = SimpleNamespace(contact=SimpleNamespace(remembers=False))
     item = SimpleNamespace(
         name="insertion",
+        given=examiner.loaded.spec.controllers["insertion"],
         highest_stiffness=highest,
         lowest_limit=limit,
         problem=SimpleNamespace(loop=loop),

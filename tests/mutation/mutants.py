@@ -152,7 +152,9 @@ def _changes(node: ast.AST, parent: ast.AST, returns: str | None) -> Iterator[as
     ):
         yield ast.Pass()
     if isinstance(node, ast.Expr) and isinstance(node.value, (ast.Yield, ast.YieldFrom)):
-        yield ast.Expr(ast.YieldFrom(ast.Tuple([], ast.Load())))
+        nothing = ast.Expr(ast.YieldFrom(ast.Tuple([], ast.Load())))
+        if _text(node) != _text(nothing):
+            yield nothing
     if isinstance(node, ast.Break):
         yield ast.Continue()
     if isinstance(node, ast.Continue):

@@ -64,6 +64,13 @@ def test_digits_of_weights_are_limited(denominator, fault):
     assert mixed(share, 1 - share).find_fault(shears()) == fault
 
 
+@pytest.mark.parametrize("weights", [("2",), ("1/2", "3/2"), ("1e9", "1")])
+def test_no_weight_in_a_file_is_above_one(weights):
+    named = [[f"m{i}", weight] for i, weight in enumerate(weights)]
+    with pytest.raises(ValueError, match=r"digits|ratio"):
+        read_evidence({"kind": "unstable-mixture", "weights": named}, shears())
+
+
 @pytest.mark.parametrize(
     "switching",
     [

@@ -126,6 +126,30 @@ def test_the_proof_stands_on_itself():
     assert below - sys.stdlib_module_names <= {"flint"}
 
 
+def private_names(tree: ast.AST) -> Iterator[str]:
+    """Names with one underscore that a test imports, reads or puts something in the place of."""
+    for node in ast.walk(tree):
+        match node:
+            case ast.ImportFrom(module=str(module)) if module.startswith("nrs_design"):
+                yield from (alias.name for alias in node.names)
+            case ast.Attribute(ast.Name(owner), name) if owner not in {"self", "cls"}:
+                yield name
+            case ast.Call(ast.Attribute(attr="setattr" | "object" | "patch"), arguments):
+                texts = (ast.literal_eval(a) for a in arguments if isinstance(a, ast.Constant))
+                yield from (text.split(".")[-1] for text in texts if isinstance(text, str))
+
+
+def test_tests_use_what_is_public():
+    known = {"_repr_html_", "_exit"}
+    private = [
+        (path.name, name)
+        for path in sorted((ROOT / "tests").rglob("*.py"))
+        for name in private_names(ast.parse(path.read_text(encoding="utf-8")))
+        if re.match(r"_[^_]", name) and name not in known
+    ]
+    assert not private
+
+
 @pytest.mark.parametrize("above", ["cli", "gating", "exporters"])
 def test_stages_are_known_to_the_pipeline_only(above):
     """A command asks the pipeline; it takes types of a stage, to print them."""

@@ -26,8 +26,8 @@ if TYPE_CHECKING:
     from nrs_design.design.analysis import DesignAnalysis
     from nrs_design.models.plant import Plant
     from nrs_design.models.robot import Robot
-    from nrs_design.search.comparison import MethodRun
     from nrs_design.search.margin import BoxMargin, DwellMargin
+    from nrs_design.search.method_run import MethodRun
     from nrs_design.spec import InteractionDesignSpec, RobotSpec, Spec
 
 Progress = Callable[[str], None]

@@ -169,7 +169,8 @@ def test_a_report_assembles_and_searches_nothing():
     """It shows what the pipeline gives it, and draws the curves of a design."""
     below = {item.target for item in OURS if floor(item.source) == "reporting"}
     stages = {name for name in below if floor(name) in ("switched", "search")}
-    assert stages == {"nrs_design.search.certification"}
+    nouns = {"certification", "gradient_settings", "method_run"}
+    assert stages == {f"nrs_design.search.{noun}" for noun in nouns}
 
 
 VERBS = {

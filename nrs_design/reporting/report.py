@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
     from nrs_design.design.analysis import DesignAnalysis
     from nrs_design.pipeline import Result
-    from nrs_design.search.comparison import MethodRun
+    from nrs_design.search.method_run import MethodRun
 
 
 def build_report(

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from nrs_design.search.comparison import History, MethodRun
+    from nrs_design.search.method_run import History, MethodRun
 
 TITLES = {Order.ROUND_ROBIN: "Modes in turn", Order.RANDOM: "Modes at random"}
 

@@ -12,7 +12,7 @@ from nrs_design.reporting.formatting import number
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from nrs_design.search.comparison import MethodRun
+    from nrs_design.search.method_run import MethodRun
 
 COLUMNS = ("method", "coordinates", "order", "outcome", "updates", "proved rate", "condition of Q")
 _TEXT = (
@@ -35,7 +35,7 @@ def methods_section(runs: Sequence[MethodRun], *, times: bool = False) -> Sectio
     Parameters
     ----------
     runs : sequence of MethodRun
-        As `nrs_design.search.comparison.compare_methods` gives them.
+        As `nrs_design.pipeline.run_comparison` gives them.
     times : bool
         Add how long each took; that differs from run to run.
     """

@@ -164,6 +164,41 @@ def test_stages_are_known_to_the_pipeline_only(above):
     assert not inside
 
 
+def test_a_report_assembles_and_searches_nothing():
+    """It shows what the pipeline gives it, and draws the curves of a design."""
+    below = {item.target for item in OURS if floor(item.source) == "reporting"}
+    stages = {name for name in below if floor(name) in ("switched", "search")}
+    assert stages == {"nrs_design.search.certification"}
+
+
+VERBS = {
+    ("nrs_design.models.plant", "build_plant"),
+    ("nrs_design.design.design", "design_controllers"),
+    ("nrs_design.design.analysis", "analyze_design"),
+    ("nrs_design.switched.assemble", "assemble"),
+    ("nrs_design.switched.assemble", "assemble_matrices"),
+    ("nrs_design.search.certify", "certify"),
+}
+
+
+def test_only_the_pipeline_calls_the_stages():
+    """Published matrices are certified as they are, and a re-check builds the plant of its spec."""
+    callers = {
+        (name, verb)
+        for name, path in FILES.items()
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8")))
+        if isinstance(node, ast.ImportFrom)
+        for alias in node.names
+        if (verb := (node.module, alias.name)) in VERBS
+    }
+    assert {verb for name, verb in callers if name == "nrs_design.pipeline"} == VERBS
+    assert {name for name, _ in callers} == {
+        "nrs_design.pipeline",
+        "nrs_design.switched.assemble",
+        "nrs_design.reproduction.switching",
+    }
+
+
 def uses(name: str, word: str) -> bool:
     """Whether the code of a module uses a name, as a function, an attribute or by importing it."""
     return any(

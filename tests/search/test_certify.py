@@ -623,8 +623,11 @@ class TestFirstAccepted:
         assert self.take([], "nothing looked right") == ((None, "nothing looked right"), [])
         assert self.take([WRONG], "all looked wrong")[0] == (None, "all looked wrong")
 
+    def test_a_search_without_words_and_candidates_had_no_rate_to_claim(self):
+        assert self.take([])[0] == (None, "what was found shows no rate of decay")
+
     def test_or_the_check_says_why_the_last_was_refused(self):
-        (nothing, words), _ = self.take([GOOD, WRONG][1:])
+        (nothing, words), _ = self.take([WRONG])
         assert nothing is None
         assert words.startswith("a candidate was found, but V does not decrease")
 

@@ -185,7 +185,8 @@ def draw_inertia_errors(apart: SeparateCorrection) -> Figure:
     bars = axes.barh(names, errors, color=BLUE, height=0.6)
     axes.bar_label(bars, [f"{error:.1f} %" for error in errors], padding=3)
     axes.invert_yaxis()
-    axes.set_xlim(0, 1.15 * max(errors))
+    axes.set_xlim(0, 1.2 * max(errors))
+    axes.grid(visible=False, axis="y")
     axes.set_xlabel("Error of the corrected mass matrix [%]")
     axes.set_ylabel("Coefficients of inertia")
     return figure

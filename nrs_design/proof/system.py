@@ -143,6 +143,29 @@ ARBITRARY = Switching()
 
 
 @dataclass(frozen=True, slots=True)
+class Contact:
+    """Contact that is lost and made again at any time.
+
+    The last state is the deflection delta, the others are y. While delta is positive, the modes of
+    the system are in force; while it is not, nothing pushes, and one of the free modes is.
+
+    Parameters
+    ----------
+    free : tuple of Mode
+        The motion without force, each of shape (n, n), with any switching among them. In its last
+        column, what the deflection does to the other states, there are zeros; in its last row, what
+        the motion does to the deflection.
+    pulls : tuple of RationalMatrix, each of shape (1, n)
+        For an environment that could pull: forces ``q x`` at the corners of its ranges. While
+        delta is positive and a force within these ranges is not, there is no force, and one of the
+        free modes is in force. Empty for springs, whose force has the sign of the deflection.
+    """
+
+    free: tuple[Mode, ...]
+    pulls: tuple[RationalMatrix, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
 class SwitchedSystem:
     """A linear switched system.
 
@@ -160,6 +183,8 @@ class SwitchedSystem:
         What a statement about these matrices takes for granted about the robot.
     switching : Switching
         The signals that are possible.
+    contact : Contact or None
+        How contact is lost; None where it is kept, or where there is none to lose.
     """
 
     name: str
@@ -168,6 +193,7 @@ class SwitchedSystem:
     modes: tuple[Mode, ...]
     assumptions: tuple[str, ...]
     switching: Switching = ARBITRARY
+    contact: Contact | None = None
 
     @property
     def order(self) -> int:
@@ -214,7 +240,10 @@ class SwitchedSystem:
         """TRUSTED: say why the rules of switching make no sense for these modes, or None."""
         names = {mode.name for mode in self.modes}
         return (
-            self._find_odd_stay(names) or self._find_odd_switch(names) or self._find_odd_ends(names)
+            self._find_odd_stay(names)
+            or self._find_odd_switch(names)
+            or self._find_odd_ends(names)
+            or self._find_odd_contact(names)
         )
 
     def _find_odd_stay(self, names: set[str]) -> str | None:
@@ -245,3 +274,25 @@ class SwitchedSystem:
         if ends and sorted(ends) != sorted(names):
             return "the modes are not the ends of one constant parameter"
         return None
+
+    def _find_odd_contact(self, names: set[str]) -> str | None:
+        if self.contact is None:
+            return None
+        n, free = self.order, self.contact.free
+        if n < 2 or not self.is_uniform:
+            return "contact is lost, but the modes do not share a deflection beside other states"
+        if not free or len({mode.name for mode in free} - names) < len(free):
+            return "contact is lost, but there is no free mode, or two modes have one name"
+        if not all(_is_motion(mode.A, n, self.time) for mode in free):
+            return "the deflection acts on the other states in a free mode"
+        if not all(q.is_well_formed and q.shape == (1, n) for q in self.contact.pulls):
+            return "a force is not one row over a positive denominator"
+        return None
+
+
+def _is_motion(A: RationalMatrix, order: int, time: Time) -> bool:
+    """Tell whether a free mode has its shape, and the deflection only moves on from where it is."""
+    if not A.is_well_formed or A.shape != (order, order):
+        return False
+    *others, last = (row[-1] for row in A.numerators)
+    return not any(others) and last == (0 if time is Time.CONTINUOUS else A.denominator)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from fractions import Fraction
 from typing import Any
 
@@ -16,6 +16,7 @@ from nrs_design.proof.exact import bit_length
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.system import (
     ARBITRARY,
+    Contact,
     FixedParameter,
     Mode,
     Reset,
@@ -45,8 +46,9 @@ def system_fields(system: SwitchedSystem) -> Fields:
     return {
         "time": str(system.time),
         "states": list(system.states),
-        "modes": [{"name": mode.name, **_matrix_fields(mode.A)} for mode in system.modes],
+        "modes": _mode_fields(system.modes),
         "switching": _switching_fields(system.switching),
+        **({} if system.contact is None else {"contact": _contact_fields(system.contact)}),
         "assumptions": list(system.assumptions),
     }
 
@@ -67,11 +69,12 @@ def read_system(name: str, fields: Mapping[str, Any]) -> SwitchedSystem:
         If a field is missing or malformed, a matrix has no shape or no positive denominator, two
         modes have one name, or the modes are too large to check.
     """
-    modes = tuple(
-        Mode(read_text(item["name"]), _read_matrix(item)) for item in _read_list(fields["modes"])
-    )
+    modes = _read_modes(fields["modes"])
     states = _read_texts(fields["states"])
     _check_modes(modes, len(states))
+    contact = _read_contact(fields["contact"]) if "contact" in fields else None
+    if contact is not None:
+        _check_work(contact.free * (1 + len(contact.pulls)))
     return SwitchedSystem(
         name=name,
         time=Time(read_text(fields["time"])),
@@ -79,6 +82,7 @@ def read_system(name: str, fields: Mapping[str, Any]) -> SwitchedSystem:
         modes=modes,
         assumptions=_read_texts(fields["assumptions"]),
         switching=_read_switching(fields["switching"]),
+        contact=contact,
     )
 
 
@@ -90,9 +94,33 @@ def _check_modes(modes: Sequence[Mode], states: int) -> None:
         raise ValueError("a mode is not square")
     if max(sizes, default=0) != states:
         raise ValueError("the largest mode does not have the states that are named")
-    numbers = zip(sizes, (bit_length(mode.A.numerators) for mode in modes), strict=True)
-    if sum(size**3 * bits for size, bits in numbers) > MAX_FAMILY_WORK:
+    _check_work(modes)
+
+
+def _check_work(modes: Iterable[Mode]) -> None:
+    matrices = (mode.A.numerators for mode in modes)
+    if sum(len(N) ** 3 * bit_length(N) for N in matrices) > MAX_FAMILY_WORK:
         raise ValueError("the modes are too large to check")
+
+
+def _mode_fields(modes: Sequence[Mode]) -> list[Fields]:
+    return [{"name": mode.name, **_matrix_fields(mode.A)} for mode in modes]
+
+
+def _read_modes(value: object) -> tuple[Mode, ...]:
+    return tuple(Mode(read_text(item["name"]), _read_matrix(item)) for item in _read_list(value))
+
+
+def _contact_fields(contact: Contact) -> Fields:
+    return {
+        "free": _mode_fields(contact.free),
+        "pulls": [_matrix_fields(row) for row in contact.pulls],
+    }
+
+
+def _read_contact(fields: Mapping[str, Any]) -> Contact:
+    pulls = tuple(_read_matrix(item) for item in _read_list(fields["pulls"]))
+    return Contact(_read_modes(fields["free"]), pulls)
 
 
 def _switching_fields(switching: Switching) -> Fields | str:

@@ -9,6 +9,7 @@ from nrs_design.proof.evidence.abstract import AbstractEvidence, Shows
 from nrs_design.proof.evidence.block_triangular import BlockTriangular
 from nrs_design.proof.evidence.common_polynomial import CommonPolynomial
 from nrs_design.proof.evidence.common_quadratic import CommonQuadratic
+from nrs_design.proof.evidence.conewise_quadratic import ConewiseQuadratic
 from nrs_design.proof.evidence.mode_polynomial import ModePolynomial
 from nrs_design.proof.evidence.mode_quadratic import ModeQuadratic
 from nrs_design.proof.evidence.no_common_quadratic import NoCommonQuadratic
@@ -54,6 +55,7 @@ __all__ = [
     "BlockTriangular",
     "CommonPolynomial",
     "CommonQuadratic",
+    "ConewiseQuadratic",
     "ModePolynomial",
     "ModeQuadratic",
     "NoCommonQuadratic",

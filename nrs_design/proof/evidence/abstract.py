@@ -17,6 +17,8 @@ from nrs_design.proof.exact import (
 )
 from nrs_design.proof.system import SwitchedSystem, Switching
 
+WHILE_KEPT = "This holds as long as contact is kept, the environment pulling as it pushes."
+
 
 class Shows(StrEnum):
     """What follows if the evidence holds."""
@@ -42,6 +44,8 @@ class AbstractEvidence(ABC):
     attains_rate: ClassVar[bool] = False
     # What is shown of the modes is shown of their convex combinations too.
     covers_mixtures: ClassVar[bool] = False
+    # It holds while contact is lost and made again, where the system says how that happens.
+    covers_lost_contact: ClassVar[bool] = False
 
     @property
     @abstractmethod
@@ -75,9 +79,15 @@ class AbstractEvidence(ABC):
     def forms(self, system: SwitchedSystem) -> Iterator[tuple[str, IntegerMatrix]]:
         """Yield what must be positive definite, each with the name of its failure."""
 
-    @abstractmethod
     def claim(self, system: SwitchedSystem) -> str:
-        """Say in words what is shown."""
+        """Say in words what is shown, and whether contact is kept for it."""
+        said = self.claim_in_scope(system)
+        kept = system.contact is not None and not self.covers_lost_contact
+        return f"{said} {WHILE_KEPT}" if kept else said
+
+    @abstractmethod
+    def claim_in_scope(self, system: SwitchedSystem) -> str:
+        """Say in words what is shown, for the motions that this kind of evidence speaks about."""
 
     @abstractmethod
     def to_fields(self) -> dict[str, Any]:

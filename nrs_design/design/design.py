@@ -76,8 +76,8 @@ def naming(controller: str) -> Iterator[None]:
 def root_locus_design(spec: InteractionDesignSpec) -> PdDesign:
     """Return the PD that the root locus asks for, before any rounding or given value."""
     return design_pd(
-        spec.actuator.gain.si,
-        spec.actuator.time_constant.si,
+        spec.actuator.gain.nominal.si,
+        spec.actuator.time_constant.nominal.si,
         float(spec.motion_loop.damping_ratio),
         spec.motion_loop.settling_time.si,
     )

@@ -185,6 +185,8 @@ class SwitchedSystem:
         The signals that are possible.
     contact : Contact or None
         How contact is lost; None where it is kept, or where there is none to lose.
+    sample_time : Fraction or None
+        Time from one step to the next in s, in discrete time, if there is such a time.
     """
 
     name: str
@@ -194,6 +196,7 @@ class SwitchedSystem:
     assumptions: tuple[str, ...]
     switching: Switching = ARBITRARY
     contact: Contact | None = None
+    sample_time: Fraction | None = None
 
     @property
     def order(self) -> int:
@@ -244,6 +247,7 @@ class SwitchedSystem:
             or self._find_odd_switch(names)
             or self._find_odd_ends(names)
             or self._find_odd_contact(names)
+            or self._find_odd_sample_time()
         )
 
     def _find_odd_stay(self, names: set[str]) -> str | None:
@@ -287,6 +291,13 @@ class SwitchedSystem:
             return "the deflection acts on the other states in a free mode"
         if not all(q.is_well_formed and q.shape == (1, n) for q in self.contact.pulls):
             return "a force is not one row over a positive denominator"
+        return None
+
+    def _find_odd_sample_time(self) -> str | None:
+        if self.sample_time is None:
+            return None
+        if self.time is Time.CONTINUOUS or self.sample_time <= 0:
+            return "the time of a step is not positive, or there are no steps"
         return None
 
 

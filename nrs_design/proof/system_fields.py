@@ -49,6 +49,7 @@ def system_fields(system: SwitchedSystem) -> Fields:
         "modes": _mode_fields(system.modes),
         "switching": _switching_fields(system.switching),
         **({} if system.contact is None else {"contact": _contact_fields(system.contact)}),
+        **({} if system.sample_time is None else {"sample_time": str(system.sample_time)}),
         "assumptions": list(system.assumptions),
     }
 
@@ -83,6 +84,7 @@ def read_system(name: str, fields: Mapping[str, Any]) -> SwitchedSystem:
         assumptions=_read_texts(fields["assumptions"]),
         switching=_read_switching(fields["switching"]),
         contact=contact,
+        sample_time=read_ratio(fields["sample_time"]) if "sample_time" in fields else None,
     )
 
 

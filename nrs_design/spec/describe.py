@@ -93,8 +93,12 @@ def _switching(switching: SwitchingSpec) -> Iterator[Row]:
 
 
 def _interaction(spec: InteractionDesignSpec) -> Iterator[Row]:
-    yield _row("actuator.gain", spec.actuator.gain, kinds.ACTUATOR_GAIN)
-    yield _row("actuator.time_constant", spec.actuator.time_constant, kinds.DURATION)
+    for name, kind in (("gain", kinds.ACTUATOR_GAIN), ("time_constant", kinds.DURATION)):
+        written = getattr(spec.actuator, name)
+        yield _row(f"actuator.{name}", written.nominal, kind)
+        if not written.fixed:
+            low, high = written.range
+            yield Row(f"actuator.{name}.range", f"[{low.text}, {high.text}]", "", "")
     if spec.actuator.intervals is not None:
         for name in ("gain", "time_constant"):
             low, high = getattr(spec.actuator.intervals, name)
@@ -112,6 +116,13 @@ def _interaction(spec: InteractionDesignSpec) -> Iterator[Row]:
         yield from describe_model(spec.idle_states, "idle_states")
     yield from _goals("goals", spec.goals)
     yield Row("design.significant_digits", str(spec.design.significant_digits), "", "")
+    if spec.sampling is not None:
+        yield _row("sampling.period", spec.sampling.period, kinds.DURATION)
+        least, most = spec.sampling.delay
+        delay = str(least) if least == most else f"[{least}, {most}]"
+        yield Row("sampling.delay", delay, "", "samples")
+        yield Row("sampling.admittance", spec.sampling.admittance, "", "")
+    yield Row("contact", spec.contact or "losable where proved", "", "")
     yield Row("coordinates", spec.coordinates, "", "")
     yield from _switching(spec.switching)
 

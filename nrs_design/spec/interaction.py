@@ -21,6 +21,7 @@ from nrs_design.spec.fields import Digits, Label, Name, Title
 from nrs_design.spec.goals import GoalsSpec, check_applicable
 from nrs_design.spec.model import SpecModel
 from nrs_design.spec.motion import ActuatorSpec, LimitsSpec, MotionLoopSpec
+from nrs_design.spec.sampling import SamplingSpec, check_actuator_ranges
 from nrs_design.spec.switching import DwellTime, Switching, check_names
 
 MAX_ENTRIES = 64
@@ -60,6 +61,15 @@ class InteractionDesignSpec(SpecModel):
         description="what every impedance and force controller must achieve; the gate enforces it",
     )
     design: DesignSpec = Field(default_factory=DesignSpec, description="how gains are written down")
+    sampling: SamplingSpec | None = Field(
+        default=None,
+        description="the processor that runs the law; without it the proof is for continuous time",
+    )
+    contact: Literal["losable", "kept"] | None = Field(
+        default=None,
+        description="whether a proof must hold while contact is lost and made again (losable), or "
+        "takes for granted that it is kept; default: losable where that can be proved",
+    )
     coordinates: Literal["deflection", "force"] = Field(
         default="deflection",
         description="state of the contact: deflection stays continuous when the stiffness "
@@ -96,6 +106,12 @@ class InteractionDesignSpec(SpecModel):
             *(
                 partial(_check_springs, *item, self.environments)
                 for item in self.controllers.items()
+            ),
+            partial(
+                check_actuator_ranges,
+                self.actuator,
+                self.sampling,
+                given_loop=self.motion_loop.transfer_function is not None,
             ),
             partial(_check_memories, self.controllers, self.environments, self.coordinates),
             lambda: check_applicable(

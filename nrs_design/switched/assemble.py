@@ -20,11 +20,13 @@ from nrs_design.spec import (
     Spec,
     SwitchedSystemSpec,
 )
+from nrs_design.spec.sampling import SamplingSpec
 from nrs_design.switched.assumptions import GIVEN_MATRICES, assume_matrices, scale_texts
 from nrs_design.switched.close_loop import close_loop
 from nrs_design.switched.constraints import assemble_switching
 from nrs_design.switched.gain_box import gain_boxes
 from nrs_design.switched.parameters import corner_modes, fixed_parameter, read_parameters
+from nrs_design.switched.sampled_loop import close_sampled_loop
 
 __all__ = ["GIVEN_MATRICES", "assemble", "assemble_from_text", "assemble_matrices", "has_ranges"]
 
@@ -79,6 +81,9 @@ def has_ranges(spec: Spec) -> bool:
         return any(not parameter.fixed for parameter in spec.parameters.values())
     if isinstance(spec, RobotSpec):
         return False
+    actuator = spec.actuator
+    if not (actuator.gain.fixed and actuator.time_constant.fixed):
+        return True
     return any(not spec.environments[name].fixed for name in _touched(spec)) or any(
         controller.Mt.ranged or controller.Bt.ranged
         for controller in spec.controllers.values()
@@ -154,6 +159,9 @@ def assemble(
         rules of switching make too many switches.
     """
     _check_scale(scale)
+    if spec.sampling is not None:
+        system = _assemble_sampled(spec, spec.sampling, plant, design, coordinates, scale)
+        return replace(system, assumptions=(*system.assumptions, *scale_texts(scale)))
     if coordinates not in ("deflection", "force"):
         raise AssemblyError(f"unknown coordinates {coordinates!r}: deflection or force")
     plant = plant.scaled(scale, _touched(spec))
@@ -163,6 +171,22 @@ def assemble(
         spec.name, plant, loop, design, coordinates, spec.switching, boxes, spec.idle_states
     )
     return replace(system, assumptions=(*system.assumptions, *scale_texts(scale)))
+
+
+def _assemble_sampled(
+    spec: InteractionDesignSpec,
+    sampling: SamplingSpec,
+    plant: Plant,
+    design: ControllerDesign,
+    coordinates: str | None,
+    scale: Fraction,
+) -> SwitchedSystem:
+    if coordinates != "deflection":
+        raise AssemblyError(
+            f"coordinates {coordinates!r} do not apply to the sampled loop",
+            remedy="use coordinates: deflection",
+        )
+    return close_sampled_loop(spec, sampling, plant.scaled(scale, _touched(spec)), design)
 
 
 def _check_scale(scale: Fraction) -> None:

@@ -8,6 +8,7 @@ from enum import StrEnum
 from fractions import Fraction
 from typing import Any, ClassVar, Self
 
+from nrs_design.proof.bounds import at_least
 from nrs_design.proof.evidence.fields import find_unreadable
 from nrs_design.proof.exact import (
     IntegerMatrix,
@@ -16,6 +17,7 @@ from nrs_design.proof.exact import (
     is_too_large,
 )
 from nrs_design.proof.system import SwitchedSystem, Switching
+from nrs_design.proof.text import exact_text
 
 WHILE_KEPT = "This holds as long as contact is kept, the environment pulling as it pushes."
 
@@ -80,10 +82,13 @@ class AbstractEvidence(ABC):
         """Yield what must be positive definite, each with the name of its failure."""
 
     def claim(self, system: SwitchedSystem) -> str:
-        """Say in words what is shown, and whether contact is kept for it."""
-        said = self.claim_in_scope(system)
-        kept = system.contact is not None and not self.covers_lost_contact
-        return f"{said} {WHILE_KEPT}" if kept else said
+        """Say in words what is shown, how fast in seconds, and whether contact is kept for it."""
+        said, rate = [self.claim_in_scope(system)], self.proved_rate(system)
+        if system.sample_time is not None and rate is not None:
+            said.append(_in_seconds(rate, system.sample_time))
+        if system.contact is not None and not self.covers_lost_contact:
+            said.append(WHILE_KEPT)
+        return " ".join(said)
 
     @abstractmethod
     def claim_in_scope(self, system: SwitchedSystem) -> str:
@@ -150,6 +155,12 @@ class AbstractEvidence(ABC):
         if not system.is_uniform and not self.allows_unequal_modes:
             return f"evidence of kind {self.kind} needs modes of equal size"
         return self.find_misfit(system)
+
+
+def _in_seconds(rate: Fraction, step: Fraction) -> str:
+    """Say what a contraction rho per step is in seconds: ``-log(rho) >= 1 - rho``."""
+    alpha = at_least((1 - rate) / step, "1/s")
+    return f"A step takes {exact_text(step)} s, so that is exp(-alpha t) with alpha {alpha}."
 
 
 def find_indefinite(forms: Iterable[tuple[str, IntegerMatrix]]) -> str | None:

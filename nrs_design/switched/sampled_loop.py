@@ -1,0 +1,304 @@
+"""The sampled loop of one axis: what one period does to the state, exactly.
+
+The actuator holds the command between samples and is not loaded by the tissue, so the stiffness
+enters through the force sample alone: every entry is affine in it, and a stiffness that moves at
+will is covered by its ends. State: ``[e, omega, e_before, vm, F_1, ..., F_d, delta]`` with the
+error e of the motion loop, its value a period ago, the velocity vm of the admittance (absent
+without inertia), the force samples on their way, and the deflection.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import partial
+from itertools import chain
+
+from nrs_design.controllers.controller_design import Controller, ControllerDesign
+from nrs_design.controllers.laws import Admittance
+from nrs_design.controllers.sampled import SampledAdmittance, SampledMotion
+from nrs_design.errors import AssemblyError
+from nrs_design.models.actuator import ActuatorRanges
+from nrs_design.models.contact.environment import Environment
+from nrs_design.models.interval import Interval
+from nrs_design.models.plant import Plant
+from nrs_design.proof.matrix import RationalMatrix
+from nrs_design.proof.system import Contact, Mode, SwitchedSystem, Time
+from nrs_design.proof.taylor import exponential_between
+from nrs_design.spec import InteractionDesignSpec
+from nrs_design.spec.sampling import SamplingSpec
+from nrs_design.switched.constraints import assemble_switching
+from nrs_design.switched.parameter_box import Axis, box_corners
+from nrs_design.switched.parameters import Corner
+from nrs_design.switched.sampled_assumptions import assume_sampled
+
+Row = list[Fraction]
+# Where the states are.
+ERROR, OMEGA, BEFORE, VELOCITY = range(4)
+
+
+@dataclass(frozen=True, slots=True)
+class Frame:
+    """What all modes of a sampled loop share.
+
+    Parameters
+    ----------
+    period : Fraction
+        In s.
+    motion : SampledMotion
+        The motion controller.
+    has_inertia : bool
+        Whether the admittances have a velocity of their own.
+    longest_delay : int
+        Force samples on their way.
+    time_constant : Fraction or None
+        The tau of the motor in s, if it is known.
+    """
+
+    period: Fraction
+    motion: SampledMotion
+    has_inertia: bool
+    longest_delay: int
+    time_constant: Fraction | None
+
+    @property
+    def states(self) -> tuple[str, ...]:
+        """Names and units of the states."""
+        ages = (f"F {j} before [N*m]" for j in range(1, self.longest_delay + 1))
+        inner = ("vm [rad/s]",) if self.has_inertia else ()
+        first = ("e [rad]", "omega [rad/s]", "e before [rad]")
+        return (*first, *inner, *ages, "delta [rad]")
+
+    @property
+    def first_force(self) -> int:
+        """Where the youngest force sample on its way is."""
+        return VELOCITY + self.has_inertia
+
+    def rows(
+        self,
+        admittance: SampledAdmittance,
+        delay: int,
+        values: Mapping[str, Fraction],
+    ) -> list[Row]:
+        """Return the map of one period.
+
+        Parameters
+        ----------
+        admittance : SampledAdmittance
+            Of the controller in force.
+        delay : int
+            Age of its force sample.
+        values : mapping
+            The gain ``Km``, ``E = exp(-T/tau)``, and ``s = tau (1 - E)`` unless tau is known; in
+            contact the stiffness ``k`` and the damping ``b`` that the force sample shows.
+        """
+        size = len(self.states)
+        unit = [[Fraction(int(i == j)) for j in range(size)] for i in range(size)]
+        Km, E, tau = values["Km"], values["E"], self.time_constant
+        s = values["s"] if tau is None else tau * (1 - E)
+        k, b = values.get("k", Fraction(0)), values.get("b", Fraction(0))
+        error, omega, before, delta = (unit[i] for i in (ERROR, OMEGA, BEFORE, -1))
+        Kp, D = self.motion.Kp, self.motion.D
+        command = [(Kp + D) * e - D * b for e, b in zip(error, before, strict=True)]
+        sample = [k * x + b * w for x, w in zip(delta, omega, strict=True)]
+        used = sample if delay == 0 else unit[self.first_force + delay - 1]
+        moved = [s * w + Km * (self.period - s) * u for w, u in zip(omega, command, strict=True)]
+        if admittance.a is None:
+            velocity = [admittance.b * f for f in used]
+            kept = []
+        else:
+            velocity = unit[VELOCITY]
+            kept = [
+                [admittance.a * v + admittance.b * f for v, f in zip(velocity, used, strict=True)]
+            ]
+        shifted = [sample, *unit[self.first_force : self.first_force + self.longest_delay - 1]]
+        return [
+            [e - admittance.T * v - m for e, v, m in zip(error, velocity, moved, strict=True)],
+            [E * w + Km * (1 - E) * u for w, u in zip(omega, command, strict=True)],
+            error,
+            *kept,
+            *shifted[: self.longest_delay],
+            [x + m for x, m in zip(delta, moved, strict=True)],
+        ]
+
+
+def close_sampled_loop(
+    spec: InteractionDesignSpec, sampling: SamplingSpec, plant: Plant, design: ControllerDesign
+) -> SwitchedSystem:
+    """Assemble every mode of the sampled loop.
+
+    One mode for each controller, delay and corner of the ranges of stiffness, damping and actuator.
+    The map is affine in stiffness, damping, ``Km``, ``E`` and ``s``, each for itself, so it is a
+    convex combination of the corners in the whole box. E and s are transcendental: both are
+    enclosed, and so they have ranges even where gain and time constant are known.
+
+    Parameters
+    ----------
+    spec : InteractionDesignSpec
+        With the name, the rules of switching and what is said of contact.
+    sampling : SamplingSpec
+        Its processor.
+    plant : Plant
+        Actuator and environments.
+    design : ControllerDesign
+        Gains that ship.
+
+    Raises
+    ------
+    AssemblyError
+        If something about the spec is not modelled in the sampled loop.
+    """
+    _check_modelled(spec, plant, design)
+    period = sampling.period.exact
+    laws = {
+        controller.name: SampledAdmittance.of(controller.law, period, sampling.admittance)
+        for controller in design.controllers
+        if isinstance(controller.law, Admittance)
+    }
+    ranges = plant.actuator_ranges or ActuatorRanges(
+        Interval.point(plant.actuator.gain), Interval.point(plant.actuator.time_constant)
+    )
+    tau = ranges.time_constant
+    frame = Frame(
+        period,
+        SampledMotion.of(design.motion, period),
+        any(law.a is not None for law in laws.values()),
+        sampling.delay[1],
+        tau.nominal if tau.low == tau.high else None,
+    )
+    if frame.has_inertia and any(law.a is None for law in laws.values()):
+        raise AssemblyError(
+            "some impedance controllers have a virtual inertia and some have none, so they share "
+            "no state",
+            remedy="give all impedance controllers a virtual inertia Mt > 0, or none of them",
+            at=("controllers",),
+        )
+    motor = motor_axes(ranges, period)
+    parts = {
+        controller.name: tuple(
+            _modes(frame, laws[controller.name], sampling.delay, controller, plant, motor)
+        )
+        for controller in design.controllers
+    }
+    touched = [
+        e for e in plant.environments if any(e.name in c.contacts for c in design.controllers)
+    ]
+    springs = all(interval_is_zero(damping_of(e)) for e in touched)
+    groups = {key: tuple(Corner(mode.name) for mode in part) for key, part in parts.items()}
+    contact = None
+    if spec.contact != "kept" and springs:
+        contact = Contact(tuple(_free_modes(frame, laws, sampling.delay, motor)))
+    return SwitchedSystem(
+        spec.name,
+        Time.DISCRETE,
+        frame.states,
+        tuple(chain.from_iterable(parts.values())),
+        assume_sampled(spec, sampling, ranges, frame.motion, laws, design, springs=springs),
+        assemble_switching(spec.switching, groups, ()),
+        contact,
+        period,
+    )
+
+
+def motor_axes(ranges: ActuatorRanges, period: Fraction) -> tuple[Axis, ...]:
+    """Return Km, ``E = exp(-T/tau)`` and ``s = tau (1 - E)`` with the ends of their ranges.
+
+    Both rise with tau: the derivative of s is ``1 - (1 + x) exp(-x)`` at ``x = T/tau``, positive.
+    Where tau is known, s is affine in E and no axis of its own.
+
+    Parameters
+    ----------
+    ranges : ActuatorRanges
+        Of gain and time constant.
+    period : Fraction
+        In s.
+    """
+    tau = ranges.time_constant
+    below, above = exponential_between(-period / tau.low), exponential_between(-period / tau.high)
+    axes = Axis("Km", ranges.gain), Axis("E", Interval(below[0], below[0], above[1]))
+    if tau.low == tau.high:
+        return axes
+    lowest, highest = tau.low * (1 - below[1]), tau.high * (1 - above[0])
+    return *axes, Axis("s", Interval(lowest, lowest, highest))
+
+
+def _modes(
+    frame: Frame,
+    law: SampledAdmittance,
+    delays: tuple[int, int],
+    controller: Controller,
+    plant: Plant,
+    motor: tuple[Axis, ...],
+) -> Iterator[Mode]:
+    for contact in controller.contacts:
+        environment = plant.environment(contact)
+        axes = (
+            Axis("k", environment.stiffness),
+            Axis("b", damping_of(environment)),
+            *motor,
+        )
+        for delay in range(delays[0], delays[1] + 1):
+            name = _name(controller.name, contact, delay, delays)
+            for label, rows in box_corners(axes, partial(frame.rows, law, delay), name):
+                yield Mode(f"{name}/{label}" if label else name, RationalMatrix.from_rows(rows))
+
+
+def _free_modes(
+    frame: Frame,
+    laws: Mapping[str, SampledAdmittance],
+    delays: tuple[int, int],
+    motor: tuple[Axis, ...],
+) -> Iterator[Mode]:
+    for controller, law in laws.items():
+        for delay in range(delays[0], delays[1] + 1):
+            name = _name(controller, "free", delay, delays)
+            for label, rows in box_corners(motor, partial(frame.rows, law, delay), name):
+                yield Mode(f"{name}/{label}" if label else name, RationalMatrix.from_rows(rows))
+
+
+def _name(controller: str, contact: str, delay: int, delays: tuple[int, int]) -> str:
+    late = f"/delay-{delay}" if delays[0] < delays[1] else ""
+    return f"{controller}/{contact}{late}"
+
+
+def damping_of(environment: Environment) -> Interval:
+    """Return the range of the damping beside the spring; zero for a spring."""
+    names = environment.law.parameters()
+    return environment.ranges[names.index("b")] if "b" in names else Interval.point(Fraction(0))
+
+
+def interval_is_zero(interval: Interval) -> bool:
+    """Tell whether an interval holds zero alone."""
+    return interval.low == 0 == interval.high
+
+
+def _check_modelled(spec: InteractionDesignSpec, plant: Plant, design: ControllerDesign) -> None:
+    """Refuse what the sampled loop does not model, at its place in the spec."""
+    for at, what, remedy in _not_modelled(spec, plant, design):
+        raise AssemblyError(f"in the sampled loop, {what}: not modelled", remedy=remedy, at=at)
+
+
+def _not_modelled(
+    spec: InteractionDesignSpec, plant: Plant, design: ControllerDesign
+) -> Iterator[tuple[tuple[str, ...], str, str]]:
+    """Yield place, fault and remedy."""
+    for controller in design.controllers:
+        if not isinstance(controller.law, Admittance):
+            what = f"{controller.name} is a {controller.law.name} controller"
+            at = ("controllers", controller.name, "type")
+            yield at, what, "use impedance controllers, or leave sampling out"
+    for name, written in spec.controllers.items():
+        if written.type == "impedance" and (written.Mt.ranged or written.Bt.ranged):
+            what = f"the gains of {name} have ranges"
+            yield ("controllers", name), what, "give nominal gains only, or leave sampling out"
+    for environment in plant.environments:
+        if environment.law.remembers:
+            remedy = "use elastic or kelvin-voigt environments, or leave sampling out"
+            yield ("environments", environment.name), f"{environment.name} remembers", remedy
+    if plant.given_loop is not None:
+        what = "the spec states the closed motion loop in continuous time"
+        yield ("motion_loop", "transfer_function"), what, "leave transfer_function or sampling out"
+    if next(iter(spec.switching.dwell_times()), None) is not None:
+        what = "the rules of switching have dwell times in s"
+        yield ("switching",), what, "leave them out, or sampling"

@@ -17,6 +17,7 @@ from nrs_design.proof.evidence import (
     BlockTriangular,
     CommonPolynomial,
     CommonQuadratic,
+    ConewiseQuadratic,
     ModePolynomial,
     ModeQuadratic,
     NoCommonQuadratic,
@@ -145,6 +146,47 @@ def _common_quadratic(system: SwitchedSystem, item: CommonQuadratic) -> bool:
             *(decrease(m.A.fractions(), item.Q, item.rate, system.time) for m in system.modes),
         )
     )
+
+
+def _conewise_quadratic(system: SwitchedSystem, item: ConewiseQuadratic) -> bool:
+    """The conditions as the class states them, in fractions."""
+    contact, Q, rate = system.contact, [list(row) for row in item.Q], item.rate
+    if contact is None or not is_rate(rate, system.time) or min(item.multipliers, default=0) < 0:
+        return False
+    if len(Q) != system.order:
+        return False
+    inner = [row[:-1] for row in Q[:-1]]
+    last = [[Fraction(int(i == len(Q) - 1))] for i in range(len(Q))]
+    forms = [Q]
+    forms += [decrease(m.A.fractions(), Q, rate, system.time) for m in system.modes]
+    if system.time is Time.CONTINUOUS:
+        pairs = [(F.A.fractions(), q.fractions()) for F in contact.free for q in contact.pulls]
+        if len(pairs) != len(item.multipliers):
+            return False
+        for mode in contact.free:
+            block = [row[:-1] for row in mode.A.fractions()[:-1]]
+            forms.append(decrease(block, inner, rate, system.time))
+        for (F, q), multiplier in zip(pairs, item.multipliers, strict=True):
+            product_ = times(last, q)
+            lag = (multiplier, product_), (multiplier, transpose(product_))
+            forms.append(combine((1, decrease(F, Q, rate, system.time)), *lag))
+        return all(is_definite(form) for form in forms)
+    if contact.pulls or len(item.multipliers) != 1:
+        return False
+
+    def shrinks(before: Rows, A: Rows, after: Rows) -> Rows:
+        return combine((rate**2, before), (-1, times(transpose(A), times(after, A))))
+
+    for mode in system.modes:
+        A = mode.A.fractions()
+        crossing = times(last, [A[-1]])
+        weight = item.multipliers[0]
+        lost = (weight, crossing), (weight, transpose(crossing))
+        forms.append(combine((1, shrinks(Q, A[:-1], inner)), *lost))
+    for mode in contact.free:
+        A = [row[:-1] for row in mode.A.fractions()]
+        forms += [shrinks(inner, A[:-1], inner), shrinks(inner, A, Q)]
+    return all(is_definite(form) for form in forms)
 
 
 def _common_polynomial(system: SwitchedSystem, item: CommonPolynomial) -> bool:
@@ -466,6 +508,7 @@ def restrict(system: SwitchedSystem, block: tuple[int, ...]) -> SwitchedSystem:
 
 _ORACLES = {
     CommonQuadratic: _common_quadratic,
+    ConewiseQuadratic: _conewise_quadratic,
     CommonPolynomial: _common_polynomial,
     NoCommonQuadratic: _no_common_quadratic,
     ParameterQuadratic: _parameter_quadratic,

@@ -32,7 +32,7 @@ from nrs_design.spec import (
 from nrs_design.switched.assemble import assemble, assemble_matrices, has_ranges
 
 if TYPE_CHECKING:
-    from nrs_design.design.evidence import DesignEvidence
+    from nrs_design.design.analysis import DesignAnalysis
     from nrs_design.models.robot import Robot
 
 Progress = Callable[[str], None]
@@ -175,7 +175,7 @@ def run_design(loaded: LoadedSpec) -> Designed | None:
         return Designed(loaded, spec, plant, design_controllers(spec, plant))
 
 
-def run_evidence(designed: Designed) -> DesignEvidence:
+def run_analysis(designed: Designed) -> DesignAnalysis:
     """Compute what a design achieves.
 
     Raises
@@ -183,10 +183,10 @@ def run_evidence(designed: Designed) -> DesignEvidence:
     DesignError
         If a nominal loop is unstable, so that it has no margins.
     """
-    from nrs_design.design.evidence import examine_design
+    from nrs_design.design.analysis import analyze_design
 
     with placed(designed.loaded):
-        return examine_design(designed.spec, designed.plant, designed.design)
+        return analyze_design(designed.spec, designed.plant, designed.design)
 
 
 @dataclass(frozen=True, slots=True)

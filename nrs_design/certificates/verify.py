@@ -16,7 +16,7 @@ from typing import Any, NoReturn
 from nrs_design.certificates.certificate import FORMER
 from nrs_design.certificates.prove import (
     Verification,
-    check,
+    check_document,
     confirmed,
     find_altered,
     held_system,
@@ -100,7 +100,7 @@ def _verify(
         for field in fields(SwitchedSystem):
             if getattr(held, field.name) != getattr(system, field.name):
                 return Verification(None, f"its field {field.name!r} is not that of the spec")
-    return check(document, system)
+    return check_document(document, system)
 
 
 def read_document(path: Path) -> dict[str, Any]:

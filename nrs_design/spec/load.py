@@ -19,8 +19,8 @@ from nrs_design.spec.document import (
     Position,
     Scalar,
     parse_document,
-    read_document,
-    read_text,
+    parse_with_faults,
+    read_source,
     to_data,
 )
 from nrs_design.spec.faults import did_you_mean, file_faults, place_of
@@ -30,7 +30,7 @@ from nrs_design.spec.switched_system import SwitchedSystemSpec
 
 Spec = InteractionDesignSpec | SwitchedSystemSpec | RobotSpec
 
-KINDS: dict[str, type[Spec]] = {
+SPEC_KINDS: dict[str, type[Spec]] = {
     "interaction-design": InteractionDesignSpec,
     "switched-system": SwitchedSystemSpec,
     "robot": RobotSpec,
@@ -90,8 +90,8 @@ def read_spec(path: str | os.PathLike[str]) -> LoadedSpec:
         With path, line, column, message and remedy, if anything about the file is wrong.
     """
     file = Path(path)
-    _, text = read_text(file)
-    root, syntax = read_document(text, file)
+    _, text = read_source(file)
+    root, syntax = parse_with_faults(text, file)
     spec = _validate(root, syntax, file)
     return LoadedSpec(file, hash_meaning(to_data(root)), text, spec, root)
 
@@ -116,7 +116,7 @@ def parse_spec(text: str, path: Path | None = None) -> Spec:
     SpecError
         With line, column, message and remedy.
     """
-    return _validate(*read_document(text, path), path)
+    return _validate(*parse_with_faults(text, path), path)
 
 
 def hash_meaning(said: Data) -> str:
@@ -132,7 +132,7 @@ def hash_meaning(said: Data) -> str:
 
 def _validate(root: Node, syntax: tuple[Fault, ...], path: Path | None) -> Spec:
     found: tuple[Fault, ...] = ()
-    model = KINDS[_kind_of(root, path, syntax)]
+    model = SPEC_KINDS[_kind_of(root, path, syntax)]
     try:
         spec = model.model_validate(to_data(root))
     except ValidationError as error:
@@ -166,10 +166,10 @@ def _kind_of(root: Node, path: Path | None, syntax: tuple[Fault, ...]) -> str:
                 path=path,
                 remedy="name the spec that it is for",
             )
-        raise refuse("`kind` is missing", f"add `kind: ` with one of {', '.join(KINDS)}", root)
+        raise refuse("`kind` is missing", f"add `kind: ` with one of {', '.join(SPEC_KINDS)}", root)
     if not isinstance(kind, Scalar):
         raise refuse("kind: expected a single text", "write one value", kind)
-    if kind.text not in KINDS:
+    if kind.text not in SPEC_KINDS:
         message = f"kind: {quoted(kind.text)} is not known"
-        raise refuse(message, did_you_mean(kind.text, KINDS), kind)
+        raise refuse(message, did_you_mean(kind.text, SPEC_KINDS), kind)
     return kind.text

@@ -7,7 +7,7 @@ from typing import Any
 from pydantic import BaseModel
 
 from nrs_design.printable import json_text
-from nrs_design.spec.load import KINDS
+from nrs_design.spec.load import SPEC_KINDS
 
 DIALECT = "http://json-schema.org/draft-07/schema#"
 _EXCLUSIVE = {
@@ -39,7 +39,7 @@ def json_schema() -> dict[str, Any]:
     """
     definitions: dict[str, Any] = {}
     choices = []
-    for kind, model in KINDS.items():
+    for kind, model in SPEC_KINDS.items():
         definitions |= _definitions(model)
         choices.append(_choice(kind, model))
     return {
@@ -48,7 +48,9 @@ def json_schema() -> dict[str, Any]:
         "description": "An interaction design or a switched system, *.nrs.yaml",
         "type": "object",
         "required": ["kind"],
-        "properties": {"kind": {"enum": list(KINDS), "description": "what this file describes"}},
+        "properties": {
+            "kind": {"enum": list(SPEC_KINDS), "description": "what this file describes"}
+        },
         "allOf": choices,
         "definitions": dict(sorted(definitions.items())),
     }

@@ -79,6 +79,8 @@ def certify(
         )
     simple = system.switching.is_arbitrary and system.is_uniform
     merged = merge_equal_modes(system) if simple else system
+    # A contact that is lost is a matter of the whole state.
+    simple = simple and system.contact is None
     blocks = triangular_blocks(merged) if simple else (tuple(range(system.order)),)
     if len(blocks) == 1:
         result = _climb(merged, method, limits, allowance, progress)

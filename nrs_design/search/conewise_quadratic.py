@@ -7,17 +7,23 @@ the block of y are filled up to the order of the others.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
+from fractions import Fraction
 
 import numpy as np
 from numpy.typing import NDArray
 
+from nrs_design.proof.evidence import ConewiseQuadratic
 from nrs_design.proof.system import Contact, Time
-from nrs_design.search.allowance import Allowance, Cost
+from nrs_design.search.allowance import Allowance, Cost, NotAffordableError
 from nrs_design.search.balance import mean_norm_coordinates
+from nrs_design.search.candidates import NO_MARGIN, OUT_OF_RANGE, Candidate, Candidates
+from nrs_design.search.decay import fastest_first
 from nrs_design.search.family import Family, to_floats
 from nrs_design.search.interior_point import Cones, maximize_last, step_cost
 from nrs_design.search.lmi import time_unit
+from nrs_design.search.rounding import claims, digits, rate_at, unscale
 from nrs_design.search.sdp import pack, symmetric_basis
 
 Array = NDArray[np.float64]
@@ -68,11 +74,72 @@ class Motions:
 
 
 @dataclass(frozen=True)
-class Candidate:
+class Solution:
     """A quadratic function and its multipliers, in floating point."""
 
     Q: Array
     multipliers: Array
+
+
+def search_conewise(family: Family) -> Candidates[ConewiseQuadratic]:
+    """Search for a function for contact and free motion; then, if asked to, raise the rate."""
+    system = family.system
+    assert system.contact is not None  # the ladder
+    if not np.isfinite(family.limit):
+        return OUT_OF_RANGE
+    motions = Motions.of(family, system.contact)
+    T = separating_coordinates(motions)
+    own = motions.transformed(T)
+    if not all(np.isfinite(part).all() for part in (T, own.contact, own.free, own.pulls)):
+        return OUT_OF_RANGE
+    solution = find_conewise_quadratic(
+        own, rate_at(0.0, family.limit, system.time), family.allowance
+    )
+    if solution is None:
+        return NO_MARGIN
+    if family.optimize_rate:
+        yield from _fastest(family, own, T)
+    for claim in claims(1.0, best_rate(own, solution), system.time):
+        for evidence in _roundings(family, solution, T, claim):
+            yield Candidate(evidence)
+    return None
+
+
+def _fastest(family: Family, own: Motions, T: Array) -> Iterator[Candidate[ConewiseQuadratic]]:
+    """Yield functions for the largest rates that fit into the time."""
+
+    def solve(rate: float, allowance: Allowance) -> Solution | None:
+        return find_conewise_quadratic(own, rate, allowance)
+
+    try:
+        for solution, claim in fastest_first(
+            solve, family.limit, family.system.time, family.allowance
+        ):
+            for evidence in _roundings(family, solution, T, claim):
+                yield Candidate(evidence, "found with the largest decay rate")
+    except NotAffordableError:
+        return
+
+
+def _roundings(
+    family: Family, solution: Solution, T: Array, claim: Fraction
+) -> Iterator[ConewiseQuadratic]:
+    """Yield roundings of a solution in coordinates ``x = T z`` of the family.
+
+    A multiplier belongs to the product of the deflection and a force (in continuous time), or of
+    the deflection and its next value; its scale changes with that of the deflection.
+    """
+    inverse = np.linalg.inv(T)
+    Q = inverse.T @ solution.Q @ inverse
+    exponent = int(np.frexp(np.abs(Q).max())[1])
+    times = 1 if family.system.time is Time.CONTINUOUS else 2
+    scaled = np.ldexp(solution.multipliers / T[-1, -1] ** times, -exponent)
+    shift = -times * int(family.exponents[-1])
+    for bits in digits():
+        rows, log2 = unscale(np.ldexp(Q, -exponent), family.exponents, bits)
+        whole = Fraction(2) ** (log2 + shift)
+        multipliers = tuple(round(max(Fraction(float(m)), Fraction(0)) * whole) for m in scaled)
+        yield ConewiseQuadratic(rows, max(log2, 0), claim, multipliers)
 
 
 def separating_coordinates(motions: Motions) -> Array:
@@ -88,7 +155,7 @@ def separating_coordinates(motions: Motions) -> Array:
 
 def find_conewise_quadratic(
     motions: Motions, rate: float, allowance: Allowance | None = None
-) -> Candidate | None:
+) -> Solution | None:
     """Look for a function that decreases at a rate in contact and free.
 
     Parameters
@@ -102,7 +169,7 @@ def find_conewise_quadratic(
 
     Returns
     -------
-    Candidate or None
+    Solution or None
         With positive margins in floating point.
 
     Raises
@@ -144,22 +211,22 @@ def find_conewise_quadratic(
     if not y[-1] > 0:
         return None
     Q = np.asarray(np.tensordot(y[: len(basis)], basis, axes=1))
-    return Candidate(Q, np.ldexp(y[len(basis) : -1], -unit))
+    return Solution(Q, np.ldexp(y[len(basis) : -1], -unit))
 
 
-def best_rate(motions: Motions, candidate: Candidate) -> float:
-    """Return the rate that a candidate shows: alpha in 1/s, or rho per step.
+def best_rate(motions: Motions, solution: Solution) -> float:
+    """Return the rate that a solution shows: alpha in 1/s, or rho per step.
 
     Parameters
     ----------
     motions : Motions
         For which it was found.
-    candidate : Candidate
+    solution : Solution
         With a positive definite Q.
     """
-    continuous, Q = motions.time is Time.CONTINUOUS, candidate.Q
+    continuous, Q = motions.time is Time.CONTINUOUS, solution.Q
     forms = _decreases(motions, Q[None], 0.0)[0]
-    for (where, form), multiplier in zip(_separations(motions), candidate.multipliers, strict=True):
+    for (where, form), multiplier in zip(_separations(motions), solution.multipliers, strict=True):
         forms[where] += multiplier * form
     full, inner = (
         np.linalg.inv(np.linalg.cholesky(Q)),

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from fractions import Fraction
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 from nrs_design.proof.text import exact_text
 from nrs_design.spec import kinds
@@ -13,7 +13,6 @@ from nrs_design.spec.environment import EnvironmentSpec, unit_at_pivot
 from nrs_design.spec.gain_fields import GainSpec
 from nrs_design.spec.goals import GoalsSpec
 from nrs_design.spec.interaction import InteractionDesignSpec
-from nrs_design.spec.load import Spec
 from nrs_design.spec.model import SpecModel
 from nrs_design.spec.motion import LimitsSpec
 from nrs_design.spec.parameters import ParameterSpec
@@ -24,6 +23,9 @@ from nrs_design.spec.robot import RobotSpec
 from nrs_design.spec.switched_system import SwitchedSystemSpec
 from nrs_design.spec.switching import SwitchingSpec
 from nrs_design.spec.units import BASE_UNITS
+
+if TYPE_CHECKING:
+    from nrs_design.spec.load import Spec
 
 MAX_LISTED = 20
 

@@ -7,6 +7,7 @@ import json
 import os
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from pydantic import ValidationError
 
@@ -24,17 +25,15 @@ from nrs_design.spec.document import (
     to_data,
 )
 from nrs_design.spec.faults import did_you_mean, file_faults, place_of
-from nrs_design.spec.interaction import InteractionDesignSpec
-from nrs_design.spec.robot import RobotSpec
-from nrs_design.spec.switched_system import SwitchedSystemSpec
 
-Spec = InteractionDesignSpec | SwitchedSystemSpec | RobotSpec
+if TYPE_CHECKING:
+    from nrs_design.spec.interaction import InteractionDesignSpec
+    from nrs_design.spec.robot import RobotSpec
+    from nrs_design.spec.switched_system import SwitchedSystemSpec
 
-SPEC_KINDS: dict[str, type[Spec]] = {
-    "interaction-design": InteractionDesignSpec,
-    "switched-system": SwitchedSystemSpec,
-    "robot": RobotSpec,
-}
+    Spec = InteractionDesignSpec | SwitchedSystemSpec | RobotSpec
+
+SPEC_KINDS = ("interaction-design", "switched-system", "robot")
 
 
 @dataclass(frozen=True)
@@ -119,6 +118,21 @@ def parse_spec(text: str, path: Path | None = None) -> Spec:
     return _validate(*parse_with_faults(text, path), path)
 
 
+def model_of(kind: str) -> type[Spec]:
+    """Return the model of a kind of spec; a command pays only for the kind that it reads."""
+    if kind == "interaction-design":
+        from nrs_design.spec.interaction import InteractionDesignSpec
+
+        return InteractionDesignSpec
+    if kind == "robot":
+        from nrs_design.spec.robot import RobotSpec
+
+        return RobotSpec
+    from nrs_design.spec.switched_system import SwitchedSystemSpec
+
+    return SwitchedSystemSpec
+
+
 def hash_meaning(said: Data) -> str:
     """Return the SHA-256 of what a document says (as `to_data` gives it), in hexadecimal.
 
@@ -132,7 +146,7 @@ def hash_meaning(said: Data) -> str:
 
 def _validate(root: Node, syntax: tuple[Fault, ...], path: Path | None) -> Spec:
     found: tuple[Fault, ...] = ()
-    model = SPEC_KINDS[_kind_of(root, path, syntax)]
+    model = model_of(_kind_of(root, path, syntax))
     try:
         spec = model.model_validate(to_data(root))
     except ValidationError as error:

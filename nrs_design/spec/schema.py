@@ -7,7 +7,7 @@ from typing import Any
 from pydantic import BaseModel
 
 from nrs_design.printable import json_text
-from nrs_design.spec.load import SPEC_KINDS
+from nrs_design.spec.load import SPEC_KINDS, model_of
 
 DIALECT = "http://json-schema.org/draft-07/schema#"
 _EXCLUSIVE = {
@@ -39,7 +39,8 @@ def json_schema() -> dict[str, Any]:
     """
     definitions: dict[str, Any] = {}
     choices = []
-    for kind, model in SPEC_KINDS.items():
+    for kind in SPEC_KINDS:
+        model = model_of(kind)
         definitions |= _definitions(model)
         choices.append(_choice(kind, model))
     return {

@@ -14,8 +14,8 @@ from nrs_design.proof.evidence.fields import (
     Matrix,
     matrix_fields,
     rate_words,
+    read_dyadic,
     read_integer,
-    read_matrix,
     read_ratio,
 )
 from nrs_design.proof.exact import (
@@ -185,7 +185,7 @@ class ConewiseQuadratic(AbstractEvidence):
     @classmethod
     def from_fields(cls, fields: Mapping[str, Any], system: SwitchedSystem) -> Self:
         """Read Q, the rate and the multipliers."""
-        Q, denominator_log2 = read_matrix(fields["Q"])
+        Q, denominator_log2 = read_dyadic(fields["Q"])
         multipliers = tuple(read_integer(entry) for entry in fields["multipliers"])
         return cls(Q, denominator_log2, read_ratio(fields["rate"]), multipliers)
 

@@ -23,6 +23,7 @@ from nrs_design.proof.system import SwitchedSystem
 KINDS: tuple[type[AbstractEvidence], ...] = (
     CommonQuadratic,
     CommonPolynomial,
+    ConewiseQuadratic,
     ModeQuadratic,
     ModePolynomial,
     NoCommonQuadratic,

@@ -20,6 +20,7 @@ from nrs_design.proof.system import SwitchedSystem, Switching
 from nrs_design.proof.text import exact_text
 
 WHILE_KEPT = "This holds as long as contact is kept, the environment pulling as it pushes."
+GROWN_IN_CONTACT = "This growth is that in kept contact, the environment pulling as it pushes."
 
 
 class Shows(StrEnum):
@@ -87,7 +88,8 @@ class AbstractEvidence(ABC):
         if system.sample_time is not None and rate is not None:
             said.append(_in_seconds(rate, system.sample_time))
         if system.contact is not None and not self.covers_lost_contact:
-            said.append(WHILE_KEPT)
+            unstable = self.shows is Shows.INSTABILITY
+            said.append(GROWN_IN_CONTACT if unstable else WHILE_KEPT)
         return " ".join(said)
 
     @abstractmethod

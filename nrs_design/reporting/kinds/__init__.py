@@ -10,6 +10,7 @@ from nrs_design.proof.evidence import (
     BlockTriangular,
     CommonPolynomial,
     CommonQuadratic,
+    ConewiseQuadratic,
     ModePolynomial,
     ModeQuadratic,
     NoCommonQuadratic,
@@ -24,6 +25,7 @@ from nrs_design.reporting.kinds.abstract import AbstractKindPage
 from nrs_design.reporting.kinds.block_triangular import BlockTriangularPage
 from nrs_design.reporting.kinds.common_polynomial import CommonPolynomialPage
 from nrs_design.reporting.kinds.common_quadratic import CommonQuadraticPage
+from nrs_design.reporting.kinds.conewise_quadratic import ConewiseQuadraticPage
 from nrs_design.reporting.kinds.mode_polynomial import ModePolynomialPage
 from nrs_design.reporting.kinds.mode_quadratic import ModeQuadraticPage
 from nrs_design.reporting.kinds.no_common_quadratic import NoCommonQuadraticPage
@@ -37,6 +39,7 @@ KINDS: Mapping[type[AbstractEvidence], type[AbstractKindPage[Any]]] = {
     BlockTriangular: BlockTriangularPage,
     CommonPolynomial: CommonPolynomialPage,
     CommonQuadratic: CommonQuadraticPage,
+    ConewiseQuadratic: ConewiseQuadraticPage,
     ModePolynomial: ModePolynomialPage,
     ModeQuadratic: ModeQuadraticPage,
     NoCommonQuadratic: NoCommonQuadraticPage,

@@ -166,6 +166,43 @@ class Contact:
 
 
 @dataclass(frozen=True, slots=True)
+class Channel:
+    """A disturbance d that acts on the state: ``x' = A x + B d``, or ``x+ = A x + B d``.
+
+    Parameters
+    ----------
+    name, unit : str
+        What it is, such as ``velocity command`` in ``rad/s``.
+    bound : Fraction
+        Its size is at most this, at every time.
+    columns : tuple of RationalMatrix, each of shape (n, 1)
+        The B of every mode, and after them those of the free modes.
+    """
+
+    name: str
+    unit: str
+    bound: Fraction
+    columns: tuple[RationalMatrix, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Output:
+    """A quantity that is one of some rows times the state, and within a range any mixture of them.
+
+    Parameters
+    ----------
+    name, unit : str
+        What it is, such as ``force`` in ``N*m``.
+    rows : tuple of RationalMatrix, each of shape (1, n)
+        At the corners of its ranges. In free motion the deflection counts as zero.
+    """
+
+    name: str
+    unit: str
+    rows: tuple[RationalMatrix, ...]
+
+
+@dataclass(frozen=True, slots=True)
 class SwitchedSystem:
     """A linear switched system.
 
@@ -187,6 +224,10 @@ class SwitchedSystem:
         How contact is lost; None where it is kept, or where there is none to lose.
     sample_time : Fraction or None
         Time from one step to the next in s, in discrete time, if there is such a time.
+    channels : tuple of Channel
+        Disturbances, each acting alone; statements about stability are about none of them.
+    outputs : tuple of Output
+        What bounds can be stated for.
     """
 
     name: str
@@ -197,6 +238,24 @@ class SwitchedSystem:
     switching: Switching = ARBITRARY
     contact: Contact | None = None
     sample_time: Fraction | None = None
+    channels: tuple[Channel, ...] = ()
+    outputs: tuple[Output, ...] = ()
+
+    def with_modes(
+        self, modes: tuple[Mode, ...], states: tuple[str, ...], switching: Switching
+    ) -> SwitchedSystem:
+        """Return other modes for the same signals; contact, channels and outputs are left behind.
+
+        Parameters
+        ----------
+        modes : tuple of Mode
+            In the place of these.
+        states : tuple of str
+            Their states.
+        switching : Switching
+            Their rules.
+        """
+        return SwitchedSystem(self.name, self.time, states, modes, self.assumptions, switching)
 
     @property
     def order(self) -> int:
@@ -248,6 +307,7 @@ class SwitchedSystem:
             or self._find_odd_ends(names)
             or self._find_odd_contact(names)
             or self._find_odd_sample_time()
+            or self._find_odd_channel()
         )
 
     def _find_odd_stay(self, names: set[str]) -> str | None:
@@ -299,6 +359,21 @@ class SwitchedSystem:
         if self.time is Time.CONTINUOUS or self.sample_time <= 0:
             return "the time of a step is not positive, or there are no steps"
         return None
+
+    def _find_odd_channel(self) -> str | None:
+        n, free = self.order, () if self.contact is None else self.contact.free
+        sized = [(c.name, M, (n, 1)) for c in self.channels for M in c.columns]
+        sized += [(o.name, M, (1, n)) for o in self.outputs for M in o.rows]
+        for name, M, shape in sized:
+            if not M.is_well_formed or M.shape != shape:
+                return f"{name} does not have the size of the state"
+        for channel in self.channels:
+            if channel.bound <= 0 or len(channel.columns) != len(self.modes) + len(free):
+                return f"{channel.name} has no positive bound, or not one column for every mode"
+        if not all(output.rows for output in self.outputs):
+            return "an output has no rows"
+        names = [*(c.name for c in self.channels), *(o.name for o in self.outputs)]
+        return "two disturbances or outputs have one name" if len(set(names)) < len(names) else None
 
 
 def _is_motion(A: RationalMatrix, order: int, time: Time) -> bool:

@@ -16,9 +16,11 @@ from nrs_design.proof.exact import bit_length
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.system import (
     ARBITRARY,
+    Channel,
     Contact,
     FixedParameter,
     Mode,
+    Output,
     Reset,
     Stay,
     SwitchedSystem,
@@ -49,6 +51,7 @@ def system_fields(system: SwitchedSystem) -> Fields:
         "modes": _mode_fields(system.modes),
         "switching": _switching_fields(system.switching),
         **({} if system.contact is None else {"contact": _contact_fields(system.contact)}),
+        **_channel_fields(system),
         **({} if system.sample_time is None else {"sample_time": str(system.sample_time)}),
         "assumptions": list(system.assumptions),
     }
@@ -84,6 +87,23 @@ def read_system(name: str, fields: Mapping[str, Any]) -> SwitchedSystem:
         assumptions=_read_texts(fields["assumptions"]),
         switching=_read_switching(fields["switching"]),
         contact=contact,
+        channels=tuple(
+            Channel(
+                read_text(item["name"]),
+                read_text(item["unit"]),
+                read_ratio(item["bound"]),
+                tuple(_read_matrix(column) for column in _read_list(item["columns"])),
+            )
+            for item in _read_list(fields.get("channels", []))
+        ),
+        outputs=tuple(
+            Output(
+                read_text(item["name"]),
+                read_text(item["unit"]),
+                tuple(_read_matrix(row) for row in _read_list(item["rows"])),
+            )
+            for item in _read_list(fields.get("outputs", []))
+        ),
         sample_time=read_ratio(fields["sample_time"]) if "sample_time" in fields else None,
     )
 
@@ -111,6 +131,24 @@ def _mode_fields(modes: Sequence[Mode]) -> list[Fields]:
 
 def _read_modes(value: object) -> tuple[Mode, ...]:
     return tuple(Mode(read_text(item["name"]), _read_matrix(item)) for item in _read_list(value))
+
+
+def _channel_fields(system: SwitchedSystem) -> Fields:
+    """Return disturbances and outputs, if there are any."""
+    channels = [
+        {
+            "name": channel.name,
+            "unit": channel.unit,
+            "bound": str(channel.bound),
+            "columns": [_matrix_fields(column) for column in channel.columns],
+        }
+        for channel in system.channels
+    ]
+    outputs = [
+        {"name": item.name, "unit": item.unit, "rows": [_matrix_fields(row) for row in item.rows]}
+        for item in system.outputs
+    ]
+    return ({"channels": channels} if channels else {}) | ({"outputs": outputs} if outputs else {})
 
 
 def _contact_fields(contact: Contact) -> Fields:

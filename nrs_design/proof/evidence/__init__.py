@@ -10,6 +10,7 @@ from nrs_design.proof.evidence.block_triangular import BlockTriangular
 from nrs_design.proof.evidence.common_polynomial import CommonPolynomial
 from nrs_design.proof.evidence.common_quadratic import CommonQuadratic
 from nrs_design.proof.evidence.conewise_quadratic import ConewiseQuadratic
+from nrs_design.proof.evidence.invariant_ellipsoid import InvariantEllipsoid
 from nrs_design.proof.evidence.mode_polynomial import ModePolynomial
 from nrs_design.proof.evidence.mode_quadratic import ModeQuadratic
 from nrs_design.proof.evidence.no_common_quadratic import NoCommonQuadratic
@@ -24,6 +25,7 @@ KINDS: tuple[type[AbstractEvidence], ...] = (
     CommonQuadratic,
     CommonPolynomial,
     ConewiseQuadratic,
+    InvariantEllipsoid,
     ModeQuadratic,
     ModePolynomial,
     NoCommonQuadratic,
@@ -57,6 +59,7 @@ __all__ = [
     "CommonPolynomial",
     "CommonQuadratic",
     "ConewiseQuadratic",
+    "InvariantEllipsoid",
     "ModePolynomial",
     "ModeQuadratic",
     "NoCommonQuadratic",

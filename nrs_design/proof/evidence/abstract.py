@@ -29,6 +29,7 @@ class Shows(StrEnum):
     STABILITY = "stability"
     INSTABILITY = "instability"
     NO_COMMON_QUADRATIC = "no common quadratic function"
+    BOUND = "a bound on an output"
 
 
 class AbstractEvidence(ABC):

@@ -180,4 +180,4 @@ def diagonal_block(system: SwitchedSystem, block: tuple[int, ...]) -> SwitchedSy
         for mode in system.modes
     )
     states = tuple(system.states[i] for i in block)
-    return replace(system, states=states, modes=modes, contact=None)
+    return system.with_modes(modes, states, system.switching)

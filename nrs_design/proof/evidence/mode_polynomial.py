@@ -164,7 +164,7 @@ def lift_system(system: SwitchedSystem, degree: int) -> SwitchedSystem:
     )
     states = tuple(f"z{k + 1}" for k in range(max(mode.A.shape[0] for mode in modes)))
     switching = replace(system.switching, resets=resets)
-    return replace(system, states=states, modes=modes, switching=switching, contact=None)
+    return system.with_modes(modes, states, switching)
 
 
 def _lift(A: RationalMatrix, degree: int) -> RationalMatrix:

@@ -74,8 +74,9 @@ def counting(calls, name, function):
 def test_a_gated_spec_is_built_once_and_optimized_once(tmp_path, monkeypatch, html):
     calls = calls_of(
         monkeypatch,
-        build_plant=("pipeline", "switched.assemble"),
-        optimize_impedance=("design.constrained", "design.analysis"),
+        # It is imported where it is called, so there is one place to look.
+        build_plant=("models.plant",),
+        optimize_impedance=("design.constrained", "design.laws.impedance"),
         design_controllers=("design.design",),
     )
     outcome = run_gate([SOFT_TISSUE], Files(tmp_path, html=html))
@@ -88,7 +89,7 @@ def test_functions_are_counted_wherever_they_are_used():
     """The count above looks into every module that could build a plant or optimize."""
     for name, places in (
         ("build_plant", {"pipeline", "switched/assemble", "models/plant"}),
-        ("optimize_impedance", {"design/constrained", "design/analysis", "design/impedance"}),
+        ("optimize_impedance", {"design/constrained", "design/laws/impedance", "design/impedance"}),
     ):
         package = ROOT / "nrs_design"
         using = {

@@ -9,6 +9,8 @@ from pathlib import Path
 
 import pytest
 
+from nrs_design.controllers.laws import LAWS as CONTROL
+from nrs_design.models.contact import LAWS as CONTACT
 from tests.support import ROOT
 
 PACKAGE = ROOT / "nrs_design"
@@ -166,6 +168,48 @@ def test_adding_is_cheap():
     most = {"controller law": 5, "environment law": 4, "figure": 2, "export format": 2}
     assert {what: counts[what] for what in most} == most
     assert len(re.findall(r"^\| `nrs_design/\S+` \|", text, re.MULTILINE)) == 6
+
+
+@pytest.mark.parametrize(
+    ("law", "file", "also"),
+    [
+        # The target of impedance control is listed, and doubted, by name.
+        ("Admittance", "impedance", {"spec/describe.py", "design/doubts.py"}),
+        ("ProportionalForce", "force", set()),
+        ("PositionControl", "position", set()),
+    ],
+)
+def test_a_control_law_is_known_to_the_files_of_the_table(law, file, also):
+    known = {
+        path.relative_to(PACKAGE).as_posix()
+        for path in FILES.values()
+        if {law, f"{file.capitalize()}ControllerSpec"} & names_in(path)
+        and path.parent.name != "reproduction"
+    }
+    assert known <= also | {
+        f"controllers/laws/{file}.py",
+        "controllers/laws/__init__.py",
+        "spec/controllers.py",
+        "spec/__init__.py",
+        f"design/laws/{file}.py",
+    }
+
+
+def test_nobody_asks_which_law_it_is():
+    """Laws of control and of contact, and what a spec says of them, are told apart by tables."""
+    specs = {name for name in names_in(FILES["nrs_design.spec.controllers"]) if "Spec" in name}
+    specs |= {name for name in names_in(FILES["nrs_design.spec.environment"]) if "Spec" in name}
+    laws = {law.__name__ for law in (*CONTROL.values(), *CONTACT.values())}
+    asked = [
+        (name, node.lineno)
+        for name, path in FILES.items()
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8")))
+        if isinstance(node, ast.Call)
+        and ast.unparse(node.func) in ("isinstance", "issubclass")
+        and (specs - {"SpecModel", "ProvenanceSpec", "GainSpec", "GoalsSpec"} | laws)
+        & {inner.id for inner in ast.walk(node.args[1]) if isinstance(inner, ast.Name)}
+    ]
+    assert not asked
 
 
 @pytest.mark.parametrize(

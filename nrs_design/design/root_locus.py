@@ -122,37 +122,6 @@ def design_pd(
     return PdDesign(zero, 1 / magnitude, angle, (pole, pole.conjugate()), wn)
 
 
-def close_motion_loop(
-    gain: float, time_constant: float, derivative_gain: float, zero: float
-) -> TransferFunction:
-    """Return G of thesis 6.1: actuator ``gain/(s (tau s + 1))`` under ``Kd (s + zero)``.
-
-    Parameters
-    ----------
-    gain, time_constant : float
-        Actuator, rad/s per unit of command and s.
-    derivative_gain, zero : float
-        Controller, units of command per rad/s and 1/s.
-
-    Returns
-    -------
-    TransferFunction
-        ``Kd Km (s + z) / (tau s^2 + (1 + Kd Km) s + Kd Km z)``.
-
-    Raises
-    ------
-    DesignError
-        If a parameter is not positive.
-    """
-    _check_positive(
-        gain=gain, time_constant=time_constant, derivative_gain=derivative_gain, zero=zero
-    )
-    loop_gain = derivative_gain * gain
-    return TransferFunction(
-        (loop_gain, loop_gain * zero), (time_constant, 1 + loop_gain, loop_gain * zero)
-    )
-
-
 def motion_loop_response(tf: TransferFunction) -> MotionLoopResponse:
     """Report poles, damping, overshoot and bandwidth of a stable closed loop of order >= 2.
 

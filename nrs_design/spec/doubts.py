@@ -35,10 +35,7 @@ def doubt_spec(spec: Spec) -> Iterator[Doubt]:
     if spec.kind != "interaction-design":
         return
     touched = {
-        contact
-        for controller in spec.controllers.values()
-        if controller.type != "position"
-        for contact in controller.contacts
+        contact for controller in spec.controllers.values() for contact in controller.contacts
     }
     for name in spec.environments:
         if name not in touched:

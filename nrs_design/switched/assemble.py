@@ -80,20 +80,15 @@ def has_ranges(spec: Spec) -> bool:
     if not (actuator.gain.fixed and actuator.time_constant.fixed):
         return True
     return any(not spec.environments[name].fixed for name in _touched(spec)) or any(
-        controller.Mt.ranged or controller.Bt.ranged
+        gain.ranged
         for controller in spec.controllers.values()
-        if controller.type == "impedance"
+        for gain in controller.gains().values()
     )
 
 
 def _touched(spec: InteractionDesignSpec) -> set[str]:
     """Names of the environments that some controller touches."""
-    return {
-        contact
-        for controller in spec.controllers.values()
-        if controller.type != "position"
-        for contact in controller.contacts
-    }
+    return {contact for controller in spec.controllers.values() for contact in controller.contacts}
 
 
 def assemble_matrices(spec: SwitchedSystemSpec, scale: Fraction = DECLARED) -> SwitchedSystem:

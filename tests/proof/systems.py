@@ -7,6 +7,7 @@ from functools import cache
 
 from nrs_design.controllers.laws import Admittance
 from nrs_design.models.contact import KelvinVoigt
+from nrs_design.models.motion_loop import Realization
 from nrs_design.proof.evidence import AbstractEvidence
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.system import (
@@ -20,7 +21,7 @@ from nrs_design.proof.system import (
     Time,
 )
 from nrs_design.search.certify import Limits, Method, certify
-from nrs_design.switched.close_loop import Realization, impedance_mode
+from nrs_design.switched.modes import velocity_mode
 
 Entry = int | str | Fraction
 Rows = Sequence[Sequence[Entry]]
@@ -96,7 +97,7 @@ def robot(Mt: str, contacts: Sequence[tuple[str, str]]) -> SwitchedSystem:
     )
     return family(
         *(
-            impedance_mode(
+            velocity_mode(
                 motion,
                 Admittance(Fraction(Mt), Fraction(Bt)),
                 KelvinVoigt(Fraction(k), Fraction(0)),

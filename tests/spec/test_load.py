@@ -19,7 +19,7 @@ from nrs_design.spec import (
     read_spec,
 )
 from nrs_design.spec.document import Node, parse_document, to_data
-from nrs_design.spec.load import KINDS, hash_meaning, model_of
+from nrs_design.spec.load import SPEC_KINDS, hash_meaning, model_of
 from tests.support import COMMUTING
 
 from .samples import FORCE, IMPEDANCE, SWITCHED, assert_inside, refusal
@@ -196,5 +196,5 @@ def test_every_name_at_the_door_is_there() -> None:
 
 
 def test_every_kind_has_its_model() -> None:
-    kinds = {kind: model_of(kind).model_fields["kind"].annotation for kind in KINDS}
-    assert kinds == {kind: Literal[kind] for kind in KINDS}
+    kinds = {kind: model_of(kind).model_fields["kind"].annotation for kind in SPEC_KINDS}
+    assert kinds == {kind: Literal[kind] for kind in SPEC_KINDS}

@@ -15,7 +15,8 @@ from nrs_design.errors import AssemblyError, DesignError, NrsDesignError
 from nrs_design.proof.bounds import nearly
 from nrs_design.proof.system import SwitchedSystem, Time
 from nrs_design.search.allowance import GIGABYTE
-from nrs_design.search.certification import Certification, Limits, Method
+from nrs_design.search.certification import Certification, Limits
+from nrs_design.search.method import Method
 from nrs_design.spec import LoadedSpec, read_spec
 
 if TYPE_CHECKING:

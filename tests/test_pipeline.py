@@ -9,7 +9,8 @@ from nrs_design import __version__
 from nrs_design.errors import AssemblyError
 from nrs_design.gating.run import Files, run_gate
 from nrs_design.pipeline import run_analysis, run_certification, run_design
-from nrs_design.search.certify import Limits, Method, Verdict
+from nrs_design.search.certify import Limits, Verdict
+from nrs_design.search.method import Method
 from nrs_design.spec import read_spec
 from tests.support import (
     COMMUTING,

@@ -26,6 +26,7 @@ STAGES = {"models", "design", "switched", "search"}
 DOORS = {
     "nrs_design.models.robot",
     "nrs_design.search.certification",
+    "nrs_design.search.method",
     "nrs_design.design.measures",
 }
 
@@ -137,6 +138,29 @@ def test_stages_are_known_to_the_pipeline_only(above):
         and not item.typing_only
     ]
     assert not inside
+
+
+def uses(name: str, word: str) -> bool:
+    """Whether the code of a module uses a name, as a function, an attribute or by importing it."""
+    return any(
+        word in (getattr(node, "id", None), getattr(node, "attr", None))
+        or (isinstance(node, ast.ImportFrom) and word in {alias.name for alias in node.names})
+        or (isinstance(node, ast.FunctionDef) and node.name == word)
+        for node in ast.walk(ast.parse(FILES[name].read_text(encoding="utf-8")))
+    )
+
+
+def test_a_search_proposes_and_never_checks():
+    """Evidence is checked in one place, where candidates are taken."""
+    searches = {name for name in FILES if floor(name) == "search"}
+    checking = {name for name in searches if uses(name, "find_fault")}
+    assert checking == {"nrs_design.search.certify", "nrs_design.search.fast_check"}
+    check = "nrs_design.search.fast_check"
+    assert {item.source for item in OURS if item.target == check} == {"nrs_design.search.certify"}
+    asking = {item.source for item in OURS if item.target == "nrs_design.search.certify"}
+    assert asking.isdisjoint(searches)
+    parts = ("find_unfit", "find_misfit", "find_indefinite")
+    assert {name for name in searches for part in parts if uses(name, part)} == {check}
 
 
 def test_the_reader_of_imports_sees_them():

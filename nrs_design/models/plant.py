@@ -11,6 +11,7 @@ from nrs_design.models.contact import LINEAR_LAWS
 from nrs_design.models.contact.environment import Environment
 from nrs_design.models.motion_loop import MotionLoop, close_motion_loop
 from nrs_design.spec import EnvironmentSpec, InteractionDesignSpec, RangedQuantity
+from nrs_design.spec.interval import Interval
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,6 +48,10 @@ class Plant:
     def environment(self, name: str) -> Environment:
         """Return the environment of that name; the spec guarantees that it exists."""
         return next(environment for environment in self.environments if environment.name == name)
+
+    def among(self, names: Collection[str]) -> tuple[Environment, ...]:
+        """Return the environments of these names, in the order of the spec."""
+        return tuple(environment for environment in self.environments if environment.name in names)
 
     def scaled(self, scale: Fraction, touched: Collection[str]) -> Plant:
         """Return the plant with the ranges of actuator and touched environments stretched.

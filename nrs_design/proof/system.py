@@ -159,10 +159,14 @@ class Contact:
         For an environment that could pull: forces ``q x`` at the corners of its ranges. While
         delta is positive and a force within these ranges is not, there is no force, and one of the
         free modes is in force. Empty for springs, whose force has the sign of the deflection.
+    required : bool
+        Stability must be shown through any loss of contact; otherwise a proof may take for granted
+        that contact is kept, and its claim says so.
     """
 
     free: tuple[Mode, ...]
     pulls: tuple[RationalMatrix, ...] = ()
+    required: bool = False
 
 
 @dataclass(frozen=True, slots=True)

@@ -155,12 +155,16 @@ def _contact_fields(contact: Contact) -> Fields:
     return {
         "free": _mode_fields(contact.free),
         "pulls": [_matrix_fields(row) for row in contact.pulls],
+        "required": contact.required,
     }
 
 
 def _read_contact(fields: Mapping[str, Any]) -> Contact:
     pulls = tuple(_read_matrix(item) for item in _read_list(fields["pulls"]))
-    return Contact(_read_modes(fields["free"]), pulls)
+    required = fields["required"]
+    if not isinstance(required, bool):
+        raise TypeError("whether the loss of contact must be covered is not true or false")
+    return Contact(_read_modes(fields["free"]), pulls, required)
 
 
 def _switching_fields(switching: Switching) -> Fields | str:

@@ -25,5 +25,5 @@ class Candidate(Generic[E]):
 Candidates = Generator[Candidate[E], None, str | None]
 Search = Callable[[Family], Candidates[AbstractEvidence]]
 
-NO_MARGIN = "the solver found no candidate with positive margins"
+NO_MARGIN = "the solver found no solution with positive margins"
 OUT_OF_RANGE = "the modes are beyond the range of floating point"

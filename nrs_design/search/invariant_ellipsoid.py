@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from nrs_design.proof.evidence import InvariantEllipsoid
 from nrs_design.proof.system import Channel, Output, SwitchedSystem, Time
 from nrs_design.search.allowance import Allowance
-from nrs_design.search.candidates import Candidate
+from nrs_design.search.candidates import NO_MARGIN, OUT_OF_RANGE, Candidate, Candidates
 from nrs_design.search.conewise_quadratic import separating_coordinates
 from nrs_design.search.family import Family, to_floats
 from nrs_design.search.rounding import unscale
@@ -129,7 +129,7 @@ def _step(before: Array, A: Array, after: Array, share: float) -> tuple[Array, A
 
 def search_ellipsoid(
     system: SwitchedSystem, channel: Channel, output: Output, allowance: Allowance
-) -> Iterator[Candidate[InvariantEllipsoid]]:
+) -> Candidates[InvariantEllipsoid]:
     """Yield ellipsoids that bound an output under a disturbance, the smallest level first.
 
     Parameters
@@ -152,11 +152,11 @@ def search_ellipsoid(
     raw = _problem(family, channel, output)
     T, size, level = _coordinates(raw, family)
     if not (np.isfinite(T).all() and isfinite(size) and isfinite(level) and size * level > 0):
-        return
+        return OUT_OF_RANGE
     own = _transformed(raw, T, size, level)
     best, share = _best_share(own, family.limit, allowance)
     if not isfinite(best):
-        return
+        return NO_MARGIN
     for slack in SLACKS:
         found = _solve(own, share, allowance, best * slack**2)
         if found is not None:
@@ -166,6 +166,7 @@ def search_ellipsoid(
             )
             for evidence in _roundings(family, empty, found, T, size):
                 yield Candidate(evidence)
+    return None
 
 
 def _roundings(

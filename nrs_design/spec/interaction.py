@@ -17,7 +17,12 @@ from nrs_design.spec.fields import Digits, Label, Name, Title
 from nrs_design.spec.goals import GoalsSpec, check_applicable
 from nrs_design.spec.model import SpecModel
 from nrs_design.spec.motion import ActuatorSpec, LimitsSpec, MotionLoopSpec
-from nrs_design.spec.sampling import SamplingSpec, check_actuator_ranges
+from nrs_design.spec.sampling import (
+    DisturbancesSpec,
+    SamplingSpec,
+    check_actuator_ranges,
+    check_disturbances,
+)
 from nrs_design.spec.switching import DwellTime, SwitchingRule, check_names
 
 MAX_ENTRIES = 64
@@ -61,6 +66,11 @@ class InteractionDesignSpec(SpecModel):
         default=None,
         description="the processor that runs the law; without it the proof is for continuous time",
     )
+    disturbances: DisturbancesSpec | None = Field(
+        default=None,
+        description="what acts on the sampled loop from outside; its effect on the force is "
+        "bounded",
+    )
     contact: Literal["losable", "kept"] | None = Field(
         default=None,
         description="whether a proof must hold while contact is lost and made again (losable), or "
@@ -102,6 +112,7 @@ class InteractionDesignSpec(SpecModel):
                 partial(_check_springs, *item, self.environments)
                 for item in self.controllers.items()
             ),
+            partial(check_disturbances, self.disturbances, self.sampling),
             partial(
                 check_actuator_ranges,
                 self.actuator,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from fractions import Fraction
 from typing import Annotated, Literal
 
 from pydantic import Field, PlainValidator, WithJsonSchema
@@ -10,7 +11,7 @@ from nrs_design.spec.faults import fault
 from nrs_design.spec.fields import read_exact
 from nrs_design.spec.model import SpecModel
 from nrs_design.spec.motion import ActuatorSpec
-from nrs_design.spec.quantity_fields import Duration
+from nrs_design.spec.quantity_fields import Angle, AngularVelocity, Command, Duration, Torque
 
 # Every sample of delay is a state more.
 LONGEST_DELAY = 10
@@ -57,6 +58,56 @@ class SamplingSpec(SpecModel):
         description="how Mt vm' + Bt vm = F becomes a step: exact for a force held over the "
         "period, or one step of Euler's method",
     )
+
+
+class DisturbancesSpec(SpecModel):
+    """Bounds on what acts on the sampled loop from outside; what is left out is zero."""
+
+    command: AngularVelocity | None = Field(
+        default=None, description="largest velocity command in rad/s, however it changes"
+    )
+    friction: Command | None = Field(
+        default=None,
+        description="largest Coulomb friction of the motor, as the speed command in rpm that it "
+        "takes",
+    )
+    encoder_step: Angle | None = Field(
+        default=None,
+        description="resolution of the measured joint angle in rad: an error of half a step",
+    )
+    force_step: Torque | None = Field(
+        default=None,
+        description="resolution of the measured torque in N*m: an error of half a step",
+    )
+
+    def bounds(self) -> dict[str, tuple[Fraction, str]]:
+        """Return the bounds by the names of what disturbs, with their units; none too small."""
+        half = Fraction(1, 2)
+        written = (
+            ("velocity command", self.command, Fraction(1), "rad/s"),
+            ("friction", self.friction, Fraction(1), "rpm"),
+            ("encoder error", self.encoder_step, half, "rad"),
+            ("force error", self.force_step, half, "N*m"),
+        )
+        return {
+            name: (share * quantity.not_below, unit)
+            for name, quantity, share, unit in written
+            if quantity is not None and quantity.value
+        }
+
+
+def check_disturbances(disturbances: DisturbancesSpec | None, sampling: object) -> None:
+    """Refuse disturbances without a sampled loop, or without any."""
+    if disturbances is None:
+        return
+    if sampling is None:
+        raise fault(
+            "disturbances are bounded in the sampled loop only",
+            "add `sampling: {period: 2 ms, delay: 1}`, or remove disturbances",
+            "disturbances",
+        )
+    if not disturbances.bounds():
+        raise fault("no disturbance is named", "name one, or remove disturbances", "disturbances")
 
 
 def check_actuator_ranges(

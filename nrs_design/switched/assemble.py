@@ -161,7 +161,15 @@ def assemble(
     loop = plant.motion_loop(design.motion.Kp, design.motion.Kd)
     boxes = gain_boxes(spec, design, scale)
     system = close_loop(
-        spec.name, plant, loop, design, coordinates, spec.switching, boxes, spec.idle_states
+        spec.name,
+        plant,
+        loop,
+        design,
+        coordinates,
+        spec.switching,
+        boxes,
+        spec.idle_states,
+        spec.contact,
     )
     return replace(system, assumptions=(*system.assumptions, *scale_texts(scale)))
 

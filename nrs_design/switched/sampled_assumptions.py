@@ -8,9 +8,9 @@ from nrs_design.controllers.controller_design import ControllerDesign
 from nrs_design.controllers.float32 import exact_decimal
 from nrs_design.controllers.sampled import SampledAdmittance, SampledMotion
 from nrs_design.models.actuator import ActuatorRanges
-from nrs_design.models.interval import Interval
 from nrs_design.proof.text import exact_text
 from nrs_design.spec import InteractionDesignSpec
+from nrs_design.spec.interval import Interval
 from nrs_design.spec.sampling import SamplingSpec
 from nrs_design.switched.assumptions import CONTINUOUS, rule_texts
 

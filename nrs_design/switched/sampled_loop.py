@@ -9,33 +9,34 @@ without inertia), the force samples on their way, and the deflection.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import partial
 from itertools import chain
 
 from nrs_design.controllers.controller_design import Controller, ControllerDesign
-from nrs_design.controllers.laws import Admittance
+from nrs_design.controllers.laws.impedance import Admittance
 from nrs_design.controllers.sampled import SampledAdmittance, SampledMotion
 from nrs_design.errors import AssemblyError
 from nrs_design.models.actuator import ActuatorRanges
 from nrs_design.models.contact.environment import Environment
-from nrs_design.models.interval import Interval
+from nrs_design.models.linear_form import LinearForm, combine, coordinates, zero
 from nrs_design.models.plant import Plant
 from nrs_design.proof.matrix import RationalMatrix
-from nrs_design.proof.system import Contact, Mode, SwitchedSystem, Time
+from nrs_design.proof.system import Channel, Contact, Mode, Output, SwitchedSystem, Time
 from nrs_design.proof.taylor import exponential_between
 from nrs_design.spec import InteractionDesignSpec
+from nrs_design.spec.interval import Interval
 from nrs_design.spec.sampling import SamplingSpec
 from nrs_design.switched.constraints import assemble_switching
-from nrs_design.switched.parameter_box import Axis, box_corners
+from nrs_design.switched.parameter_box import Box
 from nrs_design.switched.parameters import Corner
 from nrs_design.switched.sampled_assumptions import assume_sampled
 
-Row = list[Fraction]
-# Where the states are.
-ERROR, OMEGA, BEFORE, VELOCITY = range(4)
+ONE = Fraction(1)
+# What acts on a frame from outside, in this order.
+INPUTS = ("velocity command", "friction", "encoder error", "force error")
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,18 +71,10 @@ class Frame:
         first = ("e [rad]", "omega [rad/s]", "e before [rad]")
         return (*first, *inner, *ages, "delta [rad]")
 
-    @property
-    def first_force(self) -> int:
-        """Where the youngest force sample on its way is."""
-        return VELOCITY + self.has_inertia
-
     def rows(
-        self,
-        admittance: SampledAdmittance,
-        delay: int,
-        values: Mapping[str, Fraction],
-    ) -> list[Row]:
-        """Return the map of one period.
+        self, admittance: SampledAdmittance, delay: int, values: Mapping[str, Fraction]
+    ) -> list[LinearForm]:
+        """Return the map of one period, from the states and the `INPUTS` to the next states.
 
         Parameters
         ----------
@@ -93,34 +86,48 @@ class Frame:
             The gain ``Km``, ``E = exp(-T/tau)``, and ``s = tau (1 - E)`` unless tau is known; in
             contact the stiffness ``k`` and the damping ``b`` that the force sample shows.
         """
-        size = len(self.states)
-        unit = [[Fraction(int(i == j)) for j in range(size)] for i in range(size)]
         Km, E, tau = values["Km"], values["E"], self.time_constant
         s = values["s"] if tau is None else tau * (1 - E)
         k, b = values.get("k", Fraction(0)), values.get("b", Fraction(0))
-        error, omega, before, delta = (unit[i] for i in (ERROR, OMEGA, BEFORE, -1))
+        size = len(self.states)
+        unit = coordinates(size + len(INPUTS))
+        error, omega, before, delta = unit[0], unit[1], unit[2], unit[size - 1]
+        command, friction, encoder, sensor = unit[size:]
+        samples = unit[size - 1 - self.longest_delay : size - 1]
+        seen = combine((ONE, error), (-ONE, encoder))
         Kp, D = self.motion.Kp, self.motion.D
-        command = [(Kp + D) * e - D * b for e, b in zip(error, before, strict=True)]
-        sample = [k * x + b * w for x, w in zip(delta, omega, strict=True)]
-        used = sample if delay == 0 else unit[self.first_force + delay - 1]
-        moved = [s * w + Km * (self.period - s) * u for w, u in zip(omega, command, strict=True)]
+        drive = combine((Kp + D, seen), (-D, before), (ONE, friction))
+        moved = combine((s, omega), (Km * (self.period - s), drive))
+        ages = [combine((k, delta), (b, omega), (ONE, sensor)), *samples]
         if admittance.a is None:
-            velocity = [admittance.b * f for f in used]
-            kept = []
+            velocity, kept = combine((admittance.b, ages[delay])), []
         else:
-            velocity = unit[VELOCITY]
-            kept = [
-                [admittance.a * v + admittance.b * f for v, f in zip(velocity, used, strict=True)]
-            ]
-        shifted = [sample, *unit[self.first_force : self.first_force + self.longest_delay - 1]]
+            velocity = unit[3]
+            kept = [combine((admittance.a, velocity), (admittance.b, ages[delay]))]
+        T = admittance.T
         return [
-            [e - admittance.T * v - m for e, v, m in zip(error, velocity, moved, strict=True)],
-            [E * w + Km * (1 - E) * u for w, u in zip(omega, command, strict=True)],
-            error,
+            combine((ONE, error), (T, command), (-T, velocity), (-ONE, moved)),
+            combine((E, omega), (Km * (1 - E), drive)),
+            seen,
             *kept,
-            *shifted[: self.longest_delay],
-            [x + m for x, m in zip(delta, moved, strict=True)],
+            *ages[: self.longest_delay],
+            combine((ONE, delta), (ONE, moved)),
         ]
+
+
+@dataclass(frozen=True, slots=True)
+class _Motion:
+    """One mode, and the columns of the `INPUTS`."""
+
+    mode: Mode
+    columns: tuple[RationalMatrix, ...]
+
+    @classmethod
+    def of(cls, name: str, rows: Sequence[LinearForm]) -> _Motion:
+        n = len(rows)
+        columns = ([[row[n + i]] for row in rows] for i in range(len(INPUTS)))
+        mode = Mode(name, RationalMatrix.from_rows([row[:n] for row in rows]))
+        return cls(mode, tuple(map(RationalMatrix.from_rows, columns)))
 
 
 def close_sampled_loop(
@@ -174,38 +181,67 @@ def close_sampled_loop(
             remedy="give all impedance controllers a virtual inertia Mt > 0, or none of them",
             at=("controllers",),
         )
-    motor = motor_axes(ranges, period)
+    motor = motor_box(ranges, period)
     parts = {
         controller.name: tuple(
-            _modes(frame, laws[controller.name], sampling.delay, controller, plant, motor)
+            _motions(frame, laws[controller.name], sampling.delay, controller, plant, motor)
         )
         for controller in design.controllers
     }
-    touched = [
-        e for e in plant.environments if any(e.name in c.contacts for c in design.controllers)
-    ]
-    springs = all(interval_is_zero(damping_of(e)) for e in touched)
-    groups = {key: tuple(Corner(mode.name) for mode in part) for key, part in parts.items()}
-    contact = None
+    touched = plant.among(design.contacts)
+    springs = all(_is_zero(damping_of(environment)) for environment in touched)
+    free: tuple[_Motion, ...] = ()
     if spec.contact != "kept" and springs:
-        contact = Contact(tuple(_free_modes(frame, laws, sampling.delay, motor)))
+        free = tuple(_free_motions(frame, laws, sampling.delay, motor))
+    groups = {key: tuple(Corner(item.mode.name) for item in part) for key, part in parts.items()}
+    motions = tuple(chain.from_iterable(parts.values()))
+    channels = tuple(_channels(spec, (*motions, *free)))
     return SwitchedSystem(
         spec.name,
         Time.DISCRETE,
         frame.states,
-        tuple(chain.from_iterable(parts.values())),
+        tuple(item.mode for item in motions),
         assume_sampled(spec, sampling, ranges, frame.motion, laws, design, springs=springs),
         assemble_switching(spec.switching, groups, ()),
-        contact,
+        (
+            Contact(tuple(item.mode for item in free), required=spec.contact == "losable")
+            if free
+            else None
+        ),
         period,
+        channels,
+        tuple(_outputs(frame, touched)) if channels else (),
     )
 
 
-def motor_axes(ranges: ActuatorRanges, period: Fraction) -> tuple[Axis, ...]:
-    """Return Km, ``E = exp(-T/tau)`` and ``s = tau (1 - E)`` with the ends of their ranges.
+def _channels(spec: InteractionDesignSpec, motions: Sequence[_Motion]) -> Iterator[Channel]:
+    """Yield the disturbances that the spec declares, with their columns."""
+    if spec.disturbances is None:
+        return
+    bounds = spec.disturbances.bounds()
+    for i, name in enumerate(INPUTS):
+        if name in bounds:
+            bound, unit = bounds[name]
+            yield Channel(name, unit, bound, tuple(motion.columns[i] for motion in motions))
+
+
+def _outputs(frame: Frame, touched: Sequence[Environment]) -> Iterator[Output]:
+    """Yield the force in contact, at the corners of its ranges."""
+    size, rows = len(frame.states), []
+    for environment in touched:
+        box = Box({"k": environment.stiffness, "b": damping_of(environment)})
+        for values in box.values():
+            row = zero(size)
+            row[1], row[-1] = values["b"], values["k"]
+            rows.append(RationalMatrix.from_rows([row]))
+    yield Output("force", "N*m", tuple(rows))
+
+
+def motor_box(ranges: ActuatorRanges, period: Fraction) -> Box:
+    """Return where Km, ``E = exp(-T/tau)`` and ``s = tau (1 - E)`` lie.
 
     Both rise with tau: the derivative of s is ``1 - (1 + x) exp(-x)`` at ``x = T/tau``, positive.
-    Where tau is known, s is affine in E and no axis of its own.
+    Where tau is known, s is affine in E and is left out.
 
     Parameters
     ----------
@@ -216,45 +252,40 @@ def motor_axes(ranges: ActuatorRanges, period: Fraction) -> tuple[Axis, ...]:
     """
     tau = ranges.time_constant
     below, above = exponential_between(-period / tau.low), exponential_between(-period / tau.high)
-    axes = Axis("Km", ranges.gain), Axis("E", Interval(below[0], below[0], above[1]))
+    box = Box({"Km": ranges.gain, "E": Interval(below[0], below[0], above[1])})
     if tau.low == tau.high:
-        return axes
+        return box
     lowest, highest = tau.low * (1 - below[1]), tau.high * (1 - above[0])
-    return *axes, Axis("s", Interval(lowest, lowest, highest))
+    return box.beside(Box({"s": Interval(lowest, lowest, highest)}))
 
 
-def _modes(
+def _motions(
     frame: Frame,
     law: SampledAdmittance,
     delays: tuple[int, int],
     controller: Controller,
     plant: Plant,
-    motor: tuple[Axis, ...],
-) -> Iterator[Mode]:
-    for contact in controller.contacts:
-        environment = plant.environment(contact)
-        axes = (
-            Axis("k", environment.stiffness),
-            Axis("b", damping_of(environment)),
-            *motor,
-        )
+    motor: Box,
+) -> Iterator[_Motion]:
+    for environment in map(plant.environment, controller.contacts):
+        own = Box({"k": environment.stiffness, "b": damping_of(environment)}).beside(motor)
         for delay in range(delays[0], delays[1] + 1):
-            name = _name(controller.name, contact, delay, delays)
-            for label, rows in box_corners(axes, partial(frame.rows, law, delay), name):
-                yield Mode(f"{name}/{label}" if label else name, RationalMatrix.from_rows(rows))
+            name = _name(controller.name, environment.name, delay, delays)
+            for label, rows in own.corners(partial(frame.rows, law, delay), name):
+                yield _Motion.of(f"{name}/{label}" if label else name, rows)
 
 
-def _free_modes(
+def _free_motions(
     frame: Frame,
     laws: Mapping[str, SampledAdmittance],
     delays: tuple[int, int],
-    motor: tuple[Axis, ...],
-) -> Iterator[Mode]:
+    motor: Box,
+) -> Iterator[_Motion]:
     for controller, law in laws.items():
         for delay in range(delays[0], delays[1] + 1):
             name = _name(controller, "free", delay, delays)
-            for label, rows in box_corners(motor, partial(frame.rows, law, delay), name):
-                yield Mode(f"{name}/{label}" if label else name, RationalMatrix.from_rows(rows))
+            for label, rows in motor.corners(partial(frame.rows, law, delay), name):
+                yield _Motion.of(f"{name}/{label}" if label else name, rows)
 
 
 def _name(controller: str, contact: str, delay: int, delays: tuple[int, int]) -> str:
@@ -264,12 +295,10 @@ def _name(controller: str, contact: str, delay: int, delays: tuple[int, int]) ->
 
 def damping_of(environment: Environment) -> Interval:
     """Return the range of the damping beside the spring; zero for a spring."""
-    names = environment.law.parameters()
-    return environment.ranges[names.index("b")] if "b" in names else Interval.point(Fraction(0))
+    return environment.parameters.get("b", Interval.point(Fraction(0)))
 
 
-def interval_is_zero(interval: Interval) -> bool:
-    """Tell whether an interval holds zero alone."""
+def _is_zero(interval: Interval) -> bool:
     return interval.low == 0 == interval.high
 
 

@@ -20,7 +20,8 @@ from nrs_design.proof.system import (
     Switching,
     Time,
 )
-from nrs_design.search.certify import Limits, Method, certify
+from nrs_design.search.certify import Limits, certify
+from nrs_design.search.method import Method
 from nrs_design.switched.modes import velocity_mode
 
 Entry = int | str | Fraction

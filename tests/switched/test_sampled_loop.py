@@ -10,7 +10,7 @@ from scipy.linalg import expm
 from nrs_design.controllers.sampled import SampledAdmittance, SampledMotion
 from nrs_design.errors import AssemblyError
 from nrs_design.models.actuator import ActuatorRanges
-from nrs_design.models.interval import Interval
+from nrs_design.spec.interval import Interval
 from nrs_design.pipeline import run_design
 from nrs_design.proof.system import SwitchedSystem, Time
 from nrs_design.spec import read_spec

@@ -157,7 +157,13 @@ class AbstractEvidence(ABC):
             return f"evidence of kind {self.kind} does not cover this kind of switching"
         if not system.is_uniform and not self.allows_unequal_modes:
             return f"evidence of kind {self.kind} needs modes of equal size"
+        if system.contact is not None and system.contact.required and self._takes_contact():
+            return f"evidence of kind {self.kind} does not cover the loss of contact"
         return self.find_misfit(system)
+
+    def _takes_contact(self) -> bool:
+        """Tell whether it shows something good of kept contact only."""
+        return self.shows in (Shows.STABILITY, Shows.BOUND) and not self.covers_lost_contact
 
 
 def _in_seconds(rate: Fraction, step: Fraction) -> str:

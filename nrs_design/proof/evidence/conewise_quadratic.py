@@ -8,8 +8,6 @@ from fractions import Fraction
 from itertools import product
 from typing import Any, ClassVar, Self
 
-from nrs_design.proof.evidence.abstract import AbstractEvidence, Shows
-from nrs_design.proof.evidence.common_quadratic import find_rate_misfit, is_square
 from nrs_design.proof.evidence.fields import (
     Matrix,
     matrix_fields,
@@ -18,6 +16,7 @@ from nrs_design.proof.evidence.fields import (
     read_integer,
     read_ratio,
 )
+from nrs_design.proof.evidence.function import AbstractFunction, is_square
 from nrs_design.proof.exact import (
     IntegerMatrix,
     add,
@@ -34,7 +33,7 @@ Forms = Iterator[tuple[str, IntegerMatrix]]
 
 
 @dataclass(frozen=True, slots=True)
-class ConewiseQuadratic(AbstractEvidence):
+class ConewiseQuadratic(AbstractFunction):
     """``V = w' Q w`` decreases in contact and free, with ``w = (y, max(delta, 0))``.
 
     V is ``x' Q x`` in contact and ``y' Q_yy y`` free, and continuous where the two meet. In
@@ -71,7 +70,6 @@ class ConewiseQuadratic(AbstractEvidence):
 
     kind: ClassVar[str] = "conewise-quadratic"
     bounds_at_once: ClassVar[bool] = True
-    attains_rate: ClassVar[bool] = True
     covers_mixtures: ClassVar[bool] = True
     covers_lost_contact: ClassVar[bool] = True
 
@@ -79,11 +77,6 @@ class ConewiseQuadratic(AbstractEvidence):
     denominator_log2: int
     rate: Fraction
     multipliers: tuple[int, ...]
-
-    @property
-    def shows(self) -> Shows:
-        """Stability."""
-        return Shows.STABILITY
 
     @property
     def is_common_quadratic(self) -> bool:
@@ -94,10 +87,6 @@ class ConewiseQuadratic(AbstractEvidence):
     def keeps_bound_in_mixtures(self) -> bool:
         """True: the level sets of V are convex in contact, and free."""
         return True
-
-    def proved_rate(self, system: SwitchedSystem) -> Fraction:
-        """Return the claimed rate."""
-        return self.rate
 
     def find_misfit(self, system: SwitchedSystem) -> str | None:
         """Check that contact can be lost, shapes, and the signs of rate and multipliers."""
@@ -111,7 +100,7 @@ class ConewiseQuadratic(AbstractEvidence):
             return "there is not one multiplier for each condition that needs it"
         if min(self.multipliers, default=0) < 0:
             return "a multiplier is negative"
-        return find_rate_misfit(self.rate, system.time)
+        return self.find_rate_misfit(system.time)
 
     def forms(self, system: SwitchedSystem) -> Forms:
         """Yield Q and the decreases in contact, free, and between the two."""

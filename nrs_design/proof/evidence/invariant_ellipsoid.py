@@ -8,9 +8,8 @@ from fractions import Fraction
 from itertools import product
 from typing import Any, ClassVar, Self
 
-from nrs_design.proof.bounds import at_most, rounded_up
+from nrs_design.proof.bounds import rounded_down, rounded_up
 from nrs_design.proof.evidence.abstract import AbstractEvidence, Shows
-from nrs_design.proof.evidence.common_quadratic import is_square
 from nrs_design.proof.evidence.conewise_quadratic import multiplier_count
 from nrs_design.proof.evidence.fields import (
     Matrix,
@@ -20,6 +19,7 @@ from nrs_design.proof.evidence.fields import (
     read_ratio,
     read_text,
 )
+from nrs_design.proof.evidence.function import is_square
 from nrs_design.proof.exact import IntegerMatrix
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.system import Channel, Mode, SwitchedSystem, Time
@@ -126,8 +126,8 @@ class InvariantEllipsoid(AbstractEvidence):
         output = next(item for item in system.outputs if item.name == self.output)
         lost = "" if system.contact is None else ", contact lost and made again at any time"
         return (
-            f"While |{channel.name}| {at_most(channel.bound, channel.unit)}, switching arbitrarily"
-            f"{lost}: from rest, |{output.name}| never exceeds "
+            f"While |{channel.name}| <= {rounded_down(channel.bound, channel.unit)} and nothing else "
+            f"disturbs, switching arbitrarily{lost}: from rest, |{output.name}| never exceeds "
             f"{rounded_up(self.level, output.unit)}; from any state, it comes below every larger "
             "value and stays there."
         )

@@ -125,9 +125,9 @@ class InvariantEllipsoid(AbstractEvidence):
         channel = next(item for item in system.channels if item.name == self.channel)
         output = next(item for item in system.outputs if item.name == self.output)
         lost = "" if system.contact is None else ", contact lost and made again at any time"
+        size = rounded_down(channel.bound, channel.unit)
         return (
-            f"While |{channel.name}| <= {rounded_down(channel.bound, channel.unit)} and nothing else "
-            f"disturbs, switching arbitrarily{lost}: from rest, |{output.name}| never exceeds "
+            f"While |{channel.name}| <= {size} and nothing else disturbs, switching arbitrarily{lost}: from rest, |{output.name}| never exceeds "
             f"{rounded_up(self.level, output.unit)}; from any state, it comes below every larger "
             "value and stays there."
         )

@@ -127,7 +127,8 @@ class InvariantEllipsoid(AbstractEvidence):
         lost = "" if system.contact is None else ", contact lost and made again at any time"
         size = rounded_down(channel.bound, channel.unit)
         return (
-            f"While |{channel.name}| <= {size} and nothing else disturbs, switching arbitrarily{lost}: from rest, |{output.name}| never exceeds "
+            f"While |{channel.name}| <= {size} and nothing else disturbs, switching arbitrarily"
+            f"{lost}: from rest, |{output.name}| never exceeds "
             f"{rounded_up(self.level, output.unit)}; from any state, it comes below every larger "
             "value and stays there."
         )

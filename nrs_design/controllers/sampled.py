@@ -8,10 +8,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from fractions import Fraction
+from typing import TYPE_CHECKING
 
 from nrs_design.controllers.float32 import to_float32
-from nrs_design.controllers.laws import Admittance, ProportionalDerivative
-from nrs_design.proof.taylor import exponential_between
+
+if TYPE_CHECKING:
+    from nrs_design.controllers.laws import ProportionalDerivative
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,34 +54,6 @@ class SampledAdmittance:
     a: Fraction | None
     b: Fraction
     T: Fraction
-
-    @classmethod
-    def of(cls, law: Admittance, period: Fraction, method: str) -> SampledAdmittance:
-        """Discretize ``Mt v' + Bt v = F`` (thesis 6.8).
-
-        Parameters
-        ----------
-        law : Admittance
-            With its gains.
-        period : Fraction
-            In s.
-        method : {"exact", "euler"}
-            Exact for a force that is held: ``a = exp(-Bt T/Mt)`` and ``b = (1 - a)/Bt``, or
-            ``a = 1 - Bt T/Mt`` and ``b = T/Mt``.
-
-        Raises
-        ------
-        DesignError
-            If a coefficient is beyond single precision.
-        """
-        T = to_float32(period)
-        if law.Mt == 0:
-            return cls(None, to_float32(1 / law.Bt), T)
-        step = law.Bt * period / law.Mt
-        if method == "euler":
-            return cls(to_float32(1 - step), to_float32(period / law.Mt), T)
-        a, _ = exponential_between(-step)
-        return cls(to_float32(a), to_float32((1 - a) / law.Bt), T)
 
     @property
     def coefficients(self) -> dict[str, Fraction]:

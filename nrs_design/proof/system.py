@@ -178,7 +178,7 @@ class Channel:
     name, unit : str
         What it is, such as ``velocity command`` in ``rad/s``.
     bound : Fraction
-        Its size is at most this, at every time.
+        Its size is at most this, at every time; in discrete time, at every step.
     columns : tuple of RationalMatrix, each of shape (n, 1)
         The B of every mode, and after them those of the free modes.
     """
@@ -199,11 +199,14 @@ class Output:
         What it is, such as ``force`` in ``N*m``.
     rows : tuple of RationalMatrix, each of shape (1, n)
         At the corners of its ranges. In free motion the deflection counts as zero.
+    limit : Fraction or None
+        What its size is meant to keep; for words only.
     """
 
     name: str
     unit: str
     rows: tuple[RationalMatrix, ...]
+    limit: Fraction | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -376,6 +379,8 @@ class SwitchedSystem:
                 return f"{channel.name} has no positive bound, or not one column for every mode"
         if not all(output.rows for output in self.outputs):
             return "an output has no rows"
+        if any(output.limit is not None and output.limit <= 0 for output in self.outputs):
+            return "the limit of an output is not positive"
         names = [*(c.name for c in self.channels), *(o.name for o in self.outputs)]
         return "two disturbances or outputs have one name" if len(set(names)) < len(names) else None
 

@@ -101,6 +101,7 @@ def read_system(name: str, fields: Mapping[str, Any]) -> SwitchedSystem:
                 read_text(item["name"]),
                 read_text(item["unit"]),
                 tuple(_read_matrix(row) for row in _read_list(item["rows"])),
+                None if item["limit"] is None else read_ratio(item["limit"]),
             )
             for item in _read_list(fields.get("outputs", []))
         ),
@@ -145,7 +146,12 @@ def _channel_fields(system: SwitchedSystem) -> Fields:
         for channel in system.channels
     ]
     outputs = [
-        {"name": item.name, "unit": item.unit, "rows": [_matrix_fields(row) for row in item.rows]}
+        {
+            "name": item.name,
+            "unit": item.unit,
+            "rows": [_matrix_fields(row) for row in item.rows],
+            "limit": _text(item.limit),
+        }
         for item in system.outputs
     ]
     return ({"channels": channels} if channels else {}) | ({"outputs": outputs} if outputs else {})

@@ -113,7 +113,17 @@ def check_disturbances(disturbances: DisturbancesSpec | None, sampling: object) 
 def check_actuator_ranges(
     actuator: ActuatorSpec, sampling: SamplingSpec | None, *, given_loop: bool
 ) -> None:
-    """Refuse ranges of the actuator where the modes do not take them up."""
+    """Refuse ranges of the actuator where the modes do not take them up.
+
+    Parameters
+    ----------
+    actuator : ActuatorSpec
+        With or without ranges.
+    sampling : SamplingSpec or None
+        The processor, where there is one.
+    given_loop : bool
+        Whether the spec states the closed motion loop itself.
+    """
     for name in ("gain", "time_constant"):
         if getattr(actuator, name).fixed:
             continue

@@ -15,6 +15,19 @@ from nrs_design.spec.sampling import SamplingSpec
 from nrs_design.switched.assumptions import CONTINUOUS, rule_texts
 
 _KEPT = "Contact is not lost: free motion is not one of the modes."
+_INPUTS = (
+    "All inputs are zero (velocity command, motion of the environment); all modes then rest at "
+    "one point, the state zero."
+)
+_NOT_MODELLED = (
+    "What the arithmetic of the processor rounds, the quantization of encoder and force sensor, "
+    "friction and saturation are not modelled."
+)
+_DISTURBED = (
+    "A disturbance acts where a statement names it, alone, and keeps its value from one sample to "
+    "the next; that friction changes its sign within a period is not covered.",
+    "A bound on the force holds at the samples; what happens in between is not claimed.",
+)
 _NOT_COVERED = (
     "Contact is not lost: that an environment with damping lags behind is not modelled in the "
     "sampled loop."
@@ -58,8 +71,8 @@ def assume_sampled(
         _delay_text(*sampling.delay),
         f"The motor follows the linear actuator model of the spec; {_actuator_text(ranges)}.",
         "The tissue does not load the motor: it acts through the force sensor alone.",
-        "All inputs are zero (velocity command, motion of the environment); all modes then rest at "
-        "one point, the state zero.",
+        *(_DISTURBED if spec.disturbances is not None else ()),
+        _beside(spec, _INPUTS),
         "The axes of the robot do not act on each other.",
         *(
             f"{c.name} is active only in contact with {' or '.join(c.contacts)}."
@@ -71,9 +84,15 @@ def assume_sampled(
         switched,
         *rule_texts(rules, "controller"),
         f"The coefficients are these single-precision numbers: {_coefficients(motion, laws)}.",
-        "What the arithmetic of the processor rounds, the quantization of encoder and force "
-        "sensor, friction and saturation are not modelled.",
+        _beside(spec, _NOT_MODELLED),
     )
+
+
+def _beside(spec: InteractionDesignSpec, text: str) -> str:
+    """Begin a sentence that does not hold for the disturbances of the spec."""
+    if spec.disturbances is None:
+        return text
+    return f"Otherwise, {text[0].lower()}{text[1:]}"
 
 
 def _delay_text(least: int, most: int) -> str:

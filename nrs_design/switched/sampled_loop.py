@@ -16,7 +16,6 @@ from functools import partial
 from itertools import chain
 
 from nrs_design.controllers.controller_design import Controller, ControllerDesign
-from nrs_design.controllers.laws.impedance import Admittance
 from nrs_design.controllers.sampled import SampledAdmittance, SampledMotion
 from nrs_design.errors import AssemblyError
 from nrs_design.models.actuator import ActuatorRanges
@@ -156,13 +155,10 @@ def close_sampled_loop(
     AssemblyError
         If something about the spec is not modelled in the sampled loop.
     """
-    _check_modelled(spec, plant, design)
     period = sampling.period.exact
-    laws = {
-        controller.name: SampledAdmittance.of(controller.law, period, sampling.admittance)
-        for controller in design.controllers
-        if isinstance(controller.law, Admittance)
-    }
+    sampled = {c.name: c.law.sampled(period, sampling.admittance) for c in design.controllers}
+    _check_modelled(spec, plant, design, sampled)
+    laws = {name: law for name, law in sampled.items() if law is not None}
     ranges = plant.actuator_ranges or ActuatorRanges(
         Interval.point(plant.actuator.gain), Interval.point(plant.actuator.time_constant)
     )
@@ -210,7 +206,7 @@ def close_sampled_loop(
         ),
         period,
         channels,
-        tuple(_outputs(frame, touched)) if channels else (),
+        (_force_output(frame, touched, spec.limits.torque.exact),) if channels else (),
     )
 
 
@@ -225,8 +221,8 @@ def _channels(spec: InteractionDesignSpec, motions: Sequence[_Motion]) -> Iterat
             yield Channel(name, unit, bound, tuple(motion.columns[i] for motion in motions))
 
 
-def _outputs(frame: Frame, touched: Sequence[Environment]) -> Iterator[Output]:
-    """Yield the force in contact, at the corners of its ranges."""
+def _force_output(frame: Frame, touched: Sequence[Environment], limit: Fraction) -> Output:
+    """Return the force in contact, at the corners of its ranges, and what it is meant to keep."""
     size, rows = len(frame.states), []
     for environment in touched:
         box = Box({"k": environment.stiffness, "b": damping_of(environment)})
@@ -234,7 +230,7 @@ def _outputs(frame: Frame, touched: Sequence[Environment]) -> Iterator[Output]:
             row = zero(size)
             row[1], row[-1] = values["b"], values["k"]
             rows.append(RationalMatrix.from_rows([row]))
-    yield Output("force", "N*m", tuple(rows))
+    return Output("force", "N*m", tuple(rows), limit)
 
 
 def motor_box(ranges: ActuatorRanges, period: Fraction) -> Box:
@@ -302,23 +298,31 @@ def _is_zero(interval: Interval) -> bool:
     return interval.low == 0 == interval.high
 
 
-def _check_modelled(spec: InteractionDesignSpec, plant: Plant, design: ControllerDesign) -> None:
+def _check_modelled(
+    spec: InteractionDesignSpec,
+    plant: Plant,
+    design: ControllerDesign,
+    laws: Mapping[str, SampledAdmittance | None],
+) -> None:
     """Refuse what the sampled loop does not model, at its place in the spec."""
-    for at, what, remedy in _not_modelled(spec, plant, design):
+    for at, what, remedy in _not_modelled(spec, plant, design, laws):
         raise AssemblyError(f"in the sampled loop, {what}: not modelled", remedy=remedy, at=at)
 
 
 def _not_modelled(
-    spec: InteractionDesignSpec, plant: Plant, design: ControllerDesign
+    spec: InteractionDesignSpec,
+    plant: Plant,
+    design: ControllerDesign,
+    laws: Mapping[str, SampledAdmittance | None],
 ) -> Iterator[tuple[tuple[str, ...], str, str]]:
     """Yield place, fault and remedy."""
     for controller in design.controllers:
-        if not isinstance(controller.law, Admittance):
+        if laws[controller.name] is None:
             what = f"{controller.name} is a {controller.law.name} controller"
             at = ("controllers", controller.name, "type")
             yield at, what, "use impedance controllers, or leave sampling out"
     for name, written in spec.controllers.items():
-        if written.type == "impedance" and (written.Mt.ranged or written.Bt.ranged):
+        if any(gain.ranged for gain in written.gains().values()):
             what = f"the gains of {name} have ranges"
             yield ("controllers", name), what, "give nominal gains only, or leave sampling out"
     for environment in plant.environments:

@@ -10,7 +10,7 @@ from scipy.signal import cont2discrete
 
 from nrs_design.controllers.float32 import is_float32, to_float32
 from nrs_design.controllers.laws import Admittance, ProportionalDerivative
-from nrs_design.controllers.sampled import SampledAdmittance, SampledMotion
+from nrs_design.controllers.sampled import SampledMotion
 
 PERIOD = Fraction(1, 500)
 LAW = Admittance(to_float32(Fraction("0.01")), to_float32(Fraction("2.15")))
@@ -26,7 +26,7 @@ def test_the_backward_difference_of_the_thesis_robot():
 @given(st.floats(2**-10, 1, width=32), st.floats(0.125, 20, width=32), st.integers(1, 50))
 def test_exact_steps_are_those_of_a_held_force(Mt, Bt, ms):
     period = Fraction(ms, 1000)
-    law = SampledAdmittance.of(Admittance(Fraction(Mt), Fraction(Bt)), period, "exact")
+    law = Admittance(Fraction(Mt), Fraction(Bt)).sampled(period, "exact")
     a, b, *_ = cont2discrete(
         (np.array([[-Bt / Mt]]), np.array([[1 / Mt]]), np.eye(1), np.zeros((1, 1))), float(period)
     )
@@ -36,11 +36,11 @@ def test_exact_steps_are_those_of_a_held_force(Mt, Bt, ms):
 
 
 def test_one_step_of_euler():
-    law = SampledAdmittance.of(LAW, PERIOD, "euler")
+    law = LAW.sampled(PERIOD, "euler")
     assert law.a == to_float32(1 - LAW.Bt * PERIOD / LAW.Mt)
     assert law.b == to_float32(PERIOD / LAW.Mt)
 
 
 def test_without_inertia_the_law_has_no_memory():
-    law = SampledAdmittance.of(Admittance(Fraction(0), Fraction(2)), PERIOD, "exact")
+    law = Admittance(Fraction(0), Fraction(2)).sampled(PERIOD, "exact")
     assert law.coefficients == {"b": Fraction(1, 2), "T": to_float32(PERIOD)}

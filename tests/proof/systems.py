@@ -12,8 +12,10 @@ from nrs_design.proof.evidence import AbstractEvidence
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.system import (
     ARBITRARY,
+    Channel,
     Contact,
     Mode,
+    Output,
     Reset,
     Stay,
     SwitchedSystem,
@@ -218,6 +220,20 @@ def bouncing_in_steps() -> SwitchedSystem:
     return replace(system, contact=Contact((free,)), sample_time=Fraction(1, 10))
 
 
+def pushed(system: SwitchedSystem, push: Entry = "1/4") -> SwitchedSystem:
+    """A bouncing mass that is pushed, with its force on a spring of 1 to 2."""
+    step = system.sample_time or Fraction(1)
+    column = matrix([[step], [0]])
+    free = () if system.contact is None else system.contact.free
+    count = len(system.modes) + len(free)
+    rows = (matrix([[0, 1]]), matrix([[0, 2]]))
+    return replace(
+        system,
+        channels=(Channel("push", "N", Fraction(push), (column,) * count),),
+        outputs=(Output("force", "N", rows, Fraction(1)),),
+    )
+
+
 SYSTEMS = {
     "mode-polynomial": lossy_network,
     "common-quadratic": lambda: dayawansa_martin(5),
@@ -226,6 +242,10 @@ SYSTEMS = {
     "conewise-quadratic": bouncing,
     "conewise-quadratic, pulling": lambda: bouncing(1),
     "conewise-quadratic, discrete": bouncing_in_steps,
+    "invariant-ellipsoid": lambda: pushed(bouncing()),
+    "invariant-ellipsoid, kept": lambda: pushed(replace(bouncing(), contact=None)),
+    "invariant-ellipsoid, pulling": lambda: pushed(bouncing(1)),
+    "invariant-ellipsoid, discrete": lambda: pushed(bouncing_in_steps()),
     "no-common-quadratic": lambda: dayawansa_martin(6),
     "no-common-quadratic, discrete": lambda: ando_shih("0.99"),
     "block-triangular": degenerate_dual,

@@ -12,6 +12,7 @@ from nrs_design.proof.bounds import rounded_down, rounded_up
 from nrs_design.proof.evidence.abstract import AbstractEvidence, Shows
 from nrs_design.proof.evidence.conewise_quadratic import multiplier_count
 from nrs_design.proof.evidence.fields import (
+    MAX_INTEGER_BITS,
     Matrix,
     matrix_fields,
     read_dyadic,
@@ -22,7 +23,7 @@ from nrs_design.proof.evidence.fields import (
 from nrs_design.proof.evidence.function import is_square
 from nrs_design.proof.exact import IntegerMatrix
 from nrs_design.proof.matrix import RationalMatrix
-from nrs_design.proof.system import Channel, Mode, SwitchedSystem, Time
+from nrs_design.proof.system import Channel, Mode, Output, SwitchedSystem, Time
 
 Forms = Iterator[tuple[str, IntegerMatrix]]
 Rows = Sequence[Sequence[Fraction]]
@@ -81,6 +82,11 @@ class InvariantEllipsoid(AbstractEvidence):
         """A bound."""
         return Shows.BOUND
 
+    @property
+    def keeps_bound_in_mixtures(self) -> bool:
+        """True: the set is convex in contact, and free, and the multiplier is one for all modes."""
+        return True
+
     def find_misfit(self, system: SwitchedSystem) -> str | None:
         """Check names, shapes, and the signs of share, level and multipliers."""
         contact = system.contact
@@ -90,6 +96,8 @@ class InvariantEllipsoid(AbstractEvidence):
             return "the system has no output of that name"
         if not is_square(self.Q, system.order):
             return f"Q is not a {system.order} x {system.order} matrix"
+        if not 0 <= self.denominator_log2 <= MAX_INTEGER_BITS:
+            return f"the denominator of Q is not two to a power up to {MAX_INTEGER_BITS}"
         if contact is not None and system.time is Time.DISCRETE and contact.pulls:
             return "in discrete time, an environment that could pull is not covered"
         needed = 0 if contact is None else multiplier_count(contact, system.time)
@@ -126,12 +134,22 @@ class InvariantEllipsoid(AbstractEvidence):
         output = next(item for item in system.outputs if item.name == self.output)
         lost = "" if system.contact is None else ", contact lost and made again at any time"
         size = rounded_down(channel.bound, channel.unit)
+        steps = " at a step" if system.time is Time.DISCRETE else ""
         return (
             f"While |{channel.name}| <= {size} and nothing else disturbs, switching arbitrarily"
-            f"{lost}: from rest, |{output.name}| never exceeds "
+            f"{lost}: from rest, |{output.name}|{steps} never exceeds "
             f"{rounded_up(self.level, output.unit)}; from any state, it comes below every larger "
-            "value and stays there."
+            f"value and stays there.{self._beside_limit(output)}"
         )
+
+    def _beside_limit(self, output: Output) -> str:
+        """Say whether the level keeps the limit of the output, if it has one."""
+        if output.limit is None:
+            return ""
+        limit = rounded_down(output.limit, output.unit)
+        if self.level <= output.limit:
+            return f" The limit of {limit} is kept."
+        return f" That the limit of {limit} is kept is not shown."
 
     def to_fields(self) -> dict[str, Any]:
         """Return the names, Q, share, level and multipliers."""

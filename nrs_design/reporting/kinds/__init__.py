@@ -11,6 +11,7 @@ from nrs_design.proof.evidence import (
     CommonPolynomial,
     CommonQuadratic,
     ConewiseQuadratic,
+    InvariantEllipsoid,
     ModePolynomial,
     ModeQuadratic,
     NoCommonQuadratic,
@@ -26,6 +27,7 @@ from nrs_design.reporting.kinds.block_triangular import BlockTriangularPage
 from nrs_design.reporting.kinds.common_polynomial import CommonPolynomialPage
 from nrs_design.reporting.kinds.common_quadratic import CommonQuadraticPage
 from nrs_design.reporting.kinds.conewise_quadratic import ConewiseQuadraticPage
+from nrs_design.reporting.kinds.invariant_ellipsoid import InvariantEllipsoidPage
 from nrs_design.reporting.kinds.mode_polynomial import ModePolynomialPage
 from nrs_design.reporting.kinds.mode_quadratic import ModeQuadraticPage
 from nrs_design.reporting.kinds.no_common_quadratic import NoCommonQuadraticPage
@@ -40,6 +42,7 @@ KINDS: Mapping[type[AbstractEvidence], type[AbstractKindPage[Any]]] = {
     CommonPolynomial: CommonPolynomialPage,
     CommonQuadratic: CommonQuadraticPage,
     ConewiseQuadratic: ConewiseQuadraticPage,
+    InvariantEllipsoid: InvariantEllipsoidPage,
     ModePolynomial: ModePolynomialPage,
     ModeQuadratic: ModeQuadraticPage,
     NoCommonQuadratic: NoCommonQuadraticPage,

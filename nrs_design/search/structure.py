@@ -18,13 +18,17 @@ Pattern = NDArray[np.bool_]
 
 
 def merge_equal_modes(system: SwitchedSystem) -> SwitchedSystem:
-    """Keep the first of every set of equal modes; the same system if there are none."""
+    """Keep the first of every set of equal modes; the same system if there are none.
+
+    Equal modes may differ in what disturbs them, so disturbances and outputs are left behind.
+    """
     first: dict[RationalMatrix, int] = {}
     for index, mode in enumerate(system.modes):
         first.setdefault(mode.A, index)
     if len(first) == len(system.modes):
         return system
-    return replace(system, modes=tuple(system.modes[index] for index in first.values()))
+    modes = tuple(system.modes[index] for index in first.values())
+    return replace(system, modes=modes, channels=(), outputs=())
 
 
 def stand_in(name: str | None, system: SwitchedSystem, merged: SwitchedSystem) -> str | None:

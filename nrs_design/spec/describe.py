@@ -99,8 +99,12 @@ def _switching(switching: SwitchingSpec) -> Iterator[Line]:
 
 
 def _interaction(spec: InteractionDesignSpec) -> Iterator[Line]:
-    yield _row("actuator.gain", spec.actuator.gain, kinds.ACTUATOR_GAIN)
-    yield _row("actuator.time_constant", spec.actuator.time_constant, kinds.DURATION)
+    for name, kind in (("gain", kinds.ACTUATOR_GAIN), ("time_constant", kinds.DURATION)):
+        written = getattr(spec.actuator, name)
+        yield _row(f"actuator.{name}", written.nominal, kind)
+        if not written.fixed:
+            low, high = written.range
+            yield Line(f"actuator.{name}.range", f"[{low.text}, {high.text}]", "", "")
     if spec.actuator.intervals is not None:
         for name in ("gain", "time_constant"):
             low, high = getattr(spec.actuator.intervals, name)
@@ -118,6 +122,15 @@ def _interaction(spec: InteractionDesignSpec) -> Iterator[Line]:
         yield from describe_model(spec.idle_states, "idle_states")
     yield from _goals("goals", spec.goals)
     yield Line("design.significant_digits", str(spec.design.significant_digits), "", "")
+    if spec.sampling is not None:
+        yield _row("sampling.period", spec.sampling.period, kinds.DURATION)
+        least, most = spec.sampling.delay
+        delay = str(least) if least == most else f"[{least}, {most}]"
+        yield Line("sampling.delay", delay, "", "samples")
+        yield Line("sampling.admittance", spec.sampling.admittance, "", "")
+    if spec.disturbances is not None:
+        yield from describe_model(spec.disturbances, "disturbances")
+    yield Line("contact", spec.contact or "losable where proved", "", "")
     yield Line("coordinates", spec.coordinates, "", "")
     yield from _switching(spec.switching)
 

@@ -65,6 +65,8 @@ class Assumed:
         A law that has the states that all modes share.
     given : bool
         Whether the spec states the motion loop itself.
+    losable : bool
+        Whether the system says how contact is lost; then a statement says whether it is kept.
     """
 
     design: ControllerDesign
@@ -75,6 +77,7 @@ class Assumed:
     idle: IdleStatesSpec | None
     law: CompliantLaw
     given: bool
+    losable: bool = False
 
 
 def assume_loop(loop: Assumed) -> tuple[str, ...]:
@@ -134,6 +137,8 @@ def _idle_texts(idle: IdleStatesSpec, law: CompliantLaw) -> Iterator[str]:
 
 
 def _kept_texts(loop: Assumed) -> Iterator[str]:
+    if loop.losable:
+        return iter(())
     used = {controller.law.name for controller in loop.design.controllers}
     texts = (law.contact_text(alone=loop.idle is None) for law in LAWS.values() if law.name in used)
     return (text for text in texts if text is not None)

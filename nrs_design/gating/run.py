@@ -187,7 +187,7 @@ def _examine(
     rate, rate_name = rate_of(certificate)
     return SpecOutcome(
         path=loaded.path,
-        obligations=obligations + goals,
+        obligations=(*obligations, *goals, *examiner.identified()),
         sha256=loaded.sha256,
         verdict=str(certification.verdict),
         common_quadratic=str(certification.common_quadratic),

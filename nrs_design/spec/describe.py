@@ -17,7 +17,7 @@ from nrs_design.spec.load import Spec
 from nrs_design.spec.model import SpecModel
 from nrs_design.spec.motion import LimitsSpec
 from nrs_design.spec.parameters import ParameterSpec
-from nrs_design.spec.provenance import ProvenanceSpec
+from nrs_design.spec.provenance import COVERS, IdentifiedSpec
 from nrs_design.spec.quantity import Quantity, QuantityKind
 from nrs_design.spec.quantity_fields import RangedQuantity
 from nrs_design.spec.robot import RobotSpec
@@ -99,7 +99,7 @@ def _interaction(spec: InteractionDesignSpec) -> Iterator[Row]:
         for name in ("gain", "time_constant"):
             low, high = getattr(spec.actuator.intervals, name)
             yield Row(f"actuator.intervals.{name}", f"[{low.text}, {high.text}]", "", "")
-    yield from _provenance("actuator", spec.actuator.provenance)
+    yield from _provenance("actuator", spec.actuator)
     yield from _motion_loop(spec)
     yield _row("limits.velocity", spec.limits.velocity, kinds.ANGULAR_VELOCITY)
     yield _row("limits.torque", spec.limits.torque, kinds.TORQUE)
@@ -138,12 +138,19 @@ def _environment(name: str, environment: EnvironmentSpec) -> Iterator[Row]:
         yield from _ranged(f"{name}.{key}", written, turned[key], unit)
     if environment.lever_arm is not None:
         yield _row(f"{name}.lever_arm", environment.lever_arm, kinds.LEVER_ARM)
-    yield from _provenance(name, environment.provenance)
+    if environment.range_covers is not None:
+        covered = COVERS[environment.range_covers]
+        yield Row(f"{name}.range_covers", environment.range_covers, covered, "")
+    yield from _provenance(name, environment)
 
 
-def _provenance(name: str, sources: tuple[ProvenanceSpec, ...]) -> Iterator[Row]:
-    for index, source in enumerate(sources):
+def _provenance(name: str, identified: IdentifiedSpec) -> Iterator[Row]:
+    for index, source in enumerate(identified.provenance):
         yield Row(f"{name}.provenance[{index}]", source.file, source.data, "")
+    for index, doubt in enumerate(identified.doubts):
+        yield Row(f"{name}.doubts[{index}]", doubt, "", "")
+    if identified.accept_doubt is not None:
+        yield Row(f"{name}.accept_doubt", identified.accept_doubt, "", "")
 
 
 def _ranged(name: str, written: RangedQuantity, si: RangedQuantity, unit: str) -> Iterator[Row]:

@@ -9,8 +9,7 @@ from pydantic import Discriminator, Field, model_validator
 
 from nrs_design.spec import kinds
 from nrs_design.spec.faults import fault
-from nrs_design.spec.model import SpecModel
-from nrs_design.spec.provenance import PROVENANCE, Provenance
+from nrs_design.spec.provenance import Coverage, IdentifiedSpec
 from nrs_design.spec.quantity import Quantity
 from nrs_design.spec.quantity_fields import (
     Damping,
@@ -32,11 +31,15 @@ _DAMPING = (
     "damping{which} at the pivot in N*m*s/rad, or at the contact point in N*s/m with lever_arm; "
     "one quantity, or {{nominal: ..., range: [lowest, highest]}}"
 )
+_COVERS = (
+    "what the identified ranges hold: confidence (the mean of the specimens), tolerance (95 % of "
+    "all specimens) or prediction (the next record), each with 95 %"
+)
 
 Number = TypeVar("Number", float, Fraction)
 
 
-class AbstractEnvironmentSpec(SpecModel):
+class AbstractEnvironmentSpec(IdentifiedSpec):
     """What all environments have in common; parameters of the law are the ranged quantities."""
 
     # Whether the force depends on more than the deflection and the velocity of the moment.
@@ -45,7 +48,7 @@ class AbstractEnvironmentSpec(SpecModel):
     has_rest: ClassVar[bool] = True
 
     lever_arm: LeverArm | None = Field(default=None, description=_LEVER_ARM)
-    provenance: Provenance = Field(default=(), description=PROVENANCE)
+    range_covers: Coverage | None = Field(default=None, description=_COVERS)
 
     @model_validator(mode="after")
     def _check_lever_arm(self) -> Self:

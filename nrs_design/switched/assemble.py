@@ -20,7 +20,12 @@ from nrs_design.spec import (
     Spec,
     SwitchedSystemSpec,
 )
-from nrs_design.switched.assumptions import GIVEN_MATRICES, assume_matrices, scale_texts
+from nrs_design.switched.assumptions import (
+    GIVEN_MATRICES,
+    assume_matrices,
+    identified_texts,
+    scale_texts,
+)
 from nrs_design.switched.close_loop import close_loop
 from nrs_design.switched.constraints import assemble_switching
 from nrs_design.switched.gain_box import gain_boxes
@@ -162,7 +167,8 @@ def assemble(
     system = close_loop(
         spec.name, plant, loop, design, coordinates, spec.switching, boxes, spec.idle_states
     )
-    return replace(system, assumptions=(*system.assumptions, *scale_texts(scale)))
+    texts = (*system.assumptions, *identified_texts(spec), *scale_texts(scale))
+    return replace(system, assumptions=texts)
 
 
 def _check_scale(scale: Fraction) -> None:

@@ -23,7 +23,7 @@ _SINGULAR = 1e-14
 
 @dataclass(frozen=True, slots=True)
 class Estimate:
-    """A positive parameter with its 95 % confidence interval.
+    """A parameter with its 95 % confidence interval.
 
     Parameters
     ----------
@@ -144,6 +144,13 @@ def ljung_box(residuals: Array, lags: int = _LAGS) -> float:
     rho = np.array([centered[k:] @ centered[:-k] for k in range(1, lags + 1)]) / power
     statistic = n * (n + 2) * float(np.sum(rho**2 / (n - np.arange(1, lags + 1))))
     return float(chdtrc(lags, statistic))
+
+
+def fisher_tail(above: int, below: int, ratio: float) -> float:
+    """Return the p-value of an F-test with these degrees of freedom."""
+    from scipy.special import fdtrc
+
+    return float(fdtrc(above, below, ratio))
 
 
 def student_quantile(degrees: int) -> float:

@@ -77,7 +77,9 @@ def tissue(
     records = read_all(data, read_tissue, columns or [], quiet=quiet)
     arm = parse_arm(lever_arm, rotational=any(record.rotational for record in records))
     with progress("fitting", quiet=quiet) as step:
-        found = identify_tissue(records, None if model is ModelOption.AUTO else str(model), step)
+        found = identify_tissue(
+            records, None if model is ModelOption.AUTO else str(model), progress=step
+        )
         merged = merge_tissue(loaded, found, environment, lever_arm) if loaded else None
         if report is not None:
             from nrs_design.reporting.identification import tissue_report

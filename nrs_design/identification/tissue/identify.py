@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from nrs_design.errors import DataError
 from nrs_design.identification.datasets import TissueRecord
 from nrs_design.identification.tissue.pool import ModelFit, fit_model
+from nrs_design.identification.tissue.trial import Preparation, prepare
 from nrs_design.models.contact import LAWS
 
 
@@ -58,6 +59,7 @@ class TissueIdentification:
 def identify_tissue(
     records: Sequence[TissueRecord],
     law: str | None = None,
+    preparation: Preparation | None = None,
     progress: Callable[[str], None] = lambda step: None,
 ) -> TissueIdentification:
     """Fit all laws to all records and choose.
@@ -68,6 +70,8 @@ def identify_tissue(
         Linear ones or rotational ones.
     law : str, optional
         Name of the law to choose whatever the comparison says.
+    preparation : Preparation, optional
+        What is done to each record first: air and rupture cut off, offsets fitted or given.
     progress : callable
         Told the name of each law.
 
@@ -77,10 +81,11 @@ def identify_tissue(
         If there is no record, linear and rotational ones are mixed, or one is there twice.
     """
     _check(records)
+    trials = [prepare(record, preparation) for record in records]
     models = []
     for name, kind in LAWS.items():
         progress(name)
-        models.append(fit_model(kind, records))
+        models.append(fit_model(kind, trials))
     chosen, reason = _choose(models) if law is None else _told(models, law)
     return TissueIdentification(tuple(records), tuple(models), chosen, reason)
 

@@ -1,8 +1,15 @@
-"""One law fitted to one record: the simulated force against the measured one."""
+"""One law fitted to one record: the simulated force against the measured one.
+
+Offsets add to the force in proportion, so that they are eliminated: force, simulation and
+derivatives are taken less their projection on the offsets (variable projection, Golub and Pereyra
+1973), and the search is over the parameters of the law alone.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,8 +18,17 @@ from nrs_design.identification.datasets import TissueRecord
 from nrs_design.identification.rounding import rounding_scatter
 from nrs_design.identification.statistics import Estimate, Uncertainty, uncertainty
 from nrs_design.identification.tissue.doubts import doubts
+from nrs_design.identification.tissue.offsets import (
+    Offset,
+    estimate_offsets,
+    fits_zero,
+    measured,
+    offset_columns,
+    offset_names,
+)
 from nrs_design.identification.tissue.starts import box, scan
-from nrs_design.models.contact import AbstractContactLaw, Motion
+from nrs_design.identification.tissue.trial import Trial, prepare
+from nrs_design.models.contact import AbstractContactLaw, HuntCrossley, Motion
 
 Array = NDArray[np.float64]
 
@@ -21,6 +37,9 @@ STARTS = 3
 _COARSE = 20_000
 # Starts whose costs end within this factor of the best one have found the same valley.
 _SAME = 1e-6
+# How far the position of contact is sought from where it was found, in travels of the record.
+_REACH = 0.5
+_SHIFTS = (0.0, 0.01, -0.01, 0.04, -0.04, 0.15, -0.15, 0.4, -0.4)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -29,27 +48,41 @@ class RecordFit:
 
     Parameters
     ----------
-    record : TissueRecord
-        The data.
+    trial : Trial
+        The data as they were fitted.
     law : AbstractContactLaw
         With the fitted parameters.
+    offsets : tuple of Offset
+        Position of contact, tare and drift.
+    fitted : ndarray, shape (n,)
+        Force of law and offsets in all samples of the trial.
     uncertainty : Uncertainty
         Of the logarithms of the parameters.
     rmse : float
         Root of the mean squared force error, in N (N m).
+    free : int
+        Parameters and offsets that were fitted.
     agreeing, starts : int
         How many searches there were, and how many of them ended here.
     doubts : tuple of str
         Why the record may not determine the parameters.
     """
 
-    record: TissueRecord
+    trial: Trial
     law: AbstractContactLaw
+    offsets: tuple[Offset, ...]
+    fitted: Array
     uncertainty: Uncertainty
     rmse: float
+    free: int
     agreeing: int
     starts: int
     doubts: tuple[str, ...]
+
+    @property
+    def record(self) -> TissueRecord:
+        """The record as it was read."""
+        return self.trial.record
 
     @property
     def estimates(self) -> tuple[Estimate, ...]:
@@ -64,106 +97,230 @@ class RecordFit:
     @property
     def bic(self) -> float:
         """Schwarz's criterion ``n log(SSE/n) + (p + 1) log n``."""
-        return self._fidelity + self._count * float(np.log(len(self.record.force)))
+        return self._fidelity + self._count * float(np.log(self._samples))
+
+    @property
+    def _samples(self) -> int:
+        return int(self.trial.used.sum())
 
     @property
     def _fidelity(self) -> float:
-        return 2 * len(self.record.force) * float(np.log(max(self.rmse, np.finfo(float).tiny)))
+        return 2 * self._samples * float(np.log(max(self.rmse, np.finfo(float).tiny)))
 
     @property
     def _count(self) -> int:
-        """Parameters, and the variance of the noise."""
-        return len(self.law.values) + 1
+        """Parameters, offsets, and the variance of the noise."""
+        return self.free + 1
 
 
-def fit_record(kind: type[AbstractContactLaw], record: TissueRecord) -> RecordFit:
+def fit_record(kind: type[AbstractContactLaw], record: TissueRecord | Trial) -> RecordFit:
     """Fit a law by output error.
 
     Minimizes the squared difference of measured and simulated force over the logarithms of the
-    parameters. Simulation and derivatives are exact for a piecewise linear deflection; the force
-    is never differentiated.
+    parameters, with offsets of force and deflection. Simulation and derivatives are exact for a
+    piecewise linear deflection; the force is never differentiated.
 
     Parameters
     ----------
     kind : type
         One of `nrs_design.models.contact.LAWS`.
-    record : TissueRecord
-        n samples.
+    record : TissueRecord or Trial
+        n samples; a record is prepared in the default way.
     """
-    bounds, coarse = box(kind, record), _thin(record)
-    candidates = sorted(scan(kind, coarse), key=lambda law: rmse(law, coarse))[:STARTS]
-    ends = [_search(kind, coarse, law, bounds) for law in candidates]
-    costs = np.array([rmse(law, coarse) ** 2 for law in ends])
+    trial = record if isinstance(record, Trial) else prepare(record)
+    bounds = box(kind, trial)
+    problem = _Problem(kind, trial)
+    coarse = _Problem(kind, trial.thinned(-(-len(trial.force) // _COARSE)))
+    candidates = sorted(coarse.starts(), key=coarse.cost)
+    ends = [_search(coarse, start, bounds) for start in candidates[:STARTS]]
+    costs = np.array([coarse.cost(end) for end in ends])
     best = int(np.argmin(costs))
-    law = ends[best] if coarse is record else _search(kind, record, ends[best], bounds)
-    known = _uncertainty(law, record)
+    point = ends[best]
+    if coarse.trial is not trial:
+        point = _search(problem, point, bounds)
+    agreeing = int(np.sum(costs <= costs[best] * (1 + _SAME)))
+    return _judge(problem, point, bounds, agreeing, len(ends))
+
+
+def rmse(law: AbstractContactLaw, record: TissueRecord | Trial) -> float:
+    """Return the root of the mean squared force error, with the best offsets for this law."""
+    trial = record if isinstance(record, Trial) else prepare(record)
+    problem = _Problem(type(law), trial)
+    point = np.append(np.log(law.values), problem.no_shift)
+    if fits_zero(type(law), trial):
+        point = _place(problem, point)
+    return float(np.sqrt(problem.cost(point)))
+
+
+def _judge(
+    problem: _Problem, point: Array, bounds: tuple[Array, Array], agreeing: int, starts: int
+) -> RecordFit:
+    trial, law = problem.trial, problem.law(point)
+    constants, residuals = problem.solve(point)
+    J = np.column_stack([problem.sensitivities(point), problem.offsets])
+    known = _uncertainty(trial, J, residuals)
+    p = len(law.values)
+    shift = problem.shift(point) if len(point) > p else None
+    offsets = estimate_offsets(law, trial, problem.names, constants, shift, known)
+    own = Uncertainty(known.covariance[:p, :p], known.degrees, known.whiteness)
+    said = list(doubts(law, trial, own, bounds, residuals, J))
+    if shift is not None and abs(point[p]) > _REACH * (1 - 1e-3):
+        said.append("the position of contact is at the end of its box")
     return RecordFit(
-        record=record,
+        trial=trial,
         law=law,
-        uncertainty=known,
-        rmse=rmse(law, record),
-        agreeing=int(np.sum(costs <= costs[best] * (1 + _SAME))),
-        starts=len(ends),
-        doubts=doubts(law, record, known, bounds),
+        offsets=offsets,
+        fitted=problem.simulate_all(point, constants),
+        uncertainty=own,
+        rmse=float(np.sqrt(np.mean(residuals**2))),
+        free=J.shape[1],
+        agreeing=agreeing,
+        starts=starts,
+        doubts=tuple(said),
     )
 
 
-def _thin(record: TissueRecord) -> TissueRecord:
-    """Return a shorter record to search in; only the last search needs every sample."""
-    every = -(-len(record.force) // _COARSE)
-    if every == 1:
-        return record
-    motion = Motion(record.motion.time[::every], record.motion.deflection[::every])
-    return replace(record, motion=motion, force=record.force[::every])
+@dataclass(frozen=True)
+class _Problem:
+    """Least squares over one law and one trial; a point is logarithms, and the move of the zero."""
+
+    kind: type[AbstractContactLaw]
+    trial: Trial
+
+    @cached_property
+    def names(self) -> tuple[str, ...]:
+        return offset_names(self.kind, self.trial)
+
+    @cached_property
+    def offsets(self) -> Array:
+        return offset_columns(self.names, self.trial)
+
+    @cached_property
+    def _basis(self) -> Array:
+        return np.linalg.qr(self.offsets)[0]
+
+    @cached_property
+    def force(self) -> Array:
+        return measured(self.trial)
+
+    @cached_property
+    def target(self) -> Array:
+        """Force less its projection on the offsets."""
+        return self.project(self.force)
+
+    @cached_property
+    def travel(self) -> float:
+        return float(np.ptp(self.trial.motion.deflection))
+
+    @property
+    def no_shift(self) -> Array:
+        return np.zeros(int(fits_zero(self.kind, self.trial)))
+
+    def starts(self) -> Iterator[Array]:
+        """Yield points to start from, with the position of contact here and there."""
+        for shift in _SHIFTS if len(self.no_shift) else (0.0,):
+            trial = self.trial
+            if shift:
+                trial = replace(trial, motion=trial.shifted(shift * self.travel))
+            for law in scan(self.kind, trial, self.offsets):
+                yield np.append(np.log(law.values), self.no_shift + shift)
+
+    def project(self, values: Array) -> Array:
+        return np.asarray(values - self._basis @ (self._basis.T @ values))
+
+    def law(self, point: Array) -> AbstractContactLaw:
+        return self.kind(*np.exp(point[: len(self.kind.kinds)]).tolist())
+
+    def shift(self, point: Array) -> float:
+        moves = point[len(self.kind.kinds) :]
+        return float(moves[0]) * self.travel if len(moves) else 0.0
+
+    def motion(self, point: Array) -> Motion:
+        shift = self.shift(point)
+        return self.trial.shifted(shift) if shift else self.trial.motion
+
+    def simulate(self, point: Array) -> Array:
+        return self.law(point).simulate(self.motion(point))[self.trial.used]
+
+    def sensitivities(self, point: Array) -> Array:
+        """Return the derivatives by the logarithms, and by the move of the zero in m (rad)."""
+        law, motion = self.law(point), self.motion(point)
+        J = law.sensitivities(motion)
+        if len(point) > len(self.kind.kinds):
+            assert isinstance(law, HuntCrossley)
+            J = np.column_stack([J, -law.slope(motion)])
+        return J[self.trial.used]
+
+    def cost(self, point: Array) -> float:
+        error = self.target - self.project(self.simulate(point))
+        return float(error @ error) / len(error)
+
+    def solve(self, point: Array) -> tuple[Array, Array]:
+        """Return the best constants and the residuals."""
+        rest = self.force - self.simulate(point)
+        constants = np.linalg.lstsq(self.offsets, rest, rcond=None)[0]
+        return constants, np.asarray(rest - self.offsets @ constants)
+
+    def simulate_all(self, point: Array, constants: Array) -> Array:
+        """Return the force in all samples, used or not, with its tare."""
+        whole = self.trial.everything()
+        force = self.law(point).simulate(self.motion(point))
+        force += offset_columns(self.names, whole) @ constants
+        tare = self.trial.preparation.tare
+        return force if tare is None else force + self.trial.side * tare
 
 
-def residuals(law: AbstractContactLaw, record: TissueRecord) -> Array:
-    """Return measured less simulated force, shape (n,)."""
-    return record.force - law.simulate(record.motion)
+def _uncertainty(trial: Trial, J: Array, residuals: Array) -> Uncertainty:
+    deflection = trial.deflection
+    moving = np.linalg.norm(deflection - deflection.mean())
+    stiffness = float(np.linalg.norm(trial.measured - trial.measured.mean()) / moving)
+    scatter = rounding_scatter(deflection, J, stiffness)
+    return uncertainty(J, residuals, scatter=scatter)
 
 
-def rmse(law: AbstractContactLaw, record: TissueRecord) -> float:
-    """Return the root of the mean squared force error."""
-    return float(np.sqrt(np.mean(residuals(law, record) ** 2)))
+def _place(problem: _Problem, point: Array) -> Array:
+    """Return the point with the best position of contact for its law."""
+    from scipy.optimize import minimize_scalar
+
+    def at(shift: float) -> Array:
+        return np.append(point[:-1], shift)
+
+    grid = np.linspace(-_REACH, _REACH, 41)
+    near = float(grid[int(np.argmin([problem.cost(at(shift)) for shift in grid]))])
+    step = float(grid[1] - grid[0])
+    found = minimize_scalar(
+        lambda shift: problem.cost(at(float(shift))),
+        bounds=(max(near - step, -_REACH), min(near + step, _REACH)),
+        method="bounded",
+    )
+    return at(float(found.x))
 
 
-def _uncertainty(law: AbstractContactLaw, record: TissueRecord) -> Uncertainty:
-    J = law.sensitivities(record.motion)
-    stiffness = float(np.linalg.norm(record.force) / np.linalg.norm(record.motion.deflection))
-    scatter = rounding_scatter(record.motion.deflection, J, stiffness)
-    return uncertainty(J, residuals(law, record), scatter=scatter)
-
-
-def _search(
-    kind: type[AbstractContactLaw],
-    record: TissueRecord,
-    start: AbstractContactLaw,
-    bounds: tuple[Array, Array],
-) -> AbstractContactLaw:
+def _search(problem: _Problem, start: Array, bounds: tuple[Array, Array]) -> Array:
     from scipy.optimize import least_squares
 
-    scale = float(np.sqrt(np.mean(record.force**2)))
-    low, high = bounds
+    p = len(problem.kind.kinds)
+    scale = float(np.sqrt(np.mean(problem.target**2))) or 1.0
+    reach = np.full(len(start) - p, _REACH)
+    low, high = np.append(bounds[0], -reach), np.append(bounds[1], reach)
     # The search needs room around its start.
     room = 1e-6 * (high - low)
-    x0 = np.clip(np.log(start.values), low + room, high - room)
-
-    def law_at(x: Array) -> AbstractContactLaw:
-        return kind(*np.exp(x).tolist())
 
     def error(x: Array) -> Array:
-        return -residuals(law_at(x), record) / scale
+        return -(problem.target - problem.project(problem.simulate(x))) / scale
 
     def slope(x: Array) -> Array:
-        return law_at(x).sensitivities(record.motion) / scale
+        J = problem.sensitivities(x)
+        J[:, p:] *= problem.travel
+        return problem.project(J) / scale
 
     found = least_squares(
         error,
-        x0,
+        np.clip(start, low + room, high - room),
         jac=slope,
         bounds=(low, high),
         xtol=1e-10,
         ftol=1e-12,
         gtol=1e-12,
     )
-    return law_at(np.asarray(found.x))
+    return np.asarray(found.x)

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from nrs_design.identification.datasets import TissueRecord
 from nrs_design.identification.statistics import Estimate, student_quantile
 from nrs_design.identification.tissue.output_error import RecordFit, fit_record, rmse
+from nrs_design.identification.tissue.trial import Trial, prepare
 from nrs_design.models.contact import AbstractContactLaw
 
 Array = NDArray[np.float64]
@@ -61,23 +62,24 @@ class ModelFit:
         return tuple(f"{fit.record.name}: {text}" for fit in self.fits for text in fit.doubts)
 
 
-def fit_model(kind: type[AbstractContactLaw], records: Sequence[TissueRecord]) -> ModelFit:
+def fit_model(kind: type[AbstractContactLaw], records: Sequence[TissueRecord | Trial]) -> ModelFit:
     """Fit a law to every record, and pool the parameters.
 
     Parameters
     ----------
     kind : type
         One of `nrs_design.models.contact.LAWS`.
-    records : sequence of TissueRecord
+    records : sequence of TissueRecord or Trial
         At least one, all linear or all rotational.
     """
-    fits = tuple(fit_record(kind, record) for record in records)
+    trials = [item if isinstance(item, Trial) else prepare(item) for item in records]
+    fits = tuple(fit_record(kind, trial) for trial in trials)
     estimates = pool(fits)
     law = kind(*(estimate.value for estimate in estimates))
     ranges = tuple(
         _hull(pooled, [fit.estimates[i] for fit in fits]) for i, pooled in enumerate(estimates)
     )
-    return ModelFit(fits, law, estimates, ranges, tuple(rmse(law, record) for record in records))
+    return ModelFit(fits, law, estimates, ranges, tuple(rmse(law, trial) for trial in trials))
 
 
 def pool(fits: Sequence[RecordFit]) -> tuple[Estimate, ...]:

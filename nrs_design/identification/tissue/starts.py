@@ -11,7 +11,7 @@ from collections.abc import Iterator
 import numpy as np
 from numpy.typing import NDArray
 
-from nrs_design.identification.datasets import TissueRecord
+from nrs_design.identification.tissue.trial import Trial
 from nrs_design.models.contact import (
     AbstractContactLaw,
     Elastic,
@@ -35,40 +35,57 @@ _STIFFNESS_BOX = 1e4
 _SHORTEST, _LONGEST = 1e-4, 1e3
 
 
-def scan(kind: type[AbstractContactLaw], record: TissueRecord) -> Iterator[AbstractContactLaw]:
-    """Yield candidates for the start of a search."""
-    motion, force = record.motion, record.force
+def scan(
+    kind: type[AbstractContactLaw], trial: Trial, offsets: Array
+) -> Iterator[AbstractContactLaw]:
+    """Yield candidates for the start of a search.
+
+    Parameters
+    ----------
+    kind : type
+        One of `nrs_design.models.contact.LAWS`.
+    trial : Trial
+        n used samples.
+    offsets : ndarray, shape (n, m)
+        What each offset adds to the force.
+    """
+    motion, used = trial.motion, trial.used
+
+    def linear(*regressors: Array) -> tuple[float, ...]:
+        X = np.column_stack([regressor[used] for regressor in regressors])
+        return _linear(trial.measured, X, offsets)
+
     if kind is Elastic:
-        yield Elastic(*_linear(force, motion.deflection))
+        yield Elastic(*linear(motion.deflection))
     elif kind is KelvinVoigt:
-        yield KelvinVoigt(*_linear(force, motion.deflection, motion.velocity))
+        yield KelvinVoigt(*linear(motion.deflection, motion.velocity))
     elif kind is HuntCrossley:
         for phi in np.linspace(LEAST_EXPONENT, LARGEST_EXPONENT, _EXPONENTS).tolist():
             power = np.maximum(motion.deflection, 0.0) ** phi
-            rho, lam = _linear(force, power, power * motion.velocity)
+            rho, lam = linear(power, power * motion.velocity)
             yield HuntCrossley(rho, lam, phi)
     else:
-        for tau in _time_constants(record):
+        for tau in _time_constants(trial):
             y, _ = relax(motion, tau)
             if kind is Maxwell:
-                (k,) = _linear(force, y)
+                (k,) = linear(y)
                 yield Maxwell(k, k * tau)
             else:
-                eta1, arm = _linear(force, motion.deflection, y)
+                eta1, arm = linear(motion.deflection, y)
                 yield KelvinBoltzmann.from_eta(eta1, (eta1 + arm) * tau, tau)
 
 
-def box(kind: type[AbstractContactLaw], record: TissueRecord) -> tuple[Array, Array]:
+def box(kind: type[AbstractContactLaw], trial: Trial) -> tuple[Array, Array]:
     """Return the bounds of the logarithms of the parameters.
 
     They are so wide that only a parameter which the record does not determine reaches them; the
     exponent is kept between 1.1 and 1.3 as in thesis 2.5.
     """
-    k = _norm(record.force) / _norm(record.motion.deflection)
-    step = float(np.median(record.motion.steps))
+    k = trial.span / float(np.ptp(trial.deflection))
+    step = float(np.median(trial.motion.steps))
     stiffness = (k / _STIFFNESS_BOX, k * _STIFFNESS_BOX)
-    damping = (k * step * _SHORTEST, k * record.duration * _LONGEST)
-    reach = float(np.max(np.abs(record.motion.deflection)))
+    damping = (k * step * _SHORTEST, k * trial.duration * _LONGEST)
+    reach = float(np.max(np.abs(trial.deflection)))
     power = reach ** (LEAST_EXPONENT - 1), reach**LARGEST_EXPONENT
     bounds = {
         STIFFNESS: stiffness,
@@ -81,23 +98,22 @@ def box(kind: type[AbstractContactLaw], record: TissueRecord) -> tuple[Array, Ar
     return low, high
 
 
-def _time_constants(record: TissueRecord) -> list[float]:
-    step = float(np.median(record.motion.steps))
-    return [float(tau) for tau in np.geomspace(2 * step, 5 * record.duration, _SCAN)]
+def _time_constants(trial: Trial) -> list[float]:
+    step = float(np.median(trial.motion.steps))
+    return [float(tau) for tau in np.geomspace(2 * step, 5 * trial.duration, _SCAN)]
 
 
-def _linear(force: Array, *regressors: Array) -> tuple[float, ...]:
+def _linear(force: Array, X: Array, offsets: Array) -> tuple[float, ...]:
     """Fit positive coefficients: least squares, what comes out too small is lifted."""
-    X = np.column_stack(regressors)
+    if offsets.shape[1]:
+        basis = np.linalg.qr(offsets)[0]
+        force = force - basis @ (basis.T @ force)
+        X = X - basis @ (basis.T @ X)
     size = np.maximum(np.linalg.norm(X, axis=0), np.finfo(float).tiny)
     scaled = np.linalg.lstsq(X / size, force, rcond=None)[0]
-    floor = _FLOOR * _norm(force)
+    floor = _FLOOR * float(np.linalg.norm(force))
     if (scaled < floor).any() and len(size) > 1:
         # Without the offending terms, as a nonnegative fit would have it.
         alone = (X / size).T @ force
         scaled = np.where(scaled < floor, 0.0, np.maximum(alone, floor))
     return tuple(float(c) for c in np.maximum(scaled, floor) / size)
-
-
-def _norm(values: Array) -> float:
-    return float(np.linalg.norm(values))

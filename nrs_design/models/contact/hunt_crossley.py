@@ -54,6 +54,14 @@ class HuntCrossley(AbstractContactLaw):
         spring, damper = self.rho * power, self.lam * power * motion.velocity
         return np.column_stack([spring, damper, self.phi * logarithm * (spring + damper)])
 
+    def slope(self, motion: Motion) -> Array:
+        """Return the derivative of `simulate` by the deflection, shape (n,), in N/m (N m/rad)."""
+        import numpy as np
+
+        power = self.phi * np.maximum(motion.deflection, 0.0) ** (self.phi - 1)
+        touching = motion.deflection > 0
+        return np.asarray(touching * power * (self.rho + self.lam * motion.velocity))
+
     def at_pivot(self, radius: float) -> HuntCrossley:
         """Return ``rho r^(phi+1)`` and ``lam r^(phi+2)``; the exponent stays."""
         return HuntCrossley(

@@ -31,7 +31,7 @@ def test_the_true_law_is_chosen(law, motion, noise, q):
 def test_a_law_can_be_asked_for():
     steps = []
     data = [record(synthetic.NOSE, slow(), 0.01)]
-    found = identify_tissue(data, "elastic", steps.append)
+    found = identify_tissue(data, "elastic", progress=steps.append)
     assert found.chosen.law.name == "elastic"
     assert "prefers kelvin-boltzmann" in found.reason
     assert steps == list(LAWS)

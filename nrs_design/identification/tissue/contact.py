@@ -7,11 +7,13 @@ corner of a curve that is flat on one side, found by least squares over a grid o
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
 from nrs_design.identification.datasets import TissueRecord
+from nrs_design.identification.tissue.cycles import find_cycles
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
@@ -21,20 +23,40 @@ _COARSE = 500
 _REFINED = 3
 _FINE = 15
 _RIDGE = 1e-9
+_CYCLES = 4
 # Air must be this part of the travel at least, with so many samples.
 _LEAST_AIR = 0.01
 _FEWEST = 10
 # Stiffness of air over that of the contact: what is stiffer is tissue.
-_FLAT = 0.1
-# The corner must lower the squared error by this factor against a smooth curve without one.
-_BETTER = 0.8
-_CORNERLESS = 0.9
-# Contact is lost where a smoothed force is within so many of its standard deviations from the air.
-_LOST = 3.0
+_FLAT = 0.3
+# A corner must lower n log(SSE) by this against a smooth curve without one, and explain so much.
+_BETTER = 20.0
+_EXPLAINED = 0.1
+# A smoothed force beyond so many of its standard deviations from the air is one of contact.
+_CLEAR = 5.0
 _SMOOTH = 5
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@dataclass(frozen=True, slots=True)
+class Touch:
+    """Rows of one touch.
+
+    Parameters
+    ----------
+    first, end : int
+        Beyond the position of contact.
+    met, lost : int
+        With force. Where the tissue is not at rest, it is met later than at the position of
+        contact, and lost earlier.
+    """
+
+    first: int
+    met: int
+    lost: int
+    end: int
+
+
+@dataclass(frozen=True, eq=False)
 class Contact:
     """Which samples are in contact.
 
@@ -44,22 +66,29 @@ class Contact:
         Position of contact, m (rad); the deflection is counted from it.
     side : int
         1 if the tissue is where positions are larger, else -1.
-    touching : ndarray of bool, shape (n,)
+    beyond : ndarray of bool, shape (n,)
         Beyond the position of contact.
-    lost : ndarray of bool, shape (n,)
-        Beyond it, and yet without force: the tissue has not come back yet.
+    clear : ndarray of bool, shape (n,)
+        With a force that is clearly not that of the air.
     """
 
     zero: float
     side: int
-    touching: Flags
-    lost: Flags
+    beyond: Flags
+    clear: Flags
 
-    @property
-    def touches(self) -> int:
-        """How often the probe meets the tissue."""
-        starts = np.flatnonzero(np.diff(self.touching.astype(int)) == 1)
-        return len(starts) + int(self.touching[0])
+    @cached_property
+    def touches(self) -> tuple[Touch, ...]:
+        """How often and when the probe meets the tissue."""
+        padded = np.concatenate([[False], self.beyond, [False]])
+        edges = np.flatnonzero(padded[1:] != padded[:-1]).reshape(-1, 2).tolist()
+        found = []
+        for first, end in edges:
+            clear = np.flatnonzero(self.clear[first:end])
+            if len(clear):
+                rows = first, first + int(clear[0]), first + int(clear[-1]) + 1, end
+                found.append(Touch(*rows))
+        return tuple(found)
 
 
 def find_contact(record: TissueRecord) -> Contact | None:
@@ -72,28 +101,32 @@ def find_contact(record: TissueRecord) -> Contact | None:
     """
     x, force = record.motion.deflection, record.force
     velocity = _smoothed(record.motion.velocity)
+    # Later touches may meet a tissue that has not come back, so that the first one tells best.
     best: tuple[float, float, int] | None = None
-    for side in (1, -1):
-        pick = _loading(side * x, side * velocity)
-        found = _corner(side * x[pick], force[pick])
-        if found is not None and (best is None or found[1] < best[1]):
-            best = (*found, side)
+    for cycle in find_cycles(x)[:_CYCLES]:
+        for side in (1, -1):
+            rows = _loading(side * x, side * velocity, cycle)
+            found = _corner(side * x[rows], velocity[rows], force[rows])
+            if found is not None and (best is None or found[1] < best[1]):
+                best = (*found, side)
+        if best is not None:
+            break
     if best is None:
         return None
     corner, _, side = best
-    touching = side * x > corner
-    lost = _lost(force, touching)
-    return Contact(side * corner, side, touching, lost)
+    beyond = side * x > corner
+    return Contact(side * corner, side, beyond, _clear(force, beyond))
 
 
-def _loading(u: Array, velocity: Array) -> NDArray[np.intp]:
+def _loading(u: Array, velocity: Array, cycle: slice) -> NDArray[np.intp]:
     """Pick samples on the way in: a tissue that relaxes lets go elsewhere than it was met."""
-    way_in = np.flatnonzero(velocity > 0.02 * np.abs(velocity).max())
-    rows = way_in if len(way_in) >= 5 * _FEWEST else np.arange(len(u))
+    rows = np.arange(len(u))[cycle]
+    way_in = rows[velocity[cycle] > 0.02 * np.abs(velocity[cycle]).max()]
+    rows = way_in if len(way_in) >= 5 * _FEWEST else rows
     return rows[:: -(-len(rows) // _COARSE)]
 
 
-def _corner(u: Array, force: Array) -> tuple[float, float] | None:
+def _corner(u: Array, velocity: Array, force: Array) -> tuple[float, float] | None:
     """Return the best corner and its squared error, if it is one."""
     low, span = float(u.min()), float(np.ptp(u))
     # Between 0 and 1, powers are told apart.
@@ -101,7 +134,7 @@ def _corner(u: Array, force: Array) -> tuple[float, float] | None:
     grid = np.linspace(0.5 * _LEAST_AIR, 0.95, _GRID)
     step = float(grid[1] - grid[0])
     for _ in range(_REFINED):
-        errors = _errors(np.maximum(v - grid[:, None], 0.0), centered)
+        errors = _errors(np.maximum(v - grid[:, None], 0.0), velocity, centered)
         at = int(np.argmin(errors))
         best, error = float(grid[at]), float(errors[at])
         grid = np.linspace(max(best - step, 0.0), min(best + step, 1.0), _FINE)
@@ -109,15 +142,27 @@ def _corner(u: Array, force: Array) -> tuple[float, float] | None:
     air = v < best
     if min(air.sum(), (~air).sum()) < _FEWEST or best < _LEAST_AIR:
         return None
-    smooth = float(_errors(v[None], centered)[0])
-    if error > _BETTER * smooth or error > _CORNERLESS * float(centered @ centered):
+    smooth = float(_errors(v[None], velocity, centered)[0])
+    if smooth < error * np.exp(_BETTER / len(u)):
+        return None
+    if error > (1 - _EXPLAINED) * float(centered @ centered):
         return None
     return (low + best * span, error) if _is_flat(u, force, low + best * span) else None
 
 
-def _errors(w: Array, force: Array) -> Array:
-    """Squared errors of a constant and a cubic in w: beyond a corner, w leaves zero; (m, n)."""
-    X = np.stack([np.ones_like(w), w, w**2, w**3], axis=2)
+def _errors(w: Array, velocity: Array, force: Array) -> Array:
+    """Squared errors of a curve that leaves a constant where w leaves zero, shape (m,).
+
+    The curve is quadratic, with a force in proportion to the velocity: that begins with a jump.
+
+    Parameters
+    ----------
+    w : ndarray, shape (m, n)
+        Deflections between 0 and 1, for m corners.
+    velocity, force : ndarray, shape (n,)
+        In any unit.
+    """
+    X = np.stack([np.ones_like(w), w, w**2, velocity * (w > 0)], axis=2)
     size = np.maximum(np.sqrt(np.einsum("mni,mni->mi", X, X)), np.finfo(float).tiny)
     X /= size[:, None, :]
     gram = np.einsum("mni,mnj->mij", X, X) + _RIDGE * np.eye(4)
@@ -135,15 +180,15 @@ def _is_flat(u: Array, force: Array, corner: float) -> bool:
     noise = force[air] - force[air].mean() - slope * centered
     error = float(np.sqrt(np.mean(noise**2) / max(float(centered @ centered), 1e-300)))
     rise = float(np.abs(force[~air] - force[air].mean()).max()) / float(u.max() - corner)
-    return abs(slope) < _FLAT * rise + 3 * error and error < _FLAT * rise
+    return abs(slope) + 2 * error < _FLAT * rise
 
 
-def _lost(force: Array, touching: Flags) -> Flags:
-    """Find where the probe is beyond the position of contact without force."""
-    air = force[~touching]
-    level = float(np.median(air))
+def _clear(force: Array, beyond: Flags) -> Flags:
+    """Find where the force is clearly not that of the air."""
+    air = force[~beyond]
     noise = float(np.std(air)) / np.sqrt(_SMOOTH)
-    return np.asarray(touching & (np.abs(_smoothed(force) - level) < _LOST * noise))
+    away = np.abs(_smoothed(force) - float(np.median(air)))
+    return np.asarray(beyond & (away > _CLEAR * noise))
 
 
 def _smoothed(values: Array) -> Array:

@@ -10,6 +10,7 @@ from nrs_design.identification.datasets import TissueRecord
 from nrs_design.identification.tissue.pool import ModelFit, fit_model
 from nrs_design.identification.tissue.trial import Preparation, prepare
 from nrs_design.models.contact import LAWS
+from nrs_design.spec.provenance import Coverage
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -60,6 +61,7 @@ def identify_tissue(
     records: Sequence[TissueRecord],
     law: str | None = None,
     preparation: Preparation | None = None,
+    coverage: Coverage = "confidence",
     progress: Callable[[str], None] = lambda step: None,
 ) -> TissueIdentification:
     """Fit all laws to all records and choose.
@@ -72,6 +74,8 @@ def identify_tissue(
         Name of the law to choose whatever the comparison says.
     preparation : Preparation, optional
         What is done to each record first: air and rupture cut off, offsets fitted or given.
+    coverage : {"confidence", "tolerance", "prediction"}
+        What the ranges shall hold: the mean of the specimens, 95 % of them, or the next one.
     progress : callable
         Told the name of each law.
 
@@ -85,7 +89,7 @@ def identify_tissue(
     models = []
     for name, kind in LAWS.items():
         progress(name)
-        models.append(fit_model(kind, trials))
+        models.append(fit_model(kind, trials, coverage))
     chosen, reason = _choose(models) if law is None else _told(models, law)
     return TissueIdentification(tuple(records), tuple(models), chosen, reason)
 

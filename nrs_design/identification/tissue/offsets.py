@@ -70,11 +70,11 @@ def offset_columns(names: Sequence[str], trial: Trial) -> Array:
     """Return the force that a unit of each offset adds to the used samples, shape (n, m)."""
     used = trial.used
     columns = {
-        TARE: lambda: np.ones(int(used.sum())),
-        CONTACT: lambda: trial.touching[used].astype(float),
-        DRIFT: lambda: trial.motion.time[used] - trial.motion.time[0],
+        TARE: np.ones(len(used)),
+        CONTACT: trial.touching.astype(float),
+        DRIFT: trial.motion.time - trial.motion.time[0],
     }
-    made = [columns[name]() for name in names]
+    made = [columns[name][used] for name in names]
     return np.column_stack(made) if made else np.zeros((int(used.sum()), 0))
 
 

@@ -16,7 +16,12 @@ from numpy.typing import NDArray
 
 from nrs_design.identification.datasets import TissueRecord
 from nrs_design.identification.rounding import rounding_scatter
-from nrs_design.identification.statistics import Estimate, Uncertainty, uncertainty
+from nrs_design.identification.statistics import (
+    CONFIDENCE,
+    Estimate,
+    Uncertainty,
+    uncertainty,
+)
 from nrs_design.identification.tissue.doubts import doubts
 from nrs_design.identification.tissue.offsets import (
     Offset,
@@ -34,7 +39,7 @@ Array = NDArray[np.float64]
 
 STARTS = 3
 # Samples that suffice to find the right valley.
-_COARSE = 20_000
+_COARSE = 4_000
 # Starts whose costs end within this factor of the best one have found the same valley.
 _SAME = 1e-6
 # How far the position of contact is sought from where it was found, in travels of the record.
@@ -87,7 +92,11 @@ class RecordFit:
     @property
     def estimates(self) -> tuple[Estimate, ...]:
         """The parameters with their 95 % intervals."""
-        return self.uncertainty.estimates(np.log(self.law.values))
+        return self.estimates_at(CONFIDENCE)
+
+    def estimates_at(self, confidence: float) -> tuple[Estimate, ...]:
+        """Return the parameters with intervals of some confidence."""
+        return self.uncertainty.estimates(np.log(self.law.values), confidence)
 
     @property
     def aic(self) -> float:
@@ -240,7 +249,12 @@ class _Problem:
         return self.trial.shifted(shift) if shift else self.trial.motion
 
     def simulate(self, point: Array) -> Array:
-        return self.law(point).simulate(self.motion(point))[self.trial.used]
+        return self._pushing(self.law(point).simulate(self.motion(point)))[self.trial.used]
+
+    def _pushing(self, values: Array) -> Array:
+        """Return a force, or its derivatives, without what a surface that nothing touches has."""
+        values[~self.trial.touching] = 0.0
+        return values
 
     def sensitivities(self, point: Array) -> Array:
         """Return the derivatives by the logarithms, and by the move of the zero in m (rad)."""
@@ -249,7 +263,7 @@ class _Problem:
         if len(point) > len(self.kind.kinds):
             assert isinstance(law, HuntCrossley)
             J = np.column_stack([J, -law.slope(motion)])
-        return J[self.trial.used]
+        return self._pushing(J)[self.trial.used]
 
     def cost(self, point: Array) -> float:
         error = self.target - self.project(self.simulate(point))
@@ -259,13 +273,13 @@ class _Problem:
         """Return the best constants and the residuals."""
         rest = self.force - self.simulate(point)
         constants = np.linalg.lstsq(self.offsets, rest, rcond=None)[0]
-        return constants, np.asarray(rest - self.offsets @ constants)
+        return np.asarray(constants, float), np.asarray(rest - self.offsets @ constants)
 
     def simulate_all(self, point: Array, constants: Array) -> Array:
         """Return the force in all samples, used or not, with its tare."""
         whole = self.trial.everything()
-        force = self.law(point).simulate(self.motion(point))
-        force += offset_columns(self.names, whole) @ constants
+        force = self._pushing(self.law(point).simulate(self.motion(point)))
+        force = force + offset_columns(self.names, whole) @ constants
         tare = self.trial.preparation.tare
         return force if tare is None else force + self.trial.side * tare
 

@@ -23,6 +23,8 @@ _GOES_ON = 0.9
 _COMES_BACK = 0.5
 # And it is so many times the usual change between two samples.
 _NOISE = 5.0
+# Before it, the force rises by this part of its range in the same time, and the probe moves.
+_GROWTH = 0.02
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,7 +69,10 @@ def find_rupture(motion: Motion, force: Array) -> Rupture | None:
     if n < 4 * window:
         return None
     x = motion.deflection
-    size = _smoothed(np.abs(force - np.median(force[:window])), max(window // 2, 1))
+    size = _smoothed(force - np.median(force[:window]), max(window // 2, 1))
+    # Into the tissue, and against it: where the force is largest.
+    top = int(np.argmax(np.abs(size)))
+    size, inward = size * np.sign(size[top]), float(np.sign(x[top] - x[0]))
     span = float(np.ptp(size))
     if span == 0.0:
         return None
@@ -75,9 +80,9 @@ def find_rupture(motion: Motion, force: Array) -> Rupture | None:
     falls = (size[rows] - size[rows + window]) / span
     stays = (size[rows] - size[rows + 2 * window]) / span > _COMES_BACK * falls
     before, after = x[rows] - x[rows - window], x[rows + window] - x[rows]
-    on = (before != 0) & (after * np.sign(before) > _GOES_ON * np.abs(before))
-    # In the direction in which the force grew.
-    grew = size[rows] > size[rows - window]
+    before, after = inward * before, inward * after
+    on = (before > _GROWTH / 4 * np.ptp(x)) & (after > _GOES_ON * before)
+    grew = size[rows] - size[rows - window] > _GROWTH * span
     noise = float(np.median(np.abs(np.diff(force)))) / span
     hits = rows[(falls > max(_FALL, _NOISE * noise)) & stays & on & grew]
     if not len(hits):

@@ -50,10 +50,11 @@ def scan(
         What each offset adds to the force.
     """
     motion, used = trial.motion, trial.used
+    basis = np.linalg.qr(offsets)[0]
 
     def linear(*regressors: Array) -> tuple[float, ...]:
         X = np.column_stack([regressor[used] for regressor in regressors])
-        return _linear(trial.measured, X, offsets)
+        return _linear(trial.measured, X, basis)
 
     if kind is Elastic:
         yield Elastic(*linear(motion.deflection))
@@ -103,12 +104,10 @@ def _time_constants(trial: Trial) -> list[float]:
     return [float(tau) for tau in np.geomspace(2 * step, 5 * trial.duration, _SCAN)]
 
 
-def _linear(force: Array, X: Array, offsets: Array) -> tuple[float, ...]:
+def _linear(force: Array, X: Array, basis: Array) -> tuple[float, ...]:
     """Fit positive coefficients: least squares, what comes out too small is lifted."""
-    if offsets.shape[1]:
-        basis = np.linalg.qr(offsets)[0]
-        force = force - basis @ (basis.T @ force)
-        X = X - basis @ (basis.T @ X)
+    force = force - basis @ (basis.T @ force)
+    X = X - basis @ (basis.T @ X)
     size = np.maximum(np.linalg.norm(X, axis=0), np.finfo(float).tiny)
     scaled = np.linalg.lstsq(X / size, force, rcond=None)[0]
     floor = _FLOOR * float(np.linalg.norm(force))

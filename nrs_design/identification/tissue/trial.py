@@ -15,6 +15,7 @@ from nrs_design.identification.tissue.contact import Contact, find_contact
 from nrs_design.identification.tissue.cycles import find_cycles
 from nrs_design.identification.tissue.drift import drifts
 from nrs_design.identification.tissue.rupture import find_rupture
+from nrs_design.identification.tissue.surface import surface
 from nrs_design.models.contact import Motion
 
 Array = NDArray[np.float64]
@@ -158,7 +159,7 @@ class Trial:
     def _remarks(self) -> Iterator[str]:
         if self.found is not None:
             part = 100 * float(np.mean(~self.touching))
-            count = self.found.touches
+            count = len(self.found.touches)
             yield f"{count} {'touch' if count == 1 else 'touches'}; {part:.0f} % of it is air"
         elif self.preparation.contact == "auto":
             yield "no air shows: all of it is taken as in contact"
@@ -227,19 +228,17 @@ def _assemble(
     side = _side(x) if found is None else found.side
     reference = _reference(x, side, wanted, found)
     deflection = position = side * (x - reference)
-    touching = np.ones(len(x), bool) if found is None else position > 0
-    used = np.ones(len(x), bool)
+    used = touching = np.ones(len(x), bool)
     if found is not None:
-        edge = np.abs(deflection) < _EDGE * np.ptp(x)
-        for flags, reason in (
-            (edge & ~found.lost, "at the edge of contact"),
-            (found.lost & touching, "contact is lost: the tissue has not come back yet"),
-        ):
-            cuts += _runs(time, flags & used, reason)
-            used &= ~flags
-        deflection = np.maximum(deflection, 0.0)
+        width = _EDGE * float(np.ptp(x))
+        deflection, touching = surface(time, position, found.touches, width)
+        edge = np.abs(position) < width
+        free = found.beyond & ~touching & ~edge
+        cuts += _runs(time, edge, "at the edge of contact")
+        cuts += _runs(time, free, "no contact yet: the tissue has not come back from a touch")
+        used = ~edge & ~free
     cycles = find_cycles(deflection)
-    used &= ~_skipped(time, cycles, wanted, cuts)
+    used = used & ~_skipped(time, cycles, wanted, cuts)
     if used.sum() < FEWEST or np.ptp(x[used]) == 0:
         raise DataError(
             f"{used.sum()} samples in {len(x)} are left to fit, at least {FEWEST} are needed",

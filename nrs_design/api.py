@@ -164,14 +164,14 @@ class Decision:
     def _page(self) -> Report:
         from nrs_design.reporting import build_report
 
-        evidence = None
+        analysis = None
         if self.result.designed is not None:
             try:
-                evidence = pipeline.run_evidence(self.result.designed)
+                analysis = pipeline.run_analysis(self.result.designed)
             except DesignError:
                 # Where a nominal loop has no margins, the page has none.
-                evidence = None
-        return build_report(self.result, evidence)
+                analysis = None
+        return build_report(self.result, analysis)
 
     def __str__(self) -> str:
         """Say verdict and claim."""

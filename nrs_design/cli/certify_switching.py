@@ -211,10 +211,10 @@ def _print_dwell(dwell: DwellMargin | None) -> None:
 
     if dwell is None:
         return
-    proved = f"none was proved up to {rounded_down(dwell.longest, 's')}, where the search ended"
+    proved = f"no proof up to {rounded_down(dwell.longest, 's')}, where the search ended"
     if dwell.proved is not None and dwell.proof is not None:
         proved = f"{rounded_up(dwell.proved, 's')} is proved ({dwell.proof.method})"
-    refuted = "" if dwell.proved == 0 else "; none was refuted"
+    refuted = "" if dwell.proved == 0 else "; no dwell time was refuted"
     if dwell.refuted is not None:
         refuted = f"; {rounded_down(dwell.refuted, 's')} and all shorter ones are refuted"
     say(f"  shortest dwell time: {proved}{refuted}")

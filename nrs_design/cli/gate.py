@@ -138,7 +138,7 @@ def _show(outcome: GateOutcome, document: str, *, quiet: bool) -> None:
         return
     if not quiet:
         print_table("", text.COLUMNS, text.rows_of(outcome))
-        for line in text.gains_of(outcome):
+        for line in text.gain_lines(outcome):
             say(line)
     if outcome.broken and not quiet:
         say()

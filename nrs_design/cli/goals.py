@@ -11,11 +11,11 @@ from nrs_design.cli.printing import note, say
 from nrs_design.cli.tables import print_table
 
 if TYPE_CHECKING:
-    from nrs_design.design.evidence import DesignEvidence, ForceEvidence, ImpedanceEvidence
+    from nrs_design.design.analysis import DesignAnalysis, ForceAnalysis, ImpedanceAnalysis
     from nrs_design.design.goals import Achieved
     from nrs_design.spec import Spec
 
-    Item = ImpedanceEvidence | ForceEvidence
+    Item = ImpedanceAnalysis | ForceAnalysis
 
 
 def print_goals(name: str, items: Iterable[Item]) -> None:
@@ -48,11 +48,11 @@ def print_warnings(warnings: Iterable[str], *, quiet: bool) -> None:
         note(f"warning: {text}", quiet=quiet)
 
 
-def warnings_of(spec: Spec, evidence: DesignEvidence) -> list[str]:
+def warnings_of(spec: Spec, analysis: DesignAnalysis) -> list[str]:
     """Say what is doubtful about a spec and its design, and no goal speaks of it."""
     from nrs_design.spec import doubt_spec
 
-    return [str(doubt) for doubt in (*doubt_spec(spec), *evidence.warnings)]
+    return [str(doubt) for doubt in (*doubt_spec(spec), *analysis.warnings)]
 
 
 def exit_code(items: Iterable[Item]) -> int:

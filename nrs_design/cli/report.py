@@ -15,7 +15,7 @@ from nrs_design.cli.printing import note, print_json, progress, say
 from nrs_design.errors import DesignError
 
 if TYPE_CHECKING:
-    from nrs_design.design.evidence import DesignEvidence
+    from nrs_design.design.analysis import DesignAnalysis
     from nrs_design.pipeline import Result
     from nrs_design.reporting import Report
 
@@ -50,7 +50,7 @@ def report(
         typer.Option(
             formats=["%Y-%m-%d"],
             metavar="YYYY-MM-DD",
-            help="Write this date on the page or document; without it there is none.",
+            help="Write this date on the page or document; without it there is no date.",
         ),
     ] = None,
     max_degree: MaxDegree = None,
@@ -78,7 +78,7 @@ def report(
         result = run_certification(loaded, limits=limits, progress=step)
         step("figures")
         day = date.date() if date else None
-        page = build_report(result, _evidence(result, quiet=quiet), times=times, date=day)
+        page = build_report(result, _analysis(result, quiet=quiet), times=times, date=day)
         files = _write(page, file_format, out, spec)
     verdict = str(result.certification.verdict)
     if as_json:
@@ -99,14 +99,14 @@ def report(
     raise typer.Exit(exit_codes.OF_VERDICT[verdict])
 
 
-def _evidence(result: Result, *, quiet: bool) -> DesignEvidence | None:
+def _analysis(result: Result, *, quiet: bool) -> DesignAnalysis | None:
     """Return what the design achieves, or nothing where a nominal loop has no margins."""
-    from nrs_design.pipeline import run_evidence
+    from nrs_design.pipeline import run_analysis
 
     if result.designed is None:
         return None
     try:
-        return run_evidence(result.designed)
+        return run_analysis(result.designed)
     except DesignError as error:
         note(f"no margins in this report: {error.message}", quiet=quiet)
         return None

@@ -37,7 +37,7 @@ def spec_of_matrices(
 
     Parameters
     ----------
-    modes, name, time, dwell_time, transitions, resets, parameters
+    modes, name, time, dwell_time, longest_dwell_time, transitions, resets, parameters
         As for `nrs_design.certify`.
 
     Raises

@@ -18,7 +18,7 @@ from fractions import Fraction
 from typing import Any
 
 from nrs_design.proof.constant import system_at
-from nrs_design.proof.enclosure import eigenvalues, exponential, meets, precision
+from nrs_design.proof.enclosure import eigenvalues, exponential, overlap, precision
 from nrs_design.proof.evidence import (
     AbstractEvidence,
     BlockTriangular,
@@ -100,7 +100,7 @@ def _is_met(A: RationalMatrix, time: Fraction) -> bool:
     """Tell whether flint's enclosure of ``exp(A t)`` and that of a Taylor series overlap."""
     M, error = exponential_nearly(A, time)
     with precision():
-        return meets(exponential(A, time, time), M, error)
+        return overlap(exponential(A, time, time), M, error)
 
 
 def _decreases_everywhere(system: SwitchedSystem, evidence: CommonQuadratic) -> bool:

@@ -6,21 +6,21 @@ import numpy as np
 
 from nrs_design.proof.evidence.unstable_mode import is_stable
 from nrs_design.reproduction import thesis
+from nrs_design.reproduction.comparison import (
+    Comparison,
+    Number,
+    PrintVerdict,
+    Tolerance,
+    claim,
+    format_number,
+    misprint,
+    reproduced,
+)
 from nrs_design.reproduction.matrices import (
     MOTION,
     family,
     impedance_rows,
     printed_rows,
-)
-from nrs_design.reproduction.row import (
-    Number,
-    Row,
-    Tolerance,
-    Verdict,
-    claim,
-    format_number,
-    misprint,
-    reproduced,
 )
 from nrs_design.switched.close_loop import Row as MatrixRow
 
@@ -30,12 +30,12 @@ WRONG_SIGN = (
 )
 
 
-def rows() -> tuple[Row, ...]:
+def rows() -> tuple[Comparison, ...]:
     """Recompute the matrices entry by entry, and their eigenvalues."""
     return (*_realization(), *_entries(), *_eigenvalues())
 
 
-def _realization() -> tuple[Row, ...]:
+def _realization() -> tuple[Comparison, ...]:
     num, den = thesis.EXACT_LOOP.numerator, thesis.EXACT_LOOP.denominator
     return (
         reproduced(
@@ -57,7 +57,7 @@ def _realization() -> tuple[Row, ...]:
     )
 
 
-def _entries() -> tuple[Row, ...]:
+def _entries() -> tuple[Comparison, ...]:
     soft = impedance_rows(thesis.SOFT, "0.01", "2.15", "force")
     stiff = impedance_rows(thesis.STIFF, "0.01", "2.11", "force")
     return (
@@ -113,7 +113,7 @@ def _entries() -> tuple[Row, ...]:
     )
 
 
-def _eigenvalues() -> tuple[Row, ...]:
+def _eigenvalues() -> tuple[Comparison, ...]:
     return (
         misprint(
             "eigenvalues of A1 as printed",
@@ -133,7 +133,7 @@ def _eigenvalues() -> tuple[Row, ...]:
     )
 
 
-def _not_hurwitz(name: str, section: str, rows: list[MatrixRow]) -> Row:
+def _not_hurwitz(name: str, section: str, rows: list[MatrixRow]) -> Comparison:
     system = family(name, rows)
     return claim(
         f"eigenvalues of {name} as printed",
@@ -141,13 +141,13 @@ def _not_hurwitz(name: str, section: str, rows: list[MatrixRow]) -> Row:
         "Hurwitz",
         ", ".join(map(format_number, _spectrum(rows))),
         "1/s",
-        verdict=Verdict.PRINT_IS_WRONG,
+        verdict=PrintVerdict.PRINT_IS_WRONG,
         holds=not is_stable(system.modes[0].A, system.time),
         note=WRONG_SIGN,
     )
 
 
-def _hurwitz(Bt: str, right: tuple[str, ...]) -> Row:
+def _hurwitz(Bt: str, right: tuple[str, ...]) -> Comparison:
     return reproduced(
         f"eigenvalues at k_soft, Mt 0.01, Bt {Bt}",
         "6.3.2.2",

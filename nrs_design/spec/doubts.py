@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
-from nrs_design.spec.controllers import PositionControllerSpec
-from nrs_design.spec.interaction import InteractionDesignSpec
-from nrs_design.spec.load import Spec
+if TYPE_CHECKING:
+    from nrs_design.spec.load import Spec
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,7 +32,7 @@ class Doubt:
 
 def doubt_spec(spec: Spec) -> Iterator[Doubt]:
     """Yield what is doubtful about a spec, before anything is designed."""
-    if not isinstance(spec, InteractionDesignSpec):
+    if spec.kind != "interaction-design":
         return
     for at, item in spec.identified.items():
         if item.doubts and item.accept_doubt is None:
@@ -44,7 +44,7 @@ def doubt_spec(spec: Spec) -> Iterator[Doubt]:
     touched = {
         contact
         for controller in spec.controllers.values()
-        if not isinstance(controller, PositionControllerSpec)
+        if controller.type != "position"
         for contact in controller.contacts
     }
     for name in spec.environments:

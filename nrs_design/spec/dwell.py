@@ -7,14 +7,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
-from nrs_design.spec.controllers import (
-    ControllerSpec,
-    ImpedanceControllerSpec,
-    PositionControllerSpec,
-)
-from nrs_design.spec.environment import EnvironmentSpec
-from nrs_design.spec.parameters import ParameterSpec
+if TYPE_CHECKING:
+    from nrs_design.spec.controllers import ControllerSpec
+    from nrs_design.spec.environment import EnvironmentSpec
+    from nrs_design.spec.parameters import ParameterSpec
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,14 +40,14 @@ def find_changing_contact(
 ) -> DwellObstacle | None:
     """Find what changes while one controller is active: the environment obeys no rule of ours."""
     for name, controller in controllers.items():
-        contacts = () if isinstance(controller, PositionControllerSpec) else controller.contacts
+        contacts = () if controller.type == "position" else controller.contacts
         if len(contacts) > 1:
             return DwellObstacle(
                 f"a dwell time and several contacts of {name!r} exclude each other: the contact "
                 "may change at any time, whatever the controller",
                 "write a spec for each environment",
             )
-        if isinstance(controller, ImpedanceControllerSpec):
+        if controller.type == "impedance":
             for gain in ("Mt", "Bt"):
                 if getattr(controller, gain).ranged:
                     return DwellObstacle(

@@ -22,7 +22,7 @@ from nrs_design.spec.goals import GoalsSpec, check_applicable
 from nrs_design.spec.model import SpecModel
 from nrs_design.spec.motion import ActuatorSpec, LimitsSpec, MotionLoopSpec
 from nrs_design.spec.provenance import IdentifiedSpec
-from nrs_design.spec.switching import DwellTime, Switching, check_names
+from nrs_design.spec.switching import DwellTime, SwitchingRule, check_names
 
 MAX_ENTRIES = 64
 
@@ -66,7 +66,7 @@ class InteractionDesignSpec(SpecModel):
         description="state of the contact: deflection stays continuous when the stiffness "
         "switches; force is what the thesis uses",
     )
-    switching: Switching = Field(
+    switching: SwitchingRule = Field(
         description="when controllers change: arbitrary, or rules with dwell_time and transitions "
         "between controllers"
     )

@@ -7,7 +7,7 @@ from typing import Any
 from pydantic import BaseModel
 
 from nrs_design.printable import json_text
-from nrs_design.spec.load import KINDS
+from nrs_design.spec.load import SPEC_KINDS, model_of
 
 DIALECT = "http://json-schema.org/draft-07/schema#"
 _EXCLUSIVE = {
@@ -39,7 +39,8 @@ def json_schema() -> dict[str, Any]:
     """
     definitions: dict[str, Any] = {}
     choices = []
-    for kind, model in KINDS.items():
+    for kind in SPEC_KINDS:
+        model = model_of(kind)
         definitions |= _definitions(model)
         choices.append(_choice(kind, model))
     return {
@@ -48,7 +49,9 @@ def json_schema() -> dict[str, Any]:
         "description": "An interaction design or a switched system, *.nrs.yaml",
         "type": "object",
         "required": ["kind"],
-        "properties": {"kind": {"enum": list(KINDS), "description": "what this file describes"}},
+        "properties": {
+            "kind": {"enum": list(SPEC_KINDS), "description": "what this file describes"}
+        },
         "allOf": choices,
         "definitions": dict(sorted(definitions.items())),
     }

@@ -4,11 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from fractions import Fraction
+from typing import TYPE_CHECKING
 
 from nrs_design.proof.text import exact_text
-from nrs_design.spec import DwellTime, InteractionDesignSpec, SwitchedSystemSpec, SwitchingSpec
-from nrs_design.spec.provenance import COVERS
+from nrs_design.spec import DwellTime, SwitchedSystemSpec, SwitchingSpec
 from nrs_design.switched.parameters import Parameter
+
+if TYPE_CHECKING:
+    from nrs_design.spec import InteractionDesignSpec
 
 MAX_LISTED = 20
 CONTINUOUS = "continuous at a switch (identity resets)"
@@ -96,6 +99,8 @@ def scale_texts(scale: Fraction) -> tuple[str, ...]:
 
 def identified_texts(spec: InteractionDesignSpec) -> Iterator[str]:
     """Say what identified ranges hold, and what is doubtful about identified values."""
+    from nrs_design.spec.provenance import COVERS
+
     for name, environment in spec.environments.items():
         if environment.range_covers is not None:
             covered = COVERS[environment.range_covers]

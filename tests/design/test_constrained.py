@@ -14,8 +14,8 @@ from nrs_design.design.impedance import (
     ImpedanceProblem,
     displayed_impedance,
     impedance_cost,
-    is_stable,
     optimize_impedance,
+    stabilizes,
 )
 from nrs_design.design.margins import loop_margins
 from nrs_design.design.measures import (
@@ -72,7 +72,7 @@ def on_grid(goals, Mt, Bt, slack):
     allowed = np.ones(len(Mt), dtype=bool)
     for k in STIFFNESSES:
         loop = ImpedanceLoop(EXACT, Elastic(k))
-        allowed &= is_stable(loop, Mt, Bt)
+        allowed &= stabilizes(loop, Mt, Bt)
         L = G * (k / s) / (Mt[:, None] * s + Bt[:, None])
         S = 1 / (1 + L)
         crossing = np.diff(np.sign(np.abs(L) - 1), axis=1) != 0

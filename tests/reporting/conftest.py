@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from nrs_design.pipeline import run_certification, run_evidence
+from nrs_design.pipeline import run_analysis, run_certification
 from nrs_design.reporting import Report, build_report, render_html
 from nrs_design.spec import read_spec
 
@@ -147,7 +147,7 @@ def report_of(path: Path) -> Report:
     """Take a spec all the way to its report."""
     loaded = read_spec(path)
     result = run_certification(loaded)
-    return build_report(result, run_evidence(result.designed) if result.designed else None)
+    return build_report(result, run_analysis(result.designed) if result.designed else None)
 
 
 @pytest.fixture(scope="session")

@@ -4,12 +4,12 @@ from dataclasses import replace
 from fractions import Fraction
 
 import pytest
+from nrs_design.search.checker import Checker
 
 from nrs_design.errors import InternalError
 from nrs_design.proof.evidence import CommonQuadratic
 from nrs_design.search import certify as certify_module
 from nrs_design.search.certify import Limits, Method, certify
-from nrs_design.search.checker import Checker
 from tests.proof.systems import family
 
 SYSTEM = family([[-1, 1], [-1, -2]], [[-2, 1], [-1, -1]])

@@ -1,10 +1,10 @@
 """Conversion of exact modes to floating point."""
 
 import numpy as np
+from nrs_design.search.rungs import OUT_OF_RANGE, search_by_lmi
 
 from nrs_design.proof.system import Time
 from nrs_design.search.family import Family, floats_in_silence
-from nrs_design.search.rungs import OUT_OF_RANGE, search_by_lmi
 from tests.support import dayawansa_martin, family
 
 

@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from nrs_design.search.checker import Checker
 
 from nrs_design.proof.evidence.fields import MAX_INTEGER_BITS
 from nrs_design.proof.system import Time
-from nrs_design.search.checker import Checker
 from nrs_design.search.rounding import (
     RATE_BITS,
     round_rate,

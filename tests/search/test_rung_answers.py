@@ -6,12 +6,7 @@ from functools import partial
 
 import numpy as np
 import pytest
-
-from nrs_design.proof.system import Stay, Switching
-from nrs_design.search import rungs
-from nrs_design.search.allowance import Allowance, NotAffordableError
 from nrs_design.search.checker import Checker
-from nrs_design.search.family import Family, floats_in_silence
 from nrs_design.search.rungs import (
     examine_every_mode,
     examine_suspicious_modes,
@@ -26,6 +21,11 @@ from nrs_design.search.rungs import (
     search_preconditioned,
     search_raw,
 )
+
+from nrs_design.proof.system import Stay, Switching
+from nrs_design.search import rungs
+from nrs_design.search.allowance import Allowance, NotAffordableError
+from nrs_design.search.family import Family, floats_in_silence
 from tests.support import dayawansa_martin, family, holds
 
 GOOD = dayawansa_martin(5)

@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from nrs_design.search.checker import Checker
 
 from nrs_design.errors import DesignError
 from nrs_design.proof.evidence import UnstablePeriod
@@ -11,7 +12,6 @@ from nrs_design.proof.system import Switching
 from nrs_design.search import mode_quadratic, obstruction, polynomial, rungs
 from nrs_design.search.allowance import Allowance, NotAffordableError
 from nrs_design.search.certify import Limits, Method, Verdict, certify
-from nrs_design.search.checker import Checker
 from nrs_design.search.family import Family
 from nrs_design.search.gradient import GradientResult
 from tests.proof.systems import branicky, dayawansa_martin, family, shears

@@ -17,9 +17,9 @@ from nrs_design.proof.evidence.common_quadratic import (
 from nrs_design.proof.evidence.fields import (
     Matrix,
     matrix_fields,
+    read_dyadic,
     read_integer,
     read_integers,
-    read_matrix,
     read_ratio,
 )
 from nrs_design.proof.exact import (
@@ -139,7 +139,7 @@ class CommonPolynomial(AbstractEvidence):
         half, odd = divmod(read_integer(fields["degree"]), 2)
         if odd:
             raise ValueError("the degree is odd")
-        Q, denominator_log2 = read_matrix(fields["Q"])
+        Q, denominator_log2 = read_dyadic(fields["Q"])
         vanishing = tuple(read_integers(N) for N in fields["vanishing"])
         return cls(half, Q, denominator_log2, vanishing, read_ratio(fields["rate"]))
 

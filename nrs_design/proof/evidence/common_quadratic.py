@@ -11,7 +11,7 @@ from nrs_design.proof.evidence.abstract import AbstractEvidence, Shows
 from nrs_design.proof.evidence.fields import (
     matrix_fields,
     rate_words,
-    read_matrix,
+    read_dyadic,
     read_ratio,
 )
 from nrs_design.proof.exact import (
@@ -95,7 +95,7 @@ class CommonQuadratic(AbstractEvidence):
     @classmethod
     def from_fields(cls, fields: Mapping[str, Any], system: SwitchedSystem) -> Self:
         """Read Q and the rate."""
-        Q, denominator_log2 = read_matrix(fields["Q"])
+        Q, denominator_log2 = read_dyadic(fields["Q"])
         return cls(Q, denominator_log2, read_ratio(fields["rate"]))
 
 

@@ -14,8 +14,8 @@ from nrs_design.proof.evidence.fields import (
     Matrix,
     matrix_fields,
     rate_words,
+    read_dyadic,
     read_integer,
-    read_matrix,
     read_ratio,
     read_text,
 )
@@ -243,7 +243,7 @@ class ModeQuadratic(AbstractEvidence):
         """Read the functions, the rate, and what is said of modes that must be left."""
         functions, exponents = [], set()
         for item in fields["functions"]:
-            Q, exponent = read_matrix(item["Q"])
+            Q, exponent = read_dyadic(item["Q"])
             functions.append((read_text(item["mode"]), Q))
             exponents.add(exponent)
         if len(exponents) != 1:
@@ -275,13 +275,13 @@ def bound_claim(system: SwitchedSystem, rate: Fraction) -> str:
     continuous = system.time is Time.CONTINUOUS
     law, bound = ("x' = A x", "exp(-alpha t)") if continuous else ("x+ = A x", "rho^t")
     return (
-        f"Every solution of {law} under the declared switching ({describe(system)}) satisfies "
+        f"Every solution of {law} under the declared switching ({signals_of(system)}) satisfies "
         f"|x(t)| <= c {bound} |x(0)| with {rate_words(rate, system.time)} and some constant c "
         "that is the same for all signals."
     )
 
 
-def describe(system: SwitchedSystem) -> str:
+def signals_of(system: SwitchedSystem) -> str:
     """Say which switching signals a system has."""
     switching = system.switching
     unit = "s" if system.time is Time.CONTINUOUS else "steps"

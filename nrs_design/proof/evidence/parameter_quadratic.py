@@ -17,7 +17,7 @@ from nrs_design.proof.evidence.fields import (
     Matrix,
     matrix_fields,
     rate_words,
-    read_matrix,
+    read_dyadic,
     read_ratio,
 )
 from nrs_design.proof.exact import IntegerMatrix, add, lyapunov_decrease
@@ -123,8 +123,8 @@ class ParameterQuadratic(AbstractEvidence):
     @classmethod
     def from_fields(cls, fields: Mapping[str, Any], system: SwitchedSystem) -> Self:
         """Read both ends of Q and the rate."""
-        low, exponent = read_matrix(fields["Q_low"])
-        high, other = read_matrix(fields["Q_high"])
+        low, exponent = read_dyadic(fields["Q_low"])
+        high, other = read_dyadic(fields["Q_high"])
         if exponent != other:
             raise ValueError("the two ends of Q do not share one denominator")
         return cls(low, high, exponent, read_ratio(fields["rate"]))

@@ -43,7 +43,7 @@ from nrs_design.spec import (
 
 
 @dataclass(frozen=True, slots=True)
-class ImpedanceEvidence:
+class ImpedanceAnalysis:
     """One impedance controller.
 
     Parameters
@@ -82,7 +82,7 @@ class ImpedanceEvidence:
 
 
 @dataclass(frozen=True, slots=True)
-class ForceEvidence:
+class ForceAnalysis:
     """One force controller.
 
     Parameters
@@ -104,7 +104,7 @@ class ForceEvidence:
 
 
 @dataclass(frozen=True, slots=True)
-class DesignEvidence:
+class DesignAnalysis:
     """Everything a person wants to see beside the gains.
 
     Parameters
@@ -117,9 +117,9 @@ class DesignEvidence:
         Whether G follows from the PD gains, or the spec states it.
     reached : MotionLoopResponse
         Poles, damping and overshoot that G really has.
-    impedance : tuple of ImpedanceEvidence
+    impedance : tuple of ImpedanceAnalysis
         One for each impedance controller.
-    force : tuple of ForceEvidence
+    force : tuple of ForceAnalysis
         One for each force controller.
     warnings : tuple of Doubt
         What is doubtful about the design, and no goal speaks of it.
@@ -129,19 +129,19 @@ class DesignEvidence:
     motion: TransferFunction
     motion_source: str
     reached: MotionLoopResponse
-    impedance: tuple[ImpedanceEvidence, ...]
-    force: tuple[ForceEvidence, ...]
+    impedance: tuple[ImpedanceAnalysis, ...]
+    force: tuple[ForceAnalysis, ...]
     warnings: tuple[Doubt, ...]
 
     @property
-    def measured(self) -> tuple[ImpedanceEvidence | ForceEvidence, ...]:
+    def measured(self) -> tuple[ImpedanceAnalysis | ForceAnalysis, ...]:
         """All controllers that goals are for."""
         return (*self.impedance, *self.force)
 
 
-def examine_design(
+def analyze_design(
     spec: InteractionDesignSpec, plant: Plant, design: ControllerDesign
-) -> DesignEvidence:
+) -> DesignAnalysis:
     """Compute poles, costs and margins of a design.
 
     Parameters
@@ -170,7 +170,7 @@ def examine_design(
         for controller in design.controllers
         if isinstance(controller.law, ProportionalForce)
     )
-    return DesignEvidence(
+    return DesignAnalysis(
         wanted=root_locus_design(spec),
         motion=motion,
         motion_source="designed" if spec.motion_loop.transfer_function is None else "given",
@@ -183,8 +183,8 @@ def examine_design(
 
 def _warnings(
     spec: InteractionDesignSpec,
-    impedance: tuple[ImpedanceEvidence, ...],
-    force: tuple[ForceEvidence, ...],
+    impedance: tuple[ImpedanceAnalysis, ...],
+    force: tuple[ForceAnalysis, ...],
 ) -> Iterator[Doubt]:
     for item in impedance:
         yield from doubt_values(item.name, item.achieved)
@@ -205,7 +205,7 @@ def _impedance(
     loop: MotionLoop,
     controller: Controller,
     law: Admittance,
-) -> ImpedanceEvidence:
+) -> ImpedanceAnalysis:
     given = _impedance_spec(spec, controller.name)
     problem = impedance_problem(spec, plant, loop, given)
     requirement = requirement_of(spec, plant, problem.loop.motion, given)
@@ -217,7 +217,7 @@ def _impedance(
         stiffness_limit(problem.loop, float(mass), float(damping))
         for (_, mass), (_, damping) in corners
     )
-    return ImpedanceEvidence(
+    return ImpedanceAnalysis(
         name=controller.name,
         problem=problem,
         # Gains that the spec gives are their own optimum.
@@ -238,7 +238,7 @@ def _force(
     motion: TransferFunction,
     controller: Controller,
     law: ProportionalForce,
-) -> ForceEvidence:
+) -> ForceAnalysis:
     given = spec.controllers[controller.name]
     assert isinstance(given, ForceControllerSpec)
     requirement = requirement_of(spec, plant, motion, given)
@@ -246,4 +246,4 @@ def _force(
     with naming(controller.name):
         loop = force_loop_response(motion, stiffness, float(law.Kp))
     achieved = achieve_force(requirement, FORCE_MEASURES, float(law.Kp))
-    return ForceEvidence(controller.name, stiffness, loop, achieved)
+    return ForceAnalysis(controller.name, stiffness, loop, achieved)

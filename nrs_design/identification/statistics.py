@@ -147,7 +147,15 @@ def ljung_box(residuals: Array, lags: int = _LAGS) -> float:
 
 
 def fisher_tail(above: int, below: int, ratio: float) -> float:
-    """Return the p-value of an F-test with these degrees of freedom."""
+    """Return the p-value of an F-test.
+
+    Parameters
+    ----------
+    above, below : int
+        Degrees of freedom.
+    ratio : float
+        Of the two variances.
+    """
     from scipy.special import fdtrc
 
     return float(fdtrc(above, below, ratio))

@@ -150,8 +150,12 @@ def test_writing_a_law_that_fits_worse_warns(tmp_path):
     arguments = ("identify", "tissue", NOSE[0], "--model", "elastic", "--write", spec, "-q")
     result = run(*arguments, cwd=tmp_path)
     assert result.returncode == 0
-    (line,) = result.stderr.splitlines()
-    assert line.startswith("warning: kelvin-boltzmann describes the records better than elastic")
+    first, *doubts = result.stderr.splitlines()
+    assert first.startswith("warning: kelvin-boltzmann describes the records better than elastic")
+    assert any("the residual is" in doubt for doubt in doubts)
+    gate = run("gate", spec, "--no-reports", cwd=tmp_path)
+    assert gate.returncode == 1
+    assert "NRS107 missed" in gate.stdout
 
 
 def test_help_has_examples(tmp_path):

@@ -49,7 +49,7 @@ def test_only_the_environment_changes(silicone):
     assert [line for line in old if line not in new] == [
         "    stiffness: {nominal: 747.1461 N/m, range: [720.56 N/m, 768.17 N/m]}"
     ]
-    assert len(new) == len(old) + 4
+    assert len(new) == len(old) + 5
 
 
 def test_the_range_is_rounded_outwards(silicone):

@@ -8,9 +8,10 @@ from dataclasses import dataclass
 from nrs_design.errors import DataError
 from nrs_design.identification.datasets import TissueRecord
 from nrs_design.identification.tissue.pool import ModelFit, fit_model
-from nrs_design.identification.tissue.trial import Preparation, prepare
+from nrs_design.identification.tissue.ranges import check_spread
+from nrs_design.identification.tissue.trial import Preparation, Trial, prepare
 from nrs_design.models.contact import LAWS
-from nrs_design.spec.provenance import Coverage
+from nrs_design.spec.provenance import COVERS, Coverage
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -52,6 +53,16 @@ class TissueIdentification:
         return (better, *self.chosen.doubts)
 
     @property
+    def trials(self) -> tuple[Trial, ...]:
+        """The records as they were fitted."""
+        return tuple(fit.trial for fit in self.chosen.fits)
+
+    @property
+    def covers(self) -> str:
+        """What the ranges hold, in words."""
+        return COVERS[self.chosen.coverage]
+
+    @property
     def rotational(self) -> bool:
         """Whether the parameters are those of a rotation."""
         return self.records[0].rotational
@@ -82,9 +93,12 @@ def identify_tissue(
     Raises
     ------
     DataError
-        If there is no record, linear and rotational ones are mixed, or one is there twice.
+        If there is no record, linear and rotational ones are mixed, or one is there twice; if too
+        little of one is left to fit, or the records are too few for what ranges shall hold.
     """
     _check(records)
+    if coverage != "confidence":
+        check_spread(coverage, len(records))
     trials = [prepare(record, preparation) for record in records]
     models = []
     for name, kind in LAWS.items():

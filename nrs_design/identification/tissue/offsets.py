@@ -8,8 +8,9 @@ taken as zero, to tell the other.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from types import MappingProxyType
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,6 +22,13 @@ from nrs_design.models.contact import AbstractContactLaw, AbstractLinearLaw, Mot
 Array = NDArray[np.float64]
 
 TARE, CONTACT, DRIFT = "tare", "contact", "drift"
+# In words, and with the units of a linear motion and of a rotation.
+OFFSET_WORDS: Mapping[str, str] = MappingProxyType(
+    {"zero": "position of contact", "tare": "force in air", "drift": "drift of the force"}
+)
+OFFSET_UNITS: Mapping[str, tuple[str, str]] = MappingProxyType(
+    {"zero": ("m", "rad"), "tare": ("N", "N m"), "drift": ("N/s", "N m/s")}
+)
 
 
 @dataclass(frozen=True, slots=True)

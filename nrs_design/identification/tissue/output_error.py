@@ -33,7 +33,7 @@ from nrs_design.identification.tissue.offsets import (
 )
 from nrs_design.identification.tissue.starts import box, scan
 from nrs_design.identification.tissue.trial import Trial, prepare
-from nrs_design.models.contact import AbstractContactLaw, HuntCrossley, Motion
+from nrs_design.models.contact import LINEAR_LAWS, AbstractContactLaw, HuntCrossley, Motion
 
 Array = NDArray[np.float64]
 
@@ -44,6 +44,8 @@ _COARSE = 4_000
 _SAME = 1e-6
 # How far the position of contact is sought from where it was found, in travels of the record.
 _REACH = 0.5
+# Of a difference in the logarithm of a parameter.
+_STEP = 1e-6
 _SHIFTS = (0.0, 0.01, -0.01, 0.04, -0.04, 0.15, -0.15, 0.4, -0.4)
 
 
@@ -97,6 +99,11 @@ class RecordFit:
     def estimates_at(self, confidence: float) -> tuple[Estimate, ...]:
         """Return the parameters with intervals of some confidence."""
         return self.uncertainty.estimates(np.log(self.law.values), confidence)
+
+    @property
+    def r2(self) -> float:
+        """Part of the variance of the force that is explained."""
+        return 1 - self.rmse**2 / float(np.var(self.trial.measured))
 
     @property
     def aic(self) -> float:
@@ -166,11 +173,13 @@ def _judge(
 ) -> RecordFit:
     trial, law = problem.trial, problem.law(point)
     constants, residuals = problem.solve(point)
-    J = np.column_stack([problem.sensitivities(point), problem.offsets])
+    J = np.column_stack([problem.sensitivities(point), problem.constants(point)])
     known = _uncertainty(trial, J, residuals)
     p = len(law.values)
     shift = problem.shift(point) if len(point) > p else None
-    offsets = estimate_offsets(law, trial, problem.names, constants, shift, known)
+    offsets = estimate_offsets(
+        law, trial, problem.names, constants[: len(problem.names)], shift, known
+    )
     own = Uncertainty(known.covariance[:p, :p], known.degrees, known.whiteness)
     said = list(doubts(law, trial, own, bounds, residuals, J))
     if shift is not None and abs(point[p]) > _REACH * (1 - 1e-3):
@@ -205,17 +214,17 @@ class _Problem:
         return offset_columns(self.names, self.trial)
 
     @cached_property
+    def _begins(self) -> tuple[slice, ...]:
+        remembers = any(law is self.kind and law.remembers for law in LINEAR_LAWS.values())
+        return self.trial.unrested if remembers else ()
+
+    @cached_property
     def _basis(self) -> Array:
         return np.linalg.qr(self.offsets)[0]
 
     @cached_property
     def force(self) -> Array:
         return measured(self.trial)
-
-    @cached_property
-    def target(self) -> Array:
-        """Force less its projection on the offsets."""
-        return self.project(self.force)
 
     @cached_property
     def travel(self) -> float:
@@ -234,8 +243,37 @@ class _Problem:
             for law in scan(self.kind, trial, self.offsets):
                 yield np.append(np.log(law.values), self.no_shift + shift)
 
-    def project(self, values: Array) -> Array:
-        return np.asarray(values - self._basis @ (self._basis.T @ values))
+    def states(self, point: Array) -> Array:
+        """Return what each stretch that does not begin at rest has left of its beginning, (n, s).
+
+        The force of a relaxing element at the beginning is not known; it fades exponentially.
+        """
+        tau = self.law(point).relaxation_time
+        columns = np.zeros((len(self.trial.force), len(self._begins)))
+        time = self.trial.motion.time
+        for column, rows in zip(columns.T, self._begins, strict=True):
+            column[rows] = np.exp(-(time[rows] - time[rows.start]) / tau) if tau else 0.0
+        return columns[self.trial.used]
+
+    def constants(self, point: Array) -> Array:
+        """Return all that adds to the force in proportion: offsets, then states."""
+        if not self._begins:
+            return self.offsets
+        return np.column_stack([self.offsets, self.states(point)])
+
+    def basis(self, point: Array) -> Array:
+        return np.linalg.qr(self.constants(point))[0] if self._begins else self._basis
+
+    def left(self, point: Array) -> Array:
+        """Return the error with the best constants."""
+        error = self.force - self.simulate(point)
+        basis = self.basis(point)
+        return np.asarray(error - basis @ (basis.T @ error))
+
+    def slopes(self, point: Array) -> Array:
+        """Return the derivatives of the force at constants that follow (Kaufman 1975)."""
+        J, basis = self.sensitivities(point), self.basis(point)
+        return np.asarray(J - basis @ (basis.T @ J))
 
     def law(self, point: Array) -> AbstractContactLaw:
         return self.kind(*np.exp(point[: len(self.kind.kinds)]).tolist())
@@ -263,23 +301,34 @@ class _Problem:
         if len(point) > len(self.kind.kinds):
             assert isinstance(law, HuntCrossley)
             J = np.column_stack([J, -law.slope(motion)])
-        return self._pushing(J)[self.trial.used]
+        J = self._pushing(J)[self.trial.used]
+        return J + self._fading(point) if self._begins else J
+
+    def _fading(self, point: Array) -> Array:
+        """Return what the states add to the derivatives: they fade at the rate of the law."""
+        values = self.solve(point)[0][self.offsets.shape[1] :]
+        middle = self.states(point) @ values
+        columns = []
+        for i in range(len(point)):
+            moved = point.copy()
+            moved[i] += _STEP
+            columns.append((self.states(moved) @ values - middle) / _STEP)
+        return np.column_stack(columns)
 
     def cost(self, point: Array) -> float:
-        error = self.target - self.project(self.simulate(point))
+        error = self.left(point)
         return float(error @ error) / len(error)
 
     def solve(self, point: Array) -> tuple[Array, Array]:
         """Return the best constants and the residuals."""
-        rest = self.force - self.simulate(point)
-        constants = np.linalg.lstsq(self.offsets, rest, rcond=None)[0]
-        return np.asarray(constants, float), np.asarray(rest - self.offsets @ constants)
+        rest, columns = self.force - self.simulate(point), self.constants(point)
+        constants = np.linalg.lstsq(columns, rest, rcond=None)[0]
+        return np.asarray(constants, float), np.asarray(rest - columns @ constants)
 
     def simulate_all(self, point: Array, constants: Array) -> Array:
         """Return the force in all samples, used or not, with its tare."""
-        whole = self.trial.everything()
-        force = self._pushing(self.law(point).simulate(self.motion(point)))
-        force = force + offset_columns(self.names, whole) @ constants
+        whole = _Problem(self.kind, self.trial.everything())
+        force = whole.simulate(point) + whole.constants(point) @ constants
         tare = self.trial.preparation.tare
         return force if tare is None else force + self.trial.side * tare
 
@@ -314,19 +363,19 @@ def _search(problem: _Problem, start: Array, bounds: tuple[Array, Array]) -> Arr
     from scipy.optimize import least_squares
 
     p = len(problem.kind.kinds)
-    scale = float(np.sqrt(np.mean(problem.target**2))) or 1.0
+    scale = float(np.std(problem.force)) or 1.0
     reach = np.full(len(start) - p, _REACH)
     low, high = np.append(bounds[0], -reach), np.append(bounds[1], reach)
     # The search needs room around its start.
     room = 1e-6 * (high - low)
 
     def error(x: Array) -> Array:
-        return -(problem.target - problem.project(problem.simulate(x))) / scale
+        return -problem.left(x) / scale
 
     def slope(x: Array) -> Array:
-        J = problem.sensitivities(x)
+        J = problem.slopes(x)
         J[:, p:] *= problem.travel
-        return problem.project(J) / scale
+        return J / scale
 
     found = least_squares(
         error,

@@ -28,6 +28,8 @@ from nrs_design.spec.provenance import Coverage
 Array = NDArray[np.float64]
 
 _FEWEST = 2
+# Weaker correlations leave an ellipse that all but fills its box.
+_CORRELATED = 0.3
 
 
 def joint_level(count: int) -> float:
@@ -58,12 +60,7 @@ def spread_ranges(
         If there is one record only.
     """
     n, p = logarithms.shape
-    if n < _FEWEST:
-        raise DataError(
-            f"a range for {coverage} needs several records, and there is one: it says nothing of "
-            "the spread between specimens",
-            remedy="give more records, or take --covers confidence",
-        )
+    check_spread(coverage, n)
     level = joint_level(p)
     if coverage == "tolerance":
         factor = tolerance_factor(n, share=level, confidence=level)
@@ -74,6 +71,22 @@ def spread_ranges(
         hull(Estimate.from_log(float(m), factor * float(s)), [row[i] for row in single])
         for i, (m, s) in enumerate(zip(means, scatter, strict=True))
     )
+
+
+def check_spread(coverage: Coverage, count: int) -> None:
+    """Check that so many records tell how specimens differ.
+
+    Raises
+    ------
+    DataError
+        If there is one only.
+    """
+    if count < _FEWEST:
+        raise DataError(
+            f"a range for {coverage} needs several records, and there is one: it says nothing of "
+            "the spread between specimens",
+            remedy="give more records, or take --covers confidence",
+        )
 
 
 def hull(pooled: Estimate, single: Sequence[Estimate]) -> Estimate:
@@ -101,6 +114,8 @@ def box_remark(names: Sequence[str], covariances: Sequence[Array]) -> str:
     )
     mean = np.mean([_correlation(covariance) for covariance in covariances], axis=0)
     i, j = divmod(int(np.argmax(np.abs(np.triu(mean, 1)))), len(names))
+    if abs(mean[i, j]) < _CORRELATED:
+        return together
     return (
         f"{together} {names[i]} and {names[j]} correlate by {mean[i, j]:.2f}: what is plausible is "
         "an ellipse inside, and the proof covers the whole box around it."

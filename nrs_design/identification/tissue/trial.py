@@ -24,6 +24,8 @@ Flags = NDArray[np.bool_]
 FEWEST = 50
 # So near to the position of contact, as a part of the travel, a sample may be in air or not.
 _EDGE = 0.02
+# A record that begins at this part of its deflection need not begin relaxed.
+_LOADED = 0.1
 
 
 @dataclass(frozen=True, slots=True)
@@ -130,6 +132,19 @@ class Trial:
     drift: bool
     cuts: tuple[Cut, ...]
     cycles: tuple[slice, ...]
+
+    @property
+    def unrested(self) -> tuple[slice, ...]:
+        """Stretches in contact that may not begin at rest: touches, and a loaded start.
+
+        A touch begins where the position of contact is, which is known with an error.
+        """
+        padded = np.concatenate([[False], self.touching, [False]])
+        edges = np.flatnonzero(padded[1:] != padded[:-1]).reshape(-1, 2).tolist()
+        loaded = float(self.motion.deflection[0]) > _LOADED * float(self.motion.deflection.max())
+        if self.found is None and not loaded:
+            return ()
+        return tuple(slice(a, b) for a, b in edges if self.used[a:b].any())
 
     @property
     def measured(self) -> Array:

@@ -113,9 +113,10 @@ def box_remark(names: Sequence[str], covariances: Sequence[Array]) -> str:
         "that the box holds with 95 %."
     )
     mean = np.mean([_correlation(covariance) for covariance in covariances], axis=0)
-    i, j = divmod(int(np.argmax(np.abs(np.triu(mean, 1)))), len(names))
-    if abs(mean[i, j]) < _CORRELATED:
+    size = np.abs(np.triu(mean, 1))
+    if size.max() < _CORRELATED:
         return together
+    i, j = divmod(int(np.argmax(size)), len(names))
     return (
         f"{together} {names[i]} and {names[j]} correlate by {mean[i, j]:.2f}: what is plausible is "
         "an ellipse inside, and the proof covers the whole box around it."

@@ -51,6 +51,23 @@ def parse_offset(option: str, text: str | None, *, rotational: bool) -> float | 
     return _parse(option, text, kinds[option][rotational])
 
 
+def parse_preload(text: str | None, *, rotational: bool) -> tuple[float, float] | None:
+    """Read ``--preload``, such as ``1 mm..3 mm``: deflections from the contact.
+
+    Raises
+    ------
+    DataError
+        If these are not two such quantities.
+    """
+    if text is None:
+        return None
+    low, dots, high = (part.strip() for part in text.partition(".."))
+    if not dots:
+        high = low
+    kind = (LENGTH, ANGLE)[rotational]
+    return _parse("--preload", low, kind), _parse("--preload", high, kind)
+
+
 def _parse(option: str, text: str, kind: QuantityKind) -> float:
     try:
         return parse_quantity(text, kind).si

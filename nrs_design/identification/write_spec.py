@@ -48,13 +48,14 @@ def merge_tissue(
         If the chosen law has no place in a spec, or its range is unlimited.
     """
     model = found.chosen
-    law = model.law
+    law, ranges = found.written
     if not isinstance(law, AbstractLinearLaw):
         raise DataError(
             f"the chosen law, {law.name}, has no place in a spec",
-            remedy=f"choose one that has: --model {' or --model '.join(LINEAR_LAWS)}",
+            remedy="linearize it about a preload by --preload, or choose one that has a place: "
+            f"--model {' or --model '.join(LINEAR_LAWS)}",
         )
-    if model.doubts and not all(map(_is_limited, model.ranges)):
+    if model.doubts and not all(map(_is_limited, ranges)):
         raise DataError(
             f"a range is unlimited, the records do not determine it: {model.doubts[0]}",
             remedy="choose a simpler law with --model, or record again as the message says",
@@ -65,7 +66,7 @@ def merge_tissue(
     node = document.root["environments"][name]
     document.put(node, "model", law.name)
     units = law.units(rotational=found.rotational)
-    for key, unit, estimate in zip(law.keys, units, model.ranges, strict=True):
+    for key, unit, estimate in zip(law.keys, units, ranges, strict=True):
         _put_range(document, node, key, _ranged(estimate, unit, key))
     for key in {key for other in LINEAR_LAWS.values() for key in other.keys}.difference(law.keys):
         document.drop(node, key)
@@ -80,9 +81,19 @@ def merge_tissue(
             remedy="give --lever-arm '0.24 m'",
         )
     document.put(node, "range_covers", model.coverage)
+    if found.tangent is None:
+        document.drop(node, "linearized_about")
+    else:
+        document.put(node, "linearized_about", _preload(found))
     document.put(node, "provenance", [_provenance(record.source) for record in found.records])
     _put_doubts(document, node, found.caveats)
     return document.text()
+
+
+def _preload(found: TissueIdentification) -> str:
+    assert found.tangent is not None
+    about, unit = found.tangent, "rad" if found.rotational else "m"
+    return f"deflections from {about.low:.6g} {unit} to {about.high:.6g} {unit}"
 
 
 def _put_doubts(document: _Document, node: Any, doubts: Sequence[str]) -> None:

@@ -143,6 +143,8 @@ def _environment(name: str, environment: EnvironmentSpec) -> Iterator[Line]:
     if environment.range_covers is not None:
         covered = COVERS[environment.range_covers]
         yield Line(f"{name}.range_covers", environment.range_covers, covered, "")
+    if environment.linearized_about is not None:
+        yield Line(f"{name}.linearized_about", environment.linearized_about, "", "")
     yield from _provenance(name, environment)
 
 

@@ -9,6 +9,7 @@ from pydantic import Discriminator, Field, model_validator
 
 from nrs_design.spec import kinds
 from nrs_design.spec.faults import fault
+from nrs_design.spec.fields import Title
 from nrs_design.spec.provenance import Coverage, IdentifiedSpec
 from nrs_design.spec.quantity import Quantity
 from nrs_design.spec.quantity_fields import (
@@ -49,6 +50,11 @@ class AbstractEnvironmentSpec(IdentifiedSpec):
 
     lever_arm: LeverArm | None = Field(default=None, description=_LEVER_ARM)
     range_covers: Coverage | None = Field(default=None, description=_COVERS)
+    linearized_about: Title | None = Field(
+        default=None,
+        description="deflections that a nonlinear law was linearized about, in words: the ranges "
+        "hold small motions there",
+    )
 
     @model_validator(mode="after")
     def _check_lever_arm(self) -> Self:

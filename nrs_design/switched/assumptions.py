@@ -105,6 +105,9 @@ def identified_texts(spec: InteractionDesignSpec) -> Iterator[str]:
         if environment.range_covers is not None:
             covered = COVERS[environment.range_covers]
             yield f"The range of {name} was identified to hold {covered}."
+        if environment.linearized_about is not None:
+            about = environment.linearized_about
+            yield f"{name} is the linearization about {about}: it holds for small motions there."
     for at, item in spec.identified.items():
         if item.doubts:
             why = item.accept_doubt

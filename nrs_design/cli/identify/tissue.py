@@ -27,6 +27,7 @@ from nrs_design.cli.tables import print_table
 
 if TYPE_CHECKING:
     from nrs_design.identification.tissue import ModelFit, RecordFit, TissueIdentification
+    from nrs_design.identification.tissue.tangent import Tangent
 
 
 class ModelOption(StrEnum):
@@ -98,6 +99,10 @@ def tissue(
         CoversOption,
         typer.Option(help="What the range holds: the mean, 95 % of specimens, or the next one."),
     ] = CoversOption.CONFIDENCE,
+    preload: Annotated[
+        str | None,
+        typer.Option(metavar="LOW..HIGH", help="Linearize about deflections, as in '1 mm..3 mm'."),
+    ] = None,
     lever_arm: Annotated[
         str | None,
         typer.Option(metavar="LENGTH", help="Distance from pivot to contact, as in '0.24 m'."),
@@ -122,7 +127,7 @@ def tissue(
     Example: nrs-design identify tissue specs/data/silicone-soft-*.csv --lever-arm '0.24 m'
     """
     from nrs_design.identification.datasets import read_tissue
-    from nrs_design.identification.lever import parse_arm, parse_offset
+    from nrs_design.identification.lever import parse_arm, parse_offset, parse_preload
     from nrs_design.identification.tissue import Preparation, identify_tissue
     from nrs_design.identification.write_spec import merge_tissue
     from nrs_design.spec import read_spec
@@ -148,6 +153,7 @@ def tissue(
             None if model is ModelOption.AUTO else str(model),
             preparation,
             covers.value,
+            parse_preload(preload, rotational=rotational),
             progress=step,
         )
         merged = merge_tissue(loaded, found, environment, lever_arm) if loaded else None
@@ -194,6 +200,8 @@ def _print(found: TissueIdentification, arm: float | None) -> None:
     ranges = zip(law.parameters(), found.chosen.ranges, units, strict=True)
     for name, estimate, unit in ranges:
         say(f"{name} = {interval(estimate)} {unit} holds {found.covers}")
+    if found.tangent is not None:
+        _print_tangent(found.tangent, found.rotational)
     if found.chosen.box:
         say(found.chosen.box)
     for fit in found.chosen.fits:
@@ -203,6 +211,15 @@ def _print(found: TissueIdentification, arm: float | None) -> None:
         turned = law.at_pivot(arm)
         values = zip(law.parameters(), turned.values, units_of(law, True), strict=True)
         say(f"at the pivot: {', '.join(f'{n} = {v:.6g} {u}' for n, v, u in values)}")
+
+
+def _print_tangent(about: Tangent, rotational: bool) -> None:
+    from nrs_design.identification.lever import units_of
+
+    parts = zip(about.law.parameters(), about.ranges, units_of(about.law, rotational), strict=True)
+    values = ", ".join(f"{name} = {interval(estimate)} {unit}" for name, estimate, unit in parts)
+    length = "rad" if rotational else "m"
+    say(f"small motions about {about.low:.5g} to {about.high:.5g} {length}: {values}")
 
 
 def _offsets(fit: RecordFit, rotational: bool) -> list[str]:
@@ -240,6 +257,17 @@ def _summary(found: TissueIdentification, arm: float | None) -> dict[str, Any]:
                 units_of(law, found.rotational),
                 strict=True,
             )
+        },
+        "tangent": None
+        if found.tangent is None
+        else {
+            "preload": [found.tangent.low, found.tangent.high],
+            "ranges": {
+                name: numbers(estimate)
+                for name, estimate in zip(
+                    found.tangent.law.parameters(), found.tangent.ranges, strict=True
+                )
+            },
         },
         "range_covers": found.chosen.coverage,
         "range_covers_words": found.covers,

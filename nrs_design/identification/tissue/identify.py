@@ -7,10 +7,12 @@ from dataclasses import dataclass
 
 from nrs_design.errors import DataError
 from nrs_design.identification.datasets import TissueRecord
+from nrs_design.identification.statistics import Estimate
 from nrs_design.identification.tissue.pool import ModelFit, fit_model
 from nrs_design.identification.tissue.ranges import check_spread
+from nrs_design.identification.tissue.tangent import Tangent, tangent
 from nrs_design.identification.tissue.trial import Preparation, Trial, prepare
-from nrs_design.models.contact import LAWS
+from nrs_design.models.contact import LAWS, AbstractContactLaw
 from nrs_design.spec.provenance import COVERS, Coverage
 
 
@@ -28,12 +30,22 @@ class TissueIdentification:
         One of them.
     reason : str
         Why that one.
+    tangent : Tangent or None
+        Of the chosen law about a preload, if one is given.
     """
 
     records: tuple[TissueRecord, ...]
     models: tuple[ModelFit, ...]
     chosen: ModelFit
     reason: str
+    tangent: Tangent | None = None
+
+    @property
+    def written(self) -> tuple[AbstractContactLaw, tuple[Estimate, ...]]:
+        """The law and the ranges for a spec: of the chosen law, or of its tangent."""
+        if self.tangent is not None:
+            return self.tangent.law, self.tangent.ranges
+        return self.chosen.law, self.chosen.ranges
 
     @property
     def synthetic(self) -> bool:
@@ -73,6 +85,7 @@ def identify_tissue(
     law: str | None = None,
     preparation: Preparation | None = None,
     coverage: Coverage = "confidence",
+    preload: tuple[float, float] | None = None,
     progress: Callable[[str], None] = lambda step: None,
 ) -> TissueIdentification:
     """Fit all laws to all records and choose.
@@ -87,6 +100,8 @@ def identify_tissue(
         What is done to each record first: air and rupture cut off, offsets fitted or given.
     coverage : {"confidence", "tolerance", "prediction"}
         What the ranges shall hold: the mean of the specimens, 95 % of them, or the next one.
+    preload : tuple of float, optional
+        Least and largest deflection in m (rad) about which a power law is linearized.
     progress : callable
         Told the name of each law.
 
@@ -105,7 +120,8 @@ def identify_tissue(
         progress(name)
         models.append(fit_model(kind, trials, coverage))
     chosen, reason = _choose(models) if law is None else _told(models, law)
-    return TissueIdentification(tuple(records), tuple(models), chosen, reason)
+    about = None if preload is None else tangent(chosen, preload)
+    return TissueIdentification(tuple(records), tuple(models), chosen, reason, about)
 
 
 def _check(records: Sequence[TissueRecord]) -> None:

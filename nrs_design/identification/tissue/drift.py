@@ -14,6 +14,8 @@ Array = NDArray[np.float64]
 _FEWEST = 30
 # The air must be spread over this part of the record for a slope to be one of the record.
 _SPREAD = 0.3
+# Samples of a contact in between.
+_BETWEEN = 20
 # Drift over the record that matters, as a part of the range of the force.
 _MATTERS = 0.005
 # Times the half width of the interval of the slope: a drift is not guessed.
@@ -31,6 +33,10 @@ def drifts(time: Array, force: Array, air: NDArray[np.bool_]) -> bool:
         Which samples are in air.
     """
     if air.sum() < _FEWEST or np.ptp(time[air]) < _SPREAD * np.ptp(time):
+        return False
+    # Within one stretch, a tissue that is soft at first would pass for a drift.
+    rows = np.flatnonzero(air)
+    if np.diff(rows).max() < _BETWEEN:
         return False
     X = np.column_stack([np.ones(int(air.sum())), time[air] - time[air].mean()])
     found = np.linalg.lstsq(X, force[air], rcond=None)[0]

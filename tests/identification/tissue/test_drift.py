@@ -3,9 +3,10 @@
 import numpy as np
 import pytest
 
+from nrs_design.identification.datasets import TissueRecord
 from nrs_design.identification.tissue import Preparation, fit_record, prepare
-from nrs_design.models.contact import Elastic
-from tests.identification.support import quick
+from nrs_design.models.contact import Elastic, Motion
+from tests.identification.support import quick, source
 from tests.identification.unilateral import robot_record
 
 
@@ -29,3 +30,12 @@ def test_none_is_guessed():
 def test_it_can_be_told(wanted, said):
     assert prepare(data(0.0), Preparation(drift=wanted)).drift is said
     assert np.isfinite(fit_record(Elastic, prepare(data(0.02), Preparation(drift=wanted))).rmse)
+
+
+def test_a_soft_start_of_one_touch_is_none():
+    """Seen in texture analysis of meat: the force creeps up before the tissue resists."""
+    time = np.arange(300) / 10
+    x = 0.0005 * time
+    force = 0.02 * time + 4000 * np.maximum(x - 0.008, 0.0)
+    force += 0.02 * np.random.default_rng(1).standard_normal(300)
+    assert not prepare(TissueRecord(source("soft"), Motion(time, x), force, False)).drift

@@ -27,6 +27,7 @@ from nrs_design.cli.tables import print_table
 
 if TYPE_CHECKING:
     from nrs_design.identification.tissue import ModelFit, RecordFit, TissueIdentification
+    from nrs_design.identification.tissue.prony import Series
     from nrs_design.identification.tissue.tangent import Tangent
 
 
@@ -103,6 +104,9 @@ def tissue(
         str | None,
         typer.Option(metavar="LOW..HIGH", help="Linearize about deflections, as in '1 mm..3 mm'."),
     ] = None,
+    prony: Annotated[
+        bool, typer.Option("--prony", help="Fit a Prony series, too: is one relaxation enough?")
+    ] = False,
     lever_arm: Annotated[
         str | None,
         typer.Option(metavar="LENGTH", help="Distance from pivot to contact, as in '0.24 m'."),
@@ -156,6 +160,7 @@ def tissue(
             parse_preload(preload, rotational=rotational),
             progress=step,
         )
+        series = _series(found) if prony else []
         merged = merge_tissue(loaded, found, environment, lever_arm) if loaded else None
         if report is not None:
             from nrs_design.reporting.identification import tissue_report
@@ -168,9 +173,12 @@ def tissue(
         for caveat in found.caveats:
             note(f"warning: {caveat}")
     if as_json:
-        print_json("identify-tissue", _summary(found, arm))
+        listed = {"prony": [_series_summary(item) for item in series]} if prony else {}
+        print_json("identify-tissue", _summary(found, arm) | listed)
     elif not quiet:
         _print(found, arm)
+        for item in series:
+            say(_series_text(item, found.rotational))
     if report is not None:
         note(f"page written to {report}", quiet=quiet)
 
@@ -211,6 +219,42 @@ def _print(found: TissueIdentification, arm: float | None) -> None:
         turned = law.at_pivot(arm)
         values = zip(law.parameters(), turned.values, units_of(law, True), strict=True)
         say(f"at the pivot: {', '.join(f'{n} = {v:.6g} {u}' for n, v, u in values)}")
+
+
+def _series(found: TissueIdentification) -> list[Series]:
+    from nrs_design.identification.tissue.prony import fit_series
+
+    return [fit_series(trial) for trial in found.trials]
+
+
+def _series_text(series: Series, rotational: bool) -> str:
+    unit = "N m/rad" if rotational else "N/m"
+    arms = ", ".join(
+        f"{arm:.4g} {unit} in {tau:.4g} s"
+        for arm, tau in zip(series.arms, series.times, strict=True)
+    )
+    text = f"{series.record}: Prony series of {len(series.arms)}: {series.rest:.4g} {unit} at rest"
+    text += f", relaxing {arms}; RMSE {series.rmse:.4g}"
+    if series.reduced is None:
+        return text
+    law = series.reduced
+    values = zip(law.parameters(), law.values, strict=True)
+    return f"{text}; as {law.name}: {', '.join(f'{name} = {value:.5g}' for name, value in values)}"
+
+
+def _series_summary(series: Series) -> dict[str, Any]:
+    law = series.reduced
+    return {
+        "record": series.record,
+        "rest": series.rest,
+        "arms": list(series.arms),
+        "times_s": list(series.times),
+        "rmse": series.rmse,
+        "bic": list(series.bic),
+        "reduced": None
+        if law is None
+        else {"law": law.name, **dict(zip(law.parameters(), law.values, strict=True))},
+    }
 
 
 def _print_tangent(about: Tangent, rotational: bool) -> None:

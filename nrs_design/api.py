@@ -28,7 +28,8 @@ from nrs_design.proof.exact import TooLargeError
 from nrs_design.proof.lyapunov import LyapunovCheck, check_quadratic
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.system import Mode
-from nrs_design.search.certification import Attempt, Limits, Method
+from nrs_design.search.certification import Attempt, Limits
+from nrs_design.search.method import Method
 from nrs_design.spec import LoadedSpec, read_spec
 
 if TYPE_CHECKING:

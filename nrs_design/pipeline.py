@@ -15,7 +15,8 @@ from nrs_design.errors import AssemblyError, DesignError, NrsDesignError
 from nrs_design.proof.bounds import nearly
 from nrs_design.proof.system import SwitchedSystem, Time
 from nrs_design.search.allowance import GIGABYTE
-from nrs_design.search.certification import Certification, Limits, Method
+from nrs_design.search.certification import Certification, Limits
+from nrs_design.search.method import Method
 from nrs_design.spec import LoadedSpec, read_spec
 
 if TYPE_CHECKING:
@@ -342,10 +343,9 @@ def run_margin(
     """
     from nrs_design.search.certify import certify
     from nrs_design.search.margin import find_margin
-    from nrs_design.switched.assemble import has_ranges
 
     spec = result.loaded.spec
-    if not has_ranges(spec):
+    if not spec.has_ranges:
         given = "modes" if result.design is None else "environments"
         with placed(result.loaded):
             raise DesignError(

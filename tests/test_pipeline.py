@@ -9,7 +9,8 @@ from nrs_design import __version__
 from nrs_design.errors import AssemblyError
 from nrs_design.gating.run import Files, run_gate
 from nrs_design.pipeline import run_analysis, run_certification, run_design
-from nrs_design.search.certify import Limits, Method, Verdict
+from nrs_design.search.certify import Limits, Verdict
+from nrs_design.search.method import Method
 from nrs_design.spec import read_spec
 from tests.support import (
     COMMUTING,
@@ -74,8 +75,9 @@ def counting(calls, name, function):
 def test_a_gated_spec_is_built_once_and_optimized_once(tmp_path, monkeypatch, html):
     calls = calls_of(
         monkeypatch,
-        build_plant=("pipeline", "switched.assemble"),
-        optimize_impedance=("design.constrained", "design.analysis"),
+        # It is imported where it is called, so there is one place to look.
+        build_plant=("models.plant",),
+        optimize_impedance=("design.constrained", "design.laws.impedance"),
         design_controllers=("design.design",),
     )
     outcome = run_gate([SOFT_TISSUE], Files(tmp_path, html=html))
@@ -84,11 +86,21 @@ def test_a_gated_spec_is_built_once_and_optimized_once(tmp_path, monkeypatch, ht
     assert calls == {"build_plant": 1, "design_controllers": 1, "optimize_impedance": 2}
 
 
+def test_what_is_designed_is_assembled_without_a_detour_by_text(monkeypatch):
+    calls = calls_of(
+        monkeypatch, gains_of=("controllers.gains",), design_from_gains=("controllers.gains",)
+    )
+    result = run_certification(read_spec(SOFT_TISSUE), limits=Limits(optimize_rate=False))
+    assert result.certification.verdict is Verdict.PROVED
+    # The certificate quotes gains; only its re-check reads them.
+    assert calls == {"gains_of": 1}
+
+
 def test_functions_are_counted_wherever_they_are_used():
     """The count above looks into every module that could build a plant or optimize."""
     for name, places in (
         ("build_plant", {"pipeline", "switched/assemble", "models/plant"}),
-        ("optimize_impedance", {"design/constrained", "design/analysis", "design/impedance"}),
+        ("optimize_impedance", {"design/constrained", "design/laws/impedance", "design/impedance"}),
     ):
         package = ROOT / "nrs_design"
         using = {

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from datetime import datetime
 from enum import StrEnum
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -10,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from nrs_design.cli import exit_codes
-from nrs_design.cli.options import Budget, Json, MaxDegree, Memory, Quiet, SpecFile
+from nrs_design.cli.options import Budget, Date, Json, MaxDegree, Memory, Quiet, SpecFile
 from nrs_design.cli.printing import note, print_json, progress, say
 from nrs_design.errors import DesignError
 
@@ -22,7 +21,7 @@ if TYPE_CHECKING:
 REPORTS = Path("reports")
 
 
-class FormatOption(StrEnum):
+class ReportFormat(StrEnum):
     """File formats of a report."""
 
     HTML = "html"
@@ -33,8 +32,8 @@ class FormatOption(StrEnum):
 def report(
     spec: SpecFile,
     file_format: Annotated[
-        FormatOption, typer.Option("--format", help="A page, a document, or one image per figure.")
-    ] = FormatOption.HTML,
+        ReportFormat, typer.Option("--format", help="A page, a document, or one image per figure.")
+    ] = ReportFormat.HTML,
     out: Annotated[
         Path | None,
         typer.Option(
@@ -45,14 +44,7 @@ def report(
         bool,
         typer.Option("--times", help="Add the time of every rung; pages then differ each time."),
     ] = False,
-    date: Annotated[
-        datetime | None,
-        typer.Option(
-            formats=["%Y-%m-%d"],
-            metavar="YYYY-MM-DD",
-            help="Write this date on the page or document; without it there is no date.",
-        ),
-    ] = None,
+    date: Date = None,
     max_degree: MaxDegree = None,
     budget: Budget = None,
     memory: Memory = None,
@@ -112,19 +104,19 @@ def _analysis(result: Result, *, quiet: bool) -> DesignAnalysis | None:
         return None
 
 
-def _write(report: Report, file_format: FormatOption, out: Path | None, spec: Path) -> list[Path]:
+def _write(report: Report, file_format: ReportFormat, out: Path | None, spec: Path) -> list[Path]:
     from nrs_design.output import PAGE, PDF, PNG, write_output
     from nrs_design.ownership import origin_of
     from nrs_design.reporting import render_html, render_pdf, render_png
 
-    if file_format is FormatOption.PNG:
+    if file_format is ReportFormat.PNG:
         folder = out or REPORTS / report.name
         images = {folder / f"{name}.png": data for name, data in render_png(report).items()}
         for path, data in images.items():
             write_output(path, data, replaces=PNG)
         return list(images)
     path = out or REPORTS / f"{report.name}.{file_format}"
-    if file_format is FormatOption.PDF:
+    if file_format is ReportFormat.PDF:
         write_output(path, render_pdf(report), replaces=PDF)
     else:
         write_output(path, render_html(report, origin_of(spec, path)), replaces=PAGE)

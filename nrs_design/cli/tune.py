@@ -63,9 +63,9 @@ def tune(spec: SpecFile, as_json: Json = False, quiet: Quiet = False) -> None:
         print_json("tune", content | _summary(designed.design, analysis) | {"warnings": warnings})
     elif not quiet:
         _print(loaded.spec.name, designed.design, analysis)
-        print_goals(loaded.spec.name, analysis.force)
+        print_goals(loaded.spec.name, analysis.tuned)
         print_warnings(warnings, quiet=quiet)
-    raise typer.Exit(exit_code(analysis.force))
+    raise typer.Exit(exit_code(analysis.tuned))
 
 
 def _summary(design: ControllerDesign, analysis: DesignAnalysis) -> dict[str, Any]:

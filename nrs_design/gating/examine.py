@@ -29,7 +29,7 @@ from nrs_design.proof.evidence.unstable_mode import (
     worst_eigenvalue,
 )
 from nrs_design.proof.system import Mode, SwitchedSystem, Time
-from nrs_design.spec import InteractionDesignSpec, LoadedSpec, doubt_spec
+from nrs_design.spec import LoadedSpec, doubt_spec
 from nrs_design.spec.document import Position
 
 if TYPE_CHECKING:
@@ -157,19 +157,15 @@ class Examiner:
 
     def stiffness_ranges(self, analysis: DesignAnalysis) -> Iterator[Obligation]:
         """Yield NRS103 for every impedance controller."""
-        spec = self.loaded.spec
-        assert isinstance(spec, InteractionDesignSpec)
         for item in analysis.impedance:
-            controller = spec.controllers[item.name]
-            assert controller.type == "impedance"
             highest, limit = item.highest_stiffness, item.lowest_limit
             held = ", all parameters in proportion" if item.problem.loop.contact.remembers else ""
-            ranged = controller.Mt.ranged or controller.Bt.ranged
+            ranged = any(gain.ranged for gain in item.given.gains().values())
             where = f"{item.name}, in the corners of its gain ranges" if ranged else item.name
             reached = highest < limit
             verb = "stays below" if reached else "reaches"
             message = (
-                f"design goal: the stiffness of {controller.environment}, up to {highest:.6g} "
+                f"design goal: the stiffness of {item.given.environment}, up to {highest:.6g} "
                 f"N*m/rad, {verb} the limit {limit:.6g} N*m/rad of controller {where}{held} "
                 "(floating point, not a proof)"
             )
@@ -200,7 +196,7 @@ class Examiner:
     def identified(self) -> Iterator[Obligation]:
         """Yield NRS107 for everything whose identification is in doubt."""
         spec = self.loaded.spec
-        if not isinstance(spec, InteractionDesignSpec):
+        if spec.kind != "interaction-design":
             return
         for at, item in spec.identified.items():
             if not item.doubts:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from nrs_design.models.linear_form import LinearForm
 from nrs_design.proof.evidence.unstable_mode import is_stable
 from nrs_design.reproduction import thesis
 from nrs_design.reproduction.comparison import (
@@ -22,7 +23,7 @@ from nrs_design.reproduction.matrices import (
     impedance_rows,
     printed_rows,
 )
-from nrs_design.switched.close_loop import Row as MatrixRow
+from nrs_design.switched.modes import Rows
 
 CLOSE = Tolerance(1e-4)
 WRONG_SIGN = (
@@ -133,7 +134,7 @@ def _eigenvalues() -> tuple[Comparison, ...]:
     )
 
 
-def _not_hurwitz(name: str, section: str, rows: list[MatrixRow]) -> Comparison:
+def _not_hurwitz(name: str, section: str, rows: Rows) -> Comparison:
     system = family(name, rows)
     return claim(
         f"eigenvalues of {name} as printed",
@@ -160,12 +161,12 @@ def _hurwitz(Bt: str, right: tuple[str, ...]) -> Comparison:
     )
 
 
-def _spectrum(rows: list[MatrixRow]) -> tuple[Number, ...]:
+def _spectrum(rows: Rows) -> tuple[Number, ...]:
     """Return the eigenvalues, rightmost first, one for each complex pair."""
     found = np.linalg.eigvals(np.array(rows, dtype=float))
     upper = sorted(found[found.imag >= 0], key=lambda z: (-z.real, z.imag))
     return tuple(complex(z) if z.imag else float(z.real) for z in upper)
 
 
-def _floats(entries: MatrixRow) -> tuple[float, ...]:
+def _floats(entries: LinearForm) -> tuple[float, ...]:
     return tuple(map(float, entries))

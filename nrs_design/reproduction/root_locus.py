@@ -70,7 +70,7 @@ def _design() -> tuple[Comparison, ...]:
             "Kp = K z",
             "4.31",
             "117359.43",
-            thesis.DERIVATIVE_GAIN * thesis.ZERO,
+            float(thesis.DERIVATIVE_GAIN * thesis.ZERO),
             "rpm/rad",
             Tolerance(1e-5),
         ),

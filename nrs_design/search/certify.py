@@ -25,14 +25,18 @@ from nrs_design.proof.second_opinion import agrees
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.search.allowance import Allowance, NotAffordableError
 from nrs_design.search.candidates import Candidates, Search
-from nrs_design.search.certification import Attempt, Certification, Limits, Method
+from nrs_design.search.certification import Attempt, Certification, Limits
 from nrs_design.search.family import Family, floats_in_silence
 from nrs_design.search.fast_check import find_fault
 from nrs_design.search.ladder import applicable_methods, steps
-from nrs_design.search.limits import rate_limit
+from nrs_design.search.method import Method
+from nrs_design.search.rate_limit import rate_limit
 from nrs_design.search.structure import merge_equal_modes, triangular_blocks
 
 Progress = Callable[[str], None]
+
+# The end of a search that had a solution, but no rate to claim for it.
+NO_RATE = "what was found shows no rate of decay"
 
 
 def certify(
@@ -187,7 +191,8 @@ def first_accepted(
         try:
             candidate = next(candidates)
         except StopIteration as end:
-            return None, end.value or f"a candidate was found, but {fault}"
+            refused = f"a candidate was found, but {fault}" if fault else NO_RATE
+            return None, end.value or refused
         fault = find_fault(candidate.evidence, system)
         if fault is None:
             return candidate.evidence, candidate.words

@@ -18,6 +18,7 @@ from nrs_design.search.decay import fastest_first, rate_of
 from nrs_design.search.family import Family
 from nrs_design.search.gradient import iterate_gradient
 from nrs_design.search.lmi import find_common_quadratic, margins, solve_by_clarabel
+from nrs_design.search.raw import find_raw_quadratic
 from nrs_design.search.rounding import BITS, claims, digits, rate_at, round_rate, unscale
 
 BACK_OFF = Fraction(1999, 2000)
@@ -61,7 +62,7 @@ def _fastest(family: Family) -> Iterator[Candidate[CommonQuadratic]]:
     )
     try:
         for Q, claim in found:
-            for evidence in _roundings(family, Q, claim):
+            for evidence in round_quadratic(family, Q, claim):
                 yield Candidate(evidence, "found with the largest decay rate")
     except NotAffordableError:
         return
@@ -91,13 +92,13 @@ def search_by_gradient(family: Family) -> Candidates[CommonQuadratic]:
 
 
 def search_raw(family: Family) -> Candidates[CommonQuadratic]:
-    """Search by a general solver in the coordinates of the spec, without balancing."""
+    """Search by CVXPY in the coordinates of the spec, without balancing."""
     time = family.system.time
     if not np.isfinite(family.limit):
         return OUT_OF_RANGE
     matrices = scale(family.matrices, -family.exponents)
     least = rate_at(0.0, family.limit, time)
-    Q = find_common_quadratic(matrices, time, least, solve_by_clarabel, family.allowance)
+    Q = find_raw_quadratic(matrices, time, least, family.allowance)
     if Q is None:
         return NO_MARGIN
     shifts = family.exponents[:, None] + family.exponents[None, :]
@@ -127,14 +128,23 @@ def _at_own_rate(
     """Yield roundings of a function at rates just below the one that it shows itself."""
     rate, time = rate_of(family.matrices, Q, family.system.time), family.system.time
     for claim in claims(1.0, rate, time):
-        for evidence in _roundings(family, Q, claim):
+        for evidence in round_quadratic(family, Q, claim):
             yield Candidate(evidence, words)
 
 
-def _roundings(family: Family, Q: Array, claim: Fraction) -> Iterator[CommonQuadratic]:
+def round_quadratic(family: Family, Q: Array, claim: Fraction) -> Iterator[CommonQuadratic]:
     """Yield roundings that floating point thinks worth the time of the exact check, and the last.
 
-    Q is in the coordinates of the family. The scale of Q is free: common factors of two go.
+    The scale of a quadratic function is free: common factors of two go.
+
+    Parameters
+    ----------
+    family : Family
+        The modes.
+    Q : ndarray, shape (n, n)
+        In the coordinates of the family.
+    claim : Fraction
+        The rate to claim.
     """
     largest = np.abs(Q).max()
     if not np.isfinite(largest) or largest == 0:

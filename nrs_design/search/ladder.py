@@ -13,7 +13,7 @@ from nrs_design.proof.evidence.unstable_mode import affordable, is_stable
 from nrs_design.proof.system import SwitchedSystem, Time
 from nrs_design.search.allowance import Allowance, Cost
 from nrs_design.search.candidates import Candidates, Search
-from nrs_design.search.certification import Limits, Method
+from nrs_design.search.certification import Limits
 from nrs_design.search.common_quadratic import (
     decide_one_state,
     search_by_gradient,
@@ -22,6 +22,7 @@ from nrs_design.search.common_quadratic import (
     search_raw,
 )
 from nrs_design.search.family import Family
+from nrs_design.search.method import Method
 from nrs_design.search.mixture import search_mixture
 from nrs_design.search.mode_quadratic import functions_cost, search_mode_functions
 from nrs_design.search.obstruction import search_obstruction
@@ -98,6 +99,7 @@ class Facts:
 
 
 def _always(facts: Facts) -> bool:
+    """Say yes."""
     return True
 
 

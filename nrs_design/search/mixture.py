@@ -53,7 +53,7 @@ def _least_stable(matrices: Array, allowance: Allowance) -> tuple[Array, float]:
     """Return the weights of the average with the largest spectral abscissa, and that abscissa."""
     m, n = matrices.shape[:2]
     found, largest = np.ones(m) / m, -np.inf
-    for weights in _weights(m, max(1, CHUNK_ENTRIES // max(n * n, m))):
+    for weights in weights_tried(m, max(1, CHUNK_ENTRIES // max(n * n, m))):
         averages = np.tensordot(weights, matrices, axes=1)
         abscissas = np.linalg.eigvals(averages).real.max(axis=1)
         best = int(abscissas.argmax())
@@ -64,7 +64,7 @@ def _least_stable(matrices: Array, allowance: Allowance) -> tuple[Array, float]:
     return found, largest
 
 
-def _weights(m: int, chunk: int) -> Iterator[Array]:
+def weights_tried(m: int, chunk: int) -> Iterator[Array]:
     """Yield rows of weights: pairs of modes at evenly spaced shares, then random ones."""
     if m == 1:
         yield np.ones((1, 1))

@@ -30,7 +30,7 @@ def examine_suspicious_modes(family: Family) -> Candidates[UnstableMode]:
     lasting = {mode.name for mode in family.system.lasting_modes()}
     suspicious = [
         mode
-        for mode, ok in zip(family.system.modes, _seems_stable(family), strict=True)
+        for mode, ok in zip(family.system.modes, seems_stable(family), strict=True)
         if not ok and mode.name in lasting
     ]
     return (yield from _unstable_modes(suspicious, family))
@@ -74,7 +74,8 @@ def exact_test_cost(A: RationalMatrix) -> Cost:
     return Cost(n**4 * (1e-7 + 2e-13 * grown**2))
 
 
-def _seems_stable(family: Family) -> NDArray[np.bool_]:
+def seems_stable(family: Family) -> NDArray[np.bool_]:
+    """Tell in floating point which modes are clearly stable; shape (m,)."""
     if not np.isfinite(family.matrices).all():
         return np.zeros(len(family.matrices), dtype=bool)
     size = np.abs(family.matrices).max(axis=(1, 2))

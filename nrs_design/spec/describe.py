@@ -28,6 +28,10 @@ if TYPE_CHECKING:
     from nrs_design.spec.load import Spec
 
 MAX_LISTED = 20
+# Keys of a controller that are listed in a way of their own, and the kinds of gains.
+_TARGETS = frozenset({"desired_impedance", "desired_impedance_ratio"})
+_LISTED = _TARGETS | {"type", "environment", "contacts", "goals"}
+_GAINS = (kinds.INERTIA, kinds.IMPEDANCE, kinds.FORCE_GAIN)
 
 
 class Line(NamedTuple):
@@ -167,21 +171,32 @@ def _ranged(name: str, written: RangedQuantity, si: RangedQuantity, unit: str) -
 
 def _controller(name: str, controller: ControllerSpec, limits: LimitsSpec) -> Iterator[Line]:
     yield Line(f"{name}.type", controller.type, "", "")
-    if controller.type == "position":
+    if controller.environment is None:
         return
     yield Line(f"{name}.environment", controller.environment, "", "")
     yield Line(f"{name}.contacts", ", ".join(controller.contacts), "", "")
     if controller.type == "impedance":
         yield _desired_impedance(f"{name}.desired_impedance", controller, limits)
-        yield from _gain(f"{name}.Mt", controller.Mt, kinds.INERTIA)
-        yield from _gain(f"{name}.Bt", controller.Bt, kinds.IMPEDANCE)
-        yield _number(f"{name}.weights.displayed", controller.weights.displayed)
-        yield _number(f"{name}.weights.sensitivity", controller.weights.sensitivity)
-    elif controller.proportional_gain is not None:
-        yield _row(f"{name}.proportional_gain", controller.proportional_gain, kinds.FORCE_GAIN)
-    elif controller.damping_ratio is not None:
-        yield _number(f"{name}.damping_ratio", controller.damping_ratio)
+    for key in type(controller).model_fields:
+        if key not in _LISTED:
+            yield from _own_field(f"{name}.{key}", getattr(controller, key))
     yield from _goals(f"{name}.goals", controller.goals)
+
+
+def _own_field(name: str, value: object) -> Iterator[Line]:
+    """List what only one type of controller has."""
+    if isinstance(value, GainSpec):
+        yield from _gain(name, value, _gain_unit(value.min))
+    elif isinstance(value, Quantity):
+        yield _quantity(name, value, _gain_unit(value))
+    else:
+        yield from describe_model(value, name)
+
+
+def _gain_unit(quantity: Quantity) -> str:
+    """Return the unit in which a gain is shown."""
+    known = (kind.si_unit for kind in _GAINS if kind.accepts(quantity.dimension))
+    return next(known, si_unit(quantity.dimension))
 
 
 def _goals(name: str, goals: GoalsSpec | None) -> Iterator[Line]:
@@ -198,22 +213,26 @@ def _desired_impedance(name: str, controller: ImpedanceControllerSpec, limits: L
     return Line(name, written, _text(value), kinds.IMPEDANCE.si_unit)
 
 
-def _gain(name: str, gain: GainSpec, kind: QuantityKind) -> Iterator[Line]:
+def _gain(name: str, gain: GainSpec, unit: str) -> Iterator[Line]:
     if gain.fixed:
-        yield _row(name, gain.min, kind)
+        yield _quantity(name, gain.min, unit)
     else:
-        yield _interval(name, gain.min, gain.max, kind)
+        yield _interval(name, gain.min, gain.max, unit)
     if gain.range is not None:
-        yield _interval(f"{name}.range", *gain.range, kind)
+        yield _interval(f"{name}.range", *gain.range, unit)
 
 
-def _interval(name: str, low: Quantity, high: Quantity, kind: QuantityKind) -> Line:
+def _interval(name: str, low: Quantity, high: Quantity, unit: str) -> Line:
     value = f"[{_text(low.si)}, {_text(high.si)}]"
-    return Line(name, f"[{low.text}, {high.text}]", value, kind.si_unit)
+    return Line(name, f"[{low.text}, {high.text}]", value, unit)
 
 
 def _row(name: str, quantity: Quantity, kind: QuantityKind) -> Line:
-    return Line(name, quantity.text, _text(quantity.si), kind.si_unit)
+    return _quantity(name, quantity, kind.si_unit)
+
+
+def _quantity(name: str, quantity: Quantity, unit: str) -> Line:
+    return Line(name, quantity.text, _text(quantity.si), unit)
 
 
 def _number(name: str, number: Fraction) -> Line:

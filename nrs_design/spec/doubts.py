@@ -41,14 +41,8 @@ def doubt_spec(spec: Spec) -> Iterator[Doubt]:
                 f"the identification of {at[-1]} is in doubt, and nothing says why that is "
                 "accepted (record again, or add accept_doubt)",
             )
-    touched = {
-        contact
-        for controller in spec.controllers.values()
-        if controller.type != "position"
-        for contact in controller.contacts
-    }
     for name in spec.environments:
-        if name not in touched:
+        if name not in spec.touched:
             yield Doubt(
                 ("environments", name),
                 f"environment {name} is touched by no controller, so nothing is shown about it "

@@ -40,22 +40,20 @@ def find_changing_contact(
 ) -> DwellObstacle | None:
     """Find what changes while one controller is active: the environment obeys no rule of ours."""
     for name, controller in controllers.items():
-        contacts = () if controller.type == "position" else controller.contacts
-        if len(contacts) > 1:
+        if len(controller.contacts) > 1:
             return DwellObstacle(
                 f"a dwell time and several contacts of {name!r} exclude each other: the contact "
                 "may change at any time, whatever the controller",
                 "write a spec for each environment",
             )
-        if controller.type == "impedance":
-            for gain in ("Mt", "Bt"):
-                if getattr(controller, gain).ranged:
-                    return DwellObstacle(
-                        f"a dwell time and the range of {gain} of {name!r} exclude each other: "
-                        "the gain may move during the dwell time, and the proof would not hold",
-                        "give the gain one value only",
-                    )
-        for contact in contacts:
+        for gain, declared in controller.gains().items():
+            if declared.ranged:
+                return DwellObstacle(
+                    f"a dwell time and the range of {gain} of {name!r} exclude each other: "
+                    "the gain may move during the dwell time, and the proof would not hold",
+                    "give the gain one value only",
+                )
+        for contact in controller.contacts:
             if not environments[contact].fixed:
                 return DwellObstacle(
                     f"a dwell time and the range of environment {contact!r} exclude each other: "

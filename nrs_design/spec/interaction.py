@@ -9,11 +9,7 @@ from typing import Annotated, Literal
 from pydantic import Field, model_validator
 
 from nrs_design.spec.certification import CertificationSpec
-from nrs_design.spec.controllers import (
-    ControllerSpec,
-    IdleStatesSpec,
-    PositionControllerSpec,
-)
+from nrs_design.spec.controllers import ControllerSpec, IdleStatesSpec
 from nrs_design.spec.dwell import DwellObstacle, find_changing_contact
 from nrs_design.spec.environment import EnvironmentSpec
 from nrs_design.spec.faults import all_of, did_you_mean, fault
@@ -92,7 +88,6 @@ class InteractionDesignSpec(SpecModel):
             *(
                 partial(check_applicable, c.goals, {c.type}, "controllers", name, "goals")
                 for name, c in self.controllers.items()
-                if not isinstance(c, PositionControllerSpec)
             ),
             *(
                 partial(_check_springs, *item, self.environments)
@@ -100,7 +95,7 @@ class InteractionDesignSpec(SpecModel):
             ),
             partial(_check_memories, self.controllers, self.environments, self.coordinates),
             lambda: check_applicable(
-                self.goals, {c.type for c in self.controllers.values()}, "goals"
+                self.goals, {c.type for c in self.controllers.values() if c.contacts}, "goals"
             ),
             lambda: check_names(self.switching, self.controllers, "controller"),
             *(
@@ -116,6 +111,18 @@ class InteractionDesignSpec(SpecModel):
         parts: dict[tuple[str, ...], IdentifiedSpec] = {("actuator",): self.actuator}
         parts.update((("environments", name), item) for name, item in self.environments.items())
         return parts
+
+    @property
+    def touched(self) -> frozenset[str]:
+        """Names of the environments that some controller touches."""
+        return frozenset(name for c in self.controllers.values() for name in c.contacts)
+
+    @property
+    def has_ranges(self) -> bool:
+        """Whether a touched environment or a gain has a range."""
+        return any(not self.environments[name].fixed for name in self.touched) or any(
+            gain.ranged for c in self.controllers.values() for gain in c.gains().values()
+        )
 
     def find_dwell_obstacle(self) -> DwellObstacle | None:
         """Say why no dwell time can be claimed for this spec, or None."""
@@ -133,7 +140,7 @@ def _check_mixture(
     others = (
         (name, controller.type)
         for name, controller in controllers.items()
-        if (controller.type == "impedance") != (first.type == "impedance")
+        if controller.commands != first.commands
     )
     name, kind = next(others, (None, None))
     if idle is None and name is not None:
@@ -176,7 +183,7 @@ def _check_references(
     controller: ControllerSpec,
     environments: dict[str, EnvironmentSpec],
 ) -> None:
-    if isinstance(controller, PositionControllerSpec):
+    if controller.environment is None:
         return
 
     def check(environment: str, *at: int | str) -> None:
@@ -213,7 +220,7 @@ def _check_springs(
     name: str, controller: ControllerSpec, environments: dict[str, EnvironmentSpec]
 ) -> None:
     """Refuse force control of what is no spring: its force is not that of the position alone."""
-    if controller.type != "force":
+    if controller.commands == "velocity":
         return
     for contact in controller.contacts:
         environment = environments.get(contact)
@@ -239,7 +246,6 @@ def _check_memories(
     touched = {
         contact: environments[contact]
         for controller in controllers.values()
-        if not isinstance(controller, PositionControllerSpec)
         for contact in controller.contacts
         if contact in environments
     }

@@ -10,14 +10,6 @@ from nrs_design.printable import json_text
 from nrs_design.spec.load import SPEC_KINDS, model_of
 
 DIALECT = "http://json-schema.org/draft-07/schema#"
-_EXCLUSIVE = {
-    "ImpedanceControllerSpec": {
-        "not": {"required": ["desired_impedance", "desired_impedance_ratio"]}
-    },
-    "ForceControllerSpec": {
-        "oneOf": [{"required": ["proportional_gain"]}, {"required": ["damping_ratio"]}]
-    },
-}
 # What only Python knows of a model: class names, null for an absent key, defaults that are objects.
 _INTERNAL = ("title", "default", "discriminator")
 
@@ -69,9 +61,6 @@ def _definitions(model: type[BaseModel]) -> dict[str, Any]:
     nested = schema.pop("$defs", {})
     found = {name: _plain(definition) for name, definition in nested.items()}
     found[model.__name__] = _plain(schema)
-    for name, rule in _EXCLUSIVE.items():
-        if name in found:
-            found[name] |= rule
     return found
 
 

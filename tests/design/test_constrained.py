@@ -30,7 +30,7 @@ from nrs_design.design.transfer import TransferFunction, frequency_response
 from nrs_design.errors import DesignError
 from nrs_design.models.contact import Elastic, KelvinVoigt
 from nrs_design.models.contact.environment import Environment
-from nrs_design.models.interval import Interval
+from nrs_design.spec.interval import Interval
 
 EXACT = TransferFunction((0.9974, 56.822), (0.0351, 1.9974, 56.822))
 # Thesis 6.2 and 6.3.1: half the impedance of 0.3 N m over 8 deg/s; 2 Hz; k_soft and its range.

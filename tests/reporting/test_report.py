@@ -11,7 +11,7 @@ from nrs_design.pipeline import run_analysis, run_certification
 from nrs_design.reporting import build_report
 from nrs_design.reporting.document import Bullets, Paragraph, Table
 from nrs_design.reporting.figures.run import draw_phase_plane, draw_run
-from nrs_design.search.certify import Method
+from nrs_design.search.method import Method
 from nrs_design.simulation.switched import TimeResponse
 from nrs_design.spec import read_spec
 from tests.reporting.conftest import KINDS, ROOT, report_of

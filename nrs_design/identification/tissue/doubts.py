@@ -11,7 +11,7 @@ from nrs_design.identification.rounding import rounding_of_velocity
 from nrs_design.identification.statistics import Uncertainty, student_quantile
 from nrs_design.identification.tissue.residuals import doubt_residuals
 from nrs_design.identification.tissue.trial import Trial
-from nrs_design.models.contact import AbstractContactLaw, HuntCrossley, KelvinVoigt
+from nrs_design.models.contact import AbstractContactLaw
 from nrs_design.models.contact.law import STIFFNESS
 
 Array = NDArray[np.float64]
@@ -91,7 +91,7 @@ def _times(law: AbstractContactLaw, trial: Trial) -> Iterator[str]:
 
 def _motion(law: AbstractContactLaw, trial: Trial) -> Iterator[str]:
     motion = trial.motion
-    if isinstance(law, KelvinVoigt | HuntCrossley):
+    if law.takes_velocity:
         part = rounding_of_velocity(motion.time, trial.position)
         if part > _ROUNDING:
             yield (

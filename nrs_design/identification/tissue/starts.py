@@ -6,7 +6,7 @@ a scan over that one number, with a linear fit at each, finds all valleys of the
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Mapping
 
 import numpy as np
 from numpy.typing import NDArray
@@ -50,31 +50,54 @@ def scan(
     offsets : ndarray, shape (n, m)
         What each offset adds to the force.
     """
-    motion, used = trial.motion, trial.used
-    basis = np.linalg.qr(offsets)[0]
+    basis, used = np.linalg.qr(offsets)[0], trial.used
 
     def linear(*regressors: Array) -> tuple[float, ...]:
         X = np.column_stack([regressor[used] for regressor in regressors])
         return _linear(trial.measured, X, basis)
 
-    if kind is Elastic:
-        yield Elastic(*linear(motion.deflection))
-    elif kind is KelvinVoigt:
-        yield KelvinVoigt(*linear(motion.deflection, motion.velocity))
-    elif kind is HuntCrossley:
-        for phi in np.linspace(LEAST_EXPONENT, LARGEST_EXPONENT, _EXPONENTS).tolist():
-            power = np.maximum(motion.deflection, 0.0) ** phi
-            rho, lam = linear(power, power * motion.velocity)
-            yield HuntCrossley(rho, lam, phi)
-    else:
-        for tau in _time_constants(trial):
-            y, _ = relax(motion, tau)
-            if kind is Maxwell:
-                (k,) = linear(y)
-                yield Maxwell(k, k * tau)
-            else:
-                eta1, arm = linear(motion.deflection, y)
-                yield KelvinBoltzmann.from_eta(eta1, (eta1 + arm) * tau, tau)
+    return _SCANS[kind](trial, linear)
+
+
+# Fits positive factors of regressors over all samples to the force.
+Linear = Callable[..., tuple[float, ...]]
+
+
+def _elastic(trial: Trial, linear: Linear) -> Iterator[Elastic]:
+    yield Elastic(*linear(trial.motion.deflection))
+
+
+def _kelvin_voigt(trial: Trial, linear: Linear) -> Iterator[KelvinVoigt]:
+    yield KelvinVoigt(*linear(trial.motion.deflection, trial.motion.velocity))
+
+
+def _maxwell(trial: Trial, linear: Linear) -> Iterator[Maxwell]:
+    for tau in _time_constants(trial):
+        (k,) = linear(relax(trial.motion, tau)[0])
+        yield Maxwell(k, k * tau)
+
+
+def _kelvin_boltzmann(trial: Trial, linear: Linear) -> Iterator[KelvinBoltzmann]:
+    for tau in _time_constants(trial):
+        eta1, arm = linear(trial.motion.deflection, relax(trial.motion, tau)[0])
+        yield KelvinBoltzmann.from_eta(eta1, (eta1 + arm) * tau, tau)
+
+
+def _hunt_crossley(trial: Trial, linear: Linear) -> Iterator[HuntCrossley]:
+    for phi in np.linspace(LEAST_EXPONENT, LARGEST_EXPONENT, _EXPONENTS).tolist():
+        power = np.maximum(trial.motion.deflection, 0.0) ** phi
+        rho, lam = linear(power, power * trial.motion.velocity)
+        yield HuntCrossley(rho, lam, phi)
+
+
+Scan = Callable[[Trial, Linear], Iterator[AbstractContactLaw]]
+_SCANS: Mapping[type[AbstractContactLaw], Scan] = {
+    Elastic: _elastic,
+    KelvinVoigt: _kelvin_voigt,
+    Maxwell: _maxwell,
+    KelvinBoltzmann: _kelvin_boltzmann,
+    HuntCrossley: _hunt_crossley,
+}
 
 
 def box(kind: type[AbstractContactLaw], trial: Trial) -> tuple[Array, Array]:

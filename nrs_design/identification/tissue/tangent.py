@@ -13,7 +13,7 @@ from nrs_design.identification.statistics import Estimate, Uncertainty
 from nrs_design.identification.tissue.output_error import RecordFit
 from nrs_design.identification.tissue.pool import ModelFit
 from nrs_design.identification.tissue.ranges import hull, joint_level, spread_ranges
-from nrs_design.models.contact import HuntCrossley, KelvinVoigt
+from nrs_design.models.contact import AbstractNonlinearLaw, KelvinVoigt
 
 Array = NDArray[np.float64]
 
@@ -41,9 +41,8 @@ class Tangent:
 def tangent(model: ModelFit, preload: tuple[float, float]) -> Tangent:
     """Return the tangent of a power law over a range of deflections.
 
-    ``k = phi rho d^(phi-1)`` and ``b = lam d^phi`` grow with the deflection d, so that the ends of
-    the preloads give the ends of the range. Damping by the velocity alone is exact to first order:
-    ``F`` moves by ``k`` per deflection and, at rest, by ``b`` per velocity.
+    Stiffness and damping of a power law grow with the deflection, so that the ends of the preloads
+    give the ends of the range.
 
     Parameters
     ----------
@@ -58,7 +57,7 @@ def tangent(model: ModelFit, preload: tuple[float, float]) -> Tangent:
         If the law is linear, or the preloads are beyond what the records reach.
     """
     law, (low, high) = model.law, preload
-    if not isinstance(law, HuntCrossley):
+    if not isinstance(law, AbstractNonlinearLaw):
         raise DataError(
             f"{law.name} is linear: its stiffness is the same at every preload",
             remedy="leave out --preload, or choose --model hunt-crossley",
@@ -94,10 +93,8 @@ def _ranges_at(model: ModelFit, depth: float) -> Sequence[Estimate]:
 
 def _estimates(fit: RecordFit, depth: float, level: float) -> tuple[Estimate, ...]:
     law = fit.law
-    assert isinstance(law, HuntCrossley)
-    grows = law.phi * float(np.log(depth))
-    # Derivatives of log k and log b by the logarithms of rho, lam and phi.
-    chain = np.array([[1.0, 0.0, 1.0 + grows], [0.0, 1.0, grows]])
+    assert isinstance(law, AbstractNonlinearLaw)
+    chain = law.tangent_sensitivities(depth)
     covariance = chain @ fit.uncertainty.covariance @ chain.T
     known = Uncertainty(covariance, fit.uncertainty.degrees, fit.uncertainty.whiteness)
     return known.estimates(np.log(law.tangent(depth)), level)

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, ClassVar
 
-from nrs_design.models.contact.law import AbstractContactLaw
+from nrs_design.models.contact.law import AbstractNonlinearLaw
 
 if TYPE_CHECKING:
     from nrs_design.models.contact.motion import Array, Motion
@@ -15,7 +16,7 @@ LEAST_EXPONENT, LARGEST_EXPONENT = 1.1, 1.3
 
 
 @dataclass(frozen=True)
-class HuntCrossley(AbstractContactLaw):
+class HuntCrossley(AbstractNonlinearLaw):
     """A spring and a damper that both stiffen with the deflection; no force without contact.
 
     Parameters
@@ -31,6 +32,7 @@ class HuntCrossley(AbstractContactLaw):
     name: ClassVar[str] = "hunt-crossley"
     formula: ClassVar[str] = "F = ρ δ^φ + λ δ^φ δ' in contact"
     kinds: ClassVar[tuple[str, ...]] = ("power stiffness", "power damping", "exponent")
+    takes_velocity: ClassVar[bool] = True
 
     rho: float
     lam: float
@@ -82,3 +84,10 @@ class HuntCrossley(AbstractContactLaw):
         """
         k = self.phi * self.rho * deflection ** (self.phi - 1)
         return k, self.lam * deflection**self.phi
+
+    def tangent_sensitivities(self, deflection: float) -> Array:
+        """Return the derivatives of log k and log b by log rho, log lam and log phi, (2, 3)."""
+        import numpy as np
+
+        grows = self.phi * math.log(deflection)
+        return np.array([[1.0, 0.0, 1.0 + grows], [0.0, 1.0, grows]])

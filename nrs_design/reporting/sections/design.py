@@ -14,7 +14,7 @@ from nrs_design.reporting.figures.complex_plane import draw_root_locus
 from nrs_design.reporting.figures.impedance import draw_displayed_impedance, draw_sensitivity
 from nrs_design.reporting.formatting import number, polynomial, root, roots
 from nrs_design.reporting.sections.goals import goals_section
-from nrs_design.spec import ImpedanceControllerSpec, InteractionDesignSpec
+from nrs_design.spec import InteractionDesignSpec
 
 if TYPE_CHECKING:
     from nrs_design.design.analysis import DesignAnalysis, ForceAnalysis, ImpedanceAnalysis
@@ -75,7 +75,7 @@ def design_sections(designed: Designed, analysis: DesignAnalysis | None) -> tupl
         parts.append(_impedance_section(analysis.impedance))
     if analysis.force:
         parts.append(_force_section(analysis))
-    if analysis.impedance or analysis.force:
+    if analysis.measured:
         parts.append(goals_section(spec, analysis))
     return tuple(parts)
 
@@ -96,10 +96,7 @@ def _ranges(spec: InteractionDesignSpec, design: ControllerDesign) -> tuple[Bloc
     """List the ranges of gains that the spec declares, if any."""
     rows = []
     for controller in design.controllers:
-        given = spec.controllers[controller.name]
-        if not isinstance(given, ImpedanceControllerSpec):
-            continue
-        for gain, declared in (("Mt", given.Mt), ("Bt", given.Bt)):
+        for gain, declared in spec.controllers[controller.name].gains().items():
             if declared.range is not None and declared.ranged:
                 low, high = (end.text for end in declared.range)
                 rows.append((controller.name, gain, low, high))

@@ -5,14 +5,13 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from nrs_design.certificates.certificate import CommonQuadraticStatus
+from nrs_design.controllers.laws.impedance import KEPT_VELOCITY
 from nrs_design.proof.evidence import AbstractEvidence, Shows
 from nrs_design.proof.system import SwitchedSystem, Time
 from nrs_design.reporting.document import Block, Bullets, Paragraph, Section
 from nrs_design.reporting.kinds import page_of
 from nrs_design.reporting.sections.head import NO_CLAIM
 from nrs_design.spec import InteractionDesignSpec
-from nrs_design.switched.assemble import has_ranges
-from nrs_design.switched.gain_box import KEPT_VELOCITY
 
 if TYPE_CHECKING:
     from nrs_design.pipeline import Result
@@ -52,7 +51,7 @@ def _proved(result: Result, evidence: AbstractEvidence) -> tuple[Block, ...]:
     system = result.certification.system
     page, design = page_of(system, evidence), isinstance(result.loaded.spec, InteractionDesignSpec)
     proved = [evidence.claim(system), *page.meaning()]
-    if has_ranges(result.loaded.spec):
+    if result.loaded.spec.has_ranges:
         proved += page.between_corners()
     if design:
         proved.append(

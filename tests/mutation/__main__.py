@@ -1,0 +1,147 @@
+"""Run the tests of `nrs_design/proof/` once for every mutant: nox -s mutation -- exact lyapunov."""
+
+from __future__ import annotations
+
+import importlib
+import os
+import resource
+import signal
+import sys
+import tomllib
+from collections.abc import Iterable, Iterator
+from pathlib import Path
+
+import hypothesis
+import pytest
+
+from tests.mutation.graft import graft
+from tests.mutation.mutants import Mutant, mutants
+
+ROOT = Path(__file__).parents[2]
+PROOF = ROOT / "nrs_design" / "proof"
+TESTS = ROOT / "tests" / "proof"
+EQUIVALENT = Path(__file__).with_name("equivalent.toml")
+# Files of evidence that are no kind, so that no example is tampered with.
+SHARED = {"abstract", "fields", "flow", "function", "__init__"}
+# A mutant may loop for ever, or count to the end of memory: for each test, and for the process.
+SECONDS, BYTES = 30, 4 << 30
+# The same few examples each time, none remembered, and none made smaller.
+hypothesis.settings.register_profile(
+    "mutation",
+    max_examples=20,
+    derandomize=True,
+    database=None,
+    deadline=None,
+    phases=(hypothesis.Phase.explicit, hypothesis.Phase.generate),
+)
+OPTIONS = ("-x", "-s", "-m", "not slow", "--hypothesis-profile", "mutation")
+# Nothing is reported but by us, and hypothesis is loaded before pytest could rewrite its asserts.
+QUIET = ("-qq", "--no-header", "--no-summary", "-p", "no:cacheprovider", "-p", "no:xdist")
+QUIET += ("-W", "ignore::pytest.PytestAssertRewriteWarning")
+
+
+class Examination:
+    """A plugin of pytest that runs what was collected once for every mutant of a module.
+
+    Each run is a process of its own, begun when all is imported and collected.
+    """
+
+    def __init__(self, name: str, path: Path, candidates: Iterable[Mutant]) -> None:
+        self.name, self.path, self.candidates = name, path, candidates
+        self.unnoticed: list[str] = []
+        self.running: dict[int, str] = {}
+
+    @pytest.hookimpl(tryfirst=True)
+    def pytest_runtestloop(self, session: pytest.Session) -> bool:
+        """Take the place of the one run of the tests."""
+        if os.waitpid(self.start(session, None), 0)[1]:
+            sys.exit(f"{self.name}: its tests fail without any change")
+        for mutant in self.candidates:
+            if len(self.running) == len(os.sched_getaffinity(0)):
+                self.wait()
+            self.running[self.start(session, mutant)] = mutant.name
+        while self.running:
+            self.wait()
+        return True
+
+    def wait(self) -> None:
+        """Wait for one process; it ends with 0 if all tests passed."""
+        pid, status = os.wait()
+        name = self.running.pop(pid)
+        if status == 0:
+            self.unnoticed.append(name)
+            print(f"  {name}", flush=True)
+
+    def start(self, session: pytest.Session, mutant: Mutant | None) -> int:
+        """Begin the run for a mutant, or for the module as it is."""
+        if pid := os.fork():
+            return pid
+        status = 1
+        try:
+            status = self.run(session, mutant)
+        finally:
+            os._exit(status)
+
+    def run(self, session: pytest.Session, mutant: Mutant | None) -> int:
+        """Run the tests up to the first failure."""
+        silence = os.open(os.devnull, os.O_WRONLY)
+        os.dup2(silence, 1)
+        os.dup2(silence, 2)
+        resource.setrlimit(resource.RLIMIT_AS, (BYTES, BYTES))
+        signal.setitimer(signal.ITIMER_PROF, SECONDS)
+        if mutant:
+            graft(importlib.import_module(self.name), mutant.compile(self.path))
+        items = session.items
+        for item, following in zip(items, [*items[1:], None], strict=True):
+            signal.setitimer(signal.ITIMER_PROF, SECONDS)
+            item.config.hook.pytest_runtest_protocol(item=item, nextitem=following)
+            if session.testsfailed:
+                return 1
+        return 0
+
+
+def main(names: list[str]) -> int:
+    """Examine some modules of `proof`, or all; return how many mutants nobody noticed."""
+    os.environ["OPENBLAS_NUM_THREADS"] = "1"
+    os.chdir(ROOT)
+    return sum(examine(path, listed()) for path in chosen(names))
+
+
+def chosen(names: list[str]) -> Iterator[Path]:
+    """Yield the modules that are asked for; without names, all that hold a function."""
+    if not names:
+        yield from (path for path in sorted(PROOF.rglob("*.py")) if mutants(path.read_text()))
+    for name in names:
+        yield PROOF / f"{name}.py"
+
+
+def listed() -> dict[str, dict[str, str]]:
+    """Read the mutants that decide the same, by module, each with the reason."""
+    return tomllib.loads(EQUIVALENT.read_text(encoding="utf-8"))
+
+
+def examine(path: Path, reasons: dict[str, dict[str, str]]) -> int:
+    """Run every mutant of a module that is not listed, and print those that no test noticed."""
+    module = path.relative_to(PROOF).with_suffix("").as_posix()
+    known = reasons.get(module, {})
+    every = mutants(path.read_text(encoding="utf-8"))
+    print(f"{module}: {len(every)} mutants, {len(known)} equivalent", flush=True)
+    name = f"nrs_design.proof.{module.replace('/', '.')}".removesuffix(".__init__")
+    examination = Examination(name, path, (m for m in every if m.name not in known))
+    pytest.main([*OPTIONS, *QUIET, *own_tests(path)], plugins=[examination])
+    print(f"{module}: {len(examination.unnoticed)} unnoticed", flush=True)
+    return len(examination.unnoticed)
+
+
+def own_tests(path: Path) -> list[str]:
+    """Return what mirrors a module, and for a kind of evidence the tampering with its examples."""
+    mirror = TESTS / path.relative_to(PROOF).with_name(f"test_{path.name}")
+    tests = [str(mirror if mirror.exists() else TESTS)]
+    if path.parent != PROOF and path.stem not in SHARED:
+        kind = path.stem.replace("_", "-")
+        tests += [str(TESTS / "evidence/test_tampering.py"), "-k", f"not tampering or {kind}"]
+    return tests
+
+
+if __name__ == "__main__":
+    sys.exit(min(main(sys.argv[1:]), 1))

@@ -15,7 +15,8 @@ CONFIDENCE = 0.95
 # Below this p-value, residuals are taken as colored.
 WHITE = 0.01
 _LAGS = 20
-_BATCHES = 20
+# Fewer would leave no degrees of freedom, more would not be independent.
+_BATCHES = 12
 # Beyond these logarithms a number leaves the floats: the interval is then unlimited.
 _HUGE = 690.0
 _SINGULAR = 1e-14

@@ -12,6 +12,7 @@ import numpy as np
 from nrs_design import __version__
 from nrs_design.identification.actuator.time_fit import simulate_angle
 from nrs_design.identification.lever import units_of
+from nrs_design.identification.tissue import OFFSET_UNITS, OFFSET_WORDS
 from nrs_design.reporting.document import Block, Bullets, Illustration, Report, Section, Table
 from nrs_design.reporting.figures.identification import (
     draw_bode,
@@ -34,7 +35,10 @@ _DRAWN = 6
 _MEANING = (
     "Intervals are 95 % confidence intervals of the pooled parameters; with several records they "
     "hold the spread between records.",
-    "The range over all records also covers the interval of every single record.",
+    "The range over all records also covers the interval of every single record; its table says "
+    "what else it holds.",
+    "Position of contact and force in air are fitted with the law, if they are not given. Samples "
+    "that are not used are drawn pale.",
     "RMSE is that of the pooled parameters in each record. AIC and BIC are sums over the records, "
     "each with parameters of its own.",
     "The p-value of the whiteness test is small where residuals are not white noise: the law then "
@@ -67,6 +71,7 @@ def tissue_report(found: TissueIdentification, arm: float | None = None) -> Repo
         remarks=found.caveats,
         facts=_facts([record.source for record in found.records]),
         sections=(
+            Section("What of the records is used", tuple(_used(found))),
             Section("Comparison of laws", tuple(_comparison(found))),
             Section("Parameters of the chosen law", tuple(_parameters(found, arm))),
             Section("Measured against fitted", tuple(_tissue_figures(found))),
@@ -109,6 +114,35 @@ def actuator_report(found: ActuatorIdentification) -> Report:
     )
 
 
+def _used(found: TissueIdentification) -> Iterator[Block]:
+    """Say what was cut and why, and which offsets were found."""
+    rows = tuple(
+        (
+            fit.record.name,
+            f"{int(fit.trial.used.sum())} of {len(fit.record.force)}",
+            *(_offset(fit, name, found.rotational) for name in OFFSET_WORDS),
+        )
+        for fit in found.chosen.fits
+    )
+    columns = ("Record", "Samples used", *(words.capitalize() for words in OFFSET_WORDS.values()))
+    yield Table("Samples and offsets [95 % interval]", columns, rows)
+    remarks = tuple(
+        f"{fit.record.name}: {text}." for fit in found.chosen.fits for text in fit.trial.remarks
+    )
+    yield Bullets("What was found and cut", remarks)
+
+
+def _offset(fit: RecordFit, name: str, rotational: bool) -> str:
+    offset = next((item for item in fit.offsets if item.name == name), None)
+    if offset is None:
+        return "none"
+    unit, estimate = OFFSET_UNITS[name][rotational], offset.estimate
+    if not offset.fitted:
+        return f"{number(estimate.value)} {unit}, {offset.provided or 'given'}"
+    value = f"{estimate.value:.5g} [{estimate.low:.5g}, {estimate.high:.5g}] {unit}"
+    return f"{value}, {offset.provided}" if offset.provided else value
+
+
 def _comparison(found: TissueIdentification) -> Iterator[Block]:
     unit = "N m" if found.rotational else "N"
     records = [record.name for record in found.records]
@@ -147,12 +181,22 @@ def _parameters(found: TissueIdentification, arm: float | None) -> Iterator[Bloc
         for fit in model.fits
     ]
     rows.append(("pooled", *map(_interval, model.estimates)))
-    rows.append(("range over all records", *map(_interval, model.ranges)))
+    rows.append((f"range: {found.covers}", *map(_interval, model.ranges)))
     if arm is not None:
         turned = [f"{number(value, 6)} {unit}" for value, unit in
                   zip(law.at_pivot(arm).values, units_of(law, True), strict=True)]  # fmt: skip
         rows.append((f"pooled, at the pivot ({number(arm)} m)", *turned))
     yield Table("Estimates [95 % interval]", columns, tuple(rows))
+    notes = [model.box] if model.box else []
+    if found.tangent is not None:
+        about = found.tangent
+        values = ", ".join(map(_interval, about.ranges))
+        notes.append(
+            f"Small motions about deflections from {about.low:.5g} to {about.high:.5g}: "
+            f"stiffness and damping {values}."
+        )
+    if notes:
+        yield Bullets("", tuple(notes))
     if law.relaxation_time is not None:
         tau = (f"The force relaxes in {number(law.relaxation_time)} s at rest.",)
         yield Bullets("", tau)
@@ -183,18 +227,18 @@ def _tissue_figures(found: TissueIdentification) -> Iterator[Illustration]:
     note = _label(found.synthetic)
     drawn = found.chosen.fits[:_DRAWN]
     for fit, name in zip(drawn, _ids([fit.record.name for fit in drawn]), strict=True):
-        fitted = fit.law.simulate(fit.record.motion)
+        trial, used = fit.trial, fit.trial.used
         yield Illustration(
             f"fit-{name}",
             fit.record.name,
             f"{note}{_quality(fit)}",
-            draw_fit(fit.record.motion.time, fit.record.force, fitted, force),
+            draw_fit(trial.motion.time, trial.force, fit.fitted, force, used),
         )
         yield Illustration(
             f"loop-{name}",
             f"{fit.record.name}: hysteresis",
             f"{note}The area of the loop is the energy that the tissue takes up.",
-            draw_loop(fit.record.motion.deflection, fit.record.force, fitted, (deflection, force)),
+            draw_loop(trial.deflection, trial.measured, fit.fitted[used], (deflection, force)),
         )
 
 

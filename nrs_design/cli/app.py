@@ -6,6 +6,7 @@ import atexit
 import gc
 import os
 import sys
+import warnings
 from collections.abc import Iterable
 from importlib import import_module
 from typing import Annotated
@@ -113,6 +114,9 @@ def main() -> None:
     gc.set_threshold(COLLECT_AFTER)
     # Nor is what is left at the end worth a search for garbage.
     atexit.register(gc.freeze)
+    if not sys.warnoptions:
+        # What a library has to say to programmers is none of a user's business.
+        warnings.simplefilter("ignore")
     sys.stdout, sys.stderr = lasting(sys.stdout), lasting(sys.stderr)
     try:
         _run()

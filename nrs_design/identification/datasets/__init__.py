@@ -1,4 +1,4 @@
-"""Measured records: CSV files with named, unit-suffixed columns, checked before use."""
+"""Measured records: files with columns that are named by quantity and unit, checked before use."""
 
 from nrs_design.identification.datasets.records import (
     FrequencyResponse,

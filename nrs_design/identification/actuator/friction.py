@@ -7,34 +7,34 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from nrs_design.identification.datasets import SinusoidRecord
+from nrs_design.identification.held import Held
 
 Array = NDArray[np.float64]
 
 
-def friction_shape(record: SinusoidRecord, gain: float, tau: float, friction: float) -> Array:
-    """Return friction over its largest value, the mean over each sampling step, shape (n,).
+def friction_shape(held: Held, gain: float, tau: float, friction: float) -> Array:
+    """Return friction over its largest value, the mean over each interval, shape (m - 1,).
 
     It is 1 or -1 against the motion. Where the velocity reaches zero while the command is below
-    the friction, the motor sticks, and the friction is just the command. The command is held
-    between samples, and a reversal within a step is found exactly. Starts from rest.
+    the friction, the motor sticks, and the friction is just the command. A reversal within an
+    interval is found exactly. Starts from rest.
 
     Parameters
     ----------
-    record : SinusoidRecord
-        With the command.
+    held : Held
+        The command as it acts.
     gain : float
-        In (rad/s)/rpm.
+        In rad/s for each unit of the command.
     tau : float
         Time constant in s.
     friction : float
-        In rpm of command.
+        In units of the command.
     """
-    dt = np.diff(record.time)
-    decays = np.exp(-dt / tau).tolist()
+    decays = np.exp(-held.steps / tau).tolist()
     velocity = 0.0
     shape: list[float] = []
-    for command, step, decay in zip(record.command.tolist(), dt.tolist(), decays, strict=False):
+    pairs = zip(held.command.tolist(), held.steps.tolist(), decays, strict=True)
+    for command, step, decay in pairs:
         if velocity == 0.0 and abs(command) <= friction:
             shape.append(command / friction)
             continue
@@ -53,4 +53,4 @@ def friction_shape(record: SinusoidRecord, gain: float, tau: float, friction: fl
             target = gain * (command + friction * direction)
             velocity, after = target * -math.expm1((stop - step) / tau), -direction
         shape.append(part * direction + (1 - part) * after)
-    return np.array([*shape, shape[-1]])
+    return np.array(shape)

@@ -1,8 +1,8 @@
 """Measured records: files with columns that are named by quantity and unit, checked before use."""
 
 from nrs_design.identification.datasets.records import (
+    ActuatorRecord,
     FrequencyResponse,
-    SinusoidRecord,
     TissueRecord,
     read_actuator,
     read_tissue,
@@ -10,8 +10,8 @@ from nrs_design.identification.datasets.records import (
 from nrs_design.identification.datasets.table import Source
 
 __all__ = [
+    "ActuatorRecord",
     "FrequencyResponse",
-    "SinusoidRecord",
     "Source",
     "TissueRecord",
     "read_actuator",

@@ -4,14 +4,14 @@ import numpy as np
 import pytest
 
 from nrs_design.identification.actuator.friction import friction_shape
-from nrs_design.identification.datasets import SinusoidRecord
+from nrs_design.identification.datasets import ActuatorRecord
 from tests.identification.support import source
 from tests.identification.synthetic import FRICTION, GAIN, TIME_CONSTANT
 
 
 def held(command, step=2e-3):
     time = step * np.arange(len(command))
-    return SinusoidRecord(
+    return ActuatorRecord(
         source("made"), "", time, np.array(command, float), np.zeros(len(command))
     )
 

@@ -1,0 +1,87 @@
+"""Where a fit in time begins: a scan over time constant and dead time."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from nrs_design.errors import DataError
+from nrs_design.identification.actuator.motor import Motor
+from nrs_design.identification.datasets import ActuatorRecord
+from nrs_design.identification.held import Held, Lags
+
+Array = NDArray[np.float64]
+
+_TIME_CONSTANTS = 14
+# In samples.
+_DELAYS = (0.0, 0.5, 1.0, 2.0, 4.0, 8.0, 16.0, 32.0)
+# Of a record, the largest part that a dead time or a time constant may take.
+_LONGEST = 0.1
+# Friction belongs to the model where it stands out of its standard error so far.
+_CLEAR = 4.0
+
+
+def scan_motor(records: Sequence[ActuatorRecord]) -> Motor:
+    """Return the best of many motors; whatever the command is, gain and friction are linear.
+
+    Raises
+    ------
+    DataError
+        If the output moves against the command, or not with it.
+    """
+    best, solution, errors = np.inf, np.zeros(2), np.ones(2)
+    tau = delay = 0.0
+    for tried in _grid(records):
+        power, found, spread = _solve(records, *tried)
+        if power < best:
+            best, solution, errors, (tau, delay) = power, found, spread, tried
+    gain = float(solution[0])
+    if abs(gain) < _CLEAR * errors[0]:
+        raise DataError(
+            "the output does not follow the command",
+            remedy="check that both columns belong to one motor and one clock",
+        )
+    if gain < 0:
+        raise DataError(
+            "the output moves against the command: their signs are opposite",
+            remedy="turn the sign of one column, or swap the leads of the sensor",
+        )
+    clear = solution[1] > _CLEAR * errors[1]
+    return Motor(gain, tau, float(solution[1]) / gain if clear else None, delay)
+
+
+def _grid(records: Sequence[ActuatorRecord]) -> Iterator[tuple[float, float]]:
+    step = min(record.step for record in records)
+    longest = _LONGEST * max(record.time[-1] for record in records)
+    taus = np.geomspace(step, max(longest, 4 * step), _TIME_CONSTANTS)
+    delays = [d * step for d in _DELAYS if d * step <= longest]
+    return ((float(tau), delay) for delay in delays for tau in taus)
+
+
+def _solve(
+    records: Sequence[ActuatorRecord], tau: float, delay: float
+) -> tuple[float, Array, Array]:
+    """Return squared errors, gain and gain times friction, and their standard errors."""
+    rows = [_regressors(record, tau, delay) for record in records]
+    X = np.concatenate([x for x, _ in rows])
+    y = np.concatenate([y for _, y in rows])
+    solution = np.linalg.lstsq(X, y, rcond=None)[0]
+    rest = y - X @ solution
+    power = float(rest @ rest)
+    inverse = np.linalg.pinv(X.T @ X)
+    spread = np.sqrt(np.diag(inverse) * power / max(len(y) - 2, 1))
+    return power, np.asarray(solution, float), np.maximum(spread, np.finfo(float).tiny)
+
+
+def _regressors(record: ActuatorRecord, tau: float, delay: float) -> tuple[Array, Array]:
+    held = Held.of(record.time, record.command, delay)
+    lags = Lags.first_order(tau)
+    against = -np.sign(lags.velocity(held, held.command)[:-1])
+    output = lags.angle if record.is_angle else lags.velocity
+    columns = [output(held, inputs)[held.samples] for inputs in (held.command, against)]
+    free, _ = np.linalg.qr(lags.free(record.time, angle=record.is_angle))
+    both = np.column_stack([*columns, record.output])
+    both -= free @ (free.T @ both)
+    return both[:, :2], both[:, 2]

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from nrs_design.identification.actuator.motor import Motor
+from nrs_design.identification.actuator.scan import tells_friction
 from nrs_design.identification.actuator.time_fit import TimeFit
 from nrs_design.identification.datasets import ActuatorRecord
 from nrs_design.identification.held import Held
@@ -44,6 +45,12 @@ def find_doubts(
         yield (
             f"the output comes {-found.motor.delay:.3g} s before its command "
             f"({-found.motor.delay / step:.2g} samples): the clocks of the columns differ"
+        )
+    motor = found.motor
+    if motor.friction is None and not tells_friction(records, motor.time_constant, motor.delay):
+        yield (
+            "the command has one level only: friction cannot be told from a smaller gain, and the "
+            "gain is that of this level"
         )
     if not failed:
         return

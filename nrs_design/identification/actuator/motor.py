@@ -14,7 +14,9 @@ from nrs_design.identification.held import Held, Lags
 
 Array = NDArray[np.float64]
 
+# Of a logarithm; and of the dead time, in samples and in these.
 _DIFFERENCE = 1e-5
+_DELAY_DIFFERENCE = 100.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -87,24 +89,6 @@ class Motor:
         output = self.lags.angle if record.is_angle else self.lags.velocity
         return output(held, inputs)[held.samples]
 
-    def slope(self, record: ActuatorRecord, held: Held) -> Array:
-        """Return the derivative of the forced output by the dead time, shape (n,).
-
-        What the command causes comes later by so much: minus its rate.
-        """
-        drive = self.gain * held.command
-        if record.is_angle:
-            return -self.lags.velocity(held, drive)[held.samples]
-        output = self.lags.velocity(held, drive)
-        if self.damping is None:
-            # A lag approaches its input; where the input jumps, the mean of both sides.
-            after = np.append(drive, drive[-1])
-            before = np.insert(drive, 0, drive[0])
-            rate = ((after + before) / 2 - output) / self.time_constant
-        else:
-            rate = np.gradient(output, held.grid)
-        return -rate[held.samples]
-
     def free(self, record: ActuatorRecord) -> Array:
         """Return what initial angle and velocity add, shape (n, p)."""
         return self.lags.free(record.time, angle=record.is_angle)
@@ -119,20 +103,20 @@ class Motor:
     def linearize(self, record: ActuatorRecord) -> tuple[Array, Array]:
         """Return derivatives and errors of a record without what its initial state explains.
 
-        The direction of the friction is that of the motor's own velocity.
+        With the parameters, the times move at which the motor turns or sticks: differences of
+        whole simulations see it.
         """
-        held, shape = self.hold(record)
         x = self.parameters
-        columns = [
-            (
-                self.with_parameters(x + h).forced(record, held, shape)
-                - self.with_parameters(x - h).forced(record, held, shape)
-            )
-            / (2 * _DIFFERENCE)
-            for h in _DIFFERENCE * np.eye(len(x))[:-1]
-        ]
-        error = record.output - self.forced(record, held, shape)
+        sizes = np.full(len(x), _DIFFERENCE)
+        sizes[-1] *= _DELAY_DIFFERENCE * record.step
+
+        def output(y: Array) -> Array:
+            motor = self.with_parameters(y)
+            return motor.forced(record, *motor.hold(record))
+
+        steps = np.diag(sizes)
+        columns = [(output(x + h) - output(x - h)) / (2 * h.sum()) for h in steps]
         free, _ = np.linalg.qr(self.free(record))
-        both = np.column_stack([*columns, self.slope(record, held), error])
+        both = np.column_stack([*columns, record.output - output(x)])
         both -= free @ (free.T @ both)
         return both[:, :-1], both[:, -1]

@@ -19,6 +19,8 @@ _TIME_CONSTANTS = 14
 _DELAYS = (0.0, 0.5, 1.0, 2.0, 4.0, 8.0, 16.0, 32.0)
 # Of a record, the largest part that a dead time or a time constant may take.
 _LONGEST = 0.1
+# Two effects that are alike to this part of their power cannot be told apart.
+_ALIKE = 1e-3
 # Friction belongs to the model where it stands out of its standard error so far.
 _CLEAR = 4.0
 
@@ -48,8 +50,25 @@ def scan_motor(records: Sequence[ActuatorRecord]) -> Motor:
             "the output moves against the command: their signs are opposite",
             remedy="turn the sign of one column, or swap the leads of the sensor",
         )
-    clear = solution[1] > _CLEAR * errors[1]
+    clear = solution[1] > _CLEAR * errors[1] and tells_friction(records, tau, delay)
     return Motor(gain, tau, float(solution[1]) / gain if clear else None, delay)
+
+
+def tells_friction(records: Sequence[ActuatorRecord], tau: float, delay: float) -> bool:
+    """Whether friction acts otherwise than a smaller gain would; under one step it does not.
+
+    Parameters
+    ----------
+    records : sequence of ActuatorRecord
+        All that are fitted at once.
+    tau, delay : float
+        Time constant and dead time in s.
+    """
+    X = np.concatenate([_regressors(record, tau, delay)[0] for record in records])
+    power = np.einsum("ij,ij->j", X, X)
+    if not power.all():
+        return False
+    return float(X[:, 0] @ X[:, 1]) ** 2 < (1 - _ALIKE) * float(power[0] * power[1])
 
 
 def _grid(records: Sequence[ActuatorRecord]) -> Iterator[tuple[float, float]]:

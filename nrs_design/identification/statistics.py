@@ -146,11 +146,11 @@ def ljung_box(residuals: Array, lags: int = _LAGS) -> float:
     return float(chdtrc(lags, statistic))
 
 
-def student_quantile(degrees: int) -> float:
-    """Return the factor from standard error to half the 95 % interval."""
+def student_quantile(degrees: int, confidence: float = CONFIDENCE) -> float:
+    """Return the factor from standard error to half the interval."""
     from scipy.special import stdtrit
 
-    return float(stdtrit(degrees, 0.5 + CONFIDENCE / 2))
+    return float(stdtrit(degrees, 0.5 + confidence / 2))
 
 
 def _jackknife(J: Array, residuals: Array, edges: NDArray[np.int64], bread: Array) -> Array:

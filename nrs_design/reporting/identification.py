@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from nrs_design.identification.tissue import ModelFit, RecordFit, TissueIdentification
 
 IDENTIFIED = "identified"
-_FOOTER = "Page of nrs-design. An identification is an estimate, not a proof."
+FOOTER = "Page of nrs-design. An identification is an estimate, not a proof."
 _SYNTHETIC = "SYNTHETIC DATA, made by a simulation and not measured. "
 _DRAWN = 6
 _MEANING = (
@@ -62,17 +62,17 @@ def tissue_report(found: TissueIdentification, arm: float | None = None) -> Repo
         name=f"tissue-{chosen.law.name}",
         title=f"Tissue law from {plural(len(found.records), 'record')}",
         verdict=IDENTIFIED,
-        claim=f"{_label(found.synthetic)}{chosen.law.formula} with {values}. {found.reason}",
+        claim=f"{label_of(found.synthetic)}{chosen.law.formula} with {values}. {found.reason}",
         remarks=found.caveats,
-        facts=_facts([record.source for record in found.records]),
+        facts=facts_of([record.source for record in found.records]),
         sections=(
             Section("Comparison of laws", tuple(_comparison(found))),
             Section("Parameters of the chosen law", tuple(_parameters(found, arm))),
             Section("Measured against fitted", tuple(_tissue_figures(found))),
             Section("How to read this", (Bullets("", _MEANING),), boxed=True),
-            _source_section([record.source for record in found.records]),
+            source_section([record.source for record in found.records]),
         ),
-        footer=_FOOTER,
+        footer=FOOTER,
     )
 
 
@@ -89,16 +89,16 @@ def actuator_report(found: ActuatorIdentification) -> Report:
         name="actuator",
         title=f"Velocity model of order {fit.order} with Coulomb friction and dead time",
         verdict=IDENTIFIED,
-        claim=f"{_label(found.synthetic)}{', '.join(values)}. {found.reason}",
+        claim=f"{label_of(found.synthetic)}{', '.join(values)}. {found.reason}",
         remarks=tuple(f"Doubt: {doubt}." for doubt in found.doubts),
-        facts=_facts(found.sources),
+        facts=facts_of(found.sources),
         sections=(
             Section("Fits", (_fits(found), *_derived(found))),
             *_bode(found),
             *_actuator_records(found),
-            _source_section(found.sources),
+            source_section(found.sources),
         ),
-        footer=_FOOTER,
+        footer=FOOTER,
     )
 
 
@@ -173,7 +173,7 @@ def _tissue_figures(found: TissueIdentification) -> Iterator[Illustration]:
     force, deflection = (
         ("Torque [N m]", "Angle [rad]") if found.rotational else ("Force [N]", "Deflection [m]")
     )
-    note = _label(found.synthetic)
+    note = label_of(found.synthetic)
     drawn = found.chosen.fits[:_DRAWN]
     for fit, name in zip(drawn, _ids([fit.record.name for fit in drawn]), strict=True):
         fitted = fit.law.simulate(fit.record.motion)
@@ -239,7 +239,7 @@ def _bode(found: ActuatorIdentification) -> Iterator[Section]:
     figure = Illustration(
         "bode",
         "Velocity over command",
-        f"{_label(found.synthetic)}Magnitude relative to 1 (rad/s)/{found.unit}. The first "
+        f"{label_of(found.synthetic)}Magnitude relative to 1 (rad/s)/{found.unit}. The first "
         "harmonic of the friction is taken off the command.",
         draw_bode(found),
     )
@@ -270,13 +270,14 @@ def _output_figure(found: ActuatorIdentification, index: int, name: str) -> Illu
     return Illustration(
         f"{'angle' if record.is_angle else 'velocity'}-{name}",
         f"{record.name}{hertz}",
-        f"{_label(found.synthetic)}The chosen fit; only the initial state is adapted to this "
+        f"{label_of(found.synthetic)}The chosen fit; only the initial state is adapted to this "
         "record.",
         draw_fit(record.time, record.output, fitted, label),
     )
 
 
-def _facts(sources: Iterable[Source]) -> tuple[tuple[str, str], ...]:
+def facts_of(sources: Iterable[Source]) -> tuple[tuple[str, str], ...]:
+    """Return what stands at the head of a page about data."""
     files = list(sources)
     synthetic = sum(source.synthetic for source in files)
     kind = "SYNTHETIC" if synthetic == len(files) else "mixed" if synthetic else "measured"
@@ -286,7 +287,8 @@ def _facts(sources: Iterable[Source]) -> tuple[tuple[str, str], ...]:
     )
 
 
-def _source_section(sources: Iterable[Source]) -> Section:
+def source_section(sources: Iterable[Source]) -> Section:
+    """Return the section that names the files."""
     rows = tuple(
         (source.path.name, "SYNTHETIC" if source.synthetic else "measured", source.sha256)
         for source in sources
@@ -294,7 +296,8 @@ def _source_section(sources: Iterable[Source]) -> Section:
     return Section("Data files", (Table("Files", ("File", "Data", "SHA-256"), rows),))
 
 
-def _label(synthetic: bool) -> str:
+def label_of(synthetic: bool) -> str:
+    """Return what must stand before anything that comes of synthetic data."""
     return _SYNTHETIC if synthetic else ""
 
 

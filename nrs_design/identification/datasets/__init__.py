@@ -3,8 +3,10 @@
 from nrs_design.identification.datasets.records import (
     ActuatorRecord,
     FrequencyResponse,
+    SignalRecord,
     TissueRecord,
     read_actuator,
+    read_signals,
     read_tissue,
 )
 from nrs_design.identification.datasets.table import Source
@@ -12,8 +14,10 @@ from nrs_design.identification.datasets.table import Source
 __all__ = [
     "ActuatorRecord",
     "FrequencyResponse",
+    "SignalRecord",
     "Source",
     "TissueRecord",
     "read_actuator",
+    "read_signals",
     "read_tissue",
 ]

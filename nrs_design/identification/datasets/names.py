@@ -24,6 +24,8 @@ UNITS: Mapping[str, Mapping[str, float]] = MappingProxyType(
         "velocity": {"rad_s": 1.0, "deg_s": pi / 180, "rpm": _TURN},
         "command": {"rpm": 1.0, "V": 1.0, "mV": 1e-3, "A": 1.0, "mA": 1e-3, "counts": 1.0},
         "mode": {"": 1.0},
+        "input": {"any": 1.0},
+        "output": {"any": 1.0},
         "frequency": {"hz": 1.0, "khz": 1e3},
         "magnitude": {"db": 1.0},
         "phase": {"deg": pi / 180, "rad": 1.0},

@@ -21,6 +21,10 @@ LINEAR = ("time", "deflection", "force")
 ROTATIONAL = ("time", "angle", "torque")
 ANGLE = ("time", "command", "angle")
 VELOCITY = ("time", "command", "velocity")
+FREE = (("input", "output"),)
+FOLLOWED = tuple(
+    ("command", seen) for seen in ("angle", "velocity", "torque", "force", "deflection")
+)
 RESPONSE = ("frequency", "magnitude", "phase")
 
 
@@ -165,6 +169,64 @@ def read_actuator(
     if table.layout == RESPONSE:
         return _response(table)
     return tuple(_actuator(table, group) for group in table.groups)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class SignalRecord:
+    """What was sent, and what came of it.
+
+    Parameters
+    ----------
+    source : Source
+        The file.
+    time, sent, seen : ndarray, shape (n,)
+        In s, and in whatever units.
+    names : tuple of str
+        Of both columns in the file.
+    """
+
+    source: Source
+    time: Array
+    sent: Array
+    seen: Array
+    names: tuple[str, str]
+
+    @property
+    def step(self) -> float:
+        """Usual time between samples in s."""
+        return float(np.median(np.diff(self.time)))
+
+
+def read_signals(
+    path: Path,
+    mapping: Mapping[str, str] | None = None,
+    progress: Progress = lambda done: None,
+) -> SignalRecord:
+    """Read two columns: a command, and what follows it.
+
+    Parameters
+    ----------
+    path, mapping, progress
+        As in `read_tissue`; the columns are ``time_s, command_rpm`` and ``angle_rad`` or another
+        measured one; any two others are mapped to ``input_any`` and ``output_any``.
+
+    Raises
+    ------
+    DataError
+        As in `read_tissue`.
+    """
+    mapping = mapping or {}
+    chosen = {"input_any", "output_any"} & set(mapping.values())
+    layouts = [("time", *pair) for pair in (FREE if chosen else FOLLOWED)]
+    table = read_table(path, layouts, mapping, progress)
+    (columns,) = _one_group(table)
+    (found,) = table.columns.values()
+    time, sent, seen = (columns[quantity] for quantity in table.layout)
+    check_time(table, time)
+    names = found[table.layout[1]].name, found[table.layout[2]].name
+    for name, values in zip(names, (sent, seen), strict=True):
+        check_varies(table, name, values)
+    return SignalRecord(table.source, time - time[0], sent, seen, names)
 
 
 def _one_group(table: Table) -> Sequence[dict[str, Array]]:

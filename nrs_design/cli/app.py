@@ -31,6 +31,7 @@ COMMANDS = (
     "tune",
     "certify-switching",
     "verify",
+    "audit",
     "check-lyapunov",
     "report",
     "reproduce",

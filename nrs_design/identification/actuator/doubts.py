@@ -73,7 +73,7 @@ def _causes(records: Sequence[ActuatorRecord], found: TimeFit) -> Iterator[tuple
             unit = records[0].unit
             yield share, f"saturation: commands act as if cut at some {level:.3g} {unit}"
     share, factor = _explained(records, found, lambda r: motor.forced(r, *_constant(r)))
-    yield share, f"an offset of {factor / motor.gain:.3g} {records[0].unit} on the command"
+    yield share, f"an offset of some {factor:.3g} {records[0].unit} on the command"
     if not all(record.is_angle for record in records):
         return
     for play in (p * 2 * float(np.abs(found.errors).max()) for p in _PLAYS):

@@ -147,7 +147,7 @@ def _from_records(
     found = fit_in_time(records, scan_motor(records))
     fits.append(fit_of("output in the time domain", found))
     reason = "The fit to the output uses every sample."
-    if _has_failed(records, found):
+    if found.uncertainty.whiteness < WHITE:
         progress("second order")
         second = _second_order(records, found)
         if second is not None:

@@ -37,8 +37,8 @@ class DelayFit:
         Samples that were fitted: those that the command before the record cannot reach.
     fitted : ndarray, shape (n,)
         Output of the model.
-    gain : float
-        Output over input.
+    solution : ndarray, shape (p,)
+        Gain, offset and initial state: factors of the columns of the model.
     """
 
     follower: AbstractFollower
@@ -48,7 +48,16 @@ class DelayFit:
     errors: Array
     rows: NDArray[np.int64]
     fitted: Array
-    gain: float
+    solution: Array
+
+    @property
+    def gain(self) -> float:
+        """Output over input."""
+        return float(self.solution[0])
+
+    def output(self, record: SignalRecord, delay: float) -> Array:
+        """Return the output of the model with another delay in s, shape (n,)."""
+        return np.asarray(self.follower.columns(record, delay) @ self.solution, float)
 
     @property
     def bic(self) -> float:
@@ -96,10 +105,10 @@ def fit_delay(
     J = _sensitivities(record, follower, x, rows)
     shaped = replace(follower, shape=tuple(x[1:].tolist()))
     columns = shaped.columns(record, float(x[0]) * record.step)
-    solution = np.linalg.lstsq(columns[rows], record.seen[rows], rcond=None)[0]
+    solution = np.linalg.lstsq(columns[rows], record.seen[rows], rcond=None)[0].astype(float)
     return DelayFit(
         shaped, float(x[0]) * record.step, uncertainty(J, error), J[:, 0], error, rows,
-        columns @ solution, float(solution[0]),
+        columns @ solution, solution,
     )  # fmt: skip
 
 

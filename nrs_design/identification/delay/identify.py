@@ -27,6 +27,9 @@ Array = NDArray[np.float64]
 # Largest delay that is looked for, as a part of the record.
 _LONGEST = 0.1
 _PARTS = 10
+_PART_STEPS = 6
+# In samples.
+_PART_SHIFT = 0.05
 # Below this correlation the columns have nothing to do with each other.
 _RELATED = 0.2
 # Model misses so much of the motion, in errors that are not white: that is a doubt.
@@ -58,6 +61,9 @@ class DelayIdentification:
     parts : tuple of (float, Estimate)
         The delay in samples in parts of the record, by their middle in s, at 95 % for all of them
         together.
+    whole_samples : tuple of int
+        From and to: they hold the interval and every part of the record. Where errors are not
+        noise, they hold those of a copy, too: then a lag may stand for a part of the delay.
     doubts : tuple of str
         What speaks against it.
     """
@@ -69,14 +75,8 @@ class DelayIdentification:
     samples: Estimate
     peak: tuple[float, float]
     parts: tuple[tuple[float, Estimate], ...]
+    whole_samples: tuple[int, int]
     doubts: tuple[str, ...]
-
-    @property
-    def whole_samples(self) -> tuple[int, int]:
-        """Smallest and largest whole number of samples that the loop may be late by."""
-        known = [self.samples, *(part for _, part in self.parts)]
-        low, high = min(part.low for part in known), max(part.high for part in known)
-        return max(math.floor(low), 0), max(math.ceil(high), 0)
 
 
 def identify_delay(record: SignalRecord) -> DelayIdentification:
@@ -104,8 +104,14 @@ def identify_delay(record: SignalRecord) -> DelayIdentification:
     value = chosen.delay / step
     samples = Estimate(max(value, 0.0), max(value - half, 0.0), max(value + half, 0.0))
     parts = tuple(_parts(record, chosen, value))
+    held = [samples, *(part for _, part in parts)]
+    if chosen.uncertainty.whiteness < WHITE:
+        copy = fits[0]
+        held += [part for _, part in _parts(record, copy, copy.delay / step)]
+    whole = math.floor(min(e.low for e in held)), math.ceil(max(e.high for e in held))
     return DelayIdentification(
         record, fits, chosen, samples.scaled(step), samples, peak, parts,
+        (max(whole[0], 0), max(whole[1], 0)),
         tuple(_doubts(record, chosen, value, half, parts)),
     )  # fmt: skip
 
@@ -126,15 +132,29 @@ def _peak(record: SignalRecord, *, difference: bool) -> tuple[float, float]:
     u, y = (np.interp(even, record.time, values) for values in (record.sent, record.seen))
     if difference:
         u, y = np.diff(u), np.diff(y)
-    u, y = u - np.mean(u), y - np.mean(y)
-    size = 1 << (2 * len(u) - 1).bit_length()
-    spectrum = np.conj(np.fft.rfft(u, size)) * np.fft.rfft(y, size)
-    scale = float(np.linalg.norm(u) * np.linalg.norm(y))
-    alike = np.fft.irfft(spectrum, size) / max(scale, 1e-300)
     longest = max(int(_LONGEST * count), 2)
     lags = np.arange(-longest, longest + 1)
-    best = int(lags[np.argmax(np.abs(alike[lags]))])
-    return best * float(even[1] - even[0]), float(alike[best])
+    alike = _correlations(u - np.mean(u), y - np.mean(y), lags)
+    best = int(np.argmax(np.abs(alike)))
+    return float(lags[best]) * float(even[1] - even[0]), float(alike[best])
+
+
+def _correlations(u: Array, y: Array, lags: NDArray[np.int64]) -> Array:
+    """Return the correlation of ``u[i]`` with ``y[i + lag]`` where both are there."""
+    size = 1 << (2 * len(u) - 1).bit_length()
+    cross = np.fft.irfft(np.conj(np.fft.rfft(u, size)) * np.fft.rfft(y, size), size)[lags]
+    counts = len(u) - np.abs(lags)
+    first = np.maximum(lags, 0)
+
+    def sums(values: Array, begin: NDArray[np.int64]) -> Array:
+        total = np.concatenate([[0.0], np.cumsum(values)])
+        return np.asarray(total[begin + counts] - total[begin])
+
+    sum_u, sum_y = sums(u, first - lags), sums(y, first)
+    power_u = sums(u**2, first - lags) - sum_u**2 / counts
+    power_y = sums(y**2, first) - sum_y**2 / counts
+    scale = np.sqrt(np.maximum(power_u * power_y, 0.0))
+    return np.asarray((cross - sum_u * sum_y / counts) / np.maximum(scale, 1e-300))
 
 
 def _starts(
@@ -174,21 +194,37 @@ def _missed(
 
 
 def _parts(record: SignalRecord, fit: DelayFit, value: float) -> Iterator[tuple[float, Estimate]]:
-    """Yield the delay in parts of the record, each by one step of its own."""
-    edges = np.arange(_PARTS + 1) * len(fit.errors) // _PARTS
+    """Yield the delay in parts of the record, beside the dynamics of the whole."""
+    edges = np.arange(_PARTS + 1) * len(fit.rows) // _PARTS
     noise = float(fit.errors @ fit.errors) / max(len(fit.errors) - len(fit.follower.shape) - 3, 1)
     total = float(fit.sensitivity @ fit.sensitivity)
     quantile = student_quantile(len(fit.errors), 1 - (1 - CONFIDENCE) / _PARTS)
     for first, last in pairwise(edges.tolist()):
-        slope = fit.sensitivity[first:last]
-        power = float(slope @ slope)
         # A part without motion tells nothing about a delay.
-        if power <= total / _PARTS**2:
+        if float(np.sum(fit.sensitivity[first:last] ** 2)) <= total / _PARTS**2:
             continue
-        own = value + float(slope @ fit.errors[first:last]) / power
-        half = quantile * math.sqrt(noise / power)
-        middle = float(record.time[fit.rows[first:last]].mean())
-        yield middle, Estimate(own, own - half, own + half)
+        rows = fit.rows[first:last]
+        own, power = _own_delay(record, fit, rows, value)
+        half = quantile * math.sqrt(noise / power) if power else math.inf
+        yield float(record.time[rows].mean()), Estimate(own, own - half, own + half)
+
+
+def _own_delay(
+    record: SignalRecord, fit: DelayFit, rows: NDArray[np.int64], value: float
+) -> tuple[float, float]:
+    """Return the delay in samples that fits some rows best, and how much they tell about it."""
+    own, power = value, 0.0
+    for _ in range(_PART_STEPS):
+        late, early = (
+            fit.output(record, (own + d) * record.step)[rows] for d in (_PART_SHIFT, -_PART_SHIFT)
+        )
+        slope = (late - early) / (2 * _PART_SHIFT)
+        power = float(slope @ slope)
+        if not power:
+            break
+        error = record.seen[rows] - fit.output(record, own * record.step)[rows]
+        own += float(np.clip(slope @ error / power, -2.0, 2.0))
+    return own, power
 
 
 def _doubts(

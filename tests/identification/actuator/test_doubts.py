@@ -29,7 +29,7 @@ def test_backlash():
 def test_an_offset_of_the_command():
     record = motors.record("PRBS", 1)
     text = doubts(replace(record, command=record.command - 150.0))
-    assert "likely an offset of some 2" in text
+    assert "likely an offset of some 18" in text
 
 
 def test_a_clock_that_is_ahead():

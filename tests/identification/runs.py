@@ -7,7 +7,7 @@ RATE = 500.0
 STIFFNESS = 43.0356
 
 
-def run(seed=0, *, duration=10.0, stiffness=STIFFNESS, noise=0.002, free=0.0, step=1 / RATE):
+def run(seed=0, *, duration=10.0, stiffness=STIFFNESS, noise=0.0005, free=0.0, step=1 / RATE):
     """Return time, angle, torque, command and modes; contact begins after ``free`` s.
 
     The torque is at the limit of nothing: presses stay below 0.3 N m.

@@ -28,8 +28,9 @@ Array = NDArray[np.float64]
 _LONGEST = 0.1
 _PARTS = 10
 _PART_STEPS = 6
-# In samples.
+# In samples: a difference for derivatives, and one that is worth a word.
 _PART_SHIFT = 0.05
+_NOTABLE = 0.1
 # Below this correlation the columns have nothing to do with each other.
 _RELATED = 0.2
 # Model misses so much of the motion, in errors that are not white: that is a doubt.
@@ -251,7 +252,7 @@ def _doubts(
         yield f"the steps of time vary by {100 * jitter:.0f} %: a sample is no unit of time here"
     earliest = min((part for _, part in parts), key=lambda part: part.high, default=None)
     latest = max((part for _, part in parts), key=lambda part: part.low, default=None)
-    if earliest and latest and earliest.high < latest.low:
+    if earliest and latest and earliest.high + _NOTABLE < latest.low:
         yield (
             f"the delay varies: at most {earliest.high:.3g} samples in one part of the record, at "
             f"least {latest.low:.3g} in another"

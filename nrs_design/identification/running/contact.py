@@ -71,9 +71,9 @@ def _missing(log: RunLog, bounds: RunBounds) -> str:
     if {"angle", "torque"} <= log.columns.keys():
         return _strangers(log, bounds)
     if not {"deflection", "force"} <= log.columns.keys():
-        missing = "torque" if "angle" in log.columns else "force"
-        other = "angle" if missing == "torque" else "deflection"
-        gone = [name for name in (other, missing) if name not in log.columns]
+        turning = {"angle", "torque"} & log.columns.keys()
+        pair = ("angle", "torque") if turning else ("deflection", "force")
+        gone = [name for name in pair if name not in log.columns]
         return f"no column for {' and '.join(gone)}"
     if bounds.lever_arm is None:
         return "the log is linear, and the spec names no lever arm that all environments share"
@@ -107,8 +107,12 @@ def _judge(log: RunLog, bounds: RunBounds, window: Window) -> _Judged | None:
     if any(low <= window.low and window.high <= high for low, high in allowed.ranges):
         return _Judged(window, allowed, Status.INSIDE, free=False)
     if all(window.high < low or window.low > high for low, high in allowed.ranges):
-        return _Judged(window, allowed, Status.OUTSIDE, free=abs(window.high) < _FREE * least)
+        return _Judged(window, allowed, Status.OUTSIDE, free=_is_free(window, least))
     return _Judged(window, allowed, Status.UNDECIDED, free=False)
+
+
+def _is_free(window: Window, least: float) -> bool:
+    return max(abs(window.low), abs(window.high)) < _FREE * least
 
 
 def _stiffness(log: RunLog, judged: list[_Judged], basis: str) -> Check:

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from nrs_design.identification.rounding import resolution
 from nrs_design.identification.statistics import CONFIDENCE, student_quantile
 
 Array = NDArray[np.float64]
@@ -17,6 +18,8 @@ Array = NDArray[np.float64]
 FEWEST_ROWS = 20
 # A gap of more than so many usual steps ends a window.
 _GAP = 3.0
+# For how many times its estimate the noise of the deflection is taken.
+_NOISIER = 2.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,7 +63,7 @@ def cut_windows(
         breaks |= np.diff(modes) != 0
     edges = [0, *(np.flatnonzero(breaks) + 1).tolist(), len(time)]
     for begin, end in itertools.pairwise(edges):
-        count = max(int((time[end - 1] - time[begin]) / length), 1)
+        count = max(round(float(time[end - 1] - time[begin]) / length), 1)
         cuts = np.linspace(begin, end, count + 1).astype(int).tolist()
         for first, last in itertools.pairwise(cuts):
             if last - first >= FEWEST_ROWS:
@@ -73,8 +76,9 @@ def stiffness_of(
     """Estimate ``F = c + k x + b x'`` in every window.
 
     The lower end is that of the regression of force on deflection, which noise of the deflection
-    draws towards zero; the upper end is that of the reverse regression, which noise of the force
-    draws away (Frisch 1934). Correlation of the errors widens both.
+    draws towards zero. The upper end is the smaller of two: that of the reverse regression, which
+    noise of the force draws away (Frisch 1934); and the lower one without the part of the
+    deflection that may be noise. Correlation of the errors widens both.
 
     Parameters
     ----------
@@ -102,11 +106,33 @@ def _window(
     if power <= 1e-20 or cross == 0.0:
         return Window(first, last, 0.0, -math.inf, math.inf)
     k = cross / power
-    rest = y - k * x
-    degrees = len(x) - 3
-    alike = float(rest[1:] @ rest[:-1]) / max(float(rest @ rest), 1e-300)
+    quantile = student_quantile(len(x) - 3, confidence)
+    half = quantile * _error(x, y)
+    # One over the stiffness, in the reverse regression.
+    yielding = abs(cross) / float(y @ y) - quantile * _error(y, x)
+    reverse = 1 / yielding if yielding > 0 else math.inf
+    # The part of the power of the deflection that is no noise.
+    real = 1 - _NOISIER * _noise(deflection[first:last]) * len(x) / power
+    drawn = (abs(k) + half) / real if real > 0 else math.inf
+    low = abs(k) - half
+    if low < 0:
+        low = low / real if real > 0 else -math.inf
+    high = min(reverse, drawn)
+    return Window(first, last, k, *((low, high) if k > 0 else (-high, -low)))
+
+
+def _noise(x: Array) -> float:
+    """Return the variance of white noise on a smooth motion, and of its rounding."""
+    rough = np.diff(x, 3)
+    # The binomial coefficients 1, 3, 3, 1 have squares that add up to 20.
+    return float(rough @ rough) / len(rough) / 20 + resolution(x) ** 2 / 12
+
+
+def _error(x: Array, y: Array) -> float:
+    """Return the standard error of the slope of y over x, whose errors may be correlated."""
+    power = float(x @ x)
+    rest = y - float(x @ y) / power * x
+    size = float(rest @ rest)
+    alike = float(rest[1:] @ rest[:-1]) / max(size, 1e-300)
     inflation = (1 + max(alike, 0.0)) / max(1 - alike, 1e-3)
-    error = math.sqrt(float(rest @ rest) / degrees / power * inflation)
-    half = student_quantile(degrees, confidence) * error
-    reverse = float(y @ y) / cross
-    return Window(first, last, k, min(k, reverse) - half, max(k, reverse) + half)
+    return math.sqrt(size / (len(x) - 3) / power * inflation)

@@ -15,7 +15,8 @@ from statistics import median
 from time import perf_counter
 
 from nrs_design.proof.system import SwitchedSystem
-from nrs_design.search.certify import Certification, Limits, Method, certify
+from nrs_design.search.certify import Certification, Limits, certify
+from nrs_design.search.method import Method
 
 LAUNCHER = Path(__file__).with_name("launcher.py")
 LIBRARIES = ("nrs-design", "numpy", "scipy", "clarabel", "cvxpy", "sympy")

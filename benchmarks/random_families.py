@@ -12,7 +12,8 @@ from benchmarks.measure import Comparison, Finding
 from benchmarks.peers import solve_all_at_once
 from nrs_design.certificates.certificate import CommonQuadraticStatus
 from nrs_design.proof.system import SwitchedSystem
-from nrs_design.search.certify import Limits, Method, certify
+from nrs_design.search.certify import Limits, certify
+from nrs_design.search.method import Method
 
 COUNT, QUICK_COUNT = 400, 60
 SEED, DECIMALS = 2026, 4

@@ -28,7 +28,8 @@ from nrs_design.proof.exact import TooLargeError
 from nrs_design.proof.lyapunov import LyapunovCheck, check_quadratic
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.system import Mode
-from nrs_design.search.certification import Attempt, Limits, Method
+from nrs_design.search.certification import Attempt, Limits
+from nrs_design.search.method import Method
 from nrs_design.spec import LoadedSpec, read_spec
 
 if TYPE_CHECKING:
@@ -164,14 +165,14 @@ class Decision:
     def _page(self) -> Report:
         from nrs_design.reporting import build_report
 
-        evidence = None
+        analysis = None
         if self.result.designed is not None:
             try:
-                evidence = pipeline.run_evidence(self.result.designed)
+                analysis = pipeline.run_analysis(self.result.designed)
             except DesignError:
                 # Where a nominal loop has no margins, the page has none.
-                evidence = None
-        return build_report(self.result, evidence)
+                analysis = None
+        return build_report(self.result, analysis)
 
     def __str__(self) -> str:
         """Say verdict and claim."""

@@ -113,7 +113,7 @@ def check_replaceable(path: Path, beginning: Beginning) -> None:
         found = file.read(_LONGEST)
     if found and not found.startswith(beginning):
         raise OutputError(
-            "exists already and is no such file of nrs-design, so it is not overwritten",
+            "exists already and is not such a file of nrs-design, so it is not overwritten",
             path=path,
             remedy="name another file, or remove it",
         )

@@ -10,30 +10,23 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from nrs_design import __version__
-from nrs_design.certificates.certificate import Certificate
-from nrs_design.certificates.verify import Verification, verify
-from nrs_design.controllers.controller_design import ControllerDesign
-from nrs_design.controllers.gains import gains_of
+from nrs_design.certificates.certificate import Certificate, Gains
 from nrs_design.errors import AssemblyError, DesignError, NrsDesignError
-from nrs_design.models.plant import Plant, build_plant
 from nrs_design.proof.bounds import nearly
 from nrs_design.proof.system import SwitchedSystem, Time
 from nrs_design.search.allowance import GIGABYTE
-from nrs_design.search.certification import Certification, Limits, Method
-from nrs_design.search.margin import BoxMargin, DwellMargin, find_margin, find_shortest_dwell
-from nrs_design.spec import (
-    InteractionDesignSpec,
-    LoadedSpec,
-    RobotSpec,
-    Spec,
-    SwitchedSystemSpec,
-    read_spec,
-)
-from nrs_design.switched.assemble import assemble, assemble_matrices, has_ranges
+from nrs_design.search.certification import Certification, Limits
+from nrs_design.search.method import Method
+from nrs_design.spec import LoadedSpec, read_spec
 
 if TYPE_CHECKING:
-    from nrs_design.design.evidence import DesignEvidence
+    from nrs_design.certificates.verify import Verification
+    from nrs_design.controllers.controller_design import ControllerDesign
+    from nrs_design.design.analysis import DesignAnalysis
+    from nrs_design.models.plant import Plant
     from nrs_design.models.robot import Robot
+    from nrs_design.search.margin import BoxMargin, DwellMargin
+    from nrs_design.spec import InteractionDesignSpec, RobotSpec, Spec
 
 Progress = Callable[[str], None]
 
@@ -123,7 +116,7 @@ def run_robot(path: Path) -> tuple[LoadedSpec, RobotSpec, Robot]:
     from nrs_design.models.robot import build_robot
 
     loaded = read_spec(path)
-    if not isinstance(loaded.spec, RobotSpec):
+    if loaded.spec.kind != "robot":
         raise wrong_kind(
             loaded,
             f"a spec of kind {loaded.spec.kind} describes no robot",
@@ -159,23 +152,24 @@ def run_design(loaded: LoadedSpec) -> Designed | None:
     DesignError
         If a requirement cannot be met within its bounds, or the spec describes a robot only.
     """
-    if isinstance(loaded.spec, RobotSpec):
+    if loaded.spec.kind == "robot":
         raise wrong_kind(
             loaded,
             "a robot spec has no controllers that are switched, so there is nothing to certify",
             "use `nrs-design robot check SPEC`, or a spec of kind interaction-design",
         )
     spec = loaded.spec
-    if not isinstance(spec, InteractionDesignSpec):
+    if spec.kind != "interaction-design":
         return None
     from nrs_design.design.design import design_controllers
+    from nrs_design.models.plant import build_plant
 
     with placed(loaded):
         plant = build_plant(spec)
         return Designed(loaded, spec, plant, design_controllers(spec, plant))
 
 
-def run_evidence(designed: Designed) -> DesignEvidence:
+def run_analysis(designed: Designed) -> DesignAnalysis:
     """Compute what a design achieves.
 
     Raises
@@ -183,10 +177,10 @@ def run_evidence(designed: Designed) -> DesignEvidence:
     DesignError
         If a nominal loop is unstable, so that it has no margins.
     """
-    from nrs_design.design.evidence import examine_design
+    from nrs_design.design.analysis import analyze_design
 
     with placed(designed.loaded):
-        return examine_design(designed.spec, designed.plant, designed.design)
+        return analyze_design(designed.spec, designed.plant, designed.design)
 
 
 @dataclass(frozen=True, slots=True)
@@ -221,7 +215,7 @@ def limits_of(spec: Spec, overrides: Overrides | None = None, optimize_rate: boo
         Look for the largest provable decay rate, not only for some.
     """
     limits, asked = Limits(optimize_rate=optimize_rate), overrides or Overrides()
-    declared = None if isinstance(spec, RobotSpec) else spec.certification
+    declared = None if spec.kind == "robot" else spec.certification
     if declared is not None and declared.max_degree is not None:
         limits = replace(limits, max_degree=declared.max_degree)
     if declared is not None and declared.budget is not None:
@@ -277,7 +271,7 @@ def run_certification(
             spec_name=loaded.spec.name,
             spec_sha256=loaded.sha256,
             coordinates=coordinates,
-            gains=gains_of(designed.design) if designed else {},
+            gains=_gains(designed),
             system=system,
             statements=certification.statements,
             version=__version__,
@@ -288,6 +282,14 @@ def run_certification(
     return Result(loaded, designed, coordinates, certification, certificate)
 
 
+def _gains(designed: Designed | None) -> Gains:
+    if designed is None:
+        return {}
+    from nrs_design.controllers.gains import gains_of
+
+    return gains_of(designed.design)
+
+
 def _assemble(
     loaded: LoadedSpec,
     designed: Designed | None,
@@ -295,10 +297,12 @@ def _assemble(
     scale: Fraction = Fraction(1),
 ) -> SwitchedSystem:
     """Assemble either kind of spec, with its ranges stretched by a scale."""
+    from nrs_design.switched.assemble import assemble, assemble_matrices
+
     if designed is not None:
         return assemble(designed.spec, designed.plant, designed.design, coordinates, scale)
     # A robot has no design either, but no way here.
-    assert isinstance(loaded.spec, SwitchedSystemSpec)
+    assert loaded.spec.kind == "switched-system"
     if coordinates is not None:
         raise AssemblyError("given matrices have neither gains nor coordinates")
     return assemble_matrices(loaded.spec, scale)
@@ -312,6 +316,8 @@ def run_verification(file: Path, result: Result) -> Verification:
     CertificateError
         If the file cannot be read as a certificate at all.
     """
+    from nrs_design.certificates.verify import verify
+
     plant = None if result.designed is None else result.designed.plant
     return verify(file, result.loaded, plant=plant)
 
@@ -336,6 +342,8 @@ def run_margin(
         If the spec declares no range.
     """
     from nrs_design.search.certify import certify
+    from nrs_design.search.margin import find_margin
+    from nrs_design.switched.assemble import has_ranges
 
     spec = result.loaded.spec
     if not has_ranges(spec):
@@ -379,6 +387,7 @@ def run_shortest_dwell(
         longest dwell times, which would bound the shortest one.
     """
     from nrs_design.search.certify import certify
+    from nrs_design.search.margin import find_shortest_dwell
 
     known = result.certification
     system = known.system
@@ -408,6 +417,6 @@ def _refuse_dwell(loaded: LoadedSpec, time: Time) -> None:
             path=loaded.path,
             remedy="in discrete time, declare a dwell_time in steps and certify that",
         )
-    assert not isinstance(loaded.spec, RobotSpec)  # It has no modes, hence no certification.
+    assert loaded.spec.kind != "robot"  # It has no modes, hence no certification.
     if obstacle := loaded.spec.find_dwell_obstacle():
         raise DesignError(obstacle.message, path=loaded.path, remedy=obstacle.remedy)

@@ -162,7 +162,7 @@ def test_figures_and_page(tmp_path):
         (([],), "no modes"),
         (([[[1, 2]]],), "not square"),
         (([[[1, 2], [3]]],), "different lengths"),
-        (([[[float("nan")]]],), "no finite"),
+        (([[[float("nan")]]],), "not a finite"),
         (([[[1]], [[1, 0], [0, 1]]],), "states"),
         (({"a b": [[1]]},), "not a name"),
     ],

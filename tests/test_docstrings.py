@@ -5,8 +5,6 @@ import inspect
 import pkgutil
 import re
 
-import pytest
-
 import nrs_design
 
 MODULES = sorted(
@@ -24,59 +22,93 @@ def public(module):
     for name, thing in list(vars(module).items()):
         if name.startswith("_") or getattr(thing, "__module__", None) != module.__name__:
             continue
+        # A function that keeps its results is one inside.
+        thing = inspect.unwrap(thing)
         if inspect.isfunction(thing) or inspect.isclass(thing):
             yield name, thing
         if inspect.isclass(thing):
             for key, member in list(vars(thing).items()):
                 function = getattr(member, "__func__", getattr(member, "fget", member))
-                if not key.startswith("_") and inspect.isfunction(function):
+                # A field whose default is a function is not a method.
+                is_method = getattr(function, "__qualname__", "") == f"{name}.{key}"
+                if not key.startswith("_") and is_method and inspect.isfunction(function):
                     yield f"{name}.{key}", function
 
 
-@pytest.mark.parametrize("name", MODULES)
-def test_documented(name):
-    module = importlib.import_module(name)
-    assert module.__doc__, name
-    for what, thing in public(module):
-        text = inspect.getdoc(thing)
-        own = thing.__doc__ if inspect.isclass(thing) else text
-        assert own, f"{name}.{what} has no docstring"
-        summary = own.strip().split("\n\n")[0].strip()
-        assert summary.endswith((".", ":", "?", "``")), f"{name}.{what}: {summary!r}"
-        for section in SECTION.finditer(text):
-            assert len(section["line"]) == len(section["title"]), f"{name}.{what}"
+def everything():
+    """All that is public, with its full name."""
+    for name in MODULES:
+        for what, thing in public(importlib.import_module(name)):
+            yield f"{name}.{what}", thing
 
 
-@pytest.mark.parametrize("name", MODULES)
-def test_parameters_that_are_described_exist(name):
-    for what, thing in public(importlib.import_module(name)):
-        text = inspect.getdoc(thing) or ""
-        match = re.search(
-            r"^Parameters\n-+\n(.*?)(?=^\w[\w ]*\n-+$|\Z)", text, re.DOTALL | re.MULTILINE
-        )
-        if not match or (inspect.isclass(thing) and not hasattr(thing, "__dataclass_fields__")):
-            continue
-        if inspect.isclass(thing):
-            known = set(thing.__dataclass_fields__)
-        else:
-            known = set(inspect.signature(thing).parameters)
-        described = re.findall(r"^\*{0,2}(\w[\w, *]*?) ?:", match[1], re.MULTILINE)
-        names = {part.strip(" *") for line in described for part in line.split(",")}
-        assert names <= known, f"{name}.{what} describes {names - known}"
+def own_text(thing):
+    return (thing.__doc__ if inspect.isclass(thing) else inspect.getdoc(thing)) or ""
 
 
-def is_command(name, what):
+def test_everything_is_documented():
+    silent = [name for name in MODULES if not importlib.import_module(name).__doc__]
+    silent += [name for name, thing in everything() if not own_text(thing)]
+    assert not silent
+
+
+def test_a_summary_is_a_sentence():
+    summaries = {
+        name: own_text(thing).strip().split("\n\n")[0].strip() for name, thing in everything()
+    }
+    ends = (".", ":", "?", "``")
+    assert not {name: text for name, text in summaries.items() if not text.endswith(ends)}
+
+
+def test_sections_are_underlined_to_their_length():
+    assert not [
+        (name, section["title"])
+        for name, thing in everything()
+        for section in SECTION.finditer(inspect.getdoc(thing) or "")
+        if len(section["line"]) != len(section["title"])
+    ]
+
+
+def described(thing):
+    """Return the names in the section on parameters."""
+    match = re.search(
+        r"^Parameters\n-+\n(.*?)(?=^\w[\w ]*\n-+$|\Z)",
+        inspect.getdoc(thing) or "",
+        re.DOTALL | re.MULTILINE,
+    )
+    lines = re.findall(r"^\*{0,2}(\w[\w, *]*?) ?:", match[1], re.MULTILINE) if match else []
+    return {part.strip(" *") for line in lines for part in line.split(",")}
+
+
+def parameters(thing):
+    """Return the names of parameters, or None for a class that is no dataclass."""
+    if inspect.isclass(thing):
+        fields = getattr(thing, "__dataclass_fields__", None)
+        return None if fields is None else set(fields)
+    return set(inspect.signature(thing).parameters)
+
+
+def test_parameters_that_are_described_exist():
+    unknown = {
+        name: described(thing) - known
+        for name, thing in everything()
+        if (known := parameters(thing)) is not None
+    }
+    assert not {name: names for name, names in unknown.items() if names}
+
+
+def is_command(name):
     """A command of the same name as its module: its options carry their help."""
-    return name.startswith("nrs_design.cli.") and name.rpartition(".")[2] == what
+    module, _, what = name.rpartition(".")
+    return name.startswith("nrs_design.cli.") and module.rpartition(".")[2] == what
 
 
 def test_three_parameters_or_more_are_described():
     silent = [
-        f"{name}.{what}"
-        for name in MODULES
-        for what, thing in public(importlib.import_module(name))
+        name
+        for name, thing in everything()
         if inspect.isfunction(thing)
-        and not is_command(name, what)
+        and not is_command(name)
         and len(inspect.signature(thing).parameters.keys() - {"self", "cls"}) >= 3
         and not re.search(r"^Parameters\n-+\n", inspect.getdoc(thing) or "", re.MULTILINE)
     ]
@@ -85,3 +117,19 @@ def test_three_parameters_or_more_are_described():
 
 def test_walk_reaches_the_core():
     assert {"nrs_design.proof.exact", "nrs_design.cli.app", "nrs_design.spec.load"} <= set(MODULES)
+
+
+def test_whoever_describes_parameters_describes_them_all():
+    silent = {}
+    for module in map(importlib.import_module, MODULES):
+        for what, function in public(module):
+            text = inspect.getdoc(function) or ""
+            section = re.search(
+                r"^Parameters\n-+\n(.*?)(?=^\w[\w ]*\n-+$|\Z)", text, re.DOTALL | re.MULTILINE
+            )
+            if inspect.isfunction(function) and section:
+                named = " ".join(re.findall(r"^\S[^:\n]*", section[1], re.MULTILINE))
+                known = inspect.signature(function).parameters.keys() - {"self", "cls"}
+                silent[f"{module.__name__}.{what}"] = known - set(re.findall(r"\w+", named))
+    assert {name: names for name, names in silent.items() if names} == {}
+    assert len(silent) > 100

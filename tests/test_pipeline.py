@@ -8,8 +8,9 @@ import pytest
 from nrs_design import __version__
 from nrs_design.errors import AssemblyError
 from nrs_design.gating.run import Files, run_gate
-from nrs_design.pipeline import run_certification, run_design, run_evidence
-from nrs_design.search.certify import Limits, Method, Verdict
+from nrs_design.pipeline import run_analysis, run_certification, run_design
+from nrs_design.search.certify import Limits, Verdict
+from nrs_design.search.method import Method
 from nrs_design.spec import read_spec
 from tests.support import (
     COMMUTING,
@@ -74,8 +75,9 @@ def counting(calls, name, function):
 def test_a_gated_spec_is_built_once_and_optimized_once(tmp_path, monkeypatch, html):
     calls = calls_of(
         monkeypatch,
-        build_plant=("pipeline", "switched.assemble"),
-        optimize_impedance=("design.constrained", "design.evidence"),
+        # It is imported where it is called, so there is one place to look.
+        build_plant=("models.plant",),
+        optimize_impedance=("design.constrained", "design.laws.impedance"),
         design_controllers=("design.design",),
     )
     outcome = run_gate([SOFT_TISSUE], Files(tmp_path, html=html))
@@ -88,7 +90,7 @@ def test_functions_are_counted_wherever_they_are_used():
     """The count above looks into every module that could build a plant or optimize."""
     for name, places in (
         ("build_plant", {"pipeline", "switched/assemble", "models/plant"}),
-        ("optimize_impedance", {"design/constrained", "design/evidence", "design/impedance"}),
+        ("optimize_impedance", {"design/constrained", "design/laws/impedance", "design/impedance"}),
     ):
         package = ROOT / "nrs_design"
         using = {
@@ -101,7 +103,7 @@ def test_functions_are_counted_wherever_they_are_used():
 
 def test_the_design_keeps_the_optimum_it_found():
     designed = run_design(read_spec(SOFT_TISSUE))
-    found = run_evidence(designed).impedance
+    found = run_analysis(designed).impedance
     for controller, item in zip(designed.design.controllers, found, strict=True):
         assert item.optimum is controller.optimum
         assert item.optimum.Bt == pytest.approx(item.Bt, rel=5e-3)
@@ -115,7 +117,7 @@ def test_gains_that_are_given_have_no_optimum_to_keep(tmp_path):
     path.write_text(re.sub("Bt: {.*}", "Bt: 2.5 N*m*s/rad", text))
     designed = run_design(read_spec(path))
     assert [controller.optimum for controller in designed.design.controllers] == [None, None]
-    for item in run_evidence(designed).impedance:
+    for item in run_analysis(designed).impedance:
         assert (item.optimum.Mt, item.optimum.Bt) == (0.01, 2.5)
 
 

@@ -7,7 +7,7 @@ import sys
 
 import pytest
 
-from tests.support import COMMUTING, ROOT, SOFT_TISSUE, run
+from tests.support import COMMUTING, ROOT, SOFT_TISSUE, typed
 
 HOSTILE = "figure.dpi: 7\naxes.facecolor: red\ntimezone: Nowhere\nbackend: module://evil\n"
 LOOK = """\
@@ -36,7 +36,7 @@ def test_figures_are_the_same_beside_hostile_settings(tmp_path):
         if name == "hostile":
             (folder / "matplotlibrc").write_text(HOSTILE)
         shutil.copy(COMMUTING, folder / "c.nrs.yaml")
-        done = run("report", "c.nrs.yaml", "--out", "c.html", cwd=folder)
+        done = typed("report", "c.nrs.yaml", "--out", "c.html", cwd=folder)
         assert done.returncode == 0, done.stderr
         pages.append((folder / "c.html").read_bytes())
     assert pages[0] == pages[1]
@@ -48,7 +48,7 @@ def test_a_pipe_is_not_waited_for(tmp_path, command):
     """Whoever opens it waits until somebody writes; python-control imports matplotlib, too."""
     os.mkfifo(tmp_path / "matplotlibrc")
     shutil.copy(SOFT_TISSUE, tmp_path / "s.nrs.yaml")
-    assert run(command, "s.nrs.yaml", cwd=tmp_path).returncode == 0
+    assert typed(command, "s.nrs.yaml", cwd=tmp_path).returncode == 0
 
 
 def test_every_import_of_matplotlib_comes_after_its_settings():

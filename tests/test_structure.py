@@ -9,6 +9,8 @@ from pathlib import Path
 
 import pytest
 
+from nrs_design.controllers.laws import LAWS as CONTROL
+from nrs_design.models.contact import LAWS as CONTACT
 from tests.support import ROOT
 
 PACKAGE = ROOT / "nrs_design"
@@ -24,6 +26,7 @@ STAGES = {"models", "design", "switched", "search"}
 DOORS = {
     "nrs_design.models.robot",
     "nrs_design.search.certification",
+    "nrs_design.search.method",
     "nrs_design.design.measures",
 }
 
@@ -137,6 +140,29 @@ def test_stages_are_known_to_the_pipeline_only(above):
     assert not inside
 
 
+def uses(name: str, word: str) -> bool:
+    """Whether the code of a module uses a name, as a function, an attribute or by importing it."""
+    return any(
+        word in (getattr(node, "id", None), getattr(node, "attr", None))
+        or (isinstance(node, ast.ImportFrom) and word in {alias.name for alias in node.names})
+        or (isinstance(node, ast.FunctionDef) and node.name == word)
+        for node in ast.walk(ast.parse(FILES[name].read_text(encoding="utf-8")))
+    )
+
+
+def test_a_search_proposes_and_never_checks():
+    """Evidence is checked in one place, where candidates are taken."""
+    searches = {name for name in FILES if floor(name) == "search"}
+    checking = {name for name in searches if uses(name, "find_fault")}
+    assert checking == {"nrs_design.search.certify", "nrs_design.search.fast_check"}
+    check = "nrs_design.search.fast_check"
+    assert {item.source for item in OURS if item.target == check} == {"nrs_design.search.certify"}
+    asking = {item.source for item in OURS if item.target == "nrs_design.search.certify"}
+    assert asking.isdisjoint(searches)
+    parts = ("find_unfit", "find_misfit", "find_indefinite")
+    assert {name for name in searches for part in parts if uses(name, part)} == {check}
+
+
 def test_the_reader_of_imports_sees_them():
     lazy = {(item.source, item.target) for item in OURS}
     assert ("nrs_design.pipeline", "nrs_design.search.certify") in lazy
@@ -166,6 +192,48 @@ def test_adding_is_cheap():
     most = {"controller law": 5, "environment law": 4, "figure": 2, "export format": 2}
     assert {what: counts[what] for what in most} == most
     assert len(re.findall(r"^\| `nrs_design/\S+` \|", text, re.MULTILINE)) == 6
+
+
+@pytest.mark.parametrize(
+    ("law", "file", "also"),
+    [
+        # The target of impedance control is listed, and doubted, by name.
+        ("Admittance", "impedance", {"spec/describe.py", "design/doubts.py"}),
+        ("ProportionalForce", "force", set()),
+        ("PositionControl", "position", set()),
+    ],
+)
+def test_a_control_law_is_known_to_the_files_of_the_table(law, file, also):
+    known = {
+        path.relative_to(PACKAGE).as_posix()
+        for path in FILES.values()
+        if {law, f"{file.capitalize()}ControllerSpec"} & names_in(path)
+        and path.parent.name != "reproduction"
+    }
+    assert known <= also | {
+        f"controllers/laws/{file}.py",
+        "controllers/laws/__init__.py",
+        "spec/controllers.py",
+        "spec/__init__.py",
+        f"design/laws/{file}.py",
+    }
+
+
+def test_nobody_asks_which_law_it_is():
+    """Laws of control and of contact, and what a spec says of them, are told apart by tables."""
+    specs = {name for name in names_in(FILES["nrs_design.spec.controllers"]) if "Spec" in name}
+    specs |= {name for name in names_in(FILES["nrs_design.spec.environment"]) if "Spec" in name}
+    laws = {law.__name__ for law in (*CONTROL.values(), *CONTACT.values())}
+    asked = [
+        (name, node.lineno)
+        for name, path in FILES.items()
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8")))
+        if isinstance(node, ast.Call)
+        and ast.unparse(node.func) in ("isinstance", "issubclass")
+        and (specs - {"SpecModel", "ProvenanceSpec", "GainSpec", "GoalsSpec"} | laws)
+        & {inner.id for inner in ast.walk(node.args[1]) if isinstance(inner, ast.Name)}
+    ]
+    assert not asked
 
 
 @pytest.mark.parametrize(

@@ -55,7 +55,9 @@ def prove(document: Mapping[str, Any]) -> Verification:
     document : mapping
         As `nrs_design.certificates.verify.read_document` gives it.
     """
-    return confirmed(lambda: find_altered(document) or check(document, held_system(document)))
+    return confirmed(
+        lambda: find_altered(document) or check_document(document, held_system(document))
+    )
 
 
 def find_altered(document: Mapping[str, Any]) -> Verification | None:
@@ -83,7 +85,7 @@ def held_system(document: Mapping[str, Any]) -> SwitchedSystem:
     return read_system(read_text(document["spec"]["name"]), document)
 
 
-def check(document: Mapping[str, Any], system: SwitchedSystem) -> Verification:
+def check_document(document: Mapping[str, Any], system: SwitchedSystem) -> Verification:
     """Check every statement of a document for a system, and all that follows from it."""
     certificate = Certificate(
         spec_name=read_text(document["spec"]["name"]),

@@ -11,12 +11,12 @@ import json
 from collections.abc import Mapping
 from dataclasses import fields
 from pathlib import Path
-from typing import Any, NoReturn
+from typing import TYPE_CHECKING, Any, NoReturn
 
 from nrs_design.certificates.certificate import FORMER
 from nrs_design.certificates.prove import (
     Verification,
-    check,
+    check_document,
     confirmed,
     find_altered,
     held_system,
@@ -25,11 +25,12 @@ from nrs_design.certificates.prove import (
 )
 from nrs_design.errors import CertificateError
 from nrs_design.files import open_regular, read_json_text
-from nrs_design.models.plant import Plant
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.proof.text import quoted
-from nrs_design.spec import LoadedSpec
-from nrs_design.switched.assemble import assemble_from_text
+
+if TYPE_CHECKING:
+    from nrs_design.models.plant import Plant
+    from nrs_design.spec import LoadedSpec
 
 __all__ = ["Verification", "prove", "read_document", "verify", "verify_document"]
 
@@ -93,6 +94,8 @@ def _verify(
         return altered
     if (foreign := _find_foreign(document, spec, coordinates)) is not None:
         return Verification(None, foreign)
+    from nrs_design.switched.assemble import assemble_from_text
+
     gains = read_gains(document)
     system = assemble_from_text(spec.spec, gains, document["coordinates"], plant=plant)
     if document["schema"] != FORMER:
@@ -100,7 +103,7 @@ def _verify(
         for field in fields(SwitchedSystem):
             if getattr(held, field.name) != getattr(system, field.name):
                 return Verification(None, f"its field {field.name!r} is not that of the spec")
-    return check(document, system)
+    return check_document(document, system)
 
 
 def read_document(path: Path) -> dict[str, Any]:

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import atexit
-import gc
 import os
 import sys
 import warnings
@@ -48,9 +46,6 @@ SETTINGS = {
     # No other package takes part in reading specs, and none is searched for.
     "PYDANTIC_DISABLE_PLUGINS": "__all__",
 }
-
-# Objects made before the collector looks for garbage: what imports make stays until the end.
-COLLECT_AFTER = 50_000
 
 
 def make_app(names: Iterable[str] = COMMANDS) -> typer.Typer:
@@ -112,9 +107,6 @@ def main() -> None:
     """Run the program; an error that the user can mend is one message and exit code 2."""
     for name, value in SETTINGS.items():
         os.environ.setdefault(name, value)
-    gc.set_threshold(COLLECT_AFTER)
-    # Nor is what is left at the end worth a search for garbage.
-    atexit.register(gc.freeze)
     if not sys.warnoptions:
         # What a library has to say to programmers is none of a user's business.
         warnings.simplefilter("ignore")

@@ -10,7 +10,7 @@ import typer
 from nrs_design.cli import exit_codes
 from nrs_design.cli.identify.common import (
     SYNTHETIC,
-    Mapping,
+    ColumnMap,
     ReportTo,
     check_report,
     read_all,
@@ -49,7 +49,7 @@ def audit(
         float | None,
         typer.Option(metavar="NUMBER", min=0.0, help="Where the driver saturates, as logged."),
     ] = None,
-    columns: Mapping = None,
+    columns: ColumnMap = None,
     report: ReportTo = None,
     as_json: Json = False,
     quiet: Quiet = False,

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from enum import StrEnum
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -20,6 +19,7 @@ from nrs_design.cli.options import (
     Verbose,
 )
 from nrs_design.cli.printing import note, print_json, progress, say
+from nrs_design.search.method import Method
 
 if TYPE_CHECKING:
     from fractions import Fraction
@@ -28,30 +28,12 @@ if TYPE_CHECKING:
     from nrs_design.search.margin import BoxMargin, DwellMargin
 
 
-class MethodOption(StrEnum):
-    """Rungs of the ladder by name."""
-
-    AUTO = "auto"
-    LMI = "lmi"
-    GRADIENT = "gradient"
-    OBSTRUCTION = "obstruction"
-    MIXTURE = "mixture"
-    MODE_POLYNOMIAL = "mode-polynomial"
-    MODE_QUADRATIC = "mode-quadratic"
-    PARAMETER_QUADRATIC = "parameter-quadratic"
-    PERIOD = "period"
-    POLYNOMIAL = "polynomial"
-    VALUE = "value"
-
-
 def certify_switching(
     spec: SpecFile,
     out: Annotated[
         Path | None, typer.Option(help="Certificate file; default reports/NAME.cert.json.")
     ] = None,
-    method: Annotated[
-        MethodOption, typer.Option(help="One rung of the ladder, or all.")
-    ] = MethodOption.AUTO,
+    method: Annotated[Method, typer.Option(help="One rung of the ladder, or all.")] = Method.AUTO,
     coordinates: Annotated[
         CoordinatesOption | None,
         typer.Option(help="Override the spec: deflection (physical) or force (the thesis's)."),
@@ -89,7 +71,6 @@ def certify_switching(
         run_margin,
         run_shortest_dwell,
     )
-    from nrs_design.search.certification import Method
     from nrs_design.spec import read_spec
 
     loaded = read_spec(spec)
@@ -99,7 +80,7 @@ def certify_switching(
     with progress(f"certifying {loaded.spec.name}", quiet=quiet) as step:
         result = run_certification(
             loaded,
-            method=Method(str(method)),
+            method=method,
             coordinates=None if coordinates is None else str(coordinates),
             limits=limits,
             progress=step,
@@ -211,10 +192,10 @@ def _print_dwell(dwell: DwellMargin | None) -> None:
 
     if dwell is None:
         return
-    proved = f"none was proved up to {rounded_down(dwell.longest, 's')}, where the search ended"
+    proved = f"no proof up to {rounded_down(dwell.longest, 's')}, where the search ended"
     if dwell.proved is not None and dwell.proof is not None:
         proved = f"{rounded_up(dwell.proved, 's')} is proved ({dwell.proof.method})"
-    refuted = "" if dwell.proved == 0 else "; none was refuted"
+    refuted = "" if dwell.proved == 0 else "; no dwell time was refuted"
     if dwell.refuted is not None:
         refuted = f"; {rounded_down(dwell.refuted, 's')} and all shorter ones are refuted"
     say(f"  shortest dwell time: {proved}{refuted}")

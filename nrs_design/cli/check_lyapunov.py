@@ -104,7 +104,10 @@ def _show(found: LyapunovCheck, time: str, modes: list[str], *, asked: bool) -> 
         else:
             say(f"  {'the rate asked for' if asked else 'proved'}: {best}")
         return
-    say("DOES NOT HOLD: x' P x is no common Lyapunov function" + (" at this rate." * asked or "."))
+    say(
+        "DOES NOT HOLD: x' P x is not a common Lyapunov function"
+        + (" at this rate." * asked or ".")
+    )
     if found.counterexample is not None:
         _show_counterexample(found.counterexample, time, asked=asked)
     if best is not None:

@@ -8,8 +8,7 @@ from itertools import islice
 from pathlib import Path
 from typing import Any
 
-from nrs_design.cli.colour import painted
-from nrs_design.cli.printing import wrapped
+from nrs_design.cli.printing import painted, wrapped
 from nrs_design.errors import Fault, NrsDesignError
 from nrs_design.printable import printable
 

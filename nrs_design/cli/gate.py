@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from nrs_design.gating.obligations import GateOutcome
 
 # Highest degree, budget and memory, as far as they are given.
-Search = tuple[int | None, float | None, float | None]
+SearchLimits = tuple[int | None, float | None, float | None]
 
 # By severity of the worst obligation, from none to a defect of this program.
 OF_SEVERITY = (
@@ -35,7 +35,7 @@ OF_SEVERITY = (
 SHOWN = 5
 
 
-class FormatOption(StrEnum):
+class GateFormat(StrEnum):
     """Formats by name."""
 
     TEXT = "text"
@@ -50,8 +50,8 @@ def gate(
         list[Path], typer.Argument(metavar="PATH...", help="Spec files, or folders of them.")
     ],
     format_: Annotated[
-        FormatOption, typer.Option("--format", help="What to print.")
-    ] = FormatOption.TEXT,
+        GateFormat, typer.Option("--format", help="What to print.")
+    ] = GateFormat.TEXT,
     out: Annotated[Path | None, typer.Option(help="Write it to this file, not to stdout.")] = None,
     locked: Annotated[
         bool,
@@ -90,7 +90,7 @@ def gate(
     from nrs_design.gating.formats import FORMATS
     from nrs_design.output import GATE, check_replaceable, write_output
 
-    if as_json and format_ not in (FormatOption.TEXT, FormatOption.JSON):
+    if as_json and format_ not in (GateFormat.TEXT, GateFormat.JSON):
         raise NrsDesignError(
             f"--json and --format {format_} exclude each other", remedy="keep one of them"
         )
@@ -103,7 +103,7 @@ def gate(
         raise OutputError("is the name of a spec", path=out, remedy="choose another --out")
     if out is not None:
         check_replaceable(out, GATE)
-    chosen = FormatOption.JSON if as_json else format_
+    chosen = GateFormat.JSON if as_json else format_
     search = (max_degree, budget, memory)
     start = perf_counter()
     outcome = (
@@ -114,11 +114,11 @@ def gate(
     document = FORMATS[chosen](outcome)
     if out is not None:
         write_output(out, document, replaces=GATE)
-    elif chosen is FormatOption.TEXT:
+    elif chosen is GateFormat.TEXT:
         _show(outcome, document, quiet=quiet)
     else:
         sys.stdout.write(document)
-    if out is not None or chosen is not FormatOption.TEXT:
+    if out is not None or chosen is not GateFormat.TEXT:
         for line in FORMATS["text"](outcome).split("\n"):
             note(line, quiet=quiet)
     for item in (caution for spec in outcome.specs for caution in spec.cautions):
@@ -138,7 +138,7 @@ def _show(outcome: GateOutcome, document: str, *, quiet: bool) -> None:
         return
     if not quiet:
         print_table("", text.COLUMNS, text.rows_of(outcome))
-        for line in text.gains_of(outcome):
+        for line in text.gain_lines(outcome):
             say(line)
     if outcome.broken and not quiet:
         say()
@@ -153,7 +153,7 @@ def _certify(
     paths: list[Path],
     lock: Path,
     reports: Path,
-    search: Search,
+    search: SearchLimits,
     *,
     html: bool,
     prune: bool,

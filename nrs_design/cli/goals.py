@@ -11,14 +11,12 @@ from nrs_design.cli.printing import note, say
 from nrs_design.cli.tables import print_table
 
 if TYPE_CHECKING:
-    from nrs_design.design.evidence import DesignEvidence, ForceEvidence, ImpedanceEvidence
+    from nrs_design.design.analysis import AbstractControllerAnalysis, DesignAnalysis
     from nrs_design.design.goals import Achieved
     from nrs_design.spec import Spec
 
-    Item = ImpedanceEvidence | ForceEvidence
 
-
-def print_goals(name: str, items: Iterable[Item]) -> None:
+def print_goals(name: str, items: Iterable[AbstractControllerAnalysis]) -> None:
     """Print what the spec asks for beside what is achieved at worst; nothing without goals."""
     from nrs_design.design.measures import MEANING
 
@@ -48,20 +46,20 @@ def print_warnings(warnings: Iterable[str], *, quiet: bool) -> None:
         note(f"warning: {text}", quiet=quiet)
 
 
-def warnings_of(spec: Spec, evidence: DesignEvidence) -> list[str]:
+def warnings_of(spec: Spec, analysis: DesignAnalysis) -> list[str]:
     """Say what is doubtful about a spec and its design, and no goal speaks of it."""
     from nrs_design.spec import doubt_spec
 
-    return [str(doubt) for doubt in (*doubt_spec(spec), *evidence.warnings)]
+    return [str(doubt) for doubt in (*doubt_spec(spec), *analysis.warnings)]
 
 
-def exit_code(items: Iterable[Item]) -> int:
+def exit_code(items: Iterable[AbstractControllerAnalysis]) -> int:
     """Return 1 if a goal is missed."""
     met = all(found.met for item in items for found in item.achieved)
     return exit_codes.PROVED if met else exit_codes.REFUTED
 
 
-def goals_summary(item: Item) -> list[dict[str, Any]]:
+def goals_summary(item: AbstractControllerAnalysis) -> list[dict[str, Any]]:
     """Return everything that was measured, with its goal if there is one, in SI units."""
     return [_summary(found) for found in item.achieved]
 

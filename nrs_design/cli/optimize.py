@@ -13,7 +13,7 @@ from nrs_design.cli.printing import note, print_json, progress, say
 from nrs_design.cli.tables import print_table
 
 if TYPE_CHECKING:
-    from nrs_design.design.evidence import DesignEvidence, ImpedanceEvidence
+    from nrs_design.design.analysis import DesignAnalysis, ImpedanceAnalysis
 
 
 def optimize(spec: SpecFile, as_json: Json = False, quiet: Quiet = False) -> None:
@@ -23,7 +23,7 @@ def optimize(spec: SpecFile, as_json: Json = False, quiet: Quiet = False) -> Non
 
     Example: nrs-design optimize specs/neuroboscope/soft-tissue.nrs.yaml
     """
-    from nrs_design.pipeline import run_design, run_evidence, wrong_kind
+    from nrs_design.pipeline import run_analysis, run_design, wrong_kind
     from nrs_design.spec import read_spec
 
     loaded = read_spec(spec)
@@ -37,38 +37,38 @@ def optimize(spec: SpecFile, as_json: Json = False, quiet: Quiet = False) -> Non
                 "use certify-switching, or a spec of kind interaction-design",
             )
         step("margins")
-        evidence = run_evidence(designed)
-    warnings = warnings_of(loaded.spec, evidence)
+        analysis = run_analysis(designed)
+    warnings = warnings_of(loaded.spec, analysis)
     if as_json:
         print_json(
             "optimize",
             {
                 "spec": loaded.spec.name,
                 "spec_sha256": loaded.sha256,
-                "motion_loop": motion_summary(evidence),
-                "controllers": [_summary(item) for item in evidence.impedance],
+                "motion_loop": motion_summary(analysis),
+                "controllers": [_summary(item) for item in analysis.impedance],
                 "warnings": warnings,
             },
         )
     elif not quiet:
-        if not evidence.impedance:
+        if not analysis.impedance:
             note("no impedance controllers in this spec; see nrs-design tune for the others")
-        _print(loaded.spec.name, evidence)
-        print_goals(loaded.spec.name, evidence.impedance)
+        _print(loaded.spec.name, analysis)
+        print_goals(loaded.spec.name, analysis.impedance)
         print_warnings(warnings, quiet=quiet)
-    raise typer.Exit(exit_code(evidence.impedance))
+    raise typer.Exit(exit_code(analysis.impedance))
 
 
-def motion_summary(evidence: DesignEvidence) -> dict[str, Any]:
+def motion_summary(analysis: DesignAnalysis) -> dict[str, Any]:
     """Describe which motion loop G is in use."""
     return {
-        "source": evidence.motion_source,
-        "numerator": list(evidence.motion.numerator),
-        "denominator": list(evidence.motion.denominator),
+        "source": analysis.motion_source,
+        "numerator": list(analysis.motion.numerator),
+        "denominator": list(analysis.motion.denominator),
     }
 
 
-def _summary(item: ImpedanceEvidence) -> dict[str, Any]:
+def _summary(item: ImpedanceAnalysis) -> dict[str, Any]:
     margins = item.margins
     return {
         "name": item.name,
@@ -100,10 +100,10 @@ def finite(value: float) -> float | None:
     return value if math.isfinite(value) else None
 
 
-def _print(name: str, evidence: DesignEvidence) -> None:
-    G = evidence.motion
+def _print(name: str, analysis: DesignAnalysis) -> None:
+    G = analysis.motion
     source = (
-        "designed by root locus" if evidence.motion_source == "designed" else "given in the spec"
+        "designed by root locus" if analysis.motion_source == "designed" else "given in the spec"
     )
     say(f"{name}: G(s) = ({_polynomial(G.numerator)}) / ({_polynomial(G.denominator)}), {source}")
     columns = [
@@ -135,7 +135,7 @@ def _print(name: str, evidence: DesignEvidence) -> None:
             f"{item.margins.disk_margin:.3f}",
             f"{item.margins.stiffness_limit:.1f}",
         ]
-        for item in evidence.impedance
+        for item in analysis.impedance
     ]
     if rows:
         print_table("", columns, rows)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from datetime import datetime
 from enum import StrEnum
 from pathlib import Path
 from typing import Annotated
@@ -31,6 +32,16 @@ Budget = Annotated[
 Memory = Annotated[
     float | None,
     typer.Option(min=0.0, help="Memory for a step of the search in GB; default 2."),
+]
+
+Date = Annotated[
+    datetime | None,
+    typer.Option(
+        "--date",
+        formats=["%Y-%m-%d"],
+        metavar="YYYY-MM-DD",
+        help="Write this date on the page or document; without it there is no date.",
+    ),
 ]
 
 

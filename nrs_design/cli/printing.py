@@ -6,6 +6,7 @@ from files that strangers wrote, so every line and every cell is made `printable
 
 from __future__ import annotations
 
+import os
 import shutil
 import sys
 import textwrap
@@ -13,8 +14,10 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import Any, TextIO
 
-from nrs_design.cli.colour import OF_VERDICT, painted
 from nrs_design.printable import json_text, printable
+
+_CODES = {"red": "1;31", "green": "1;32", "yellow": "1;33", "blue": "1;34", "cyan": "36"}
+COLOURS = {"proved": "green", "refuted": "red", "rejected": "red", "inconclusive": "yellow"}
 
 
 def print_json(command: str, content: dict[str, Any]) -> None:
@@ -27,12 +30,12 @@ def say(line: str = "", *, verdict: str = "") -> None:
     """Print one line of the result; the verdict in it, in capitals, is coloured on a terminal."""
     text = wrapped(printable(line), sys.stdout)
     word = verdict.upper()
-    print(text.replace(word, painted(word, OF_VERDICT[verdict], sys.stdout), 1) if word else text)
+    print(text.replace(word, painted(word, COLOURS[verdict], sys.stdout), 1) if word else text)
 
 
 def say_failure(line: str, status: str) -> None:
     """Print one line about what is not fulfilled; its status is coloured on a terminal."""
-    text, colour = wrapped(printable(line), sys.stdout), OF_VERDICT.get(status, "red")
+    text, colour = wrapped(printable(line), sys.stdout), COLOURS.get(status, "red")
     print(text.replace(f"{status}:", f"{painted(status, colour, sys.stdout)}:", 1))
 
 
@@ -40,6 +43,22 @@ def note(line: str, *, quiet: bool = False) -> None:
     """Print one line on stderr."""
     if not quiet:
         print(wrapped(printable(line), sys.stderr), file=sys.stderr)
+
+
+def painted(text: str, colour: str, stream: TextIO) -> str:
+    """Colour a text if the stream is a terminal, and its user has not asked for none (NO_COLOR).
+
+    Parameters
+    ----------
+    text : str
+        What is printed.
+    colour : str
+        Such as ``red``.
+    stream : TextIO
+        Where it is printed.
+    """
+    dull = os.environ.get("NO_COLOR") or os.environ.get("TERM") == "dumb"
+    return text if dull or not stream.isatty() else f"\x1b[{_CODES[colour]}m{text}\x1b[0m"
 
 
 def wrapped(line: str, stream: TextIO, hanging: int = 2) -> str:

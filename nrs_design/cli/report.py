@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from datetime import datetime
 from enum import StrEnum
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -10,19 +9,19 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from nrs_design.cli import exit_codes
-from nrs_design.cli.options import Budget, Json, MaxDegree, Memory, Quiet, SpecFile
+from nrs_design.cli.options import Budget, Date, Json, MaxDegree, Memory, Quiet, SpecFile
 from nrs_design.cli.printing import note, print_json, progress, say
 from nrs_design.errors import DesignError
 
 if TYPE_CHECKING:
-    from nrs_design.design.evidence import DesignEvidence
+    from nrs_design.design.analysis import DesignAnalysis
     from nrs_design.pipeline import Result
     from nrs_design.reporting import Report
 
 REPORTS = Path("reports")
 
 
-class FormatOption(StrEnum):
+class ReportFormat(StrEnum):
     """File formats of a report."""
 
     HTML = "html"
@@ -33,8 +32,8 @@ class FormatOption(StrEnum):
 def report(
     spec: SpecFile,
     file_format: Annotated[
-        FormatOption, typer.Option("--format", help="A page, a document, or one image per figure.")
-    ] = FormatOption.HTML,
+        ReportFormat, typer.Option("--format", help="A page, a document, or one image per figure.")
+    ] = ReportFormat.HTML,
     out: Annotated[
         Path | None,
         typer.Option(
@@ -45,14 +44,7 @@ def report(
         bool,
         typer.Option("--times", help="Add the time of every rung; pages then differ each time."),
     ] = False,
-    date: Annotated[
-        datetime | None,
-        typer.Option(
-            formats=["%Y-%m-%d"],
-            metavar="YYYY-MM-DD",
-            help="Write this date on the page or document; without it there is none.",
-        ),
-    ] = None,
+    date: Date = None,
     max_degree: MaxDegree = None,
     budget: Budget = None,
     memory: Memory = None,
@@ -78,7 +70,7 @@ def report(
         result = run_certification(loaded, limits=limits, progress=step)
         step("figures")
         day = date.date() if date else None
-        page = build_report(result, _evidence(result, quiet=quiet), times=times, date=day)
+        page = build_report(result, _analysis(result, quiet=quiet), times=times, date=day)
         files = _write(page, file_format, out, spec)
     verdict = str(result.certification.verdict)
     if as_json:
@@ -99,32 +91,32 @@ def report(
     raise typer.Exit(exit_codes.OF_VERDICT[verdict])
 
 
-def _evidence(result: Result, *, quiet: bool) -> DesignEvidence | None:
+def _analysis(result: Result, *, quiet: bool) -> DesignAnalysis | None:
     """Return what the design achieves, or nothing where a nominal loop has no margins."""
-    from nrs_design.pipeline import run_evidence
+    from nrs_design.pipeline import run_analysis
 
     if result.designed is None:
         return None
     try:
-        return run_evidence(result.designed)
+        return run_analysis(result.designed)
     except DesignError as error:
         note(f"no margins in this report: {error.message}", quiet=quiet)
         return None
 
 
-def _write(report: Report, file_format: FormatOption, out: Path | None, spec: Path) -> list[Path]:
+def _write(report: Report, file_format: ReportFormat, out: Path | None, spec: Path) -> list[Path]:
     from nrs_design.output import PAGE, PDF, PNG, write_output
     from nrs_design.ownership import origin_of
     from nrs_design.reporting import render_html, render_pdf, render_png
 
-    if file_format is FormatOption.PNG:
+    if file_format is ReportFormat.PNG:
         folder = out or REPORTS / report.name
         images = {folder / f"{name}.png": data for name, data in render_png(report).items()}
         for path, data in images.items():
             write_output(path, data, replaces=PNG)
         return list(images)
     path = out or REPORTS / f"{report.name}.{file_format}"
-    if file_format is FormatOption.PDF:
+    if file_format is ReportFormat.PDF:
         write_output(path, render_pdf(report), replaces=PDF)
     else:
         write_output(path, render_html(report, origin_of(spec, path)), replaces=PAGE)

@@ -13,7 +13,7 @@ from nrs_design.cli.printing import note, print_json, progress, say
 from nrs_design.cli.tables import print_table
 
 if TYPE_CHECKING:
-    from nrs_design.reproduction.row import Row
+    from nrs_design.reproduction.comparison import Comparison
 
 
 def reproduce(
@@ -30,8 +30,8 @@ def reproduce(
     Example: nrs-design reproduce --html reports/reproduce.html
     """
     from nrs_design.output import PAGE, write_output
+    from nrs_design.reproduction.comparison import drifted
     from nrs_design.reproduction.page import render_page
-    from nrs_design.reproduction.row import drifted
     from nrs_design.reproduction.table import reproduce as recompute
 
     with progress("recomputing", quiet=quiet) as step:
@@ -49,10 +49,10 @@ def reproduce(
     raise typer.Exit(exit_codes.REFUTED if drifted(table) else exit_codes.PROVED)
 
 
-def _summary(table: tuple[Row, ...]) -> dict[str, Any]:
+def _summary(table: tuple[Comparison, ...]) -> dict[str, Any]:
     from dataclasses import asdict
 
-    from nrs_design.reproduction.row import drifted
+    from nrs_design.reproduction.comparison import drifted
     from nrs_design.reproduction.table import count_verdicts
 
     return {
@@ -62,7 +62,7 @@ def _summary(table: tuple[Row, ...]) -> dict[str, Any]:
     }
 
 
-def _print(table: tuple[Row, ...]) -> None:
+def _print(table: tuple[Comparison, ...]) -> None:
     from nrs_design.reproduction.page import format_deviation
     from nrs_design.reproduction.table import count_verdicts
 

@@ -8,7 +8,7 @@ from collections.abc import Iterator, Sequence
 
 from nrs_design.printable import printable
 
-Row = Sequence[str]
+Cells = Sequence[str]
 
 # In a pipe no table is folded.
 ENDLESS = 10_000
@@ -18,7 +18,7 @@ SENTENCE = 40
 _GAP = 3
 
 
-def print_table(title: str, columns: Row, rows: Sequence[Row]) -> None:
+def print_table(title: str, columns: Cells, rows: Sequence[Cells]) -> None:
     """Print a plain table, as wide as it needs to be in a pipe.
 
     Where a terminal is too narrow for it, rows become columns, side by side as far as they fit; a
@@ -42,10 +42,10 @@ def print_table(title: str, columns: Row, rows: Sequence[Row]) -> None:
         _print("" if index else title, head, body, width)
 
 
-def _turned(columns: Row, rows: Sequence[Row], width: int) -> Iterator[list[Row]]:
+def _turned(columns: Cells, rows: Sequence[Cells], width: int) -> Iterator[list[Cells]]:
     """Yield tables whose first column are the headings, with as many of the rows as fit."""
     headings = [" ".join(column.split("\n")) for column in columns]
-    beside: list[Row] = []
+    beside: list[Cells] = []
     for row in rows:
         if beside and _least_width(_transpose([headings, *beside, row])) > width:
             yield _transpose([headings, *beside])
@@ -54,15 +54,15 @@ def _turned(columns: Row, rows: Sequence[Row], width: int) -> Iterator[list[Row]
     yield _transpose([headings, *beside])
 
 
-def _transpose(rows: Sequence[Row]) -> list[Row]:
+def _transpose(rows: Sequence[Cells]) -> list[Cells]:
     return [list(cells) for cells in zip(*rows, strict=True)]
 
 
-def _least_width(rows: Sequence[Row]) -> int:
+def _least_width(rows: Sequence[Cells]) -> int:
     return sum(_least_widths(rows)) + _GAP * len(rows[0]) - 1
 
 
-def _least_widths(rows: Sequence[Row]) -> list[int]:
+def _least_widths(rows: Sequence[Cells]) -> list[int]:
     return [max(map(_least, cells)) for cells in zip(*rows, strict=True)]
 
 
@@ -75,7 +75,7 @@ def _least(cell: str) -> int:
     return max(SENTENCE // 2, *map(cell_len, cell.split()))
 
 
-def _print(title: str, columns: Row, rows: Sequence[Row], width: int | None) -> None:
+def _print(title: str, columns: Cells, rows: Sequence[Cells], width: int | None) -> None:
     from rich.box import SIMPLE_HEAD
     from rich.console import Console
     from rich.table import Table

@@ -15,7 +15,7 @@ from nrs_design.cli.tables import print_table
 
 if TYPE_CHECKING:
     from nrs_design.controllers.controller_design import ControllerDesign
-    from nrs_design.design.evidence import DesignEvidence
+    from nrs_design.design.analysis import DesignAnalysis
 
 MOTION_COLUMNS = (
     "motion PD",
@@ -44,7 +44,7 @@ def tune(spec: SpecFile, as_json: Json = False, quiet: Quiet = False) -> None:
 
     Example: nrs-design tune specs/neuroboscope/force-limit.nrs.yaml
     """
-    from nrs_design.pipeline import run_design, run_evidence, wrong_kind
+    from nrs_design.pipeline import run_analysis, run_design, wrong_kind
     from nrs_design.spec import read_spec
 
     loaded = read_spec(spec)
@@ -56,27 +56,27 @@ def tune(spec: SpecFile, as_json: Json = False, quiet: Quiet = False) -> None:
                 "a switched-system spec has nothing to tune",
                 "use certify-switching, or a spec of kind interaction-design",
             )
-        evidence = run_evidence(designed)
-    warnings = warnings_of(loaded.spec, evidence)
+        analysis = run_analysis(designed)
+    warnings = warnings_of(loaded.spec, analysis)
     if as_json:
         content = {"spec": loaded.spec.name, "spec_sha256": loaded.sha256}
-        print_json("tune", content | _summary(designed.design, evidence) | {"warnings": warnings})
+        print_json("tune", content | _summary(designed.design, analysis) | {"warnings": warnings})
     elif not quiet:
-        _print(loaded.spec.name, designed.design, evidence)
-        print_goals(loaded.spec.name, evidence.force)
+        _print(loaded.spec.name, designed.design, analysis)
+        print_goals(loaded.spec.name, analysis.tuned)
         print_warnings(warnings, quiet=quiet)
-    raise typer.Exit(exit_code(evidence.force))
+    raise typer.Exit(exit_code(analysis.tuned))
 
 
-def _summary(design: ControllerDesign, evidence: DesignEvidence) -> dict[str, Any]:
-    wanted, reached = evidence.wanted, evidence.reached
+def _summary(design: ControllerDesign, analysis: DesignAnalysis) -> dict[str, Any]:
+    wanted, reached = analysis.wanted, analysis.reached
     return {
         "motion": {
             "wanted_poles": _pairs(wanted.wanted_poles),
             "root_locus": {"derivative_gain": wanted.derivative_gain, "zero": wanted.zero},
             "Kp": float(design.motion.Kp),
             "Kd": float(design.motion.Kd),
-            "loop": motion_summary(evidence),
+            "loop": motion_summary(analysis),
             "poles": _pairs(reached.poles),
             "damping_ratio": reached.damping_ratio,
             "natural_frequency": reached.natural_frequency,
@@ -95,21 +95,21 @@ def _summary(design: ControllerDesign, evidence: DesignEvidence) -> dict[str, An
                 "goals": goals_summary(item),
                 "units": {"Kp": "rad/(N*m)", "stiffness": "N*m/rad", "poles": "1/s"},
             }
-            for item in evidence.force
+            for item in analysis.force
         ],
     }
 
 
-def _print(name: str, design: ControllerDesign, evidence: DesignEvidence) -> None:
-    print_table(f"{name}: motion loop", MOTION_COLUMNS, _motion_rows(design, evidence))
-    if evidence.motion_source == "given":
+def _print(name: str, design: ControllerDesign, analysis: DesignAnalysis) -> None:
+    print_table(f"{name}: motion loop", MOTION_COLUMNS, _motion_rows(design, analysis))
+    if analysis.motion_source == "given":
         say("The spec states G itself: the poles are those of that G, not of the PD gains.")
-    if evidence.force:
-        print_table(f"{name}: force loop", FORCE_COLUMNS, _force_rows(evidence))
+    if analysis.force:
+        print_table(f"{name}: force loop", FORCE_COLUMNS, _force_rows(analysis))
 
 
-def _motion_rows(design: ControllerDesign, evidence: DesignEvidence) -> list[list[str]]:
-    wanted, reached = evidence.wanted, evidence.reached
+def _motion_rows(design: ControllerDesign, analysis: DesignAnalysis) -> list[list[str]]:
+    wanted, reached = analysis.wanted, analysis.reached
     return [
         [
             "root locus",
@@ -132,7 +132,7 @@ def _motion_rows(design: ControllerDesign, evidence: DesignEvidence) -> list[lis
     ]
 
 
-def _force_rows(evidence: DesignEvidence) -> list[list[str]]:
+def _force_rows(analysis: DesignAnalysis) -> list[list[str]]:
     return [
         [
             item.name,
@@ -143,7 +143,7 @@ def _force_rows(evidence: DesignEvidence) -> list[list[str]]:
             f"{item.loop.natural_frequency:.2f} rad/s",
             f"{item.loop.steady_state_ratio:.3f}",
         ]
-        for item in evidence.force
+        for item in analysis.force
     ]
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-from nrs_design.controllers.laws import AbstractLaw, Law, ProportionalDerivative
+from nrs_design.controllers.laws import AbstractLaw, CompliantLaw, ProportionalDerivative
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,7 +37,7 @@ class Controller:
     ----------
     name : str
         As in the spec.
-    law : Law
+    law : CompliantLaw
         Its law with the gains that ship.
     environment : str or None
         The environment that it was designed for.
@@ -49,7 +49,7 @@ class Controller:
     """
 
     name: str
-    law: Law
+    law: CompliantLaw
     environment: str | None
     contacts: tuple[str, ...]
     optimum: ImpedanceOptimum | None = field(default=None, compare=False)

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from fractions import Fraction
 
 from nrs_design.controllers.float32 import exact_decimal, to_float32
-from nrs_design.models.interval import Interval
-from nrs_design.spec import GainSpec, ImpedanceControllerSpec
+from nrs_design.spec import ControllerSpec, GainSpec
+from nrs_design.spec.interval import Interval
 
 
 def gain_interval(gain: GainSpec, shipped: Fraction) -> Interval:
@@ -36,18 +36,18 @@ def gain_interval(gain: GainSpec, shipped: Fraction) -> Interval:
 
 
 def faults_of_ranges(
-    controller: ImpedanceControllerSpec, gains: dict[str, Fraction]
+    controller: ControllerSpec, gains: Mapping[str, Fraction]
 ) -> Iterator[tuple[str, str]]:
     """Name the designed gains outside the range that the proof would cover, and say how far.
 
     Parameters
     ----------
-    controller : ImpedanceControllerSpec
+    controller : ControllerSpec
         What the spec says.
-    gains : dict
-        The designed ``Mt`` and ``Bt``.
+    gains : mapping
+        The designed gains by name.
     """
-    for name, gain in (("Mt", controller.Mt), ("Bt", controller.Bt)):
+    for name, gain in controller.gains().items():
         shipped = gains[name]
         if gain.range is None:
             continue

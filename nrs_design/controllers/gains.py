@@ -8,21 +8,9 @@ from fractions import Fraction
 from nrs_design.controllers.controller_design import Controller, ControllerDesign
 from nrs_design.controllers.float32 import exact_decimal, is_float32, to_float32
 from nrs_design.controllers.gain_range import faults_of_ranges
-from nrs_design.controllers.laws import (
-    Admittance,
-    PositionControl,
-    ProportionalDerivative,
-    ProportionalForce,
-)
+from nrs_design.controllers.laws import LAWS, ProportionalDerivative
 from nrs_design.errors import CertificateError
-from nrs_design.spec import (
-    ForceControllerSpec,
-    IdleStatesSpec,
-    ImpedanceControllerSpec,
-    InteractionDesignSpec,
-    PositionControllerSpec,
-    parse_exact,
-)
+from nrs_design.spec import ControllerSpec, IdleStatesSpec, InteractionDesignSpec, parse_exact
 
 MOTION = ProportionalDerivative.name
 
@@ -49,7 +37,7 @@ def design_from_gains(
     expected = {MOTION, *spec.controllers}
     if set(gains) != expected:
         raise CertificateError(f"its gains are not those of {', '.join(sorted(expected))}")
-    motion = ProportionalDerivative(**_numbers(gains, MOTION, ("Kp", "Kd")))
+    motion = ProportionalDerivative.of(_numbers(gains, MOTION, ("Kp", "Kd")))
     if motion.Kp <= 0 or motion.Kd <= 0:
         raise CertificateError("the gains of the motion controller are not positive")
     if not motion_gains_fixed_by(spec, motion):
@@ -74,27 +62,20 @@ def motion_gains_fixed_by(spec: InteractionDesignSpec, motion: ProportionalDeriv
 
 
 def _controller(
-    name: str,
-    spec: ImpedanceControllerSpec | ForceControllerSpec | PositionControllerSpec,
-    gains: Mapping[str, Mapping[str, str]],
+    name: str, spec: ControllerSpec, gains: Mapping[str, Mapping[str, str]]
 ) -> Controller:
-    if isinstance(spec, PositionControllerSpec):
-        _numbers(gains, name, ())
-        return Controller(name, PositionControl(), None, ())
-    if isinstance(spec, ForceControllerSpec):
-        law = ProportionalForce(**_numbers(gains, name, ("Kp",)))
-        fixed = spec.proportional_gain
-        if law.Kp < 0 or (fixed is not None and law.Kp != to_float32(fixed.exact)):
-            raise CertificateError(f"gain Kp of controller {name} is not what the spec fixes")
-        return Controller(name, law, spec.environment, spec.contacts)
-    values = _numbers(gains, name, ("Mt", "Bt"))
-    for gain, bounds in (("Mt", spec.Mt), ("Bt", spec.Bt)):
+    law_type = LAWS[spec.type]
+    values = _numbers(gains, name, tuple(law_type.units))
+    for gain, bounds in spec.gains().items():
         low, high = to_float32(bounds.min.exact), to_float32(bounds.max.exact)
         if not low <= values[gain] <= high:
             raise CertificateError(f"gain {gain} of controller {name} is outside its bounds")
     for _, outside in faults_of_ranges(spec, values):
         raise CertificateError(f"controller {name}: {outside}")
-    return Controller(name, Admittance(**values), spec.environment, spec.contacts)
+    law = law_type.of(values)
+    if fault := law.find_fault(spec):
+        raise CertificateError(f"controller {name}: {fault}")
+    return Controller(name, law, spec.environment, spec.contacts)
 
 
 def _numbers(

@@ -60,7 +60,7 @@ class Achieved:
 
 
 @dataclass(frozen=True, slots=True)
-class Corner:
+class ContactCorner:
     """One contact that a controller is measured in, and where its gains are then.
 
     Parameters
@@ -91,7 +91,7 @@ class Requirement:
     ----------
     motion : TransferFunction
         Closed motion loop G.
-    corners : tuple of Corner
+    corners : tuple of ContactCorner
         As `corners_of` gives them.
     goals : tuple of (Measure, float)
         Goals in SI units.
@@ -102,7 +102,7 @@ class Requirement:
     """
 
     motion: TransferFunction
-    corners: tuple[Corner, ...]
+    corners: tuple[ContactCorner, ...]
     goals: tuple[tuple[Measure, float], ...] = ()
     desired: float = 0.0
     bandwidth: float = 0.0
@@ -134,7 +134,9 @@ class Requirement:
         values = np.take_along_axis(table, worst[None, :], axis=0)[0]
         return values, [corners[index].label for index in worst]
 
-    def _at(self, corner: Corner, measure: Measure, Mt: FloatArray, Bt: FloatArray) -> FloatArray:
+    def _at(
+        self, corner: ContactCorner, measure: Measure, Mt: FloatArray, Bt: FloatArray
+    ) -> FloatArray:
         Mt = Mt if corner.Mt is None else np.full_like(Mt, corner.Mt)
         Bt = Bt if corner.Bt is None else np.full_like(Bt, corner.Bt)
         loops = _impedance_loops(self.motion, corner, Mt, Bt)
@@ -201,7 +203,7 @@ def corners_of(
     environments: tuple[Environment, ...],
     home: str,
     gains: Mapping[str, tuple[float, ...]],
-) -> tuple[Corner, ...]:
+) -> tuple[ContactCorner, ...]:
     """List where a controller is measured.
 
     Parameters
@@ -220,7 +222,7 @@ def corners_of(
 
 def _corners(
     environment: Environment, home: str, gains: Mapping[str, tuple[float, ...]]
-) -> Iterator[Corner]:
+) -> Iterator[ContactCorner]:
     points = list(environment.corners)
     if environment.nominal not in points:
         points.insert(0, environment.nominal)
@@ -230,11 +232,11 @@ def _corners(
         at += [f"Mt = {Mt:.6g} kg*m^2"] if Mt is not None else []
         at += [f"Bt = {Bt:.6g} N*m*s/rad"] if Bt is not None else []
         designed = environment.name == home and Mt is None and Bt is None
-        yield Corner(f"{environment.name}, {', '.join(at)}", contact, designed, Mt, Bt)
+        yield ContactCorner(f"{environment.name}, {', '.join(at)}", contact, designed, Mt, Bt)
 
 
 def _impedance_loops(
-    motion: TransferFunction, corner: Corner, Mt: FloatArray, Bt: FloatArray
+    motion: TransferFunction, corner: ContactCorner, Mt: FloatArray, Bt: FloatArray
 ) -> Loops:
     """Return ``G Ze Y`` of many admittances (thesis fig. 6.13)."""
     contact, free = ImpedanceLoop(motion, corner.contact).forward
@@ -246,7 +248,9 @@ def _impedance_loops(
     return Loops(numerator, denominator)
 
 
-def _force_value(motion: TransferFunction, corner: Corner, measure: Measure, gain: float) -> float:
+def _force_value(
+    motion: TransferFunction, corner: ContactCorner, measure: Measure, gain: float
+) -> float:
     """Return a measure of the force loop ``Kp k G`` (thesis 6.33) in one contact."""
     loop_gain = gain * corner.contact.stiffness
     numerator = np.zeros((1, len(motion.denominator)))

@@ -201,7 +201,7 @@ def characteristic_polynomial(loop: ImpedanceLoop, Mt: float, Bt: float) -> Floa
     return np.asarray(trim(_characteristics(_basis(loop), np.array(Mt), np.array(Bt)).tolist()))
 
 
-def is_stable(loop: ImpedanceLoop, Mt: ArrayLike, Bt: ArrayLike) -> BoolArray:
+def stabilizes(loop: ImpedanceLoop, Mt: ArrayLike, Bt: ArrayLike) -> BoolArray:
     """Tell for which admittances the closed loop is Hurwitz (Mt and Bt broadcast).
 
     Parameters

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from nrs_design.design.impedance import ImpedanceLoop, is_stable, open_loop
+from nrs_design.design.impedance import ImpedanceLoop, open_loop, stabilizes
 from nrs_design.design.transfer import (
     FloatArray,
     TransferFunction,
@@ -88,7 +88,7 @@ def loop_margins(loop: ImpedanceLoop, Mt: float, Bt: float) -> LoopMargins:
     """
     tf = open_loop(loop, Mt, Bt)
     limit = stiffness_limit(loop, Mt, Bt)
-    if not is_stable(loop, Mt, Bt):
+    if not stabilizes(loop, Mt, Bt):
         raise DesignError(
             f"the loop with Mt = {Mt:.6g} kg m^2 and Bt = {Bt:.6g} N m s/rad is unstable at "
             f"{loop.contact.stiffness:.6g} N m/rad",

@@ -1,7 +1,8 @@
 """A deterministic search on the unit square for objectives with a forbidden region.
 
 The best v of every u, then the best u: along one axis a region that is forbidden is only an end of
-an interval, and cannot hold up the search as its slanted edge would in the square.
+an interval, and cannot hold up the search as its slanted edge would in the square. By hand, as the
+optimizers of SciPy want constraints that are smooth, or ask for one point after the other.
 """
 
 from __future__ import annotations

@@ -1,4 +1,8 @@
-"""A deterministic pattern search on the unit square, run from several points side by side."""
+"""A deterministic pattern search on the unit square, run from several points side by side.
+
+By hand, as the optimizers of SciPy ask for one point after the other: `differential_evolution`
+finds the same optimum in twenty times the time (see `benchmarks/`).
+"""
 
 from __future__ import annotations
 

@@ -19,8 +19,10 @@ from nrs_design.design.transfer import (
     ratio_slope,
     squared_magnitude,
     static_gain,
+    to_control,
 )
 from nrs_design.errors import DesignError
+from nrs_design.plotting import load_matplotlib
 
 _LOCUS_MOTION = 0.02
 _LOCUS_LIMIT = 4000
@@ -122,37 +124,6 @@ def design_pd(
     return PdDesign(zero, 1 / magnitude, angle, (pole, pole.conjugate()), wn)
 
 
-def close_motion_loop(
-    gain: float, time_constant: float, derivative_gain: float, zero: float
-) -> TransferFunction:
-    """Return G of thesis 6.1: actuator ``gain/(s (tau s + 1))`` under ``Kd (s + zero)``.
-
-    Parameters
-    ----------
-    gain, time_constant : float
-        Actuator, rad/s per unit of command and s.
-    derivative_gain, zero : float
-        Controller, units of command per rad/s and 1/s.
-
-    Returns
-    -------
-    TransferFunction
-        ``Kd Km (s + z) / (tau s^2 + (1 + Kd Km) s + Kd Km z)``.
-
-    Raises
-    ------
-    DesignError
-        If a parameter is not positive.
-    """
-    _check_positive(
-        gain=gain, time_constant=time_constant, derivative_gain=derivative_gain, zero=zero
-    )
-    loop_gain = derivative_gain * gain
-    return TransferFunction(
-        (loop_gain, loop_gain * zero), (time_constant, 1 + loop_gain, loop_gain * zero)
-    )
-
-
 def motion_loop_response(tf: TransferFunction) -> MotionLoopResponse:
     """Report poles, damping, overshoot and bandwidth of a stable closed loop of order >= 2.
 
@@ -194,9 +165,10 @@ def dominant_pair(roots: ComplexArray) -> tuple[float, float]:
 def step_overshoot(tf: TransferFunction) -> float:
     """Return the overshoot of the unit step response as a fraction of its final value.
 
-    The response is the exact exponential solution, also with repeated poles: a grid resolved
-    for every pole only tells which extremum is the highest, and a root search of the impulse
-    response then finds it.
+    By hand, because the grid of python-control misses peaks: of 97 % overshoot it finds 96 %. The
+    response is the exact exponential solution, also with repeated poles: a grid resolved for every
+    pole only tells which extremum is the highest, and a root search of the impulse response then
+    finds it.
 
     Parameters
     ----------
@@ -291,6 +263,7 @@ class _StepResponse:
 
 
 def _bandwidth(tf: TransferFunction) -> float:
+    # By hand: python-control looks on a grid, and finds none where the magnitude rises first.
     half = 0.5 * static_gain(tf) ** 2
     excess = np.polysub(squared_magnitude(tf.numerator), half * squared_magnitude(tf.denominator))
     crossings = np.sqrt(positive_roots(excess))
@@ -317,24 +290,23 @@ def root_locus(open_loop: TransferFunction, gains: ArrayLike) -> ComplexArray:
     DesignError
         If a gain lowers the order of the loop (a pole passes through infinity).
     """
-    from scipy.optimize import linear_sum_assignment
+    chosen = np.asarray(gains, dtype=np.float64)
+    for gain in chosen:
+        _closed_polynomial(open_loop, float(gain))
+    load_matplotlib()
+    import control
 
-    branches: list[ComplexArray] = []
-    for gain in np.asarray(gains, dtype=np.float64):
-        found = _closed_poles(open_loop, float(gain))
-        if branches:
-            distance = np.abs(branches[-1][:, None] - found[None, :])
-            found = found[linear_sum_assignment(distance)[1]]
-        branches.append(found)
-    return np.array(branches, dtype=np.complex128).reshape(-1, open_loop.order)
+    system = to_control(open_loop)
+    return np.asarray(control.root_locus_map(system, gains=chosen).loci, dtype=np.complex128)
 
 
 def locus_gains(open_loop: TransferFunction, gain: float) -> FloatArray:
     """Choose gains from 0 on at which a drawn locus looks smooth and its branches end.
 
-    The grid holds 0, `gain` itself and every breakaway gain up to its end: at least 100 times
-    `gain`, and as far as it takes for a pole to come near every zero. It is halved where a pole
-    near the poles and zeros moves by more than 2 % of their extent.
+    By hand, because the gains that python-control chooses leave corners, steps of up to 9 % of the
+    extent. The grid holds 0, `gain` itself and every breakaway gain up to its end: at least 100
+    times `gain`, and as far as it takes for a pole to come near every zero. It is halved where a
+    pole near the poles and zeros moves by more than 2 % of their extent.
 
     Parameters
     ----------
@@ -387,11 +359,15 @@ def _last_gain(
     return last
 
 
-def _closed_poles(open_loop: TransferFunction, gain: float) -> ComplexArray:
+def _closed_polynomial(open_loop: TransferFunction, gain: float) -> tuple[float, ...]:
     closed = np.polyadd(open_loop.denominator, gain * np.asarray(open_loop.numerator))
     if closed[0] == 0:
         raise DesignError(f"at the gain {gain:.6g} a closed-loop pole is at infinity")
-    return poles(TransferFunction((1.0,), tuple(closed.tolist())))
+    return tuple(closed.tolist())
+
+
+def _closed_poles(open_loop: TransferFunction, gain: float) -> ComplexArray:
+    return poles(TransferFunction((1.0,), _closed_polynomial(open_loop, gain)))
 
 
 def _breakaway(open_loop: TransferFunction, last: float) -> FloatArray:

@@ -1,4 +1,8 @@
-"""Rational transfer functions in s, and the few polynomial tools that the loop designs share."""
+"""Rational transfer functions in s, and the few polynomial tools that the loop designs share.
+
+By hand, as designs need many polynomials at once and no matplotlib, which python-control loads;
+`to_control` is the way over to it.
+"""
 
 from __future__ import annotations
 
@@ -108,8 +112,9 @@ def to_control(tf: TransferFunction) -> Any:
 def hurwitz(coefficients: ArrayLike) -> BoolArray:
     """Tell which of many polynomials have all their roots in the open left half plane.
 
-    Routh's array, run on all polynomials at once. A leading coefficient that is exactly zero
-    lowers the degree, so an admittance without mass needs no case of its own.
+    Routh's array, run on all polynomials at once, where `numpy.roots` takes one. A leading
+    coefficient that is exactly zero lowers the degree, so an admittance without mass needs no case
+    of its own.
 
     Parameters
     ----------

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -10,10 +9,8 @@ from nrs_design.certificates.certificate import Certificate
 from nrs_design.certificates.verify import verify
 from nrs_design.controllers.controller_design import ControllerDesign
 from nrs_design.exporters.record import ExportRecord, build_record, find_mismatch
-from nrs_design.pipeline import Designed, run_certification, run_design, wrong_kind
+from nrs_design.pipeline import Designed, Progress, run_certification, run_design, wrong_kind
 from nrs_design.spec import InteractionDesignSpec, LoadedSpec
-
-Progress = Callable[[str], None]
 
 
 @dataclass(frozen=True, slots=True)

@@ -28,11 +28,11 @@ from nrs_design.proof.evidence.unstable_mode import (
     worst_eigenvalue,
 )
 from nrs_design.proof.system import Mode, SwitchedSystem, Time
-from nrs_design.spec import InteractionDesignSpec, LoadedSpec, doubt_spec
+from nrs_design.spec import LoadedSpec, doubt_spec
 from nrs_design.spec.document import Position
 
 if TYPE_CHECKING:
-    from nrs_design.design.evidence import DesignEvidence
+    from nrs_design.design.analysis import DesignAnalysis
 
 
 @dataclass(frozen=True)
@@ -154,21 +154,17 @@ class Examiner:
         place = self.places.at("controllers")
         return self.obligation(STIFFNESS_RANGE, "controllers", Status.MISSED, message, place)
 
-    def stiffness_ranges(self, evidence: DesignEvidence) -> Iterator[Obligation]:
+    def stiffness_ranges(self, analysis: DesignAnalysis) -> Iterator[Obligation]:
         """Yield NRS103 for every impedance controller."""
-        spec = self.loaded.spec
-        assert isinstance(spec, InteractionDesignSpec)
-        for item in evidence.impedance:
-            controller = spec.controllers[item.name]
-            assert controller.type == "impedance"
+        for item in analysis.impedance:
             highest, limit = item.highest_stiffness, item.lowest_limit
             held = ", all parameters in proportion" if item.problem.loop.contact.remembers else ""
-            ranged = controller.Mt.ranged or controller.Bt.ranged
+            ranged = any(gain.ranged for gain in item.given.gains().values())
             where = f"{item.name}, in the corners of its gain ranges" if ranged else item.name
             reached = highest < limit
             verb = "stays below" if reached else "reaches"
             message = (
-                f"design goal: the stiffness of {controller.environment}, up to {highest:.6g} "
+                f"design goal: the stiffness of {item.given.environment}, up to {highest:.6g} "
                 f"N*m/rad, {verb} the limit {limit:.6g} N*m/rad of controller {where}{held} "
                 "(floating point, not a proof)"
             )
@@ -180,9 +176,9 @@ class Examiner:
                 self.places.at("controllers", item.name),
             )
 
-    def goals(self, evidence: DesignEvidence) -> Iterator[Obligation]:
+    def goals(self, analysis: DesignAnalysis) -> Iterator[Obligation]:
         """Yield NRS106 for every goal of every controller."""
-        for item in evidence.measured:
+        for item in analysis.measured:
             for found in item.achieved:
                 if found.goal is None:
                     continue
@@ -196,14 +192,14 @@ class Examiner:
                 place = self.places.goal(item.name, measure.goal)
                 yield self.obligation(GOAL, f"{item.name}: {measure.goal}", status, message, place)
 
-    def cautions(self, evidence: DesignEvidence | None) -> Iterator[Caution]:
+    def cautions(self, analysis: DesignAnalysis | None) -> Iterator[Caution]:
         """Yield what is doubtful about the spec and its design."""
-        for doubt in (*doubt_spec(self.loaded.spec), *(evidence.warnings if evidence else ())):
+        for doubt in (*doubt_spec(self.loaded.spec), *(analysis.warnings if analysis else ())):
             place = self.places.at(*doubt.at)
             yield Caution(self.loaded.path, str(doubt), place.line, place.column)
 
 
-def rate_of(certificate: Certificate | None) -> tuple[str | None, str | None]:
+def certified_rate(certificate: Certificate | None) -> tuple[str | None, str | None]:
     """Return the certified rate as text and its name; None where nothing is proved."""
     evidence = None if certificate is None else certificate.evidence
     if certificate is None or evidence is None:
@@ -212,8 +208,3 @@ def rate_of(certificate: Certificate | None) -> tuple[str | None, str | None]:
     if rate is None:
         return None, None
     return rate_text(rate, time), "alpha" if time is Time.CONTINUOUS else "rho"
-
-
-def common_quadratic_of(certificate: Certificate) -> str:
-    """Tell what a certificate says about a common quadratic function."""
-    return str(certificate.common_quadratic)

@@ -3,19 +3,22 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from nrs_design import __version__
 from nrs_design.certificates.certificate import Certificate
 from nrs_design.certificates.verify import verify
-from nrs_design.gating.examine import Examiner, common_quadratic_of, rate_of
+from nrs_design.gating.examine import Examiner, certified_rate
 from nrs_design.gating.lock import Lock, LockedSpec, relative_to_lock
 from nrs_design.gating.obligations import GateOutcome, Obligation, SpecOutcome, Status, failed
 from nrs_design.gating.rules import LOCKED, RULES, SWITCHING_STABLE
 from nrs_design.spec import InteractionDesignSpec, LoadedSpec, RobotSpec, read_spec
 
-Progress = Callable[[str], None]
+if TYPE_CHECKING:
+    from nrs_design.pipeline import Progress
+
 RENEW = "run nrs-design gate without --locked"
 PRUNE = "run nrs-design gate with --prune"
 
@@ -123,7 +126,7 @@ def _examine(loaded: LoadedSpec, entry: LockedSpec | None, file: Path) -> SpecOu
 def _confirmed(
     examiner: Examiner, certificate: Certificate, entry: LockedSpec, place: Path, file: Path
 ) -> SpecOutcome:
-    rate, rate_name = rate_of(certificate)
+    rate, rate_name = certified_rate(certificate)
     return SpecOutcome(
         path=examiner.loaded.path,
         obligations=(
@@ -134,7 +137,7 @@ def _confirmed(
         ),
         sha256=examiner.loaded.sha256,
         verdict=certificate.verdict,
-        common_quadratic=common_quadratic_of(certificate),
+        common_quadratic=str(certificate.common_quadratic),
         rate=rate,
         rate_name=rate_name,
         modes=len(certificate.system.modes),
@@ -161,7 +164,7 @@ def _find_difference(certificate: Certificate, entry: LockedSpec, loaded: Loaded
     """Say how a valid certificate differs from what was locked, or from what the spec asks for."""
     if entry.certificate is None or certificate.id != entry.certificate.id:
         return "is not the certificate that was locked"
-    if (certificate.verdict, rate_of(certificate)[0]) != (entry.verdict, entry.rate):
+    if (certificate.verdict, certified_rate(certificate)[0]) != (entry.verdict, entry.rate):
         return "has another verdict or rate than the lock file says"
     if certificate.gains != entry.gains:
         return "is about other gains than the lock file says"

@@ -81,7 +81,7 @@ OUTPUT = Rule(
     "NRS005",
     "The results can be written",
     "Results are written whole or not at all, never through a symbolic link, and never over a "
-    "file of another spec or one that is no result of nrs-design.",
+    "file of another spec or one that is not a result of nrs-design.",
     "Choose another place with --out or --reports, give the spec a name of its own, or make the "
     "folder writable.",
 )
@@ -177,7 +177,7 @@ INTERNAL = Rule(
     "NRS900",
     "The program works as intended",
     "Two independent computations disagree, or the program met a case that it was not written "
-    "for. This is a defect of nrs-design and says nothing about the spec: it is no verdict.",
+    "for. This is a defect of nrs-design and says nothing about the spec: it is not a verdict.",
     "Report it with the spec and the output of the single command with -v.",
 )
 
@@ -238,13 +238,13 @@ WORDS: Mapping[str, Word] = MappingProxyType(
             ),
             Word(
                 "met",
-                "A goal is reached that is no statement of stability: a design goal computed in "
+                "A goal is reached that is not a statement of stability: a design goal computed in "
                 "floating point, or the agreement of files.",
                 "Nothing. Exit code 0.",
             ),
             Word(
                 "missed",
-                "A goal is missed that is no statement of stability: a design goal computed in "
+                "A goal is missed that is not a statement of stability: a design goal computed in "
                 "floating point, or the agreement of files.",
                 "Read the rule that is named with it, by `nrs-design explain RULE`. Exit code 1.",
             ),

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from collections import Counter
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 from nrs_design.certificates.certificate import dump
 from nrs_design.controllers.gains import gains_of
 from nrs_design.errors import DesignError, OutputError, SpecError
-from nrs_design.gating.examine import Examiner, rate_of
+from nrs_design.gating.examine import Examiner, certified_rate
 from nrs_design.gating.obligations import (
     Caution,
     GateOutcome,
@@ -26,18 +26,17 @@ from nrs_design.output import CERTIFICATE, PAGE, write_output
 from nrs_design.ownership import REMEDY, check_owner, origin_of
 from nrs_design.pipeline import (
     Overrides,
+    Progress,
     Result,
     limits_of,
+    run_analysis,
     run_certification,
-    run_evidence,
     run_verification,
 )
 from nrs_design.spec import LoadedSpec, RobotSpec, read_spec
 
 if TYPE_CHECKING:
-    from nrs_design.design.evidence import DesignEvidence
-
-Progress = Callable[[str], None]
+    from nrs_design.design.analysis import DesignAnalysis
 
 
 @dataclass(frozen=True, slots=True)
@@ -184,7 +183,7 @@ def _examine(
         progress("re-check")
         obligations += (examiner.certificate(file, run_verification(file, result).fault),)
     goals, cautions = _goals_and_report(result, examiner, files, progress)
-    rate, rate_name = rate_of(certificate)
+    rate, rate_name = certified_rate(certificate)
     return SpecOutcome(
         path=loaded.path,
         obligations=obligations + goals,
@@ -204,12 +203,12 @@ def _examine(
 def _goals_and_report(
     result: Result, examiner: Examiner, files: Files, progress: Progress
 ) -> tuple[tuple[Obligation, ...], tuple[Caution, ...]]:
-    evidence: DesignEvidence | None = None
+    analysis: DesignAnalysis | None = None
     missed: tuple[Obligation, ...] = ()
     if result.designed is not None:
         progress("margins")
         try:
-            evidence = run_evidence(result.designed)
+            analysis = run_analysis(result.designed)
         except DesignError as error:
             missed = (examiner.no_margins(error),)
     if files.html:
@@ -219,9 +218,9 @@ def _goals_and_report(
 
         page = files.report(result.loaded.spec.name)
         origin = origin_of(result.loaded.path, page)
-        html = render_html(build_report(result, evidence), origin)
+        html = render_html(build_report(result, analysis), origin)
         write_output(page, html, replaces=PAGE)
-    cautions = tuple(examiner.cautions(evidence))
-    if evidence is None:
+    cautions = tuple(examiner.cautions(analysis))
+    if analysis is None:
         return missed, cautions
-    return (*examiner.stiffness_ranges(evidence), *examiner.goals(evidence)), cautions
+    return (*examiner.stiffness_ranges(analysis), *examiner.goals(analysis)), cautions

@@ -87,7 +87,7 @@ def read_proposal(path: Path) -> Proposal:
 
 def _read_bytes(path: Path) -> bytes:
     if not path.is_file():
-        raise DataError("is no file", path=path, remedy="check the path")
+        raise DataError("is not a file", path=path, remedy="check the path")
     try:
         with open_regular(path) as file:
             content = file.read(MAX_BYTES + 1)

@@ -90,7 +90,7 @@ def read_number(value: object, name: str = "the value") -> Fraction:
     number = float(value)
     if not isfinite(number) or number != value:
         raise SpecError(
-            f"{name} holds {value}, which is no finite double-precision number",
+            f"{name} holds {value}, which is not a finite double-precision number",
             remedy="give a finite float, or the exact number as text",
         )
     return Fraction(number)

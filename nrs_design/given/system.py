@@ -37,7 +37,7 @@ def spec_of_matrices(
 
     Parameters
     ----------
-    modes, name, time, dwell_time, transitions, resets, parameters
+    modes, name, time, dwell_time, longest_dwell_time, transitions, resets, parameters
         As for `nrs_design.certify`.
 
     Raises
@@ -117,12 +117,14 @@ def _depth(held: object) -> int:
     return 1 + _depth(held[0]) if isinstance(held, list | tuple) and held else 0
 
 
-def _switching(times: Mapping[str, object], transitions: object, unit: str) -> object:
+def _switching(
+    times: Mapping[str, object], transitions: Sequence[tuple[str, str]] | None, unit: str
+) -> object:
     rules: Document = {
         key: _dwell_times(value, key, unit) for key, value in times.items() if value is not None
     }
     if transitions is not None:
-        rules["transitions"] = [[*map(str, pair)] for pair in transitions]  # type: ignore[attr-defined]
+        rules["transitions"] = [[*map(str, pair)] for pair in transitions]
     return rules or "arbitrary"
 
 

@@ -1,11 +1,13 @@
-"""The closed motion loop: velocity command to velocity of one axis."""
+"""The closed motion loop of one axis: commanded to actual velocity, or position to position."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from fractions import Fraction
 
+from nrs_design.errors import AssemblyError
 from nrs_design.models.actuator import Actuator
+from nrs_design.models.linear_form import LinearForm, combine, zero
 
 
 @dataclass(frozen=True, slots=True)
@@ -23,6 +25,51 @@ class MotionLoop:
     numerator: tuple[Fraction, ...]
     denominator: tuple[Fraction, ...]
     given: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Realization:
+    """Controllable canonical form ``xp' = A xp + B u``, ``y = C xp`` with ``B = [0, ..., 1]'``."""
+
+    A: tuple[tuple[Fraction, ...], ...]
+    C: tuple[Fraction, ...]
+
+    @property
+    def order(self) -> int:
+        """Number of states."""
+        return len(self.C)
+
+    def output(self, size: int) -> LinearForm:
+        """Return y as a linear form of a state of that size, in which xp stands first."""
+        return [*self.C, *zero(size - self.order)]
+
+    def rates(self, command: LinearForm) -> list[LinearForm]:
+        """Return xp' under the command u, as linear forms of the state that u is one of."""
+        rows = [[*row, *zero(len(command) - self.order)] for row in self.A]
+        return [*rows[:-1], combine((Fraction(1), rows[-1]), (Fraction(1), command))]
+
+
+def realize(loop: MotionLoop) -> Realization:
+    """Return the minimal realization of a strictly proper motion loop (thesis 6.13-6.14).
+
+    Raises
+    ------
+    AssemblyError
+        If the transfer function is not strictly proper.
+    """
+    n = len(loop.denominator) - 1
+    leading = loop.denominator[0]
+    if n < 1 or len(loop.numerator) > n or leading == 0:
+        raise AssemblyError(
+            "the motion loop is not strictly proper",
+            remedy="its numerator must have a lower degree than its denominator",
+        )
+    last = tuple(-c / leading for c in reversed(loop.denominator[1:]))
+    shift = tuple(tuple(Fraction(int(j == i + 1)) for j in range(n)) for i in range(n - 1))
+    padding = (Fraction(0),) * (n - len(loop.numerator))
+    return Realization(
+        (*shift, last), tuple(c / leading for c in reversed(loop.numerator)) + padding
+    )
 
 
 def close_motion_loop(actuator: Actuator, Kp: Fraction, Kd: Fraction) -> MotionLoop:

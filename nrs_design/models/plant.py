@@ -9,7 +9,6 @@ from fractions import Fraction
 from nrs_design.models.actuator import Actuator
 from nrs_design.models.contact import LINEAR_LAWS
 from nrs_design.models.contact.environment import Environment
-from nrs_design.models.interval import Interval
 from nrs_design.models.motion_loop import MotionLoop, close_motion_loop
 from nrs_design.spec import EnvironmentSpec, InteractionDesignSpec
 
@@ -77,4 +76,4 @@ def build_plant(spec: InteractionDesignSpec) -> Plant:
 
 def _environment(name: str, spec: EnvironmentSpec) -> Environment:
     law, turned = LINEAR_LAWS[spec.model], spec.exact_at_pivot()
-    return Environment(name, law, tuple(Interval(*turned[key]) for key in law.keys))
+    return Environment(name, law, tuple(turned[key] for key in law.keys))

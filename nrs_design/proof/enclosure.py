@@ -63,7 +63,7 @@ def exponential(A: RationalMatrix, begin: Fraction, end: Fraction) -> Any:
     return E
 
 
-def meets(enclosed: Any, M: RationalMatrix, error: Fraction) -> bool:
+def overlap(enclosed: Any, M: RationalMatrix, error: Fraction) -> bool:
     """Tell whether balls overlap, entry by entry, those of one radius around a rational matrix.
 
     Parameters

@@ -18,7 +18,7 @@ from fractions import Fraction
 from typing import Any
 
 from nrs_design.proof.constant import system_at
-from nrs_design.proof.enclosure import eigenvalues, exponential, meets, precision
+from nrs_design.proof.enclosure import eigenvalues, exponential, overlap, precision
 from nrs_design.proof.evidence import (
     AbstractEvidence,
     BlockTriangular,
@@ -48,7 +48,7 @@ def agrees(system: SwitchedSystem, evidence: AbstractEvidence) -> bool:
 
 
 def _has_positive_forms(system: SwitchedSystem, evidence: AbstractEvidence) -> bool:
-    return all(_has_positive_spectrum(_matrix(form)) for _, form in evidence.forms(system))
+    return all(has_positive_spectrum(_matrix(form)) for _, form in evidence.forms(system))
 
 
 def _is_mode_unstable(system: SwitchedSystem, evidence: UnstableMode) -> bool:
@@ -100,7 +100,7 @@ def _is_met(A: RationalMatrix, time: Fraction) -> bool:
     """Tell whether flint's enclosure of ``exp(A t)`` and that of a Taylor series overlap."""
     M, error = exponential_nearly(A, time)
     with precision():
-        return meets(exponential(A, time, time), M, error)
+        return overlap(exponential(A, time, time), M, error)
 
 
 def _decreases_everywhere(system: SwitchedSystem, evidence: CommonQuadratic) -> bool:
@@ -115,7 +115,7 @@ def _decreases_everywhere(system: SwitchedSystem, evidence: CommonQuadratic) -> 
         return -half - half.transpose() - Q * (2 * p * d)
 
     modes = (decrease(mode.A) for mode in system.modes)
-    return _has_positive_spectrum(Q) and all(map(_has_positive_spectrum, modes))
+    return has_positive_spectrum(Q) and all(map(has_positive_spectrum, modes))
 
 
 # The kinds on which flint has more to say than on the definiteness of their forms.
@@ -134,7 +134,7 @@ def _matrix(rows: Sequence[Sequence[int]]) -> Any:
     return fmpz_mat([list(row) for row in rows])
 
 
-def _has_positive_spectrum(M: Any) -> bool:
+def has_positive_spectrum(M: Any) -> bool:
     """Tell whether the characteristic polynomial of a symmetric flint matrix alternates in sign.
 
     All roots are real, so by Descartes' rule they are all positive iff it does.

@@ -1,8 +1,8 @@
 """Reports for people: one document, rendered as HTML, PDF or PNG figures."""
 
 from nrs_design.reporting.document import Report
+from nrs_design.reporting.images import render_png
 from nrs_design.reporting.pdf import render_pdf
-from nrs_design.reporting.png import render_png
 from nrs_design.reporting.render import render_html
 from nrs_design.reporting.report import build_report
 

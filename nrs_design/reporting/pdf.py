@@ -9,7 +9,7 @@ from typing import Any
 
 from nrs_design.plotting import load_matplotlib
 from nrs_design.reporting.document import Block, Bullets, Illustration, Paragraph, Report, Table
-from nrs_design.reporting.svg import to_svg_file
+from nrs_design.reporting.images import to_svg_file
 from nrs_design.reporting.text import drawable
 
 _TINT = {

@@ -6,7 +6,7 @@ from typing import Any
 
 from nrs_design.printable import visible
 from nrs_design.reporting.document import Bullets, Illustration, Paragraph, Report, Section, Table
-from nrs_design.reporting.svg import to_svg
+from nrs_design.reporting.images import to_svg
 
 # More letters in a row than these do not fit on a telephone.
 _NARROW = 36

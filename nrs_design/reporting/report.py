@@ -11,19 +11,18 @@ from nrs_design.reporting.sections.goals import goal_facts
 from nrs_design.reporting.sections.head import claim_of, facts, proved_rate, remarks_of
 from nrs_design.reporting.sections.modes import modes_section
 from nrs_design.reporting.sections.proof import proof_section
-from nrs_design.reporting.sections.recheck import recheck_section
-from nrs_design.reporting.sections.search import assumptions_section, rungs_section
+from nrs_design.reporting.sections.tail import assumptions_section, recheck_section, rungs_section
 
 if TYPE_CHECKING:
     import datetime
 
-    from nrs_design.design.evidence import DesignEvidence
+    from nrs_design.design.analysis import DesignAnalysis
     from nrs_design.pipeline import Result
 
 
 def build_report(
     result: Result,
-    evidence: DesignEvidence | None = None,
+    analysis: DesignAnalysis | None = None,
     *,
     times: bool = False,
     date: datetime.date | None = None,
@@ -34,8 +33,8 @@ def build_report(
     ----------
     result : Result
         As `nrs_design.pipeline.run_certification` gives it.
-    evidence : DesignEvidence, optional
-        As `nrs_design.pipeline.run_evidence` gives it. Without it the report has no margins and
+    analysis : DesignAnalysis, optional
+        As `nrs_design.pipeline.run_analysis` gives it. Without it the report has no margins and
         no design figures.
     times : bool
         Add how long every rung of the search took. The same spec then gives another page each
@@ -56,10 +55,10 @@ def build_report(
         verdict=str(certification.verdict),
         claim=claim_of(certification),
         remarks=remarks_of(certification),
-        facts=(*facts(result), *goal_facts(evidence)),
+        facts=(*facts(result), *goal_facts(analysis)),
         sections=(
             proof_section(result),
-            *_design(result, evidence),
+            *_design(result, analysis),
             modes_section(system, proved_rate(system, certification.evidence)),
             *evidence_sections(certification),
             assumptions_section(certification),
@@ -70,5 +69,5 @@ def build_report(
     )
 
 
-def _design(result: Result, evidence: DesignEvidence | None) -> tuple[Section, ...]:
-    return () if result.designed is None else design_sections(result.designed, evidence)
+def _design(result: Result, analysis: DesignAnalysis | None) -> tuple[Section, ...]:
+    return () if result.designed is None else design_sections(result.designed, analysis)

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from nrs_design.models.robot import design_balance
 from nrs_design.models.robot.balance import LegBalance
+from nrs_design.reproduction.comparison import Comparison, Tolerance, misprint, omitted, reproduced
 from nrs_design.reproduction.neuroboscope import robot, robot_spec
-from nrs_design.reproduction.row import Row, Tolerance, misprint, omitted, reproduced
 
 # Thesis 4.4: M_c, M_b, M_a in g, B_a in mm, k in N/mm, A0C_A in mm.
 LEFT = ("843.5", "1301.1", "2887.9", "113.5", "1.8041")
@@ -13,7 +13,7 @@ RIGHT = ("844.1", "1302.4", "2892", "113.5", "1.5919")
 TOLERANCE = Tolerance(5e-4)
 
 
-def rows() -> tuple[Row, ...]:
+def rows() -> tuple[Comparison, ...]:
     """Recompute counter-masses, springs and the two misprinted lengths."""
     ours = design_balance(robot_spec(), robot())
     # What the printed spring constant of the right leg asks for.
@@ -41,7 +41,9 @@ def rows() -> tuple[Row, ...]:
     )
 
 
-def _leg(name: str, printed: tuple[str, ...], ours: LegBalance, distance: str) -> tuple[Row, ...]:
+def _leg(
+    name: str, printed: tuple[str, ...], ours: LegBalance, distance: str
+) -> tuple[Comparison, ...]:
     masses = {"M_c": ours.arm_mass, "M_b": ours.coupler_mass, "M_a": ours.total_mass}
     note = (
         "With the arm's center of mass 75.4 mm from the coupler's end; table 3.1 has 65.6 mm."

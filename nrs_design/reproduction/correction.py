@@ -6,8 +6,8 @@ import numpy as np
 
 from nrs_design.models.robot import Correction, correction_coefficients
 from nrs_design.models.robot.correction import DEPTH_SINES, TABLE_3_5, WHOLE_WORKSPACE, Sine
+from nrs_design.reproduction.comparison import Comparison, Tolerance, misprint, omitted, reproduced
 from nrs_design.reproduction.neuroboscope import robot
-from nrs_design.reproduction.row import Row, Tolerance, misprint, omitted, reproduced
 
 # Thesis table 3.5: the rows with plain sines, in its order.
 SINES = (
@@ -42,7 +42,7 @@ TILTS = (
 _FIGURE = "The trajectory of figure 3.7 is not in the text."
 
 
-def rows() -> tuple[Row, ...]:
+def rows() -> tuple[Comparison, ...]:
     """Recompute tables 3.5 and 3.7 along slow sines in phase."""
     sines = (_sine(sine, print_) for sine, print_ in zip(TABLE_3_5, SINES, strict=True))
     figure = (
@@ -53,7 +53,7 @@ def rows() -> tuple[Row, ...]:
     return (*sines, *figure, _whole(), _final(), *tilts)
 
 
-def _sine(sine: Sine, printed: tuple[str, str, str]) -> Row:
+def _sine(sine: Sine, printed: tuple[str, str, str]) -> Comparison:
     low, high = (1e3 * d for d in sine.d)
     return reproduced(
         f"K_corr, phi {sine.phi:g}, psi {sine.psi:g} rad, d {low:.0f} - {high:.0f} mm",
@@ -65,7 +65,7 @@ def _sine(sine: Sine, printed: tuple[str, str, str]) -> Row:
     )
 
 
-def _whole() -> Row:
+def _whole() -> Comparison:
     found = correction_coefficients(robot(), WHOLE_WORKSPACE)
     return omitted(
         "K_corr over the whole workspace",
@@ -78,7 +78,7 @@ def _whole() -> Row:
     )
 
 
-def _final() -> Row:
+def _final() -> Comparison:
     printed = [*SINES, *(tuple(print_.split(", ")) for _, print_ in FIGURE), WHOLE]
     means = np.array([[float(k) for k in row] for row in printed]).mean(axis=0)
     return misprint(
@@ -93,7 +93,9 @@ def _final() -> Row:
     )
 
 
-def _tilt(degrees: float, section: str, sides: tuple[str, str], middle: str) -> tuple[Row, Row]:
+def _tilt(
+    degrees: float, section: str, sides: tuple[str, str], middle: str
+) -> tuple[Comparison, Comparison]:
     tilted = robot().tilted(float(np.radians(degrees)))
     depth = correction_coefficients(tilted, DEPTH_SINES)
     angles = correction_coefficients(tilted, TABLE_3_5)

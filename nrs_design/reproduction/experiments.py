@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from nrs_design.reproduction.row import Row, hardware_only
+from nrs_design.reproduction.comparison import Comparison, hardware_only
 
 IMPEDANCE = "N m s/rad"
 # Quantity, section, print, unit.
@@ -21,6 +21,6 @@ MEASUREMENTS = (
 )
 
 
-def rows() -> tuple[Row, ...]:
+def rows() -> tuple[Comparison, ...]:
     """List the measurements."""
     return tuple(hardware_only(*measurement) for measurement in MEASUREMENTS)

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from nrs_design.design.force_loop import force_loop_response
 from nrs_design.reproduction import thesis
-from nrs_design.reproduction.row import Row, Tolerance, misprint, reproduced
+from nrs_design.reproduction.comparison import Comparison, Tolerance, misprint, reproduced
 
 
-def rows() -> tuple[Row, ...]:
+def rows() -> tuple[Comparison, ...]:
     """Recompute the open loop 6.33 and the poles that Kp = 0.02 gives."""
     stiffness = float(thesis.SOFT)
     loop = thesis.EXACT_LOOP

@@ -6,21 +6,21 @@ from fractions import Fraction
 
 from nrs_design.controllers.laws import Admittance, ProportionalForce
 from nrs_design.models.contact import Elastic
+from nrs_design.models.motion_loop import realize
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.system import Mode, SwitchedSystem, Time
 from nrs_design.reproduction import thesis
-from nrs_design.switched.close_loop import (
-    Row,
-    force_mode,
-    impedance_mode,
-    realize,
+from nrs_design.switched.modes import (
+    Rows,
+    position_mode,
     to_force_coordinates,
+    velocity_mode,
 )
 
 MOTION = realize(thesis.REALIZED_LOOP)
 
 
-def impedance_rows(stiffness: Fraction, Mt: str, Bt: str, coordinates: str) -> list[Row]:
+def impedance_rows(stiffness: Fraction, Mt: str, Bt: str, coordinates: str) -> Rows:
     """Return A of an impedance mode (thesis 6.28), in deflection or force coordinates.
 
     Parameters
@@ -35,17 +35,17 @@ def impedance_rows(stiffness: Fraction, Mt: str, Bt: str, coordinates: str) -> l
         Last state.
     """
     environment = Elastic(stiffness)
-    rows = impedance_mode(MOTION, Admittance(Fraction(Mt), Fraction(Bt)), environment)
+    rows = velocity_mode(MOTION, Admittance(Fraction(Mt), Fraction(Bt)), environment)
     return rows if coordinates == "deflection" else to_force_coordinates(rows, MOTION, environment)
 
 
-def hybrid_rows() -> tuple[list[Row], list[Row]]:
+def hybrid_rows() -> tuple[Rows, Rows]:
     """Return A of the position mode and of the force mode (thesis 6.44 and 6.46)."""
-    force = force_mode(MOTION, ProportionalForce(thesis.FORCE_GAIN), Elastic(thesis.SOFT), "soft")
+    force = position_mode(MOTION, ProportionalForce(thesis.FORCE_GAIN), Elastic(thesis.SOFT))
     return [list(row) for row in MOTION.A], force
 
 
-def printed_rows(damping: str, force: tuple[str, str]) -> list[Row]:
+def printed_rows(damping: str, force: tuple[str, str]) -> Rows:
     """Return an A of 6.3.2.2 or 6.4.1 digit by digit: entries (3, 3), (4, 1) and (4, 2) vary."""
     texts = (
         ("0", "1", "0", "0"),
@@ -56,7 +56,7 @@ def printed_rows(damping: str, force: tuple[str, str]) -> list[Row]:
     return [[Fraction(text) for text in row] for row in texts]
 
 
-def family(name: str, *modes: list[Row]) -> SwitchedSystem:
+def family(name: str, *modes: Rows) -> SwitchedSystem:
     """Return the switched system of some matrices."""
     named = tuple(Mode(f"A{i + 1}", RationalMatrix.from_rows(rows)) for i, rows in enumerate(modes))
     states = tuple(f"x{i + 1}" for i in range(len(modes[0])))

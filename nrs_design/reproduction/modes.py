@@ -4,25 +4,26 @@ from __future__ import annotations
 
 import numpy as np
 
+from nrs_design.models.linear_form import LinearForm
 from nrs_design.proof.evidence.unstable_mode import is_stable
 from nrs_design.reproduction import thesis
+from nrs_design.reproduction.comparison import (
+    Comparison,
+    Number,
+    PrintVerdict,
+    Tolerance,
+    claim,
+    format_number,
+    misprint,
+    reproduced,
+)
 from nrs_design.reproduction.matrices import (
     MOTION,
     family,
     impedance_rows,
     printed_rows,
 )
-from nrs_design.reproduction.row import (
-    Number,
-    Row,
-    Tolerance,
-    Verdict,
-    claim,
-    format_number,
-    misprint,
-    reproduced,
-)
-from nrs_design.switched.close_loop import Row as MatrixRow
+from nrs_design.switched.modes import Rows
 
 CLOSE = Tolerance(1e-4)
 WRONG_SIGN = (
@@ -30,12 +31,12 @@ WRONG_SIGN = (
 )
 
 
-def rows() -> tuple[Row, ...]:
+def rows() -> tuple[Comparison, ...]:
     """Recompute the matrices entry by entry, and their eigenvalues."""
     return (*_realization(), *_entries(), *_eigenvalues())
 
 
-def _realization() -> tuple[Row, ...]:
+def _realization() -> tuple[Comparison, ...]:
     num, den = thesis.EXACT_LOOP.numerator, thesis.EXACT_LOOP.denominator
     return (
         reproduced(
@@ -57,7 +58,7 @@ def _realization() -> tuple[Row, ...]:
     )
 
 
-def _entries() -> tuple[Row, ...]:
+def _entries() -> tuple[Comparison, ...]:
     soft = impedance_rows(thesis.SOFT, "0.01", "2.15", "force")
     stiff = impedance_rows(thesis.STIFF, "0.01", "2.11", "force")
     return (
@@ -113,7 +114,7 @@ def _entries() -> tuple[Row, ...]:
     )
 
 
-def _eigenvalues() -> tuple[Row, ...]:
+def _eigenvalues() -> tuple[Comparison, ...]:
     return (
         misprint(
             "eigenvalues of A1 as printed",
@@ -133,7 +134,7 @@ def _eigenvalues() -> tuple[Row, ...]:
     )
 
 
-def _not_hurwitz(name: str, section: str, rows: list[MatrixRow]) -> Row:
+def _not_hurwitz(name: str, section: str, rows: Rows) -> Comparison:
     system = family(name, rows)
     return claim(
         f"eigenvalues of {name} as printed",
@@ -141,13 +142,13 @@ def _not_hurwitz(name: str, section: str, rows: list[MatrixRow]) -> Row:
         "Hurwitz",
         ", ".join(map(format_number, _spectrum(rows))),
         "1/s",
-        verdict=Verdict.PRINT_IS_WRONG,
+        verdict=PrintVerdict.PRINT_IS_WRONG,
         holds=not is_stable(system.modes[0].A, system.time),
         note=WRONG_SIGN,
     )
 
 
-def _hurwitz(Bt: str, right: tuple[str, ...]) -> Row:
+def _hurwitz(Bt: str, right: tuple[str, ...]) -> Comparison:
     return reproduced(
         f"eigenvalues at k_soft, Mt 0.01, Bt {Bt}",
         "6.3.2.2",
@@ -160,12 +161,12 @@ def _hurwitz(Bt: str, right: tuple[str, ...]) -> Row:
     )
 
 
-def _spectrum(rows: list[MatrixRow]) -> tuple[Number, ...]:
+def _spectrum(rows: Rows) -> tuple[Number, ...]:
     """Return the eigenvalues, rightmost first, one for each complex pair."""
     found = np.linalg.eigvals(np.array(rows, dtype=float))
     upper = sorted(found[found.imag >= 0], key=lambda z: (-z.real, z.imag))
     return tuple(complex(z) if z.imag else float(z.real) for z in upper)
 
 
-def _floats(entries: MatrixRow) -> tuple[float, ...]:
+def _floats(entries: LinearForm) -> tuple[float, ...]:
     return tuple(map(float, entries))

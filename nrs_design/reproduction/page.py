@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from nrs_design import __version__
-from nrs_design.reproduction.row import Row
+from nrs_design.reproduction.comparison import Comparison
 from nrs_design.reproduction.table import count_verdicts
 
 
-def render_page(table: tuple[Row, ...]) -> str:
+def render_page(table: tuple[Comparison, ...]) -> str:
     """Return the page; the same rows give the same bytes."""
     from jinja2 import Environment, PackageLoader, StrictUndefined
 

@@ -12,16 +12,16 @@ from nrs_design.models.robot import (
     torque_shares,
 )
 from nrs_design.reproduction import thesis
-from nrs_design.reproduction.neuroboscope import robot
-from nrs_design.reproduction.row import (
-    Row,
+from nrs_design.reproduction.comparison import (
+    Comparison,
+    PrintVerdict,
     Tolerance,
-    Verdict,
     claim,
     misprint,
     omitted,
     reproduced,
 )
+from nrs_design.reproduction.neuroboscope import robot
 
 _FIGURE = "The trajectory of figure 3.7 is not in the text."
 # Quantity, section, print, unit.
@@ -42,7 +42,7 @@ NEEDS_THE_FIGURE = (
 )
 
 
-def rows() -> tuple[Row, ...]:
+def rows() -> tuple[Comparison, ...]:
     """Recompute torque shares and inertia ratios, and list what lacks its trajectory."""
     return (
         _shares(robot()),
@@ -52,7 +52,7 @@ def rows() -> tuple[Row, ...]:
     )
 
 
-def _shares(ours: Robot) -> Row:
+def _shares(ours: Robot) -> Comparison:
     means = torque_shares(ours, thesis_grid()).means
     return reproduced(
         "torque shares of gravity, Coriolis and inertia",
@@ -66,7 +66,7 @@ def _shares(ours: Robot) -> Row:
     )
 
 
-def _angular_velocity(ours: Robot) -> Row:
+def _angular_velocity(ours: Robot) -> Comparison:
     poses = thesis_grid()
     right = simplified_dynamics(ours, poses).Ms
     printed = simplified_dynamics(ours, poses, printed=True).Ms
@@ -77,14 +77,14 @@ def _angular_velocity(ours: Robot) -> Row:
         "3.33",
         "(theta_x', theta_y', 0)",
         "(theta_x', cos(theta_x) theta_y', sin(theta_x) theta_y')",
-        verdict=Verdict.PRINT_IS_WRONG,
+        verdict=PrintVerdict.PRINT_IS_WRONG,
         holds=1e-4 < worst < 1e-2,
         note=f"An approximation: it changes Ms by at most {100 * worst:.2g} % of its "
         "largest entry.",
     )
 
 
-def _inertia_ratio(ours: Robot) -> tuple[Row, ...]:
+def _inertia_ratio(ours: Robot) -> tuple[Comparison, ...]:
     reflected = 1 / (905**2 * thesis.MOTOR.inertia)
     full = float(mass_matrix(ours, ours.home)[0, 0])
     return (

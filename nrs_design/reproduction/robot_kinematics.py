@@ -16,19 +16,26 @@ from nrs_design.models.robot import (
 )
 from nrs_design.models.robot.geometry import direction
 from nrs_design.models.robot.vectors import Array
+from nrs_design.reproduction.comparison import (
+    Comparison,
+    PrintVerdict,
+    Tolerance,
+    claim,
+    misprint,
+    reproduced,
+)
 from nrs_design.reproduction.neuroboscope import robot
-from nrs_design.reproduction.row import Row, Tolerance, Verdict, claim, misprint, reproduced
 
 POSE = (0.1, -0.2, 0.2)
 _ROUNDING = 1e-12
 
 
-def rows() -> tuple[Row, ...]:
+def rows() -> tuple[Comparison, ...]:
     """Recompute the crank angle, the orientation and the joint speeds."""
     return (_crank_angle(robot()), _crank_range(robot()), *_orientation(), *_speeds(robot()))
 
 
-def _crank_angle(ours: Robot) -> Row:
+def _crank_angle(ours: Robot) -> Comparison:
     return misprint(
         "theta3 at phi 0.1, psi -0.2 rad, d 200 mm",
         "3.10",
@@ -41,7 +48,7 @@ def _crank_angle(ours: Robot) -> Row:
     )
 
 
-def _crank_range(ours: Robot) -> Row:
+def _crank_range(ours: Robot) -> Comparison:
     space = ours.workspace
     poses = pose_grid([0.0], (-space.psi, 0.0, space.psi), np.linspace(*space.d, 101))
     crank = np.degrees(inverse_kinematics(ours, poses)[..., 2])
@@ -56,7 +63,7 @@ def _crank_range(ours: Robot) -> Row:
     )
 
 
-def _orientation() -> tuple[Row, Row]:
+def _orientation() -> tuple[Comparison, Comparison]:
     pose = np.array(POSE)
     W = np.array(direction(pose))
     phi, psi, _ = POSE
@@ -78,7 +85,7 @@ def _orientation() -> tuple[Row, Row]:
             "3.16",
             "theta_x = phi, theta_y = asin(sin psi/cos phi)",
             "theta_x = asin(sin phi/cos psi), theta_y = psi",
-            verdict=Verdict.PRINT_IS_WRONG,
+            verdict=PrintVerdict.PRINT_IS_WRONG,
             holds=ours < _ROUNDING < theirs,
             note=f"R = Rx Ry must turn z into W of 3.3; as printed it misses by {theirs:.2g} at "
             "phi 0.1, psi -0.2 rad.",
@@ -88,7 +95,7 @@ def _orientation() -> tuple[Row, Row]:
             "3.17",
             "row of theta_y' first, (0, 1, 0) second",
             "row of theta_x' first, (0, 1, 0) second",
-            verdict=Verdict.PRINT_IS_WRONG,
+            verdict=PrintVerdict.PRINT_IS_WRONG,
             holds=bool(np.abs(J - slopes).max() < 1e-8 < np.abs(J[[1, 0, 2]] - slopes).max()),
             note="theta_y = psi, so its row is (0, 1, 0); phi and psi are exchanged in the other.",
         ),
@@ -100,7 +107,7 @@ def _pointing(x: float, y: float) -> Array:
     return np.array([np.sin(y), -np.sin(x) * np.cos(y), np.cos(x) * np.cos(y)])
 
 
-def _speeds(ours: Robot) -> tuple[Row, ...]:
+def _speeds(ours: Robot) -> tuple[Comparison, ...]:
     limits = ours.task_limits
     v = np.array([limits.angular_velocity] * 2 + [limits.linear_velocity])
     depths = np.linspace(*ours.workspace.d, 1001)

@@ -1,4 +1,4 @@
-"""Chapter 4.3 and equation 6.1: the PD controller and the motion loop that it closes."""
+"""Chapters 4.2 and 4.3, equation 6.1: error dynamics, PD controller, the loop that it closes."""
 
 from __future__ import annotations
 
@@ -6,12 +6,12 @@ from math import degrees, exp, pi, sqrt
 
 from nrs_design.design.root_locus import PdDesign, design_pd, motion_loop_response
 from nrs_design.reproduction import thesis
-from nrs_design.reproduction.row import Row, Tolerance, misprint, reproduced
+from nrs_design.reproduction.comparison import Comparison, Tolerance, misprint, reproduced
 
 
-def rows() -> tuple[Row, ...]:
+def rows() -> tuple[Comparison, ...]:
     """Recompute the design by angle and magnitude condition, then what it really gives."""
-    return (*_design(), *_closed_loop())
+    return (*_error_dynamics(), *_design(), *_closed_loop())
 
 
 def _pd(time_constant: float) -> PdDesign:
@@ -19,7 +19,18 @@ def _pd(time_constant: float) -> PdDesign:
     return design_pd(gain, time_constant, thesis.DAMPING_RATIO, thesis.SETTLING_TIME)
 
 
-def _design() -> tuple[Row, ...]:
+def _error_dynamics() -> tuple[Comparison, ...]:
+    """Recompute the gains of computed torque from damping ratio and settling time."""
+    wn, tolerance = _pd(float(thesis.ACTUATOR.time_constant)).natural_frequency, Tolerance(1e-4)
+    damping = 2 * thesis.DAMPING_RATIO * wn
+    return (
+        reproduced("natural frequency wn", "4.14c", "40.2971", wn, "rad/s", tolerance),
+        reproduced("Kp = wn^2", "4.15a", "1623.85", wn**2, "1/s^2", tolerance),
+        reproduced("Kd = 2 zeta wn", "4.15b", "56.9801", damping, "1/s", tolerance),
+    )
+
+
+def _design() -> tuple[Comparison, ...]:
     # The thesis places the zero with the pole of 4.26b, the gain with the rounded 0.0351 s of 4.29.
     unrounded, rounded = _pd(1 / thesis.BREAK_FREQUENCY), _pd(float(thesis.ACTUATOR.time_constant))
     return (
@@ -59,14 +70,14 @@ def _design() -> tuple[Row, ...]:
             "Kp = K z",
             "4.31",
             "117359.43",
-            thesis.DERIVATIVE_GAIN * thesis.ZERO,
+            float(thesis.DERIVATIVE_GAIN * thesis.ZERO),
             "rpm/rad",
             Tolerance(1e-5),
         ),
     )
 
 
-def _closed_loop() -> tuple[Row, ...]:
+def _closed_loop() -> tuple[Comparison, ...]:
     loop = thesis.EXACT_LOOP
     response = motion_loop_response(loop)
     second_order = exp(-pi * thesis.DAMPING_RATIO / sqrt(1 - thesis.DAMPING_RATIO**2))

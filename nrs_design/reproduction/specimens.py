@@ -5,10 +5,10 @@ from __future__ import annotations
 from statistics import fmean
 
 from nrs_design.models.contact import Elastic, KelvinBoltzmann
-from nrs_design.reproduction.row import (
-    Row,
+from nrs_design.reproduction.comparison import (
+    Comparison,
+    PrintVerdict,
     Tolerance,
-    Verdict,
     claim,
     format_number,
     hardware_only,
@@ -49,23 +49,23 @@ _SHORT = 1e-5
 ARM = 0.24
 
 
-def rows() -> tuple[Row, ...]:
+def rows() -> tuple[Comparison, ...]:
     """Recompute the means; the fits themselves rest on records that are not printed."""
     return tuple(row for name, (fits, mean) in FITS.items() for row in _specimen(name, fits, mean))
 
 
-def _specimen(name: str, fits: tuple[str, ...], mean: str) -> tuple[Row, ...]:
+def _specimen(name: str, fits: tuple[str, ...], mean: str) -> tuple[Comparison, ...]:
     return (*_means(name, fits, mean), *_boltzmann(name), *_measured(name))
 
 
-def _boltzmann(name: str) -> tuple[Row, ...]:
+def _boltzmann(name: str) -> tuple[Comparison, ...]:
     """Return the elements behind the printed coefficients, where there are any."""
     return tuple(
         _elements(name, experiment, eta) for experiment, eta in enumerate(ETA[name], start=1)
     )
 
 
-def _elements(name: str, experiment: int, eta: tuple[float, float, float]) -> Row:
+def _elements(name: str, experiment: int, eta: tuple[float, float, float]) -> Comparison:
     eta1, eta2, eta3 = eta
     exists = eta2 / eta3 > eta1
     if exists:
@@ -73,7 +73,7 @@ def _elements(name: str, experiment: int, eta: tuple[float, float, float]) -> Ro
         found = ", ".join(format_number(value) for value in law.values)
         note = "so the records do not determine it, and the specimen is elastic."
     else:
-        found = f"none: eta2/eta3 = {eta2 / eta3:.4g} N/m"
+        found = f"no such law: eta2/eta3 = {eta2 / eta3:.4g} N/m"
         note = "and below eta1 at high frequency: no springs and dampers behave so."
     return claim(
         f"k1, k2, b of the {name} specimen, experiment {experiment}",
@@ -81,14 +81,14 @@ def _elements(name: str, experiment: int, eta: tuple[float, float, float]) -> Ro
         f"eta = {eta1:g}, {eta2:g}, {eta3:g}",
         found,
         "N/m, N/m, N s/m",
-        verdict=Verdict.REPRODUCED if exists else Verdict.PRINT_IS_WRONG,
+        verdict=PrintVerdict.REPRODUCED if exists else PrintVerdict.PRINT_IS_WRONG,
         holds=eta3 < PERIOD and exists == (eta3 < _SHORT),
         note=f"The relaxation time of {eta3:g} s is below one sampling period ({PERIOD:g} s), "
         f"{note}",
     )
 
 
-def _measured(name: str) -> tuple[Row, ...]:
+def _measured(name: str) -> tuple[Comparison, ...]:
     return tuple(
         hardware_only(
             f"RMSE of the {law} law, {name} specimen, each experiment", "6.1", ", ".join(v), "N"
@@ -97,7 +97,7 @@ def _measured(name: str) -> tuple[Row, ...]:
     )
 
 
-def _means(name: str, fits: tuple[str, ...], mean: str) -> tuple[Row, ...]:
+def _means(name: str, fits: tuple[str, ...], mean: str) -> tuple[Comparison, ...]:
     return (
         omitted(
             f"elastic fits, {name} specimen",
@@ -118,7 +118,7 @@ def _means(name: str, fits: tuple[str, ...], mean: str) -> tuple[Row, ...]:
     )
 
 
-def _at_pivot(name: str, fits: tuple[str, ...]) -> Row:
+def _at_pivot(name: str, fits: tuple[str, ...]) -> Comparison:
     turned = Elastic(fmean(map(float, fits))).at_pivot(ARM)
     printed = {"soft": "43.0356", "stiff": "61.6608"}[name]
     return reproduced(

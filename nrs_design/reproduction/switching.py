@@ -5,20 +5,20 @@ from __future__ import annotations
 from nrs_design.proof.evidence.fields import rate_words
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.reproduction import thesis
+from nrs_design.reproduction.comparison import Comparison, PrintVerdict, claim
 from nrs_design.reproduction.matrices import family, hybrid_rows, impedance_rows, printed_rows
-from nrs_design.reproduction.row import Row, Verdict, claim
 from nrs_design.search.certification import Certification
 from nrs_design.search.certify import certify
 
 STABLE = "stable under arbitrary switching"
 
 
-def rows() -> tuple[Row, ...]:
+def rows() -> tuple[Comparison, ...]:
     """Prove or refute every claim about stability under switching, exactly."""
     return (*_designs(), _as_printed(), _zero_mass())
 
 
-def _designs() -> tuple[Row, ...]:
+def _designs() -> tuple[Comparison, ...]:
     agility = ("insertion and withdrawal, Bt 2.15 and 1.04", "6.3.2.2", _withdrawal("0.01"))
     hybrid = ("position and force control, Kp 0.02", "6.3.3.2", family("hybrid", *hybrid_rows()))
     tool = impedance_rows(thesis.STIFF, "0.01", "2.11", "force")
@@ -27,21 +27,21 @@ def _designs() -> tuple[Row, ...]:
     return tuple(_proved(*entry) for entry in (agility, hybrid, both))
 
 
-def _proved(name: str, section: str, system: SwitchedSystem) -> Row:
+def _proved(name: str, section: str, system: SwitchedSystem) -> Comparison:
     found = certify(system)
     return claim(
         name,
         section,
         STABLE,
         _describe(found),
-        verdict=Verdict.REPRODUCED,
+        verdict=PrintVerdict.REPRODUCED,
         holds=found.verdict == "proved",
         note="By a common quadratic function, checked exactly; matrices with the right signs, in "
         "the thesis's states.",
     )
 
 
-def _as_printed() -> Row:
+def _as_printed() -> Comparison:
     force = ("70183.13", "1231.97")
     found = certify(family("print", printed_rows("-215", force), printed_rows("-104", force)))
     return claim(
@@ -49,20 +49,20 @@ def _as_printed() -> Row:
         "6.3.2.2",
         STABLE,
         _describe(found),
-        verdict=Verdict.PRINT_IS_WRONG,
+        verdict=PrintVerdict.PRINT_IS_WRONG,
         holds=found.verdict == "refuted",
         note="Neither printed matrix is Hurwitz: the sign of entry (2, 1) is wrong.",
     )
 
 
-def _zero_mass() -> Row:
+def _zero_mass() -> Comparison:
     without, with_mass = certify(_withdrawal("0")), certify(_withdrawal("0.01"))
     return claim(
         "Bt 2.15 and 1.04 without virtual mass",
         "6.3.2.1",
         "Mt = 0 must be avoided",
         f"Mt = 0: {_describe(without)}; Mt = 0.01: {_describe(with_mass)}",
-        verdict=Verdict.PRINT_IS_WRONG,
+        verdict=PrintVerdict.PRINT_IS_WRONG,
         holds=without.verdict == with_mass.verdict == "proved",
         note="Stability under switching is no reason to avoid Mt = 0: with it, too, the pair has "
         "a common quadratic function.",

@@ -7,7 +7,6 @@ from collections.abc import Callable
 from nrs_design.reproduction import (
     actuator,
     balance,
-    computed_torque,
     correction,
     experiments,
     force_loop,
@@ -21,7 +20,7 @@ from nrs_design.reproduction import (
     tissue,
     tracking,
 )
-from nrs_design.reproduction.row import Row, Verdict
+from nrs_design.reproduction.comparison import Comparison, PrintVerdict
 
 # In the order of the thesis.
 TOPICS = (
@@ -30,7 +29,6 @@ TOPICS = (
     robot_dynamics,
     correction,
     actuator,
-    computed_torque,
     root_locus,
     tracking,
     balance,
@@ -43,7 +41,7 @@ TOPICS = (
 )
 
 
-def reproduce(progress: Callable[[str], None] = lambda topic: None) -> tuple[Row, ...]:
+def reproduce(progress: Callable[[str], None] = lambda topic: None) -> tuple[Comparison, ...]:
     """Recompute every number of every topic.
 
     Parameters
@@ -51,14 +49,14 @@ def reproduce(progress: Callable[[str], None] = lambda topic: None) -> tuple[Row
     progress : callable
         Told the name of each topic as it begins.
     """
-    table: list[Row] = []
+    table: list[Comparison] = []
     for topic in TOPICS:
         progress(topic.__name__.rpartition(".")[2].replace("_", " "))
         table.extend(topic.rows())
     return tuple(table)
 
 
-def count_verdicts(table: tuple[Row, ...]) -> dict[str, int]:
+def count_verdicts(table: tuple[Comparison, ...]) -> dict[str, int]:
     """Return how many rows have each verdict that occurs."""
     found = [row.verdict for row in table]
-    return {str(verdict): found.count(verdict) for verdict in Verdict if verdict in found}
+    return {str(verdict): found.count(verdict) for verdict in PrintVerdict if verdict in found}

@@ -5,10 +5,9 @@ from __future__ import annotations
 import math
 from fractions import Fraction
 
-from nrs_design.design.root_locus import close_motion_loop
 from nrs_design.design.transfer import TransferFunction
 from nrs_design.models.actuator import Actuator, MotorConstants
-from nrs_design.models.motion_loop import MotionLoop
+from nrs_design.models.motion_loop import MotionLoop, close_motion_loop
 
 # Thesis 4.1: table 4.1, gearhead 181:1, break frequency and low-frequency gain of figure 4.3.
 MOTOR_INERTIA, GEARHEAD_INERTIA = 14.5e-7, 0.31e-7
@@ -22,8 +21,7 @@ MOTOR = MotorConstants(
 # Thesis 4.14, 4.29 and 4.30.
 DAMPING_RATIO = 0.707
 SETTLING_TIME = 0.1404
-DERIVATIVE_GAIN = 2060.0
-ZERO = 56.9706
+DERIVATIVE_GAIN, ZERO = Fraction(2060), Fraction("56.9706")
 
 # Thesis 6.3.1.1 and 6.4.1: largest torque and speed, band, specimens, lever arm.
 TORQUE = 0.3
@@ -34,7 +32,10 @@ STIFF = Fraction("1070.5") * Fraction("0.24") ** 2
 
 # Thesis 6.1 as printed, and with all digits of the loop that 4.29 and 4.30 give.
 PRINTED_LOOP = TransferFunction((0.99, 56.82), (0.0351, 1.99, 56.82))
-EXACT_LOOP = close_motion_loop(4.8417e-4, 0.0351, DERIVATIVE_GAIN, ZERO)
+_CLOSED = close_motion_loop(ACTUATOR, Kp=DERIVATIVE_GAIN * ZERO, Kd=DERIVATIVE_GAIN)
+EXACT_LOOP = TransferFunction(
+    tuple(map(float, _CLOSED.numerator)), tuple(map(float, _CLOSED.denominator))
+)
 
 # Thesis 6.13 and 6.14: the realization with the digits of the print.
 REALIZED_LOOP = MotionLoop(

@@ -6,10 +6,10 @@ from collections.abc import Mapping
 from statistics import fmean
 
 from nrs_design.models.contact import KelvinBoltzmann, Maxwell
-from nrs_design.reproduction.row import (
-    Row,
+from nrs_design.reproduction.comparison import (
+    Comparison,
+    PrintVerdict,
     Tolerance,
-    Verdict,
     claim,
     format_number,
     hardware_only,
@@ -49,7 +49,7 @@ _TABLE = {"nose": "2.4", "concha": "2.5"}
 _RECORD = "The length of the records is not printed."
 
 
-def rows() -> tuple[Row, ...]:
+def rows() -> tuple[Comparison, ...]:
     """Convert the coefficients, and hold the text against the tables."""
     return tuple(
         row
@@ -66,7 +66,7 @@ def rows() -> tuple[Row, ...]:
     )
 
 
-def _eta(tissue: str) -> Row:
+def _eta(tissue: str) -> Comparison:
     law = BOLTZMANN[tissue]
     return reproduced(
         f"eta1, eta2, eta3 of the {tissue}",
@@ -80,7 +80,7 @@ def _eta(tissue: str) -> Row:
     )
 
 
-def _round_trip(tissue: str) -> Row:
+def _round_trip(tissue: str) -> Comparison:
     law = BOLTZMANN[tissue]
     back = KelvinBoltzmann.from_eta(*law.eta)
     printed = (f"{law.k1:g}", f"{law.k2:g}", f"{law.b:g}")
@@ -94,7 +94,7 @@ def _round_trip(tissue: str) -> Row:
     )
 
 
-def _memory(tissue: str) -> Row:
+def _memory(tissue: str) -> Comparison:
     """Show what k2 and the elastic fit together imply."""
     law, elastic = BOLTZMANN[tissue], ELASTIC[tissue]
     relaxed = law.eta[0]
@@ -104,14 +104,14 @@ def _memory(tissue: str) -> Row:
         f"k2 = {law.k2:g}, elastic {elastic:g}",
         ", ".join(format_number(k) for k in (law.stiffness, elastic, relaxed)),
         "N m/rad",
-        verdict=Verdict.REPRODUCED,
+        verdict=PrintVerdict.REPRODUCED,
         holds=law.k2 > elastic > relaxed,
         note=f"The elastic fit is near the relaxed end, so the records must be much longer than "
         f"the relaxation time of {law.relaxation_time:.3g} s, if time is in seconds. {_RECORD}",
     )
 
 
-def _maxwell(tissue: str) -> Row:
+def _maxwell(tissue: str) -> Comparison:
     law = MAXWELL[tissue]
     return claim(
         f"relaxation time b/k of the Maxwell {tissue}",
@@ -119,13 +119,13 @@ def _maxwell(tissue: str) -> Row:
         f"k = {law.k:g}, b = {law.b:g}",
         format_number(law.relaxation_time),
         "s",
-        verdict=Verdict.REPRODUCED,
+        verdict=PrintVerdict.REPRODUCED,
         holds=law.relaxation_time > BOLTZMANN[tissue].relaxation_time,
         note=f"Longer than that of the Kelvin-Boltzmann law on the same records. {_RECORD}",
     )
 
 
-def _voigt(tissue: str) -> Row:
+def _voigt(tissue: str) -> Comparison:
     k, b = VOIGT[tissue]
     others = [damping / stiffness for stiffness, damping in VOIGT.values()]
     return claim(
@@ -134,13 +134,13 @@ def _voigt(tissue: str) -> Row:
         f"k = {k:g}, b = {b:g}",
         format_number(b / k),
         "s",
-        verdict=Verdict.REPRODUCED,
+        verdict=PrintVerdict.REPRODUCED,
         holds=max(others) - min(others) < 0.005,
         note="The same for both tissues, which looks like a bound or a start value of the search.",
     )
 
 
-def _worst(tissue: str) -> Row:
+def _worst(tissue: str) -> Comparison:
     means = {law: fmean(values) for law, values in RMSE[tissue].items()}
     worst, best = max(means, key=means.__getitem__), min(means, key=means.__getitem__)
     said = {"nose": "Maxwell", "concha": "Kelvin-Voigt"}[tissue]
@@ -149,14 +149,14 @@ def _worst(tissue: str) -> Row:
         "2.5",
         said,
         f"{worst} ({means[worst]:.4f} N m)",
-        verdict=Verdict.PRINT_IS_WRONG,
+        verdict=PrintVerdict.PRINT_IS_WRONG,
         holds=worst != said,
         note=f"From table {_TABLE[tissue]}; the least mean is that of {best} "
         f"({means[best]:.4f} N m).",
     )
 
 
-def _measured(tissue: str) -> tuple[Row, ...]:
+def _measured(tissue: str) -> tuple[Comparison, ...]:
     return tuple(
         hardware_only(
             f"RMSE of the {law} {tissue}, each experiment",

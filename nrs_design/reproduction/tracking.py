@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from nrs_design.models.robot import Robot
+from nrs_design.reproduction.comparison import Comparison, hardware_only
 from nrs_design.reproduction.neuroboscope import robot, robot_spec
-from nrs_design.reproduction.row import Row, hardware_only
 from nrs_design.simulation.tracking import (
     CONTROLLERS,
     MOTIONS,
@@ -34,7 +34,7 @@ MEASURED = (
 )
 
 
-def rows() -> tuple[Row, ...]:
+def rows() -> tuple[Comparison, ...]:
     """List the root mean square errors of tables 4.2 to 4.10."""
     return tuple(
         hardware_only(

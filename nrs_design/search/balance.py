@@ -1,4 +1,7 @@
-"""Exact diagonal scaling by powers of two, common to a family of matrices (untrusted search)."""
+"""Exact diagonal scaling by powers of two, common to a family of matrices (untrusted search).
+
+By hand, as every proof passes here: to load SciPy's `matrix_balance` takes longer than the proof.
+"""
 
 from __future__ import annotations
 
@@ -8,7 +11,8 @@ from numpy.typing import NDArray
 from nrs_design.proof.system import Time
 
 SWEEPS = 64
-# Larger Lyapunov equations are solved by Schur decompositions, not as one linear system.
+# Larger Lyapunov equations are solved by Schur decompositions, not as one linear system, for which
+# SciPy need not be loaded.
 DENSE_ORDER = 10
 
 

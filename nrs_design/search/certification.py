@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from enum import StrEnum
 
 from nrs_design.certificates.certificate import CommonQuadraticStatus, Verdict, deciding
 from nrs_design.proof.evidence import AbstractEvidence
@@ -12,22 +11,6 @@ from nrs_design.search.allowance import GIGABYTE
 
 DEFAULT_BUDGET = 60.0
 DEFAULT_MEMORY = 2 * GIGABYTE
-
-
-class Method(StrEnum):
-    """The rungs of the ladder, or all of them in turn."""
-
-    AUTO = "auto"
-    LMI = "lmi"
-    GRADIENT = "gradient"
-    OBSTRUCTION = "obstruction"
-    MIXTURE = "mixture"
-    MODE_POLYNOMIAL = "mode-polynomial"
-    MODE_QUADRATIC = "mode-quadratic"
-    PARAMETER_QUADRATIC = "parameter-quadratic"
-    PERIOD = "period"
-    POLYNOMIAL = "polynomial"
-    VALUE = "value"
 
 
 @dataclass(frozen=True, slots=True)

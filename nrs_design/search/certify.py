@@ -1,11 +1,9 @@
-"""Decide the stability of a switched system: the ladder of searches, cheapest first."""
+"""Decide the stability of a switched system: searches propose, and here the exact check decides."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import replace
-from functools import partial
-from itertools import islice, zip_longest
 from time import perf_counter
 
 from numpy.linalg import LinAlgError
@@ -22,44 +20,20 @@ from nrs_design.proof.evidence import (
     Shows,
 )
 from nrs_design.proof.evidence.block_triangular import diagonal_block
-from nrs_design.proof.evidence.common_polynomial import MAX_DEGREE, MAX_MONOMIALS
-from nrs_design.proof.evidence.unstable_mode import affordable, is_stable
 from nrs_design.proof.exact import TooLargeError
 from nrs_design.proof.second_opinion import agrees
-from nrs_design.proof.system import Mode, SwitchedSystem, Time
-from nrs_design.search.allowance import Allowance, Cost, NotAffordableError
-from nrs_design.search.certification import Attempt, Certification, Limits, Method
-from nrs_design.search.checker import Checker
+from nrs_design.proof.system import SwitchedSystem
+from nrs_design.search.allowance import Allowance, NotAffordableError
+from nrs_design.search.candidates import Candidates, Search
+from nrs_design.search.certification import Attempt, Certification, Limits
 from nrs_design.search.family import Family, floats_in_silence
-from nrs_design.search.limits import rate_limit
-from nrs_design.search.mode_quadratic import functions_cost
-from nrs_design.search.polynomial import highest_degree, polynomial_cost
-from nrs_design.search.rungs import (
-    Finding,
-    Rung,
-    decide_one_state,
-    examine_every_mode,
-    examine_suspicious_modes,
-    prove_obstruction,
-    search_by_gradient,
-    search_by_lmi,
-    search_mixture,
-    search_mode_polynomial,
-    search_mode_quadratic,
-    search_parameter_quadratic,
-    search_period,
-    search_polynomial,
-    search_preconditioned,
-    search_raw,
-    search_switching_at_values,
-    search_value,
-)
+from nrs_design.search.fast_check import find_fault
+from nrs_design.search.ladder import applicable_methods, steps
+from nrs_design.search.method import Method
+from nrs_design.search.rate_limit import rate_limit
 from nrs_design.search.structure import merge_equal_modes, triangular_blocks
 
 Progress = Callable[[str], None]
-
-# Degrees that are tried before a search for growing periods, which is quicker than higher ones.
-FIRST_DEGREES = 2
 
 
 def certify(
@@ -99,7 +73,7 @@ def certify(
     """
     limits = limits or Limits()
     allowance = Allowance(limits.budget, limits.memory)
-    if method is not Method.AUTO and method not in _applicable(system) | {Method.MODE_QUADRATIC}:
+    if method is not Method.AUTO and method not in applicable_methods(system):
         raise DesignError(
             f"the method {method} does not apply to this kind of switching and time",
             remedy="use --method auto",
@@ -107,10 +81,8 @@ def certify(
     simple = system.switching.is_arbitrary and system.is_uniform
     merged = merge_equal_modes(system) if simple else system
     blocks = triangular_blocks(merged) if simple else (tuple(range(system.order)),)
-    checker = Checker(system)
     if len(blocks) == 1:
-        checker_of_merged = checker if merged is system else Checker(merged)
-        result = _climb(checker_of_merged, method, limits, allowance, progress)
+        result = _climb(merged, method, limits, allowance, progress)
     else:
         parts = [
             _certify_block(merged, block, method, limits, allowance.part(1 / left), progress)
@@ -118,14 +90,21 @@ def certify(
         ]
         result = _combine(merged, blocks, parts)
     statements = _spread(result.statements, merged, system)
+    if merged is not system or len(blocks) > 1:
+        _check_again(statements, system)
     for statement in statements:
-        if fault := checker.find_fault(statement):
-            raise InternalError(f"the search returned evidence that does not hold: {fault}")
         if not agrees(system, statement):
             raise InternalError(DISAGREE)
     with floats_in_silence():
         limit = rate_limit(system)
     return replace(result, system=system, statements=statements, rate_limit=limit)
+
+
+def _check_again(statements: tuple[AbstractEvidence, ...], system: SwitchedSystem) -> None:
+    """Check what was put together from evidence for fewer modes or states."""
+    for statement in statements:
+        if fault := find_fault(statement, system):
+            raise InternalError(f"the search returned evidence that does not hold: {fault}")
 
 
 def _certify_block(
@@ -139,7 +118,7 @@ def _certify_block(
     """Certify the family of one diagonal block."""
     full = diagonal_block(system, block)
     merged = merge_equal_modes(full)
-    result = _climb(Checker(merged), method, limits, allowance, progress)
+    result = _climb(merged, method, limits, allowance, progress)
     return replace(
         result,
         system=full,
@@ -148,22 +127,25 @@ def _certify_block(
 
 
 def _climb(
-    checker: Checker, method: Method, limits: Limits, allowance: Allowance, progress: Progress
+    system: SwitchedSystem,
+    method: Method,
+    limits: Limits,
+    allowance: Allowance,
+    progress: Progress,
 ) -> Certification:
     """Try one rung after the other until one decides, or the budget is used up."""
-    system = checker.system
     with floats_in_silence():
-        family = Family.checked_by(checker, allowance)
+        family = Family.of(system, allowance, optimize_rate=limits.optimize_rate)
     attempts: list[Attempt] = []
     remarks: list[AbstractEvidence] = []
-    for name, rung in _rungs(system, method, limits, allowance, remarks):
+    for name, search in steps(system, method, limits, allowance, lambda: bool(remarks)):
         start = perf_counter()
         if attempts and allowance.left <= 0:
             spent = f"not begun: the budget of {allowance.total:g} s is used up (--budget)"
             attempts.append(Attempt(name, spent, 0.0))
             break
         progress(name)
-        evidence, outcome = _take(rung, family)
+        evidence, outcome = _take(search, family)
         attempts.append(Attempt(name, outcome, perf_counter() - start))
         if evidence is None:
             continue
@@ -174,149 +156,42 @@ def _climb(
     return _conclude(system, str(method), tuple(remarks), tuple(attempts))
 
 
-def _rungs(
-    system: SwitchedSystem,
-    method: Method,
-    limits: Limits,
-    allowance: Allowance,
-    remarks: list[AbstractEvidence],
-) -> Iterator[tuple[str, Rung]]:
-    """Yield the rungs, cheapest first; what has been shown so far decides what is worth trying."""
-    wanted = _applicable(system) if method is Method.AUTO else {method}
-    if system.is_uniform:
-        yield "suspicious modes", examine_suspicious_modes
-    if Method.LMI in wanted and system.order == 1:
-        yield "one state", decide_one_state
-    elif Method.LMI in wanted:
-        yield "lmi", partial(search_by_lmi, optimize_rate=limits.optimize_rate)
-    if Method.OBSTRUCTION in wanted:
-        yield "obstruction", prove_obstruction
-    if Method.LMI in wanted and system.order > 1 and not remarks:
-        # The solver may have stalled: other coordinates, before giving up on quadratics.
-        yield "lmi, raw", search_raw
-        yield "lmi, preconditioned", search_preconditioned
-    if Method.GRADIENT in wanted and not remarks:
-        yield "gradient", search_by_gradient
-    yield "every mode", examine_every_mode
-    if Method.VALUE in wanted:
-        yield "constant values", search_value
-    if Method.PARAMETER_QUADRATIC in wanted:
-        yield "parameter quadratic", search_parameter_quadratic
-    if Method.MODE_QUADRATIC in wanted:
-        yield "mode quadratic", search_mode_quadratic
-    if Method.MIXTURE in wanted:
-        yield "mixture", search_mixture
-    ladders = []
-    if Method.POLYNOMIAL in wanted:
-        ladders.append(_common_polynomials(system, limits, allowance))
-    if Method.MODE_POLYNOMIAL in wanted:
-        ladders.append(_mode_polynomials(system, limits, allowance))
-    for ladder in ladders:
-        yield from islice(ladder, FIRST_DEGREES)
-    if Method.PERIOD in wanted:
-        yield "period", search_period
-    if Method.VALUE in wanted:
-        yield "switching at constant values", search_switching_at_values
-    for rungs in zip_longest(*ladders):
-        yield from (rung for rung in rungs if rung is not None)
-
-
-def _common_polynomials(
-    system: SwitchedSystem, limits: Limits, allowance: Allowance
-) -> Iterator[tuple[str, Rung]]:
-    """Yield common polynomials of rising degree."""
-    search = partial(partial, search_polynomial, optimize_rate=limits.optimize_rate)
-    cost = partial(polynomial_cost, system.order, len(system.modes))
-    return _rising(
-        "polynomial", system, limits, allowance, lambda d: (cost(d)[0], search(degree=d))
-    )
-
-
-def _mode_polynomials(
-    system: SwitchedSystem, limits: Limits, allowance: Allowance
-) -> Iterator[tuple[str, Rung]]:
-    """Yield polynomials for each mode of rising degree."""
-    search = partial(partial, search_mode_polynomial)
-    cost = partial(functions_cost, system)
-    name = "mode polynomial"
-    return _rising(name, system, limits, allowance, lambda d: (cost(d)[0], search(degree=d)))
-
-
-def _rising(
-    name: str,
-    system: SwitchedSystem,
-    limits: Limits,
-    allowance: Allowance,
-    rung_of: Callable[[int], tuple[Cost, Rung]],
-) -> Iterator[tuple[str, Rung]]:
-    """Yield rungs of rising degree, and at last the reason why there is no higher one.
-
-    Degrees rise while they are predicted to fit into what is left of the budget, so how far they
-    rise does not depend on the machine. In one state, all forms of a degree are alike.
-    """
-    if system.order == 1:
-        return
-    for d in range(2, highest_degree(system.order) + 1):
-        step = f"{name} of degree {2 * d}"
-        if limits.max_degree is not None and 2 * d > limits.max_degree:
-            yield step, _refuse(f"not tried: --max-degree is {limits.max_degree}")
-            return
-        cost, rung = rung_of(d)
-        fits = allowance.affords(cost)
-        yield step, rung
-        if not fits:
-            return
-    held = f"a certificate holds at most {MAX_MONOMIALS} monomials and degree {MAX_DEGREE}"
-    yield f"{name} of higher degree", _refuse(f"not tried: {held}")
-
-
-def _refuse(reason: str) -> Rung:
-    """Return a rung that is not tried."""
-    return lambda family: (None, reason)
-
-
-def _applicable(system: SwitchedSystem) -> set[Method]:
-    """Return the rungs that can decide a system with its kind of switching."""
-    switching = system.switching
-    wanted = {Method.MODE_QUADRATIC}
-    if system.time is Time.DISCRETE and not (switching.is_arbitrary or switching.fixed_ends):
-        wanted |= {Method.MODE_POLYNOMIAL}
-    left = affordable(_left_modes(system))
-    if any(not (fits and is_stable(mode.A, system.time)) for mode, fits in left):
-        return wanted | ({Method.PERIOD} if system.is_uniform else set())
-    if system.is_uniform and not switching.resets:
-        wanted |= {Method.LMI, Method.OBSTRUCTION, Method.POLYNOMIAL}
-    if system.is_uniform:
-        wanted |= {Method.PERIOD}
-    if system.time is Time.CONTINUOUS and system.is_uniform and not switching.resets:
-        wanted |= {Method.GRADIENT}
-    if switching.is_arbitrary:
-        wanted -= {Method.MODE_QUADRATIC} if system.time is Time.CONTINUOUS else set()
-        wanted |= {Method.MIXTURE} if system.time is Time.CONTINUOUS else set()
-    if switching.fixed_ends:
-        wanted -= {Method.MODE_QUADRATIC}
-        wanted |= {Method.PARAMETER_QUADRATIC}
-        wanted |= {Method.VALUE} if system.is_uniform else set()
-    return wanted
-
-
-def _left_modes(system: SwitchedSystem) -> list[Mode]:
-    """Return the modes that must be left: only these may be unstable."""
-    lasting = {mode.name for mode in system.lasting_modes()}
-    return [mode for mode in system.modes if mode.name not in lasting]
-
-
-def _take(rung: Rung, family: Family) -> Finding:
-    """Try one rung; where it is not affordable, or floating point fails, nothing is found."""
+def _take(search: Search, family: Family) -> tuple[AbstractEvidence | None, str]:
+    """Make one search; where it is not affordable, or floating point fails, nothing is found."""
     try:
         with floats_in_silence():
-            return rung(family)
+            return first_accepted(search(family), family.system)
     except TooLargeError as error:
         return None, f"not tried: {error}"
     except NotAffordableError as reason:
         return None, str(reason)
     except (LinAlgError, OverflowError) as error:
         return None, f"floating point failed ({error})"
+
+
+def first_accepted(
+    candidates: Candidates[AbstractEvidence], system: SwitchedSystem
+) -> tuple[AbstractEvidence | None, str]:
+    """Return the first candidate that the exact check accepts, and in words how the search ended.
+
+    Nothing becomes evidence but here, or from evidence that was accepted here.
+
+    Parameters
+    ----------
+    candidates : generator of Candidate
+        As a search yields them; no more than needed are asked for.
+    system : SwitchedSystem
+        What they are to be evidence about.
+    """
+    fault: str | None = None
+    while True:
+        try:
+            candidate = next(candidates)
+        except StopIteration as end:
+            return None, end.value or f"a candidate was found, but {fault}"
+        fault = find_fault(candidate.evidence, system)
+        if fault is None:
+            return candidate.evidence, candidate.words
 
 
 def _conclude(

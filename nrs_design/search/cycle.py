@@ -1,4 +1,7 @@
-"""Search along the elementary cycles of the graph of switches, the shortest ones first."""
+"""Search along the elementary cycles of the graph of switches, the shortest ones first.
+
+By hand, as SciPy lists no cycles, and a package of graphs would be needed for nothing else.
+"""
 
 from __future__ import annotations
 

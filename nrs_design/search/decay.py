@@ -1,4 +1,4 @@
-"""The largest decay rate that a common quadratic function shows (untrusted search).
+"""The largest decay rate that a search can show (untrusted).
 
 A position s in [0, 1) stands for the rate: 0 is mere stability, 1 the rate of the slowest mode,
 which no common function can exceed.
@@ -6,19 +6,23 @@ which no common function can exceed.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from fractions import Fraction
+from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from nrs_design.proof.system import Time
 from nrs_design.search.allowance import Allowance, NotAffordableError
-from nrs_design.search.lmi import decreases, find_common_quadratic
+from nrs_design.search.lmi import decreases
+from nrs_design.search.rounding import claims, rate_at
 
-TOLERANCE = 1e-4
-# A position is bracketed to this share of itself, or given up below the smallest one.
+# A position is bracketed to this share of itself, or given up as nil below the smallest one.
 RESOLUTION = 2.0**-12
 SMALLEST = 2.0**-40
+
+Solution = TypeVar("Solution")
 
 
 def limit_rate(matrices: NDArray[np.float64], time: Time) -> float:
@@ -34,53 +38,69 @@ def limit_rate(matrices: NDArray[np.float64], time: Time) -> float:
     return float(np.abs(eigenvalues).max())
 
 
-def rate_at(position: float, limit: float, time: Time) -> float:
-    """Return the rate at a position between mere stability and the limit.
+def fastest_first(
+    solve: Callable[[float, Allowance], Solution | None],
+    limit: float,
+    time: Time,
+    allowance: Allowance,
+    *,
+    resolution: float = RESOLUTION,
+    smallest: float = SMALLEST,
+    nearest: float = 1.0,
+    few: bool = False,
+) -> Iterator[tuple[Solution, Fraction]]:
+    """Yield solutions with the rates to claim, from just below the largest one that is found.
+
+    The search for the largest rate takes at most half of what is allowed.
 
     Parameters
     ----------
-    position : float
-        From 0, mere stability, to 1, the limit.
-    limit : float
-        The alpha in 1/s, or rho per step, that no proof can beat.
-    time : Time
-        Which of the two.
-    """
-    return position * limit if time is Time.CONTINUOUS else 1 - position * (1 - limit)
-
-
-def largest_position(
-    matrices: NDArray[np.float64], time: Time, limit: float, allowance: Allowance | None = None
-) -> float:
-    """Bisect for the largest position at which the search still finds a function.
-
-    Parameters
-    ----------
-    matrices : ndarray, shape (m, n, n)
-        Balanced modes with a common quadratic function.
-    time : Time
-        Continuous or discrete.
+    solve : callable
+        Solves for a rate in floating point.
     limit : float
         As `limit_rate` gives it.
-    allowance : Allowance, optional
-        When it is used up, the bisection ends early.
+    time : Time
+        Continuous or discrete.
+    allowance : Allowance
+        Time and memory.
+    resolution, smallest
+        As for `bisect_position`.
+    nearest, few
+        As for `nrs_design.search.rounding.claims`.
+
+    Raises
+    ------
+    NotAffordableError
+        If time or memory do not suffice for another solution.
     """
-    low, high = 0.0, 1.0
-    while high - low > TOLERANCE:
-        middle = (low + high) / 2
-        rate = rate_at(middle, limit, time)
-        try:
-            found = find_common_quadratic(matrices, time, rate, allowance=allowance)
-        except NotAffordableError:
-            break
-        low, high = (low, middle) if found is None else (middle, high)
-    return low
+    half = allowance.part(0.5)
+    best = bisect_position(
+        lambda position: solve(rate_at(position, limit, time), half) is not None,
+        resolution,
+        smallest,
+    )
+    for claim in claims(best, limit, time, nearest, few=few):
+        if (solution := solve(float(claim), allowance)) is not None:
+            yield solution, claim
 
 
-def bisect_position(is_feasible: Callable[[float], bool]) -> float:
-    """Bisect for the largest feasible position, however near to mere stability it is.
+def bisect_position(
+    is_feasible: Callable[[float], bool],
+    resolution: float = RESOLUTION,
+    smallest: float = SMALLEST,
+) -> float:
+    """Bisect for the largest feasible position.
 
     When what the search may take is used up, the bisection ends early.
+
+    Parameters
+    ----------
+    is_feasible : callable
+        Decides a position; feasible ones come first.
+    resolution : float
+        The position is bracketed to this share of itself,
+    smallest : float
+        or to this difference, whichever is reached first.
 
     Returns
     -------
@@ -88,7 +108,7 @@ def bisect_position(is_feasible: Callable[[float], bool]) -> float:
         Zero if nothing above the smallest position is feasible.
     """
     low, high = 0.0, 1.0
-    while high > SMALLEST and high - low > RESOLUTION * high:
+    while high - low > max(resolution * high, smallest):
         middle = (low + high) / 2
         try:
             low, high = (middle, high) if is_feasible(middle) else (low, middle)

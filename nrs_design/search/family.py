@@ -15,7 +15,6 @@ from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.system import SwitchedSystem, Time
 from nrs_design.search.allowance import Allowance
 from nrs_design.search.balance import balance, scale
-from nrs_design.search.checker import Checker
 from nrs_design.search.decay import limit_rate
 
 
@@ -25,8 +24,8 @@ class Family:
 
     Parameters
     ----------
-    checker : Checker
-        Of evidence for the exact modes.
+    system : SwitchedSystem
+        The exact modes.
     matrices : ndarray, shape (m, n, n)
         ``2^-d A 2^d``.
     exponents : ndarray of int, shape (n,)
@@ -35,39 +34,44 @@ class Family:
         Rate of the slowest mode that need never be left; without one, a rate out of reach.
     allowance : Allowance
         Time and memory for the searches; unlimited by default.
+    optimize_rate : bool
+        Look for the largest provable decay rate, not only for some.
     """
 
-    checker: Checker
+    system: SwitchedSystem
     matrices: NDArray[np.float64]
     exponents: NDArray[np.int64]
     limit: float
     allowance: Allowance = field(default_factory=Allowance)
-
-    @property
-    def system(self) -> SwitchedSystem:
-        """The exact modes."""
-        return self.checker.system
+    optimize_rate: bool = True
 
     @classmethod
-    def of(cls, system: SwitchedSystem) -> Family:
-        """Convert and balance the modes of a system; modes of unequal size only give the limit."""
-        return cls.checked_by(Checker(system))
+    def of(
+        cls,
+        system: SwitchedSystem,
+        allowance: Allowance | None = None,
+        *,
+        optimize_rate: bool = True,
+    ) -> Family:
+        """Convert and balance the modes of a system; modes of unequal size only give the limit.
 
-    @classmethod
-    def checked_by(cls, checker: Checker, allowance: Allowance | None = None) -> Family:
-        """Convert and balance the modes that a checker speaks about."""
+        Parameters
+        ----------
+        system, allowance, optimize_rate
+            As for the class.
+        """
         allowance = allowance or Allowance()
-        system = checker.system
         if not system.is_uniform:
             limit = _limit(system, [to_floats([mode.A]) for mode in system.modes])
-            return cls(checker, np.zeros((0, 0, 0)), np.zeros(0, dtype=np.int64), limit, allowance)
+            none = np.zeros((0, 0, 0)), np.zeros(0, dtype=np.int64)
+            return cls(system, *none, limit, allowance, optimize_rate)
         matrices = to_floats([mode.A for mode in system.modes])
         limit = _limit(system, [matrices])
         exponents = balance(matrices)
         scaled = scale(matrices, exponents)
         if not np.isfinite(scaled).all():
             scaled, exponents = matrices, np.zeros_like(exponents)
-        return cls(checker, scaled, exponents, limit, allowance)
+        return cls(system, scaled, exponents, limit, allowance, optimize_rate)
 
 
 def _limit(system: SwitchedSystem, families: list[NDArray[np.float64]]) -> float:

@@ -1,4 +1,7 @@
-"""What modes make of a state over many times at once: exponentials, or powers."""
+"""What modes make of a state over many times at once: exponentials, or powers.
+
+By hand, as `expm` of SciPy begins anew for every time; one decomposition of a mode serves them all.
+"""
 
 from __future__ import annotations
 

@@ -1,7 +1,7 @@
 """Search for a common quadratic Lyapunov function by semidefinite programming (untrusted).
 
 Margin form: maximize t subject to ``0 <= Q <= I`` and a decrease of at least t in every mode.
-Only the modes that the last candidate violates enter the solver. A solver's status is never
+Only the modes that the last solution violates enter the solver. A solver's status is never
 evidence: whatever it returns goes through the exact check.
 """
 
@@ -93,14 +93,14 @@ def find_common_quadratic(
     Returns
     -------
     ndarray, shape (n, n), or None
-        A candidate with positive margins in floating point, or None.
+        A solution with positive margins in floating point, or None.
 
     Raises
     ------
     NotAffordableError
         If time or memory do not suffice, and nothing was found.
     """
-    solve, allowance = solve or _solve, allowance or Allowance()
+    solve, allowance = solve or solve_by_interior_point, allowance or Allowance()
     unit = time_unit(matrices, time)
     matrices, rate = np.ldexp(matrices, unit), float(np.ldexp(rate, unit))
     m, n = matrices.shape[:2]
@@ -127,10 +127,24 @@ def time_unit(matrices: Matrices, time: Time) -> int:
     return ENTRY_LOG2 - int(np.frexp(np.abs(matrices).max())[1])
 
 
-def _solve(
+def solve_by_interior_point(
     matrices: Matrices, time: Time, rate: float, Q: Matrices, allowance: Allowance
 ) -> Matrices | None:
-    """Improve on Q in the margin form for the given modes, with the method of our own."""
+    """Improve on Q in the margin form for the given modes, with the method of our own.
+
+    Parameters
+    ----------
+    matrices : ndarray, shape (m, n, n)
+        The modes that count.
+    time : Time
+        Which inequality.
+    rate : float
+        The alpha in 1/s, or rho per step.
+    Q : ndarray, shape (n, n)
+        Where to begin.
+    allowance : Allowance
+        Time and memory that are left.
+    """
     m, n = matrices.shape[:2]
     step = step_cost(n * (n + 1) // 2 + 1, m + 2, n)
     allowance.require(Cost(FEWEST_STEPS * step.seconds, step.memory), _described(m, n))

@@ -12,8 +12,9 @@ from numpy.typing import NDArray
 from nrs_design.proof.evidence import UnstableMixture
 from nrs_design.proof.evidence.unstable_mixture import mixture
 from nrs_design.proof.evidence.unstable_mode import worst_eigenvalue
-from nrs_design.proof.system import SwitchedSystem
 from nrs_design.search.allowance import Allowance
+from nrs_design.search.candidates import Candidate, Candidates
+from nrs_design.search.family import Family
 
 Array = NDArray[np.float64]
 
@@ -23,25 +24,19 @@ RANDOM_MIXTURES = 2000
 # Entries of the averages that are looked at together.
 CHUNK_ENTRIES = 2_000_000
 DENOMINATORS = (16, 64, 1024, 2**20)
+# What rounding hides, relative to the size of the matrices.
+SLACK = 1e-9
 
 
-def find_unstable_mixture(
-    system: SwitchedSystem, matrices: Array, allowance: Allowance | None = None
-) -> UnstableMixture | None:
+def search_mixture(family: Family) -> Candidates[UnstableMixture]:
     """Scan pairs of modes and random mixtures for a spectral abscissa that is not negative.
 
-    Parameters
-    ----------
-    system : SwitchedSystem
-        Exact modes, continuous time.
-    matrices : ndarray, shape (m, n, n)
-        The same in floating point.
-    allowance : Allowance, optional
-        When its time is over, the search ends with what it has seen.
+    When the time is over, the search ends with what it has seen.
     """
-    weights, abscissa = _least_stable(matrices, allowance or Allowance())
-    if abscissa < -1e-9 * np.abs(matrices).max():
-        return None
+    system, matrices = family.system, family.matrices
+    weights, abscissa = _least_stable(matrices, family.allowance)
+    if abscissa < -SLACK * np.abs(matrices).max():
+        return "every combination tried is stable"
     for denominator in DENOMINATORS:
         shares = _rationalize(weights, denominator)
         named = tuple(
@@ -49,9 +44,8 @@ def find_unstable_mixture(
             for mode, share in zip(system.modes, shares, strict=True)
             if share > 0
         )
-        evidence = UnstableMixture(named, worst_eigenvalue(mixture(system, named), system.time))
-        if evidence.find_fault(system) is None:
-            return evidence
+        average = mixture(system, named)
+        yield Candidate(UnstableMixture(named, worst_eigenvalue(average, system.time)))
     return None
 
 
@@ -59,7 +53,7 @@ def _least_stable(matrices: Array, allowance: Allowance) -> tuple[Array, float]:
     """Return the weights of the average with the largest spectral abscissa, and that abscissa."""
     m, n = matrices.shape[:2]
     found, largest = np.ones(m) / m, -np.inf
-    for weights in _candidates(m, max(1, CHUNK_ENTRIES // max(n * n, m))):
+    for weights in weights_tried(m, max(1, CHUNK_ENTRIES // max(n * n, m))):
         averages = np.tensordot(weights, matrices, axes=1)
         abscissas = np.linalg.eigvals(averages).real.max(axis=1)
         best = int(abscissas.argmax())
@@ -70,7 +64,7 @@ def _least_stable(matrices: Array, allowance: Allowance) -> tuple[Array, float]:
     return found, largest
 
 
-def _candidates(m: int, chunk: int) -> Iterator[Array]:
+def weights_tried(m: int, chunk: int) -> Iterator[Array]:
     """Yield rows of weights: pairs of modes at evenly spaced shares, then random ones."""
     if m == 1:
         yield np.ones((1, 1))

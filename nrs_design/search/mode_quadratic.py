@@ -22,7 +22,9 @@ from nrs_design.proof.lift import monomials
 from nrs_design.proof.system import Edge, Mode, Stay, SwitchedSystem, Time
 from nrs_design.search.allowance import Allowance, Cost
 from nrs_design.search.balance import balance, scale
-from nrs_design.search.decay import bisect_position
+from nrs_design.search.candidates import NO_MARGIN, Candidate, Candidates
+from nrs_design.search.decay import fastest_first
+from nrs_design.search.family import Family
 from nrs_design.search.lmi import decreases, time_unit
 from nrs_design.search.polynomial import (
     make_vanish,
@@ -30,7 +32,7 @@ from nrs_design.search.polynomial import (
     products,
     vanishing_basis,
 )
-from nrs_design.search.rounding import round_rate
+from nrs_design.search.rounding import digits, rate_at, round_form
 from nrs_design.search.sdp import (
     maximize_margin,
     pack,
@@ -41,59 +43,54 @@ from nrs_design.search.sdp import (
 Array = NDArray[np.float64]
 Exponents = NDArray[np.int64]
 
-BITS = (6, 8, 10, 14, 20, 28, 40, 50)
-BACK_OFFS = (0.999, 0.99, 0.9, 0.5, 0.1, 1e-3)
+NEAREST = 0.999
+FEWEST_BITS = 6
 # Numbers of steps that are each shown for a mode that is stable, too.
 FEW_STAYS = 64
 # Times at which the functions are sought for a mode that must be left, and pieces that are shown.
 SAMPLES = 17
 PIECES = (32, 256, 1024)
-# Enclosures take time: fewer attempts.
-ENCLOSED_BITS = (12, 28)
-ENCLOSED_BACK_OFFS = (0.9, 0.5, 0.1)
+# Enclosures take time: few attempts, and wider gaps.
+NEAREST_ENCLOSED = 0.9
+FEWEST_BITS_ENCLOSED = 12
+# What floating point hides where functions need not decrease, relative to their size.
+SLACK = 1e-9
 
 
 Functions = ModeQuadratic | ModePolynomial
 
 
-def find_mode_functions(
-    system: SwitchedSystem, limit: float, degree: int = 1, allowance: Allowance | None = None
-) -> Functions | None:
-    """Search for the functions with the largest rate, round them, and check.
+def search_mode_functions(family: Family, degree: int = 1) -> Candidates[Functions]:
+    """Search for the functions with the largest rate.
 
     Parameters
     ----------
-    system : SwitchedSystem
-        Exact modes with their switching.
-    limit : float
-        Rate of the slowest mode.
+    family : Family
+        The modes, of any sizes, and their switching.
     degree : int
         Half the degree of the functions; beyond 1 for discrete time.
-    allowance : Allowance, optional
-        Time and memory; unlimited by default.
-
-    Returns
-    -------
-    ModeQuadratic, ModePolynomial or None
-        None if no rounding of any candidate passes.
 
     Raises
     ------
     NotAffordableError
-        If time or memory do not suffice for a first candidate.
+        If time or memory do not suffice for another solution.
     """
-    allowance = allowance or Allowance()
+    system, allowance = family.system, family.allowance
     allowance.require(*functions_cost(system, degree))
     problem = _Problem(system, degree)
-    if problem.solve(problem.rate_at(0.0, limit), allowance) is None:
-        return None
-    half = allowance.part(0.5)
-    best = bisect_position(lambda s: problem.solve(problem.rate_at(s, limit), half) is not None)
-    for back_off in ENCLOSED_BACK_OFFS if problem.encloses_stays else BACK_OFFS:
-        rate = problem.rate_at(best * back_off, limit)
-        found = problem.solve(rate, allowance)
-        if found is not None and (evidence := problem.round(found, rate)):
-            return evidence
+    if problem.solve(rate_at(0.0, family.limit, system.time), allowance) is None:
+        return NO_MARGIN
+    few = problem.encloses_stays
+    for solution, claim in fastest_first(
+        problem.solve,
+        family.limit,
+        system.time,
+        allowance,
+        nearest=NEAREST_ENCLOSED if few else NEAREST,
+        few=few,
+    ):
+        for evidence in problem.roundings(solution, claim):
+            yield Candidate(evidence)
     return None
 
 
@@ -120,7 +117,7 @@ def _count_stays(system: SwitchedSystem, edge: Edge) -> int:
 
 
 @dataclass(frozen=True)
-class _Found:
+class _Solution:
     """A matrix for each mode, and a form that vanishes for each decrease."""
 
     functions: list[Array]
@@ -169,13 +166,7 @@ class _Problem:
         few = stay.longest - stay.shortest < FEW_STAYS and self.system.time is Time.DISCRETE
         return few or not is_stable(mode.A, self.system.time)
 
-    def rate_at(self, position: float, limit: float) -> float:
-        """Return the rate between mere stability (0) and the slowest mode's (1)."""
-        if self.system.time is Time.CONTINUOUS:
-            return position * limit
-        return 1 - position * (1 - limit)
-
-    def solve(self, rate: float, allowance: Allowance) -> _Found | None:
+    def solve(self, rate: float, allowance: Allowance) -> _Solution | None:
         """Maximize the margin for a rate; None if it is not positive."""
         allowance.take(*self.cost)
         sizes = [len(A) for A in self.matrices]
@@ -211,7 +202,7 @@ class _Problem:
             return None
         spans = bases + [forms[i] for i, _, _ in wanted]
         found = [np.tensordot(x[c], span, axes=1) for c, span in zip(columns, spans, strict=True)]
-        return _Found(found[: len(bases)], found[len(bases) :])
+        return _Solution(found[: len(bases)], found[len(bases) :])
 
     def _decreases(
         self, functions: list[Array], rate: float
@@ -261,36 +252,40 @@ class _Problem:
         steps = range(int(first), int(last) + 1)
         return [np.asarray(np.linalg.matrix_power(A / rate, k)) for k in steps]
 
-    def round(self, found: _Found, rate: float) -> Functions | None:
-        """Round all functions to integers over one denominator, and check."""
-        claimed = round_rate(rate, self.system.time)
-        if not claimed > 0 or (self.system.time is Time.DISCRETE and claimed >= 1):
-            return None
-        largest = max(np.abs(Q).max() for Q in found.functions)
-        unit = int(np.frexp(largest)[1])
-        if self.encloses_stays:
-            attempts = list(product(PIECES, ENCLOSED_BITS))
-        else:
-            attempts = [(1, bits) for bits in BITS]
-        for pieces, bits in attempts:
-            quadratic = self._integers(found.functions, bits, unit, claimed)
-            evidence: Functions = replace(quadratic, pieces=pieces)
+    def roundings(self, solution: _Solution, claim: Fraction) -> Iterator[Functions]:
+        """Yield all functions in integers over one denominator."""
+        unit = int(np.frexp(max(np.abs(Q).max() for Q in solution.functions))[1])
+        few = self.encloses_stays
+        bits_tried = digits(FEWEST_BITS_ENCLOSED if few else FEWEST_BITS, few=few)
+        for pieces, bits in product(PIECES if few else (1,), bits_tried):
+            rounded = [_rounded(Q, bits - unit) for Q in solution.functions]
+            if bits != bits_tried[-1] and not self._seems_to_decrease(rounded, float(claim)):
+                continue
+            quadratic = self._integers(solution.functions, bits, unit, claim)
             if self.degree > 1:
-                evidence = self._with_vanishing(quadratic, found, bits - unit)
-            if evidence.find_fault(self.given) is None:
-                return evidence
-        return None
+                yield self._with_vanishing(quadratic, solution, rounded)
+            else:
+                yield replace(quadratic, pieces=pieces)
+
+    def _seems_to_decrease(self, functions: list[Array], rate: float) -> bool:
+        """Tell in floating point whether functions are worth the time of the exact check."""
+        if self.degree > 1:
+            return True
+        for i, parts, strict in self._decreases(functions, rate):
+            values = np.linalg.eigvalsh(np.sum([part for _, part in parts], axis=0))
+            if values[0] < (0.0 if strict else -SLACK * np.abs(functions[i]).max()):
+                return False
+        return True
 
     def _with_vanishing(
-        self, quadratic: ModeQuadratic, found: _Found, shift: int
+        self, quadratic: ModeQuadratic, solution: _Solution, rounded: list[Array]
     ) -> ModePolynomial:
         """Add the forms that vanish, as integers to the unit of each of the exact decreases."""
         evidence = ModePolynomial(self.degree, quadratic, ())
-        rounded = [np.ldexp(np.rint(np.ldexp(Q, shift)), -shift) for Q in found.functions]
         floats = self._decreases(rounded, float(evidence.lifted.rate))
         exact = evidence.lifted.decreases(self.system)
         vanishing = []
-        for (i, parts, _), (_, form), N in zip(floats, exact, found.vanishing, strict=True):
+        for (i, parts, _), (_, form), N in zip(floats, exact, solution.vanishing, strict=True):
             d, decrease = self.exponents[i], np.sum([part for _, part in parts], axis=0)
             k = int(np.abs(np.diag(decrease)).argmax())
             factor = Fraction(form[k][k]) / Fraction(float(decrease[k, k]) or 1.0)
@@ -312,17 +307,15 @@ class _Problem:
         top = max(int(d.max()) for d in self.exponents)
         rounded = []
         for mode, Q, d in zip(self.system.modes, functions, self.exponents, strict=True):
-            scaled = np.ldexp((Q + Q.T) / 2, bits - unit)
-            rows = tuple(
-                tuple(
-                    round(float(v)) << int(2 * top - di - dj) for v, dj in zip(row, d, strict=True)
-                )
-                for row, di in zip(scaled, d, strict=True)
-            )
-            rounded.append((mode.name, rows))
+            rounded.append((mode.name, round_form(Q, top - d, bits - unit)))
         names = (mode.name for mode in self.system.modes)
         leaving = tuple(name for name, left in zip(names, self.leaving, strict=True) if left)
         return ModeQuadratic(tuple(rounded), max(0, bits + 2 * top), rate, leaving)
+
+
+def _rounded(Q: Array, bits: int) -> Array:
+    """Round to so many bits after the binary point, in floating point."""
+    return np.asarray(np.ldexp(np.rint(np.ldexp((Q + Q.T) / 2, bits)), -bits))
 
 
 def _balanced(system: SwitchedSystem) -> list[Exponents]:

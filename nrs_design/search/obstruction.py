@@ -6,13 +6,18 @@ None exists iff there are positive semidefinite ``X_i``, not all zero, with
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 import numpy as np
 from numpy.typing import NDArray
 
 from nrs_design.proof.evidence import NoCommonQuadratic
 from nrs_design.proof.system import SwitchedSystem, Time
 from nrs_design.search.allowance import Allowance
+from nrs_design.search.candidates import Candidate, Candidates
+from nrs_design.search.family import Family
 from nrs_design.search.lmi import time_unit
+from nrs_design.search.rounding import digits
 from nrs_design.search.sdp import (
     maximize_margin,
     pack,
@@ -23,8 +28,18 @@ from nrs_design.search.sdp import (
 
 Array = NDArray[np.float64]
 
-FACTOR_BITS = (8, 12, 16, 24, 32)
+FEWEST_BITS = 8
 RANK_TOLERANCE = 1e-9
+
+
+def search_obstruction(family: Family) -> Candidates[NoCommonQuadratic]:
+    """Search for a proof that there is no common quadratic function."""
+    multipliers = solve_dual(family.matrices, family.system.time, family.allowance)
+    if multipliers is None:
+        return "the dual has no strict solution"
+    for evidence in _roundings(family.system, multipliers, family.exponents):
+        yield Candidate(evidence, "no common quadratic function exists")
+    return None
 
 
 def solve_dual(matrices: Array, time: Time, allowance: Allowance | None = None) -> Array | None:
@@ -75,26 +90,19 @@ def solve_dual(matrices: Array, time: Time, allowance: Allowance | None = None) 
     return unpack(x[:-1].reshape(m, size), n)
 
 
-def round_obstruction(
+def _roundings(
     system: SwitchedSystem, multipliers: Array, exponents: NDArray[np.int64]
-) -> NoCommonQuadratic | None:
-    """Factor ``X_i = L_i L_i'``, round the factors, and check; None if no rounding passes.
+) -> Iterator[NoCommonQuadratic]:
+    """Factor ``X_i = L_i L_i'`` and yield rounded factors, in the coordinates of the exact modes.
 
-    Parameters
-    ----------
-    system : SwitchedSystem
-        Exact modes, in the order of the multipliers.
-    multipliers : ndarray, shape (m, n, n)
-        The X_i in coordinates scaled by ``2^d``.
-    exponents : ndarray of int, shape (n,)
-        The d.
+    The X_i, shape (m, n, n), are in the order of the modes and in coordinates scaled by ``2^d``.
     """
     largest = np.linalg.eigvalsh(multipliers).max()
     if not np.isfinite(largest) or largest <= 0:
-        return None
+        return
     factors = [_factor(X / largest) for X in multipliers]
     shifts = [int(e - exponents.min()) for e in exponents]
-    for bits in FACTOR_BITS:
+    for bits in digits(FEWEST_BITS):
         rounded = []
         for mode, L in zip(system.modes, factors, strict=True):
             integers = tuple(
@@ -103,10 +111,8 @@ def round_obstruction(
             )
             if any(any(row) for row in integers):
                 rounded.append((mode.name, integers))
-        evidence = NoCommonQuadratic(tuple(rounded))
-        if rounded and evidence.find_fault(system) is None:
-            return evidence
-    return None
+        if rounded:
+            yield NoCommonQuadratic(tuple(rounded))
 
 
 def _factor(X: Array) -> Array:

@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
+from functools import partial
+
 import numpy as np
 from numpy.typing import NDArray
 
 from nrs_design.proof.evidence import ParameterQuadratic
-from nrs_design.proof.system import SwitchedSystem, Time
+from nrs_design.proof.system import Time
 from nrs_design.search.allowance import Allowance
-from nrs_design.search.decay import bisect_position
+from nrs_design.search.candidates import NO_MARGIN, Candidate, Candidates
+from nrs_design.search.decay import fastest_first
+from nrs_design.search.family import Family
 from nrs_design.search.lmi import decreases, time_unit
-from nrs_design.search.rounding import round_rate, unscale
+from nrs_design.search.rounding import digits, unscale
 from nrs_design.search.sdp import (
     maximize_margin,
     pack,
@@ -20,59 +24,27 @@ from nrs_design.search.sdp import (
 
 Array = NDArray[np.float64]
 
-BITS = (6, 8, 10, 14, 20, 28, 40, 50)
-BACK_OFFS = (0.999, 0.99, 0.9, 0.5, 0.1, 1e-3)
+NEAREST = 0.999
+FEWEST_BITS = 6
 
 
-def find_parameter_quadratic(
-    system: SwitchedSystem,
-    matrices: Array,
-    exponents: NDArray[np.int64],
-    limit: float,
-    allowance: Allowance | None = None,
-) -> ParameterQuadratic | None:
-    """Search for the function with the largest rate, round it, and check.
-
-    Parameters
-    ----------
-    system : SwitchedSystem
-        Exact modes, continuous time, with `fixed_ends`.
-    matrices : ndarray, shape (m, n, n)
-        The modes in coordinates scaled by ``2^d``.
-    exponents : ndarray of int, shape (n,)
-        The d.
-    limit : float
-        Rate of the slowest mode, in 1/s.
-    allowance : Allowance, optional
-        Time and memory; unlimited by default.
-
-    Raises
-    ------
-    NotAffordableError
-        If time or memory do not suffice for a first function.
-    """
-    allowance = allowance or Allowance()
+def search_parameter_quadratic(family: Family) -> Candidates[ParameterQuadratic]:
+    """Search for the function with the largest rate."""
+    system, allowance = family.system, family.allowance
     index = {mode.name: k for k, mode in enumerate(system.modes)}
     ends = [(index[low], index[high]) for low, high in system.switching.fixed_ends]
-    pairs = matrices[np.array(ends)]
-    if _solve(pairs, 0.0, allowance) is None:
-        return None
-    half = allowance.part(0.5)
-    best = bisect_position(lambda s: _solve(pairs, s * limit, half) is not None)
-    for back_off in BACK_OFFS:
-        rate = best * back_off * limit
-        functions = _solve(pairs, rate, allowance)
-        if functions is None or rate <= 0:
-            continue
-        claimed = round_rate(rate, Time.CONTINUOUS)
+    solve = partial(_solve, family.matrices[np.array(ends)])
+    if solve(0.0, allowance) is None:
+        return NO_MARGIN
+    for functions, claim in fastest_first(
+        solve, family.limit, system.time, allowance, nearest=NEAREST
+    ):
         unit = int(np.frexp(np.abs(functions).max())[1])
-        for bits in BITS:
+        for bits in digits(FEWEST_BITS):
             (first, denominator_log2), (last, _) = (
-                unscale(np.ldexp(Q, -unit), exponents, bits) for Q in functions
+                unscale(np.ldexp(Q, -unit), family.exponents, bits) for Q in functions
             )
-            evidence = ParameterQuadratic(first, last, denominator_log2, claimed)
-            if evidence.find_fault(system) is None:
-                return evidence
+            yield Candidate(ParameterQuadratic(first, last, denominator_log2, claim))
     return None
 
 

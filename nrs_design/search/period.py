@@ -14,17 +14,20 @@ from nrs_design.proof.evidence import UnstablePeriod
 from nrs_design.proof.system import SwitchedSystem, Time
 from nrs_design.search.allowance import Allowance
 from nrs_design.search.balance import mean_norm_coordinates
+from nrs_design.search.candidates import Candidate, Candidates
 from nrs_design.search.cycle import growing_cycles
+from nrs_design.search.family import Family
 from nrs_design.search.graph import Cycle, Graph
+from nrs_design.search.rounding import digits
 from nrs_design.search.walk import growing_walks
 from nrs_design.search.words import growing_words
 
 Array = NDArray[np.float64]
-Candidate = tuple[Cycle, Array]
+Signal = tuple[Cycle, Array]
 
 GREEDY_STEPS = 3000
 GREEDY_PERIODS = (2, 3, 4, 6, 8)
-TIME_BITS = (8, 12, 16, 24, 40)
+FEWEST_BITS = 8
 WALKS = 4
 # Longer cycles are not tried with other times in a second round.
 MAX_DOUBLED = 8
@@ -33,53 +36,34 @@ ROUNDS = 40
 LONGEST_STEPS = 2000
 # About so many times are looked at to refine those of one cycle.
 LOOKS = 600
+NOTHING_GROWS = "no periodic signal tried makes solutions grow"
 
 
-def find_growing_period(
-    system: SwitchedSystem, matrices: Array, allowance: Allowance | None = None
-) -> UnstablePeriod | None:
-    """Search for a period with a spectral radius above one, and enclose it rigorously.
-
-    Parameters
-    ----------
-    system : SwitchedSystem
-        Exact modes.
-    matrices : ndarray, shape (m, n, n)
-        The same in floating point, perhaps scaled.
-    allowance : Allowance, optional
-        Time and memory; unlimited by default.
+def search_period(family: Family) -> Candidates[UnstablePeriod]:
+    """Search for a period with a spectral radius above one.
 
     Raises
     ------
     NotAffordableError
-        If time or memory do not suffice, and nothing was found.
+        If time or memory do not suffice for another signal.
     """
-    allowance = allowance or Allowance()
+    system, allowance = family.system, family.allowance
     if system.time is Time.DISCRETE and system.switching.is_arbitrary:
-        return _find_word(system, matrices, allowance)
-    if system.switching.resets:
-        # The scaled modes of a search do not fit the resets.
-        matrices = np.array([mode.A.floats() for mode in system.modes])
-    graph = Graph.of(system, matrices)
-    for cycle, times in _candidates(system, graph, allowance):
-        if evidence := _round(system, graph, cycle, times):
-            return evidence
+        for word, radius in growing_words(family.matrices, allowance):
+            steps = tuple((system.modes[i].name, Fraction(1)) for i in word)
+            yield from _powers(system, UnstablePeriod(steps, 0), radius)
+        return NOTHING_GROWS
+    # The scaled modes of a search do not fit resets.
+    floats = [mode.A.floats() for mode in system.modes]
+    graph = Graph.of(system, np.array(floats) if system.switching.resets else family.matrices)
+    for cycle, times in _signals(system, graph, allowance):
+        yield from _roundings(system, graph, cycle, times)
         allowance.check()
     allowance.check()
-    return None
+    return NOTHING_GROWS
 
 
-def _find_word(
-    system: SwitchedSystem, matrices: Array, allowance: Allowance
-) -> UnstablePeriod | None:
-    for word, radius in growing_words(matrices, allowance):
-        steps = tuple((system.modes[i].name, Fraction(1)) for i in word)
-        if evidence := _enclose(system, UnstablePeriod(steps, 0), radius):
-            return evidence
-    return None
-
-
-def _candidates(system: SwitchedSystem, graph: Graph, allowance: Allowance) -> Iterator[Candidate]:
+def _signals(system: SwitchedSystem, graph: Graph, allowance: Allowance) -> Iterator[Signal]:
     """Yield signals that grow in floating point."""
     longer = _longer_signals(system, graph, allowance)
     refine = _refined if system.time is Time.CONTINUOUS else _refined_steps
@@ -93,9 +77,7 @@ def _candidates(system: SwitchedSystem, graph: Graph, allowance: Allowance) -> I
             yield cycle, better
 
 
-def _longer_signals(
-    system: SwitchedSystem, graph: Graph, allowance: Allowance
-) -> Iterator[Candidate]:
+def _longer_signals(system: SwitchedSystem, graph: Graph, allowance: Allowance) -> Iterator[Signal]:
     """Yield signals that may come back to a mode; in continuous time few, for refining is slow."""
     if system.switching.is_arbitrary:
         yield from _greedy_signals(graph)
@@ -106,7 +88,7 @@ def _longer_signals(
         yield from sorted(walks, key=lambda walk: -float(graph.growth(*walk)))[:WALKS]
 
 
-def _twice(cycles: Iterator[Candidate]) -> Iterator[Candidate]:
+def _twice(cycles: Iterator[Signal]) -> Iterator[Signal]:
     """Yield cycles, and short ones once more with two rounds of different times."""
     for cycle, times in cycles:
         yield cycle, times
@@ -114,7 +96,7 @@ def _twice(cycles: Iterator[Candidate]) -> Iterator[Candidate]:
             yield cycle + cycle, np.concatenate([times * 1.2, times * 0.8])
 
 
-def _greedy_signals(graph: Graph) -> Iterator[Candidate]:
+def _greedy_signals(graph: Graph) -> Iterator[Signal]:
     """Yield signals with more steps: what an adversary settles into that always picks the worst.
 
     It maximizes the mean of the modes' own norms after each short step. Its last few dwell times
@@ -178,14 +160,14 @@ def _refined_steps(graph: Graph, cycle: Cycle, times: Array) -> Array:
     return times
 
 
-def _round(
+def _roundings(
     system: SwitchedSystem, graph: Graph, cycle: Cycle, times: Array
-) -> UnstablePeriod | None:
-    """Round times to few digits, keep them admissible, and check."""
+) -> Iterator[Candidate[UnstablePeriod]]:
+    """Round times to few digits, and keep them admissible."""
     names = [system.modes[mode].name for mode in graph.modes(cycle)]
     edges = tuple(graph.jumps[k].way for k in cycle)
     has_choice = len(set(_pairs(graph))) < len(graph.jumps)
-    for bits in TIME_BITS if system.time is Time.CONTINUOUS else TIME_BITS[-1:]:
+    for bits in digits(FEWEST_BITS) if system.time is Time.CONTINUOUS else digits()[-1:]:
         steps = tuple(
             (name, _admissible(system, name, _short(float(time), bits)))
             for name, time in zip(names, times, strict=True)
@@ -193,9 +175,7 @@ def _round(
         floats = np.array([float(time) for _, time in steps])
         growth = float(graph.growth(cycle, floats) * floats.sum())
         evidence = UnstablePeriod(steps, 0, edges if has_choice else ())
-        if found := _enclose(system, evidence, exp(min(growth, 700.0))):
-            return found
-    return None
+        yield from _powers(system, evidence, exp(min(growth, 700.0)))
 
 
 def _pairs(graph: Graph) -> list[tuple[int, int]]:
@@ -208,18 +188,15 @@ def _admissible(system: SwitchedSystem, mode: str, time: Fraction) -> Fraction:
     return time if stay.longest is None else min(time, stay.longest)
 
 
-def _enclose(
+def _powers(
     system: SwitchedSystem, evidence: UnstablePeriod, radius: float
-) -> UnstablePeriod | None:
-    """Try powers from where the trace should exceed n."""
+) -> Iterator[Candidate[UnstablePeriod]]:
+    """Yield the period with its powers from where the trace should exceed n."""
     if not radius > 1 or isinf(radius):
-        return None
+        return
     first = max(0, ceil(log2(log(2 * system.order) / log(radius))))
     for doublings in range(first, first + 4):
-        tried = UnstablePeriod(evidence.steps, doublings, evidence.edges)
-        if tried.find_fault(system) is None:
-            return tried
-    return None
+        yield Candidate(UnstablePeriod(evidence.steps, doublings, evidence.edges))
 
 
 def _short(time: float, bits: int) -> Fraction:

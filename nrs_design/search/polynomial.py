@@ -8,6 +8,7 @@ under arbitrary switching too (Mason, Boscain and Chitour 2006).
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from fractions import Fraction
 from math import comb, factorial, prod
@@ -24,10 +25,13 @@ from nrs_design.proof.evidence.common_polynomial import (
 from nrs_design.proof.lift import derivative_lift, monomials, power_lift
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.system import SwitchedSystem, Time
-from nrs_design.search.allowance import Allowance, Cost
+from nrs_design.search.allowance import Allowance, Cost, NotAffordableError
 from nrs_design.search.balance import scale
+from nrs_design.search.candidates import NO_MARGIN, Candidate, Candidates
+from nrs_design.search.decay import bisect_position
+from nrs_design.search.family import Family
 from nrs_design.search.lmi import decreases, time_unit
-from nrs_design.search.rounding import round_rate
+from nrs_design.search.rounding import claims, digits, rate_at, round_form
 from nrs_design.search.sdp import (
     maximize_margin,
     pack,
@@ -40,8 +44,12 @@ Array = NDArray[np.float64]
 Exponents = NDArray[np.int64]
 Pair = tuple[int, int]
 
-ROUNDING_BITS = (10, 14, 18, 24, 30, 38, 46, 52)
-BACK_OFFS = (0.99, 0.9, 0.5, 0.1, 1e-2, 1e-4)
+# Solutions take time: the largest rate is bracketed to this share of the slowest mode's, and the
+# function for a little less is rounded.
+SMALLEST = 2.0**-8
+BACK_OFF = 0.98
+NEAREST = 0.99
+FEWEST_BITS = 10
 
 
 @dataclass(frozen=True)
@@ -73,11 +81,51 @@ class Lift:
 
 
 @dataclass(frozen=True)
-class Candidate:
+class Solution:
     """Gram matrix Q, shape (K, K), and one vanishing form per mode, shape (m, K, K)."""
 
     Q: Array
     vanishing: Array
+
+
+def search_polynomial(family: Family, degree: int) -> Candidates[CommonPolynomial]:
+    """Search for a common homogeneous polynomial of degree 2d, and a large rate if asked to.
+
+    Parameters
+    ----------
+    family : Family
+        The modes.
+    degree : int
+        The d of a form of degree 2d.
+    """
+    system, allowance = family.system, family.allowance
+    allowance.require(*polynomial_cost(system.order, len(system.modes), degree))
+    lift = lift_family(system, family.exponents, degree)
+    least = rate_at(0.0, family.limit, system.time)
+    solution = find_common_polynomial(lift, system.time, least, allowance)
+    if solution is None:
+        return NO_MARGIN
+    if family.optimize_rate and (faster := _faster(family, lift)) is not None:
+        for evidence in _roundings(family, lift, faster):
+            yield Candidate(evidence, "found with a decay rate near the largest")
+    for evidence in _roundings(family, lift, solution):
+        yield Candidate(evidence)
+    return None
+
+
+def _faster(family: Family, lift: Lift) -> Solution | None:
+    """Bisect for the largest rate, and solve for one a little below it."""
+    time = family.system.time
+
+    def solve(position: float) -> Solution | None:
+        rate = rate_at(position, family.limit, time)
+        return find_common_polynomial(lift, time, rate, family.allowance)
+
+    best = bisect_position(lambda s: solve(s) is not None, 0.0, SMALLEST)
+    try:
+        return solve(BACK_OFF * best) if best > 0 else None
+    except NotAffordableError:
+        return None
 
 
 def lift_family(system: SwitchedSystem, exponents: Exponents, degree: int) -> Lift:
@@ -181,7 +229,7 @@ def polynomial_cost(variables: int, modes: int, degree: int) -> tuple[Cost, str]
 
 def find_common_polynomial(
     lift: Lift, time: Time, rate: float, allowance: Allowance | None = None
-) -> Candidate | None:
+) -> Solution | None:
     """Maximize the margin by semidefinite programming.
 
     Parameters
@@ -197,7 +245,7 @@ def find_common_polynomial(
 
     Returns
     -------
-    Candidate or None
+    Solution or None
         None if the margin is not positive.
 
     Raises
@@ -227,44 +275,23 @@ def find_common_polynomial(
         return None
     weights = x[size:-1].reshape(m, forms)
     Q = np.tensordot(x[:size], basis, axes=1)
-    return Candidate(Q, np.tensordot(weights @ directions, basis, axes=1))
+    return Solution(Q, np.tensordot(weights @ directions, basis, axes=1))
 
 
-def round_polynomial(
-    system: SwitchedSystem, lift: Lift, candidate: Candidate, limit: float
-) -> CommonPolynomial | None:
-    """Round a candidate to integers at the best rate that it shows; None if nothing passes.
-
-    Parameters
-    ----------
-    system : SwitchedSystem
-        Exact modes.
-    lift : Lift
-        The lift that the candidate belongs to.
-    candidate : Candidate
-        Found by `find_common_polynomial`.
-    limit : float
-        Rate of the slowest mode, which no function exceeds.
-    """
-    best = _own_rate(lift, candidate, system.time)
-    if not np.isfinite(best):
-        return None
-    for back_off in BACK_OFFS:
-        if system.time is Time.CONTINUOUS:
-            rate = round_rate(min(best, limit) * back_off, system.time)
-        else:
-            rate = round_rate(1 - (1 - max(best, limit)) * back_off, system.time)
-        for bits in ROUNDING_BITS:
-            evidence = _integers(system, lift, candidate, rate, bits)
-            if evidence.find_fault(system) is None:
-                return evidence
-    return None
+def _roundings(family: Family, lift: Lift, solution: Solution) -> Iterator[CommonPolynomial]:
+    """Yield roundings to integers at rates just below the one that a solution shows itself."""
+    system = family.system
+    own = _own_rate(lift, solution, system.time)
+    slower = min if system.time is Time.CONTINUOUS else max
+    for claim in claims(1.0, slower(own, family.limit), system.time, NEAREST):
+        for bits in digits(FEWEST_BITS):
+            yield _integers(system, lift, solution, claim, bits)
 
 
-def _own_rate(lift: Lift, candidate: Candidate, time: Time) -> float:
+def _own_rate(lift: Lift, solution: Solution, time: Time) -> float:
     """Return the rate that Q and the vanishing forms show, by generalized eigenvalues."""
-    forms = decreases(lift.matrices, candidate.Q, time, 0.0) + candidate.vanishing
-    inverse = np.linalg.inv(np.linalg.cholesky(candidate.Q))
+    forms = decreases(lift.matrices, solution.Q, time, 0.0) + solution.vanishing
+    inverse = np.linalg.inv(np.linalg.cholesky(solution.Q))
     smallest = float(np.linalg.eigvalsh(inverse @ forms @ inverse.T).min())
     if time is Time.CONTINUOUS:
         return float(np.ldexp(smallest / (2 * lift.degree), -lift.unit))
@@ -272,36 +299,28 @@ def _own_rate(lift: Lift, candidate: Candidate, time: Time) -> float:
 
 
 def _integers(
-    system: SwitchedSystem, lift: Lift, candidate: Candidate, rate: Fraction, bits: int
+    system: SwitchedSystem, lift: Lift, solution: Solution, rate: Fraction, bits: int
 ) -> CommonPolynomial:
     exponents = lift.exponents - lift.exponents.min()
-    normalized = int(np.frexp(np.abs(candidate.Q).max())[1])
-    Q = _round(np.ldexp(candidate.Q, bits - normalized), exponents)
+    normalized = int(np.frexp(np.abs(solution.Q).max())[1])
+    Q = round_form(solution.Q, exponents, bits - normalized)
     groups = products(system.order, lift.degree)
     vanishing = []
-    for mode, N in zip(system.modes, candidate.vanishing, strict=True):
+    for mode, N in zip(system.modes, solution.vanishing, strict=True):
         # The integer form of the decrease is this multiple of the floating-point one.
         factor = lifted_factor(mode, lift.degree, rate, system.time)
         rounded = [
             [_shift(factor * entry, -lift.unit) for entry in row]
-            for row in _round(np.ldexp(N, bits - normalized), exponents)
+            for row in round_form(N, exponents, bits - normalized)
         ]
         vanishing.append(make_vanish(rounded, groups))
     return CommonPolynomial(
         degree=lift.degree,
-        Q=tuple(map(tuple, Q)),
+        Q=Q,
         denominator_log2=max(0, bits + 2 * int(-lift.exponents.min())),
         vanishing=tuple(tuple(map(tuple, N)) for N in vanishing),
         rate=rate,
     )
-
-
-def _round(M: Array, exponents: Exponents) -> list[list[int]]:
-    """Round to integers, then undo the scaling: ``2^e M 2^e``."""
-    return [
-        [round(float(v)) << int(ei + ej) for v, ej in zip(row, exponents, strict=True)]
-        for row, ei in zip((M + M.T) / 2, exponents, strict=True)
-    ]
 
 
 def _shift(value: int, exponent: int) -> int:

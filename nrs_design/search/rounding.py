@@ -1,58 +1,79 @@
-"""Round a floating-point candidate to integers, with as few bits as pass the exact check."""
+"""The ladder of every rounding: how far below the best rate to claim, and with how many digits.
+
+Rates descend, and for each rate the digits grow. A wider gap below the best rate needs fewer
+digits, and the first candidate that passes the exact check is taken.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Iterator
 from fractions import Fraction
-from math import floor, gcd
+from itertools import islice
+from math import floor, isfinite
 
 import numpy as np
 from numpy.typing import NDArray
 
-from nrs_design.proof.evidence import CommonQuadratic
 from nrs_design.proof.system import Time
-from nrs_design.search.checker import Checker
 
+BACK_OFFS = (0.9995, 0.999, 0.998, 0.99, 0.9, 0.5, 0.1, 1e-2, 1e-3, 1e-4)
 BITS = (4, 6, 8, 10, 12, 16, 20, 24, 32, 40, 50, 60)
+# Where a check takes long: so many rates, and every so many bits.
+FEW_RATES, FEW_BITS = 3, 4
 RATE_BITS = 16
 
-Screen = Callable[[NDArray[np.float64]], bool]
 
-
-def round_to_evidence(
-    checker: Checker,
-    Q: NDArray[np.float64],
-    exponents: NDArray[np.int64],
-    rate: Fraction,
-    passes: Screen = lambda rounded: True,
-) -> CommonQuadratic | None:
-    """Return exact evidence near a candidate, or None if no rounding of it passes.
+def rate_at(position: float, limit: float, time: Time) -> float:
+    """Return the rate at a position between mere stability and the limit.
 
     Parameters
     ----------
-    checker : Checker
-        Of the exact modes, in their own coordinates.
-    Q : ndarray, shape (n, n)
-        Candidate in the coordinates scaled by ``2^d``.
-    exponents : ndarray of int, shape (n,)
-        The d of `nrs_design.search.balance.balance`.
-    rate : Fraction
-        Rate to claim.
-    passes : callable
-        Tells in floating point, of a rounded candidate, whether the exact check is worth its time.
+    position : float
+        From 0, mere stability, to 1, the limit.
+    limit : float
+        The alpha in 1/s, or rho per step, that no proof can beat.
+    time : Time
+        Which of the two.
     """
-    largest = np.abs(Q).max()
-    if not np.isfinite(largest) or largest == 0:
-        return None
-    unit = np.ldexp(Q, -int(np.frexp(largest)[1]))
-    for bits in BITS:
-        rounded = np.ldexp(np.rint(np.ldexp((unit + unit.T) / 2, bits)), -bits)
-        if bits < BITS[-1] and not passes(rounded):
+    return position * limit if time is Time.CONTINUOUS else 1 - position * (1 - limit)
+
+
+def claims(
+    position: float, limit: float, time: Time, nearest: float = BACK_OFFS[0], *, few: bool = False
+) -> Iterator[Fraction]:
+    """Yield short rates of exponential decay below a position, the fastest decay first.
+
+    Parameters
+    ----------
+    position, limit, time
+        As for `rate_at`.
+    nearest : float
+        The first back-off: at most this share of the position is claimed.
+    few : bool
+        Not all of them.
+    """
+    back_offs = (back_off for back_off in BACK_OFFS if back_off <= nearest)
+    for back_off in islice(back_offs, FEW_RATES if few else None):
+        rate = rate_at(position * back_off, limit, time)
+        if not isfinite(rate):
             continue
-        evidence = _evidence(unit, exponents, bits, rate)
-        if checker.find_fault(evidence) is None:
-            return evidence
-    return None
+        claim = round_rate(rate, time)
+        if claim > 0 and (time is Time.CONTINUOUS or claim < 1):
+            yield claim
+
+
+def digits(fewest: int = BITS[0], *, few: bool = False) -> tuple[int, ...]:
+    """Return numbers of bits after the binary point, from the fewest on.
+
+    Parameters
+    ----------
+    fewest : int
+        The first one.
+    few : bool
+        Not all of them.
+    """
+    bits = tuple(bits for bits in BITS if bits >= fewest)
+    return bits[::FEW_BITS] if few else bits
 
 
 def round_rate(rate: float | Fraction, time: Time) -> Fraction:
@@ -68,6 +89,34 @@ def _round_down(value: Fraction) -> Fraction:
         size += 1
     unit = Fraction(2) ** (size - RATE_BITS)
     return floor(value / unit) * unit
+
+
+def round_form(
+    M: NDArray[np.float64], shifts: NDArray[np.int64], bits: int
+) -> tuple[tuple[int, ...], ...]:
+    """Round a symmetric matrix to integers over ``2^bits``, then scale exactly, ``2^s M 2^s``.
+
+    Parameters
+    ----------
+    M : ndarray, shape (n, n)
+        In scaled coordinates.
+    shifts : ndarray of int, shape (n,)
+        The s, none of them negative.
+    bits : int
+        After the binary point; may be negative.
+
+    Raises
+    ------
+    OverflowError
+        If it is beyond the range of floating point.
+    """
+    rounded = np.ldexp((M + M.T) / 2, bits)
+    if not np.isfinite(rounded).all():
+        raise OverflowError("a form beyond the range of floating point")
+    return tuple(
+        tuple(round(float(v)) << int(si + sj) for v, sj in zip(row, shifts, strict=True))
+        for row, si in zip(rounded, shifts, strict=True)
+    )
 
 
 def unscale(
@@ -89,20 +138,5 @@ def unscale(
     tuple
         The integers, and the logarithm of their denominator, which is two to a power.
     """
-    shifts = [int(exponents.max() - e) for e in exponents]
-    rows = tuple(
-        tuple(round(float(q) * 2.0**bits) << (si + sj) for q, sj in zip(row, shifts, strict=True))
-        for row, si in zip((Q + Q.T) / 2, shifts, strict=True)
-    )
-    return rows, bits + 2 * int(exponents.max())
-
-
-def _evidence(
-    Q: NDArray[np.float64], exponents: NDArray[np.int64], bits: int, rate: Fraction
-) -> CommonQuadratic:
-    """Round, and drop common factors of two: the scale of Q is free."""
-    rows, denominator_log2 = unscale(Q, exponents, bits)
-    common = gcd(*(entry for row in rows for entry in row)) or 1
-    twos = (common & -common).bit_length() - 1
-    reduced = tuple(tuple(entry >> twos for entry in row) for row in rows)
-    return CommonQuadratic(reduced, max(denominator_log2 - twos, 0), rate)
+    top = int(exponents.max())
+    return round_form(Q, top - exponents, bits), bits + 2 * top

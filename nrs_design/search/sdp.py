@@ -1,4 +1,8 @@
-"""Semidefinite programs for Clarabel: packing of symmetric matrices and one solve (untrusted)."""
+"""Semidefinite programs for Clarabel: packing of symmetric matrices and one solve (untrusted).
+
+By hand, as CVXPY takes longer to be loaded and to bring such a program into this form than Clarabel
+takes to solve it; off the hot path, `nrs_design.search.raw` leaves that to CVXPY.
+"""
 
 from __future__ import annotations
 

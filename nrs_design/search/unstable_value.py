@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from fractions import Fraction
 
 import numpy as np
@@ -16,9 +17,10 @@ from nrs_design.proof.evidence import (
 )
 from nrs_design.proof.evidence.unstable_mode import is_stable, worst_eigenvalue
 from nrs_design.proof.system import SwitchedSystem, Time
+from nrs_design.search.candidates import OUT_OF_RANGE, Candidate, Candidates
 from nrs_design.search.family import Family
-from nrs_design.search.mixture import find_unstable_mixture
-from nrs_design.search.period import find_growing_period
+from nrs_design.search.mixture import search_mixture
+from nrs_design.search.period import search_period
 
 Array = NDArray[np.float64]
 
@@ -36,54 +38,46 @@ SLACK = 1e-9
 SHARES = (Fraction(1, 2), Fraction(1, 4), Fraction(3, 4), Fraction(0), Fraction(1))
 
 
-def find_unstable_value(system: SwitchedSystem, matrices: Array) -> UnstableValue | None:
-    """Scan the parameter's range for a mode that is not stable, and decide exactly.
-
-    Parameters
-    ----------
-    system : SwitchedSystem
-        Exact modes, with `fixed_ends`.
-    matrices : ndarray, shape (m, n, n)
-        The same in floating point, perhaps scaled.
-    """
+def search_value(family: Family) -> Candidates[UnstableValue]:
+    """Scan the parameter's range for a mode that is not stable."""
+    system, matrices = family.system, family.matrices
+    if not np.isfinite(matrices).all():
+        return OUT_OF_RANGE
     slack = SLACK * max(float(np.abs(matrices).max()), 1.0)
     lows, highs = _ends(system, matrices)
     count = max(COARSE_GRID, min(GRID, EVALUATIONS // len(lows)))
     shares = np.linspace(0, 1, count)
+    found = False
     for k, start in _peaks(lows, highs, shares, system.time):
         share, growth = _refined(lows[k], highs[k], (start, float(shares[1])), system.time)
         if growth < -slack:
             continue
         for denominator in DENOMINATORS:
-            short = Fraction(share).limit_denominator(denominator)
-            if evidence := _unstable_mode_at(system, short):
-                return evidence
-    return None
+            for evidence in _unstable_modes(system, Fraction(share).limit_denominator(denominator)):
+                found = True
+                yield Candidate(evidence)
+    return None if found else "every mode is stable at every value tried"
 
 
-def find_unstable_switching(system: SwitchedSystem) -> UnstableValue | None:
-    """Look at some values of the parameter for an unstable average, or a growing period.
-
-    Parameters
-    ----------
-    system : SwitchedSystem
-        Exact modes, with `fixed_ends`.
-    """
+def search_switching_at_values(family: Family) -> Candidates[UnstableValue]:
+    """Look at some values of the parameter for an unstable average, or a growing period."""
+    system = family.system
     if len(system.switching.fixed_ends) < 2 or system.switching.resets:
-        return None
+        return "not tried: that takes two modes at each value, and no resets"
     for share in SHARES:
-        at_share = system_at(system, share)
-        matrices = Family.of(at_share).matrices
-        part: UnstableMixture | UnstablePeriod | None = None
-        if at_share.time is Time.CONTINUOUS and at_share.switching.is_arbitrary:
-            part = find_unstable_mixture(at_share, matrices)
-        part = part or find_growing_period(at_share, matrices)
-        if part is None:
-            continue
-        evidence = UnstableValue(share, part)
-        if evidence.find_fault(system) is None:
-            return evidence
-    return None
+        at_share = Family.of(system_at(system, share), family.allowance)
+        if at_share.system.time is Time.CONTINUOUS and at_share.system.switching.is_arbitrary:
+            yield from _at(share, search_mixture(at_share))
+        yield from _at(share, search_period(at_share))
+    return "nothing grows at the values tried"
+
+
+def _at(
+    share: Fraction, candidates: Candidates[UnstableMixture | UnstablePeriod]
+) -> Iterator[Candidate[UnstableValue]]:
+    """Make what is found about the system at a value evidence about the parameter."""
+    for candidate in candidates:
+        yield Candidate(UnstableValue(share, candidate.evidence))
 
 
 def _ends(system: SwitchedSystem, matrices: Array) -> tuple[Array, Array]:
@@ -125,11 +119,8 @@ def _refined(low: Array, high: Array, near: tuple[float, float], time: Time) -> 
     return float(found[best]), float(growth[best])
 
 
-def _unstable_mode_at(system: SwitchedSystem, share: Fraction) -> UnstableValue | None:
-    at_share = system_at(system, share)
-    for mode in at_share.modes:
+def _unstable_modes(system: SwitchedSystem, share: Fraction) -> Iterator[UnstableValue]:
+    for mode in system_at(system, share).modes:
         if not is_stable(mode.A, system.time):
             part = UnstableMode(mode.name, worst_eigenvalue(mode.A, system.time))
-            evidence = UnstableValue(share, part)
-            return evidence if evidence.find_fault(system) is None else None
-    return None
+            yield UnstableValue(share, part)

@@ -138,11 +138,11 @@ def fine_step(system: SwitchedSystem) -> float:
     """Return a step that resolves the fastest eigenvalue, in s; one in discrete time."""
     if system.time is Time.DISCRETE:
         return 1.0
-    fastest = max(float(np.abs(values).max()) for values in eigenvalues(system))
+    fastest = max(float(np.abs(values).max()) for values in mode_eigenvalues(system))
     return 0.1 / fastest if fastest > 0 else 0.1
 
 
-def eigenvalues(system: SwitchedSystem) -> list[NDArray[np.complex128]]:
+def mode_eigenvalues(system: SwitchedSystem) -> list[NDArray[np.complex128]]:
     """Return the eigenvalues of every mode, in 1/s in continuous time."""
     return [
         np.asarray(np.linalg.eigvals(np.array(mode.A.floats())), dtype=np.complex128)

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from fractions import Fraction
-from typing import Annotated, Literal
+from typing import Annotated, ClassVar, Literal
 
-from pydantic import Discriminator, Field, field_validator, model_validator
+from pydantic import ConfigDict, Discriminator, Field, field_validator, model_validator
 
 from nrs_design.spec.faults import fault
 from nrs_design.spec.fields import Label, Positive, UnitFraction, Weight
-from nrs_design.spec.gain_fields import DampingGain, InertiaGain
+from nrs_design.spec.gain_fields import DampingGain, GainSpec, InertiaGain
 from nrs_design.spec.goals import GoalsSpec
 from nrs_design.spec.model import SpecModel
 from nrs_design.spec.parameters import Switch
@@ -24,6 +24,10 @@ _GAIN_RANGE = (
     "range: [lowest, highest] beside them is what the proof covers if the gain is retuned while "
     "the robot runs"
 )
+
+
+# What the motion loop gets from a controller.
+Command = Literal["velocity", "position"]
 
 
 def _distinct(contacts: tuple[str, ...]) -> tuple[str, ...]:
@@ -50,8 +54,25 @@ class CostWeights(SpecModel):
         return self
 
 
-class ImpedanceControllerSpec(SpecModel):
+class AbstractControllerSpec(SpecModel):
+    """What all controllers have in common."""
+
+    # The motion loop integrates a velocity, and follows a position.
+    commands: ClassVar[Command]
+
+    def gains(self) -> dict[str, GainSpec]:
+        """Return the gains that the design may choose, or that may be retuned, by name."""
+        values = ((name, getattr(self, name)) for name in type(self).model_fields)
+        return {name: value for name, value in values if isinstance(value, GainSpec)}
+
+
+class ImpedanceControllerSpec(AbstractControllerSpec):
     """Admittance ``1/(Mt s + Bt)`` that makes the robot display an impedance (thesis 6.3.1)."""
+
+    model_config = ConfigDict(
+        json_schema_extra={"not": {"required": ["desired_impedance", "desired_impedance_ratio"]}}
+    )
+    commands: ClassVar[Command] = "velocity"
 
     type: Literal["impedance"] = Field(description="impedance: admittance Y = 1/(Mt s + Bt)")
     environment: Label = Field(description=_ENVIRONMENT)
@@ -94,8 +115,15 @@ class ImpedanceControllerSpec(SpecModel):
         return self
 
 
-class ForceControllerSpec(SpecModel):
+class ForceControllerSpec(AbstractControllerSpec):
     """Proportional force controller of the hybrid scheme (thesis 6.3.3)."""
+
+    model_config = ConfigDict(
+        json_schema_extra={
+            "oneOf": [{"required": ["proportional_gain"]}, {"required": ["damping_ratio"]}]
+        }
+    )
+    commands: ClassVar[Command] = "position"
 
     type: Literal["force"] = Field(description="force: u = Kp (Fd - F)")
     environment: Label = Field(description=_ENVIRONMENT)
@@ -132,8 +160,13 @@ class ForceControllerSpec(SpecModel):
         return self
 
 
-class PositionControllerSpec(SpecModel):
+class PositionControllerSpec(AbstractControllerSpec):
     """Position mode of the hybrid scheme: the closed motion loop alone (thesis 6.3.3)."""
+
+    commands: ClassVar[Command] = "position"
+    environment: ClassVar[str | None] = None
+    contacts: ClassVar[tuple[str, ...]] = ()
+    goals: ClassVar[GoalsSpec | None] = None
 
     type: Literal["position"] = Field(description="position: the motion loop alone, no contact")
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from fractions import Fraction
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 from nrs_design.proof.text import exact_text
 from nrs_design.spec import kinds
@@ -13,7 +13,6 @@ from nrs_design.spec.environment import EnvironmentSpec, unit_at_pivot
 from nrs_design.spec.gain_fields import GainSpec
 from nrs_design.spec.goals import GoalsSpec
 from nrs_design.spec.interaction import InteractionDesignSpec
-from nrs_design.spec.load import Spec
 from nrs_design.spec.model import SpecModel
 from nrs_design.spec.motion import LimitsSpec
 from nrs_design.spec.parameters import ParameterSpec
@@ -25,10 +24,17 @@ from nrs_design.spec.switched_system import SwitchedSystemSpec
 from nrs_design.spec.switching import SwitchingSpec
 from nrs_design.spec.units import BASE_UNITS
 
+if TYPE_CHECKING:
+    from nrs_design.spec.load import Spec
+
 MAX_LISTED = 20
+# Keys of a controller that are listed in a way of their own, and the kinds of gains.
+_TARGETS = frozenset({"desired_impedance", "desired_impedance_ratio"})
+_LISTED = _TARGETS | {"type", "environment", "contacts", "goals"}
+_GAINS = (kinds.INERTIA, kinds.IMPEDANCE, kinds.FORCE_GAIN)
 
 
-class Row(NamedTuple):
+class Line(NamedTuple):
     """One line of the listing."""
 
     name: str
@@ -37,7 +43,7 @@ class Row(NamedTuple):
     unit: str
 
 
-def describe(spec: Spec) -> tuple[Row, ...]:
+def describe(spec: Spec) -> tuple[Line, ...]:
     """List what a spec says.
 
     Parameters
@@ -47,7 +53,7 @@ def describe(spec: Spec) -> tuple[Row, ...]:
 
     Returns
     -------
-    tuple of Row
+    tuple of Line
         Name, text as written, SI value and SI unit. Linear stiffness is shown at the pivot.
     """
     if isinstance(spec, SwitchedSystemSpec):
@@ -57,8 +63,8 @@ def describe(spec: Spec) -> tuple[Row, ...]:
     return tuple(_interaction(spec))
 
 
-def _modes(spec: SwitchedSystemSpec) -> Iterator[Row]:
-    yield Row("time", spec.time, "", "")
+def _modes(spec: SwitchedSystemSpec) -> Iterator[Line]:
+    yield Line("time", spec.time, "", "")
     yield from _switching(spec.switching)
     for name, parameter in spec.parameters.items():
         yield from _parameter(f"parameters.{name}", parameter)
@@ -66,39 +72,39 @@ def _modes(spec: SwitchedSystemSpec) -> Iterator[Row]:
     for index, mode in enumerate(spec.modes):
         n = mode.dimension
         depends = f"{n} x {n}" + "".join(f", {name}" for name in sorted(mode.parameters))
-        yield Row(f"modes[{index}]", mode.name, depends, unit)
+        yield Line(f"modes[{index}]", mode.name, depends, unit)
     for index, reset in enumerate(spec.resets):
         shape = f"{reset.shape[0]} x {reset.shape[1]}"
-        yield Row(f"resets[{index}]", f"{reset.source} to {reset.target}", shape, "")
+        yield Line(f"resets[{index}]", f"{reset.source} to {reset.target}", shape, "")
 
 
-def _parameter(name: str, parameter: ParameterSpec) -> Iterator[Row]:
+def _parameter(name: str, parameter: ParameterSpec) -> Iterator[Line]:
     yield _number(name, parameter.nominal)
     if not parameter.fixed:
         yield _coefficients(f"{name}.range", parameter.range)
         change = "arbitrarily fast" if parameter.varies else "unknown, but constant"
-        yield Row(f"{name}.varies", str(parameter.varies).lower(), change, "")
+        yield Line(f"{name}.varies", str(parameter.varies).lower(), change, "")
 
 
-def _switching(switching: SwitchingSpec) -> Iterator[Row]:
+def _switching(switching: SwitchingSpec) -> Iterator[Line]:
     if switching.is_arbitrary:
-        yield Row("switching", str(switching), "", "")
+        yield Line("switching", str(switching), "", "")
     for at, dwell in switching.dwell_times():
         name = ".".join(("switching", *at))
-        yield Row(name, dwell.text, _text(float(dwell.value)), dwell.unit)
+        yield Line(name, dwell.text, _text(float(dwell.value)), dwell.unit)
     if switching.transitions is not None:
         pairs = [f"{source} to {target}" for source, target in switching.transitions]
         listed = ", ".join(pairs[:MAX_LISTED]) + ", ..." * (len(pairs) > MAX_LISTED)
-        yield Row("switching.transitions", listed or "no switch", str(len(pairs)), "")
+        yield Line("switching.transitions", listed or "no switch", str(len(pairs)), "")
 
 
-def _interaction(spec: InteractionDesignSpec) -> Iterator[Row]:
+def _interaction(spec: InteractionDesignSpec) -> Iterator[Line]:
     yield _row("actuator.gain", spec.actuator.gain, kinds.ACTUATOR_GAIN)
     yield _row("actuator.time_constant", spec.actuator.time_constant, kinds.DURATION)
     if spec.actuator.intervals is not None:
         for name in ("gain", "time_constant"):
             low, high = getattr(spec.actuator.intervals, name)
-            yield Row(f"actuator.intervals.{name}", f"[{low.text}, {high.text}]", "", "")
+            yield Line(f"actuator.intervals.{name}", f"[{low.text}, {high.text}]", "", "")
     yield from _provenance("actuator", spec.actuator.provenance)
     yield from _motion_loop(spec)
     yield _row("limits.velocity", spec.limits.velocity, kinds.ANGULAR_VELOCITY)
@@ -111,12 +117,12 @@ def _interaction(spec: InteractionDesignSpec) -> Iterator[Row]:
     if spec.idle_states is not None:
         yield from describe_model(spec.idle_states, "idle_states")
     yield from _goals("goals", spec.goals)
-    yield Row("design.significant_digits", str(spec.design.significant_digits), "", "")
-    yield Row("coordinates", spec.coordinates, "", "")
+    yield Line("design.significant_digits", str(spec.design.significant_digits), "", "")
+    yield Line("coordinates", spec.coordinates, "", "")
     yield from _switching(spec.switching)
 
 
-def _motion_loop(spec: InteractionDesignSpec) -> Iterator[Row]:
+def _motion_loop(spec: InteractionDesignSpec) -> Iterator[Line]:
     loop = spec.motion_loop
     yield _number("motion_loop.damping_ratio", loop.damping_ratio)
     yield _row("motion_loop.settling_time", loop.settling_time, kinds.DURATION)
@@ -130,8 +136,8 @@ def _motion_loop(spec: InteractionDesignSpec) -> Iterator[Row]:
         yield _coefficients("motion_loop.transfer_function.denominator", tf.denominator)
 
 
-def _environment(name: str, environment: EnvironmentSpec) -> Iterator[Row]:
-    yield Row(f"{name}.model", environment.model, "", "")
+def _environment(name: str, environment: EnvironmentSpec) -> Iterator[Line]:
+    yield Line(f"{name}.model", environment.model, "", "")
     turned = environment.at_pivot()
     for key, written in environment.parameters().items():
         unit = unit_at_pivot(written.nominal)
@@ -141,80 +147,95 @@ def _environment(name: str, environment: EnvironmentSpec) -> Iterator[Row]:
     yield from _provenance(name, environment.provenance)
 
 
-def _provenance(name: str, sources: tuple[ProvenanceSpec, ...]) -> Iterator[Row]:
+def _provenance(name: str, sources: tuple[ProvenanceSpec, ...]) -> Iterator[Line]:
     for index, source in enumerate(sources):
-        yield Row(f"{name}.provenance[{index}]", source.file, source.data, "")
+        yield Line(f"{name}.provenance[{index}]", source.file, source.data, "")
 
 
-def _ranged(name: str, written: RangedQuantity, si: RangedQuantity, unit: str) -> Iterator[Row]:
-    yield Row(name, written.nominal.text, _text(si.nominal.si), unit)
+def _ranged(name: str, written: RangedQuantity, si: RangedQuantity, unit: str) -> Iterator[Line]:
+    yield Line(name, written.nominal.text, _text(si.nominal.si), unit)
     if not written.fixed:
         (low, high), (si_low, si_high) = written.range, si.range
         value = f"[{_text(si_low.si)}, {_text(si_high.si)}]"
-        yield Row(f"{name}.range", f"[{low.text}, {high.text}]", value, unit)
+        yield Line(f"{name}.range", f"[{low.text}, {high.text}]", value, unit)
 
 
-def _controller(name: str, controller: ControllerSpec, limits: LimitsSpec) -> Iterator[Row]:
-    yield Row(f"{name}.type", controller.type, "", "")
-    if controller.type == "position":
+def _controller(name: str, controller: ControllerSpec, limits: LimitsSpec) -> Iterator[Line]:
+    yield Line(f"{name}.type", controller.type, "", "")
+    if controller.environment is None:
         return
-    yield Row(f"{name}.environment", controller.environment, "", "")
-    yield Row(f"{name}.contacts", ", ".join(controller.contacts), "", "")
+    yield Line(f"{name}.environment", controller.environment, "", "")
+    yield Line(f"{name}.contacts", ", ".join(controller.contacts), "", "")
     if controller.type == "impedance":
         yield _desired_impedance(f"{name}.desired_impedance", controller, limits)
-        yield from _gain(f"{name}.Mt", controller.Mt, kinds.INERTIA)
-        yield from _gain(f"{name}.Bt", controller.Bt, kinds.IMPEDANCE)
-        yield _number(f"{name}.weights.displayed", controller.weights.displayed)
-        yield _number(f"{name}.weights.sensitivity", controller.weights.sensitivity)
-    elif controller.proportional_gain is not None:
-        yield _row(f"{name}.proportional_gain", controller.proportional_gain, kinds.FORCE_GAIN)
-    elif controller.damping_ratio is not None:
-        yield _number(f"{name}.damping_ratio", controller.damping_ratio)
+    for key in type(controller).model_fields:
+        if key not in _LISTED:
+            yield from _own_field(f"{name}.{key}", getattr(controller, key))
     yield from _goals(f"{name}.goals", controller.goals)
 
 
-def _goals(name: str, goals: GoalsSpec | None) -> Iterator[Row]:
+def _own_field(name: str, value: object) -> Iterator[Line]:
+    """List what only one type of controller has."""
+    if isinstance(value, GainSpec):
+        yield from _gain(name, value, _gain_unit(value.min))
+    elif isinstance(value, Quantity):
+        yield _quantity(name, value, _gain_unit(value))
+    else:
+        yield from describe_model(value, name)
+
+
+def _gain_unit(quantity: Quantity) -> str:
+    """Return the unit in which a gain is shown."""
+    known = (kind.si_unit for kind in _GAINS if kind.accepts(quantity.dimension))
+    return next(known, si_unit(quantity.dimension))
+
+
+def _goals(name: str, goals: GoalsSpec | None) -> Iterator[Line]:
     if goals is not None:
         yield from describe_model(goals, name)
 
 
-def _desired_impedance(name: str, controller: ImpedanceControllerSpec, limits: LimitsSpec) -> Row:
+def _desired_impedance(name: str, controller: ImpedanceControllerSpec, limits: LimitsSpec) -> Line:
     if controller.desired_impedance is not None:
         return _row(name, controller.desired_impedance, kinds.IMPEDANCE)
     ratio = controller.desired_impedance_ratio
     written = "torque/velocity" if ratio is None else f"{exact_text(ratio)} * torque/velocity"
     value = float(1 if ratio is None else ratio) * limits.torque.si / limits.velocity.si
-    return Row(name, written, _text(value), kinds.IMPEDANCE.si_unit)
+    return Line(name, written, _text(value), kinds.IMPEDANCE.si_unit)
 
 
-def _gain(name: str, gain: GainSpec, kind: QuantityKind) -> Iterator[Row]:
+def _gain(name: str, gain: GainSpec, unit: str) -> Iterator[Line]:
     if gain.fixed:
-        yield _row(name, gain.min, kind)
+        yield _quantity(name, gain.min, unit)
     else:
-        yield _interval(name, gain.min, gain.max, kind)
+        yield _interval(name, gain.min, gain.max, unit)
     if gain.range is not None:
-        yield _interval(f"{name}.range", *gain.range, kind)
+        yield _interval(f"{name}.range", *gain.range, unit)
 
 
-def _interval(name: str, low: Quantity, high: Quantity, kind: QuantityKind) -> Row:
+def _interval(name: str, low: Quantity, high: Quantity, unit: str) -> Line:
     value = f"[{_text(low.si)}, {_text(high.si)}]"
-    return Row(name, f"[{low.text}, {high.text}]", value, kind.si_unit)
+    return Line(name, f"[{low.text}, {high.text}]", value, unit)
 
 
-def _row(name: str, quantity: Quantity, kind: QuantityKind) -> Row:
-    return Row(name, quantity.text, _text(quantity.si), kind.si_unit)
+def _row(name: str, quantity: Quantity, kind: QuantityKind) -> Line:
+    return _quantity(name, quantity, kind.si_unit)
 
 
-def _number(name: str, number: Fraction) -> Row:
-    return Row(name, exact_text(number), _text(float(number)), "")
+def _quantity(name: str, quantity: Quantity, unit: str) -> Line:
+    return Line(name, quantity.text, _text(quantity.si), unit)
 
 
-def _coefficients(name: str, numbers: tuple[Fraction, ...]) -> Row:
+def _number(name: str, number: Fraction) -> Line:
+    return Line(name, exact_text(number), _text(float(number)), "")
+
+
+def _coefficients(name: str, numbers: tuple[Fraction, ...]) -> Line:
     value = ", ".join(_text(float(number)) for number in numbers)
-    return Row(name, f"[{', '.join(map(exact_text, numbers))}]", f"[{value}]", "")
+    return Line(name, f"[{', '.join(map(exact_text, numbers))}]", f"[{value}]", "")
 
 
-def describe_model(value: object, name: str = "") -> Iterator[Row]:
+def describe_model(value: object, name: str = "") -> Iterator[Line]:
     """List every value of a model whose quantities need no conversion but that to SI."""
     if isinstance(value, SpecModel):
         for field in type(value).model_fields:
@@ -224,13 +245,13 @@ def describe_model(value: object, name: str = "") -> Iterator[Row]:
         for index, item in enumerate(value):
             yield from describe_model(item, f"{name}[{index}]")
     elif isinstance(value, Quantity):
-        yield Row(name, value.text, _text(value.si), si_unit(value.dimension))
+        yield Line(name, value.text, _text(value.si), si_unit(value.dimension))
     elif isinstance(value, Fraction):
         yield _number(name, value)
     elif isinstance(value, bool):
-        yield Row(name, str(value).lower(), "", "")
+        yield Line(name, str(value).lower(), "", "")
     elif value is not None:
-        yield Row(name, str(value), "", "")
+        yield Line(name, str(value), "", "")
 
 
 def si_unit(dimension: tuple[int, ...]) -> str:

@@ -90,7 +90,7 @@ Node = Scalar | Sequence | Mapping
 Data = str | tuple["Data", ...] | dict[str, "Data"]
 
 
-def read_text(path: Path) -> tuple[bytes, str]:
+def read_source(path: Path) -> tuple[bytes, str]:
     """Read a spec file: its bytes, and the text that they encode.
 
     Raises
@@ -164,13 +164,13 @@ def parse_document(text: str, path: Path | None = None) -> Node:
         and values, one longer than 1000 characters, anchors, aliases, tags, merge keys, duplicate
         keys, keys that are not text, missing values and several documents.
     """
-    root, faults = read_document(text, path)
+    root, faults = parse_with_faults(text, path)
     if faults:
         raise SpecError.of(faults, path)
     return root
 
 
-def read_document(text: str, path: Path | None = None) -> tuple[Node, tuple[Fault, ...]]:
+def parse_with_faults(text: str, path: Path | None = None) -> tuple[Node, tuple[Fault, ...]]:
     """Parse a document as `parse_document` does, past all faults that leave the rest readable.
 
     Returns

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
-from nrs_design.spec.controllers import PositionControllerSpec
-from nrs_design.spec.interaction import InteractionDesignSpec
-from nrs_design.spec.load import Spec
+if TYPE_CHECKING:
+    from nrs_design.spec.load import Spec
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,13 +32,10 @@ class Doubt:
 
 def doubt_spec(spec: Spec) -> Iterator[Doubt]:
     """Yield what is doubtful about a spec, before anything is designed."""
-    if not isinstance(spec, InteractionDesignSpec):
+    if spec.kind != "interaction-design":
         return
     touched = {
-        contact
-        for controller in spec.controllers.values()
-        if not isinstance(controller, PositionControllerSpec)
-        for contact in controller.contacts
+        contact for controller in spec.controllers.values() for contact in controller.contacts
     }
     for name in spec.environments:
         if name not in touched:

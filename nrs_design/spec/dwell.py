@@ -7,14 +7,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
-from nrs_design.spec.controllers import (
-    ControllerSpec,
-    ImpedanceControllerSpec,
-    PositionControllerSpec,
-)
-from nrs_design.spec.environment import EnvironmentSpec
-from nrs_design.spec.parameters import ParameterSpec
+if TYPE_CHECKING:
+    from nrs_design.spec.controllers import ControllerSpec
+    from nrs_design.spec.environment import EnvironmentSpec
+    from nrs_design.spec.parameters import ParameterSpec
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,22 +40,20 @@ def find_changing_contact(
 ) -> DwellObstacle | None:
     """Find what changes while one controller is active: the environment obeys no rule of ours."""
     for name, controller in controllers.items():
-        contacts = () if isinstance(controller, PositionControllerSpec) else controller.contacts
-        if len(contacts) > 1:
+        if len(controller.contacts) > 1:
             return DwellObstacle(
                 f"a dwell time and several contacts of {name!r} exclude each other: the contact "
                 "may change at any time, whatever the controller",
                 "write a spec for each environment",
             )
-        if isinstance(controller, ImpedanceControllerSpec):
-            for gain in ("Mt", "Bt"):
-                if getattr(controller, gain).ranged:
-                    return DwellObstacle(
-                        f"a dwell time and the range of {gain} of {name!r} exclude each other: "
-                        "the gain may move during the dwell time, and the proof would not hold",
-                        "give the gain one value only",
-                    )
-        for contact in contacts:
+        for gain, declared in controller.gains().items():
+            if declared.ranged:
+                return DwellObstacle(
+                    f"a dwell time and the range of {gain} of {name!r} exclude each other: "
+                    "the gain may move during the dwell time, and the proof would not hold",
+                    "give the gain one value only",
+                )
+        for contact in controller.contacts:
             if not environments[contact].fixed:
                 return DwellObstacle(
                     f"a dwell time and the range of environment {contact!r} exclude each other: "

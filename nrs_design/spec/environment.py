@@ -9,6 +9,7 @@ from pydantic import Discriminator, Field, model_validator
 
 from nrs_design.spec import kinds
 from nrs_design.spec.faults import fault
+from nrs_design.spec.interval import Interval
 from nrs_design.spec.model import SpecModel
 from nrs_design.spec.provenance import PROVENANCE, Provenance
 from nrs_design.spec.quantity import Quantity
@@ -68,15 +69,15 @@ class AbstractEnvironmentSpec(SpecModel):
         values = ((name, getattr(self, name)) for name in type(self).model_fields)
         return {name: value for name, value in values if isinstance(value, RangedQuantity)}
 
-    def exact_at_pivot(self) -> dict[str, tuple[Fraction, Fraction, Fraction]]:
-        """Return nominal, lowest and highest values for a rotation, in N*m/rad and N*m*s/rad.
+    def exact_at_pivot(self) -> dict[str, Interval]:
+        """Return the parameters with their ranges for a rotation, in N*m/rad and N*m*s/rad.
 
         With a lever arm r, each value is multiplied by ``r^2``, exactly (thesis 6.3.1.1:
         747.1461 N/m at 0.24 m is 43.0356 N*m/rad).
         """
         radius = Fraction(1) if self.lever_arm is None else self.lever_arm.exact
         return {
-            name: (
+            name: Interval(
                 turn(value.nominal.exact, radius),
                 turn(value.range[0].exact, radius),
                 turn(value.range[1].exact, radius),
@@ -154,7 +155,8 @@ EnvironmentSpec = Annotated[
 ]
 
 
-def _quantities(values: tuple[Fraction, Fraction, Fraction], unit: str) -> RangedQuantity:
+def _quantities(turned: Interval, unit: str) -> RangedQuantity:
+    values = (turned.nominal, turned.low, turned.high)
     nominal, low, high = (Quantity(f"{float(v):.6g} {unit}", v, unit) for v in values)
     return RangedQuantity(nominal=nominal, range=(low, high))
 

@@ -98,7 +98,7 @@ def _refuse_huge_exponent(text: str) -> None:
 def number_fault(text: str) -> SpecError | None:
     """Recognize a number that is written in a way that is not read, and say why; else None.
 
-    Long texts are none, and are not looked at: some patterns take long for them.
+    Long texts are not looked at: some patterns take long for them.
     """
     if len(text) > 2 * MAX_LENGTH:
         return None

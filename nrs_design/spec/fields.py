@@ -90,7 +90,7 @@ def read_hash(value: object) -> str:
     """Read a SHA-256 in hexadecimal."""
     text = as_text(value)
     if not re.fullmatch(HASH_PATTERN, text):
-        raise fault(f"{quoted(text)} is no SHA-256", "write 64 hexadecimal digits, lower case")
+        raise fault(f"{quoted(text)} is not a SHA-256", "write 64 hexadecimal digits, lower case")
     return text
 
 

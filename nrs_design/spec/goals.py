@@ -73,13 +73,13 @@ def check_applicable(goals: GoalsSpec | None, types: set[str], *at: str) -> None
     goals : GoalsSpec or None
         What is wanted.
     types : set of str
-        Of the controllers that the goals would apply to.
+        Of the controllers in contact that the goals would apply to.
     *at : str
         Where they stand in the spec.
     """
     if goals is None:
         return
-    if types <= {"position"}:
+    if not types:
         raise fault(
             "there is no controller that a goal applies to: position control has no contact",
             "remove goals",

@@ -9,11 +9,7 @@ from typing import Annotated, Literal
 from pydantic import Field, model_validator
 
 from nrs_design.spec.certification import CertificationSpec
-from nrs_design.spec.controllers import (
-    ControllerSpec,
-    IdleStatesSpec,
-    PositionControllerSpec,
-)
+from nrs_design.spec.controllers import ControllerSpec, IdleStatesSpec
 from nrs_design.spec.dwell import DwellObstacle, find_changing_contact
 from nrs_design.spec.environment import EnvironmentSpec
 from nrs_design.spec.faults import all_of, did_you_mean, fault
@@ -21,7 +17,7 @@ from nrs_design.spec.fields import Digits, Label, Name, Title
 from nrs_design.spec.goals import GoalsSpec, check_applicable
 from nrs_design.spec.model import SpecModel
 from nrs_design.spec.motion import ActuatorSpec, LimitsSpec, MotionLoopSpec
-from nrs_design.spec.switching import DwellTime, Switching, check_names
+from nrs_design.spec.switching import DwellTime, SwitchingRule, check_names
 
 MAX_ENTRIES = 64
 
@@ -65,7 +61,7 @@ class InteractionDesignSpec(SpecModel):
         description="state of the contact: deflection stays continuous when the stiffness "
         "switches; force is what the thesis uses",
     )
-    switching: Switching = Field(
+    switching: SwitchingRule = Field(
         description="when controllers change: arbitrary, or rules with dwell_time and transitions "
         "between controllers"
     )
@@ -91,7 +87,6 @@ class InteractionDesignSpec(SpecModel):
             *(
                 partial(check_applicable, c.goals, {c.type}, "controllers", name, "goals")
                 for name, c in self.controllers.items()
-                if not isinstance(c, PositionControllerSpec)
             ),
             *(
                 partial(_check_springs, *item, self.environments)
@@ -99,7 +94,7 @@ class InteractionDesignSpec(SpecModel):
             ),
             partial(_check_memories, self.controllers, self.environments, self.coordinates),
             lambda: check_applicable(
-                self.goals, {c.type for c in self.controllers.values()}, "goals"
+                self.goals, {c.type for c in self.controllers.values() if c.contacts}, "goals"
             ),
             lambda: check_names(self.switching, self.controllers, "controller"),
             *(
@@ -125,7 +120,7 @@ def _check_mixture(
     others = (
         (name, controller.type)
         for name, controller in controllers.items()
-        if (controller.type == "impedance") != (first.type == "impedance")
+        if controller.commands != first.commands
     )
     name, kind = next(others, (None, None))
     if idle is None and name is not None:
@@ -168,7 +163,7 @@ def _check_references(
     controller: ControllerSpec,
     environments: dict[str, EnvironmentSpec],
 ) -> None:
-    if isinstance(controller, PositionControllerSpec):
+    if controller.environment is None:
         return
 
     def check(environment: str, *at: int | str) -> None:
@@ -205,7 +200,7 @@ def _check_springs(
     name: str, controller: ControllerSpec, environments: dict[str, EnvironmentSpec]
 ) -> None:
     """Refuse force control of what is no spring: its force is not that of the position alone."""
-    if controller.type != "force":
+    if controller.commands == "velocity":
         return
     for contact in controller.contacts:
         environment = environments.get(contact)
@@ -231,7 +226,6 @@ def _check_memories(
     touched = {
         contact: environments[contact]
         for controller in controllers.values()
-        if not isinstance(controller, PositionControllerSpec)
         for contact in controller.contacts
         if contact in environments
     }

@@ -7,6 +7,7 @@ import json
 import os
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from pydantic import ValidationError
 
@@ -19,22 +20,20 @@ from nrs_design.spec.document import (
     Position,
     Scalar,
     parse_document,
-    read_document,
-    read_text,
+    parse_with_faults,
+    read_source,
     to_data,
 )
 from nrs_design.spec.faults import did_you_mean, file_faults, place_of
-from nrs_design.spec.interaction import InteractionDesignSpec
-from nrs_design.spec.robot import RobotSpec
-from nrs_design.spec.switched_system import SwitchedSystemSpec
 
-Spec = InteractionDesignSpec | SwitchedSystemSpec | RobotSpec
+if TYPE_CHECKING:
+    from nrs_design.spec.interaction import InteractionDesignSpec
+    from nrs_design.spec.robot import RobotSpec
+    from nrs_design.spec.switched_system import SwitchedSystemSpec
 
-KINDS: dict[str, type[Spec]] = {
-    "interaction-design": InteractionDesignSpec,
-    "switched-system": SwitchedSystemSpec,
-    "robot": RobotSpec,
-}
+    Spec = InteractionDesignSpec | SwitchedSystemSpec | RobotSpec
+
+SPEC_KINDS = ("interaction-design", "switched-system", "robot")
 
 
 @dataclass(frozen=True)
@@ -90,8 +89,8 @@ def read_spec(path: str | os.PathLike[str]) -> LoadedSpec:
         With path, line, column, message and remedy, if anything about the file is wrong.
     """
     file = Path(path)
-    _, text = read_text(file)
-    root, syntax = read_document(text, file)
+    _, text = read_source(file)
+    root, syntax = parse_with_faults(text, file)
     spec = _validate(root, syntax, file)
     return LoadedSpec(file, hash_meaning(to_data(root)), text, spec, root)
 
@@ -116,7 +115,22 @@ def parse_spec(text: str, path: Path | None = None) -> Spec:
     SpecError
         With line, column, message and remedy.
     """
-    return _validate(*read_document(text, path), path)
+    return _validate(*parse_with_faults(text, path), path)
+
+
+def model_of(kind: str) -> type[Spec]:
+    """Return the model of a kind of spec; a command pays only for the kind that it reads."""
+    if kind == "interaction-design":
+        from nrs_design.spec.interaction import InteractionDesignSpec
+
+        return InteractionDesignSpec
+    if kind == "robot":
+        from nrs_design.spec.robot import RobotSpec
+
+        return RobotSpec
+    from nrs_design.spec.switched_system import SwitchedSystemSpec
+
+    return SwitchedSystemSpec
 
 
 def hash_meaning(said: Data) -> str:
@@ -132,7 +146,7 @@ def hash_meaning(said: Data) -> str:
 
 def _validate(root: Node, syntax: tuple[Fault, ...], path: Path | None) -> Spec:
     found: tuple[Fault, ...] = ()
-    model = KINDS[_kind_of(root, path, syntax)]
+    model = model_of(_kind_of(root, path, syntax))
     try:
         spec = model.model_validate(to_data(root))
     except ValidationError as error:
@@ -166,10 +180,10 @@ def _kind_of(root: Node, path: Path | None, syntax: tuple[Fault, ...]) -> str:
                 path=path,
                 remedy="name the spec that it is for",
             )
-        raise refuse("`kind` is missing", f"add `kind: ` with one of {', '.join(KINDS)}", root)
+        raise refuse("`kind` is missing", f"add `kind: ` with one of {', '.join(SPEC_KINDS)}", root)
     if not isinstance(kind, Scalar):
         raise refuse("kind: expected a single text", "write one value", kind)
-    if kind.text not in KINDS:
+    if kind.text not in SPEC_KINDS:
         message = f"kind: {quoted(kind.text)} is not known"
-        raise refuse(message, did_you_mean(kind.text, KINDS), kind)
+        raise refuse(message, did_you_mean(kind.text, SPEC_KINDS), kind)
     return kind.text

@@ -181,7 +181,7 @@ def _ranged(kind: QuantityKind, *, positive: bool) -> BeforeValidator:
 
 Reader = Callable[[object], Quantity]
 # A fault stands in for its quantity until the model reports it together with the others.
-Attempt = Quantity | PydanticCustomError
+QuantityOrFault = Quantity | PydanticCustomError
 
 
 def read_entries(value: object, keys: tuple[str, ...], reader: Reader) -> object:
@@ -198,17 +198,17 @@ def read_entries(value: object, keys: tuple[str, ...], reader: Reader) -> object
     """
     if not isinstance(value, dict):
         return value
-    return value | {key: _attempt(reader, value[key]) for key in value if key in keys}
+    return value | {key: _read_or_fault(reader, value[key]) for key in value if key in keys}
 
 
-def read_range(value: object, reader: Reader) -> tuple[Attempt, ...]:
+def read_range(value: object, reader: Reader) -> tuple[QuantityOrFault, ...]:
     """Read both ends of a range."""
     if not isinstance(value, tuple | list) or len(value) != 2:
         raise fault("expected two quantities", "write [lowest, highest]", "range")
-    return tuple(_attempt(reader, end) for end in value)
+    return tuple(_read_or_fault(reader, end) for end in value)
 
 
-def _attempt(reader: Reader, value: object) -> Attempt:
+def _read_or_fault(reader: Reader, value: object) -> QuantityOrFault:
     try:
         return reader(value)
     except PydanticCustomError as error:

@@ -7,17 +7,9 @@ from typing import Any
 from pydantic import BaseModel
 
 from nrs_design.printable import json_text
-from nrs_design.spec.load import KINDS
+from nrs_design.spec.load import SPEC_KINDS, model_of
 
 DIALECT = "http://json-schema.org/draft-07/schema#"
-_EXCLUSIVE = {
-    "ImpedanceControllerSpec": {
-        "not": {"required": ["desired_impedance", "desired_impedance_ratio"]}
-    },
-    "ForceControllerSpec": {
-        "oneOf": [{"required": ["proportional_gain"]}, {"required": ["damping_ratio"]}]
-    },
-}
 # What only Python knows of a model: class names, null for an absent key, defaults that are objects.
 _INTERNAL = ("title", "default", "discriminator")
 
@@ -39,7 +31,8 @@ def json_schema() -> dict[str, Any]:
     """
     definitions: dict[str, Any] = {}
     choices = []
-    for kind, model in KINDS.items():
+    for kind in SPEC_KINDS:
+        model = model_of(kind)
         definitions |= _definitions(model)
         choices.append(_choice(kind, model))
     return {
@@ -48,7 +41,9 @@ def json_schema() -> dict[str, Any]:
         "description": "An interaction design or a switched system, *.nrs.yaml",
         "type": "object",
         "required": ["kind"],
-        "properties": {"kind": {"enum": list(KINDS), "description": "what this file describes"}},
+        "properties": {
+            "kind": {"enum": list(SPEC_KINDS), "description": "what this file describes"}
+        },
         "allOf": choices,
         "definitions": dict(sorted(definitions.items())),
     }
@@ -66,9 +61,6 @@ def _definitions(model: type[BaseModel]) -> dict[str, Any]:
     nested = schema.pop("$defs", {})
     found = {name: _plain(definition) for name, definition in nested.items()}
     found[model.__name__] = _plain(schema)
-    for name, rule in _EXCLUSIVE.items():
-        if name in found:
-            found[name] |= rule
     return found
 
 

@@ -19,7 +19,7 @@ from nrs_design.spec.switching import (
     MAX_DIMENSION,
     MAX_TRANSITIONS,
     ResetSpec,
-    Switching,
+    SwitchingRule,
     Transition,
     check_denominators,
     check_names,
@@ -95,7 +95,7 @@ class SwitchedSystemSpec(SpecModel):
     modes: Annotated[tuple[ModeSpec, ...], Field(min_length=1, max_length=MAX_MODES)] = Field(
         description="the modes, at least one; of the same size, unless resets link them"
     )
-    switching: Switching = Field(
+    switching: SwitchingRule = Field(
         description="when modes change: arbitrary, or rules with dwell_time and transitions"
     )
     resets: Annotated[tuple[ResetSpec, ...], Field(max_length=MAX_TRANSITIONS)] = Field(

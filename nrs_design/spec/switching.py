@@ -38,8 +38,8 @@ _LONGEST_DWELL_TIME = (
 )
 _TRANSITIONS = "allowed switches as [from, to]; default: all"
 
-Row = Annotated[tuple[Exact, ...], Field(min_length=1, max_length=MAX_DIMENSION)]
-Matrix = Annotated[tuple[Row, ...], Field(min_length=1, max_length=MAX_DIMENSION)]
+_Row = Annotated[tuple[Exact, ...], Field(min_length=1, max_length=MAX_DIMENSION)]
+_Matrix = Annotated[tuple[_Row, ...], Field(min_length=1, max_length=MAX_DIMENSION)]
 Transition = tuple[str, str]
 
 
@@ -202,7 +202,7 @@ def _read_switching(value: object) -> object:
     return value
 
 
-Switching = Annotated[
+SwitchingRule = Annotated[
     SwitchingSpec,
     BeforeValidator(_read_switching),
     WithJsonSchema(
@@ -230,7 +230,7 @@ class ResetSpec(SpecModel):
 
     source: Label = Field(alias="from", description="name of the mode before the switch")
     target: Label = Field(alias="to", description="name of the mode after the switch")
-    map: Matrix = Field(
+    map: _Matrix = Field(
         description="matrix of x+ = map x as a list of rows, as many rows as the mode after the "
         "switch has states, as many columns as the mode before it; exact numbers"
     )

@@ -5,26 +5,19 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import replace
 from fractions import Fraction
+from typing import TYPE_CHECKING
 
-from nrs_design.controllers.controller_design import ControllerDesign
-from nrs_design.controllers.gains import design_from_gains
 from nrs_design.errors import AssemblyError
-from nrs_design.models.plant import Plant, build_plant
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.system import Mode, SwitchedSystem, Time
-from nrs_design.spec import (
-    ImpedanceControllerSpec,
-    InteractionDesignSpec,
-    PositionControllerSpec,
-    RobotSpec,
-    Spec,
-    SwitchedSystemSpec,
-)
 from nrs_design.switched.assumptions import GIVEN_MATRICES, assume_matrices, scale_texts
-from nrs_design.switched.close_loop import close_loop
 from nrs_design.switched.constraints import assemble_switching
-from nrs_design.switched.gain_box import gain_boxes
 from nrs_design.switched.parameters import corner_modes, fixed_parameter, read_parameters
+
+if TYPE_CHECKING:
+    from nrs_design.controllers.controller_design import ControllerDesign
+    from nrs_design.models.plant import Plant
+    from nrs_design.spec import InteractionDesignSpec, Spec, SwitchedSystemSpec
 
 __all__ = ["GIVEN_MATRICES", "assemble", "assemble_from_text", "assemble_matrices", "has_ranges"]
 
@@ -63,37 +56,35 @@ def assemble_from_text(
         If gains or coordinates do not fit the spec, if a stiffness or a gain does not stay
         positive, or if the rules of switching make too many switches.
     """
-    if isinstance(spec, SwitchedSystemSpec):
+    if spec.kind == "switched-system":
         if gains or coordinates is not None:
             raise AssemblyError("given matrices have neither gains nor coordinates")
         return assemble_matrices(spec, scale)
-    if isinstance(spec, RobotSpec):
+    if spec.kind == "robot":
         raise AssemblyError("a robot spec has no modes")
+    from nrs_design.controllers.gains import design_from_gains
+    from nrs_design.models.plant import build_plant
+
     design = design_from_gains(spec, gains)
     return assemble(spec, plant or build_plant(spec), design, coordinates, scale)
 
 
 def has_ranges(spec: Spec) -> bool:
     """Tell whether a spec declares a range: of a parameter, a touched environment or a gain."""
-    if isinstance(spec, SwitchedSystemSpec):
+    if spec.kind == "switched-system":
         return any(not parameter.fixed for parameter in spec.parameters.values())
-    if isinstance(spec, RobotSpec):
+    if spec.kind == "robot":
         return False
     return any(not spec.environments[name].fixed for name in _touched(spec)) or any(
-        controller.Mt.ranged or controller.Bt.ranged
+        gain.ranged
         for controller in spec.controllers.values()
-        if isinstance(controller, ImpedanceControllerSpec)
+        for gain in controller.gains().values()
     )
 
 
 def _touched(spec: InteractionDesignSpec) -> set[str]:
     """Names of the environments that some controller touches."""
-    return {
-        contact
-        for controller in spec.controllers.values()
-        if not isinstance(controller, PositionControllerSpec)
-        for contact in controller.contacts
-    }
+    return {contact for controller in spec.controllers.values() for contact in controller.contacts}
 
 
 def assemble_matrices(spec: SwitchedSystemSpec, scale: Fraction = DECLARED) -> SwitchedSystem:
@@ -153,6 +144,9 @@ def assemble(
         If the coordinates are unknown, if a stiffness or a gain does not stay positive, or if the
         rules of switching make too many switches.
     """
+    from nrs_design.switched.close_loop import close_loop
+    from nrs_design.switched.gain_box import gain_boxes
+
     _check_scale(scale)
     if coordinates not in ("deflection", "force"):
         raise AssemblyError(f"unknown coordinates {coordinates!r}: deflection or force")

@@ -14,108 +14,101 @@ from fractions import Fraction
 from itertools import product
 
 from nrs_design.errors import InternalError
-from nrs_design.models.interval import Interval
+from nrs_design.spec.interval import Interval
 
 Rows = Sequence[Sequence[Fraction]]
 RowsAt = Callable[[Mapping[str, Fraction]], Rows]
 
 
 @dataclass(frozen=True, slots=True)
-class Axis:
-    """One parameter of a box.
+class Box:
+    """Where the parameters of a matrix lie.
 
     Parameters
     ----------
-    symbol : str
-        Such as ``k`` or ``Mt``.
-    interval : Interval
-        Where it lies; a point adds no corners.
-    inverse : bool
-        Whether matrices are affine in one over the parameter; then it is positive. One over it
-        runs through the interval between the inverse ends, so the corners are the same.
+    ranges : mapping of str to Interval
+        By symbols such as ``k`` or ``Mt``; a point adds no corners.
+    inverse : frozenset of str
+        Parameters in one over which matrices are affine; they are positive. One over such a
+        parameter runs through the interval between the inverse ends, so the corners are the same.
     """
 
-    symbol: str
-    interval: Interval
-    inverse: bool = False
+    ranges: Mapping[str, Interval]
+    inverse: frozenset[str] = frozenset()
 
-    @property
-    def middle(self) -> Fraction:
-        """The value halfway in the coordinate in which matrices are affine."""
-        if not self.inverse:
-            return self.interval.middle
-        return 2 / (1 / self.interval.low + 1 / self.interval.high)
+    def beside(self, other: Box) -> Box:
+        """Return the box of the parameters of both.
 
+        Raises
+        ------
+        InternalError
+            If a symbol stands for two parameters.
+        """
+        if common := self.ranges.keys() & other.ranges.keys():
+            raise InternalError(f"the symbol {min(common)} stands for two parameters")
+        return Box({**self.ranges, **other.ranges}, self.inverse | other.inverse)
 
-def box_corners(axes: Sequence[Axis], rows_at: RowsAt, name: str) -> Iterator[tuple[str, Rows]]:
-    """Yield the corners of a box, the last axis turning fastest.
+    def middle(self, symbol: str) -> Fraction:
+        """Return the value halfway in the coordinate in which matrices are affine."""
+        interval = self.ranges[symbol]
+        if symbol not in self.inverse:
+            return interval.middle
+        return 2 / (1 / interval.low + 1 / interval.high)
 
-    Parameters
-    ----------
-    axes : sequence of Axis
-        Every parameter that the matrix depends on.
-    rows_at : callable
-        Gives the matrix for the values of the parameters by their symbols.
-    name : str
-        Of the mode, for errors.
+    def corners(self, rows_at: RowsAt, name: str) -> Iterator[tuple[str, Rows]]:
+        """Yield the corners, the last parameter turning fastest.
 
-    Yields
-    ------
-    tuple of str and rows
-        The label, such as ``k-min/Mt-max`` (empty for a point), and the matrix.
+        Parameters
+        ----------
+        rows_at : callable
+            Gives the matrix for the values of the parameters by their symbols.
+        name : str
+            Of the mode, for errors.
 
-    Raises
-    ------
-    InternalError
-        If the matrix is not affine along each axis.
-    """
-    labels, corners = [], {}
-    for ends in product(*(axis.interval.ends for axis in axes)):
-        values = {axis.symbol: value for axis, (_, value) in zip(axes, ends, strict=True)}
-        pairs = zip(axes, ends, strict=True)
-        labels.append("/".join(f"{axis.symbol}-{end}" for axis, (end, _) in pairs if end))
-        corners[tuple(values.values())] = rows_at(values)
-    check_corners_suffice(axes, rows_at, corners, name)
-    yield from zip(labels, corners.values(), strict=True)
+        Yields
+        ------
+        tuple of str and rows
+            The label, such as ``k-min/Mt-max`` (empty for a point), and the matrix.
 
+        Raises
+        ------
+        InternalError
+            If the matrix is not affine along each axis.
+        """
+        labels, corners = [], {}
+        for ends in product(*(interval.ends for interval in self.ranges.values())):
+            at = tuple(value for _, value in ends)
+            pairs = zip(self.ranges, ends, strict=True)
+            labels.append("/".join(f"{symbol}-{end}" for symbol, (end, _) in pairs if end))
+            corners[at] = rows_at(dict(zip(self.ranges, at, strict=True)))
+        self._check_corners_suffice(rows_at, corners, name)
+        yield from zip(labels, corners.values(), strict=True)
 
-def check_corners_suffice(
-    axes: Sequence[Axis], rows_at: RowsAt, corners: Mapping[tuple[Fraction, ...], Rows], name: str
-) -> None:
-    """Check exactly that a matrix is affine along each axis, the others being held.
+    def _check_corners_suffice(
+        self, rows_at: RowsAt, corners: Mapping[tuple[Fraction, ...], Rows], name: str
+    ) -> None:
+        """Check exactly that a matrix is affine along each axis, the others being held.
 
-    That it is, follows from the formulas of the loop. It is computed again because a proof for
-    the whole box rests on it: on all points of the grid of low end, middle and high end of every
-    axis, the matrix must be the mean of the corners around it. For entries of a degree of at most
-    two in each coordinate this decides it.
-
-    Parameters
-    ----------
-    axes, rows_at, name
-        As for `box_corners`.
-    corners : mapping
-        The matrix at each corner, by the values of the parameters in the order of the axes.
-
-    Raises
-    ------
-    InternalError
-        If it is not.
-    """
-    for around in product(*(_neighbors(axis) for axis in axes)):
-        point = [
-            values[0] if len(values) == 1 else a.middle
-            for a, values in zip(axes, around, strict=True)
-        ]
-        ends = [corners[key] for key in product(*around)]
-        if len(ends) == 1:
-            continue
-        found = rows_at({axis.symbol: value for axis, value in zip(axes, point, strict=True)})
-        n = range(len(found))
-        if any(found[i][j] * len(ends) != sum(e[i][j] for e in ends) for i in n for j in n):
-            raise InternalError(f"the matrix of mode {name} is not affine in each parameter")
+        That it is, follows from the formulas of the loop. It is computed again because a proof for
+        the whole box rests on it: on all points of the grid of low end, middle and high end of
+        every axis, the matrix must be the mean of the corners around it. For entries of a degree
+        of at most two in each coordinate this decides it.
+        """
+        for around in product(*map(_neighbors, self.ranges.values())):
+            point = {
+                symbol: values[0] if len(values) == 1 else self.middle(symbol)
+                for symbol, values in zip(self.ranges, around, strict=True)
+            }
+            ends = [corners[key] for key in product(*around)]
+            if len(ends) == 1:
+                continue
+            found = rows_at(point)
+            n = range(len(found))
+            if any(found[i][j] * len(ends) != sum(e[i][j] for e in ends) for i in n for j in n):
+                raise InternalError(f"the matrix of mode {name} is not affine in each parameter")
 
 
-def _neighbors(axis: Axis) -> list[tuple[Fraction, ...]]:
+def _neighbors(interval: Interval) -> list[tuple[Fraction, ...]]:
     """Return each end, and if they differ both for the middle between them."""
-    ends = tuple(value for _, value in axis.interval.ends)
+    ends = tuple(value for _, value in interval.ends)
     return [(end,) for end in ends] + ([ends] if len(ends) > 1 else [])

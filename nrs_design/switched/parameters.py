@@ -12,10 +12,10 @@ from fractions import Fraction
 from itertools import product
 
 from nrs_design.errors import InternalError
-from nrs_design.models.interval import Interval
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.system import FixedParameter, Mode
 from nrs_design.spec import ModeSpec, SwitchedSystemSpec
+from nrs_design.spec.interval import Interval
 
 Rows = Sequence[Sequence[Fraction]]
 Values = Mapping[str, Fraction]

@@ -41,7 +41,8 @@ from nrs_design.pipeline import run_certification
 from nrs_design.proof.evidence import CommonQuadratic, UnstableMode
 from nrs_design.proof.evidence.unstable_mode import worst_eigenvalue
 from nrs_design.proof.system_fields import system_fields
-from nrs_design.search.certify import Limits, Method
+from nrs_design.search.certify import Limits
+from nrs_design.search.method import Method
 from nrs_design.spec import LoadedSpec, read_spec
 from nrs_design.switched.assemble import assemble_from_text
 from tests.support import (
@@ -610,13 +611,16 @@ class TestFiles:
 
 
 @pytest.mark.parametrize("name", SPECS)
-@pytest.mark.parametrize("other", SPECS)
-def test_wrong_kind_of_spec(name, other):
+def test_wrong_kind_of_spec(name):
     document, _ = signed(name)
-    spec = read_spec(SPECS[other])
-    assert (verify_document(document, spec).fault is None) == (name == other)
-    moved = {**document, "spec": {"name": spec.spec.name, "sha256": spec.sha256}}
-    assert (verify_document(resign(moved), spec).fault is None) == (name == other)
+    accepted = []
+    for other in SPECS:
+        spec = read_spec(SPECS[other])
+        moved = {**document, "spec": {"name": spec.spec.name, "sha256": spec.sha256}}
+        for given in (document, resign(moved)):
+            if verify_document(given, spec).fault is None:
+                accepted.append(other)
+    assert accepted == [name, name]
 
 
 class TestFormerSchema:

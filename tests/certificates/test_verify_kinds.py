@@ -7,7 +7,8 @@ import pytest
 
 from nrs_design.certificates.certificate import Certificate, content_id, dump
 from nrs_design.certificates.verify import read_document, verify_document
-from nrs_design.search.certify import Limits, Method, certify
+from nrs_design.search.certify import Limits, certify
+from nrs_design.search.method import Method
 from nrs_design.spec import read_spec
 from nrs_design.switched.assemble import assemble_from_text
 from tests.proof.tamper import mutations
@@ -126,14 +127,17 @@ def test_the_verdict_is_the_one_that_follows(issue, example, verdict):
 
 
 @pytest.mark.parametrize("example", SPECS)
-@pytest.mark.parametrize("other", SPECS)
-def test_statements_of_one_spec_prove_nothing_about_another(issue, example, other):
+def test_statements_of_one_spec_prove_nothing_about_another(issue, example):
     _, _, document = issue(example)
-    spec, system, target = issue(other)
-    moved = sign({**target, "verdict": document["verdict"], "statements": document["statements"]})
-    verification = verify_document(moved, spec)
-    if verification.fault is None:
-        assert all(holds(system, item) for item in verification.certificate.statements)
+    said = {field: document[field] for field in ("verdict", "statements")}
+    false = []
+    for other in SPECS:
+        spec, system, target = issue(other)
+        verification = verify_document(sign({**target, **said}), spec)
+        if verification.fault is None:
+            statements = verification.certificate.statements
+            false += [(other, item.kind) for item in statements if not holds(system, item)]
+    assert not false
 
 
 @pytest.mark.parametrize(

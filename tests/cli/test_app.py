@@ -9,15 +9,15 @@ import pytest
 
 from nrs_design import __version__
 from nrs_design.cli.app import COMMANDS, make_app
-from tests.support import COMMUTING, ROOT, run
+from tests.support import COMMUTING, ROOT, run, typed
 
 
 def test_version(tmp_path):
-    assert run("--version", cwd=tmp_path).stdout == f"nrs-design {__version__}\n"
+    assert typed("--version", cwd=tmp_path).stdout == f"nrs-design {__version__}\n"
 
 
 def test_help_lists_every_command_and_exit_code(tmp_path):
-    text = run("--help", cwd=tmp_path).stdout
+    text = typed("--help", cwd=tmp_path).stdout
     for command in COMMANDS:
         assert command in text
     assert {"optimize", "tune", "certify-switching", "verify"} <= set(COMMANDS)
@@ -73,7 +73,32 @@ def test_help_before_a_command_lists_all(tmp_path):
 def test_an_easy_proof_loads_no_solver(tmp_path):
     result, facts = loaded_by(tmp_path, "certify-switching", COMMUTING)
     assert result.returncode == 0, result.stderr
-    assert not {"scipy", "clarabel", "control", "matplotlib"} & set(facts["modules"])
+    assert not {"scipy", "clarabel", "control", "cvxpy", "matplotlib"} & set(facts["modules"])
+
+
+@pytest.mark.parametrize("command", ["certify-switching", "verify"])
+def test_given_matrices_need_no_model_of_a_design(tmp_path, command):
+    run("certify-switching", COMMUTING, "--out", "a.cert.json", cwd=tmp_path)
+    arguments = [COMMUTING] if command == "certify-switching" else ["a.cert.json", COMMUTING]
+    result, facts = loaded_by(tmp_path, command, *arguments)
+    assert result.returncode == 0, result.stderr
+    assert "nrs_design.switched.assemble" in facts["modules"]
+    for needless in ("models.plant", "models.contact", "controllers.laws", "switched.close_loop"):
+        assert f"nrs_design.{needless}" not in facts["modules"]
+    assert not {"rich", "jinja2", "scipy", "nrs_design.search.margin"} & set(facts["modules"])
+
+
+def test_imports_wait_for_no_collection_of_garbage(tmp_path):
+    program = (
+        "import gc, sys\n"
+        "from nrs_design.cli import main\n"
+        "def collections(): return sum(made['collections'] for made in gc.get_stats())\n"
+        "before = collections()\n"
+        "try: main()\n"
+        "finally: print(collections() - before, file=sys.stderr)"
+    )
+    result = start(tmp_path, "-c", program, "certify-switching", COMMUTING)
+    assert result.stderr.splitlines()[-1] == "0"
 
 
 def test_settings_of_libraries_are_defaults_only(tmp_path):

@@ -11,7 +11,17 @@ import pytest
 from nrs_design.certificates.certificate import content_id
 from nrs_design.proof.bounds import rounded_down, rounded_up
 from nrs_design.spec import read_spec
-from tests.support import COMMUTING, HARD, PRINT_ERROR, ROBOT, ROOT, SOFT_TISSUE, run, write_spec
+from tests.support import (
+    COMMUTING,
+    HARD,
+    PRINT_ERROR,
+    ROBOT,
+    ROOT,
+    SOFT_TISSUE,
+    run,
+    typed,
+    write_spec,
+)
 
 EXAMPLES = ROOT / "specs" / "examples"
 RANGES = EXAMPLES / "oscillator-range.nrs.yaml"
@@ -23,7 +33,7 @@ WIDE = ROOT / "docs" / "examples" / "wide-range.nrs.yaml"
 
 
 def test_proved(tmp_path):
-    result = run("certify-switching", SOFT_TISSUE, cwd=tmp_path)
+    result = typed("certify-switching", SOFT_TISSUE, cwd=tmp_path)
     assert result.returncode == 0, result.stderr
     assert result.stdout.startswith("soft-tissue: PROVED (common quadratic function: exists)")
     assert "Every solution of x' = A x" in result.stdout
@@ -56,7 +66,7 @@ def test_an_edited_spec_renews_its_certificate_and_a_copy_does_not(tmp_path):
 
 
 def test_refuted(tmp_path):
-    result = run("certify-switching", PRINT_ERROR, cwd=tmp_path)
+    result = typed("certify-switching", PRINT_ERROR, cwd=tmp_path)
     assert result.returncode == 1
     assert "REFUTED" in result.stdout
     assert "eigenvalue about 10.6523 +- 17.71j" in result.stdout
@@ -190,11 +200,12 @@ def test_highest_degree(tmp_path):
 
 def test_margin_of_the_oscillator(tmp_path):
     """Zelentsovsky 1994: stable up to 6.98513, so no larger box can be proved."""
-    result = run("certify-switching", RANGES, "--margin", "--json", cwd=tmp_path)
+    arguments = ("certify-switching", RANGES, "--margin", "--max-degree", 6)
+    result = run(*arguments, "--json", cwd=tmp_path)
     assert result.returncode == 0, result.stderr
     margin = json.loads(result.stdout)["margin"]
     assert 1 <= margin["proved_scale"] < margin["refuted_scale"]
-    plain = run("certify-switching", RANGES, "--margin", cwd=tmp_path)
+    plain = run(*arguments, cwd=tmp_path)
     proved, refuted = (Fraction(margin[f"{end}_scale_exact"]) for end in ("proved", "refuted"))
     assert margin["proved_scale"] <= proved < refuted <= margin["refuted_scale"]
     assert f"largest box: scaled by {rounded_down(proved)} about" in plain.stdout
@@ -245,7 +256,8 @@ def test_shortest_dwell_time_of_a_pair_that_is_proved_at_30_s(tmp_path):
         '  - {name: a, A: [["-0.1", 1], [-1, "-0.1"]]}\n'
         '  - {name: b, A: [["-0.1", 10], ["-0.1", "-0.1"]]}\nswitching: {dwell_time: 30 s}\n'
     )
-    result = run("certify-switching", "pair.nrs.yaml", "--shortest-dwell", "--json", cwd=tmp_path)
+    arguments = ("pair.nrs.yaml", "--shortest-dwell", "--max-degree", 4, "--json")
+    result = run("certify-switching", *arguments, cwd=tmp_path)
     dwell = json.loads(result.stdout)["shortest_dwell"]
     assert Fraction(dwell["refuted_exact"]) < Fraction(dwell["proved_exact"]) < 12
     assert dwell["refuted"] <= Fraction(dwell["refuted_exact"])
@@ -414,7 +426,7 @@ def test_verbose_lists_every_step(tmp_path):
     "environment", [{}, {"NO_COLOR": "1"}, {"FORCE_COLOR": "1", "NO_COLOR": "1"}]
 )
 def test_no_color_in_a_pipe(tmp_path, environment):
-    result = run("certify-switching", COMMUTING, "-v", cwd=tmp_path, environment=environment)
+    result = typed("certify-switching", COMMUTING, "-v", cwd=tmp_path, environment=environment)
     assert "\x1b" not in result.stdout + result.stderr
 
 

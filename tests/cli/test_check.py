@@ -3,21 +3,13 @@
 from __future__ import annotations
 
 import json
-import subprocess
-import sys
 from pathlib import Path
 
-ROOT = Path(__file__).parents[2]
-SOFT_TISSUE = ROOT / "specs/neuroboscope/soft-tissue.nrs.yaml"
-
-
-def run(*arguments: str | Path, cwd: Path) -> subprocess.CompletedProcess[str]:
-    command = [sys.executable, "-m", "nrs_design", *map(str, arguments)]
-    return subprocess.run(command, capture_output=True, text=True, cwd=cwd, check=False)
+from tests.support import SOFT_TISSUE, run, typed
 
 
 def test_check_prints_values_as_written_and_in_si(tmp_path: Path) -> None:
-    result = run("check", SOFT_TISSUE, cwd=tmp_path)
+    result = typed("check", SOFT_TISSUE, cwd=tmp_path)
     assert result.returncode == 0
     line = next(line for line in result.stdout.splitlines() if "limits.velocity" in line)
     assert line.split()[1:] == ["8", "deg/s", "0.139626", "rad/s"]

@@ -4,13 +4,13 @@ import json
 
 import numpy as np
 
-from tests.support import ROOT, run
+from tests.support import ROOT, run, typed
 
 EXAMPLE = ROOT / "docs" / "examples" / "lyapunov.json"
 
 
 def test_holds(tmp_path):
-    done = run("check-lyapunov", EXAMPLE, cwd=tmp_path)
+    done = typed("check-lyapunov", EXAMPLE, cwd=tmp_path)
     assert done.returncode == 0, done.stderr
     assert done.stdout.startswith("HOLDS")
     assert "alpha >= 0.105572 1/s" in done.stdout

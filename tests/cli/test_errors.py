@@ -6,7 +6,7 @@ import pytest
 
 from nrs_design.cli.errors import MAX_LISTED, MAX_SHOWN, excerpt
 from tests.spec.samples import IMPEDANCE, SWITCHED, spoiled
-from tests.support import COMMUTING, SOFT_TISSUE, run
+from tests.support import COMMUTING, SOFT_TISSUE, run, typed
 from tests.terminal import run_on_terminal
 
 FAULTY = spoiled(
@@ -23,7 +23,7 @@ def faulty(tmp_path):
 
 
 def test_every_fault_with_its_line_a_caret_and_its_remedy(faulty):
-    result = run("check", "a.nrs.yaml", cwd=faulty)
+    result = typed("check", "a.nrs.yaml", cwd=faulty)
     assert (result.returncode, result.stdout) == (2, "")
     assert result.stderr.count("error[NRS001]") == 4
     assert "4 faults in a.nrs.yaml" in result.stderr

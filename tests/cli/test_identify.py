@@ -86,6 +86,20 @@ def test_report(tmp_path, ending):
     assert page.read_bytes()[:4] in (b"<!DO", b"%PDF")
 
 
+@pytest.mark.parametrize(
+    ("command", "data"), [("tissue", SOFT[0]), ("actuator", DATA / "actuator-response.csv")]
+)
+def test_a_report_has_the_date_that_is_given_and_no_other(tmp_path, command, data):
+    pages = []
+    for dates in ([], ["--date", "2026-03-01"]):
+        result = run("identify", command, data, "--report", "p.html", *dates, "-q", cwd=tmp_path)
+        assert result.returncode == 0, result.stderr
+        pages.append((tmp_path / "p.html").read_text())
+    dated = '<time datetime="2026-03-01">2026-03-01</time>'
+    assert [page.count("<time") for page in pages] == [0, 1]
+    assert dated in pages[1]
+
+
 def test_foreign_columns(tmp_path):
     text = SOFT[0].read_text().replace("deflection_m", "x").replace("force_N", "Fz")
     (tmp_path / "foreign.csv").write_text(text)
@@ -106,8 +120,8 @@ def test_foreign_columns(tmp_path):
         (["tissue", NOSE[0], "--lever-arm", "0.24 m"], "records are rotational"),
         (["tissue", SOFT[0], "--lever-arm", "24 N"], "is not a length"),
         (["tissue", SOFT[0], "--lever-arm", "0 m"], "not positive"),
-        (["tissue", SOFT[0], "--map", "Fz"], "is no pair"),
-        (["tissue", SOFT[0], "--report", "page.docx"], "no type of report"),
+        (["tissue", SOFT[0], "--map", "Fz"], "is not a pair"),
+        (["tissue", SOFT[0], "--report", "page.docx"], "not a type of report"),
         (["tissue", SOFT[0], "--write", COMMUTING], "has no place for identified values"),
         (["tissue", SINUSOIDS[0]], "are missing"),
         (["actuator", SINUSOIDS[0]], "at least 3 are needed"),

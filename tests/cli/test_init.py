@@ -3,18 +3,12 @@
 from __future__ import annotations
 
 import json
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
 
 from nrs_design.cli.init import named_after
-
-
-def run(*arguments: str | Path, cwd: Path) -> subprocess.CompletedProcess[str]:
-    command = [sys.executable, "-m", "nrs_design", *map(str, arguments)]
-    return subprocess.run(command, capture_output=True, text=True, cwd=cwd, check=False)
+from tests.support import run, typed
 
 
 @pytest.mark.parametrize("template", ["interaction-design", "hybrid-force", "switched-system"])
@@ -36,7 +30,7 @@ def test_init_does_not_overwrite_unless_forced(tmp_path: Path) -> None:
 
 
 def test_init_names_the_templates_when_one_is_unknown(tmp_path: Path) -> None:
-    result = run("init", "interaction", cwd=tmp_path)
+    result = typed("init", "interaction", cwd=tmp_path)
     assert result.returncode == 2
     assert "interaction-design" in result.stderr
     assert list(tmp_path.iterdir()) == []

@@ -4,12 +4,12 @@ import json
 
 import pytest
 
-from tests.support import COMMUTING, FORCE_LIMIT, SOFT_TISSUE, run
+from tests.support import COMMUTING, FORCE_LIMIT, SOFT_TISSUE, run, typed
 
 
 def test_optimum_of_the_thesis(tmp_path):
     """Thesis 6.3.2.1: Mt = 0.01 and Bt = 2.15, 1.04; desired impedances 2.1486 and half of it."""
-    result = run("optimize", SOFT_TISSUE, "--json", cwd=tmp_path)
+    result = typed("optimize", SOFT_TISSUE, "--json", cwd=tmp_path)
     assert result.returncode == 0, result.stderr
     document = json.loads(result.stdout)
     assert document["schema"] == "nrs-design/optimize/1"

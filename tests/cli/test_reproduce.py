@@ -10,7 +10,7 @@ from typer.testing import CliRunner
 
 from nrs_design.cli.app import make_app
 from nrs_design.reproduction import specimens, table
-from nrs_design.reproduction.row import Verdict
+from nrs_design.reproduction.comparison import PrintVerdict
 from tests.support import ROOT
 
 
@@ -23,7 +23,7 @@ def short(monkeypatch):
 @pytest.fixture
 def drifting(short, monkeypatch):
     good = specimens.rows()
-    bad = replace(good[1], verdict=Verdict.DRIFT, value="700")
+    bad = replace(good[1], verdict=PrintVerdict.DRIFT, value="700")
     monkeypatch.setattr(specimens, "rows", lambda: (good[0], bad, *good[2:]))
 
 

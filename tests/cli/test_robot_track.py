@@ -51,6 +51,7 @@ def test_figures(quick):
     assert (folder / "f/tracking.png").read_bytes().startswith(b"\x89PNG")
 
 
+@pytest.mark.slow
 def test_table_for_people_beside_the_print(tmp_path):
     # The shortest experiment of the thesis.
     result = run(

@@ -3,16 +3,11 @@
 from __future__ import annotations
 
 import json
-import subprocess
-import sys
 from pathlib import Path
 
 import jsonschema
 
-
-def run(*arguments: str | Path, cwd: Path) -> subprocess.CompletedProcess[str]:
-    command = [sys.executable, "-m", "nrs_design", *map(str, arguments)]
-    return subprocess.run(command, capture_output=True, text=True, cwd=cwd, check=False)
+from tests.support import run, typed
 
 
 def test_no_spec_is_overwritten(tmp_path: Path) -> None:
@@ -25,7 +20,7 @@ def test_no_spec_is_overwritten(tmp_path: Path) -> None:
 
 
 def test_schema_is_draft_07(tmp_path: Path) -> None:
-    assert run("schema", "--out", "nrs.schema.json", cwd=tmp_path).returncode == 0
+    assert typed("schema", "--out", "nrs.schema.json", cwd=tmp_path).returncode == 0
     schema = json.loads((tmp_path / "nrs.schema.json").read_text())
     assert schema["$schema"] == "http://json-schema.org/draft-07/schema#"
     jsonschema.Draft7Validator.check_schema(schema)

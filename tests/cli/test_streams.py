@@ -5,7 +5,7 @@ import sys
 
 import pytest
 
-from tests.support import COMMUTING, PRINT_ERROR, SOFT_TISSUE, run
+from tests.support import COMMUTING, PRINT_ERROR, SOFT_TISSUE, typed
 from tests.terminal import run_on_terminal
 
 COMMUTING, PRINT_ERROR, SOFT_TISSUE = map(str, (COMMUTING, PRINT_ERROR, SOFT_TISSUE))
@@ -44,4 +44,4 @@ def test_verdicts_in_colour(tmp_path, spec, code, word):
     shown, ended = run_on_terminal(80, "certify-switching", spec, cwd=tmp_path)
     assert word in shown
     assert ended == code
-    assert "\x1b" not in run("certify-switching", spec, cwd=tmp_path).stdout
+    assert "\x1b" not in typed("certify-switching", spec, cwd=tmp_path).stdout

@@ -9,7 +9,7 @@ from time import perf_counter
 import pytest
 
 from nrs_design.certificates.certificate import content_id
-from tests.support import COMMUTING, HARD, PRINT_ERROR, ROOT, SOFT_TISSUE, run, write_spec
+from tests.support import COMMUTING, HARD, PRINT_ERROR, ROOT, SOFT_TISSUE, run, typed, write_spec
 
 HEAVY = ("control", "cvxpy", "scipy", "matplotlib", "clarabel", "numpy", "typst", "jinja2")
 
@@ -24,14 +24,14 @@ def certified(tmp_path_factory):
 
 
 def test_proof_holds(certified):
-    result = run("verify", "soft-tissue.json", SOFT_TISSUE, cwd=certified)
+    result = typed("verify", "soft-tissue.json", SOFT_TISSUE, cwd=certified)
     assert result.returncode == 0, result.stderr
     assert result.stdout.startswith("PROVED: the certificate holds, checked exactly.")
     assert "insertion: Mt = 0.00999999977648258209228515625, Bt = 2.15" in result.stdout
 
 
 def test_refutation_holds(certified):
-    result = run("verify", "thesis-print-error.json", PRINT_ERROR, cwd=certified)
+    result = typed("verify", "thesis-print-error.json", PRINT_ERROR, cwd=certified)
     assert result.returncode == 1
     assert result.stdout.startswith("REFUTED: the certificate holds")
 
@@ -182,7 +182,7 @@ def test_disagreement_is_an_internal_error(certified):
     """Flint says no where the integer check says yes: exit code 4 and no verdict."""
     program = (
         "import sys; from nrs_design.proof import second_opinion as s; "
-        "s._has_positive_spectrum = lambda M: False; "
+        "s.has_positive_spectrum = lambda M: False; "
         "sys.argv = ['nrs-design', *sys.argv[1:]]; from nrs_design.cli import main; main()"
     )
     for arguments in (["verify", "commuting.json", COMMUTING], ["certify-switching", COMMUTING]):

@@ -4,7 +4,9 @@ from typing import get_args
 
 import pytest
 
-from nrs_design.controllers.laws import Admittance, Law, ProportionalDerivative
+from nrs_design.controllers.laws import LAWS, Admittance, ProportionalDerivative
+from nrs_design.design.laws import LAW_DESIGNS
+from nrs_design.spec import ControllerSpec
 from nrs_design.spec.units import parse_unit
 
 
@@ -20,8 +22,14 @@ def test_laws_are_values():
         Admittance(Fraction(1), Fraction(2)).Bt = Fraction(3)
 
 
+def test_every_type_of_controller_has_a_law_and_a_design():
+    union = get_args(ControllerSpec)[0]
+    types = {get_args(given.model_fields["type"].annotation)[0] for given in get_args(union)}
+    assert set(LAWS) == set(LAW_DESIGNS) == types
+
+
 def test_every_law_has_a_name_of_its_own_and_a_unit_for_every_gain():
-    laws = (ProportionalDerivative, *get_args(Law))
+    laws = (ProportionalDerivative, *LAWS.values())
     assert sorted(law.name for law in laws) == ["force", "impedance", "motion", "position"]
     for law in laws:
         assert list(law.units) == [field.name for field in fields(law)]

@@ -14,8 +14,8 @@ from nrs_design.design.impedance import (
     ImpedanceProblem,
     displayed_impedance,
     impedance_cost,
-    is_stable,
     optimize_impedance,
+    stabilizes,
 )
 from nrs_design.design.margins import loop_margins
 from nrs_design.design.measures import (
@@ -30,7 +30,7 @@ from nrs_design.design.transfer import TransferFunction, frequency_response
 from nrs_design.errors import DesignError
 from nrs_design.models.contact import Elastic, KelvinVoigt
 from nrs_design.models.contact.environment import Environment
-from nrs_design.models.interval import Interval
+from nrs_design.spec.interval import Interval
 
 EXACT = TransferFunction((0.9974, 56.822), (0.0351, 1.9974, 56.822))
 # Thesis 6.2 and 6.3.1: half the impedance of 0.3 N m over 8 deg/s; 2 Hz; k_soft and its range.
@@ -72,7 +72,7 @@ def on_grid(goals, Mt, Bt, slack):
     allowed = np.ones(len(Mt), dtype=bool)
     for k in STIFFNESSES:
         loop = ImpedanceLoop(EXACT, Elastic(k))
-        allowed &= is_stable(loop, Mt, Bt)
+        allowed &= stabilizes(loop, Mt, Bt)
         L = G * (k / s) / (Mt[:, None] * s + Bt[:, None])
         S = 1 / (1 + L)
         crossing = np.diff(np.sign(np.abs(L) - 1), axis=1) != 0

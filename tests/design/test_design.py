@@ -5,8 +5,9 @@ from fractions import Fraction
 import pytest
 
 from nrs_design.controllers.float32 import is_float32, to_float32
-from nrs_design.design.design import design_controllers, root_locus_design, to_transfer_function
-from nrs_design.design.requirements import desired_impedance
+from nrs_design.design.design import design_controllers, root_locus_design
+from nrs_design.design.laws.impedance import desired_impedance
+from nrs_design.design.laws.law import to_transfer_function
 from nrs_design.errors import DesignError
 from nrs_design.models.motion_loop import MotionLoop
 from nrs_design.models.plant import build_plant

@@ -2,14 +2,14 @@
 
 import pytest
 
-from nrs_design.pipeline import run_design, run_evidence
+from nrs_design.pipeline import run_analysis, run_design
 from nrs_design.spec import read_spec
 from tests.support import FORCE_LIMIT, SOFT_TISSUE
 
 
 def warnings(path):
     loaded = read_spec(path)
-    return [str(doubt) for doubt in run_evidence(run_design(loaded)).warnings]
+    return [str(doubt) for doubt in run_analysis(run_design(loaded)).warnings]
 
 
 def changed(tmp_path, *replacements, source=SOFT_TISSUE):

@@ -26,7 +26,7 @@ from nrs_design.design.measures import (
 from nrs_design.design.transfer import TransferFunction
 from nrs_design.models.contact import Elastic, KelvinVoigt
 from nrs_design.models.contact.environment import Environment
-from nrs_design.models.interval import Interval
+from nrs_design.spec.interval import Interval
 
 EXACT = TransferFunction((0.9974, 56.822), (0.0351, 1.9974, 56.822))
 

@@ -14,10 +14,10 @@ from nrs_design.design.impedance import (
     characteristic_polynomial,
     displayed_impedance,
     impedance_cost,
-    is_stable,
     open_loop,
     optimize_impedance,
     sensitivity,
+    stabilizes,
 )
 from nrs_design.design.transfer import TransferFunction, frequency_response
 from nrs_design.errors import DesignError
@@ -90,7 +90,7 @@ def test_no_point_of_a_dense_scan_is_better(name):
     Mt = np.unique([least, *np.geomspace(max(least, 1e-4), 1, 90), *np.linspace(least, 1, 30)])
     Bt = np.unique([*np.geomspace(0.1, 20, 150), *np.linspace(0.9, 1.1, 5) * optimum.Bt])
     Mt, Bt = np.meshgrid(Mt, Bt)
-    stable = is_stable(problem.loop, Mt, Bt)
+    stable = stabilizes(problem.loop, Mt, Bt)
     assert 0 < stable.sum() < stable.size
     assert impedance_cost(problem, Mt[stable], Bt[stable]).min() >= optimum.cost - 1e-7
 
@@ -168,7 +168,7 @@ def test_stability_agrees_with_computed_roots(Mt, Bt, stiffness, damping):
     loop = ImpedanceLoop(EXACT, KelvinVoigt(stiffness, damping))
     rightmost = np.roots(characteristic_polynomial(loop, Mt, Bt)).real.max()
     assume(abs(rightmost) > 1e-6)
-    assert bool(is_stable(loop, Mt, Bt)) == (rightmost < 0)
+    assert bool(stabilizes(loop, Mt, Bt)) == (rightmost < 0)
 
 
 @given(factor=st.floats(0.1, 10), Mt=st.floats(0, 0.5), Bt=st.floats(0.1, 10))
@@ -203,14 +203,14 @@ def test_optimum_is_stable_and_no_scanned_point_beats_it(
         weight_sensitivity=1 - weight,
     )
     optimum = optimize_impedance(problem)
-    assert bool(is_stable(problem.loop, optimum.Mt, optimum.Bt))
+    assert bool(stabilizes(problem.loop, optimum.Mt, optimum.Bt))
     assert least <= optimum.Mt <= 1
     assert 0.1 <= optimum.Bt <= 20
     assert optimum.cost == pytest.approx(float(impedance_cost(problem, optimum.Mt, optimum.Bt)))
     Mt, Bt = np.meshgrid(
         least + (1 - least) * np.linspace(0, 1, 45) ** 3, np.geomspace(0.1, 20, 95)
     )
-    stable = is_stable(problem.loop, Mt, Bt)
+    stable = stabilizes(problem.loop, Mt, Bt)
     assert impedance_cost(problem, Mt[stable], Bt[stable]).min() >= optimum.cost - 2e-6
 
 
@@ -245,7 +245,7 @@ def test_search_is_as_good_as_differential_evolution():
     problem = make_problem()
 
     def cost(x):
-        stable = bool(is_stable(problem.loop, x[0], x[1]))
+        stable = bool(stabilizes(problem.loop, x[0], x[1]))
         return float(impedance_cost(problem, x[0], x[1])) if stable else 1e3
 
     evolved = differential_evolution(cost, [(0, 1), (0.1, 20)], rng=1, tol=1e-6)

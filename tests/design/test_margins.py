@@ -12,8 +12,8 @@ from hypothesis import strategies as st
 from nrs_design.design.impedance import (
     ImpedanceLoop,
     characteristic_polynomial,
-    is_stable,
     open_loop,
+    stabilizes,
 )
 from nrs_design.design.margins import loop_margins, stiffness_limit
 from nrs_design.design.transfer import TransferFunction, frequency_response, to_control
@@ -155,7 +155,7 @@ def test_integrator_alone_has_the_margins_of_the_textbook():
 @given(Mt=masses, Bt=st.floats(0.3, 10), stiffness=st.floats(5, 150), damping=dampings)
 def test_margins_satisfy_the_known_inequalities(Mt, Bt, stiffness, damping):
     loop = ImpedanceLoop(EXACT, KelvinVoigt(stiffness, damping))
-    assume(bool(is_stable(loop, Mt, Bt)))
+    assume(bool(stabilizes(loop, Mt, Bt)))
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         margins = loop_margins(loop, Mt, Bt)
@@ -210,7 +210,7 @@ def test_margins_in_viscoelastic_contact(contact, Mt):
 def test_stiffness_limit_in_viscoelastic_contact_by_bisection():
     def stable(k):
         contact = KelvinBoltzmann(0.5 * k, k, 0.1 * k)
-        return bool(is_stable(ImpedanceLoop(EXACT, contact), 0.01, 1.04))
+        return bool(stabilizes(ImpedanceLoop(EXACT, contact), 0.01, 1.04))
 
     low, high = 1.0, 1e4
     for _ in range(60):

@@ -262,9 +262,9 @@ def test_certificate_in_other_coordinates_than_the_spec(check, project):
     certificate = run_certification(loaded, coordinates="force").certificate
     (project / "reports/soft-tissue.cert.json").write_text(dump(certificate))
     edit_lock(project, lambda specs: specs[0]["certificate"].update(id=certificate.id))
-    from nrs_design.gating.examine import rate_of
+    from nrs_design.gating.examine import certified_rate
 
-    edit_lock(project, lambda specs: specs[0].update(rate=rate_of(certificate)[0]))
+    edit_lock(project, lambda specs: specs[0].update(rate=certified_rate(certificate)[0]))
     outcome = check()
     assert broken(outcome) == [("NRS104", "missed")]
     assert "other coordinates than deflection" in outcome.broken[0].message

@@ -133,5 +133,5 @@ def nested_cells(depth, order, packed):
 
 
 def test_missing_file(tmp_path):
-    with pytest.raises(DataError, match="is no file"):
+    with pytest.raises(DataError, match="is not a file"):
         read_proposal(tmp_path / "a.json")

@@ -8,13 +8,13 @@ from ruamel.yaml import YAML
 
 from nrs_design.controllers.laws import Admittance
 from nrs_design.models.contact import KelvinVoigt
-from nrs_design.models.motion_loop import MotionLoop
+from nrs_design.models.motion_loop import MotionLoop, realize
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.system import Mode, SwitchedSystem, Time
 from nrs_design.search.certify import Certification, Verdict, certify
 from nrs_design.spec import parse_exact, parse_spec
 from nrs_design.switched.assemble import GIVEN_MATRICES, assemble_from_text
-from nrs_design.switched.close_loop import impedance_mode, realize, to_force_coordinates
+from nrs_design.switched.modes import to_force_coordinates, velocity_mode
 from tests.support import holds
 
 DATA = Path(__file__).parents[1] / "data" / "known_answers.yaml"
@@ -78,7 +78,7 @@ def robot(name, Mt, contacts, coordinates="deflection") -> SwitchedSystem:
     modes = []
     for k, Bt in contacts:
         contact = KelvinVoigt(parse_exact(k), zero)
-        rows = impedance_mode(motion, Admittance(parse_exact(Mt), parse_exact(Bt)), contact)
+        rows = velocity_mode(motion, Admittance(parse_exact(Mt), parse_exact(Bt)), contact)
         if coordinates == "force":
             rows = to_force_coordinates(rows, motion, contact)
         modes.append(Mode(f"k={k} Bt={Bt}", RationalMatrix.from_rows(rows)))

@@ -5,7 +5,8 @@ The pair [[1, 0], [1, 0]], [[0, 1], [0, -1]] has joint spectral radius 1, but it
 bound is sqrt(2). Scaled by c it is stable iff c < 1, and quadratically iff c < 0.7071....
 """
 
-from nrs_design.search.certify import Limits, Method, certify
+from nrs_design.search.certify import Limits, certify
+from nrs_design.search.method import Method
 
 from .known import known, settle
 

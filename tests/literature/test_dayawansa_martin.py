@@ -7,7 +7,8 @@ a < 3 + 2 sqrt(2) = 5.8284..., and is stable under arbitrary switching iff a < 1
 
 import pytest
 
-from nrs_design.search.certify import Limits, Method, certify
+from nrs_design.search.certify import Limits, certify
+from nrs_design.search.method import Method
 
 from .known import given, known, settle
 

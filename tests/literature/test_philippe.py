@@ -14,7 +14,8 @@ from fractions import Fraction
 
 import pytest
 
-from nrs_design.search.certify import Limits, Method, certify
+from nrs_design.search.certify import Limits, certify
+from nrs_design.search.method import Method
 from tests.proof.systems import lossy_network
 
 RADIUS = 0.9748171979372074

@@ -4,7 +4,8 @@ Hurwitz matrices that are all upper triangular share a quadratic Lyapunov functi
 taken diagonal.
 """
 
-from nrs_design.search.certify import Method, certify
+from nrs_design.search.certify import certify
+from nrs_design.search.method import Method
 
 from .known import known, settle
 

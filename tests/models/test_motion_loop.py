@@ -2,9 +2,11 @@ from fractions import Fraction
 
 import pytest
 
+from nrs_design.errors import AssemblyError
 from nrs_design.models.actuator import Actuator
-from nrs_design.models.motion_loop import close_motion_loop
+from nrs_design.models.motion_loop import MotionLoop, close_motion_loop, realize
 
+F = Fraction
 ACTUATOR = Actuator(Fraction("4.8417e-4"), Fraction("0.0351"))
 
 
@@ -19,3 +21,24 @@ def test_unit_gain_at_rest():
     loop = close_motion_loop(ACTUATOR, Fraction(3), Fraction(7))
     assert loop.numerator[-1] == loop.denominator[-1]
     assert loop.denominator[1] - loop.numerator[0] == 1
+
+
+class TestRealization:
+    def test_transfer_function_comes_back(self):
+        loop = MotionLoop((F(3), F(5)), (F(2), F(7), F(11), F(13)))
+        motion = realize(loop)
+        for s in (F(0), F(1), F(-1, 3), F(10)):
+            n = motion.order
+            x = [s**i for i in range(n)]  # (s - A) x = (den/leading) B in this canonical form
+            residue = s * x[-1] - sum(a * b for a, b in zip(motion.A[-1], x, strict=True))
+            gain = sum(c * b for c, b in zip(motion.C, x, strict=True)) / residue
+            assert gain == (3 * s + 5) / (2 * s**3 + 7 * s**2 + 11 * s + 13)
+            assert [s * x[i] - x[i + 1] for i in range(n - 1)] == [0] * (n - 1)
+
+    @pytest.mark.parametrize(
+        ("numerator", "denominator"),
+        [((1, 1), (1, 1)), ((1, 1, 1), (1, 1)), ((1,), (1,)), ((1,), (0, 1))],
+    )
+    def test_not_strictly_proper(self, numerator, denominator):
+        with pytest.raises(AssemblyError, match="strictly proper"):
+            realize(MotionLoop(tuple(map(F, numerator)), tuple(map(F, denominator))))

@@ -3,10 +3,10 @@ from fractions import Fraction
 import pytest
 
 from nrs_design.models.contact import LINEAR_LAWS, Elastic
-from nrs_design.models.interval import Interval
 from nrs_design.models.plant import build_plant
 from nrs_design.spec import load_spec, parse_spec
 from nrs_design.spec.environment import AbstractEnvironmentSpec
+from nrs_design.spec.interval import Interval
 from nrs_design.spec.quantity_fields import RangedQuantity
 from tests.support import SOFT_TISSUE
 

@@ -6,11 +6,13 @@ from functools import cache
 
 from nrs_design.controllers.laws import Admittance
 from nrs_design.models.contact import KelvinVoigt
+from nrs_design.models.motion_loop import Realization
 from nrs_design.proof.evidence import AbstractEvidence
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.system import ARBITRARY, Mode, Reset, Stay, SwitchedSystem, Switching, Time
-from nrs_design.search.certify import Limits, Method, certify
-from nrs_design.switched.close_loop import Realization, impedance_mode
+from nrs_design.search.certify import Limits, certify
+from nrs_design.search.method import Method
+from nrs_design.switched.modes import velocity_mode
 
 Entry = int | str | Fraction
 Rows = Sequence[Sequence[Entry]]
@@ -86,7 +88,7 @@ def robot(Mt: str, contacts: Sequence[tuple[str, str]]) -> SwitchedSystem:
     )
     return family(
         *(
-            impedance_mode(
+            velocity_mode(
                 motion,
                 Admittance(Fraction(Mt), Fraction(Bt)),
                 KelvinVoigt(Fraction(k), Fraction(0)),

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from nrs_design.errors import InternalError
 from nrs_design.proof.evidence import UnstableMode
 from nrs_design.proof.exact import is_positive_definite
-from nrs_design.proof.second_opinion import _has_positive_spectrum, agrees
+from nrs_design.proof.second_opinion import agrees, has_positive_spectrum
 from nrs_design.proof.system import Time
 from nrs_design.search.certify import certify
 from tests.proof.systems import genuine
@@ -27,7 +27,7 @@ def test_descartes_agrees_with_bareiss(entries):
         [entries[i * n + j] + entries[j * n + i] + 12 * (i == j) for j in range(n)]
         for i in range(n)
     ]
-    assert _has_positive_spectrum(flint.fmpz_mat(M)) == is_positive_definite(M)
+    assert has_positive_spectrum(flint.fmpz_mat(M)) == is_positive_definite(M)
 
 
 def test_no_proof_without_flint(monkeypatch):

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from nrs_design.proof.enclosure import exponential, meets, precision
+from nrs_design.proof.enclosure import exponential, overlap, precision
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.taylor import UNIT, exponential_nearly
 
@@ -67,12 +67,12 @@ def test_the_semigroup_property_and_flint(rows, denominator, time):
             square = sum(H[i][k] * H[k][j] for k in range(n))
             assert abs(entry - square) <= error + 2 * norm * small + small**2
     with precision():
-        assert meets(exponential(A, time, time), whole, error)
+        assert overlap(exponential(A, time, time), whole, error)
         for sign in (-1, 1):
             moved = [
                 [e + sign * (3 * error + DIGITS * norm**2) for e in r] for r in whole.fractions()
             ]
-            assert not meets(exponential(A, time, time), RationalMatrix.from_rows(moved), error)
+            assert not overlap(exponential(A, time, time), RationalMatrix.from_rows(moved), error)
 
 
 def test_a_fast_decay_over_a_long_time():

@@ -7,11 +7,11 @@ import numpy as np
 import pytest
 
 from nrs_design.errors import DesignError
-from nrs_design.pipeline import run_certification, run_evidence
+from nrs_design.pipeline import run_analysis, run_certification
 from nrs_design.reporting import build_report
 from nrs_design.reporting.document import Bullets, Paragraph, Table
 from nrs_design.reporting.figures.run import draw_phase_plane, draw_run
-from nrs_design.search.certify import Method
+from nrs_design.search.method import Method
 from nrs_design.simulation.switched import TimeResponse
 from nrs_design.spec import read_spec
 from tests.reporting.conftest import KINDS, ROOT, report_of
@@ -134,7 +134,7 @@ def test_worst_values_stand_beside_the_goals(tmp_path):
     path = tmp_path / "goals.nrs.yaml"
     path.write_text(text.replace("switching:", goals))
     result = run_certification(read_spec(path), method=Method.LMI)
-    found = build_report(result, run_evidence(result.designed))
+    found = build_report(result, run_analysis(result.designed))
     section = next(part for part in found.sections if part.title == "Design goals")
     table = next(block for block in section.blocks if isinstance(block, Table))
     rows = {row[:2]: row[2:] for row in table.rows}
@@ -249,7 +249,7 @@ def test_given_motion_loop_is_named(tmp_path):
     path.write_text(text)
     loaded = read_spec(path)
     result = run_certification(loaded)
-    text = words(build_report(result, run_evidence(result.designed)))
+    text = words(build_report(result, run_analysis(result.designed)))
     assert "G(s) = (0.99 s + 56.82) / (0.0351 s^2 + 1.99 s + 56.82)" in text
     assert "The spec states this G itself" in text
 
@@ -265,7 +265,7 @@ def test_unstable_force_loop_is_reported_without_margins(tmp_path):
     loaded = read_spec(path)
     result = run_certification(loaded)
     with pytest.raises(DesignError):
-        run_evidence(result.designed)
+        run_analysis(result.designed)
     unstable = build_report(result, None)
     assert unstable.verdict == "refuted"
     assert Fraction(unstable.sections[1].blocks[0].rows[1][4]) > 0

@@ -1,5 +1,5 @@
+from nrs_design.reporting.images import to_png, to_svg_file
 from nrs_design.reporting.style import TOLD_APART, color, curve, legend, marker, new_axes, styled
-from nrs_design.reporting.svg import to_png, to_svg_file
 
 FORMULA = r"a$\frac{$ and $x$"
 

@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from nrs_design.reporting.figures.tracking import draw_tracking
-from nrs_design.reporting.svg import to_svg_file
+from nrs_design.reporting.images import to_svg_file
 from nrs_design.simulation.tracking import Experiment, Record
 
 ERROR = np.radians([0.5, 0.01, 0.0])

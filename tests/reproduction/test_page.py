@@ -1,7 +1,7 @@
 from dataclasses import replace
 
+from nrs_design.reproduction.comparison import hardware_only
 from nrs_design.reproduction.page import format_deviation, render_page
-from nrs_design.reproduction.row import hardware_only
 from nrs_design.reproduction.specimens import rows
 
 

@@ -14,7 +14,7 @@ from nrs_design.reproduction import (
     table,
     thesis,
 )
-from nrs_design.reproduction.row import Verdict
+from nrs_design.reproduction.comparison import PrintVerdict
 from nrs_design.reproduction.table import TOPICS, count_verdicts, reproduce
 
 
@@ -33,7 +33,7 @@ def find(rows):
 
 
 def test_nothing_has_drifted(rows):
-    assert [row for row in rows if row.verdict is Verdict.DRIFT] == []
+    assert [row for row in rows if row.verdict is PrintVerdict.DRIFT] == []
 
 
 def test_every_verdict_occurs(rows):
@@ -50,11 +50,11 @@ def test_rows_are_distinct(rows):
 
 
 def test_a_wrong_print_says_what_is_right(rows):
-    assert all(row.note for row in rows if row.verdict is Verdict.PRINT_IS_WRONG)
+    assert all(row.note for row in rows if row.verdict is PrintVerdict.PRINT_IS_WRONG)
 
 
 def test_a_value_stands_beside_every_print_that_can_be_recomputed(rows):
-    silent = {Verdict.HARDWARE_ONLY, Verdict.OMITTED_DATA}
+    silent = {PrintVerdict.HARDWARE_ONLY, PrintVerdict.OMITTED_DATA}
     assert all((row.value is None) == (row.verdict in silent) for row in rows)
 
 
@@ -131,14 +131,14 @@ def test_stiff_hand_is_beyond_the_limit(find):
 def test_a_changed_computation_becomes_a_drift(monkeypatch):
     biased = SimpleNamespace(Mt=0.01, Bt=2.16)
     monkeypatch.setattr(impedance, "optimize_impedance", lambda problem: biased)
-    drifts = {row.name for row in impedance.rows() if row.verdict is Verdict.DRIFT}
+    drifts = {row.name for row in impedance.rows() if row.verdict is PrintVerdict.DRIFT}
     assert "Mt, Bt: soft, Mt >= 0.01; G exact" in drifts
     assert "k_soft" not in drifts
 
 
 def test_a_sign_that_comes_out_right_becomes_a_drift(monkeypatch):
     monkeypatch.setattr(modes, "printed_rows", lambda damping, force: [[-1]])
-    drifts = {row.name for row in modes.rows() if row.verdict is Verdict.DRIFT}
+    drifts = {row.name for row in modes.rows() if row.verdict is PrintVerdict.DRIFT}
     assert drifts == {"eigenvalues of A1 as printed", "eigenvalues of A2 as printed"}
 
 
@@ -160,14 +160,14 @@ def test_a_topic_is_added_in_one_place(monkeypatch):
 def test_measured_tracking_is_never_computed(rows):
     measured = [row for row in rows if row.name.startswith("tracking RMSE")]
     assert len(measured) == 9
-    assert {row.verdict for row in measured} == {Verdict.HARDWARE_ONLY}
+    assert {row.verdict for row in measured} == {PrintVerdict.HARDWARE_ONLY}
 
 
 def test_another_robot_drifts(monkeypatch):
     heavy = replace(neuroboscope.robot(), base_tilt=-0.2)
     monkeypatch.setattr(robot_dynamics, "robot", lambda: heavy)
-    assert Verdict.DRIFT in {row.verdict for row in robot_dynamics.rows()}
+    assert PrintVerdict.DRIFT in {row.verdict for row in robot_dynamics.rows()}
     longer = replace(heavy, legs=tuple(replace(leg, l0=0.21) for leg in heavy.legs))
     monkeypatch.setattr(robot_kinematics, "robot", lambda: longer)
-    drifts = [row for row in robot_kinematics.rows() if row.verdict is Verdict.DRIFT]
+    drifts = [row for row in robot_kinematics.rows() if row.verdict is PrintVerdict.DRIFT]
     assert len(drifts) >= 3

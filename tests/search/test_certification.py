@@ -5,8 +5,9 @@ import sys
 
 import pytest
 
-from nrs_design.search.certification import Limits, Method
+from nrs_design.search.certification import Limits
 from nrs_design.search.certify import certify
+from nrs_design.search.method import Method
 from tests.support import dayawansa_martin
 
 

@@ -17,10 +17,13 @@ from nrs_design.errors import DesignError, InternalError
 from nrs_design.pipeline import run_certification
 from nrs_design.proof.evidence import BlockTriangular, CommonQuadratic, Shows
 from nrs_design.proof.system import Switching, Time
-from nrs_design.search import checker, lmi, rungs
-from nrs_design.search.certification import Limits, Method
-from nrs_design.search.certify import certify
+from nrs_design.search import certify as certify_module
+from nrs_design.search import common_quadratic, ladder, lmi, unstable_mode
+from nrs_design.search.candidates import Candidate
+from nrs_design.search.certification import Limits
+from nrs_design.search.certify import certify, first_accepted
 from nrs_design.search.gradient import GradientResult
+from nrs_design.search.method import Method
 from nrs_design.spec import read_spec
 from tests.support import ROOT, dayawansa_martin, family, holds, is_stable_by_lyapunov
 
@@ -483,7 +486,24 @@ SYSTEMS = {
 }
 
 
-@pytest.mark.parametrize("lie", LIES)
+def wrong_lies(name, tell, *, may_give_up=False):
+    """Tell every lie, and return those that ended in a verdict that is not one of this system."""
+    system, allowed = SYSTEMS[name]
+    allowed = allowed | ({Verdict.INCONCLUSIVE} if may_give_up else set())
+    wrong = {}
+    for lie, answer in LIES.items():
+        tell(answer)
+        for limits in (Limits(), ANY_RATE):
+            try:
+                verdict = settle(system, limits=limits).verdict
+            except AssertionError as false:
+                wrong[lie] = false
+            else:
+                if verdict not in allowed:
+                    wrong[lie] = verdict
+    return wrong
+
+
 @pytest.mark.parametrize("name", SYSTEMS)
 class TestLyingSolvers:
     """Whatever the search returns, and even if no mode is tested before it."""
@@ -491,64 +511,149 @@ class TestLyingSolvers:
     @pytest.fixture(autouse=True)
     def _only_the_lie(self, monkeypatch):
         monkeypatch.setattr(
-            rungs, "_seems_stable", lambda family: np.ones(len(family.matrices), bool)
+            unstable_mode, "seems_stable", lambda family: np.ones(len(family.matrices), bool)
         )
         monkeypatch.setattr(
-            rungs, "iterate_gradient", lambda matrices, **options: GradientResult(None, 0)
+            common_quadratic,
+            "iterate_gradient",
+            lambda matrices, **options: GradientResult(None, 0),
         )
 
-    def test_the_solver(self, monkeypatch, lie, name):
-        monkeypatch.setattr(lmi, "_solve", lambda matrices, *rest: LIES[lie](matrices.shape[1]))
-        self.never_wrong(name)
+    def test_the_solver(self, monkeypatch, name):
+        def tell(lie):
+            monkeypatch.setattr(
+                lmi, "solve_by_interior_point", lambda matrices, *rest: lie(matrices.shape[1])
+            )
 
-    def test_the_search(self, monkeypatch, lie, name):
-        def answer(matrices, *rest, **options):
-            return LIES[lie](matrices.shape[1])
+        assert not wrong_lies(name, tell)
 
-        monkeypatch.setattr(rungs, "find_common_quadratic", answer)
-        monkeypatch.setattr("nrs_design.search.decay.find_common_quadratic", answer)
-        self.never_wrong(name)
+    def test_the_search(self, monkeypatch, name):
+        def tell(lie):
+            monkeypatch.setattr(
+                common_quadratic,
+                "find_common_quadratic",
+                lambda matrices, *rest, **options: lie(matrices.shape[1]),
+            )
 
-    def test_the_gradient(self, monkeypatch, lie, name):
-        def answer(matrices, **options):
-            return GradientResult(LIES[lie](matrices.shape[1]), 1)
+        assert not wrong_lies(name, tell)
 
-        monkeypatch.setattr(rungs, "iterate_gradient", answer)
-        monkeypatch.setattr(rungs, "find_common_quadratic", lambda *arguments, **options: None)
-        self.never_wrong(name)
+    def test_the_gradient(self, monkeypatch, name):
+        def tell(lie):
+            monkeypatch.setattr(
+                common_quadratic,
+                "iterate_gradient",
+                lambda matrices, **options: GradientResult(lie(matrices.shape[1]), 1),
+            )
 
-    def test_every_semidefinite_program(self, monkeypatch, lie, name):
+        monkeypatch.setattr(
+            common_quadratic, "find_common_quadratic", lambda *arguments, **options: None
+        )
+        assert not wrong_lies(name, tell)
+
+    def test_every_semidefinite_program(self, monkeypatch, name):
         """The same lie wherever the solver is called, and only there."""
 
-        def answer(rows, offset, sizes, equalities=0, time_limit=0.0):
-            x = np.resize(LIES[lie](2).ravel(), rows.shape[1])
-            return x if np.isfinite(x).all() else None
+        def tell(lie):
+            def answer(rows, offset, sizes, equalities=0, time_limit=0.0):
+                x = np.resize(lie(2).ravel(), rows.shape[1])
+                return x if np.isfinite(x).all() else None
 
-        for module in ("lmi", "obstruction", "polynomial", "mode_quadratic"):
-            monkeypatch.setattr(f"nrs_design.search.{module}.maximize_margin", answer)
-        system, allowed = SYSTEMS[name]
-        for limits in (Limits(), ANY_RATE):
-            assert settle(system, limits=limits).verdict in allowed | {Verdict.INCONCLUSIVE}
+            for module in ("lmi", "obstruction", "polynomial", "mode_quadratic"):
+                monkeypatch.setattr(f"nrs_design.search.{module}.maximize_margin", answer)
 
-    def never_wrong(self, name):
-        system, allowed = SYSTEMS[name]
-        for limits in (Limits(), ANY_RATE):
-            assert settle(system, limits=limits).verdict in allowed
+        assert not wrong_lies(name, tell, may_give_up=True)
 
 
 def test_slightly_wrong_answers_do_not_pass(monkeypatch):
     """A Q for a = 5.82 is not one for a = 5.9, however near."""
     below = certify(dayawansa_martin("5.82"), limits=ANY_RATE).evidence
     Q = np.array(below.Q, dtype=float)
-    monkeypatch.setattr(lmi, "_solve", lambda *arguments: Q)
+    monkeypatch.setattr(lmi, "solve_by_interior_point", lambda *arguments: Q)
     assert settle(dayawansa_martin("5.9"), Method.LMI).verdict is Verdict.INCONCLUSIVE
     assert outcome(dayawansa_martin("5.9")) == ("proved", "impossible")
 
 
 def test_a_wrong_check_is_stopped(monkeypatch):
     """If the trusted check accepted anything, flint would still stop a wrong proof."""
-    monkeypatch.setattr(checker, "find_fault", lambda evidence, system: None)
-    monkeypatch.setattr(rungs, "find_common_quadratic", lambda *arguments, **options: np.eye(2))
-    monkeypatch.setattr(rungs, "rate_of", lambda *arguments: 0.5)
+    monkeypatch.setattr(certify_module, "find_fault", lambda evidence, system: None)
+    monkeypatch.setattr(
+        common_quadratic, "find_common_quadratic", lambda *arguments, **options: np.eye(2)
+    )
+    monkeypatch.setattr(common_quadratic, "rate_of", lambda *arguments: 0.5)
     with pytest.raises(InternalError):
         certify(NOT_QUADRATIC, limits=ANY_RATE)
+
+
+GOOD = CommonQuadratic(((1, 0), (0, 1)), 0, Fraction(1, 2))
+WRONG = replace(GOOD, rate=Fraction(2))
+ROUND = family([[-1, 1], [-1, -2]], [[-2, 1], [-1, -1]])
+
+
+class TestFirstAccepted:
+    """The one place where candidates become evidence."""
+
+    def take(self, candidates, ended=None):
+        asked = []
+
+        def search():
+            for candidate in candidates:
+                asked.append(candidate)
+                yield Candidate(candidate, "as proposed")
+            return ended
+
+        return first_accepted(search(), ROUND), asked
+
+    def test_the_first_that_holds_is_taken_and_no_more_are_asked_for(self):
+        taken, asked = self.take([WRONG, GOOD, replace(GOOD, rate=Fraction(1, 4))])
+        assert taken == (GOOD, "as proposed")
+        assert taken[0] is GOOD
+        assert asked == [WRONG, GOOD]
+
+    def test_each_candidate_is_checked_once(self, monkeypatch):
+        calls = []
+        find_unfit = CommonQuadratic.find_unfit
+        monkeypatch.setattr(
+            CommonQuadratic, "find_unfit", lambda self, s: calls.append(self) or find_unfit(self, s)
+        )
+        monkeypatch.setattr(ladder, "LADDER", one_rung([WRONG, GOOD]))
+        assert certify(ROUND).evidence is GOOD
+        assert calls == [WRONG, GOOD]
+
+    def test_the_search_says_why_there_is_none(self):
+        assert self.take([], "nothing looked right") == ((None, "nothing looked right"), [])
+        assert self.take([WRONG], "all looked wrong")[0] == (None, "all looked wrong")
+
+    def test_or_the_check_says_why_the_last_was_refused(self):
+        (nothing, words), _ = self.take([GOOD, WRONG][1:])
+        assert nothing is None
+        assert words.startswith("a candidate was found, but V does not decrease")
+
+
+def one_rung(lies):
+    """A ladder with one rung, which proposes what it is told to."""
+
+    def search(family):
+        yield from (Candidate(lie, "trust me") for lie in lies)
+        return None
+
+    return (ladder.Rung("lies", Method.LMI, lambda facts: True, search),)
+
+
+@pytest.mark.parametrize("lie", [WRONG, replace(GOOD, Q=((1, 0), (0, -1)))])
+@pytest.mark.parametrize("twice", [False, True])
+def test_a_search_that_lies_proves_nothing(monkeypatch, lie, twice):
+    monkeypatch.setattr(ladder, "LADDER", one_rung([lie]))
+    system = replace(ROUND, modes=(*ROUND.modes, replace(ROUND.modes[0], name="again")))
+    found = certify(system if twice else ROUND)
+    assert (found.verdict, found.statements) == (Verdict.INCONCLUSIVE, ())
+    (attempt,) = found.attempts
+    assert attempt.outcome.startswith("a candidate was found, but ")
+
+
+def test_evidence_that_does_not_hold_for_all_modes_is_found_out(monkeypatch):
+    """Merged modes get what holds for them; what is made of it for all modes is checked again."""
+    twice = replace(ROUND, modes=(*ROUND.modes, replace(ROUND.modes[0], name="again")))
+    monkeypatch.setattr(CommonQuadratic, "spread", lambda self, merged, system: WRONG)
+    assert certify(ROUND, Method.LMI).verdict is Verdict.PROVED
+    with pytest.raises(InternalError, match="does not hold"):
+        certify(twice, Method.LMI)

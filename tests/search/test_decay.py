@@ -2,19 +2,34 @@ import numpy as np
 import pytest
 
 from nrs_design.proof.system import Time
-from nrs_design.search.allowance import Allowance, NotAffordableError
+from nrs_design.search.allowance import Allowance, Cost, NotAffordableError
 from nrs_design.search.decay import (
     RESOLUTION,
     SMALLEST,
-    TOLERANCE,
     bisect_position,
-    largest_position,
+    fastest_first,
     limit_rate,
-    rate_at,
     rate_of,
 )
+from nrs_design.search.lmi import find_common_quadratic
+from nrs_design.search.rounding import BACK_OFFS, rate_at, round_rate
 
 PAIR = np.array([[[-1.0, -1.0], [1.0, -1.0]], [[-1.0, -5.0], [0.2, -1.0]]])
+
+
+# How exactly a position is found where it is not told otherwise.
+FINE = 2.0**-14
+
+
+def largest_position(matrices, limit, allowance=None):
+    """The largest position at which there is a common quadratic function."""
+
+    def is_feasible(position):
+        rate = rate_at(position, limit, Time.CONTINUOUS)
+        found = find_common_quadratic(matrices, Time.CONTINUOUS, rate, allowance=allowance)
+        return found is not None
+
+    return bisect_position(is_feasible, 0.0, FINE)
 
 
 def test_slowest_mode_limits_the_rate():
@@ -33,12 +48,12 @@ def test_positions_run_from_stability_to_the_limit():
 def test_commuting_modes_reach_the_limit():
     # Narendra and Balakrishnan 1994: the identity works up to the rate of the slower mode.
     modes = np.array([[[-1.0, 1.0], [-1.0, -1.0]], [[-2.0, 3.0], [-3.0, -2.0]]])
-    assert largest_position(modes, Time.CONTINUOUS, 1.0) > 1 - 10 * TOLERANCE
+    assert largest_position(modes, 1.0) > 1 - 10 * FINE
 
 
 def test_position_of_dayawansa_martin():
     """The pair shifted by alpha is a scaled pair; the threshold falls where it must."""
-    position = largest_position(PAIR, Time.CONTINUOUS, 1.0)
+    position = largest_position(PAIR, 1.0)
     assert position == pytest.approx(0.1056, abs=2e-4)
 
 
@@ -69,12 +84,49 @@ def test_nothing_feasible_ends(threshold):
     assert bisect_position(lambda s: s <= threshold) == 0.0
 
 
+def test_a_position_is_bracketed_to_a_difference():
+    tried = []
+    position = bisect_position(lambda s: tried.append(s) or s <= 0.3, 0.0, 2.0**-8)
+    assert 0.3 - 2.0**-8 <= position <= 0.3
+    assert len(tried) == 8
+
+
+@pytest.mark.parametrize("time", list(Time))
+def test_solutions_come_fastest_first(time):
+    """Feasible up to a position of 0.8: every claim is a short rate on the safe side of it."""
+    limit = 2.0 if time is Time.CONTINUOUS else 0.5
+    best = rate_at(0.8, limit, time)
+
+    def solve(rate, allowance):
+        feasible = rate <= best if time is Time.CONTINUOUS else rate >= best
+        return rate if feasible else None
+
+    found = list(fastest_first(solve, limit, time, Allowance()))
+    assert all(solution == float(claim) == round_rate(claim, time) for solution, claim in found)
+    claims = [claim for _, claim in found]
+    assert claims == sorted(claims, reverse=time is Time.CONTINUOUS)
+    assert len(claims) == len(BACK_OFFS)
+    assert float(claims[0]) == pytest.approx(best, rel=1e-3)
+
+
+def test_the_search_for_the_best_rate_takes_half_of_the_time():
+    allowance = Allowance(10.0, clock=lambda: 0.0)
+
+    def solve(rate, allowance):
+        allowance.take(Cost(1.0), "a step")
+        return rate
+
+    found = fastest_first(solve, 1.0, Time.CONTINUOUS, allowance)
+    assert next(found)[1] < 1
+    assert allowance.unplanned == pytest.approx(4.0)
+
+
 def test_a_bisection_without_time_keeps_what_it_has():
-    assert largest_position(PAIR, Time.CONTINUOUS, 1.0, Allowance(0.0)) == 0.0
+    assert largest_position(PAIR, 1.0, Allowance(0.0)) == 0.0
     # Enough for some of the steps of the bisection only.
     allowance = Allowance(0.12, clock=lambda: 0.0)
-    some = largest_position(PAIR, Time.CONTINUOUS, 1.0, allowance)
-    assert 0.0 < some < largest_position(PAIR, Time.CONTINUOUS, 1.0)
+    some = largest_position(PAIR, 1.0, allowance)
+    assert 0.0 < some < largest_position(PAIR, 1.0)
 
     tried = []
 

@@ -1,10 +1,12 @@
 """Conversion of exact modes to floating point."""
 
 import numpy as np
+import pytest
 
 from nrs_design.proof.system import Time
+from nrs_design.search.candidates import OUT_OF_RANGE
+from nrs_design.search.common_quadratic import search_by_lmi
 from nrs_design.search.family import Family, floats_in_silence
-from nrs_design.search.rungs import OUT_OF_RANGE, search_by_lmi
 from tests.support import dayawansa_martin, family
 
 
@@ -34,5 +36,7 @@ def test_conversion_never_raises_and_the_searches_say_that_they_cannot_work():
     with floats_in_silence():
         converted = Family.of(family([[-1, 10**400], [0, -1]]))
         assert np.isnan(converted.limit)
-        assert search_by_lmi(converted, optimize_rate=False) == (None, OUT_OF_RANGE)
+        with pytest.raises(StopIteration) as end:
+            next(search_by_lmi(converted))
+        assert end.value.value == OUT_OF_RANGE
     assert np.isfinite(Family.of(dayawansa_martin(5)).matrices).all()

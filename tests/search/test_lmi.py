@@ -83,7 +83,7 @@ def test_decrease_is_the_definition(time, rate):
 
 @pytest.mark.parametrize("answer", [None, np.full((2, 2), np.nan), np.diag([np.inf, 1.0])])
 def test_useless_answers_end_the_search(monkeypatch, answer):
-    monkeypatch.setattr(lmi, "_solve", lambda *arguments: answer)
+    monkeypatch.setattr(lmi, "solve_by_interior_point", lambda *arguments: answer)
     with np.errstate(all="ignore"):
         assert find_common_quadratic(-np.eye(2)[None], Time.CONTINUOUS, 0.0) is None
 

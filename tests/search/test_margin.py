@@ -11,7 +11,7 @@ from nrs_design.certificates.certificate import CommonQuadraticStatus, Verdict
 from nrs_design.errors import AssemblyError, DesignError
 from nrs_design.pipeline import run_certification, run_margin, run_shortest_dwell
 from nrs_design.proof.system import Stay, Switching
-from nrs_design.search.certification import Certification, Limits, Method
+from nrs_design.search.certification import Certification, Limits
 from nrs_design.search.certify import certify
 from nrs_design.search.margin import (
     DOUBLINGS,
@@ -24,6 +24,7 @@ from nrs_design.search.margin import (
     find_margin,
     find_shortest_dwell,
 )
+from nrs_design.search.method import Method
 from nrs_design.spec import read_spec
 from nrs_design.spec.switching import LONGEST_DWELL
 from tests.support import COMMUTING, ROOT, SOFT_TISSUE, dayawansa_martin, family, holds

@@ -1,18 +1,23 @@
 """Search for unstable averages."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from nrs_design.search import mixture
 from nrs_design.search.allowance import Allowance
+from nrs_design.search.candidates import Candidate
+from nrs_design.search.certify import first_accepted
 from nrs_design.search.family import Family
-from nrs_design.search.mixture import find_unstable_mixture
+from nrs_design.search.mixture import search_mixture
 from tests.proof.systems import branicky, dayawansa_martin, family, shears
 from tests.proof.truth import holds
+from tests.search.support import found
 
 
 def search(system):
-    return find_unstable_mixture(system, Family.of(system).matrices)
+    return found(search_mixture, system)
 
 
 def test_two_shears_are_found():
@@ -41,9 +46,9 @@ def test_three_modes_of_which_every_two_are_harmless():
 @pytest.mark.parametrize("lie", [np.nan, np.inf, 1e300, -1e300])
 def test_matrices_that_lie_give_no_verdict(lie):
     system = dayawansa_martin(5)
-    matrices = np.full((2, 2, 2), lie)
+    lying = replace(Family.of(system), matrices=np.full((2, 2, 2), lie))
     try:
-        evidence = find_unstable_mixture(system, matrices)
+        evidence, _ = first_accepted(search_mixture(lying), system)
     except np.linalg.LinAlgError:
         return
     assert evidence is None
@@ -59,7 +64,7 @@ def test_chunks_change_nothing(monkeypatch, system):
 def test_many_modes_are_looked_at_a_few_at_a_time(monkeypatch):
     """200 modes of 40 states made half a gigabyte of averages."""
     sizes = []
-    for weights in mixture._candidates(200, 1000):
+    for weights in mixture.weights_tried(200, 1000):
         sizes.append(len(weights))
         assert weights.sum(axis=1) == pytest.approx(1.0)
     assert max(sizes) == 1000
@@ -67,4 +72,14 @@ def test_many_modes_are_looked_at_a_few_at_a_time(monkeypatch):
 
 
 def test_without_time_the_first_look_counts():
-    assert find_unstable_mixture(shears(), Family.of(shears()).matrices, Allowance(0.0)) is not None
+    family_ = Family.of(shears(), Allowance(0.0))
+    assert first_accepted(search_mixture(family_), shears())[0] is not None
+
+
+def test_ever_finer_shares_are_proposed():
+    """One average, with ever finer shares."""
+    proposed = list(search_mixture(Family.of(shears())))
+    assert all(isinstance(candidate, Candidate) for candidate in proposed)
+    shares = [dict(candidate.evidence.weights)["m0"] for candidate in proposed]
+    pairs = zip(shares, mixture.DENOMINATORS, strict=True)
+    assert all(share.denominator <= denominator for share, denominator in pairs)

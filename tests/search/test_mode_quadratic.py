@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from nrs_design.proof.system import Switching
-from nrs_design.search.allowance import Allowance
+from nrs_design.search import mode_quadratic
 from nrs_design.search.family import Family
-from nrs_design.search.mode_quadratic import _Found, _Problem, find_mode_functions
+from nrs_design.search.mode_quadratic import search_mode_functions
 from tests.proof.systems import (
     ando_shih,
     geromel_colaneri,
@@ -14,6 +14,7 @@ from tests.proof.systems import (
     shears,
     slow_switching_in_steps,
 )
+from tests.search.support import found
 
 
 @pytest.mark.parametrize(
@@ -21,35 +22,47 @@ from tests.proof.systems import (
     [geromel_colaneri("2.752"), ando_shih("0.99"), rectangular(), slow_switching_in_steps()],
 )
 def test_what_is_found_passes_the_exact_check(system):
-    assert find_mode_functions(system, Family.of(system).limit).find_fault(system) is None
+    assert found(search_mode_functions, system).find_fault(system) is None
 
 
 @pytest.mark.parametrize("system", [geromel_colaneri("2.74"), shears(), ando_shih("1.001")])
 def test_nothing_is_found_where_there_is_nothing(system):
-    assert find_mode_functions(system, Family.of(system).limit) is None
+    assert found(search_mode_functions, system) is None
 
 
 def test_no_ends_of_constant_parameters():
     system = shears(Switching(transitions=(), fixed_ends=(("m0", "m1"),)))
-    assert find_mode_functions(system, Family.of(system).limit) is None
+    assert found(search_mode_functions, system) is None
 
 
-@pytest.mark.parametrize(
-    "lie", [np.nan, np.inf, -1.0, 0.0, 1e300],
-)  # fmt: skip
-def test_functions_that_lie_give_no_verdict(lie):
-    system = geromel_colaneri("2.76")
-    problem = _Problem(system, 1)
-    functions = [np.full((2, 2), lie)] * 2
+@pytest.mark.parametrize("lie", [np.nan, np.inf, -1.0, 0.0, 1.0, 1e300])
+def test_a_solver_that_lies_gives_no_false_verdict(monkeypatch, lie):
+    monkeypatch.setattr(
+        mode_quadratic, "maximize_margin", lambda rows, *_, **__: np.full(rows.shape[1], lie)
+    )
     try:
-        assert problem.round(_Found(functions, []), 1e-3) is None
-    except (OverflowError, ValueError):
+        assert found(search_mode_functions, geromel_colaneri("2.74")) is None
+    except (OverflowError, np.linalg.LinAlgError):
         return
 
 
-@pytest.mark.parametrize("rate", [0.0, -1.0, 0.5, 1e300])
-def test_rates_that_lie_give_no_verdict(rate):
+def test_rates_that_are_none_are_not_claimed(monkeypatch):
+    """A solver that is content with every rate raises it up to the limit, where no check passes."""
+    true = mode_quadratic.maximize_margin
+    kept = []
+
+    def content(*arguments, **options):
+        kept.append(true(*arguments, **options))
+        return kept[0]
+
+    monkeypatch.setattr(mode_quadratic, "maximize_margin", content)
     system = geromel_colaneri("2.76")
-    problem = _Problem(system, 1)
-    found = problem.solve(1e-4, Allowance())
-    assert problem.round(found, rate) is None
+    evidence = found(search_mode_functions, system)
+    assert len(kept) > 1
+    assert evidence is None or evidence.find_fault(system) is None
+
+
+def test_fast_ones_are_proposed_first():
+    rates = [c.evidence.rate for c in search_mode_functions(Family.of(ando_shih("0.99")))]
+    assert len(set(rates)) > 1
+    assert rates == sorted(rates)

@@ -1,5 +1,6 @@
 """Search for growing periodic signals."""
 
+from dataclasses import replace
 from fractions import Fraction
 
 import numpy as np
@@ -7,8 +8,9 @@ import pytest
 
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.system import Reset, Switching
+from nrs_design.search.certify import first_accepted
 from nrs_design.search.family import Family, floats_in_silence
-from nrs_design.search.period import find_growing_period
+from nrs_design.search.period import search_period
 from tests.proof.systems import (
     branicky,
     dayawansa_martin,
@@ -18,11 +20,11 @@ from tests.proof.systems import (
     oscillator,
 )
 from tests.proof.truth import holds
+from tests.search.support import found
 
 
 def search(system):
-    with floats_in_silence():
-        return find_growing_period(system, Family.of(system).matrices)
+    return found(search_period, system)
 
 
 @pytest.mark.parametrize(
@@ -65,8 +67,9 @@ def test_rules_are_obeyed(switching):
 @pytest.mark.parametrize("lie", [1e3, -1e3])
 def test_matrices_that_lie_give_no_verdict(lie):
     system = dayawansa_martin(5)
+    lying = replace(Family.of(system), matrices=np.array([[[0.1, lie], [-lie, 0.1]]] * 2))
     with floats_in_silence():
-        assert find_growing_period(system, np.array([[[0.1, lie], [-lie, 0.1]]] * 2)) is None
+        assert first_accepted(search_period(lying), system)[0] is None
 
 
 def test_resets_that_grow_a_little_need_quick_switching():

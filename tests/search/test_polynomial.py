@@ -15,15 +15,16 @@ from nrs_design.search import polynomial
 from nrs_design.search.allowance import Allowance, NotAffordableError
 from nrs_design.search.family import Family, floats_in_silence
 from nrs_design.search.polynomial import (
-    Candidate,
+    Solution,
     find_common_polynomial,
     highest_degree,
     lift_family,
     polynomial_cost,
     products,
-    round_polynomial,
+    search_polynomial,
 )
 from tests.proof.systems import ando_shih, dayawansa_martin, family
+from tests.search.support import found
 
 
 def lifted(system, degree):
@@ -31,15 +32,23 @@ def lifted(system, degree):
     return family_, lift_family(system, family_.exponents, degree)
 
 
-@pytest.mark.parametrize(("system", "rate"), [(dayawansa_martin(6), 0.0), (ando_shih("0.7"), 1.0)])
-def test_a_candidate_becomes_evidence(system, rate):
-    family_, lift = lifted(system, 2)
-    candidate = find_common_polynomial(lift, system.time, rate)
-    evidence = round_polynomial(system, lift, candidate, family_.limit)
-    assert evidence.find_fault(system) is None
+@pytest.mark.parametrize("system", [dayawansa_martin(6), ando_shih("0.7")])
+def test_a_solution_becomes_evidence(system):
+    assert found(search_polynomial, system, degree=2).find_fault(system) is None
 
 
-def test_no_candidate_where_there_is_none():
+def test_fast_ones_are_proposed_first_and_the_sure_one_at_last():
+    proposed = list(search_polynomial(Family.of(dayawansa_martin(6)), degree=2))
+    words = [candidate.words for candidate in proposed]
+    half = len(words) // 2
+    assert words == ["found with a decay rate near the largest"] * half + ["found"] * half
+    for part in (proposed[:half], proposed[half:]):
+        rates = [candidate.evidence.rate for candidate in part]
+        assert rates == sorted(rates, reverse=True)
+    assert proposed[0].evidence.rate > proposed[half].evidence.rate
+
+
+def test_no_solution_where_there_is_none():
     _, lift = lifted(dayawansa_martin(12), 2)
     assert find_common_polynomial(lift, dayawansa_martin(12).time, 0.0) is None
 
@@ -78,16 +87,16 @@ def test_corrected_forms_vanish_whatever_was_rounded(n, degree, random):
         lambda c: replace(c, vanishing=c.vanishing + 1e9 * np.eye(len(c.Q))),
     ],
 )
-def test_candidates_that_lie_give_no_false_evidence(spoil):
+def test_solutions_that_lie_give_no_false_evidence(monkeypatch, spoil):
     unstable, stable = dayawansa_martin(12), dayawansa_martin(6)
     _, lift_stable = lifted(stable, 2)
-    candidate = spoil(find_common_polynomial(lift_stable, stable.time, 0.0))
-    assert isinstance(candidate, Candidate)
+    with floats_in_silence():
+        solution = spoil(find_common_polynomial(lift_stable, stable.time, 0.0))
+    assert isinstance(solution, Solution)
+    monkeypatch.setattr(polynomial, "find_common_polynomial", lambda *_: solution)
     for system in (unstable, stable):
-        family_, lift = lifted(system, 2)
         try:
-            with floats_in_silence():
-                evidence = round_polynomial(system, lift, candidate, family_.limit)
+            evidence = found(search_polynomial, system, degree=2)
         except (np.linalg.LinAlgError, ValueError, OverflowError):
             continue
         assert evidence is None or (system is stable and evidence.find_fault(system) is None)

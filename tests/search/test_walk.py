@@ -10,10 +10,10 @@ import pytest
 from nrs_design.proof.evidence import UnstablePeriod
 from nrs_design.proof.system import Switching, Time
 from nrs_design.search.certify import Limits, Verdict, certify
-from nrs_design.search.family import Family, floats_in_silence
-from nrs_design.search.period import find_growing_period
+from nrs_design.search.period import search_period
 from tests.proof.systems import ando_shih, family, golden, matrix, resets_between
 from tests.proof.truth import holds
+from tests.search.support import found
 
 FAST = Limits(max_degree=4, budget=5.0, optimize_rate=False)
 BOTH_WAYS = (("m0", "m1"), ("m1", "m0"))
@@ -30,8 +30,7 @@ def shears(dwell, **rules):
 
 
 def search(system):
-    with floats_in_silence():
-        return find_growing_period(system, Family.of(system).matrices)
+    return found(search_period, system)
 
 
 @pytest.mark.parametrize("dwell", range(2, 8))

@@ -10,8 +10,8 @@ from nrs_design.simulation.norms import quadratic_norm
 from nrs_design.simulation.rates import mode_rates
 from nrs_design.simulation.switched import (
     alone,
-    eigenvalues,
     fine_step,
+    mode_eigenvalues,
     norms,
     sampled_direction,
     simulate_switching,
@@ -70,7 +70,7 @@ def test_step_resolves_the_fastest_eigenvalue():
 
 
 def test_eigenvalues_of_every_mode():
-    assert np.sort_complex(eigenvalues(COMMUTING)[1]) == pytest.approx([-2 - 3j, -2 + 3j])
+    assert np.sort_complex(mode_eigenvalues(COMMUTING)[1]) == pytest.approx([-2 - 3j, -2 + 3j])
 
 
 @pytest.mark.parametrize("time", list(Time))
@@ -98,4 +98,4 @@ def test_a_mode_alone_keeps_its_own_states():
     unequal = system([[-1]], [[0, 1], [-2, -1]])
     assert alone(unequal, 0).states == ("x1",)
     assert alone(unequal, 1).order == 2
-    assert [len(values) for values in eigenvalues(unequal)] == [1, 2]
+    assert [len(values) for values in mode_eigenvalues(unequal)] == [1, 2]

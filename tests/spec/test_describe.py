@@ -1,5 +1,5 @@
 from nrs_design.spec import load_spec
-from nrs_design.spec.describe import Row, describe
+from nrs_design.spec.describe import Line, describe
 from tests.support import ROOT
 
 from .samples import FORCE, IMPEDANCE, SWITCHED, interaction, spoiled, switched
@@ -44,11 +44,11 @@ def test_desired_impedance_of_the_thesis() -> None:
     # Thesis 6.2 and 6.3.2.1: 2.1486 and half of it, 1.0743 N*m*s/rad.
     name = "controllers.insertion.desired_impedance"
     unit = "N*m*s/rad"
-    assert Row(name, "torque/velocity", "2.14859", unit) in describe(interaction(IMPEDANCE))
+    assert Line(name, "torque/velocity", "2.14859", unit) in describe(interaction(IMPEDANCE))
     half = spoiled(IMPEDANCE, "    Mt:", "    desired_impedance_ratio: 0.5\n    Mt:")
-    assert Row(name, "0.5 * torque/velocity", "1.0743", unit) in describe(interaction(half))
+    assert Line(name, "0.5 * torque/velocity", "1.0743", unit) in describe(interaction(half))
     given = spoiled(IMPEDANCE, "    Mt:", "    desired_impedance: 3 kg*m^2/s\n    Mt:")
-    assert Row(name, "3 kg*m^2/s", "3", unit) in describe(interaction(given))
+    assert Line(name, "3 kg*m^2/s", "3", unit) in describe(interaction(given))
 
 
 def test_force_controllers() -> None:

@@ -18,7 +18,7 @@ from nrs_design.spec.document import (
     Scalar,
     Sequence,
     parse_document,
-    read_text,
+    read_source,
     to_data,
 )
 
@@ -142,7 +142,7 @@ def test_garbage_is_a_document_or_refused(text: str) -> None:
 def test_reads_bytes_and_text(tmp_path: Path) -> None:
     path = tmp_path / "a.yaml"
     path.write_bytes(b"\xef\xbb\xbfa: \xc3\xa9\r\n")
-    content, text = read_text(path)
+    content, text = read_source(path)
     assert content == path.read_bytes()
     assert to_data(parse_document(text)) == {"a": "é"}
 
@@ -161,7 +161,7 @@ def test_refuses_files_that_are_no_text(tmp_path: Path, content: bytes, said: st
     path = tmp_path / "a.nrs.yaml"
     path.write_bytes(content)
     with pytest.raises(SpecError, match=said) as caught:
-        read_text(path)
+        read_source(path)
     assert caught.value.path == path
     assert caught.value.remedy
 
@@ -170,28 +170,28 @@ def test_bad_byte_has_a_place(tmp_path: Path) -> None:
     path = tmp_path / "a.nrs.yaml"
     path.write_bytes("a: 1\né: ".encode() + b"\xff\n")
     with pytest.raises(SpecError) as caught:
-        read_text(path)
+        read_source(path)
     assert (caught.value.line, caught.value.column) == (2, 4)
 
 
 def test_size_limit_is_inclusive(tmp_path: Path) -> None:
     path = tmp_path / "a.nrs.yaml"
     path.write_bytes(b"#" * MAX_BYTES)
-    assert len(read_text(path)[1]) == MAX_BYTES
+    assert len(read_source(path)[1]) == MAX_BYTES
 
 
 def test_refuses_missing_files_and_directories(tmp_path: Path) -> None:
     with pytest.raises(SpecError, match="no such file"):
-        read_text(tmp_path / "none.nrs.yaml")
+        read_source(tmp_path / "none.nrs.yaml")
     with pytest.raises(SpecError, match="directory"):
-        read_text(tmp_path)
+        read_source(tmp_path)
 
 
 def test_refuses_a_pipe_without_waiting_for_it(tmp_path: Path) -> None:
     pipe = tmp_path / "pipe.nrs.yaml"
     os.mkfifo(pipe)
     with pytest.raises(SpecError, match="not a regular file"):
-        read_text(pipe)
+        read_source(pipe)
 
 
 def test_refuses_names_that_no_file_can_have(tmp_path: Path) -> None:
@@ -199,7 +199,7 @@ def test_refuses_names_that_no_file_can_have(tmp_path: Path) -> None:
     loop.symlink_to(loop)
     for path in (Path("a\0b"), tmp_path / ("x" * 5000), loop):
         with pytest.raises(SpecError) as caught:
-            read_text(path)
+            read_source(path)
         assert caught.value.path == path
 
 
@@ -213,7 +213,7 @@ def test_refuses_unreadable_files(tmp_path: Path, monkeypatch: pytest.MonkeyPatc
     # Permission bits do not bind the superuser, under whom tests may run.
     monkeypatch.setattr("nrs_design.spec.document.open_regular", refuse)
     with pytest.raises(SpecError, match="cannot be read: Permission denied"):
-        read_text(path)
+        read_source(path)
 
 
 def seconds(text: str) -> float:

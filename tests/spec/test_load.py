@@ -3,11 +3,13 @@ import random
 import subprocess
 import sys
 from pathlib import Path
+from typing import Literal
 
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+import nrs_design.spec
 from nrs_design.errors import SpecError
 from nrs_design.spec import (
     InteractionDesignSpec,
@@ -17,7 +19,8 @@ from nrs_design.spec import (
     read_spec,
 )
 from nrs_design.spec.document import Node, parse_document, to_data
-from nrs_design.spec.load import hash_meaning
+from nrs_design.spec.load import SPEC_KINDS, hash_meaning, model_of
+from tests.support import COMMUTING
 
 from .samples import FORCE, IMPEDANCE, SWITCHED, assert_inside, refusal
 
@@ -168,3 +171,30 @@ def test_import_is_light() -> None:
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout.strip() == "[]"
+
+
+def test_a_spec_pays_for_the_models_of_its_kind_only() -> None:
+    code = (
+        "import sys, nrs_design.spec\n"
+        "print('pydantic' in sys.modules)\n"
+        f"nrs_design.spec.read_spec({str(COMMUTING)!r})\n"
+        "print(*(name for name in sys.modules if name.startswith('nrs_design.spec.')))"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    first, loaded = done.stdout.splitlines()
+    assert first == "False"
+    assert "nrs_design.spec.switched_system" in loaded
+    for other in ("interaction", "controllers", "environment", "robot"):
+        assert f"nrs_design.spec.{other}" not in loaded.split()
+
+
+def test_every_name_at_the_door_is_there() -> None:
+    for name in set(nrs_design.spec.__all__) - {"Spec"}:
+        assert getattr(nrs_design.spec, name).__name__ in (name, "Annotated", "Union"), name
+    with pytest.raises(AttributeError, match="no attribute 'Nothing'"):
+        nrs_design.spec.Nothing  # noqa: B018
+
+
+def test_every_kind_has_its_model() -> None:
+    kinds = {kind: model_of(kind).model_fields["kind"].annotation for kind in SPEC_KINDS}
+    assert kinds == {kind: Literal[kind] for kind in SPEC_KINDS}

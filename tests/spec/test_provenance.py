@@ -33,8 +33,8 @@ def test_without_it_nothing_is_said():
 @pytest.mark.parametrize(
     ("old", "new", "message"),
     [
-        (HASH, HASH[:-1], "is no SHA-256"),
-        (HASH, HASH.upper(), "is no SHA-256"),
+        (HASH, HASH[:-1], "is not a SHA-256"),
+        (HASH, HASH.upper(), "is not a SHA-256"),
         ("synthetic", "guessed", "data"),
         ("file: a.csv, ", "", "file"),
     ],

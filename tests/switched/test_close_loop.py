@@ -1,4 +1,4 @@
-"""Closed loops entry by entry, against the published matrices and against other formulas."""
+"""All modes of a design in one state, and what is said about them."""
 
 from fractions import Fraction
 from itertools import product
@@ -17,25 +17,17 @@ from nrs_design.controllers.laws import (
     ProportionalDerivative,
     ProportionalForce,
 )
-from nrs_design.design.impedance import ImpedanceLoop
-from nrs_design.design.margins import stiffness_limit
-from nrs_design.design.transfer import TransferFunction
 from nrs_design.errors import AssemblyError
 from nrs_design.models.actuator import Actuator
 from nrs_design.models.contact import Elastic, KelvinBoltzmann, KelvinVoigt, Maxwell
 from nrs_design.models.contact.environment import Environment
-from nrs_design.models.interval import Interval
-from nrs_design.models.motion_loop import MotionLoop
+from nrs_design.models.motion_loop import MotionLoop, realize
 from nrs_design.models.plant import Plant
 from nrs_design.proof.exact import characteristic_polynomial, is_hurwitz
 from nrs_design.proof.matrix import RationalMatrix
-from nrs_design.switched.close_loop import (
-    close_loop,
-    force_mode,
-    impedance_mode,
-    realize,
-    to_force_coordinates,
-)
+from nrs_design.spec.interval import Interval
+from nrs_design.switched.close_loop import close_loop
+from nrs_design.switched.modes import velocity_mode
 
 F = Fraction
 # Thesis 6.3.2.2: Ap = [[0, 1], [-1618.80, -56.89]], Cp = [1618.80, 28.416].
@@ -62,156 +54,6 @@ def objects(*entries):
 
 def stable(rows):
     return is_hurwitz(RationalMatrix.from_rows(rows).numerators)
-
-
-class TestPublished:
-    @pytest.mark.parametrize(("Bt", "entry"), [("2.15", -215), ("1.04", -104)])
-    def test_matrices_of_thesis_6322(self, Bt, entry):
-        """With -1618.80, as errata have it. The print's last row is good to five digits."""
-        law = Admittance(F("0.01"), F(Bt))
-        rows = to_force_coordinates(impedance_mode(MOTION, law, PRINTED), MOTION, PRINTED)
-        assert rows[0] == [0, 1, 0, 0]
-        assert rows[1] == [F("-1618.80"), F("-56.89"), -1, 0]
-        assert rows[2] == [0, 0, entry, 100]
-        assert rows[3] == [PRINTED.exact[0] * F("1618.80"), PRINTED.exact[0] * F("28.416"), 0, 0]
-        assert float(rows[3][0]) == pytest.approx(70183.13, rel=2e-5)
-        assert float(rows[3][1]) == pytest.approx(1231.97, rel=2e-5)
-
-    @pytest.mark.parametrize(
-        ("Bt", "eigenvalues"),
-        [
-            ("2.15", [-217.470, -14.694 + 32.617j, -14.694 - 32.617j, -25.031]),
-            ("1.04", [-111.737, -5.424 + 39.978j, -5.424 - 39.978j, -38.306]),
-        ],
-    )
-    @pytest.mark.parametrize("coordinates", ["deflection", "force"])
-    def test_eigenvalues(self, Bt, eigenvalues, coordinates):
-        rows = impedance_mode(MOTION, Admittance(F("0.01"), F(Bt)), SOFT)
-        if coordinates == "force":
-            rows = to_force_coordinates(rows, MOTION, SOFT)
-        found = np.linalg.eigvals(np.array(rows, dtype=float))
-        wanted = np.array(eigenvalues)
-        for value in wanted:
-            assert np.abs(found - value).min() < 2e-3
-        for value in found:
-            assert np.abs(wanted - value).min() < 2e-3
-
-    @pytest.mark.parametrize("Bt", ["1.04", "2.11", "2.15"])
-    @pytest.mark.parametrize("damping", ["0", "1/50"])
-    def test_stiffness_limit(self, Bt, damping):
-        """Exact bisection over the assembled mode, against the design's crossing formula."""
-        low, high = F(1), F(1000)
-        law = Admittance(F("0.01"), F(Bt))
-        while high - low > F(1, 1000):
-            middle = (low + high) / 2
-            if stable(impedance_mode(MOTION, law, KelvinVoigt(middle, F(damping)))):
-                low = middle
-            else:
-                high = middle
-        motion = TransferFunction(
-            tuple(map(float, LOOP.numerator)), tuple(map(float, LOOP.denominator))
-        )
-        limit = stiffness_limit(
-            ImpedanceLoop(motion, KelvinVoigt(1.0, float(F(damping)))), 0.01, float(F(Bt))
-        )
-        assert float(low) == pytest.approx(limit, abs=2e-3)
-
-    def test_known_stiffness_limits(self):
-        """75.9 N m/rad for Bt = 1.04 and 232.3 for Bt = 2.15, both at Mt = 0.01."""
-        for Bt, limit in (("1.04", "75.9"), ("2.15", "232.3")):
-            law = Admittance(F("0.01"), F(Bt))
-            margin = F("0.5")
-            assert stable(impedance_mode(MOTION, law, KelvinVoigt(F(limit) - margin, F(0))))
-            assert not stable(impedance_mode(MOTION, law, KelvinVoigt(F(limit) + margin, F(0))))
-
-
-class TestImpedance:
-    @given(positive, positive, positive, st.fractions(0, 10, max_denominator=100), st.booleans())
-    def test_characteristic_polynomial(self, Mt, Bt, k, b, massless):
-        """s den(s)(Mt s + Bt) + num(s)(b s + k), over its leading coefficient."""
-        law = Admittance(F(0) if massless else Mt, Bt)
-        rows = impedance_mode(MOTION, law, KelvinVoigt(k, b))
-        num, den = LOOP.numerator, LOOP.denominator
-        free = np.polymul(
-            np.array([*den, 0], dtype=object), np.array([law.Mt, law.Bt], dtype=object)
-        )
-        touch = np.polymul(np.array(num, dtype=object), np.array([b, k], dtype=object))
-        total = np.trim_zeros(np.polyadd(free, touch), "f")
-        assert polynomial(rows) == [c / total[0] for c in total]
-
-    @given(positive, positive, positive, st.fractions(0, 10, max_denominator=100), st.booleans())
-    def test_coordinates_are_similar(self, Mt, Bt, k, b, massless):
-        law, contact = Admittance(F(0) if massless else Mt, Bt), KelvinVoigt(k, b)
-        rows = impedance_mode(MOTION, law, contact)
-        assert polynomial(to_force_coordinates(rows, MOTION, contact)) == polynomial(rows)
-
-    @given(
-        st.tuples(positive, st.fractions(0, 10)),
-        st.tuples(positive, st.fractions(0, 10)),
-        st.booleans(),
-    )
-    def test_affine_in_stiffness_and_damping(self, one, other, massless):
-        """What makes the corners of a parameter box enough, in either coordinates."""
-        law = Admittance(F(0) if massless else F("0.01"), F(2))
-        middle = tuple((a + b) / 2 for a, b in zip(one, other, strict=True))
-        contacts = [KelvinVoigt(*point) for point in (one, middle, other)]
-        for force in (False, True):
-            first, half, last = (self.rows(law, contact, force) for contact in contacts)
-            for a, m, b in zip(first, half, last, strict=True):
-                assert [(x + y) / 2 for x, y in zip(a, b, strict=True)] == m
-
-    def rows(self, law, contact, force):
-        rows = impedance_mode(MOTION, law, contact)
-        return to_force_coordinates(rows, MOTION, contact) if force else rows
-
-    def test_without_inertia(self):
-        rows = impedance_mode(MOTION, Admittance(F(0), F(2)), KelvinVoigt(F(43), F(0)))
-        assert rows == [
-            [0, 1, 0],
-            [F("-1618.80"), F("-56.89"), F(-43, 2)],
-            [F("1618.80"), F("28.416"), 0],
-        ]
-
-    def test_damped_contact(self):
-        rows = impedance_mode(MOTION, Admittance(F(1, 100), F(2)), KelvinVoigt(F(43), F(3)))
-        assert rows[2] == [300 * F("1618.80"), 300 * F("28.416"), -200, 4300]
-
-
-class TestForce:
-    @given(st.fractions(0, 1), positive)
-    def test_state_feedback_of_thesis_646(self, Kp, k):
-        rows = force_mode(MOTION, ProportionalForce(Kp), Elastic(k), "soft")
-        assert rows == [
-            [0, 1],
-            [F("-1618.80") * (1 + Kp * k), F("-56.89") - Kp * k * F("28.416")],
-        ]
-
-    def test_damping_is_not_modelled(self):
-        with pytest.raises(AssemblyError, match="damping") as caught:
-            force_mode(MOTION, ProportionalForce(F(1)), KelvinVoigt(F(1), F(1)), "jelly")
-        assert "jelly" in caught.value.message
-        assert "elastic" in caught.value.remedy
-
-
-class TestRealization:
-    def test_transfer_function_comes_back(self):
-        loop = MotionLoop((F(3), F(5)), (F(2), F(7), F(11), F(13)))
-        motion = realize(loop)
-        for s in (F(0), F(1), F(-1, 3), F(10)):
-            n = motion.order
-            x = [s**i for i in range(n)]  # (s - A) x = (den/leading) B in this canonical form
-            residue = s * x[-1] - sum(a * b for a, b in zip(motion.A[-1], x, strict=True))
-            gain = sum(c * b for c, b in zip(motion.C, x, strict=True)) / residue
-            assert gain == (3 * s + 5) / (2 * s**3 + 7 * s**2 + 11 * s + 13)
-            assert [s * x[i] - x[i + 1] for i in range(n - 1)] == [0] * (n - 1)
-
-    @pytest.mark.parametrize(
-        ("numerator", "denominator"),
-        [((1, 1), (1, 1)), ((1, 1, 1), (1, 1)), ((1,), (1,)), ((1,), (0, 1))],
-    )
-    def test_not_strictly_proper(self, numerator, denominator):
-        with pytest.raises(AssemblyError, match="strictly proper"):
-            realize(MotionLoop(tuple(map(F, numerator)), tuple(map(F, denominator))))
 
 
 def impedance(name, Mt, contacts=("soft",)):
@@ -270,8 +112,9 @@ class TestAssembly:
         assert "free motion is not one of the modes" not in texts
 
     def test_mixed_inertia(self):
-        with pytest.raises(AssemblyError, match="3 and 4 states") as caught:
+        with pytest.raises(AssemblyError, match="different states of their own") as caught:
             assembled(impedance("a", 0), impedance("b", 1))
+        assert "(none; vm [rad/s])" in caught.value.message
         assert "none of them" in caught.value.remedy
 
     def test_force_control_of_a_damped_environment(self):
@@ -324,13 +167,13 @@ class TestViscoelastic:
             free = product_of(LOOP.denominator, below, admittance)
             contact = product_of(LOOP.numerator, above)
             free[len(free) - len(contact) :] += contact
-            found = polynomial(impedance_mode(MOTION, Admittance(Mt, Bt), law))
+            found = polynomial(velocity_mode(MOTION, Admittance(Mt, Bt), law))
             assert list(free / free[0]) == found
 
     @pytest.mark.parametrize("law", [NOSE, GEL], ids=["nose", "gel"])
     def test_run_of_the_loop_with_the_force_as_the_thesis_writes_it(self, law):
         """Integrate motion loop, admittance and ``F' = (eta1 delta + eta2 v - F)/eta3``."""
-        A = np.array(impedance_mode(MOTION, Admittance(F("0.01"), F(2)), law), dtype=float)
+        A = np.array(velocity_mode(MOTION, Admittance(F("0.01"), F(2)), law), dtype=float)
         eta1, eta2, eta3 = law.eta if law is NOSE else (0.0, float(law.b), law.relaxation_time)
         Ap, Cp = np.array(MOTION.A, dtype=float), np.array(MOTION.C, dtype=float)
 
@@ -343,23 +186,25 @@ class TestViscoelastic:
 
         start = np.zeros(len(A))
         start[:4] = [1e-3, 0.02, 0.1, 0.3]  # xp, vm, and 0.3 rad or a stretch of 0.3 rad
-        reaction = law.reaction
-        force = sum(float(c) * z for c, z in zip(reaction.C, start[3:], strict=True))
+        # Neither law lets the velocity through at once.
+        row, _ = law.react([F(0)] * 2, [[F(1), F(0)], [F(0), F(1)]][: len(law.states)])
+        row = row[: len(law.states)]
+        force = sum(float(c) * z for c, z in zip(row, start[3:], strict=True))
         times = np.linspace(0, 3, 31)
         run = solve_ivp(rate, (0, 3), [*start[:4], force], "Radau", times, rtol=1e-10, atol=1e-13)
         ours = np.array([expm(A * t) @ start for t in times]).T
         assert ours[:3] == pytest.approx(run.y[:3], abs=1e-8)
-        forces = sum(float(c) * z for c, z in zip(reaction.C, ours[3:], strict=True))
+        forces = sum(float(c) * z for c, z in zip(row, ours[3:], strict=True))
         assert forces == pytest.approx(run.y[4], abs=1e-8)
 
     def test_at_rest_the_nose_relaxes_with_its_time_constant(self):
         """Errata 2.4: eta3 = 19.61 s; with the deflection held, the damper follows it so."""
-        rows = impedance_mode(MOTION, Admittance(F("0.01"), F(2)), NOSE)
+        rows = velocity_mode(MOTION, Admittance(F("0.01"), F(2)), NOSE)
         assert float(-1 / rows[-1][-1]) == pytest.approx(19.61079, rel=3e-5)
 
     def test_maxwell_has_no_deflection_among_its_states(self):
         """With it the loop had an eigenvalue zero: it creeps, and nothing drives it back."""
-        rows = impedance_mode(MOTION, Admittance(F("0.01"), F(2)), GEL)
+        rows = velocity_mode(MOTION, Admittance(F("0.01"), F(2)), GEL)
         assert stable(rows)
         with_delta = [[*row, F(0)] for row in rows] + [[*MOTION.C, F(0), F(0), F(0)]]
         assert polynomial(with_delta) == [*polynomial(rows), 0]
@@ -380,7 +225,7 @@ class TestViscoelastic:
         k1, k2 = (i.low + t * (i.high - i.low) for i, t in zip(RANGES[:2], shares[:2], strict=True))
         b = 1 / ((1 - shares[2]) / RANGES[2].low + shares[2] / RANGES[2].high)
         law = KelvinBoltzmann(k1, k2, b)
-        inside = impedance_mode(MOTION, Admittance(F("0.01"), F(2)), law)
+        inside = velocity_mode(MOTION, Admittance(F("0.01"), F(2)), law)
         weights = [
             np.prod([t if up else 1 - t for t, up in zip(shares, ups, strict=True)])
             for ups in product((False, True), repeat=3)
@@ -402,7 +247,7 @@ class TestViscoelastic:
         assert tool[4] == [0, 0, 0, 0, -F("0.233") / F("23.631") * F(12, 8), 0]
         assert tool[5] == [0, 0, 0, 0, 0, F(-1, 30)]
         assert [row[4:] for row in tool[:4]] == [[0, 0]] * 4
-        plain = impedance_mode(MOTION, Admittance(F("0.01"), F(2)), Elastic(F(41)))
+        plain = velocity_mode(MOTION, Admittance(F("0.01"), F(2)), Elastic(F(41)))
         assert [row[:4] for row in tool[:4]] == plain
         concha = next(m for m in system.modes if m.name == "in/concha/r-nose-min").A.fractions()
         assert concha[4] == [0, 0, 0, 0, -F("0.233") / F("23.631") * F(8, 12), 0]

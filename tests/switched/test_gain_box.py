@@ -11,15 +11,16 @@ from nrs_design.controllers.gains import gains_of
 from nrs_design.controllers.laws import Admittance
 from nrs_design.errors import AssemblyError
 from nrs_design.models.contact import KelvinVoigt
-from nrs_design.models.interval import Interval
+from nrs_design.models.motion_loop import realize
 from nrs_design.models.plant import build_plant
 from nrs_design.pipeline import run_design
 from nrs_design.proof.evidence import CommonQuadratic, UnstableMode
 from nrs_design.search.certify import Limits, Verdict, certify
 from nrs_design.spec import LoadedSpec, parse_spec, read_spec
+from nrs_design.spec.interval import Interval
 from nrs_design.switched.assemble import DECLARED, assemble_from_text, has_ranges
-from nrs_design.switched.close_loop import impedance_mode, realize, to_force_coordinates
 from nrs_design.switched.gain_box import GainBox
+from nrs_design.switched.modes import to_force_coordinates, velocity_mode
 from tests.proof.truth import combine, decrease, is_definite
 from tests.support import ROOT
 
@@ -148,7 +149,7 @@ MOTIONS = {
 
 
 def loop_rows(massless, law, contact, coordinates):
-    rows = impedance_mode(MOTIONS[massless], law, contact)
+    rows = velocity_mode(MOTIONS[massless], law, contact)
     if coordinates == "force":
         return to_force_coordinates(rows, MOTIONS[massless], contact)
     return rows
@@ -205,10 +206,11 @@ class TestScale:
             assembled(spec, scale=F(scale))
 
     def test_a_point_may_be_zero(self):
-        box = GainBox(Interval.point(F(0)), Interval(F(2), F(1), F(3)))
-        assert box.scaled(F(1, 2), "in").Bt == Interval(F(2), F(3, 2), F(5, 2))
+        law = Admittance(F(0), F(2))
+        box = GainBox(law, {"Mt": Interval.point(F(0)), "Bt": Interval(F(2), F(1), F(3))})
+        assert box.scaled(F(1, 2), "in").ranges["Bt"] == Interval(F(2), F(3, 2), F(5, 2))
         assert not box.fixed
-        assert GainBox.point(Admittance(F(0), F(2))).fixed
+        assert GainBox.point(law).fixed
 
 
 def test_shipped_example_needs_a_polynomial():

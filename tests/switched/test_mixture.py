@@ -14,15 +14,14 @@ from nrs_design.controllers.laws import Admittance
 from nrs_design.errors import AssemblyError
 from nrs_design.models.actuator import Actuator
 from nrs_design.models.contact import Elastic, KelvinVoigt
-from nrs_design.models.motion_loop import close_motion_loop
+from nrs_design.models.motion_loop import close_motion_loop, realize
 from nrs_design.models.plant import build_plant
 from nrs_design.pipeline import run_design
 from nrs_design.proof.exact import characteristic_polynomial
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.spec import parse_spec, read_spec
 from nrs_design.switched.assemble import assemble
-from nrs_design.switched.close_loop import impedance_mode, realize
-from nrs_design.switched.mixture import impedance_rows, with_idle
+from nrs_design.switched.modes import position_mode, velocity_mode
 from tests.support import ROOT
 
 F = Fraction
@@ -52,8 +51,8 @@ def mixed(**changes):
 @given(k=positive, b=positive, Mt=positive, Bt=positive, massless=st.booleans())
 def test_impedance_mode_has_the_poles_that_it_has_alone(k, b, Mt, Bt, massless):
     law, contact = Admittance(F(0) if massless else Mt, Bt), KelvinVoigt(k, b)
-    shared = impedance_rows(MOTION.A, list(MOTION.C), law, contact)
-    assert polynomial(shared) == polynomial(impedance_mode(MOTION, law, contact))
+    shared = position_mode(MOTION, law, contact)
+    assert polynomial(shared) == polynomial(velocity_mode(MOTION, law, contact))
 
 
 @pytest.mark.parametrize("massless", [False, True])
@@ -62,7 +61,7 @@ def test_run_against_actuator_and_firmware(massless):
     k, b, Bt, Mt = 43.0, 0.4, 2.0, 0.0 if massless else 0.01
     gain, tau, Kd, Kp = map(float, (GAIN, TAU, KD, KP))
     law = Admittance(F(Mt).limit_denominator(1000), F(2))
-    A = np.array(impedance_rows(MOTION.A, list(MOTION.C), law, KelvinVoigt(F(43), F("0.4"))), float)
+    A = np.array(position_mode(MOTION, law, KelvinVoigt(F(43), F("0.4"))), float)
 
     def rate(_, x):
         theta, omega, vm, r = x
@@ -95,7 +94,7 @@ def test_affine_in_stiffness_and_damping(shares):
     law = Admittance(F("0.01"), F(2))
 
     def at(k, b):
-        rows = impedance_rows(MOTION.A, list(MOTION.C), law, KelvinVoigt(k, b))
+        rows = position_mode(MOTION, law, KelvinVoigt(k, b))
         return np.array(rows, dtype=object)
 
     s, t = shares
@@ -104,15 +103,6 @@ def test_affine_in_stiffness_and_damping(shares):
         for high, damped in product((False, True), repeat=2)
     ]
     assert (sum(corners) == at(20 + 40 * s, t)).all()
-
-
-def test_idle_states_decay_alone():
-    assert with_idle([[F(1), F(2)], [F(3), F(4)]], 2, F(5)) == [
-        [1, 2, 0, 0],
-        [3, 4, 0, 0],
-        [0, 0, -5, 0],
-        [0, 0, 0, -5],
-    ]
 
 
 def test_the_example_has_one_state_for_all():
@@ -181,5 +171,5 @@ def test_stiff_contact_in_impedance_mode_is_that_of_the_thesis():
     """Thesis 6.3.1: Mt = 0.01, Bt = 1.04 is stable up to 75.9 N m/rad."""
     law = Admittance(F("0.01"), F("1.04"))
     for k, stable in ((F(75), True), (F(77), False)):
-        rows = impedance_rows(MOTION.A, list(MOTION.C), law, Elastic(k))
+        rows = position_mode(MOTION, law, Elastic(k))
         assert (np.linalg.eigvals(np.array(rows, float)).real.max() < 0) == stable

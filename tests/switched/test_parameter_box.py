@@ -8,22 +8,23 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from nrs_design.errors import InternalError
-from nrs_design.models.interval import Interval
-from nrs_design.switched.parameter_box import Axis, box_corners
+from nrs_design.spec.interval import Interval
+from nrs_design.switched.parameter_box import Box
 
 F = Fraction
 UNIT = Interval(F(1), F(1), F(3))
-X, Y = Axis("x", UNIT), Axis("y", Interval(F(2), F(-1), F(4)))
-INVERSE = Axis("x", UNIT, inverse=True)
+X, Y = Box({"x": UNIT}), Box({"y": Interval(F(2), F(-1), F(4))})
+INVERSE = Box({"x": UNIT}, frozenset({"x"}))
+BOTH = X.beside(Y)
 shares = st.fractions(0, 1, max_denominator=20)
 
 
-def corners(axes, entry):
-    return list(box_corners(axes, lambda values: [[F(entry(**values))]], "m"))
+def corners(box, entry):
+    return list(box.corners(lambda values: [[F(entry(**values))]], "m"))
 
 
 def test_labels_and_order():
-    found = corners((X, Y), lambda x, y: 10 * x + y)
+    found = corners(BOTH, lambda x, y: 10 * x + y)
     assert [label for label, _ in found] == [
         "x-min/y-min",
         "x-min/y-max",
@@ -34,13 +35,13 @@ def test_labels_and_order():
 
 
 def test_a_point_has_one_corner_without_a_label():
-    point = Axis("x", Interval.point(F(2)))
-    assert corners((point,), lambda x: x**5) == [("", [[32]])]
+    point = Box({"x": Interval.point(F(2))})
+    assert corners(point, lambda x: x**5) == [("", [[32]])]
 
 
 def test_middle_of_an_inverse_axis():
     # One over it is halfway between 1 and 1/3.
-    assert (X.middle, INVERSE.middle) == (2, F(3, 2))
+    assert (X.middle("x"), INVERSE.middle("x")) == (2, F(3, 2))
 
 
 @given(st.lists(st.fractions(-9, 9), min_size=4, max_size=4), shares, shares)
@@ -50,28 +51,33 @@ def test_every_value_in_the_box_is_the_same_average_of_corners(c, s, t):
     def entry(x, y):
         return c[0] + c[1] / x + c[2] * y + c[3] * y / x
 
-    found = corners((INVERSE, Y), entry)
+    found = corners(INVERSE.beside(Y), entry)
     inverse = (1 - s) * 1 + s * F(1, 3)
-    y = (1 - t) * Y.interval.low + t * Y.interval.high
+    y = (1 - t) * F(-1) + t * F(4)
     weights = [a * b for a, b in product((1 - s, s), (1 - t, t))]
     mean = sum(w * rows[0][0] for w, (_, rows) in zip(weights, found, strict=True))
     assert mean == entry(1 / inverse, y)
 
 
 @pytest.mark.parametrize(
-    ("axes", "entry"),
+    ("box", "entry"),
     [
-        ((X,), lambda x: x**2),
-        ((X,), lambda x: 1 / x),
-        ((INVERSE,), lambda x: x),
-        ((X, Y), lambda x, y: x * y**2),
-        ((X, Y), lambda x, y: x**2 - 4 * x),
+        (X, lambda x: x**2),
+        (X, lambda x: 1 / x),
+        (INVERSE, lambda x: x),
+        (BOTH, lambda x, y: x * y**2),
+        (BOTH, lambda x, y: x**2 - 4 * x),
         # Affine along every edge, but not inside.
-        ((X, Y), lambda x, y: (x - 1) * (x - 3) * (y + 1) * (y - 4)),
+        (BOTH, lambda x, y: (x - 1) * (x - 3) * (y + 1) * (y - 4)),
         # Odd about the middle, so that the middle of the box alone would not show it.
-        ((X, Y), lambda x, y: (x - 2) * (y - F(3, 2)) ** 2),
+        (BOTH, lambda x, y: (x - 2) * (y - F(3, 2)) ** 2),
     ],
 )
-def test_anything_else_stops_the_assembly(axes, entry):
+def test_anything_else_stops_the_assembly(box, entry):
     with pytest.raises(InternalError, match="mode m is not affine in each parameter"):
-        corners(axes, entry)
+        corners(box, entry)
+
+
+def test_a_symbol_stands_for_one_parameter():
+    with pytest.raises(InternalError, match="the symbol x stands for two parameters"):
+        BOTH.beside(INVERSE)

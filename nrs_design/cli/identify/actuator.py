@@ -8,8 +8,8 @@ import typer
 
 from nrs_design.cli.identify.common import (
     SYNTHETIC,
+    ColumnMap,
     DataFiles,
-    Mapping,
     ReportTo,
     WriteTo,
     check_report,
@@ -20,7 +20,7 @@ from nrs_design.cli.identify.common import (
     write_report,
     write_spec,
 )
-from nrs_design.cli.options import Json, Quiet
+from nrs_design.cli.options import Date, Json, Quiet
 from nrs_design.cli.printing import note, print_json, progress, say
 from nrs_design.cli.tables import print_table
 
@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 
 def actuator(
     data: DataFiles,
-    columns: Mapping = None,
+    columns: ColumnMap = None,
     torque_constant: Annotated[float, typer.Option(min=1e-9, help="K_T in N m/A.")] = 0.0115,
     back_emf_constant: Annotated[float, typer.Option(min=1e-9, help="K_B in V s/rad.")] = 0.0115,
     inertia: Annotated[
@@ -39,6 +39,7 @@ def actuator(
     reduction: Annotated[float, typer.Option(min=1e-9, help="Gearhead ratio N.")] = 181.0,
     write: WriteTo = None,
     report: ReportTo = None,
+    date: Date = None,
     as_json: Json = False,
     quiet: Quiet = False,
 ) -> None:
@@ -68,7 +69,7 @@ def actuator(
             from nrs_design.reporting.identification import actuator_report
 
             step("figures")
-            write_report(report, actuator_report(found))
+            write_report(report, actuator_report(found), date)
     if write is not None and merged is not None:
         write_spec(write, merged, quiet=quiet)
         # A proof will rest on these values: no option silences this.

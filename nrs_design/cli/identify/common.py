@@ -6,6 +6,7 @@ import math
 import sys
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, TypeVar
 
@@ -16,12 +17,14 @@ from nrs_design.errors import OutputError
 from nrs_design.printable import printable
 
 if TYPE_CHECKING:
+    from datetime import datetime
+
     from nrs_design.identification.datasets import Source
     from nrs_design.identification.statistics import Estimate
     from nrs_design.reporting import Report
 
 DataFiles = Annotated[list[Path], typer.Argument(metavar="DATA...", help="Files of data.")]
-Mapping = Annotated[
+ColumnMap = Annotated[
     list[str] | None,
     typer.Option("--map", metavar="OURS=THEIRS", help="Foreign column name, as in force_N=Fz."),
 ]
@@ -87,17 +90,28 @@ def check_report(path: Path | None) -> None:
     """Refuse a file type that cannot be written, before the work is done."""
     if path is not None and path.suffix.lower() not in (".html", ".pdf"):
         raise OutputError(
-            f"{path.suffix or 'no ending'} is no type of report",
+            f"{path.suffix or 'no ending'} is not a type of report",
             path=path,
             remedy="name a file that ends in .html or .pdf",
         )
 
 
-def write_report(path: Path, report: Report) -> None:
-    """Write a report in the format that the name of the file says."""
+def write_report(path: Path, report: Report, date: datetime | None) -> None:
+    """Write a report in the format that the name of the file says.
+
+    Parameters
+    ----------
+    path : Path
+        Ends in .html or .pdf.
+    report : Report
+        What is written.
+    date : datetime or None
+        What the user wants to read as its date.
+    """
     from nrs_design.output import PAGE, PDF, write_output
     from nrs_design.reporting import render_html, render_pdf
 
+    report = replace(report, date=date.date() if date else None)
     if path.suffix.lower() == ".pdf":
         write_output(path, render_pdf(report), replaces=PDF)
     else:

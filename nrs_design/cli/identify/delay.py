@@ -9,7 +9,7 @@ import typer
 
 from nrs_design.cli.identify.common import (
     SYNTHETIC,
-    Mapping,
+    ColumnMap,
     ReportTo,
     check_report,
     interval,
@@ -37,7 +37,7 @@ def delay(
         str | None,
         typer.Option(metavar="COLUMN", help="What follows; default: angle, velocity or force."),
     ] = None,
-    columns: Mapping = None,
+    columns: ColumnMap = None,
     report: ReportTo = None,
     as_json: Json = False,
     quiet: Quiet = False,

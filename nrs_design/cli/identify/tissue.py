@@ -9,8 +9,8 @@ import typer
 
 from nrs_design.cli.identify.common import (
     SYNTHETIC,
+    ColumnMap,
     DataFiles,
-    Mapping,
     ReportTo,
     WriteTo,
     check_report,
@@ -21,7 +21,7 @@ from nrs_design.cli.identify.common import (
     write_report,
     write_spec,
 )
-from nrs_design.cli.options import Json, Quiet
+from nrs_design.cli.options import Date, Json, Quiet
 from nrs_design.cli.printing import note, print_json, progress, say
 from nrs_design.cli.tables import print_table
 
@@ -45,7 +45,7 @@ def tissue(
     model: Annotated[
         ModelOption, typer.Option(help="Law to choose; auto compares them all.")
     ] = ModelOption.AUTO,
-    columns: Mapping = None,
+    columns: ColumnMap = None,
     lever_arm: Annotated[
         str | None,
         typer.Option(metavar="LENGTH", help="Distance from pivot to contact, as in '0.24 m'."),
@@ -55,6 +55,7 @@ def tissue(
         str | None, typer.Option(metavar="NAME", help="Environment of the spec to write to.")
     ] = None,
     report: ReportTo = None,
+    date: Date = None,
     as_json: Json = False,
     quiet: Quiet = False,
 ) -> None:
@@ -83,7 +84,7 @@ def tissue(
             from nrs_design.reporting.identification import tissue_report
 
             step("figures")
-            write_report(report, tissue_report(found, arm))
+            write_report(report, tissue_report(found, arm), date)
     if write is not None and merged is not None:
         write_spec(write, merged, quiet=quiet)
         # A proof will rest on these values: no option silences this.

@@ -100,7 +100,7 @@ def write_figures(folder: Path, figures: Mapping[str, Figure], *, quiet: bool) -
         Do not say where.
     """
     from nrs_design.output import PNG, SVG, write_output
-    from nrs_design.reporting.svg import to_png, to_svg_file
+    from nrs_design.reporting.images import to_png, to_svg_file
 
     files: list[str] = []
     for name, figure in figures.items():

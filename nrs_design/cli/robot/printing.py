@@ -14,9 +14,9 @@ LEGS = ("left leg", "right leg", "middle leg")
 ONE = ("value",)
 
 # What stands in a row: a name with its unit, and for a matrix what each of its rows belongs to.
-Label = str | tuple[str, Sequence[str]]
+RowLabel = str | tuple[str, Sequence[str]]
 # For the headings of some columns, the names whose numbers stand below them.
-Tables = Mapping[Sequence[str], Mapping[str, Label]]
+Tables = Mapping[Sequence[str], Mapping[str, RowLabel]]
 
 
 def print_quantities(content: Mapping[str, Any], tables: Tables) -> None:
@@ -40,7 +40,7 @@ def print_quantities(content: Mapping[str, Any], tables: Tables) -> None:
             print_table("", ["SI units", *columns], rows)
 
 
-def _rows(label: Label, value: Any) -> Iterator[tuple[str, Sequence[float]]]:
+def _rows(label: RowLabel, value: Any) -> Iterator[tuple[str, Sequence[float]]]:
     if isinstance(label, tuple):
         yield from ((f"{label[0]}: {name}", row) for name, row in zip(label[1], value, strict=True))
     elif isinstance(value, dict):

@@ -21,7 +21,7 @@ SHORT_ID = 12
 
 def to_text(outcome: GateOutcome) -> str:
     """Return the table, the failures worst first, and a line that sums up."""
-    parts = [*_table([COLUMNS, *rows_of(outcome)]), *gains_of(outcome)]
+    parts = [*_table([COLUMNS, *rows_of(outcome)]), *gain_lines(outcome)]
     if outcome.broken:
         parts += ["", *map(line_of, outcome.broken)]
     return "\n".join([*parts, "", summary_of(outcome)]) + "\n"
@@ -32,7 +32,7 @@ def rows_of(outcome: GateOutcome) -> list[Sequence[str]]:
     return [_row(spec) for spec in outcome.specs]
 
 
-def gains_of(outcome: GateOutcome) -> list[str]:
+def gain_lines(outcome: GateOutcome) -> list[str]:
     """Return the lines about designed gains, after an empty one; none where there are no gains."""
     designed = [_gains(spec) for spec in outcome.specs if spec.gains]
     title = "gains (single-precision numbers, by their shortest decimals):"

@@ -57,7 +57,7 @@ def parse_mapping(entries: Sequence[str]) -> dict[str, str]:
     for entry in entries:
         ours, equals, theirs = (part.strip() for part in entry.partition("="))
         if not (ours and equals and theirs):
-            raise DataError(f"--map {entry!r} is no pair", remedy="write --map force_N=Fz")
+            raise DataError(f"--map {entry!r} is not a pair", remedy="write --map force_N=Fz")
         _split(ours, None, f"--map {entry!r}: ")
         if theirs in mapping or ours in mapping.values():
             raise DataError(f"--map {entry!r}: the column is mapped twice", remedy="keep one")

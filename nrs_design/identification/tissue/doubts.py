@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from nrs_design.identification.datasets import TissueRecord
 from nrs_design.identification.rounding import rounding_of_velocity
 from nrs_design.identification.statistics import Uncertainty
-from nrs_design.models.contact import AbstractContactLaw, HuntCrossley, KelvinVoigt
+from nrs_design.models.contact import AbstractContactLaw
 
 Array = NDArray[np.float64]
 
@@ -80,7 +80,7 @@ def _times(law: AbstractContactLaw, record: TissueRecord) -> Iterator[str]:
 
 def _motion(law: AbstractContactLaw, record: TissueRecord) -> Iterator[str]:
     motion = record.motion
-    if isinstance(law, KelvinVoigt | HuntCrossley):
+    if law.takes_velocity:
         part = rounding_of_velocity(motion.time, motion.deflection)
         if part > _ROUNDING:
             yield (

@@ -18,7 +18,7 @@ Array = NDArray[np.float64]
 
 STARTS = 3
 # Samples that suffice to find the right valley.
-_COARSE = 20_000
+COARSE = 20_000
 # Starts whose costs end within this factor of the best one have found the same valley.
 _SAME = 1e-6
 
@@ -110,7 +110,7 @@ def fit_record(kind: type[AbstractContactLaw], record: TissueRecord) -> RecordFi
 
 def _thin(record: TissueRecord) -> TissueRecord:
     """Return a shorter record to search in; only the last search needs every sample."""
-    every = -(-len(record.force) // _COARSE)
+    every = -(-len(record.force) // COARSE)
     if every == 1:
         return record
     motion = Motion(record.motion.time[::every], record.motion.deflection[::every])

@@ -6,7 +6,7 @@ a scan over that one number, with a linear fit at each, finds all valleys of the
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Mapping
 
 import numpy as np
 from numpy.typing import NDArray
@@ -37,25 +37,45 @@ _SHORTEST, _LONGEST = 1e-4, 1e3
 
 def scan(kind: type[AbstractContactLaw], record: TissueRecord) -> Iterator[AbstractContactLaw]:
     """Yield candidates for the start of a search."""
-    motion, force = record.motion, record.force
-    if kind is Elastic:
-        yield Elastic(*_linear(force, motion.deflection))
-    elif kind is KelvinVoigt:
-        yield KelvinVoigt(*_linear(force, motion.deflection, motion.velocity))
-    elif kind is HuntCrossley:
-        for phi in np.linspace(LEAST_EXPONENT, LARGEST_EXPONENT, _EXPONENTS).tolist():
-            power = np.maximum(motion.deflection, 0.0) ** phi
-            rho, lam = _linear(force, power, power * motion.velocity)
-            yield HuntCrossley(rho, lam, phi)
-    else:
-        for tau in _time_constants(record):
-            y, _ = relax(motion, tau)
-            if kind is Maxwell:
-                (k,) = _linear(force, y)
-                yield Maxwell(k, k * tau)
-            else:
-                eta1, arm = _linear(force, motion.deflection, y)
-                yield KelvinBoltzmann.from_eta(eta1, (eta1 + arm) * tau, tau)
+    return _SCANS[kind](record)
+
+
+def _elastic(record: TissueRecord) -> Iterator[Elastic]:
+    yield Elastic(*_linear(record.force, record.motion.deflection))
+
+
+def _kelvin_voigt(record: TissueRecord) -> Iterator[KelvinVoigt]:
+    yield KelvinVoigt(*_linear(record.force, record.motion.deflection, record.motion.velocity))
+
+
+def _maxwell(record: TissueRecord) -> Iterator[Maxwell]:
+    for tau in _time_constants(record):
+        (k,) = _linear(record.force, relax(record.motion, tau)[0])
+        yield Maxwell(k, k * tau)
+
+
+def _kelvin_boltzmann(record: TissueRecord) -> Iterator[KelvinBoltzmann]:
+    for tau in _time_constants(record):
+        y, _ = relax(record.motion, tau)
+        eta1, arm = _linear(record.force, record.motion.deflection, y)
+        yield KelvinBoltzmann.from_eta(eta1, (eta1 + arm) * tau, tau)
+
+
+def _hunt_crossley(record: TissueRecord) -> Iterator[HuntCrossley]:
+    for phi in np.linspace(LEAST_EXPONENT, LARGEST_EXPONENT, _EXPONENTS).tolist():
+        power = np.maximum(record.motion.deflection, 0.0) ** phi
+        rho, lam = _linear(record.force, power, power * record.motion.velocity)
+        yield HuntCrossley(rho, lam, phi)
+
+
+Scan = Callable[[TissueRecord], Iterator[AbstractContactLaw]]
+_SCANS: Mapping[type[AbstractContactLaw], Scan] = {
+    Elastic: _elastic,
+    KelvinVoigt: _kelvin_voigt,
+    Maxwell: _maxwell,
+    KelvinBoltzmann: _kelvin_boltzmann,
+    HuntCrossley: _hunt_crossley,
+}
 
 
 def box(kind: type[AbstractContactLaw], record: TissueRecord) -> tuple[Array, Array]:

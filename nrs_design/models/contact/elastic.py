@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
-from fractions import Fraction
 from typing import TYPE_CHECKING, ClassVar
 
 from nrs_design.models.contact.law import STIFFNESS, AbstractLinearLaw, Number, Reaction
+from nrs_design.models.linear_form import LinearForm, combine
 
 if TYPE_CHECKING:
     from nrs_design.models.contact.motion import Array, Motion
@@ -43,8 +44,7 @@ class Elastic(AbstractLinearLaw):
         """``k / s``."""
         return (0.0, float(self.k)), (1.0, 0.0)
 
-    @property
-    def reaction(self) -> Reaction:
-        """``delta' = v``, ``F = k delta``."""
-        zero, one = Fraction(0), Fraction(1)
-        return Reaction(((zero,),), (one,), self.exact)
+    def react(self, velocity: LinearForm, states: Sequence[LinearForm]) -> Reaction:
+        """Return ``F = k delta`` and ``delta' = v``."""
+        (k,), (delta,) = self.exact, states
+        return combine((k, delta)), [velocity]

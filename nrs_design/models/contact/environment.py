@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 from itertools import product
 
 from nrs_design.errors import AssemblyError
 from nrs_design.models.contact.law import AbstractLinearLaw
-from nrs_design.models.interval import Interval
+from nrs_design.spec.interval import Interval
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,6 +29,15 @@ class Environment:
     name: str
     law: type[AbstractLinearLaw]
     ranges: tuple[Interval, ...]
+
+    @property
+    def parameters(self) -> dict[str, Interval]:
+        """The ranges by the names of the parameters."""
+        return dict(zip(self.law.parameters(), self.ranges, strict=True))
+
+    def at(self, values: Mapping[str, Fraction]) -> AbstractLinearLaw:
+        """Return the law at values of its parameters, by name; other names are left alone."""
+        return self.law(*(values[name] for name in self.law.parameters()))
 
     @property
     def nominal(self) -> AbstractLinearLaw:

@@ -31,6 +31,7 @@ class HuntCrossley(AbstractContactLaw):
     name: ClassVar[str] = "hunt-crossley"
     formula: ClassVar[str] = "F = ρ δ^φ + λ δ^φ δ' in contact"
     kinds: ClassVar[tuple[str, ...]] = ("power stiffness", "power damping", "exponent")
+    takes_velocity: ClassVar[bool] = True
 
     rho: float
     lam: float

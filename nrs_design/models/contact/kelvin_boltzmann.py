@@ -7,6 +7,7 @@ jump with k2; d is a position and stays. Every entry is affine in k1, in k2 and 
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import TYPE_CHECKING, ClassVar
@@ -18,6 +19,7 @@ from nrs_design.models.contact.law import (
     Number,
     Reaction,
 )
+from nrs_design.models.linear_form import LinearForm, combine
 
 if TYPE_CHECKING:
     from nrs_design.models.contact.motion import Array, Motion
@@ -111,18 +113,30 @@ class KelvinBoltzmann(AbstractLinearLaw):
         chain = np.array([[q, 1 - q, 0.0], [q - 1, 2 - q, 0.0], [q - 1, -q, 1.0]])
         return np.asarray(inner @ chain)
 
+    @classmethod
+    def memory_texts(cls, environment: str, *, alone: bool) -> Iterator[str]:
+        """Say what the damper does at a switch, and while it is left alone."""
+        yield (
+            f"The damper of {environment} keeps its deflection at a switch and when the "
+            "parameters change."
+        )
+        if not alone:
+            yield (
+                f"While another environment is touched, {environment} is free of force and "
+                "its damper creeps back to rest, b d' = -k1 d, with parameters in their ranges."
+            )
+
     @property
     def impedance(self) -> tuple[tuple[float, ...], tuple[float, ...]]:
         """``(b k2 s + k1 k2) / (s (b s + k1 + k2))``."""
         k1, k2, b = map(float, self.values)
         return (0.0, b * k2, k1 * k2), (b, k1 + k2, 0.0)
 
-    @property
-    def reaction(self) -> Reaction:
-        """``delta' = v``, ``b d' = k2 (delta - d) - k1 d``, ``F = k2 (delta - d)``."""
-        k1, k2, b = self.exact
-        zero = Fraction(0)
-        return Reaction(((zero, zero), (k2 / b, -(k1 + k2) / b)), (Fraction(1), zero), (k2, -k2))
+    def react(self, velocity: LinearForm, states: Sequence[LinearForm]) -> Reaction:
+        """Return ``F = k2 (delta - d)``, ``delta' = v`` and ``b d' = k2 (delta - d) - k1 d``."""
+        (k1, k2, b), (delta, d) = self.exact, states
+        rate = combine((k2 / b, delta), (-(k1 + k2) / b, d))
+        return combine((k2, delta), (-k2, d)), [velocity, rate]
 
     @property
     def creep(self) -> Fraction:

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
-from fractions import Fraction
 from typing import TYPE_CHECKING, ClassVar
 
 from nrs_design.models.contact.law import (
@@ -13,6 +13,7 @@ from nrs_design.models.contact.law import (
     Number,
     Reaction,
 )
+from nrs_design.models.linear_form import LinearForm, combine
 
 if TYPE_CHECKING:
     from nrs_design.models.contact.motion import Array, Motion
@@ -33,6 +34,7 @@ class KelvinVoigt(AbstractLinearLaw):
     name: ClassVar[str] = "kelvin-voigt"
     formula: ClassVar[str] = "F = k δ + b δ'"
     kinds: ClassVar[tuple[str, ...]] = (STIFFNESS, DAMPING)
+    takes_velocity: ClassVar[bool] = True
     keys: ClassVar[tuple[str, ...]] = ("stiffness", "damping")
     may_vanish: ClassVar[frozenset[str]] = frozenset({"b"})
     front: ClassVar[str] = "k"
@@ -61,7 +63,11 @@ class KelvinVoigt(AbstractLinearLaw):
         return (float(self.b), 0.0), (0.0, 1.0)
 
     @property
-    def reaction(self) -> Reaction:
-        """``delta' = v``, ``F = k delta + b v``."""
-        k, b = self.exact
-        return Reaction(((Fraction(0),),), (Fraction(1),), (k,), b)
+    def is_spring(self) -> bool:
+        """Whether there is no damping."""
+        return self.b == 0
+
+    def react(self, velocity: LinearForm, states: Sequence[LinearForm]) -> Reaction:
+        """Return ``F = k delta + b v`` and ``delta' = v``."""
+        (k, b), (delta,) = self.exact, states
+        return combine((k, delta), (b, velocity)), [velocity]

@@ -7,10 +7,12 @@ from __future__ import annotations
 
 import math
 from abc import ABC, abstractmethod
+from collections.abc import Iterator, Sequence
 from dataclasses import astuple, dataclass, fields
 from fractions import Fraction
 from typing import TYPE_CHECKING, ClassVar, Self
 
+from nrs_design.models.linear_form import LinearForm
 from nrs_design.spec import kinds
 from nrs_design.spec.environment import turn
 
@@ -26,7 +28,8 @@ _UNITS = {
 
 # A measured or designed value, or an exact one.
 Number = float | Fraction
-Rows = tuple[tuple[Fraction, ...], ...]
+# Force, and the rates of the states.
+Reaction = tuple[LinearForm, list[LinearForm]]
 
 
 @dataclass(frozen=True)
@@ -41,6 +44,8 @@ class AbstractContactLaw(ABC):
     formula: ClassVar[str]
     # What each parameter is, in order: a stiffness, a damping, or something of the law's own.
     kinds: ClassVar[tuple[str, ...]]
+    # Whether the reaction takes the velocity itself, which a record has by differences only.
+    takes_velocity: ClassVar[bool] = False
 
     @abstractmethod
     def simulate(self, motion: Motion) -> Array:
@@ -75,38 +80,18 @@ class AbstractContactLaw(ABC):
         return tuple(field.name for field in fields(cls))
 
 
-@dataclass(frozen=True, slots=True)
-class Reaction:
-    """State space of a law, from velocity to force: ``z' = A z + B v``, ``F = C z + D v``.
-
-    Parameters
-    ----------
-    A : tuple of tuple of Fraction
-        Square.
-    B, C : tuple of Fraction
-        Input column and output row.
-    D : Fraction
-        Force per velocity at once.
-    """
-
-    A: Rows
-    B: tuple[Fraction, ...]
-    C: tuple[Fraction, ...]
-    D: Fraction = Fraction(0)
-
-
 @dataclass(frozen=True)
 class AbstractLinearLaw(AbstractContactLaw):
     """A law that is linear, so that it can enter a design and a proof."""
 
     # Keys of the parameters in a spec, in their order.
     keys: ClassVar[tuple[str, ...]]
-    # Parameters in one over which `reaction` is affine, and those that may be zero.
+    # Parameters in one over which `react` is affine, and those that may be zero.
     inverse: ClassVar[frozenset[str]] = frozenset()
     may_vanish: ClassVar[frozenset[str]] = frozenset()
     # The stiffness that a sudden motion meets.
     front: ClassVar[str]
-    # The states of `reaction`; the first is the one that all environments of a spec share.
+    # The states of `react`; the first is the one that all environments of a spec share.
     states: ClassVar[tuple[str, ...]] = ("delta [rad]",)
     # Whether the force depends on more than the deflection and the velocity of the moment.
     remembers: ClassVar[bool] = False
@@ -128,15 +113,49 @@ class AbstractLinearLaw(AbstractContactLaw):
         numerator, _ = self.impedance
         return (0.0,) * len(numerator), tuple(c / self.stiffness for c in numerator)
 
-    @property
     @abstractmethod
-    def reaction(self) -> Reaction:
-        """The exact state space of `impedance`; affine in each parameter, or in its inverse."""
+    def react(self, velocity: LinearForm, states: Sequence[LinearForm]) -> Reaction:
+        """Return the force, and the rates of the states, as linear forms of the whole loop.
+
+        The exact state space of `impedance`: affine in each parameter, or in its inverse.
+
+        Parameters
+        ----------
+        velocity : LinearForm
+            At which the contact is pushed, rad/s.
+        states : sequence of LinearForm
+            Those named in `states`.
+        """
+
+    @property
+    def is_spring(self) -> bool:
+        """Whether the force follows from the deflection of the moment alone."""
+        return not self.remembers
 
     @property
     def creep(self) -> Fraction | None:
         """Rate in 1/s at which a second state decays while no force acts; None without one."""
         return None
+
+    @classmethod
+    def memory_texts(cls, environment: str, *, alone: bool) -> Iterator[str]:
+        """Say what is taken for granted about an environment that remembers.
+
+        Parameters
+        ----------
+        environment : str
+            Its name.
+        alone : bool
+            Whether no other environment is touched.
+        """
+        if cls.remembers:
+            kept = " and ".join(cls.states)
+            yield f"{environment} keeps {kept} at a switch and when the parameters change."
+        if cls.remembers and not alone:
+            yield (
+                f"While another environment is touched, {environment} is free of force, with "
+                "parameters in their ranges."
+            )
 
     @property
     def exact(self) -> tuple[Fraction, ...]:

@@ -7,6 +7,7 @@ from the motion and acts on nothing; as a state it would add an eigenvalue zero.
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import TYPE_CHECKING, ClassVar
@@ -18,6 +19,7 @@ from nrs_design.models.contact.law import (
     Number,
     Reaction,
 )
+from nrs_design.models.linear_form import LinearForm, combine
 
 if TYPE_CHECKING:
     from nrs_design.models.contact.motion import Array, Motion
@@ -68,14 +70,24 @@ class Maxwell(AbstractLinearLaw):
         y, slope = relax(motion, self.relaxation_time)
         return np.column_stack([float(self.k) * (y - slope), float(self.k) * slope])
 
+    @classmethod
+    def memory_texts(cls, environment: str, *, alone: bool) -> Iterator[str]:
+        """Say what is known of the deflection, which is no state."""
+        yield (
+            f"{environment} has no rest position: a lasting deflection leaves no force. "
+            "Its state is the stretch of its spring, which stays at a switch and when the "
+            "parameters change; "
+            "that the deflection itself returns to zero is not claimed, nor that it stays "
+            "bounded under a command or other input."
+        )
+
     @property
     def impedance(self) -> tuple[tuple[float, ...], tuple[float, ...]]:
         """``k b / (b s + k)``."""
         k, b = float(self.k), float(self.b)
         return (0.0, k * b), (b, k)
 
-    @property
-    def reaction(self) -> Reaction:
-        """``e' = v - (k/b) e``, ``F = k e`` with the stretch e of the spring."""
-        k, b = self.exact
-        return Reaction(((-k / b,),), (Fraction(1),), (k,))
+    def react(self, velocity: LinearForm, states: Sequence[LinearForm]) -> Reaction:
+        """Return ``F = k e`` and ``e' = v - (k/b) e`` with the stretch e of the spring."""
+        (k, b), (e,) = self.exact, states
+        return combine((k, e)), [combine((Fraction(1), velocity), (-k / b, e))]

@@ -23,7 +23,7 @@ from nrs_design.models.robot.link import (
     first_moment,
     link_forces,
 )
-from nrs_design.models.robot.motion import LegMotion, Motion, joint_driven
+from nrs_design.models.robot.motion import LegMotion, RobotMotion, joint_driven
 from nrs_design.models.robot.robot import Robot
 from nrs_design.models.robot.vectors import Array, Scalar, Vector, add, dot, scale, stacked
 
@@ -201,7 +201,7 @@ def _gravity_in_plane(robot: Robot, closed: Posture, leg: LegPosture) -> Vector:
     return along, across, dot(gravity, leg.normal)
 
 
-def _torque(closed: Posture, motion: Motion, robot: Robot, weight: Scalar = 1.0) -> Array:
+def _torque(closed: Posture, motion: RobotMotion, robot: Robot, weight: Scalar = 1.0) -> Array:
     """Collect what every leg takes, and hand it on to the joints; gravity times `weight`."""
     on_W: Vector = (0.0, 0.0, 0.0)
     on_d: Scalar = 0.0
@@ -221,7 +221,7 @@ def _torque(closed: Posture, motion: Motion, robot: Robot, weight: Scalar = 1.0)
 
 
 def _leg_forces(
-    motion: Motion,
+    motion: RobotMotion,
     leg: LegPosture,
     rates: LegMotion,
     loads: tuple[Body, Body, Body],
@@ -258,7 +258,7 @@ def _elbow(l1: float, crank: Direction) -> PlanePoint:
     )
 
 
-def _coupler_end(motion: Motion, leg: LegPosture, rates: LegMotion) -> PlanePoint:
+def _coupler_end(motion: RobotMotion, leg: LegPosture, rates: LegMotion) -> PlanePoint:
     u, v = leg.end
     square, twice = rates.gamma_1 * rates.gamma_1, 2 * rates.gamma_1 * motion.d_1
     return PlanePoint(

@@ -26,7 +26,7 @@ class LegMotion:
 
 
 @dataclass(frozen=True, slots=True)
-class Motion:
+class RobotMotion:
     """Rates of the whole robot: direction W of the endoscope, depth d, and the legs."""
 
     W_1: Vector
@@ -36,7 +36,7 @@ class Motion:
     legs: tuple[LegMotion, LegMotion, LegMotion]
 
 
-def joint_driven(closed: Posture, velocity: ArrayLike, acceleration: ArrayLike) -> Motion:
+def joint_driven(closed: Posture, velocity: ArrayLike, acceleration: ArrayLike) -> RobotMotion:
     """Return the motion that joint velocities and accelerations make.
 
     Parameters
@@ -65,7 +65,7 @@ def joint_driven(closed: Posture, velocity: ArrayLike, acceleration: ArrayLike) 
 
 def pose_driven(
     closed: Posture, pose: ArrayLike, velocity: ArrayLike, acceleration: ArrayLike
-) -> Motion:
+) -> RobotMotion:
     """Return the motion that the rates of (phi, psi, d) make; shapes (..., 3), rad, m and s.
 
     Parameters
@@ -89,9 +89,9 @@ def pose_driven(
     return _motion(closed, (x_1, y_1, z_1), (x_2, y_2, z_2), v[2], a[2])
 
 
-def _motion(closed: Posture, W_1: Vector, W_2: Vector, d_1: Scalar, d_2: Scalar) -> Motion:
+def _motion(closed: Posture, W_1: Vector, W_2: Vector, d_1: Scalar, d_2: Scalar) -> RobotMotion:
     left, right, middle = (_leg_motion(leg, W_1, W_2, d_1, d_2) for leg in closed.legs)
-    return Motion(W_1, W_2, d_1, d_2, (left, right, middle))
+    return RobotMotion(W_1, W_2, d_1, d_2, (left, right, middle))
 
 
 def _leg_motion(leg: LegPosture, W_1: Vector, W_2: Vector, d_1: Scalar, d_2: Scalar) -> LegMotion:

@@ -8,20 +8,16 @@ from fractions import Fraction
 from math import comb
 from typing import Any, ClassVar, Self
 
-from nrs_design.proof.evidence.abstract import AbstractEvidence, Shows
-from nrs_design.proof.evidence.common_quadratic import (
-    decay_claim,
-    find_rate_misfit,
-    is_square,
-)
+from nrs_design.proof.evidence.common_quadratic import decay_claim
 from nrs_design.proof.evidence.fields import (
     Matrix,
     matrix_fields,
+    read_dyadic,
     read_integer,
     read_integers,
-    read_matrix,
     read_ratio,
 )
+from nrs_design.proof.evidence.function import AbstractFunction, is_square
 from nrs_design.proof.exact import (
     MAX_WORK,
     IntegerMatrix,
@@ -40,7 +36,7 @@ MAX_MONOMIALS = 120
 
 
 @dataclass(frozen=True, slots=True)
-class CommonPolynomial(AbstractEvidence):
+class CommonPolynomial(AbstractFunction):
     """``V(x) = z' Q z`` with z the monomials of degree d decreases in every mode.
 
     Since ``z' N_i z = 0`` for all x, mode i satisfies ``V' = z'(L'Q + QL - N_i) z`` with the
@@ -64,7 +60,6 @@ class CommonPolynomial(AbstractEvidence):
 
     kind: ClassVar[str] = "common-polynomial"
     bounds_at_once: ClassVar[bool] = True
-    attains_rate: ClassVar[bool] = True
     covers_mixtures: ClassVar[bool] = True
 
     degree: int
@@ -74,18 +69,9 @@ class CommonPolynomial(AbstractEvidence):
     rate: Fraction
 
     @property
-    def shows(self) -> Shows:
-        """Stability."""
-        return Shows.STABILITY
-
-    @property
     def keeps_bound_in_mixtures(self) -> bool:
         """False: V need not be convex, but a joint spectral radius is that of the convex hull."""
         return False
-
-    def proved_rate(self, system: SwitchedSystem) -> Fraction:
-        """Return the claimed rate."""
-        return self.rate
 
     def find_misfit(self, system: SwitchedSystem) -> str | None:
         """Check shapes, the sign of the rate, and that each N vanishes identically."""
@@ -103,7 +89,7 @@ class CommonPolynomial(AbstractEvidence):
             return "its numbers are too large to check"
         if not all(vanishes(N, n, d) for N in self.vanishing):
             return "a form that must vanish does not"
-        return find_rate_misfit(self.rate, system.time)
+        return self.find_rate_misfit(system.time)
 
     def forms(self, system: SwitchedSystem) -> Iterator[tuple[str, IntegerMatrix]]:
         """Yield Q and the decrease in every mode."""
@@ -139,7 +125,7 @@ class CommonPolynomial(AbstractEvidence):
         half, odd = divmod(read_integer(fields["degree"]), 2)
         if odd:
             raise ValueError("the degree is odd")
-        Q, denominator_log2 = read_matrix(fields["Q"])
+        Q, denominator_log2 = read_dyadic(fields["Q"])
         vanishing = tuple(read_integers(N) for N in fields["vanishing"])
         return cls(half, Q, denominator_log2, vanishing, read_ratio(fields["rate"]))
 

@@ -7,13 +7,13 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any, ClassVar, Self
 
-from nrs_design.proof.evidence.abstract import AbstractEvidence, Shows
 from nrs_design.proof.evidence.fields import (
     matrix_fields,
     rate_words,
-    read_matrix,
+    read_dyadic,
     read_ratio,
 )
+from nrs_design.proof.evidence.function import AbstractFunction, is_square
 from nrs_design.proof.exact import (
     IntegerMatrix,
     Product,
@@ -25,7 +25,7 @@ from nrs_design.proof.system import SwitchedSystem, Time
 
 
 @dataclass(frozen=True, slots=True)
-class CommonQuadratic(AbstractEvidence):
+class CommonQuadratic(AbstractFunction):
     """``V(x) = x' Q x`` decreases in every mode.
 
     Parameters
@@ -41,17 +41,11 @@ class CommonQuadratic(AbstractEvidence):
 
     kind: ClassVar[str] = "common-quadratic"
     bounds_at_once: ClassVar[bool] = True
-    attains_rate: ClassVar[bool] = True
     covers_mixtures: ClassVar[bool] = True
 
     Q: tuple[tuple[int, ...], ...]
     denominator_log2: int
     rate: Fraction
-
-    @property
-    def shows(self) -> Shows:
-        """Stability."""
-        return Shows.STABILITY
 
     @property
     def is_common_quadratic(self) -> bool:
@@ -63,15 +57,11 @@ class CommonQuadratic(AbstractEvidence):
         """True: the level sets of V are convex."""
         return True
 
-    def proved_rate(self, system: SwitchedSystem) -> Fraction:
-        """Return the claimed rate."""
-        return self.rate
-
     def find_misfit(self, system: SwitchedSystem) -> str | None:
         """Check shapes and the sign of the rate."""
         if not is_square(self.Q, system.order):
             return f"Q is not a {system.order} x {system.order} matrix"
-        return find_rate_misfit(self.rate, system.time)
+        return self.find_rate_misfit(system.time)
 
     def forms(
         self, system: SwitchedSystem, multiply: Product = multiply
@@ -95,20 +85,8 @@ class CommonQuadratic(AbstractEvidence):
     @classmethod
     def from_fields(cls, fields: Mapping[str, Any], system: SwitchedSystem) -> Self:
         """Read Q and the rate."""
-        Q, denominator_log2 = read_matrix(fields["Q"])
+        Q, denominator_log2 = read_dyadic(fields["Q"])
         return cls(Q, denominator_log2, read_ratio(fields["rate"]))
-
-
-def is_square(M: IntegerMatrix, n: int) -> bool:
-    """Tell whether a matrix has n rows and n columns."""
-    return len(M) == n and all(len(row) == n for row in M)
-
-
-def find_rate_misfit(rate: Fraction, time: Time) -> str | None:
-    """Say why a rate is not one of exponential decay, or None."""
-    if rate <= 0 or (time is Time.DISCRETE and rate >= 1):
-        return "the claimed rate is not one of exponential decay"
-    return None
 
 
 def decay_claim(system: SwitchedSystem, rate: Fraction, norm: str) -> str:

@@ -26,7 +26,7 @@ def matrix_fields(Q: Matrix, denominator_log2: int) -> dict[str, Any]:
     return {"numerators": [list(row) for row in Q], "denominator_log2": denominator_log2}
 
 
-def read_matrix(fields: Mapping[str, Any]) -> tuple[Matrix, int]:
+def read_dyadic(fields: Mapping[str, Any]) -> tuple[Matrix, int]:
     """Read a dyadic matrix: its integer numerators, and the logarithm of its denominator."""
     denominator_log2 = read_integer(fields["denominator_log2"])
     if denominator_log2 < 0:
@@ -43,7 +43,7 @@ def read_integers(value: Any) -> Matrix:
 
 
 def read_integer(value: object) -> int:
-    """Read an integer; a truth value is none."""
+    """Read an integer; a truth value is not one."""
     if type(value) is not int:
         raise TypeError(f"expected an integer, not {quoted(str(value))}")
     return value

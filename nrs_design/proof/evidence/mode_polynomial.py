@@ -10,12 +10,12 @@ from typing import Any, ClassVar, Self
 
 from nrs_design.proof.evidence.abstract import AbstractEvidence, Shows
 from nrs_design.proof.evidence.common_polynomial import MAX_DEGREE, MAX_MONOMIALS
-from nrs_design.proof.evidence.common_quadratic import find_rate_misfit, is_square
 from nrs_design.proof.evidence.fields import (
     Matrix,
     read_integer,
     read_integers,
 )
+from nrs_design.proof.evidence.function import is_square
 from nrs_design.proof.evidence.mode_quadratic import (
     ModeQuadratic,
     bound_claim,
@@ -86,7 +86,7 @@ class ModePolynomial(AbstractEvidence):
         """Check shapes, rate and stays, and that each N vanishes identically."""
         if system.time is not Time.DISCRETE:
             return "polynomials for each mode are for discrete time"
-        misfit = find_odd_switch(system) or find_rate_misfit(self.quadratic.rate, system.time)
+        misfit = find_odd_switch(system) or self.quadratic.find_rate_misfit(system.time)
         if misfit := misfit or find_large_lift(system, self.degree):
             return misfit
         lifted = lift_system(system, self.degree)

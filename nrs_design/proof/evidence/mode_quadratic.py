@@ -8,18 +8,17 @@ from fractions import Fraction
 from typing import Any, ClassVar, Self
 
 from nrs_design.proof.bounds import rounded_down, rounded_up
-from nrs_design.proof.evidence.abstract import AbstractEvidence, Shows
-from nrs_design.proof.evidence.common_quadratic import find_rate_misfit, is_square
 from nrs_design.proof.evidence.fields import (
     Matrix,
     matrix_fields,
     rate_words,
+    read_dyadic,
     read_integer,
-    read_matrix,
     read_ratio,
     read_text,
 )
 from nrs_design.proof.evidence.flow import enclosed_form, power
+from nrs_design.proof.evidence.function import AbstractFunction, is_square
 from nrs_design.proof.exact import (
     MAX_WORK,
     IntegerMatrix,
@@ -43,7 +42,7 @@ MAX_POWER_BITS = 10**6
 
 
 @dataclass(frozen=True, slots=True)
-class ModeQuadratic(AbstractEvidence):
+class ModeQuadratic(AbstractFunction):
     """``V_i(x) = x' Q_i x`` decreases from switch to switch.
 
     With ``B_i = A_i + alpha I``, for every edge from i to j with reset map G, and a stay of t in i:
@@ -68,18 +67,12 @@ class ModeQuadratic(AbstractEvidence):
 
     kind: ClassVar[str] = "mode-quadratic"
     allows_unequal_modes: ClassVar[bool] = True
-    attains_rate: ClassVar[bool] = True
 
     functions: tuple[tuple[str, Matrix], ...]
     denominator_log2: int
     rate: Fraction
     leaving: tuple[str, ...] = ()
     pieces: int = 1
-
-    @property
-    def shows(self) -> Shows:
-        """Stability."""
-        return Shows.STABILITY
 
     def fits(self, switching: Switching) -> bool:
         """Tell whether every mode in force is one of the modes.
@@ -94,10 +87,6 @@ class ModeQuadratic(AbstractEvidence):
         """True: its bound has a constant factor anyway."""
         return True
 
-    def proved_rate(self, system: SwitchedSystem) -> Fraction:
-        """Return the claimed rate."""
-        return self.rate
-
     def find_misfit(self, system: SwitchedSystem) -> str | None:
         """Check shapes, rate, stays and, where a switch may come at once, the switches."""
         if [name for name, _ in self.functions] != [mode.name for mode in system.modes]:
@@ -107,7 +96,7 @@ class ModeQuadratic(AbstractEvidence):
                 return f"Q of mode {mode.name} has the wrong size"
         return (
             find_odd_switch(system)
-            or find_rate_misfit(self.rate, system.time)
+            or self.find_rate_misfit(system.time)
             or self._find_odd_stay(system)
             or self._find_raising_switch(system)
         )
@@ -243,7 +232,7 @@ class ModeQuadratic(AbstractEvidence):
         """Read the functions, the rate, and what is said of modes that must be left."""
         functions, exponents = [], set()
         for item in fields["functions"]:
-            Q, exponent = read_matrix(item["Q"])
+            Q, exponent = read_dyadic(item["Q"])
             functions.append((read_text(item["mode"]), Q))
             exponents.add(exponent)
         if len(exponents) != 1:
@@ -275,13 +264,13 @@ def bound_claim(system: SwitchedSystem, rate: Fraction) -> str:
     continuous = system.time is Time.CONTINUOUS
     law, bound = ("x' = A x", "exp(-alpha t)") if continuous else ("x+ = A x", "rho^t")
     return (
-        f"Every solution of {law} under the declared switching ({describe(system)}) satisfies "
+        f"Every solution of {law} under the declared switching ({signals_of(system)}) satisfies "
         f"|x(t)| <= c {bound} |x(0)| with {rate_words(rate, system.time)} and some constant c "
         "that is the same for all signals."
     )
 
 
-def describe(system: SwitchedSystem) -> str:
+def signals_of(system: SwitchedSystem) -> str:
     """Say which switching signals a system has."""
     switching = system.switching
     unit = "s" if system.time is Time.CONTINUOUS else "steps"

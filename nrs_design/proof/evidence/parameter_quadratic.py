@@ -8,24 +8,20 @@ from fractions import Fraction
 from math import lcm
 from typing import Any, ClassVar, Self
 
-from nrs_design.proof.evidence.abstract import AbstractEvidence, Shows
-from nrs_design.proof.evidence.common_quadratic import (
-    find_rate_misfit,
-    is_square,
-)
 from nrs_design.proof.evidence.fields import (
     Matrix,
     matrix_fields,
     rate_words,
-    read_matrix,
+    read_dyadic,
     read_ratio,
 )
+from nrs_design.proof.evidence.function import AbstractFunction, is_square
 from nrs_design.proof.exact import IntegerMatrix, add, lyapunov_decrease
 from nrs_design.proof.system import SwitchedSystem, Time
 
 
 @dataclass(frozen=True, slots=True)
-class ParameterQuadratic(AbstractEvidence):
+class ParameterQuadratic(AbstractFunction):
     """``V(x) = x' Q(p) x`` with ``Q(p) = (1-p) Q_low + p Q_high`` decreases for all p in [0, 1].
 
     With ``M_ab = -(A_a'Q_b + Q_b A_a + 2 alpha Q_b)``, the decrease at p is
@@ -44,7 +40,6 @@ class ParameterQuadratic(AbstractEvidence):
 
     kind: ClassVar[str] = "parameter-quadratic"
     bounds_at_once: ClassVar[bool] = True
-    attains_rate: ClassVar[bool] = True
 
     low: Matrix
     high: Matrix
@@ -52,18 +47,9 @@ class ParameterQuadratic(AbstractEvidence):
     rate: Fraction
 
     @property
-    def shows(self) -> Shows:
-        """Stability."""
-        return Shows.STABILITY
-
-    @property
     def keeps_bound_in_mixtures(self) -> bool:
         """True: it is for continuous time."""
         return True
-
-    def proved_rate(self, system: SwitchedSystem) -> Fraction:
-        """Return the claimed rate."""
-        return self.rate
 
     def find_misfit(self, system: SwitchedSystem) -> str | None:
         """Check time, pairs, shapes and rate."""
@@ -74,7 +60,7 @@ class ParameterQuadratic(AbstractEvidence):
             return "the modes are not the ends of one constant parameter"
         if not is_square(self.low, system.order) or not is_square(self.high, system.order):
             return f"Q is not a {system.order} x {system.order} matrix"
-        return find_rate_misfit(self.rate, system.time)
+        return self.find_rate_misfit(system.time)
 
     def forms(self, system: SwitchedSystem) -> Iterator[tuple[str, IntegerMatrix]]:
         """Yield both functions, and the three conditions of every pair."""
@@ -123,8 +109,8 @@ class ParameterQuadratic(AbstractEvidence):
     @classmethod
     def from_fields(cls, fields: Mapping[str, Any], system: SwitchedSystem) -> Self:
         """Read both ends of Q and the rate."""
-        low, exponent = read_matrix(fields["Q_low"])
-        high, other = read_matrix(fields["Q_high"])
+        low, exponent = read_dyadic(fields["Q_low"])
+        high, other = read_dyadic(fields["Q_high"])
         if exponent != other:
             raise ValueError("the two ends of Q do not share one denominator")
         return cls(low, high, exponent, read_ratio(fields["rate"]))

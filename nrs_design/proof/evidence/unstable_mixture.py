@@ -11,8 +11,8 @@ from typing import Any, ClassVar, Self
 from nrs_design.proof.evidence.abstract import AbstractEvidence, Shows
 from nrs_design.proof.evidence.fields import read_ratio, read_text
 from nrs_design.proof.evidence.unstable_mode import (
+    is_spectrum_too_large,
     is_stable,
-    is_too_large,
     worst_eigenvalue,
 )
 from nrs_design.proof.exact import IntegerMatrix, common_denominator
@@ -67,7 +67,7 @@ class UnstableMixture(AbstractEvidence):
         if not _is_short_mixture(system, self.weights):
             return "the numbers of the combination are too large to check"
         combined = mixture(system, self.weights)
-        if is_too_large(combined):
+        if is_spectrum_too_large(combined):
             return "the numbers of the combination are too large to check"
         if is_stable(combined, system.time):
             return "the combination of the modes is stable"

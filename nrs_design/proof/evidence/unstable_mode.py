@@ -61,7 +61,7 @@ class UnstableMode(AbstractEvidence):
         named = [mode for mode in system.modes if mode.name == self.mode]
         if len(named) != 1:
             return f"there is no single mode named {self.mode}"
-        if is_too_large(named[0].A):
+        if is_spectrum_too_large(named[0].A):
             return f"the numbers of mode {self.mode} are too large to check"
         return f"mode {self.mode} is stable" if is_stable(named[0].A, system.time) else None
 
@@ -93,7 +93,7 @@ class UnstableMode(AbstractEvidence):
         return cls(name, worst_eigenvalue(matrix, system.time))
 
 
-def is_too_large(A: RationalMatrix) -> bool:
+def is_spectrum_too_large(A: RationalMatrix) -> bool:
     """Tell whether `is_stable` would take more than some seconds."""
     return _work(A) > MAX_SPECTRUM_WORK
 
@@ -145,7 +145,7 @@ def worst_eigenvalue(A: RationalMatrix, time: Time) -> str:
 
 
 def _check_size(A: RationalMatrix) -> None:
-    if is_too_large(A):
+    if is_spectrum_too_large(A):
         raise TooLargeError(
             "the numbers of a mode are too large to decide exactly whether it is stable"
         )

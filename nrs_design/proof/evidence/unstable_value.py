@@ -84,7 +84,7 @@ class UnstableValue(AbstractEvidence):
         """Read the share, and the part as evidence about the system at that share."""
         share = read_ratio(fields["share"])
         if not _is_share(share) or not system.switching.fixed_ends:
-            raise ValueError("the share is none, or no parameter is constant")
+            raise ValueError("the share is out of bounds, or no parameter is constant")
         at_share = system_at(system, share)
         for kind in PARTS:
             if kind.kind == fields["part"]["kind"]:

@@ -24,19 +24,19 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from nrs_design.design.evidence import ImpedanceEvidence
+    from nrs_design.design.analysis import ImpedanceAnalysis
     from nrs_design.design.transfer import FloatArray
 
 _POINTS = 400
 
 
 @styled
-def draw_displayed_impedance(items: Sequence[ImpedanceEvidence]) -> Figure:
+def draw_displayed_impedance(items: Sequence[ImpedanceAnalysis]) -> Figure:
     """Draw the magnitude of the displayed impedance beside the desired one.
 
     Parameters
     ----------
-    items : sequence of ImpedanceEvidence
+    items : sequence of ImpedanceAnalysis
         One curve for each controller, in nominal contact.
     """
     figure, axes = new_axes(3.9)
@@ -60,7 +60,7 @@ def draw_displayed_impedance(items: Sequence[ImpedanceEvidence]) -> Figure:
 
 
 @styled
-def draw_sensitivity(items: Sequence[ImpedanceEvidence]) -> Figure:
+def draw_sensitivity(items: Sequence[ImpedanceAnalysis]) -> Figure:
     """Draw the magnitude of the sensitivity with its peak Ms, one curve for each controller."""
     figure, axes = new_axes(3.9)
     omega = _frequencies(items)
@@ -79,7 +79,7 @@ def draw_sensitivity(items: Sequence[ImpedanceEvidence]) -> Figure:
     return figure
 
 
-def _wanted(items: Sequence[ImpedanceEvidence]) -> dict[float, list[str]]:
+def _wanted(items: Sequence[ImpedanceAnalysis]) -> dict[float, list[str]]:
     """Return the controllers that ask for each impedance: lines that coincide are one line."""
     found: dict[float, list[str]] = {}
     for item in items:
@@ -87,7 +87,7 @@ def _wanted(items: Sequence[ImpedanceEvidence]) -> dict[float, list[str]]:
     return found
 
 
-def _frequencies(items: Sequence[ImpedanceEvidence]) -> FloatArray:
+def _frequencies(items: Sequence[ImpedanceAnalysis]) -> FloatArray:
     """Return frequencies in rad/s from far below the bandwidth to beyond it and every peak."""
     bandwidth = items[0].problem.bandwidth
     peaks = [item.margins.sensitivity_peak_frequency for item in items]
@@ -95,7 +95,7 @@ def _frequencies(items: Sequence[ImpedanceEvidence]) -> FloatArray:
     return np.geomspace(bandwidth / 100, 10 * highest, _POINTS)
 
 
-def _finish(axes: Axes, items: Sequence[ImpedanceEvidence], ylabel: str) -> None:
+def _finish(axes: Axes, items: Sequence[ImpedanceAnalysis], ylabel: str) -> None:
     bandwidth = items[0].problem.bandwidth
     label = f"bandwidth {bandwidth / (2 * math.pi):.3g} Hz"
     axes.axvline(bandwidth, color=MUTED, linewidth=1.4, linestyle=":", label=label)

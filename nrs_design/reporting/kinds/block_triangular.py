@@ -21,13 +21,13 @@ from nrs_design.reporting.kinds.shared.run import (
     BESIDE,
     EUCLIDEAN,
     GREEDY,
-    affordable,
     bound_line,
     freely,
     horizon,
     phase_plane,
     simulated,
     some_modes,
+    trials_per_step,
     until_small,
 )
 from nrs_design.reporting.sections.modes import hardest_modes
@@ -112,7 +112,7 @@ class BlockTriangularPage(AbstractKindPage[BlockTriangular]):
 
     def _beside(self, rate: float) -> Section:
         system, identity = self.system, np.eye(self.system.order)
-        hardest = hardest_modes(system, None, affordable(system))
+        hardest = hardest_modes(system, None, trials_per_step(system))
         norm, (step, steps) = quadratic_norm(identity), horizon(hardest, rate)
         initial = worst_direction(hardest, identity)
         response = worst_switching(hardest, norm, initial, step, steps)

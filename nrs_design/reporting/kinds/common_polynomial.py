@@ -13,7 +13,7 @@ from nrs_design.reporting.formatting import number
 from nrs_design.reporting.kinds.abstract import AbstractKindPage
 from nrs_design.reporting.kinds.shared import words
 from nrs_design.reporting.kinds.shared.rates import rate_blocks
-from nrs_design.reporting.kinds.shared.run import affordable, bounded_run
+from nrs_design.reporting.kinds.shared.run import bounded_run, trials_per_step
 from nrs_design.reporting.sections.modes import hardest_modes
 from nrs_design.simulation.norms import Array, diagonal_exponents, polynomial_norm, scaled_form
 from nrs_design.simulation.switched import fine_step, sampled_direction
@@ -81,7 +81,7 @@ class CommonPolynomialPage(AbstractKindPage[CommonPolynomial]):
     def run(self) -> Section:
         """Draw a run in the root of V, below its bound."""
         system, evidence = self.system, self.evidence
-        hardest = hardest_modes(system, None, min(affordable(system), _MODES))
+        hardest = hardest_modes(system, None, min(trials_per_step(system), _MODES))
         norm = polynomial_norm(evidence.Q, evidence.degree, system.order)
         return bounded_run(
             system,

@@ -13,7 +13,7 @@ from nrs_design.reporting.kinds.abstract import AbstractKindPage
 from nrs_design.reporting.kinds.shared import words
 from nrs_design.reporting.kinds.shared.matrix import SCALED, matrix_table
 from nrs_design.reporting.kinds.shared.rates import rate_blocks
-from nrs_design.reporting.kinds.shared.run import affordable, bounded_run
+from nrs_design.reporting.kinds.shared.run import bounded_run, trials_per_step
 from nrs_design.reporting.sections.modes import hardest_modes
 from nrs_design.simulation.norms import Array, quadratic_norm, scaled_matrices
 from nrs_design.simulation.rates import mode_rates
@@ -87,7 +87,7 @@ class CommonQuadraticPage(AbstractKindPage[CommonQuadratic]):
     def run(self) -> Section:
         """Draw a run in the norm of Q, below its bound."""
         (Q,) = scaled_matrices(self.evidence.Q)
-        hardest = hardest_modes(self.system, Q, affordable(self.system))
+        hardest = hardest_modes(self.system, Q, trials_per_step(self.system))
         return bounded_run(
             self.system,
             hardest,

@@ -15,7 +15,7 @@ from nrs_design.reporting.formatting import number
 from nrs_design.reporting.kinds.abstract import AbstractKindPage
 from nrs_design.reporting.kinds.shared import words
 from nrs_design.reporting.kinds.shared.matrix import SCALED, matrix_table
-from nrs_design.reporting.kinds.shared.run import affordable, bounded_run
+from nrs_design.reporting.kinds.shared.run import bounded_run, trials_per_step
 from nrs_design.reporting.sections.modes import hardest_modes
 from nrs_design.simulation.norms import Array, modes_at, quadratic_norm, scaled_matrices
 from nrs_design.simulation.rates import mode_rates
@@ -86,7 +86,7 @@ class ParameterQuadraticPage(AbstractKindPage[ParameterQuadratic]):
         _, rates = parameter_rates(self.system, self.evidence, values)
         p = float(values[rates.min(axis=1).argmin()])
         Q, fixed = function_at(self.evidence, p), modes_at(self.system, Fraction(p))
-        hardest = hardest_modes(fixed, Q, affordable(fixed))
+        hardest = hardest_modes(fixed, Q, trials_per_step(fixed))
         return bounded_run(
             fixed,
             hardest,

@@ -14,15 +14,14 @@ from nrs_design.reporting.figures.run import draw_run
 from nrs_design.reporting.formatting import number, roots
 from nrs_design.reporting.kinds.abstract import AbstractKindPage
 from nrs_design.reporting.kinds.shared import words
-from nrs_design.reporting.kinds.shared.run import EUCLIDEAN, plane
-from nrs_design.reporting.kinds.shared.witness import euclidean_norms, witness
+from nrs_design.reporting.kinds.shared.run import EUCLIDEAN, euclidean_norms, plane, witness
 from nrs_design.simulation.periodic import (
     PeriodicRun,
     mixture_matrix,
     periodic_run,
     steps_of_mixture,
 )
-from nrs_design.simulation.switched import eigenvalues
+from nrs_design.simulation.switched import mode_eigenvalues
 
 
 class UnstableMixturePage(AbstractKindPage[UnstableMixture]):
@@ -88,7 +87,7 @@ class UnstableMixturePage(AbstractKindPage[UnstableMixture]):
             "The modes that have a share in it, and their average, which is not stable.",
             draw_eigenvalues(
                 [*(mode.name for mode in modes), "average"],
-                [*eigenvalues(mixed), average],
+                [*mode_eigenvalues(mixed), average],
                 mixed.time,
                 None,
             ),

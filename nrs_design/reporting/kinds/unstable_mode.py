@@ -11,8 +11,7 @@ from nrs_design.reporting.document import Illustration, Section
 from nrs_design.reporting.figures.run import draw_run
 from nrs_design.reporting.kinds.abstract import AbstractKindPage
 from nrs_design.reporting.kinds.shared import words
-from nrs_design.reporting.kinds.shared.run import EUCLIDEAN, plane
-from nrs_design.reporting.kinds.shared.witness import euclidean_norms, witness
+from nrs_design.reporting.kinds.shared.run import EUCLIDEAN, euclidean_norms, plane, witness
 from nrs_design.simulation.norms import Array
 from nrs_design.simulation.switched import TimeResponse, alone, unstable_run
 

@@ -15,8 +15,7 @@ from nrs_design.reporting.figures.run import draw_run
 from nrs_design.reporting.formatting import number, plural
 from nrs_design.reporting.kinds.abstract import AbstractKindPage
 from nrs_design.reporting.kinds.shared import words
-from nrs_design.reporting.kinds.shared.run import EUCLIDEAN, plane
-from nrs_design.reporting.kinds.shared.witness import euclidean_norms, witness
+from nrs_design.reporting.kinds.shared.run import EUCLIDEAN, euclidean_norms, plane, witness
 from nrs_design.simulation.norms import Array
 from nrs_design.simulation.periodic import PeriodicRun, one_period, periodic_run
 

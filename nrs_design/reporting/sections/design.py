@@ -14,10 +14,10 @@ from nrs_design.reporting.figures.complex_plane import draw_root_locus
 from nrs_design.reporting.figures.impedance import draw_displayed_impedance, draw_sensitivity
 from nrs_design.reporting.formatting import number, polynomial, root, roots
 from nrs_design.reporting.sections.goals import goals_section
-from nrs_design.spec import ImpedanceControllerSpec, InteractionDesignSpec
+from nrs_design.spec import InteractionDesignSpec
 
 if TYPE_CHECKING:
-    from nrs_design.design.evidence import DesignEvidence, ForceEvidence, ImpedanceEvidence
+    from nrs_design.design.analysis import DesignAnalysis, ForceAnalysis, ImpedanceAnalysis
     from nrs_design.pipeline import Designed
 
 # More controllers than these make a table too wide for a page, or a figure too full.
@@ -31,7 +31,7 @@ _SUDDEN = (
     "Viscoelastic contact: the stiffness is that which a sudden motion meets, and up to the "
     "stiffness limit all parameters of the law grow in proportion to it."
 )
-_IMPEDANCE_ROWS: tuple[tuple[str, Callable[[ImpedanceEvidence], str]], ...] = (
+_IMPEDANCE_ROWS: tuple[tuple[str, Callable[[ImpedanceAnalysis], str]], ...] = (
     ("Desired impedance [N·m·s/rad]", lambda item: number(item.problem.desired, 5)),
     ("Nominal stiffness [N·m/rad]", lambda item: number(item.problem.loop.contact.stiffness, 6)),
     ("Stiffness beside the damper [N·m/rad]", lambda item: _given(item, "parallel_stiffness")),
@@ -50,7 +50,7 @@ _IMPEDANCE_ROWS: tuple[tuple[str, Callable[[ImpedanceEvidence], str]], ...] = (
     ("Disk margin [1]", lambda item: number(item.margins.disk_margin)),
     ("Stiffness limit [N·m/rad]", lambda item: number(item.margins.stiffness_limit)),
 )
-_FORCE_ROWS: tuple[tuple[str, Callable[[ForceEvidence], str]], ...] = (
+_FORCE_ROWS: tuple[tuple[str, Callable[[ForceAnalysis], str]], ...] = (
     ("Kp [rad/(N·m)]", lambda item: number(item.loop.gain, 6)),
     ("Nominal stiffness [N·m/rad]", lambda item: number(item.stiffness, 6)),
     ("Closed-loop poles [rad/s]", lambda item: roots(item.loop.poles)),
@@ -60,23 +60,23 @@ _FORCE_ROWS: tuple[tuple[str, Callable[[ForceEvidence], str]], ...] = (
 )
 
 
-def design_sections(designed: Designed, evidence: DesignEvidence | None) -> tuple[Section, ...]:
-    """Describe a design; without evidence only its gains."""
+def design_sections(designed: Designed, analysis: DesignAnalysis | None) -> tuple[Section, ...]:
+    """Describe a design; without an analysis only its gains."""
     spec, design = designed.spec, designed.design
     gains = Section("Designed gains", (_gain_table(design), *_ranges(spec, design)))
-    if evidence is None:
+    if analysis is None:
         text = (
             "What the gains achieve is not shown: poles and margins exist only where the nominal "
             "loops are stable."
         )
         return (Section("Designed gains", (*gains.blocks, Paragraph(text))),)
-    parts = [gains, _motion_section(designed, evidence)]
-    if evidence.impedance:
-        parts.append(_impedance_section(evidence.impedance))
-    if evidence.force:
-        parts.append(_force_section(evidence))
-    if evidence.impedance or evidence.force:
-        parts.append(goals_section(spec, evidence))
+    parts = [gains, _motion_section(designed, analysis)]
+    if analysis.impedance:
+        parts.append(_impedance_section(analysis.impedance))
+    if analysis.force:
+        parts.append(_force_section(analysis))
+    if analysis.measured:
+        parts.append(goals_section(spec, analysis))
     return tuple(parts)
 
 
@@ -96,10 +96,7 @@ def _ranges(spec: InteractionDesignSpec, design: ControllerDesign) -> tuple[Bloc
     """List the ranges of gains that the spec declares, if any."""
     rows = []
     for controller in design.controllers:
-        given = spec.controllers[controller.name]
-        if not isinstance(given, ImpedanceControllerSpec):
-            continue
-        for gain, declared in (("Mt", given.Mt), ("Bt", given.Bt)):
+        for gain, declared in spec.controllers[controller.name].gains().items():
             if declared.range is not None and declared.ranged:
                 low, high = (end.text for end in declared.range)
                 rows.append((controller.name, gain, low, high))
@@ -113,22 +110,22 @@ def _ranges(spec: InteractionDesignSpec, design: ControllerDesign) -> tuple[Bloc
     return Paragraph(text), Table("Declared ranges of gains", columns, tuple(rows))
 
 
-def _motion_section(designed: Designed, evidence: DesignEvidence) -> Section:
+def _motion_section(designed: Designed, analysis: DesignAnalysis) -> Section:
     spec, design = designed.spec, designed.design
-    G = evidence.motion
+    G = analysis.motion
     text = (
         f"Motion loop in use: G(s) = ({polynomial(G.numerator, 6)}) / "
         f"({polynomial(G.denominator, 6)}), from commanded to actual velocity. "
-        f"{_source(spec, evidence)}"
+        f"{_source(spec, analysis)}"
     )
     return Section(
         "Motion loop",
-        (Paragraph(text), _motion_table(design, evidence), _motion_locus(designed, evidence)),
+        (Paragraph(text), _motion_table(design, analysis), _motion_locus(designed, analysis)),
     )
 
 
-def _source(spec: InteractionDesignSpec, evidence: DesignEvidence) -> str:
-    if evidence.motion_source == "given":
+def _source(spec: InteractionDesignSpec, analysis: DesignAnalysis) -> str:
+    if analysis.motion_source == "given":
         return "The spec states this G itself; it need not be the one that the PD gains make."
     given = spec.motion_loop
     names = [
@@ -141,8 +138,8 @@ def _source(spec: InteractionDesignSpec, evidence: DesignEvidence) -> str:
     return "It follows from the PD controller that was designed by root locus."
 
 
-def _motion_table(design: ControllerDesign, evidence: DesignEvidence) -> Table:
-    wanted, reached, motion = evidence.wanted, evidence.reached, design.motion
+def _motion_table(design: ControllerDesign, analysis: DesignAnalysis) -> Table:
+    wanted, reached, motion = analysis.wanted, analysis.reached, design.motion
     damping = -wanted.wanted_poles[0].real / wanted.natural_frequency
     wanted_Kp = wanted.derivative_gain * wanted.zero
     rows = (
@@ -168,7 +165,7 @@ def _motion_table(design: ControllerDesign, evidence: DesignEvidence) -> Table:
     )
 
 
-def _motion_locus(designed: Designed, evidence: DesignEvidence) -> Illustration:
+def _motion_locus(designed: Designed, analysis: DesignAnalysis) -> Illustration:
     design, actuator = designed.design, designed.plant.actuator
     gain, zero, Kd = float(actuator.gain), float(design.motion.zero), float(design.motion.Kd)
     lag = float(actuator.time_constant)
@@ -179,13 +176,13 @@ def _motion_locus(designed: Designed, evidence: DesignEvidence) -> Illustration:
         f"1/s. Squares: poles that damping ratio and settling time ask for. Diamonds: poles with "
         f"the shipped gains, {roots(poles(closed).tolist())} rad/s."
     )
-    if evidence.motion_source == "given":
+    if analysis.motion_source == "given":
         caption += " The G that the spec states has its own poles, given in the table."
-    figure = draw_root_locus(open_loop, Kd, evidence.wanted.wanted_poles, poles(closed).tolist())
+    figure = draw_root_locus(open_loop, Kd, analysis.wanted.wanted_poles, poles(closed).tolist())
     return Illustration("root-locus", "Root locus of the PD design", caption, figure)
 
 
-def _impedance_section(items: tuple[ImpedanceEvidence, ...]) -> Section:
+def _impedance_section(items: tuple[ImpedanceAnalysis, ...]) -> Section:
     drawn = items[:_CURVES]
     rest = "" if len(drawn) == len(items) else f" The first {_CURVES} controllers are drawn."
     displayed = Illustration(
@@ -216,24 +213,24 @@ def _impedance_section(items: tuple[ImpedanceEvidence, ...]) -> Section:
     return Section("Impedance control", (*paragraphs, *tables, displayed, sensitivity))
 
 
-def _given(item: ImpedanceEvidence, key: str, default: str = "") -> str:
+def _given(item: ImpedanceAnalysis, key: str, default: str = "") -> str:
     """Write a parameter of the nominal contact, if its law has it."""
     value = item.problem.loop.contact.given().get(key)
     return number(float(value), 5) if value is not None else default
 
 
-def _force_section(evidence: DesignEvidence) -> Section:
+def _force_section(analysis: DesignAnalysis) -> Section:
     tables = _by_controller(
         "Force controllers",
         [label for label, _ in _FORCE_ROWS],
-        [item.name for item in evidence.force],
-        [[value(item) for _, value in _FORCE_ROWS] for item in evidence.force],
+        [item.name for item in analysis.force],
+        [[value(item) for _, value in _FORCE_ROWS] for item in analysis.force],
     )
-    loci = (_force_locus(evidence.motion, item) for item in evidence.force[:_CURVES])
+    loci = (_force_locus(analysis.motion, item) for item in analysis.force[:_CURVES])
     return Section("Force control", (Paragraph(_NOMINAL), *tables, *loci))
 
 
-def _force_locus(motion: TransferFunction, item: ForceEvidence) -> Illustration:
+def _force_locus(motion: TransferFunction, item: ForceAnalysis) -> Illustration:
     scaled = tuple(item.stiffness * c for c in motion.numerator)
     open_loop = TransferFunction(scaled, motion.denominator)
     # A gain of zero is allowed; the locus still needs a range of gains.

@@ -10,27 +10,27 @@ from nrs_design.reporting.document import Block, Bullets, Paragraph, Section, Ta
 from nrs_design.spec import InteractionDesignSpec, doubt_spec
 
 if TYPE_CHECKING:
-    from nrs_design.design.evidence import DesignEvidence
+    from nrs_design.design.analysis import DesignAnalysis
 
 _COLUMNS = ("Controller", "Measure", "Goal", "Worst", "At", "Result")
 
 
-def goals_section(spec: InteractionDesignSpec, evidence: DesignEvidence) -> Section:
+def goals_section(spec: InteractionDesignSpec, analysis: DesignAnalysis) -> Section:
     """Set what is reached beside the goals, and list the warnings."""
-    rows = tuple(_row(item.name, found) for item in evidence.measured for found in item.achieved)
+    rows = tuple(_row(item.name, found) for item in analysis.measured for found in item.achieved)
     table = Table("Goals and worst values", _COLUMNS, rows)
     blocks: list[Block] = [Paragraph(" ".join(MEANING)), table]
-    doubts = tuple(map(str, (*doubt_spec(spec), *evidence.warnings)))
+    doubts = tuple(map(str, (*doubt_spec(spec), *analysis.warnings)))
     if doubts:
         blocks.append(Bullets("Warnings", doubts))
     return Section("Design goals", tuple(blocks))
 
 
-def goal_facts(evidence: DesignEvidence | None) -> tuple[tuple[str, str], ...]:
+def goal_facts(analysis: DesignAnalysis | None) -> tuple[tuple[str, str], ...]:
     """Return for the head of the report how many goals are missed."""
-    if evidence is None or not evidence.measured:
+    if analysis is None or not analysis.measured:
         return ()
-    goals = [f for item in evidence.measured for f in item.achieved if f.goal is not None]
+    goals = [f for item in analysis.measured for f in item.achieved if f.goal is not None]
     missed = sum(not found.met for found in goals)
     if not goals:
         return (("Design goals", "no goals set"),)

@@ -14,7 +14,7 @@ from nrs_design.reporting.document import Illustration, Paragraph, Section, Tabl
 from nrs_design.reporting.figures.complex_plane import draw_eigenvalues
 from nrs_design.reporting.formatting import number, roots, shortened
 from nrs_design.simulation.rates import mode_rates
-from nrs_design.simulation.switched import eigenvalues
+from nrs_design.simulation.switched import mode_eigenvalues
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -39,7 +39,7 @@ def modes_section(system: SwitchedSystem, rate: Fraction | None) -> Section:
     rate : Fraction or None
         The proved rate; None where nothing is proved.
     """
-    values = eigenvalues(system)
+    values = mode_eigenvalues(system)
     slowest = _slowest_first(values, system.time)
     drawn = np.sort(slowest[:_DRAWN])
     return Section(
@@ -77,7 +77,7 @@ def hardest_modes(system: SwitchedSystem, Q: Array | None, limit: int) -> Switch
     if len(system.modes) <= limit:
         return system
     if Q is None:
-        slowest = _slowest_first(eigenvalues(system), system.time)
+        slowest = _slowest_first(mode_eigenvalues(system), system.time)
     else:
         rates = mode_rates(system, Q)
         slowest = np.argsort(rates if system.time is Time.CONTINUOUS else -rates, kind="stable")

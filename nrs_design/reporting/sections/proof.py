@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from nrs_design.certificates.certificate import CommonQuadraticStatus
+from nrs_design.controllers.laws.impedance import KEPT_VELOCITY
 from nrs_design.proof.evidence import AbstractEvidence, Shows
 from nrs_design.proof.system import SwitchedSystem, Time
 from nrs_design.reporting.document import Block, Bullets, Paragraph, Section
@@ -12,7 +13,6 @@ from nrs_design.reporting.kinds import page_of
 from nrs_design.reporting.sections.head import NO_CLAIM
 from nrs_design.spec import InteractionDesignSpec
 from nrs_design.switched.assemble import has_ranges
-from nrs_design.switched.gain_box import KEPT_VELOCITY
 
 if TYPE_CHECKING:
     from nrs_design.pipeline import Result

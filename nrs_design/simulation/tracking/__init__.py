@@ -1,7 +1,6 @@
 """Simulation of motion control against the full dynamics of the robot (thesis 4.2 to 4.4)."""
 
 from nrs_design.simulation.tracking.ablation import ablation_tracks
-from nrs_design.simulation.tracking.encoder import Encoder
 from nrs_design.simulation.tracking.experiment import (
     COORDINATE,
     MOTIONS,
@@ -11,10 +10,10 @@ from nrs_design.simulation.tracking.experiment import (
 from nrs_design.simulation.tracking.friction import DryFriction
 from nrs_design.simulation.tracking.plant import DriveArrays, JointState, Mechanism, Stepper
 from nrs_design.simulation.tracking.record import Record
-from nrs_design.simulation.tracking.scope import LEFT_OUT
-from nrs_design.simulation.tracking.simulate import simulate
+from nrs_design.simulation.tracking.simulate import LEFT_OUT, simulate
 from nrs_design.simulation.tracking.track import (
     CONTROLLERS,
+    Encoder,
     Track,
     build_track,
     experiment_tilt,

@@ -1,7 +1,8 @@
 """Dry friction that really sticks: velocities at the end of a step (Moreau's time stepping).
 
 No smoothing and no threshold on the velocity: a joint sticks if some friction within its limit
-stops it within the step, and then has the velocity zero.
+stops it within the step, and then has the velocity zero. By hand, as SciPy integrates no equation
+with such a jump in it.
 """
 
 from __future__ import annotations

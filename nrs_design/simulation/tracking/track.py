@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from math import pi
+
+import numpy as np
 
 from nrs_design.controllers.motion import IndependentJoint, MotionLaw
 from nrs_design.design.motion_control import (
@@ -12,12 +15,36 @@ from nrs_design.design.motion_control import (
 )
 from nrs_design.models.robot import Robot, design_balance
 from nrs_design.models.robot.drive import JointDrive, build_drive
-from nrs_design.simulation.tracking.encoder import Encoder
+from nrs_design.models.robot.vectors import Array
 from nrs_design.simulation.tracking.experiment import Experiment, thesis_experiments
 from nrs_design.simulation.tracking.plant import Mechanism
 from nrs_design.spec import RobotSpec
 
 CONTROLLERS = ("computed-torque", "independent-joint", "balanced")
+
+
+@dataclass(frozen=True, slots=True)
+class Encoder:
+    """Absolute encoder at the output of the gearhead (MagAlpha MA707, thesis 4.1).
+
+    Parameters
+    ----------
+    ratio : float
+        Turns of the encoder per turn of the joint.
+    counts : int or None
+        Per turn of the encoder; None does not round.
+    """
+
+    ratio: float
+    counts: int | None
+
+    def read(self, joints: Array) -> Array:
+        """Return what encoders say of joint angles: their own angles in rad, to the count."""
+        angle = self.ratio * joints
+        if self.counts is None:
+            return angle
+        count = 2 * pi / self.counts
+        return np.asarray(count * np.round(angle / count))
 
 
 @dataclass(frozen=True)

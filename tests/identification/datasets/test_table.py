@@ -120,8 +120,8 @@ def test_files_that_cannot_be_read(tmp_path):
 @pytest.mark.parametrize(
     ("entry", "message"),
     [
-        ("force_N", "is no pair"),
-        ("force_N=", "is no pair"),
+        ("force_N", "is not a pair"),
+        ("force_N=", "is not a pair"),
         ("weight_kg=w", "no column of ours"),
         ("force_lbf=Fz", "has the unit 'lbf'"),
     ],

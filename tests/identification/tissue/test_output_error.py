@@ -60,7 +60,7 @@ def test_criteria():
 def test_long_records_are_searched_thinned_and_fitted_whole(monkeypatch):
     data = record(synthetic.NOSE, slow(3), 0.01, 3)
     whole = fit_record(type(synthetic.NOSE), data)
-    monkeypatch.setattr(output_error, "_COARSE", 300)
+    monkeypatch.setattr(output_error, "COARSE", 300)
     thin = fit_record(type(synthetic.NOSE), data)
     assert thin.law.values == pytest.approx(whole.law.values, rel=1e-6)
 

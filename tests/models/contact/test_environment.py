@@ -5,7 +5,7 @@ import pytest
 from nrs_design.errors import AssemblyError
 from nrs_design.models.contact import Elastic, KelvinBoltzmann, KelvinVoigt, Maxwell
 from nrs_design.models.contact.environment import Environment
-from nrs_design.models.interval import Interval
+from nrs_design.spec.interval import Interval
 
 F = Fraction
 SPAN = Interval(F(2), F(1), F(3))

@@ -20,6 +20,7 @@ from nrs_design.models.contact import (
     Maxwell,
     Motion,
 )
+from nrs_design.models.linear_form import coordinates
 from tests.identification.support import wobble
 
 # Thesis tables 2.4 and 2.5.
@@ -120,10 +121,11 @@ def test_impedance_and_state_space_are_the_printed_law(law, s):
     expected = printed_impedance(law, s)
     numerator, denominator = law.impedance
     assert np.polyval(numerator, s) / np.polyval(denominator, s) == pytest.approx(expected)
-    block = law.reaction
-    A, B, C = (np.array(part, dtype=float) for part in (block.A, block.B, block.C))
-    z = np.linalg.solve(s * np.eye(len(B)) - A, B)
-    assert C @ z + float(block.D) == pytest.approx(expected)
+    velocity, *states = coordinates(1 + len(law.states))
+    force, rates = law.react(velocity, states)
+    C, A = np.array(force, dtype=float), np.array(rates, dtype=float)
+    z = np.linalg.solve(s * np.eye(len(A)) - A[:, 1:], A[:, 0])
+    assert C[1:] @ z + C[0] == pytest.approx(expected)
 
 
 @pytest.mark.parametrize("law", LINEAR, ids=lambda law: law.name)
@@ -142,7 +144,9 @@ def test_growing_stiffness(law):
 @pytest.mark.parametrize("law", LINEAR, ids=lambda law: law.name)
 def test_exact_parameters_stay_exact(law):
     third = type(law)(*(Fraction(1, 3) for _ in law.values))
-    assert all(entry == 1 or entry.denominator <= 9 for entry in third.reaction.C)
+    velocity, *states = coordinates(1 + len(law.states))
+    force, _ = third.react(velocity, states)
+    assert all(entry.denominator in (1, 3) for entry in force)
     assert third.at_pivot(Fraction(1, 2)).exact == (Fraction(1, 12),) * len(law.values)
     assert third.texts() == tuple(
         f"{name} = 0.333333 {unit}"

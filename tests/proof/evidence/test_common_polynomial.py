@@ -9,7 +9,8 @@ import pytest
 
 from nrs_design.proof.evidence import CommonPolynomial, read_evidence
 from nrs_design.proof.system import Switching
-from nrs_design.search.certify import Limits, Method, Verdict, certify
+from nrs_design.search.certify import Limits, Verdict, certify
+from nrs_design.search.method import Method
 from tests.proof.systems import (
     dayawansa_martin,
     family,

@@ -15,9 +15,9 @@ from nrs_design.proof.evidence.fields import (
     matrix_fields,
     rate_text,
     rate_words,
+    read_dyadic,
     read_integer,
     read_integers,
-    read_matrix,
     read_ratio,
     read_text,
 )
@@ -33,7 +33,7 @@ WHOLE = st.integers(-(2**70), 2**70)
 )
 def test_matrix_survives_the_file(rows, power):
     Q = tuple(map(tuple, rows))
-    assert read_matrix(matrix_fields(Q, power)) == (Q, power)
+    assert read_dyadic(matrix_fields(Q, power)) == (Q, power)
 
 
 @pytest.mark.parametrize("value", [True, 1.0, "1", None, [1], Decimal(1), Fraction(1)])
@@ -52,7 +52,7 @@ def test_a_matrix_beyond_all_bounds_is_refused():
 @pytest.mark.parametrize("power", [-1, -(10**9)])
 def test_a_denominator_is_a_power_of_two(power):
     with pytest.raises(ValueError, match="power of two"):
-        read_matrix({"numerators": [[1]], "denominator_log2": power})
+        read_dyadic({"numerators": [[1]], "denominator_log2": power})
 
 
 def test_only_a_text_is_a_text():

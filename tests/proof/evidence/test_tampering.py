@@ -61,10 +61,12 @@ def test_changed_evidence_is_rejected_or_true_all_the_same(example):
 
 
 @pytest.mark.parametrize("example", SYSTEMS)
-@pytest.mark.parametrize("other", SYSTEMS)
-def test_evidence_of_one_system_is_none_for_another(example, other):
-    _, evidence = genuine(example)
-    system, _ = genuine(other)
-    fields = read(stored(evidence), system)
-    if fields is not None and fields.find_fault(system) is None:
-        assert holds(system, fields)
+def test_evidence_of_one_system_is_none_for_another(example):
+    fields = stored(genuine(example)[1])
+    false = []
+    for other in SYSTEMS:
+        system, _ = genuine(other)
+        moved = read(fields, system)
+        if moved is not None and moved.find_fault(system) is None and not holds(system, moved):
+            false.append(other)
+    assert not false

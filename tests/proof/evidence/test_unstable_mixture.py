@@ -10,7 +10,8 @@ from nrs_design.proof.evidence import UnstableMixture, read_evidence
 from nrs_design.proof.exact import TooLargeError
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.system import Mode, Switching, Time
-from nrs_design.search.certify import Method, Verdict, certify
+from nrs_design.search.certify import Verdict, certify
+from nrs_design.search.method import Method
 from tests.proof.systems import family, genuine, resets_between, shears
 
 HALF = Fraction(1, 2)

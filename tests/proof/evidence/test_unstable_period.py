@@ -12,7 +12,8 @@ from flint import ctx
 from nrs_design.proof.evidence import UnstablePeriod, read_evidence
 from nrs_design.proof.evidence.unstable_period import monodromy
 from nrs_design.proof.system import Stay, Switching, Time
-from nrs_design.search.certify import Method, Verdict, certify
+from nrs_design.search.certify import Verdict, certify
+from nrs_design.search.method import Method
 from tests.proof.systems import (
     branicky,
     dayawansa_martin,

@@ -10,7 +10,8 @@ from hypothesis import strategies as st
 from nrs_design.proof.evidence import CommonPolynomial
 from nrs_design.proof.system import Time
 from nrs_design.reporting.kinds.common_polynomial import polynomial_rates
-from nrs_design.search.certify import Method, certify
+from nrs_design.search.certify import certify
+from nrs_design.search.method import Method
 from nrs_design.simulation.rates import mode_rates
 from tests.simulation.systems import system
 

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from nrs_design.proof.system import SwitchedSystem, Time
-from nrs_design.reporting.document import Illustration, Section
+from nrs_design.reporting.document import Block, Illustration, Section
 from nrs_design.reporting.figures.run import MOTION_STATES, draw_phase_plane, draw_run
 from nrs_design.reporting.sections.modes import hardest_modes
 from nrs_design.simulation.admissible import active_norms, admissible_run
@@ -59,6 +59,11 @@ _TITLE = "Simulated switching"
 def simulated(*figures: Illustration) -> Section:
     """Return the section of a run that no evidence of instability asks for."""
     return Section(_TITLE, figures)
+
+
+def witness(*blocks: Block) -> Section:
+    """Return the section of a run that shows instability."""
+    return Section("Simulated witness", blocks)
 
 
 def bounded_run(
@@ -137,7 +142,7 @@ def ruled_run(
 def unbounded_run(system: SwitchedSystem) -> Section:
     """Draw a bad run of a system of which nothing is proved."""
     arbitrary = system.switching.is_arbitrary
-    hardest = hardest_modes(system, None, affordable(system) if arbitrary else _RULED_MODES)
+    hardest = hardest_modes(system, None, trials_per_step(system) if arbitrary else _RULED_MODES)
     step = fine_step(hardest)
     functions = euclidean(hardest)
     if arbitrary:
@@ -162,6 +167,12 @@ def euclidean(system: SwitchedSystem) -> dict[str, Array]:
     return {mode.name: np.eye(mode.A.shape[0]) for mode in system.modes}
 
 
+def euclidean_norms(response: TimeResponse) -> Array:
+    """Return the norm of the states along a run, relative to the start."""
+    values = np.linalg.norm(response.state, axis=1)
+    return np.asarray(values / values[0])
+
+
 def bound_line(response: TimeResponse, rate: float, time: Time, label: str) -> Bound:
     """Return how a rate decays along the times of a run, with its label.
 
@@ -181,7 +192,7 @@ def bound_line(response: TimeResponse, rate: float, time: Time, label: str) -> B
     return f"{label}rho^t", rate**response.time
 
 
-def affordable(system: SwitchedSystem) -> int:
+def trials_per_step(system: SwitchedSystem) -> int:
     """Return how many modes a greedy run can try at every step."""
     return max(8, min(256, _EFFORT // system.order**2))
 

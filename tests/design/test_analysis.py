@@ -2,7 +2,7 @@
 
 import pytest
 
-from nrs_design.pipeline import run_design, run_evidence
+from nrs_design.pipeline import run_analysis, run_design
 from nrs_design.spec import read_spec
 from tests.support import FORCE_LIMIT, SOFT_TISSUE
 
@@ -12,13 +12,13 @@ GIVEN = """motion_loop:
 """
 
 
-def evidence(path):
+def analysis(path):
     loaded = read_spec(path)
-    return run_evidence(run_design(loaded))
+    return run_analysis(run_design(loaded))
 
 
 def test_motion_loop_of_the_thesis():
-    found = evidence(SOFT_TISSUE)
+    found = analysis(SOFT_TISSUE)
     assert found.motion_source == "designed"
     assert found.wanted.zero == pytest.approx(56.9706, rel=5e-4)
     assert max(pole.imag for pole in found.reached.poles) == pytest.approx(28.448, rel=1e-3)
@@ -28,14 +28,14 @@ def test_motion_loop_of_the_thesis():
 
 
 def test_shipped_gains_are_nearly_optimal():
-    for item in evidence(SOFT_TISSUE).impedance:
+    for item in analysis(SOFT_TISSUE).impedance:
         assert item.optimum.cost <= item.cost < item.optimum.cost * 1.01
         assert item.Bt == pytest.approx(item.optimum.Bt, rel=5e-3)
         assert item.margins.stiffness_limit > item.problem.loop.contact.stiffness
 
 
 def test_force_loop():
-    (force,) = evidence(FORCE_LIMIT).force
+    (force,) = analysis(FORCE_LIMIT).force
     assert force.name == "force"
     assert force.stiffness == pytest.approx(43.0356, rel=1e-5)
     assert force.loop.damping_ratio == pytest.approx(0.741, abs=1e-3)
@@ -45,6 +45,6 @@ def test_given_motion_loop(tmp_path):
     text = SOFT_TISSUE.read_text().replace("motion_loop:\n", GIVEN)
     path = tmp_path / "given.nrs.yaml"
     path.write_text(text)
-    found = evidence(path)
+    found = analysis(path)
     assert found.motion_source == "given"
     assert found.motion.numerator == (0.99, 56.82)

@@ -16,7 +16,7 @@ Printed = str | tuple[str, ...]
 DIGITS = 6
 
 
-class Verdict(StrEnum):
+class PrintVerdict(StrEnum):
     """What the comparison of print and recomputed value says."""
 
     REPRODUCED = "reproduced"
@@ -27,7 +27,7 @@ class Verdict(StrEnum):
 
 
 @dataclass(frozen=True, slots=True)
-class Row:
+class Comparison:
     """One line of the table.
 
     Parameters
@@ -45,7 +45,7 @@ class Row:
     deviation : float or None
         Difference between value and print over the print (the difference itself where the print
         is zero), the largest one of several numbers; None where the print is not a number.
-    verdict : Verdict
+    verdict : PrintVerdict
         ``drift`` says that the package no longer computes what this row has on record.
     note : str
         Where the print is wrong: what is right, and why.
@@ -57,7 +57,7 @@ class Row:
     value: str | None
     unit: str
     deviation: float | None
-    verdict: Verdict
+    verdict: PrintVerdict
     note: str
 
 
@@ -88,13 +88,13 @@ def reproduced(
     *,
     right: Printed | None = None,
     note: str = "",
-) -> Row:
+) -> Comparison:
     """Return the row of a print that the recomputed value confirms.
 
     Parameters
     ----------
     name, section, unit, note : str
-        See `Row`.
+        See `Comparison`.
     printed : str or tuple of str
         Numbers, ``a +- bj`` for a pair of poles.
     value : number or sequence of numbers
@@ -105,7 +105,7 @@ def reproduced(
         More digits than the print has; the tolerance then is about these.
     """
     values, target = _sequence(value), _numbers(right or printed)
-    verdict = Verdict.REPRODUCED if tolerance.allows(values, target) else Verdict.DRIFT
+    verdict = PrintVerdict.REPRODUCED if tolerance.allows(values, target) else PrintVerdict.DRIFT
     return _row(name, section, printed, values, unit, verdict, note)
 
 
@@ -119,7 +119,7 @@ def misprint(
     *,
     right: Printed,
     note: str,
-) -> Row:
+) -> Comparison:
     """Return the row of a print that is wrong; parameters as in `reproduced`.
 
     The row is a drift if the value leaves the tolerance around what is `right`, or if the print
@@ -137,7 +137,7 @@ def misprint(
     values = _sequence(value)
     confirmed = tolerance.allows(values, _numbers(right))
     printed_right = _is_numeric(printed) and tolerance.allows(_numbers(printed), values)
-    verdict = Verdict.PRINT_IS_WRONG if confirmed and not printed_right else Verdict.DRIFT
+    verdict = PrintVerdict.PRINT_IS_WRONG if confirmed and not printed_right else PrintVerdict.DRIFT
     return _row(name, section, printed, values, unit, verdict, note)
 
 
@@ -148,26 +148,26 @@ def claim(
     value: str,
     unit: str = "",
     *,
-    verdict: Verdict,
+    verdict: PrintVerdict,
     holds: bool,
     note: str,
-) -> Row:
+) -> Comparison:
     """Return the row of a statement in words.
 
     Parameters
     ----------
     name, section, printed, value, unit, note : str
-        See `Row`; `value` says what was found.
-    verdict : Verdict
+        See `Comparison`; `value` says what was found.
+    verdict : PrintVerdict
         What is on record.
     holds : bool
         Whether the computation still says so; if not, the row is a drift.
     """
-    verdict = verdict if holds else Verdict.DRIFT
-    return Row(name, section, printed, value, unit, None, verdict, note)
+    verdict = verdict if holds else PrintVerdict.DRIFT
+    return Comparison(name, section, printed, value, unit, None, verdict, note)
 
 
-def hardware_only(name: str, section: str, printed: str, unit: str, note: str = "") -> Row:
+def hardware_only(name: str, section: str, printed: str, unit: str, note: str = "") -> Comparison:
     """Return the row of a measurement on the robot.
 
     Parameters
@@ -177,10 +177,10 @@ def hardware_only(name: str, section: str, printed: str, unit: str, note: str = 
     note : str
         What it would take.
     """
-    return Row(name, section, printed, None, unit, None, Verdict.HARDWARE_ONLY, note)
+    return Comparison(name, section, printed, None, unit, None, PrintVerdict.HARDWARE_ONLY, note)
 
 
-def omitted(name: str, section: str, printed: str, unit: str, note: str) -> Row:
+def omitted(name: str, section: str, printed: str, unit: str, note: str) -> Comparison:
     """Return the row of a number whose data the thesis does not give.
 
     Parameters
@@ -190,12 +190,12 @@ def omitted(name: str, section: str, printed: str, unit: str, note: str) -> Row:
     note : str
         What is missing.
     """
-    return Row(name, section, printed, None, unit, None, Verdict.OMITTED_DATA, note)
+    return Comparison(name, section, printed, None, unit, None, PrintVerdict.OMITTED_DATA, note)
 
 
-def drifted(rows: Sequence[Row]) -> tuple[Row, ...]:
+def drifted(rows: Sequence[Comparison]) -> tuple[Comparison, ...]:
     """Return the rows that no longer agree with what is on record."""
-    return tuple(row for row in rows if row.verdict is Verdict.DRIFT)
+    return tuple(row for row in rows if row.verdict is PrintVerdict.DRIFT)
 
 
 def format_number(value: Number, digits: int = DIGITS) -> str:
@@ -211,14 +211,14 @@ def _row(
     printed: Printed,
     values: Sequence[Number],
     unit: str,
-    verdict: Verdict,
+    verdict: PrintVerdict,
     note: str,
-) -> Row:
+) -> Comparison:
     text = printed if isinstance(printed, str) else ", ".join(printed)
     deviation = _deviation(values, _numbers(printed)) if _is_numeric(printed) else None
     digits = max(DIGITS, _significant_digits(text)) if _is_numeric(printed) else DIGITS
     value = ", ".join(format_number(number, digits) for number in values)
-    return Row(name, section, text, value, unit, deviation, verdict, note)
+    return Comparison(name, section, text, value, unit, deviation, verdict, note)
 
 
 def _deviation(values: Sequence[Number], printed: Sequence[Number]) -> float | None:

@@ -1,4 +1,4 @@
-"""A figure as an SVG element that can stand beside others in one HTML page."""
+"""Figures as SVG elements that can stand beside others in one HTML page, and as PNG images."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import io
 import re
 from typing import TYPE_CHECKING
 
-from nrs_design.reporting.document import Illustration
+from nrs_design.reporting.document import Illustration, Report
 from nrs_design.reporting.style import figure_style
 
 if TYPE_CHECKING:
@@ -43,6 +43,11 @@ def to_png(figure: Figure, dpi: int = 200) -> bytes:
     with figure_style():
         figure.savefig(buffer, format="png", dpi=dpi, metadata={"Software": None})
     return buffer.getvalue()
+
+
+def render_png(report: Report) -> dict[str, bytes]:
+    """Return every figure as a PNG image at 200 dots per inch, by its name."""
+    return {item.name: to_png(item.figure) for item in report.illustrations}
 
 
 def _savefig(figure: Figure) -> str:

@@ -4,9 +4,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from nrs_design.reproduction.row import (
+from nrs_design.reproduction.comparison import (
+    PrintVerdict,
     Tolerance,
-    Verdict,
     claim,
     drifted,
     format_number,
@@ -61,7 +61,7 @@ def test_misprint_is_a_drift_if_the_print_is_right_after_all():
 
 def test_a_claim_that_no_longer_holds_is_a_drift():
     verdicts = [
-        claim("q", "1", "p", "v", verdict=Verdict.PRINT_IS_WRONG, holds=holds, note="").verdict
+        claim("q", "1", "p", "v", verdict=PrintVerdict.PRINT_IS_WRONG, holds=holds, note="").verdict
         for holds in (True, False)
     ]
     assert verdicts == ["print is wrong", "drift"]

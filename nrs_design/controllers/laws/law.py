@@ -1,0 +1,97 @@
+"""What all control laws have in common.
+
+All gains are exact rationals that are single-precision numbers, so that a proof, a simulation
+and an export speak about the same values.
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, fields
+from fractions import Fraction
+from typing import ClassVar, Generic, Self, TypeVar
+
+from nrs_design.models.linear_form import LinearForm
+from nrs_design.spec.controllers import AbstractControllerSpec, Command
+
+S = TypeVar("S", bound=AbstractControllerSpec)
+# What a law gives the motion loop, and the rates of its states.
+Response = tuple[LinearForm, list[LinearForm]]
+
+
+@dataclass(frozen=True, slots=True)
+class AbstractLaw(ABC):
+    """A control law; its fields are its gains, exact single-precision numbers."""
+
+    # As certificates and exports call it, and the unit of every gain.
+    name: ClassVar[str]
+    units: ClassVar[Mapping[str, str]]
+
+    @property
+    def gains(self) -> Mapping[str, Fraction]:
+        """The gains by name."""
+        return {field.name: getattr(self, field.name) for field in fields(self)}
+
+    @classmethod
+    def of(cls, gains: Mapping[str, Fraction]) -> Self:
+        """Return the law with the gains of these names; others are left alone."""
+        return cls(*(gains[field.name] for field in fields(cls)))
+
+
+@dataclass(frozen=True, slots=True)
+class AbstractCompliantLaw(AbstractLaw, Generic[S]):
+    """A law that the robot switches to and from, over its motion loop.
+
+    Its `name` is the `type` of its controllers in a spec.
+    """
+
+    # Whether the motion loop gets a velocity or a position from it.
+    commands: ClassVar[Command]
+
+    @property
+    def states(self) -> tuple[str, ...]:
+        """Names of the states of its own, with units; none by default."""
+        return ()
+
+    @property
+    def state_words(self) -> tuple[str, ...]:
+        """The states in words, such as ``the velocity vm``."""
+        return self.states
+
+    @property
+    def inverse(self) -> frozenset[str]:
+        """Gains in one over which `respond` is affine; it is affine in all others."""
+        return frozenset()
+
+    @abstractmethod
+    def respond(self, force: LinearForm, states: Sequence[LinearForm]) -> Response:
+        """Return the command, and the rates of the states, as linear forms of the whole loop.
+
+        Parameters
+        ----------
+        force : LinearForm
+            Of all contacts on the robot, N m.
+        states : sequence of LinearForm
+            Those named in `states`.
+        """
+
+    def find_fault(self, given: S) -> str | None:
+        """Say which gain is not one that the spec allows, beyond bounds and ranges; or None."""
+        return None
+
+    @classmethod
+    @abstractmethod
+    def contact_text(cls, *, alone: bool) -> str | None:
+        """Say what is taken for granted about contact while it is active; None for nothing.
+
+        Parameters
+        ----------
+        alone : bool
+            Whether all controllers give the motion loop the same kind of command.
+        """
+
+    @property
+    def retuned_text(self) -> str:
+        """Say what the controller keeps while its gains change."""
+        return "While a gain changes, the controller keeps its states."

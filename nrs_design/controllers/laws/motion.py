@@ -1,0 +1,35 @@
+"""Motion control: the loop below all compliant controllers."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from fractions import Fraction
+from types import MappingProxyType
+from typing import ClassVar
+
+from nrs_design.controllers.laws.law import AbstractLaw
+
+
+@dataclass(frozen=True, slots=True)
+class ProportionalDerivative(AbstractLaw):
+    """Motion control ``delta = Kp e + Kd e'`` (thesis 4.3), e in rad, delta in rpm.
+
+    Parameters
+    ----------
+    Kp : Fraction
+        In rpm/rad.
+    Kd : Fraction
+        In rpm s/rad.
+    """
+
+    name: ClassVar[str] = "motion"
+    units: ClassVar[Mapping[str, str]] = MappingProxyType({"Kp": "rpm/rad", "Kd": "rpm*s/rad"})
+
+    Kp: Fraction
+    Kd: Fraction
+
+    @property
+    def zero(self) -> Fraction:
+        """The z of ``Kd (s + z)``, in 1/s."""
+        return self.Kp / self.Kd

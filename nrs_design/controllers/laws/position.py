@@ -1,0 +1,29 @@
+"""Position control of the hybrid scheme (thesis 6.3.3)."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from types import MappingProxyType
+from typing import ClassVar
+
+from nrs_design.controllers.laws.law import AbstractCompliantLaw, Response
+from nrs_design.models.linear_form import LinearForm, zero
+from nrs_design.spec.controllers import Command, PositionControllerSpec
+
+
+@dataclass(frozen=True, slots=True)
+class PositionControl(AbstractCompliantLaw[PositionControllerSpec]):
+    """The position mode: the motion loop follows its command, whatever the force."""
+
+    name: ClassVar[str] = "position"
+    units: ClassVar[Mapping[str, str]] = MappingProxyType({})
+    commands: ClassVar[Command] = PositionControllerSpec.commands
+
+    def respond(self, force: LinearForm, states: Sequence[LinearForm]) -> Response:
+        """Return no correction."""
+        return zero(len(force)), []
+
+    @classmethod
+    def contact_text(cls, *, alone: bool) -> None:
+        """Take nothing for granted: free motion is this very mode."""

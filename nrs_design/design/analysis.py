@@ -1,0 +1,112 @@
+"""What the designed gains achieve: poles, cost and margins, for people to judge."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import TypeVar
+
+from nrs_design.controllers.controller_design import ControllerDesign
+from nrs_design.design.design import root_locus_design
+from nrs_design.design.laws import LAW_DESIGNS
+from nrs_design.design.laws.force import ForceAnalysis
+from nrs_design.design.laws.impedance import ImpedanceAnalysis
+from nrs_design.design.laws.law import AbstractControllerAnalysis, Task
+from nrs_design.design.root_locus import MotionLoopResponse, PdDesign, motion_loop_response
+from nrs_design.design.transfer import TransferFunction
+from nrs_design.models.plant import Plant
+from nrs_design.spec import Doubt, InteractionDesignSpec
+
+__all__ = [
+    "AbstractControllerAnalysis",
+    "DesignAnalysis",
+    "ForceAnalysis",
+    "ImpedanceAnalysis",
+    "analyze_design",
+]
+
+E = TypeVar("E", bound=AbstractControllerAnalysis)
+
+
+@dataclass(frozen=True, slots=True)
+class DesignAnalysis:
+    """Everything a person wants to see beside the gains.
+
+    Parameters
+    ----------
+    wanted : PdDesign
+        What the root locus asks for.
+    motion : TransferFunction
+        The motion loop G in use.
+    motion_source : {"designed", "given"}
+        Whether G follows from the PD gains, or the spec states it.
+    reached : MotionLoopResponse
+        Poles, damping and overshoot that G really has.
+    measured : tuple of AbstractControllerAnalysis
+        One for each controller that goals are for, law by law.
+    """
+
+    wanted: PdDesign
+    motion: TransferFunction
+    motion_source: str
+    reached: MotionLoopResponse
+    measured: tuple[AbstractControllerAnalysis, ...]
+
+    @property
+    def impedance(self) -> tuple[ImpedanceAnalysis, ...]:
+        """The impedance controllers."""
+        return self._of(ImpedanceAnalysis)
+
+    @property
+    def force(self) -> tuple[ForceAnalysis, ...]:
+        """The force controllers."""
+        return self._of(ForceAnalysis)
+
+    @property
+    def tuned(self) -> tuple[AbstractControllerAnalysis, ...]:
+        """All but the impedance controllers, whose gains are optimized instead."""
+        return tuple(item for item in self.measured if item not in self.impedance)
+
+    @property
+    def warnings(self) -> tuple[Doubt, ...]:
+        """What is doubtful about the design, and no goal speaks of it."""
+        return tuple(doubt for item in self.measured for doubt in item.doubts())
+
+    def _of(self, kind: type[E]) -> tuple[E, ...]:
+        return tuple(item for item in self.measured if isinstance(item, kind))
+
+
+def analyze_design(
+    spec: InteractionDesignSpec, plant: Plant, design: ControllerDesign
+) -> DesignAnalysis:
+    """Compute poles, costs and margins of a design.
+
+    Parameters
+    ----------
+    spec : InteractionDesignSpec
+        What was asked for.
+    plant : Plant
+        That it describes.
+    design : ControllerDesign
+        As `nrs_design.design.design.design_controllers` gives it.
+
+    Raises
+    ------
+    DesignError
+        If a nominal loop is unstable, so that it has no margins.
+    """
+    task = Task(spec, plant, plant.motion_loop(design.motion.Kp, design.motion.Kd))
+    return DesignAnalysis(
+        wanted=root_locus_design(spec),
+        motion=task.motion,
+        motion_source="designed" if spec.motion_loop.transfer_function is None else "given",
+        reached=motion_loop_response(task.motion),
+        measured=tuple(_measured(task, design)),
+    )
+
+
+def _measured(task: Task, design: ControllerDesign) -> Iterator[AbstractControllerAnalysis]:
+    for kind, law in LAW_DESIGNS.items():
+        for controller in design.controllers:
+            if law.analyze is not None and controller.law.name == kind:
+                yield law.analyze(task, task.spec.controllers[controller.name], controller)

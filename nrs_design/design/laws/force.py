@@ -1,0 +1,79 @@
+"""Choose the gain of a force controller, and analyze it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from nrs_design.controllers.controller_design import Controller
+from nrs_design.controllers.float32 import round_significant, to_float32
+from nrs_design.controllers.laws import ProportionalForce
+from nrs_design.design.force_loop import ForceLoop, design_force_gain, force_loop_response
+from nrs_design.design.goals import Requirement, achieve_force, corners_of
+from nrs_design.design.laws.law import (
+    AbstractControllerAnalysis,
+    Choice,
+    LawDesign,
+    Task,
+    goals_of,
+    naming,
+)
+from nrs_design.design.measures import FORCE_MEASURES
+from nrs_design.spec import ForceControllerSpec
+
+
+@dataclass(frozen=True)
+class ForceAnalysis(AbstractControllerAnalysis):
+    """One force controller.
+
+    Parameters
+    ----------
+    name, achieved
+        As for `AbstractControllerAnalysis`.
+    stiffness : float
+        Of nominal contact, in N m/rad.
+    loop : ForceLoop
+        Closed in nominal contact.
+    """
+
+    stiffness: float
+    loop: ForceLoop
+
+
+def choose(task: Task, given: ForceControllerSpec) -> Choice:
+    """Return the gain that the spec gives, or the one with the damping ratio that it wants."""
+    if given.proportional_gain is not None:
+        return ProportionalForce(to_float32(given.proportional_gain.exact)), None
+    stiffness = task.plant.environment(given.environment).nominal.stiffness
+    gain = design_force_gain(task.motion, stiffness, float(given.damping_ratio or 0))
+    return ProportionalForce(to_float32(round_significant(gain, task.digits))), None
+
+
+def analyze(task: Task, given: ForceControllerSpec, controller: Controller) -> ForceAnalysis:
+    """Close the loop in nominal contact, and measure it in all contacts.
+
+    Parameters
+    ----------
+    task : Task
+        What the gains were chosen for.
+    given : ForceControllerSpec
+        What the spec says of the controller.
+    controller : Controller
+        With the gains that ship.
+
+    Raises
+    ------
+    DesignError
+        If the nominal loop is unstable.
+    """
+    contacts = tuple(map(task.plant.environment, given.contacts))
+    goals = goals_of(task.spec, given, FORCE_MEASURES)
+    requirement = Requirement(task.motion, corners_of(contacts, given.environment, {}), goals)
+    stiffness = task.plant.environment(given.environment).nominal.stiffness
+    gain = float(controller.law.gains["Kp"])
+    with naming(controller.name):
+        loop = force_loop_response(task.motion, stiffness, gain)
+    achieved = achieve_force(requirement, FORCE_MEASURES, gain)
+    return ForceAnalysis(controller.name, achieved, stiffness, loop)
+
+
+DESIGN = LawDesign(choose, analyze)

@@ -1,0 +1,231 @@
+"""Choose the gains of an impedance controller, and analyze them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from fractions import Fraction
+from itertools import product
+
+from nrs_design.controllers.controller_design import Controller, ImpedanceOptimum
+from nrs_design.controllers.float32 import neighbors, round_significant, to_float32
+from nrs_design.controllers.gain_range import faults_of_ranges, gain_interval
+from nrs_design.controllers.laws import Admittance
+from nrs_design.design.constrained import best_rounding, meets, optimize_with_goals
+from nrs_design.design.doubts import doubt_bounds
+from nrs_design.design.goals import Requirement, achieve_impedance, corners_of
+from nrs_design.design.impedance import (
+    ImpedanceLoop,
+    ImpedanceProblem,
+    impedance_cost,
+    optimize_impedance,
+)
+from nrs_design.design.laws.law import (
+    AbstractControllerAnalysis,
+    Choice,
+    LawDesign,
+    Task,
+    goals_of,
+    naming,
+)
+from nrs_design.design.margins import LoopMargins, loop_margins, stiffness_limit
+from nrs_design.design.measures import IMPEDANCE_MEASURES
+from nrs_design.errors import DesignError
+from nrs_design.spec import Doubt, GainSpec, ImpedanceControllerSpec, InteractionDesignSpec
+
+
+@dataclass(frozen=True)
+class ImpedanceAnalysis(AbstractControllerAnalysis):
+    """One impedance controller.
+
+    Parameters
+    ----------
+    name, achieved
+        As for `AbstractControllerAnalysis`.
+    given : ImpedanceControllerSpec
+        What the spec says of it.
+    problem : ImpedanceProblem
+        What was minimized.
+    optimum : ImpedanceOptimum
+        Before rounding.
+    Mt, Bt : float
+        As shipped, in kg m^2 and N m s/rad.
+    cost : float
+        Of the shipped gains.
+    margins : LoopMargins
+        Of the shipped gains, in nominal contact.
+    highest_stiffness : float
+        Upper end of the stiffness of the environment that it was designed for, in N m/rad.
+    lowest_limit : float
+        Smallest stiffness limit in N m/rad, of the shipped gains and of the corners of their
+        declared ranges.
+    """
+
+    given: ImpedanceControllerSpec
+    problem: ImpedanceProblem
+    optimum: ImpedanceOptimum
+    Mt: float
+    Bt: float
+    cost: float
+    margins: LoopMargins
+    highest_stiffness: float
+    lowest_limit: float
+
+    def doubts(self) -> Iterator[Doubt]:
+        """Yield what is doubtful about the gains, and which of them the bounds have chosen."""
+        yield from super().doubts()
+        yield from doubt_bounds(self.name, self.given, self.optimum)
+
+
+def choose(task: Task, given: ImpedanceControllerSpec) -> Choice:
+    """Return the gains that the spec gives, or the best that its bounds and goals allow."""
+    optimum = None
+    if given.Mt.fixed and given.Bt.fixed:
+        # Nothing to choose; whether these gains are stable is for the certificate to say.
+        law = Admittance(to_float32(given.Mt.min.exact), to_float32(given.Bt.min.exact))
+    else:
+        law, optimum = _optimize(task, given)
+    for gain, outside in faults_of_ranges(given, law.gains):
+        remedy = "move the range, or let min and max lie inside it"
+        raise DesignError(outside, remedy=remedy, at=(gain, "range"))
+    return law, optimum
+
+
+def analyze(
+    task: Task, given: ImpedanceControllerSpec, controller: Controller
+) -> ImpedanceAnalysis:
+    """Compute cost, margins and stiffness limits, and measure the loop in all contacts.
+
+    Parameters
+    ----------
+    task : Task
+        What the gains were chosen for.
+    given : ImpedanceControllerSpec
+        What the spec says of the controller.
+    controller : Controller
+        With the gains that ship.
+
+    Raises
+    ------
+    DesignError
+        If the nominal loop is unstable.
+    """
+    problem = impedance_problem(task, given)
+    shipped = controller.law.gains
+    Mt, Bt = float(shipped["Mt"]), float(shipped["Bt"])
+    with naming(controller.name):
+        margins = loop_margins(problem.loop, Mt, Bt)
+    ranges = (gain_interval(given.Mt, shipped["Mt"]), gain_interval(given.Bt, shipped["Bt"]))
+    limits = (
+        stiffness_limit(problem.loop, float(mass), float(damping))
+        for (_, mass), (_, damping) in product(*(interval.ends for interval in ranges))
+    )
+    return ImpedanceAnalysis(
+        name=controller.name,
+        achieved=achieve_impedance(_requirement(task, given), IMPEDANCE_MEASURES, Mt, Bt),
+        given=given,
+        problem=problem,
+        # Gains that the spec gives are their own optimum.
+        optimum=controller.optimum or optimize_impedance(problem),
+        Mt=Mt,
+        Bt=Bt,
+        cost=float(impedance_cost(problem, Mt, Bt)),
+        margins=margins,
+        highest_stiffness=float(task.plant.environment(given.environment).stiffness.high),
+        lowest_limit=min(margins.stiffness_limit, *limits),
+    )
+
+
+DESIGN = LawDesign(choose, analyze)
+
+
+def impedance_problem(task: Task, given: ImpedanceControllerSpec) -> ImpedanceProblem:
+    """State the choice of one controller's virtual mass and damping as an optimization.
+
+    Parameters
+    ----------
+    task : Task
+        With the environment and the limits of torque, velocity and frequency.
+    given : ImpedanceControllerSpec
+        With bounds and weights.
+    """
+    return ImpedanceProblem(
+        loop=ImpedanceLoop(task.motion, task.plant.environment(given.environment).nominal),
+        desired=desired_impedance(task.spec, given),
+        bandwidth=task.spec.limits.bandwidth.si,
+        mass_bounds=(given.Mt.min.si, given.Mt.max.si),
+        damping_bounds=(given.Bt.min.si, given.Bt.max.si),
+        weight_displayed=float(given.weights.displayed),
+        weight_sensitivity=float(given.weights.sensitivity),
+    )
+
+
+def desired_impedance(spec: InteractionDesignSpec, controller: ImpedanceControllerSpec) -> float:
+    """Return the desired impedance in N m s/rad, by default torque over velocity (thesis 6.2)."""
+    if controller.desired_impedance is not None:
+        return controller.desired_impedance.si
+    ratio = controller.desired_impedance_ratio
+    return (
+        spec.limits.torque.si / spec.limits.velocity.si * (1.0 if ratio is None else float(ratio))
+    )
+
+
+def _requirement(task: Task, given: ImpedanceControllerSpec) -> Requirement:
+    contacts = tuple(map(task.plant.environment, given.contacts))
+    gains = {name: _ends(gain) for name, gain in given.gains().items()}
+    return Requirement(
+        motion=task.motion,
+        corners=corners_of(contacts, given.environment, gains),
+        goals=goals_of(task.spec, given, IMPEDANCE_MEASURES),
+        desired=desired_impedance(task.spec, given),
+        bandwidth=task.spec.limits.bandwidth.si,
+    )
+
+
+def _ends(gain: GainSpec) -> tuple[float, ...]:
+    """Return the ends of a declared range of a gain, as single-precision numbers surround them."""
+    if not gain.ranged:
+        return ()
+    interval = gain_interval(gain, to_float32(gain.min.exact))
+    return (float(interval.low), float(interval.high))
+
+
+def _optimize(task: Task, given: ImpedanceControllerSpec) -> tuple[Admittance, ImpedanceOptimum]:
+    """Optimize an admittance under its goals, and round it so that they are still met."""
+    problem, requirement = impedance_problem(task, given), _requirement(task, given)
+    optimum = optimize_with_goals(problem, requirement)
+    law = Admittance(
+        Mt=_shipped(optimum.Mt, given.Mt, task.digits),
+        Bt=_shipped(optimum.Bt, given.Bt, task.digits),
+    )
+    if not meets(requirement, float(law.Mt), float(law.Bt)):
+        law = _rounded_within(problem, requirement, optimum, given, task.digits)
+    return law, optimum
+
+
+def _rounded_within(
+    problem: ImpedanceProblem,
+    requirement: Requirement,
+    optimum: ImpedanceOptimum,
+    controller: ImpedanceControllerSpec,
+    digits: int,
+) -> Admittance:
+    """Round an optimum at the edge of what its goals allow: a gain may have to go the other way."""
+    candidates = tuple(
+        {float(_shipped(near, bounds, digits)) for near in neighbors(value, digits)}
+        for value, bounds in ((optimum.Mt, controller.Mt), (optimum.Bt, controller.Bt))
+    )
+    pair = best_rounding(problem, requirement, (candidates[0], candidates[1]))
+    if pair is None:
+        raise DesignError(
+            f"no gains of {digits} significant digits near Mt = {optimum.Mt:.6g} kg m^2 and "
+            f"Bt = {optimum.Bt:.6g} N m s/rad meet the goals",
+            remedy="raise design.significant_digits (at most 7), or relax a goal",
+        )
+    return Admittance(*map(Fraction, pair))
+
+
+def _shipped(value: float, bounds: GainSpec, digits: int) -> Fraction:
+    """Round a gain, keep it within its bounds, and round it to single precision."""
+    rounded = round_significant(value, digits)
+    return to_float32(min(max(rounded, bounds.min.exact), bounds.max.exact))

@@ -1,0 +1,133 @@
+"""What choosing the gains of any law needs, and what the result is held against."""
+
+from __future__ import annotations
+
+from abc import ABC
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any
+
+from nrs_design.controllers.controller_design import Controller, ImpedanceOptimum
+from nrs_design.controllers.laws import CompliantLaw
+from nrs_design.design.doubts import doubt_values
+from nrs_design.design.goals import Achieved
+from nrs_design.design.measures import Measure
+from nrs_design.design.transfer import TransferFunction
+from nrs_design.errors import DesignError
+from nrs_design.models.motion_loop import MotionLoop
+from nrs_design.models.plant import Plant
+from nrs_design.spec import ControllerSpec, Doubt, InteractionDesignSpec, Quantity
+
+
+@dataclass(frozen=True)
+class Task:
+    """What the gains of every controller are chosen for.
+
+    Parameters
+    ----------
+    spec : InteractionDesignSpec
+        Requirements and bounds.
+    plant : Plant
+        That it describes.
+    loop : MotionLoop
+        The motion loop in use.
+    """
+
+    spec: InteractionDesignSpec
+    plant: Plant
+    loop: MotionLoop
+
+    @property
+    def motion(self) -> TransferFunction:
+        """The motion loop in floating point."""
+        return to_transfer_function(self.loop)
+
+    @property
+    def digits(self) -> int:
+        """How many digits a designed gain has."""
+        return self.spec.design.significant_digits
+
+
+@dataclass(frozen=True)
+class AbstractControllerAnalysis(ABC):
+    """What the gains of one controller achieve.
+
+    Parameters
+    ----------
+    name : str
+        Of the controller.
+    achieved : tuple of Achieved
+        The worst values over the contacts, beside the goals.
+    """
+
+    name: str
+    achieved: tuple[Achieved, ...]
+
+    def doubts(self) -> Iterator[Doubt]:
+        """Yield what is doubtful about the gains, and no goal speaks of it."""
+        yield from doubt_values(self.name, self.achieved)
+
+
+# The law with the gains that ship, and what they were rounded from, if a search found them.
+Choice = tuple[CompliantLaw, ImpedanceOptimum | None]
+
+
+@dataclass(frozen=True)
+class LawDesign:
+    """How the gains of one law are chosen and analyzed.
+
+    Parameters
+    ----------
+    choose : callable
+        Gives the law for a task and the spec of a controller.
+    analyze : callable or None
+        gives the analysis for a task, the spec of a controller and the controller; None where
+        nothing is measured.
+    """
+
+    choose: Callable[[Task, Any], Choice]
+    analyze: Callable[[Task, Any, Controller], AbstractControllerAnalysis] | None = None
+
+
+@contextmanager
+def naming(controller: str) -> Iterator[None]:
+    """Say in an error which controller it is about."""
+    try:
+        yield
+    except DesignError as error:
+        message = f"controller {controller}: {error.message}"
+        at = ("controllers", controller, *error.at)
+        raise DesignError(message, remedy=error.remedy, at=at) from error
+
+
+def to_transfer_function(loop: MotionLoop) -> TransferFunction:
+    """Return the motion loop in floating point."""
+    return TransferFunction(tuple(map(float, loop.numerator)), tuple(map(float, loop.denominator)))
+
+
+def goals_of(
+    spec: InteractionDesignSpec, controller: ControllerSpec, measures: tuple[Measure, ...]
+) -> tuple[tuple[Measure, float], ...]:
+    """Return the goals of one controller: the spec's own, replaced by those of the controller.
+
+    Parameters
+    ----------
+    spec : InteractionDesignSpec
+        With the goals for all controllers.
+    controller : ControllerSpec
+        One of the spec's.
+    measures : tuple of Measure
+        What this law is measured by.
+    """
+    given: dict[str, Quantity | Fraction] = {}
+    for goals in (spec.goals, controller.goals):
+        given |= dict(goals.given()) if goals is not None else {}
+    return tuple(
+        (measure, _number(given[measure.goal])) for measure in measures if measure.goal in given
+    )
+
+
+def _number(value: Quantity | Fraction) -> float:
+    return value.si if isinstance(value, Quantity) else float(value)

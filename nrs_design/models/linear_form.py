@@ -1,0 +1,27 @@
+"""Linear forms of a state: the row of coefficients by which a signal follows from it, exactly."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from fractions import Fraction
+
+LinearForm = Sequence[Fraction]
+
+
+def combine(*terms: tuple[Fraction, LinearForm]) -> list[Fraction]:
+    """Return the sum of forms, each times its factor."""
+    (factor, form), *others = terms
+    total = [factor * c for c in form]
+    for factor, form in others:
+        total = [entry + factor * c for entry, c in zip(total, form, strict=True)]
+    return total
+
+
+def coordinates(size: int) -> list[list[Fraction]]:
+    """Return the forms that give the states themselves."""
+    return [[Fraction(int(i == j)) for j in range(size)] for i in range(size)]
+
+
+def zero(size: int) -> list[Fraction]:
+    """Return the form of a signal that is absent."""
+    return [Fraction(0)] * size

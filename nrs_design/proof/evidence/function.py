@@ -1,0 +1,38 @@
+"""What all evidence of stability has in common: functions that decrease at a claimed rate."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from typing import ClassVar
+
+from nrs_design.proof.evidence.abstract import AbstractEvidence, Shows
+from nrs_design.proof.exact import IntegerMatrix
+from nrs_design.proof.system import SwitchedSystem, Time
+
+
+class AbstractFunction(AbstractEvidence):
+    """Lyapunov functions; the rate is alpha in 1/s, or rho per step, and is itself proved."""
+
+    attains_rate: ClassVar[bool] = True
+
+    rate: Fraction
+
+    @property
+    def shows(self) -> Shows:
+        """Stability."""
+        return Shows.STABILITY
+
+    def proved_rate(self, system: SwitchedSystem) -> Fraction:
+        """Return the claimed rate."""
+        return self.rate
+
+    def find_rate_misfit(self, time: Time) -> str | None:
+        """Say why the rate is not one of exponential decay, or None."""
+        if self.rate <= 0 or (time is Time.DISCRETE and self.rate >= 1):
+            return "the claimed rate is not one of exponential decay"
+        return None
+
+
+def is_square(M: IntegerMatrix, n: int) -> bool:
+    """Tell whether a matrix has n rows and n columns."""
+    return len(M) == n and all(len(row) == n for row in M)

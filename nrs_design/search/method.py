@@ -1,0 +1,19 @@
+"""What a search can be asked for, by name; imports nothing, for the command line's help."""
+
+from enum import StrEnum
+
+
+class Method(StrEnum):
+    """The rungs of the ladder, or all of them in turn."""
+
+    AUTO = "auto"
+    LMI = "lmi"
+    GRADIENT = "gradient"
+    OBSTRUCTION = "obstruction"
+    MIXTURE = "mixture"
+    MODE_POLYNOMIAL = "mode-polynomial"
+    MODE_QUADRATIC = "mode-quadratic"
+    PARAMETER_QUADRATIC = "parameter-quadratic"
+    PERIOD = "period"
+    POLYNOMIAL = "polynomial"
+    VALUE = "value"

@@ -1,0 +1,88 @@
+"""Search for a mode that is not stable by itself: floating point says where to look first."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+import numpy as np
+from numpy.typing import NDArray
+
+from nrs_design.proof.evidence import UnstableMode
+from nrs_design.proof.evidence.unstable_mode import (
+    affordable,
+    is_stable,
+    worst_eigenvalue,
+)
+from nrs_design.proof.matrix import RationalMatrix
+from nrs_design.proof.system import Mode, Time
+from nrs_design.search.allowance import Cost
+from nrs_design.search.candidates import Candidate, Candidates
+from nrs_design.search.family import Family
+
+# Modes nearer to the stability limit than this, relative to their norm, get an exact test first.
+SUSPICION = 1e-7
+# Exact tests of a mode that are predicted to take no more seconds are always made.
+ALWAYS_TESTED = 0.05
+
+
+def examine_suspicious_modes(family: Family) -> Candidates[UnstableMode]:
+    """Test exactly the modes that floating-point eigenvalues do not show to be stable."""
+    lasting = {mode.name for mode in family.system.lasting_modes()}
+    suspicious = [
+        mode
+        for mode, ok in zip(family.system.modes, seems_stable(family), strict=True)
+        if not ok and mode.name in lasting
+    ]
+    return (yield from _unstable_modes(suspicious, family))
+
+
+def examine_every_mode(family: Family) -> Candidates[UnstableMode]:
+    """Test exactly every mode that need never be left."""
+    lasting = family.system.lasting_modes()
+    outcome = yield from _unstable_modes(lasting, family)
+    if outcome and (left := len(family.system.modes) - len(lasting)):
+        outcome += f"; {left} not tested, they must be left and may be unstable"
+    return outcome
+
+
+def _unstable_modes(modes: Iterable[Mode], family: Family) -> Candidates[UnstableMode]:
+    """Decide exactly, mode by mode; in the end say how many are stable, if all are."""
+    time, count, skipped, found = family.system.time, 0, 0, False
+    for mode, fits in affordable(modes):
+        if not fits:
+            skipped += 1
+            continue
+        count += 1
+        cost = exact_test_cost(mode.A)
+        if cost.seconds > ALWAYS_TESTED:
+            family.allowance.take(cost, f"the exact test of mode {mode.name}")
+        if not is_stable(mode.A, time):
+            evidence = UnstableMode(mode.name, worst_eigenvalue(mode.A, time))
+            yield Candidate(evidence, f"mode {mode.name} is not stable")
+            found = True
+    if found:
+        return None
+    tested = f"{count} modes tested exactly, all stable" if count else "none"
+    return tested + (f"; {skipped} not tried, their numbers are too large" * (skipped > 0))
+
+
+def exact_test_cost(A: RationalMatrix) -> Cost:
+    """Predict what the exact test of one mode takes."""
+    n = A.shape[0]
+    bits = max(entry.bit_length() for row in (*A.numerators, (A.denominator,)) for entry in row)
+    grown = n * (bits + n.bit_length())
+    return Cost(n**4 * (1e-7 + 2e-13 * grown**2))
+
+
+def seems_stable(family: Family) -> NDArray[np.bool_]:
+    """Tell in floating point which modes are clearly stable; shape (m,)."""
+    if not np.isfinite(family.matrices).all():
+        return np.zeros(len(family.matrices), dtype=bool)
+    size = np.abs(family.matrices).max(axis=(1, 2))
+    continuous = family.system.time is Time.CONTINUOUS
+    if SUSPICION * size.max() < family.limit if continuous else family.limit < 1 - SUSPICION:
+        return np.ones(len(family.matrices), dtype=bool)
+    eigenvalues = np.linalg.eigvals(family.matrices)
+    if continuous:
+        return np.asarray(eigenvalues.real.max(axis=1) < -SUSPICION * size)
+    return np.asarray(np.abs(eigenvalues).max(axis=1) < 1 - SUSPICION)

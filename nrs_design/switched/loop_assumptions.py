@@ -1,0 +1,160 @@
+"""What a statement about an interaction design takes for granted, in words."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from itertools import chain
+
+from nrs_design.controllers.controller_design import ControllerDesign
+from nrs_design.controllers.float32 import exact_decimal
+from nrs_design.controllers.gains import idle_decay
+from nrs_design.controllers.laws import LAWS, CompliantLaw
+from nrs_design.models.contact.environment import Environment
+from nrs_design.spec import IdleStatesSpec, SwitchingSpec
+from nrs_design.switched.assumptions import CONTINUOUS, rule_texts
+from nrs_design.switched.gain_box import GainBox
+
+_GIVEN_LOOP = (
+    "The motion loop is the transfer function G(s) that the spec states, whatever the motion gains "
+    "listed here."
+)
+_DESIGNED_LOOP = (
+    "The motion loop is the linear actuator model of the spec, at its nominal values, under the "
+    "motion gains listed here."
+)
+_INPUTS = (
+    "All inputs are zero (velocity command, reference force, motion of the environment); all modes "
+    "then rest at one point, the state zero.",
+    "Under a constant command the modes may rest at different points. Where stability is proved, "
+    "bounded inputs keep the state bounded; how far it goes, and that it settles, is not claimed.",
+)
+_CONTACT = (
+    "In contact, the environment follows its linear model; its parameters stay in the declared "
+    "ranges and may change arbitrarily fast."
+)
+_AT_A_SWITCH = {
+    "deflection": "The deflection is continuous at a switch; the force may jump.",
+    "force": "Wherever stiffness or damping changes, at a switch or within its range, the force "
+    "stays and the deflection jumps (the thesis's coordinates; not physical in lasting contact).",
+}
+_NOT_MODELLED = (
+    "Continuous time: sampling, delay, quantization, friction and saturation are not modelled."
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Assumed:
+    """The closed loop, as far as its assumptions depend on it.
+
+    Parameters
+    ----------
+    design : ControllerDesign
+        All controllers.
+    touched : tuple of Environment
+        What they touch.
+    boxes : mapping of str to GainBox
+        Where the gains of each controller may be.
+    coordinates : {"deflection", "force"}
+        Of an impedance mode.
+    rules : SwitchingSpec
+        For the change of controllers.
+    idle : IdleStatesSpec or None
+        What idle states do, where there are any.
+    law : CompliantLaw
+        A law that has the states that all modes share.
+    given : bool
+        Whether the spec states the motion loop itself.
+    """
+
+    design: ControllerDesign
+    touched: tuple[Environment, ...]
+    boxes: Mapping[str, GainBox]
+    coordinates: str
+    rules: SwitchingSpec
+    idle: IdleStatesSpec | None
+    law: CompliantLaw
+    given: bool
+
+
+def assume_loop(loop: Assumed) -> tuple[str, ...]:
+    """Say what holds for an interaction design."""
+    return (
+        _GIVEN_LOOP if loop.given else _DESIGNED_LOOP,
+        *_INPUTS,
+        "The axes of the robot do not act on each other.",
+        *_contact_texts(loop),
+        *chain.from_iterable(
+            environment.law.memory_texts(environment.name, alone=len(loop.touched) == 1)
+            for environment in loop.touched
+        ),
+        *(_idle_texts(loop.idle, loop.law) if loop.idle is not None else ()),
+        *_kept_texts(loop),
+        *_switch_texts(loop.rules, reset=loop.idle is not None and loop.idle.reset),
+        _NOT_MODELLED,
+        *_gain_texts(loop.boxes),
+    )
+
+
+def _contact_texts(loop: Assumed) -> Iterator[str]:
+    for controller in loop.design.controllers:
+        if controller.contacts:
+            contacts = " or ".join(controller.contacts)
+            yield f"{controller.name} is active only in contact with {contacts}."
+    yield _CONTACT
+    integrated = any(c.law.commands == "velocity" for c in loop.design.controllers)
+    if integrated and all(e.law.has_rest for e in loop.touched):
+        yield _AT_A_SWITCH[loop.coordinates]
+
+
+def _idle_texts(idle: IdleStatesSpec, law: CompliantLaw) -> Iterator[str]:
+    """Say what is taken for granted about the states of impedance controllers."""
+    what = " and ".join((*law.state_words, "the position reference"))
+    decay = idle_decay(idle)
+    meanwhile = f"decay at {exact_decimal(decay)} 1/s" if decay else "are held"
+    yield (
+        f"Impedance controllers integrate their velocity to a position reference of the motion "
+        f"loop. While a position or force controller is active, {what} of the impedance "
+        f"controllers act on nothing and {meanwhile}."
+    )
+    if idle.reset:
+        yield (
+            "At a switch from an impedance controller to a position or force controller they are "
+            "set to zero: an impedance controller starts from the rest position, with vm = 0."
+        )
+    yield (
+        "The commanded position is that at which the contact carries no force; position and "
+        "reference are counted from it."
+    )
+    yield (
+        "The reference that the motion loop follows, and with it the velocity, may jump at a "
+        "switch; position and motion state xi do not: the PD differentiates the jump. A controller "
+        "that leaves this kick out is not covered."
+    )
+
+
+def _kept_texts(loop: Assumed) -> Iterator[str]:
+    used = {controller.law.name for controller in loop.design.controllers}
+    texts = (law.contact_text(alone=loop.idle is None) for law in LAWS.values() if law.name in used)
+    return (text for text in texts if text is not None)
+
+
+def _switch_texts(rules: SwitchingSpec, *, reset: bool) -> tuple[str, ...]:
+    states = "All other states are" if reset else "States are"
+    if rules.is_arbitrary:
+        return (f"{states} {CONTINUOUS}; any switching signal is possible.",)
+    environment = (
+        "While a controller is active, the environment that it touches may change among its "
+        "contacts at any time."
+    )
+    contacts = () if rules.dwell_time is not None else (environment,)
+    return (f"{states} {CONTINUOUS}.", *rule_texts(rules, "controller"), *contacts)
+
+
+def _gain_texts(boxes: Mapping[str, GainBox]) -> Iterator[str]:
+    ranged = {name: box for name, box in boxes.items() if not box.fixed}
+    where = ", or anywhere in their ranges" if ranged else ""
+    yield f"The gains are the single-precision numbers listed here{where}."
+    for name, box in ranged.items():
+        yield from box.range_texts(name)
+    yield from dict.fromkeys(box.law.retuned_text for box in ranged.values())

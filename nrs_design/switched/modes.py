@@ -1,0 +1,156 @@
+"""State matrices of one controller in one contact, exactly: loop, law and contact put together.
+
+Where all controllers give the motion loop a velocity, the state is ``[xp, own, contact]``: the
+motion loop from velocity to velocity, the states of the law and those of the contact. Otherwise
+it is ``[xi, own, r]``, the motion loop from position to position; r is the position reference that
+the robot integrates from a velocity, and only controllers that command one have it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from fractions import Fraction
+
+from nrs_design.controllers.laws import CompliantLaw
+from nrs_design.errors import AssemblyError
+from nrs_design.models.contact.law import AbstractLinearLaw
+from nrs_design.models.linear_form import LinearForm, combine, coordinates, zero
+from nrs_design.models.motion_loop import Realization
+from nrs_design.proof.matrix import multiply
+
+Rows = list[LinearForm]
+
+
+def velocity_mode(motion: Realization, law: CompliantLaw, contact: AbstractLinearLaw) -> Rows:
+    """Return A in deflection coordinates: for impedance control, thesis 6.28.
+
+    ``xp' = Ap xp + Bp u``, ``v = Cp xp``, the contact from v to F, and the law from F to u.
+
+    Parameters
+    ----------
+    motion : Realization
+        Of the motion loop.
+    law : CompliantLaw
+        With its gains; it commands a velocity.
+    contact : AbstractLinearLaw
+        Of the environment, at fixed parameters.
+    """
+    own = motion.order + len(law.states)
+    state = coordinates(own + len(contact.states))
+    force, reaction = contact.react(motion.output(len(state)), state[own:])
+    command, rates = law.respond(force, state[motion.order : own])
+    return [*motion.rates(command), *rates, *reaction]
+
+
+def to_force_coordinates(
+    rows: Sequence[LinearForm], motion: Realization, contact: AbstractLinearLaw
+) -> Rows:
+    """Replace the last state delta by the force ``F = k delta + b Cp xp`` (similarity T A T^-1).
+
+    Parameters
+    ----------
+    rows : sequence of LinearForm
+        A in deflection coordinates.
+    motion : Realization
+        Of the motion loop.
+    contact : AbstractLinearLaw
+        Of the environment, at fixed parameters.
+    """
+    T, inverse = coordinates(len(rows)), coordinates(len(rows))
+    force, _ = contact.react(motion.output(len(rows)), T[-1:])
+    T[-1] = list(force)
+    inverse[-1] = [*(-f / force[-1] for f in force[:-1]), 1 / force[-1]]
+    return [*multiply(multiply(T, rows), inverse)]
+
+
+def with_memories(
+    rows: Sequence[LinearForm], touched: str | None, creeps: Mapping[str, Fraction]
+) -> Rows:
+    """Put the memory of the touched environment, if any, in its place among all memories.
+
+    Parameters
+    ----------
+    rows : sequence of LinearForm
+        A mode; the last state is the memory of the touched environment, if it has one.
+    touched : str or None
+        That environment; None if it has no memory.
+    creeps : mapping of str to Fraction
+        The rates in 1/s at which the memories decay that are not touched, by environment; that of
+        the touched one is not used.
+    """
+    common = len(rows) - (touched is not None)
+    size = common + len(creeps)
+    places = [*range(common), *(common + i for i, name in enumerate(creeps) if name == touched)]
+    full = [zero(size) for _ in range(size)]
+    for i, row in zip(places, rows, strict=True):
+        for j, entry in zip(places, row, strict=True):
+            full[i][j] = entry
+    for i, (name, rate) in enumerate(creeps.items(), common):
+        if name != touched:
+            full[i][i] = -rate
+    return [*full]
+
+
+def position_mode(
+    motion: Realization,
+    law: CompliantLaw,
+    contact: AbstractLinearLaw | None = None,
+    environment: str = "",
+) -> Rows:
+    """Return A where the motion loop follows a position: for force control, thesis 6.46.
+
+    ``xi' = Ap xi + Bp u``, ``theta = Cp xi``, and the law from F to u. A velocity is integrated
+    first, ``r' = -vm`` and ``u = r``.
+
+    Parameters
+    ----------
+    motion : Realization
+        Of the motion loop.
+    law : CompliantLaw
+        With its gains.
+    contact : AbstractLinearLaw, optional
+        Of the environment, at fixed parameters; by default, nothing is touched.
+    environment : str
+        Its name, for errors.
+
+    Raises
+    ------
+    AssemblyError
+        If the law commands a position and the environment is no spring: with damping, its force
+        depends on the command itself; with a memory, on more than the position.
+    """
+    integrates = law.commands == "velocity"
+    own = motion.order + len(law.states)
+    state = coordinates(own + integrates)
+    position, velocity, force = motion.output(len(state)), zero(len(state)), zero(len(state))
+    if integrates:
+        velocity = combine(*zip(motion.C, motion.rates(state[-1]), strict=True))
+    elif contact is not None and not contact.is_spring:
+        raise AssemblyError(
+            f"force control in contact with {environment}, which has damping, is not modelled",
+            remedy="use an elastic environment for force controllers",
+            at=("environments", environment, "damping"),
+        )
+    if contact is not None:
+        force = [*contact.react(velocity, [position])[0]]
+    command, rates = law.respond(force, state[motion.order : own])
+    if integrates:
+        return [*motion.rates(state[-1]), *rates, command]
+    return [*motion.rates(command), *rates]
+
+
+def with_idle(rows: Sequence[LinearForm], count: int, decay: Fraction) -> Rows:
+    """Append idle states to the mode of a controller that does not use them.
+
+    Parameters
+    ----------
+    rows : sequence of LinearForm
+        Its A.
+    count : int
+        Of idle states.
+    decay : Fraction
+        Their rate in 1/s.
+    """
+    n = len(rows)
+    idle = [[*zero(n + i), -decay, *zero(count - i - 1)] for i in range(count)]
+    return [*([*row, *zero(count)] for row in rows), *idle]

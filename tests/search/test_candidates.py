@@ -1,0 +1,171 @@
+"""What searches yield, what the exact check takes of it, and what they say."""
+
+from dataclasses import replace
+from fractions import Fraction
+from functools import partial
+
+import numpy as np
+import pytest
+
+from nrs_design.proof.system import Stay, Switching
+from nrs_design.search import common_quadratic
+from nrs_design.search.allowance import Allowance, NotAffordableError
+from nrs_design.search.candidates import NO_MARGIN, OUT_OF_RANGE
+from nrs_design.search.common_quadratic import (
+    decide_one_state,
+    search_by_gradient,
+    search_by_lmi,
+    search_preconditioned,
+    search_raw,
+)
+from nrs_design.search.family import Family, floats_in_silence
+from nrs_design.search.mixture import search_mixture
+from nrs_design.search.mode_quadratic import search_mode_functions
+from nrs_design.search.obstruction import search_obstruction
+from nrs_design.search.parameter_quadratic import search_parameter_quadratic
+from nrs_design.search.period import search_period
+from nrs_design.search.polynomial import search_polynomial
+from nrs_design.search.unstable_mode import examine_every_mode, examine_suspicious_modes
+from tests.search.support import outcome
+from tests.support import dayawansa_martin, family, holds
+
+GOOD = dayawansa_martin(5)
+ROTATION = [[0, 1], [-1, 0]]
+
+
+def test_suspicious_modes_are_examined_exactly():
+    singular = [["-0.36", "-0.48"], ["-0.48", "-0.64"]]
+    evidence, words = outcome(examine_suspicious_modes, family([[-1, 0], [0, -1]], singular))
+    assert evidence.mode == "m1"
+    assert words == "mode m1 is not stable"
+    assert outcome(examine_suspicious_modes, GOOD) == (None, "none")
+
+
+def test_a_suspicious_mode_can_be_innocent():
+    barely = family([["-1e-12", 1], [-1, "-1e-12"]])
+    evidence, words = outcome(examine_suspicious_modes, barely)
+    assert evidence is None
+    assert words == "1 modes tested exactly, all stable"
+
+
+def test_every_mode_is_examined():
+    assert outcome(examine_every_mode, GOOD) == (None, "2 modes tested exactly, all stable")
+    assert outcome(examine_every_mode, family(ROTATION))[0].mode == "m0"
+
+
+def test_modes_that_must_be_left_are_not_called_stable():
+    """The report takes the words "all stable" at the end for a statement about every mode."""
+    rules = Switching(stays=(("m0", Stay(longest=Fraction(1))),))
+    system = replace(family([[1]], [[-1]]), switching=rules)
+    evidence, words = outcome(examine_every_mode, system)
+    assert evidence is None
+    assert words.startswith("1 modes tested exactly, all stable; 1 not tested")
+
+
+@pytest.mark.parametrize("optimize_rate", [True, False])
+def test_lmi_finds_evidence(optimize_rate):
+    evidence, words = outcome(search_by_lmi, GOOD, optimize_rate=optimize_rate)
+    assert words.startswith("found")
+    assert holds(GOOD, evidence)
+
+
+def test_optimizing_gives_the_faster_rate():
+    plain, best = (outcome(search_by_lmi, GOOD, optimize_rate=o)[0].rate for o in (False, True))
+    assert best >= plain
+
+
+def test_gradient_finds_evidence():
+    evidence, words = outcome(search_by_gradient, GOOD)
+    assert "updates" in words
+    assert holds(GOOD, evidence)
+
+
+@pytest.mark.parametrize("search", [search_raw, search_preconditioned])
+def test_other_coordinates_find_evidence_too(search):
+    stretched = family(*([[-1, x], [y, -1]] for x, y in ((1000, 0), (500, "1/9999"))))
+    for system in (GOOD, stretched):
+        evidence, words = outcome(search, system)
+        assert words == "found"
+        assert holds(system, evidence)
+    evidence, words = outcome(search, dayawansa_martin(6))
+    assert (evidence, words) == (None, NO_MARGIN)
+
+
+FIXED_ENDS = Switching(fixed_ends=(("m0", "m1"),))
+SHEARS = family([[-1, 10], [0, -1]], [[-1, 0], [10, -1]])
+
+
+@pytest.mark.parametrize(
+    ("search", "system", "kind"),
+    [
+        (search_obstruction, dayawansa_martin(6), "no-common-quadratic"),
+        (partial(search_polynomial, degree=2), dayawansa_martin(6), "common-polynomial"),
+        (search_period, dayawansa_martin(12), "unstable-period"),
+        (search_mixture, SHEARS, "unstable-mixture"),
+        (
+            search_parameter_quadratic,
+            replace(dayawansa_martin(12), switching=FIXED_ENDS),
+            "parameter-quadratic",
+        ),
+        (
+            search_mode_functions,
+            replace(dayawansa_martin(12), switching=Switching(dwell_time=Fraction(10))),
+            "mode-quadratic",
+        ),
+    ],
+)
+def test_every_other_rung_finds_its_kind(search, system, kind):
+    evidence, _ = outcome(search, system)
+    assert evidence.kind == kind
+    assert evidence.find_fault(system) is None
+    assert holds(system, evidence)
+
+
+@pytest.mark.parametrize(
+    ("search", "words"),
+    [
+        (search_obstruction, "the dual has no strict solution"),
+        (search_period, "no periodic signal tried makes solutions grow"),
+        (search_mixture, "every combination tried is stable"),
+    ],
+)
+def test_nothing_is_found_against_a_stable_family(search, words):
+    assert outcome(search, GOOD) == (None, words)
+
+
+def test_polynomials_beyond_patience_are_not_tried():
+    many = family(*[[[-int(i == j) for j in range(8)] for i in range(8)]] * 9)
+    family_ = Family.of(many, Allowance(60.0))
+    with pytest.raises(NotAffordableError, match="not tried: a program in 330 monomials"):
+        next(search_polynomial(family_, degree=4))
+
+
+def test_candidates_that_no_rounding_saves(monkeypatch):
+    """What is proposed without looking at the modes is refused, and the exact check says why."""
+    monkeypatch.setattr(
+        common_quadratic, "find_common_quadratic", lambda *_, **__: np.diag([1.0, 100.0])
+    )
+    monkeypatch.setattr(common_quadratic, "rate_of", lambda *_: 0.5)
+    evidence, words = outcome(search_by_lmi, GOOD)
+    assert evidence is None
+    assert words.startswith("a candidate was found, but V does not decrease")
+
+
+def test_one_state_is_decided_without_floating_point():
+    evidence, words = outcome(decide_one_state, family([[Fraction(-1, 10**400)]], [[-1]]))
+    assert words == "found"
+    assert 0 < evidence.rate < Fraction(1, 10**400)
+
+
+def test_beyond_floating_point():
+    beyond = family([[-(10**400), 0], [0, -1]])
+    for search in (search_by_lmi, search_by_gradient, search_raw, search_preconditioned):
+        assert outcome(search, beyond) == (None, OUT_OF_RANGE)
+    assert outcome(examine_suspicious_modes, beyond)[0] is None
+
+
+def test_warnings_are_silent_only_inside():
+    with floats_in_silence():
+        assert np.isinf(np.float64(1e308) * 10)
+    with pytest.warns(RuntimeWarning):
+        np.float64(1e308) * np.float64(10)

@@ -1,0 +1,219 @@
+"""The ladder: its order, and that nothing is found whatever the searches say."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from nrs_design.errors import DesignError
+from nrs_design.proof.evidence import UnstablePeriod
+from nrs_design.proof.system import Switching
+from nrs_design.search import common_quadratic, mode_quadratic, obstruction, polynomial
+from nrs_design.search.allowance import Allowance, NotAffordableError
+from nrs_design.search.certification import Limits
+from nrs_design.search.certify import Verdict, certify
+from nrs_design.search.family import Family
+from nrs_design.search.gradient import GradientResult
+from nrs_design.search.ladder import LADDER, applicable_methods, steps
+from nrs_design.search.method import Method
+from nrs_design.search.mixture import search_mixture
+from nrs_design.search.obstruction import search_obstruction
+from nrs_design.search.period import search_period
+from nrs_design.search.polynomial import search_polynomial
+from nrs_design.search.unstable_mode import examine_every_mode, examine_suspicious_modes
+from tests.proof.systems import (
+    ando_shih,
+    branicky,
+    dayawansa_martin,
+    family,
+    geromel_colaneri,
+    lossy_network,
+    shears,
+)
+from tests.search.support import outcome
+
+PAIR = (("m0", "m1"),)
+LIES = [np.nan, np.inf, 0.0, 1.0, -1.0, 1e300]
+
+
+def lying(shape, value):
+    def lie(*_, **__):
+        return np.full(shape, value)
+
+    return lie
+
+
+@pytest.mark.parametrize("value", LIES)
+def test_a_lying_semidefinite_solver_never_decides(monkeypatch, value):
+    def lie(rows, offset, sizes, equalities=0, time_limit=0.0):
+        return np.full(rows.shape[1], value)
+
+    for module in (polynomial, obstruction, mode_quadratic):
+        monkeypatch.setattr(module, "maximize_margin", lie)
+    for system in (dayawansa_martin(6), dayawansa_martin(5)):
+        for method in (Method.POLYNOMIAL, Method.OBSTRUCTION):
+            limits = Limits(max_degree=4, optimize_rate=False)
+            assert certify(system, method, limits).verdict is Verdict.INCONCLUSIVE
+
+
+@pytest.mark.parametrize("value", LIES)
+def test_a_lying_quadratic_search_never_decides(monkeypatch, value):
+    monkeypatch.setattr(common_quadratic, "find_common_quadratic", lying((2, 2), value))
+    monkeypatch.setattr(
+        common_quadratic,
+        "iterate_gradient",
+        lambda *_, **__: GradientResult(np.full((2, 2), value), 0),
+    )
+    for method in (Method.LMI, Method.GRADIENT):
+        found = certify(dayawansa_martin(12), method, Limits(optimize_rate=False))
+        assert found.verdict is Verdict.INCONCLUSIVE
+
+
+def test_a_function_that_is_not_symmetric_never_decides(monkeypatch):
+    skew = np.array([[1.0, 5.0], [-5.0, 1.0]])
+    monkeypatch.setattr(common_quadratic, "find_common_quadratic", lambda *_, **__: skew)
+    found = certify(dayawansa_martin(12), Method.LMI, Limits(optimize_rate=False))
+    assert found.verdict is Verdict.INCONCLUSIVE
+
+
+def test_modes_on_the_border_are_tested_exactly():
+    found, words = outcome(examine_suspicious_modes, family([[0, 1], [-1, 0]]))
+    assert found is not None
+    assert "m0" in words
+    assert outcome(examine_every_mode, shears())[0] is None
+
+
+def test_what_does_not_pass_the_whole_check_is_no_evidence():
+    """Which of two modes of one name is meant, a certificate could not say."""
+    system = family([[0, 1], [-1, 0]], [[-1, 0], [0, -1]])
+    twins = replace(system, modes=tuple(replace(mode, name="twin") for mode in system.modes))
+    found, words = outcome(examine_every_mode, twins)
+    assert found is None
+    assert words == "a candidate was found, but two modes of the system have the same name"
+    assert certify(twins, limits=Limits(max_degree=4)).verdict is Verdict.INCONCLUSIVE
+
+
+def test_every_rung_says_how_it_ended():
+    for search in (search_obstruction, search_mixture, search_period):
+        evidence, words = outcome(search, branicky())
+        assert words
+        assert evidence is None or evidence.find_fault(branicky()) is None
+    assert isinstance(outcome(search_period, branicky())[0], UnstablePeriod)
+
+
+def test_a_lift_beyond_patience_is_not_tried():
+    n = 12
+    system = family([[-(i == j) + (i == j + 1) for j in range(n)] for i in range(n)])
+    with pytest.raises(NotAffordableError, match="not tried"):
+        next(search_polynomial(Family.of(system, Allowance(60.0)), degree=4))
+
+
+def names(system, method=Method.AUTO, *, limits=None, allowance=None, no_quadratic=False):
+    """The steps in order, none of which is made."""
+    limits, allowance = limits or Limits(), allowance or Allowance()
+    found = steps(system, method, limits, allowance, lambda: no_quadratic)
+    return [name for name, _ in found]
+
+
+def test_the_order_is_cheapest_first_and_higher_degrees_come_last():
+    assert names(dayawansa_martin(6), limits=Limits(max_degree=10)) == [
+        "suspicious modes",
+        "lmi",
+        "obstruction",
+        "lmi, raw",
+        "lmi, preconditioned",
+        "gradient",
+        "every mode",
+        "mixture",
+        "polynomial of degree 4",
+        "polynomial of degree 6",
+        "period",
+        "polynomial of degree 8",
+        "polynomial of degree 10",
+        "polynomial of degree 12",
+    ]
+
+
+def test_degrees_of_two_kinds_rise_together():
+    quick = replace(lossy_network(), switching=Switching(dwell_time=2))
+    found = names(quick, limits=Limits(max_degree=8))
+    start = found.index("polynomial of degree 4")
+    assert found[start:] == [
+        "polynomial of degree 4",
+        "polynomial of degree 6",
+        "mode polynomial of degree 4",
+        "mode polynomial of degree 6",
+        "period",
+        "polynomial of degree 8",
+        "mode polynomial of degree 8",
+        "polynomial of degree 10",
+        "mode polynomial of degree 10",
+    ]
+
+
+def test_without_a_common_quadratic_none_is_looked_for_again():
+    left = names(dayawansa_martin(6), limits=Limits(max_degree=4), no_quadratic=True)
+    assert {"lmi, raw", "lmi, preconditioned", "gradient"}.isdisjoint(left)
+    assert "polynomial of degree 4" in left
+
+
+@pytest.mark.parametrize(
+    ("system", "others"),
+    [
+        (family([[-1]], [[-2]]), ["one state", "obstruction", "gradient"]),
+        (geromel_colaneri(3), ["lmi", "mode quadratic", "gradient"]),
+        (ando_shih("0.7"), ["lmi", "mode quadratic"]),
+        (
+            shears(Switching(fixed_ends=(("m0", "m1"),))),
+            ["constant values", "parameter quadratic", "switching at constant values"],
+        ),
+    ],
+    ids=["one state", "dwell", "discrete", "constant"],
+)
+def test_what_the_kind_of_switching_and_time_asks_for(system, others):
+    found = names(system, limits=Limits(max_degree=2))
+    assert set(others) <= set(found)
+    assert ("lmi" in found) is (system.order > 1)
+    assert ("mixture" in found) is (system.switching.is_arbitrary and system.time == "continuous")
+
+
+@pytest.mark.parametrize("method", [m for m in Method if m is not Method.AUTO])
+def test_a_method_alone_has_its_own_rungs_and_the_exact_tests(method):
+    for system in (dayawansa_martin(6), lossy_network(), shears(Switching(fixed_ends=PAIR))):
+        if method in applicable_methods(system):
+            own = {rung.name for rung in LADDER if rung.method in {method, None}}
+            asked = names(system, method, limits=Limits(max_degree=4))
+            assert {name.partition(" of degree")[0] for name in asked} <= own
+            assert "every mode" in asked
+
+
+def test_every_method_is_on_the_ladder():
+    assert {rung.method for rung in LADDER} == {*Method, None} - {Method.AUTO}
+    assert len({rung.name for rung in LADDER}) == len(LADDER)
+
+
+def test_degrees_rise_while_they_fit_into_what_is_left():
+    allowance = Allowance(0.5, clock=lambda: 0.0)
+    found = names(dayawansa_martin(6), Method.POLYNOMIAL, allowance=allowance)
+    last = [name for name in found if name.startswith("polynomial")][-1]
+    assert last.startswith("polynomial of degree")
+    assert "polynomial of higher degree" in names(dayawansa_martin(6), Method.POLYNOMIAL)
+
+
+@pytest.mark.parametrize("method", list(Method))
+def test_no_method_proves_a_constant_parameter_by_its_ends(method):
+    # Halfway between the two, the shears have the eigenvalue 4.
+    system = shears(Switching(transitions=(), fixed_ends=(("m0", "m1"),)))
+    try:
+        found = certify(system, method, Limits(max_degree=4))
+    except DesignError:
+        return
+    assert found.verdict is not Verdict.PROVED
+
+
+@pytest.mark.parametrize("exponent", [12, 100, 200, 300])
+def test_enormous_entries_end_in_words(exponent):
+    big = 10**exponent
+    modes = [[-big, 0], [1, -1]], [[-1, 1], [0, -big]]
+    for switching in (Switching(), Switching(dwell_time=branicky().switching.dwell_time + 1)):
+        assert certify(family(*modes, switching=switching), limits=Limits(max_degree=4)).attempts

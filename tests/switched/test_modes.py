@@ -1,0 +1,238 @@
+"""State matrices entry by entry, against the published ones and against other formulas."""
+
+from dataclasses import dataclass
+from fractions import Fraction
+from types import MappingProxyType
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from nrs_design.controllers.laws import (
+    AbstractCompliantLaw,
+    Admittance,
+    ProportionalForce,
+)
+from nrs_design.design.impedance import ImpedanceLoop
+from nrs_design.design.margins import stiffness_limit
+from nrs_design.design.transfer import TransferFunction
+from nrs_design.errors import AssemblyError
+from nrs_design.models.contact import Elastic, KelvinVoigt
+from nrs_design.models.linear_form import combine
+from nrs_design.models.motion_loop import MotionLoop, realize
+from nrs_design.proof.exact import characteristic_polynomial, is_hurwitz
+from nrs_design.proof.matrix import RationalMatrix
+from nrs_design.switched.modes import (
+    position_mode,
+    to_force_coordinates,
+    velocity_mode,
+    with_idle,
+    with_memories,
+)
+
+F = Fraction
+# Thesis 6.3.2.2: Ap = [[0, 1], [-1618.80, -56.89]], Cp = [1618.80, 28.416].
+LOOP = MotionLoop((F("28.416"), F("1618.80")), (F(1), F("56.89"), F("1618.80")))
+MOTION = realize(LOOP)
+# 752.69 N/m at 0.24 m, the stiffness in the printed matrices (43.355 N m/rad).
+PRINTED = KelvinVoigt(F("752.69") * F("0.24") ** 2, F(0))
+SOFT = KelvinVoigt(F("43.0356"), F(0))
+NO_DAMPING = F(0)
+positive = st.fractions("1/100", 100, max_denominator=1000)
+
+
+def polynomial(rows):
+    A = RationalMatrix.from_rows(rows)
+    n = len(rows)
+    return [F(c, A.denominator**k) for k, c in enumerate(characteristic_polynomial(A.numerators))][
+        : n + 1
+    ]
+
+
+def objects(*entries):
+    return np.array(entries, dtype=object)
+
+
+def stable(rows):
+    return is_hurwitz(RationalMatrix.from_rows(rows).numerators)
+
+
+class TestPublished:
+    @pytest.mark.parametrize(("Bt", "entry"), [("2.15", -215), ("1.04", -104)])
+    def test_matrices_of_thesis_6322(self, Bt, entry):
+        """With -1618.80, as errata have it. The print's last row is good to five digits."""
+        law = Admittance(F("0.01"), F(Bt))
+        rows = to_force_coordinates(velocity_mode(MOTION, law, PRINTED), MOTION, PRINTED)
+        assert rows[0] == [0, 1, 0, 0]
+        assert rows[1] == [F("-1618.80"), F("-56.89"), -1, 0]
+        assert rows[2] == [0, 0, entry, 100]
+        assert rows[3] == [PRINTED.exact[0] * F("1618.80"), PRINTED.exact[0] * F("28.416"), 0, 0]
+        assert float(rows[3][0]) == pytest.approx(70183.13, rel=2e-5)
+        assert float(rows[3][1]) == pytest.approx(1231.97, rel=2e-5)
+
+    @pytest.mark.parametrize(
+        ("Bt", "eigenvalues"),
+        [
+            ("2.15", [-217.470, -14.694 + 32.617j, -14.694 - 32.617j, -25.031]),
+            ("1.04", [-111.737, -5.424 + 39.978j, -5.424 - 39.978j, -38.306]),
+        ],
+    )
+    @pytest.mark.parametrize("coordinates", ["deflection", "force"])
+    def test_eigenvalues(self, Bt, eigenvalues, coordinates):
+        rows = velocity_mode(MOTION, Admittance(F("0.01"), F(Bt)), SOFT)
+        if coordinates == "force":
+            rows = to_force_coordinates(rows, MOTION, SOFT)
+        found = np.linalg.eigvals(np.array(rows, dtype=float))
+        wanted = np.array(eigenvalues)
+        for value in wanted:
+            assert np.abs(found - value).min() < 2e-3
+        for value in found:
+            assert np.abs(wanted - value).min() < 2e-3
+
+    @pytest.mark.parametrize("Bt", ["1.04", "2.11", "2.15"])
+    @pytest.mark.parametrize("damping", ["0", "1/50"])
+    def test_stiffness_limit(self, Bt, damping):
+        """Exact bisection over the assembled mode, against the design's crossing formula."""
+        low, high = F(1), F(1000)
+        law = Admittance(F("0.01"), F(Bt))
+        while high - low > F(1, 1000):
+            middle = (low + high) / 2
+            if stable(velocity_mode(MOTION, law, KelvinVoigt(middle, F(damping)))):
+                low = middle
+            else:
+                high = middle
+        motion = TransferFunction(
+            tuple(map(float, LOOP.numerator)), tuple(map(float, LOOP.denominator))
+        )
+        limit = stiffness_limit(
+            ImpedanceLoop(motion, KelvinVoigt(1.0, float(F(damping)))), 0.01, float(F(Bt))
+        )
+        assert float(low) == pytest.approx(limit, abs=2e-3)
+
+    def test_known_stiffness_limits(self):
+        """75.9 N m/rad for Bt = 1.04 and 232.3 for Bt = 2.15, both at Mt = 0.01."""
+        for Bt, limit in (("1.04", "75.9"), ("2.15", "232.3")):
+            law = Admittance(F("0.01"), F(Bt))
+            margin = F("0.5")
+            assert stable(velocity_mode(MOTION, law, KelvinVoigt(F(limit) - margin, F(0))))
+            assert not stable(velocity_mode(MOTION, law, KelvinVoigt(F(limit) + margin, F(0))))
+
+
+class TestImpedance:
+    @given(positive, positive, positive, st.fractions(0, 10, max_denominator=100), st.booleans())
+    def test_characteristic_polynomial(self, Mt, Bt, k, b, massless):
+        """s den(s)(Mt s + Bt) + num(s)(b s + k), over its leading coefficient."""
+        law = Admittance(F(0) if massless else Mt, Bt)
+        rows = velocity_mode(MOTION, law, KelvinVoigt(k, b))
+        num, den = LOOP.numerator, LOOP.denominator
+        free = np.polymul(
+            np.array([*den, 0], dtype=object), np.array([law.Mt, law.Bt], dtype=object)
+        )
+        touch = np.polymul(np.array(num, dtype=object), np.array([b, k], dtype=object))
+        total = np.trim_zeros(np.polyadd(free, touch), "f")
+        assert polynomial(rows) == [c / total[0] for c in total]
+
+    @given(positive, positive, positive, st.fractions(0, 10, max_denominator=100), st.booleans())
+    def test_coordinates_are_similar(self, Mt, Bt, k, b, massless):
+        law, contact = Admittance(F(0) if massless else Mt, Bt), KelvinVoigt(k, b)
+        rows = velocity_mode(MOTION, law, contact)
+        assert polynomial(to_force_coordinates(rows, MOTION, contact)) == polynomial(rows)
+
+    @given(
+        st.tuples(positive, st.fractions(0, 10)),
+        st.tuples(positive, st.fractions(0, 10)),
+        st.booleans(),
+    )
+    def test_affine_in_stiffness_and_damping(self, one, other, massless):
+        """What makes the corners of a parameter box enough, in either coordinates."""
+        law = Admittance(F(0) if massless else F("0.01"), F(2))
+        middle = tuple((a + b) / 2 for a, b in zip(one, other, strict=True))
+        contacts = [KelvinVoigt(*point) for point in (one, middle, other)]
+        for force in (False, True):
+            first, half, last = (self.rows(law, contact, force) for contact in contacts)
+            for a, m, b in zip(first, half, last, strict=True):
+                assert [(x + y) / 2 for x, y in zip(a, b, strict=True)] == m
+
+    def rows(self, law, contact, force):
+        rows = velocity_mode(MOTION, law, contact)
+        return to_force_coordinates(rows, MOTION, contact) if force else rows
+
+    def test_without_inertia(self):
+        rows = velocity_mode(MOTION, Admittance(F(0), F(2)), KelvinVoigt(F(43), F(0)))
+        assert rows == [
+            [0, 1, 0],
+            [F("-1618.80"), F("-56.89"), F(-43, 2)],
+            [F("1618.80"), F("28.416"), 0],
+        ]
+
+    def test_damped_contact(self):
+        rows = velocity_mode(MOTION, Admittance(F(1, 100), F(2)), KelvinVoigt(F(43), F(3)))
+        assert rows[2] == [300 * F("1618.80"), 300 * F("28.416"), -200, 4300]
+
+
+class TestForce:
+    @given(st.fractions(0, 1), positive)
+    def test_state_feedback_of_thesis_646(self, Kp, k):
+        rows = position_mode(MOTION, ProportionalForce(Kp), Elastic(k))
+        assert rows == [
+            [0, 1],
+            [F("-1618.80") * (1 + Kp * k), F("-56.89") - Kp * k * F("28.416")],
+        ]
+
+    def test_damping_is_not_modelled(self):
+        with pytest.raises(AssemblyError, match="damping") as caught:
+            position_mode(MOTION, ProportionalForce(F(1)), KelvinVoigt(F(1), F(1)), "jelly")
+        assert "jelly" in caught.value.message
+        assert "elastic" in caught.value.remedy
+
+
+@dataclass(frozen=True, slots=True)
+class IntegralForce(AbstractCompliantLaw):
+    """A law with a state of its own over a position: ``-Kp F - Ki int F``."""
+
+    name = "integral-force"
+    units = MappingProxyType({"Kp": "rad/(N*m)", "Ki": "rad/(N*m*s)"})
+    commands = "position"
+
+    Kp: Fraction
+    Ki: Fraction
+
+    @property
+    def states(self):
+        return ("integral of F [N*m*s]",)
+
+    def respond(self, force, states):
+        return combine((-self.Kp, force), (-self.Ki, states[0])), [force]
+
+    @classmethod
+    def contact_text(cls, *, alone):
+        return None
+
+
+class TestOwnStates:
+    @given(Kp=positive, Ki=positive, k=positive)
+    def test_integral_of_the_force(self, Kp, Ki, k):
+        """``s den(s) + k (Kp s + Ki) num(s)``."""
+        rows = position_mode(MOTION, IntegralForce(Kp, Ki), Elastic(k))
+        assert [row[-1] for row in rows] == [0, -Ki, 0]
+        loop = np.polymul(objects(*LOOP.numerator), objects(k * Kp, k * Ki))
+        assert polynomial(rows) == list(np.polyadd(objects(*LOOP.denominator, 0), loop))
+
+
+class TestPlaces:
+    """Where states stand that a mode does not use."""
+
+    def test_idle_states_decay_alone(self):
+        assert with_idle([[F(1), F(2)], [F(3), F(4)]], 2, F(5)) == [
+            [1, 2, 0, 0],
+            [3, 4, 0, 0],
+            [0, 0, -5, 0],
+            [0, 0, 0, -5],
+        ]
+
+    def test_memories_stand_in_the_order_of_the_environments(self):
+        rows = [[F(1), F(2)], [F(3), F(4)]]
+        creeps = {"nose": F(7), "concha": F(8)}
+        assert with_memories(rows, "concha", creeps) == [[1, 0, 2], [0, -7, 0], [3, 0, 4]]
+        assert with_memories([[F(1)]], None, {"nose": F(7)}) == [[1, 0], [0, -7]]

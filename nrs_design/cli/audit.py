@@ -17,7 +17,7 @@ from nrs_design.cli.identify.common import (
     sources,
     write_report,
 )
-from nrs_design.cli.options import Json, Quiet
+from nrs_design.cli.options import Date, Json, Quiet
 from nrs_design.cli.printing import note, print_json, progress, say
 from nrs_design.cli.tables import print_table
 from nrs_design.errors import CertificateError
@@ -51,6 +51,7 @@ def audit(
     ] = None,
     columns: ColumnMap = None,
     report: ReportTo = None,
+    date: Date = None,
     as_json: Json = False,
     quiet: Quiet = False,
 ) -> None:
@@ -81,7 +82,7 @@ def audit(
             from nrs_design.reporting.running import run_report
 
             step("figures")
-            write_report(report, run_report(found, loaded.spec.name, reason))
+            write_report(report, run_report(found, loaded.spec.name, reason), date)
     if as_json:
         print_json("audit", _summary(found, loaded, certificate, reason))
     elif not quiet:

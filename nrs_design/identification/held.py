@@ -40,9 +40,18 @@ class Held:
 
     @classmethod
     def of(cls, time: Array, command: Array, delay: float) -> Self:
-        """Hold every command from its sample to the next, ``delay`` s later.
+        """Hold every command from its sample to the next, and let it act later.
 
-        Before the first one it was already there, after the last one it stays.
+        The first one was there before; the last one acts at no sample.
+
+        Parameters
+        ----------
+        time : ndarray, shape (n,)
+            Of the samples, in s.
+        command : ndarray, shape (n,)
+            In any unit.
+        delay : float
+            In s.
         """
         acts = time + delay
         inside = acts[(acts > time[0]) & (acts < time[-1])]

@@ -18,7 +18,7 @@ from nrs_design.cli.identify.common import (
     sources,
     write_report,
 )
-from nrs_design.cli.options import Json, Quiet
+from nrs_design.cli.options import Date, Json, Quiet
 from nrs_design.cli.printing import note, print_json, progress, say
 from nrs_design.cli.tables import print_table
 
@@ -39,6 +39,7 @@ def delay(
     ] = None,
     columns: ColumnMap = None,
     report: ReportTo = None,
+    date: Date = None,
     as_json: Json = False,
     quiet: Quiet = False,
 ) -> None:
@@ -66,7 +67,7 @@ def delay(
             from nrs_design.reporting.delay import delay_report
 
             step("figures")
-            write_report(report, delay_report(found))
+            write_report(report, delay_report(found), date)
     if as_json:
         print_json("identify-delay", _summary(found))
     elif not quiet:

@@ -7,11 +7,7 @@ from dataclasses import dataclass
 
 from nrs_design.errors import DesignError
 from nrs_design.spec import InteractionDesignSpec, LoadedSpec
-from nrs_design.spec.controllers import PositionControllerSpec
 from nrs_design.spec.environment import AbstractEnvironmentSpec
-
-# Laws whose force follows from deflection and velocity of the moment, so that a window tells it.
-_PLAIN = ("elastic", "kelvin-voigt")
 
 
 @dataclass(frozen=True, slots=True)
@@ -100,17 +96,17 @@ def bounds_of(loaded: LoadedSpec) -> RunBounds:
 
 def _stiffness(spec: InteractionDesignSpec, name: str) -> Stiffness | None:
     controller = spec.controllers[name]
-    if isinstance(controller, PositionControllerSpec):
+    if not controller.contacts:
         return None
     touched = {contact: spec.environments[contact] for contact in controller.contacts}
-    plain = [e for e in touched.values() if e.model in _PLAIN]
-    foreign = tuple(contact for contact, e in touched.items() if e.model not in _PLAIN)
+    plain = [e for e in touched.values() if not e.remembers]
+    foreign = tuple(contact for contact, e in touched.items() if e.remembers)
     return Stiffness(tuple(_range(environment) for environment in plain), foreign)
 
 
 def _range(environment: AbstractEnvironmentSpec) -> tuple[float, float]:
-    _, low, high = environment.exact_at_pivot()["stiffness"]
-    return float(low), float(high)
+    stiffness = environment.exact_at_pivot()["stiffness"]
+    return float(stiffness.low), float(stiffness.high)
 
 
 def _stay(spec: InteractionDesignSpec, name: str) -> tuple[float, float]:

@@ -23,6 +23,8 @@ _LEVELS = (0.5, 0.6, 0.7, 0.8, 0.9, 0.95)
 # Of the largest error: half the play that is tried.
 _PLAYS = (0.5, 1.0, 1.5)
 _LARGE = 0.1
+# A relative standard error beyond which nothing is known.
+_UNSURE = 0.5
 
 
 def find_doubts(
@@ -52,6 +54,10 @@ def find_doubts(
             "the command has one level only: friction cannot be told from a smaller gain, and the "
             "gain is that of this level"
         )
+    names = ["gain", "time constant"] + ["friction"] * (motor.friction is not None)
+    for name, error in zip(names, found.uncertainty.errors.tolist(), strict=False):
+        if error > _UNSURE:
+            yield f"the records do not determine the {name}: its relative error is {error:.2g}"
     if not failed:
         return
     spread = np.sqrt(sum(float(np.sum((r.output - r.output.mean()) ** 2)) for r in records))

@@ -52,3 +52,12 @@ def test_a_second_lag_needs_a_second_order():
 
 def test_noise_is_no_doubt():
     assert doubts(motors.record("chirp", 4)) == ""
+
+
+def test_what_is_not_determined_is_said():
+    """A slow ramp shows the gain, and nothing of the time constant."""
+    record = motors.record("chirp", 1)
+    slow = 2000 * record.time / record.time[-1] + 1000
+    output = motors.GAIN * (1000 * record.time + 1000 * record.time**2 / record.time[-1])
+    noise = 3e-3 * np.random.default_rng(0).normal(size=len(output))
+    assert "do not determine" in doubts(replace(record, command=slow, output=output + noise))

@@ -55,9 +55,10 @@ def test_noise_is_no_doubt():
 
 
 def test_what_is_not_determined_is_said():
-    """A slow ramp shows the gain, and nothing of the time constant."""
+    """A slow ramp shows the sum of time constant and dead time, and not which is which."""
     record = motors.record("chirp", 1)
     slow = 2000 * record.time / record.time[-1] + 1000
-    output = motors.GAIN * (1000 * record.time + 1000 * record.time**2 / record.time[-1])
-    noise = 3e-3 * np.random.default_rng(0).normal(size=len(output))
-    assert "do not determine" in doubts(replace(record, command=slow, output=output + noise))
+    angle, _, _ = motors.simulate(slow)
+    noise = 3e-3 * np.random.default_rng(0).normal(size=len(angle))
+    text = doubts(replace(record, command=slow, output=angle + noise))
+    assert "do not determine" in text

@@ -5,13 +5,14 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
-from nrs_design.reporting.document import Bullets, Illustration, Report, Section, Table
+from nrs_design.reporting.document import Block, Bullets, Illustration, Report, Section, Table
 from nrs_design.reporting.figures.running import draw_run, draw_stiffness
-from nrs_design.reporting.identification import FOOTER, facts_of, label_of, source_section
+from nrs_design.reporting.identification import facts_of, label_of, source_section
 
 if TYPE_CHECKING:
     from nrs_design.identification.running import RunJudgement
 
+_FOOTER = "Page of nrs-design. A run is one run, not a proof."
 _MEANING = (
     "A violation of the stiffness is claimed only where a whole interval lies outside the range. "
     "Intervals hold at 95 % for all windows together, with noise in force and deflection.",
@@ -35,18 +36,6 @@ def run_report(found: RunJudgement, name: str, reason: str) -> Report:
         Why the spec is not proved; empty if it is.
     """
     log = found.log
-    rows = tuple(
-        (
-            check.name,
-            str(check.status),
-            check.measured,
-            check.allowed,
-            check.basis,
-            "" if check.first is None else f"{check.first.time:.6g} s: {check.first.words}",
-        )
-        for check in found.checks
-    )
-    columns = ("Check", "Outcome", "Measured", "Allowed", "Which is", "First violation")
     loud = (f"UNPROVED SPEC: {reason}; its ranges are only declared.",) if reason else ()
     return Report(
         name=f"run-{name}",
@@ -56,13 +45,25 @@ def run_report(found: RunJudgement, name: str, reason: str) -> Report:
         remarks=loud,
         facts=facts_of([log.source]),
         sections=(
-            Section("Checks", (Table("Bounds and the run", columns, rows),)),
+            Section("Checks", tuple(_tables(found))),
             Section("Figures", tuple(_figures(found))),
             Section("How to read this", (Bullets("", _MEANING),), boxed=True),
             source_section([log.source]),
         ),
-        footer=FOOTER,
+        footer=_FOOTER,
     )
+
+
+def _tables(found: RunJudgement) -> Iterator[Block]:
+    judged = tuple((c.name, str(c.status), c.measured) for c in found.checks)
+    yield Table("What the log shows", ("Check", "Outcome", "Measured"), judged)
+    bounds = tuple((c.name, c.allowed, c.basis) for c in found.checks if c.allowed)
+    yield Table("What it is held against", ("Check", "Allowed", "Which is"), bounds)
+    left = tuple(
+        f"{c.name}: at {c.first.time:.6g} s, {c.first.words}." for c in found.checks if c.first
+    )
+    if left:
+        yield Bullets("First violations", left)
 
 
 def _claim(found: RunJudgement) -> str:

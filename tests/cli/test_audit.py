@@ -42,8 +42,9 @@ def without_command(tmp_path):
 def test_inside(tmp_path, proof):
     spec, certificate = proof
     done = run("audit", without_command(tmp_path), spec, "--certificate", certificate, *LIMIT,
-               cwd=tmp_path)  # fmt: skip
+               "--report", "run.pdf", cwd=tmp_path)  # fmt: skip
     assert done.returncode == 0, done.stdout
+    assert (tmp_path / "run.pdf").read_bytes().startswith(b"%PDF")
     assert "soft-tissue: INSIDE: the run stayed inside what was proved" in done.stdout
     assert "not covered: the proof takes for granted that there is no delay" in done.stdout
     assert "UNPROVED" not in done.stdout
@@ -79,10 +80,12 @@ def test_a_foreign_certificate_is_rejected(tmp_path, proof):
 
 
 @pytest.mark.parametrize("ending", ["html", "pdf"])
-def test_report(tmp_path, ending):
+@pytest.mark.parametrize(("stiffness", "code"), [(43.0, 3), (60.0, 1)])
+def test_report(tmp_path, ending, stiffness, code):
     page = tmp_path / f"page.{ending}"
-    done = run("audit", write(tmp_path), SOFT_TISSUE, "--report", page, "-q", cwd=tmp_path)
-    assert done.returncode == 3, done.stderr
+    log = write(tmp_path, stiffness=stiffness)
+    done = run("audit", log, SOFT_TISSUE, "--report", page, "-q", cwd=tmp_path)
+    assert done.returncode == code, done.stderr
     assert page.read_bytes()[:4] in (b"<!DO", b"%PDF")
 
 

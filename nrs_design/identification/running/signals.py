@@ -10,6 +10,8 @@ from nrs_design.identification.delay import identify_delay
 from nrs_design.identification.running.bounds import RunBounds
 from nrs_design.identification.running.check import Check, Status, Violation
 from nrs_design.identification.running.log import RunLog
+from nrs_design.identification.running.stiffness import noise_variance
+from nrs_design.identification.statistics import CONFIDENCE, student_quantile
 
 _CONTINUOUS = "none: the proof is in continuous time"
 _ASSUMED = "taken for granted by the proof"
@@ -105,9 +107,13 @@ def judge_force(log: RunLog, bounds: RunBounds) -> Check:
         return Check("force", Status.NOT_JUDGED, "no column for torque or force", allowed, basis)
     size = np.abs(torque)
     largest = f"largest torque {size.max():.4g} N m"
-    over = np.flatnonzero(size > bounds.torque)
+    # So far may noise reach in any row, at 95 % for all of them together.
+    reach = student_quantile(len(size), 1 - (1 - CONFIDENCE) / len(size))
+    reach *= float(np.sqrt(noise_variance(torque)))
+    over = np.flatnonzero(size - reach > bounds.torque)
     if not len(over):
-        return Check("force", Status.INSIDE, largest, allowed, basis)
+        status = Status.UNDECIDED if size.max() > bounds.torque else Status.INSIDE
+        return Check("force", status, f"{largest}, noise up to {reach:.2g} N m", allowed, basis)
     words = f"the torque is {torque[over[0]]:.4g} N m"
     first = Violation(log.begin + float(log.time[over[0]]), words)
     return Check("force", Status.OUTSIDE, largest, allowed, basis, first)

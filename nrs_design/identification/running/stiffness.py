@@ -112,7 +112,7 @@ def _window(
     yielding = abs(cross) / float(y @ y) - quantile * _error(y, x)
     reverse = 1 / yielding if yielding > 0 else math.inf
     # The part of the power of the deflection that is no noise.
-    real = 1 - _NOISIER * _noise(deflection[first:last]) * len(x) / power
+    real = 1 - _NOISIER * noise_variance(deflection[first:last]) * len(x) / power
     drawn = (abs(k) + half) / real if real > 0 else math.inf
     low = abs(k) - half
     if low < 0:
@@ -121,8 +121,8 @@ def _window(
     return Window(first, last, k, *((low, high) if k > 0 else (-high, -low)))
 
 
-def _noise(x: Array) -> float:
-    """Return the variance of white noise on a smooth motion, and of its rounding."""
+def noise_variance(x: Array) -> float:
+    """Return the variance of white noise on a smooth signal, and of its rounding."""
     rough = np.diff(x, 3)
     # The binomial coefficients 1, 3, 3, 1 have squares that add up to 20.
     return float(rough @ rough) / len(rough) / 20 + resolution(x) ** 2 / 12

@@ -125,6 +125,9 @@ def test_saturation_and_force(tmp_path):
     assert check(found, "force").first.time == pytest.approx(6.0)
     saturated = check(found, "saturation")
     assert saturated.first.time == pytest.approx(t[np.argmax(np.abs(np.round(command, 2)) >= 1990)])
+    # A reading above the limit that noise explains is no violation.
+    noisy = log(tmp_path, runs.run(stiffness=52.0, noise=0.02))
+    assert str(check(judged(noisy), "force").status) == "undecided"
     assert "give --command-limit" in check(judged(log(tmp_path)), "saturation").measured
 
 

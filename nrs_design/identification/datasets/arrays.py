@@ -182,8 +182,8 @@ def _flat(values: Mapping[str, Any], prefix: str = "") -> Iterator[tuple[str, An
 
 
 def _sorted(items: Any) -> Content:
-    """Part columns from words."""
+    """Return all arrays, and the words among them."""
     arrays = {name: np.asarray(value) for name, value in dict(items).items()}
     words = [name for name, value in arrays.items() if value.dtype.kind in "US"]
     texts = tuple(" ".join(map(str, arrays[name].reshape(-1)[:100])) for name in words)
-    return {name: value for name, value in arrays.items() if name not in words}, texts
+    return arrays, texts

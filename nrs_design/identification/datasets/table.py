@@ -165,9 +165,10 @@ def _read_arrays(file: BinaryIO, path: Path, wanted: Wanted) -> Table:
     layout, groups = find_columns(
         names, wanted.layouts, wanted.mapping, path, None, wanted.optional
     )
+    labels: list[str] = []
     data = {
         group: {
-            key: _values(arrays[column.name], column, path) * column.factor
+            key: _values(arrays[column.name], column, path, labels) * column.factor
             for key, column in found.items()
         }
         for group, found in groups.items()
@@ -180,7 +181,7 @@ def _read_arrays(file: BinaryIO, path: Path, wanted: Wanted) -> Table:
             remedy="save columns of one record, as long as its time",
         )
     synthetic = any(SYNTHETIC in text.lower() for text in (*names, *words))
-    return Table(Source(path, digest, synthetic), layout, data, groups, (), None)
+    return Table(Source(path, digest, synthetic), layout, data, groups, tuple(labels), None)
 
 
 def _digest(file: BinaryIO) -> str:
@@ -192,7 +193,7 @@ def _digest(file: BinaryIO) -> str:
     return digest.hexdigest()
 
 
-def _values(array: NDArray[np.generic], column: Column, path: Path) -> Array:
+def _values(array: NDArray[np.generic], column: Column, path: Path, labels: list[str]) -> Array:
     flat = array.reshape(-1)
     if array.ndim > 1 and flat.size != max(array.shape):
         shape = " x ".join(map(str, array.shape))
@@ -201,6 +202,10 @@ def _values(array: NDArray[np.generic], column: Column, path: Path) -> Array:
             path=path,
             remedy="save each column under a name of its own, such as force_N",
         )
+    if column.unit == "":
+        words = [str(word).strip() for word in flat.tolist()]
+        labels += dict.fromkeys(words)
+        return np.array([labels.index(word) for word in words], float)
     if flat.dtype.kind not in "iuf":
         raise DataError(
             f"{column.name} does not hold real numbers", path=path, remedy="save it as numbers"

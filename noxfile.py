@@ -40,6 +40,13 @@ def coverage(session: nox.Session) -> None:
 
 
 @nox.session
+def mutation(session: nox.Session) -> None:
+    """Make every small error in what decides, and run its tests; hours, so name some modules."""
+    session.install(".[test]", *CONSTRAINTS)
+    session.run("python", "-m", "tests.mutation", *session.posargs)
+
+
+@nox.session
 def slow(session: nox.Session) -> None:
     """Run the exhaustive tests that the default session leaves out."""
     session.install(".[test]", *CONSTRAINTS)

@@ -343,10 +343,9 @@ def run_margin(
     """
     from nrs_design.search.certify import certify
     from nrs_design.search.margin import find_margin
-    from nrs_design.switched.assemble import has_ranges
 
     spec = result.loaded.spec
-    if not has_ranges(spec):
+    if not spec.has_ranges:
         given = "modes" if result.design is None else "environments"
         with placed(result.loaded):
             raise DesignError(

@@ -86,6 +86,16 @@ def test_a_gated_spec_is_built_once_and_optimized_once(tmp_path, monkeypatch, ht
     assert calls == {"build_plant": 1, "design_controllers": 1, "optimize_impedance": 2}
 
 
+def test_what_is_designed_is_assembled_without_a_detour_by_text(monkeypatch):
+    calls = calls_of(
+        monkeypatch, gains_of=("controllers.gains",), design_from_gains=("controllers.gains",)
+    )
+    result = run_certification(read_spec(SOFT_TISSUE), limits=Limits(optimize_rate=False))
+    assert result.certification.verdict is Verdict.PROVED
+    # The certificate quotes gains; only its re-check reads them.
+    assert calls == {"gains_of": 1}
+
+
 def test_functions_are_counted_wherever_they_are_used():
     """The count above looks into every module that could build a plant or optimize."""
     for name, places in (

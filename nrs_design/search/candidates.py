@@ -20,8 +20,8 @@ class Candidate(Generic[E]):
     words: str = "found"
 
 
-# Best candidates first. At the end the words on why there is none, or None if there were some: then
-# whoever refused them knows why.
+# Best candidates first. At the end the words on why there is none, or None if there could have been
+# some: then whoever takes them knows why none was taken.
 Candidates = Generator[Candidate[E], None, str | None]
 Search = Callable[[Family], Candidates[AbstractEvidence]]
 

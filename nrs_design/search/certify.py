@@ -35,6 +35,9 @@ from nrs_design.search.structure import merge_equal_modes, triangular_blocks
 
 Progress = Callable[[str], None]
 
+# The end of a search that had a solution, but no rate to claim for it.
+NO_RATE = "what was found shows no rate of decay"
+
 
 def certify(
     system: SwitchedSystem,
@@ -188,7 +191,8 @@ def first_accepted(
         try:
             candidate = next(candidates)
         except StopIteration as end:
-            return None, end.value or f"a candidate was found, but {fault}"
+            refused = f"a candidate was found, but {fault}" if fault else NO_RATE
+            return None, end.value or refused
         fault = find_fault(candidate.evidence, system)
         if fault is None:
             return candidate.evidence, candidate.words

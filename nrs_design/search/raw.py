@@ -57,6 +57,9 @@ def _solve(
     matrices: Matrices, time: Time, rate: float, start: Matrices, allowance: Allowance
 ) -> Matrices | None:
     """Maximize t subject to ``0 <= Q <= I`` and a decrease of at least t in every mode."""
+    # CVXPY refuses a program with coefficients beyond floating point; none exceeds these.
+    if not np.isfinite(np.square(2 * matrices)).all():
+        return None
     import cvxpy as cp
 
     m, n = matrices.shape[:2]

@@ -34,11 +34,8 @@ def doubt_spec(spec: Spec) -> Iterator[Doubt]:
     """Yield what is doubtful about a spec, before anything is designed."""
     if spec.kind != "interaction-design":
         return
-    touched = {
-        contact for controller in spec.controllers.values() for contact in controller.contacts
-    }
     for name in spec.environments:
-        if name not in touched:
+        if name not in spec.touched:
             yield Doubt(
                 ("environments", name),
                 f"environment {name} is touched by no controller, so nothing is shown about it "

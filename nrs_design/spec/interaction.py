@@ -104,6 +104,18 @@ class InteractionDesignSpec(SpecModel):
         )
         return self
 
+    @property
+    def touched(self) -> frozenset[str]:
+        """Names of the environments that some controller touches."""
+        return frozenset(name for c in self.controllers.values() for name in c.contacts)
+
+    @property
+    def has_ranges(self) -> bool:
+        """Whether a touched environment or a gain has a range."""
+        return any(not self.environments[name].fixed for name in self.touched) or any(
+            gain.ranged for c in self.controllers.values() for gain in c.gains().values()
+        )
+
     def find_dwell_obstacle(self) -> DwellObstacle | None:
         """Say why no dwell time can be claimed for this spec, or None."""
         return find_changing_contact(self.controllers, self.environments)

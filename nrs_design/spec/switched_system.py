@@ -112,6 +112,11 @@ class SwitchedSystemSpec(SpecModel):
         """Number of states n of the largest mode."""
         return max(mode.dimension for mode in self.modes)
 
+    @property
+    def has_ranges(self) -> bool:
+        """Whether a parameter has a range."""
+        return any(not parameter.fixed for parameter in self.parameters.values())
+
     def find_dwell_obstacle(self) -> DwellObstacle | None:
         """Say why no dwell time can be claimed for this spec, or None."""
         return find_changing_parameter(self.parameters)

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from nrs_design.models.plant import Plant
     from nrs_design.spec import InteractionDesignSpec, Spec, SwitchedSystemSpec
 
-__all__ = ["GIVEN_MATRICES", "assemble", "assemble_from_text", "assemble_matrices", "has_ranges"]
+__all__ = ["GIVEN_MATRICES", "assemble", "assemble_from_text", "assemble_matrices"]
 
 DECLARED = Fraction(1)
 
@@ -67,24 +67,6 @@ def assemble_from_text(
 
     design = design_from_gains(spec, gains)
     return assemble(spec, plant or build_plant(spec), design, coordinates, scale)
-
-
-def has_ranges(spec: Spec) -> bool:
-    """Tell whether a spec declares a range: of a parameter, a touched environment or a gain."""
-    if spec.kind == "switched-system":
-        return any(not parameter.fixed for parameter in spec.parameters.values())
-    if spec.kind == "robot":
-        return False
-    return any(not spec.environments[name].fixed for name in _touched(spec)) or any(
-        gain.ranged
-        for controller in spec.controllers.values()
-        for gain in controller.gains().values()
-    )
-
-
-def _touched(spec: InteractionDesignSpec) -> set[str]:
-    """Names of the environments that some controller touches."""
-    return {contact for controller in spec.controllers.values() for contact in controller.contacts}
 
 
 def assemble_matrices(spec: SwitchedSystemSpec, scale: Fraction = DECLARED) -> SwitchedSystem:
@@ -150,7 +132,7 @@ def assemble(
     _check_scale(scale)
     if coordinates not in ("deflection", "force"):
         raise AssemblyError(f"unknown coordinates {coordinates!r}: deflection or force")
-    plant = plant.scaled(scale, _touched(spec))
+    plant = plant.scaled(scale, spec.touched)
     loop = plant.motion_loop(design.motion.Kp, design.motion.Kd)
     boxes = gain_boxes(spec, design, scale)
     system = close_loop(

@@ -98,6 +98,7 @@ def test_a_certificate(place, case):
     check(place, "verify", "bogus.cert.json", "spec.nrs.yaml", codes=(1, 2))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("case", CERTIFICATES)
 def test_a_certificate_without_a_spec(place, case):
     write(place / "work/bogus.cert.json", CERTIFICATES[case]())

@@ -8,65 +8,102 @@ import resource
 import signal
 import sys
 import tomllib
-from collections.abc import Iterator
-from importlib.abc import MetaPathFinder
-from importlib.machinery import ModuleSpec, SourceFileLoader
-from importlib.util import spec_from_file_location
+from collections.abc import Iterable, Iterator
 from pathlib import Path
-from types import CodeType
 
+import hypothesis
+import pytest
+
+from tests.mutation.graft import graft
 from tests.mutation.mutants import Mutant, mutants
 
 ROOT = Path(__file__).parents[2]
 PROOF = ROOT / "nrs_design" / "proof"
 TESTS = ROOT / "tests" / "proof"
 EQUIVALENT = Path(__file__).with_name("equivalent.toml")
-# Files of evidence that are no kind.
-SHARED = {"abstract", "fields", "flow", "__init__"}
-# Imported once for all: what is not ours, and what the tests of `proof` need.
-FOREIGN = ("numpy", "scipy.linalg", "scipy.optimize", "flint", "clarabel", "hypothesis", "pydantic")
+# Files of evidence that are no kind, so that no example is tampered with.
+SHARED = {"abstract", "fields", "flow", "function", "__init__"}
 # A mutant may loop for ever, or count to the end of memory: for each test, and for the process.
 SECONDS, BYTES = 30, 4 << 30
+# The same few examples each time, none remembered, and none made smaller.
+hypothesis.settings.register_profile(
+    "mutation",
+    max_examples=20,
+    derandomize=True,
+    database=None,
+    deadline=None,
+    phases=(hypothesis.Phase.explicit, hypothesis.Phase.generate),
+)
+OPTIONS = ("-x", "-s", "-m", "not slow", "--hypothesis-profile", "mutation")
+# Nothing is reported but by us, and hypothesis is loaded before pytest could rewrite its asserts.
+QUIET = ("-qq", "--no-header", "--no-summary", "-p", "no:cacheprovider", "-p", "no:xdist")
+QUIET += ("-W", "ignore::pytest.PytestAssertRewriteWarning")
 
 
-class MutatedLoader(SourceFileLoader):
-    """Loads one module from code that was compiled with a change."""
+class Examination:
+    """A plugin of pytest that runs what was collected once for every mutant of a module.
 
-    def __init__(self, name: str, path: Path, code: CodeType) -> None:
-        super().__init__(name, str(path))
-        self.code = code
+    Each run is a process of its own, begun when all is imported and collected.
+    """
 
-    def get_code(self, fullname: str) -> CodeType:
-        return self.code
+    def __init__(self, name: str, path: Path, candidates: Iterable[Mutant]) -> None:
+        self.name, self.path, self.candidates = name, path, candidates
+        self.unnoticed: list[str] = []
+        self.running: dict[int, str] = {}
 
+    @pytest.hookimpl(tryfirst=True)
+    def pytest_runtestloop(self, session: pytest.Session) -> bool:
+        """Take the place of the one run of the tests."""
+        if os.waitpid(self.start(session, None), 0)[1]:
+            sys.exit(f"{self.name}: its tests fail without any change")
+        for mutant in self.candidates:
+            if len(self.running) == len(os.sched_getaffinity(0)):
+                self.wait()
+            self.running[self.start(session, mutant)] = mutant.name
+        while self.running:
+            self.wait()
+        return True
 
-class MutatedFinder(MetaPathFinder):
-    """Finds one module, before anybody else does."""
+    def wait(self) -> None:
+        """Wait for one process; it ends with 0 if all tests passed."""
+        pid, status = os.wait()
+        name = self.running.pop(pid)
+        if status == 0:
+            self.unnoticed.append(name)
+            print(f"  {name}", flush=True)
 
-    def __init__(self, path: Path, code: CodeType) -> None:
-        parts = path.relative_to(ROOT).with_suffix("").parts
-        self.name = ".".join(parts).removesuffix(".__init__")
-        self.path, self.code = path, code
+    def start(self, session: pytest.Session, mutant: Mutant | None) -> int:
+        """Begin the run for a mutant, or for the module as it is."""
+        if pid := os.fork():
+            return pid
+        status = 1
+        try:
+            status = self.run(session, mutant)
+        finally:
+            os._exit(status)
 
-    def find_spec(self, fullname: str, path: object, target: object = None) -> ModuleSpec | None:
-        if fullname != self.name:
-            return None
-        loader = MutatedLoader(fullname, self.path, self.code)
-        return spec_from_file_location(fullname, self.path, loader=loader)
-
-
-class Clock:
-    """A plugin of pytest that ends the process when a test takes too long."""
-
-    def pytest_runtest_setup(self) -> None:
+    def run(self, session: pytest.Session, mutant: Mutant | None) -> int:
+        """Run the tests up to the first failure."""
+        silence = os.open(os.devnull, os.O_WRONLY)
+        os.dup2(silence, 1)
+        os.dup2(silence, 2)
+        resource.setrlimit(resource.RLIMIT_AS, (BYTES, BYTES))
         signal.setitimer(signal.ITIMER_PROF, SECONDS)
+        if mutant:
+            graft(importlib.import_module(self.name), mutant.compile(self.path))
+        items = session.items
+        for item, following in zip(items, [*items[1:], None], strict=True):
+            signal.setitimer(signal.ITIMER_PROF, SECONDS)
+            item.config.hook.pytest_runtest_protocol(item=item, nextitem=following)
+            if session.testsfailed:
+                return 1
+        return 0
 
 
 def main(names: list[str]) -> int:
     """Examine some modules of `proof`, or all; return how many mutants nobody noticed."""
     os.environ["OPENBLAS_NUM_THREADS"] = "1"
-    for name in FOREIGN:
-        importlib.import_module(name)
+    os.chdir(ROOT)
     return sum(examine(path, listed()) for path in chosen(names))
 
 
@@ -88,80 +125,22 @@ def examine(path: Path, reasons: dict[str, dict[str, str]]) -> int:
     module = path.relative_to(PROOF).with_suffix("").as_posix()
     known = reasons.get(module, {})
     every = mutants(path.read_text(encoding="utf-8"))
-    if os.waitpid(_start(path, None), 0)[1]:
-        sys.exit(f"{module}: its tests fail without any change")
-    survivors = list(survivors_of(path, [mutant for mutant in every if mutant.name not in known]))
-    print(f"{module}: {len(every)} mutants, {len(known)} equivalent, {len(survivors)} unnoticed")
-    for name in survivors:
-        print(f"  {name}", flush=True)
-    return len(survivors)
+    print(f"{module}: {len(every)} mutants, {len(known)} equivalent", flush=True)
+    name = f"nrs_design.proof.{module.replace('/', '.')}".removesuffix(".__init__")
+    examination = Examination(name, path, (m for m in every if m.name not in known))
+    pytest.main([*OPTIONS, *QUIET, *own_tests(path)], plugins=[examination])
+    print(f"{module}: {len(examination.unnoticed)} unnoticed", flush=True)
+    return len(examination.unnoticed)
 
 
-def survivors_of(path: Path, candidates: list[Mutant]) -> Iterator[str]:
-    """Yield the names of mutants that all tests accept, with one process for each core."""
-    running: dict[int, str] = {}
-    for mutant in candidates:
-        if len(running) == len(os.sched_getaffinity(0)):
-            yield from _survivor(running)
-        running[_start(path, mutant)] = mutant.name
-    while running:
-        yield from _survivor(running)
-
-
-def _survivor(running: dict[int, str]) -> Iterator[str]:
-    """Wait for one process; it ends with 0 if all tests passed."""
-    pid, status = os.wait()
-    name = running.pop(pid)
-    if status == 0:
-        yield name
-
-
-def _start(path: Path, mutant: Mutant | None) -> int:
-    sys.stdout.flush()
-    if pid := os.fork():
-        return pid
-    status = 1
-    try:
-        status = _run_tests(path, mutant)
-    finally:
-        os._exit(status)
-
-
-def _run_tests(path: Path, mutant: Mutant | None) -> int:
-    """Run the module's own tests up to the first failure."""
-    silence = os.open(os.devnull, os.O_WRONLY)
-    os.dup2(silence, 1)
-    os.dup2(silence, 2)
-    resource.setrlimit(resource.RLIMIT_AS, (BYTES, BYTES))
-    signal.setitimer(signal.ITIMER_PROF, SECONDS)
-    if mutant:
-        sys.meta_path.insert(0, MutatedFinder(path, mutant.compile(path)))
-
-    import hypothesis
-    import pytest
-
-    # The same examples each time, none remembered, and none made smaller.
-    phases = (hypothesis.Phase.explicit, hypothesis.Phase.generate)
-    hypothesis.settings.register_profile(
-        "mutation", derandomize=True, database=None, deadline=None, phases=phases
-    )
-    os.chdir(ROOT)
-    options = ["-x", "-q", "-m", "not slow", "-p", "no:cacheprovider", "-p", "no:xdist"]
-    options += ["--hypothesis-profile", "mutation"]
-    # pytest would have rewritten the asserts of plugins that are loaded already.
-    options += ["-W", "ignore::pytest.PytestAssertRewriteWarning"]
-    for tests in own_tests(path):
-        if status := pytest.main([*options, *tests], plugins=[Clock()]):
-            return int(status)
-    return 0
-
-
-def own_tests(path: Path) -> Iterator[list[str]]:
-    """Yield what mirrors a module, and for a kind of evidence the tampering with its examples."""
+def own_tests(path: Path) -> list[str]:
+    """Return what mirrors a module, and for a kind of evidence the tampering with its examples."""
     mirror = TESTS / path.relative_to(PROOF).with_name(f"test_{path.name}")
-    yield [str(mirror if mirror.exists() else TESTS)]
+    tests = [str(mirror if mirror.exists() else TESTS)]
     if path.parent != PROOF and path.stem not in SHARED:
-        yield [str(TESTS / "evidence/test_tampering.py"), "-k", path.stem.replace("_", "-")]
+        kind = path.stem.replace("_", "-")
+        tests += [str(TESTS / "evidence/test_tampering.py"), "-k", f"not tampering or {kind}"]
+    return tests
 
 
 if __name__ == "__main__":

@@ -9,6 +9,7 @@ from nrs_design.proof.constant import name_between, system_at
 from nrs_design.proof.system import ARBITRARY, FixedParameter, Stay, Switching
 from nrs_design.spec import parse_spec
 from nrs_design.switched.assemble import assemble_from_text
+from tests.proof.systems import PAIR, family, hidden_value
 
 TEXT = """\
 kind: switched-system
@@ -83,6 +84,21 @@ def _fields(system):
 def test_name_of_a_pair_is_what_its_ends_share():
     assert name_between("a/k-min/m-min", "a/k-min/m-max") == "a/k-min"
     assert name_between("low", "high") == "low to high"
+    assert name_between("a/k-min", "a") == name_between("a", "a/k-min") == "a"
+
+
+def test_nobody_switches_to_the_mode_that_one_is_in():
+    system = hidden_value(1)
+    rules = replace(system.switching, transitions=(("m0", "m0"), ("m1", "m1")))
+    found = system_at(replace(system, switching=rules), Fraction(1, 2))
+    assert found.switching.transitions == ()
+
+
+@pytest.mark.parametrize("high", [[[-1, 0]], [[-1], [0]]])
+def test_ends_of_different_sizes_are_an_error(high):
+    system = family([[-1, 0], [0, -1]], high, switching=PAIR)
+    with pytest.raises(ValueError, match="shorter"):
+        system_at(system, Fraction(1, 2))
 
 
 def test_a_stay_must_suit_both_ends():

@@ -93,6 +93,7 @@ def test_the_smallest_form_that_vanishes():
     assert not vanishes([[0, 0, 1], [0, -2, 0], [0, 0, 0]], 2, 2)
 
 
-def test_forms_of_another_size_are_an_error():
+@pytest.mark.parametrize(("rows", "columns"), [(2, 3), (3, 2), (4, 3), (3, 4)])
+def test_forms_of_another_size_are_an_error(rows, columns):
     with pytest.raises(ValueError, match=r"shorter|longer"):
-        vanishes([[0, 0], [0, 0]], 2, 2)
+        vanishes([[0] * columns] * rows, 2, 2)

@@ -19,6 +19,30 @@ def test_least_common_denominator():
     assert A.shape == (2, 2)
 
 
+@pytest.mark.parametrize("shape", [(1, 1), (1, 3), (3, 1), (2, 3)])
+def test_rows_and_columns(shape):
+    rows, columns = shape
+    A = RationalMatrix(((1,) * columns,) * rows)
+    assert A.shape == shape
+    assert A.is_well_formed
+
+
+@pytest.mark.parametrize(
+    ("numerators", "denominator"),
+    [
+        ((), 1),
+        (((1, 2), (3,)), 1),
+        (((), (1,)), 1),
+        (((1,),), 0),
+        (((1,),), -1),
+        (((1, 2), (3,)), -1),
+    ],
+)
+def test_what_is_no_matrix(numerators, denominator):
+    """A denominator that is not positive would turn or hide every sign."""
+    assert not RationalMatrix(numerators, denominator).is_well_formed
+
+
 @given(ROWS)
 def test_nothing_is_lost(rows):
     A = RationalMatrix.from_rows(rows)
@@ -62,7 +86,9 @@ def test_known_product():
     assert multiply([[1, half]], [[2, 0], [0, 4]]) == [[2, 2]]
 
 
-@pytest.mark.parametrize(("left", "right"), [([[1, 2]], [[1]]), ([[1]], [[1], [2]])])
+@pytest.mark.parametrize(
+    ("left", "right"), [([[1, 2]], [[1]]), ([[1]], [[1], [2]]), ([[1, 2]], [[1, 2], [3]])]
+)
 def test_shapes_that_do_not_fit(left, right):
     with pytest.raises(ValueError, match="zip"):
         multiply(left, right)

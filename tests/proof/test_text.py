@@ -24,4 +24,5 @@ def test_a_number_is_written_exactly(number, text):
 
 def test_foreign_text_is_short_and_harmless():
     assert quoted("a\x1b[2J") == repr("a\x1b[2J")
-    assert len(quoted("x" * 1000)) < 50
+    assert quoted("x" * 40) == repr("x" * 40)
+    assert quoted("x" * 41) == quoted("x" * 1000) == repr("x" * 37 + "...")

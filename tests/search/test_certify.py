@@ -493,7 +493,7 @@ def wrong_lies(name, tell, *, may_give_up=False):
     wrong = {}
     for lie, answer in LIES.items():
         tell(answer)
-        for limits in (Limits(), ANY_RATE):
+        for limits in (Limits(max_degree=4), replace(ANY_RATE, max_degree=4)):
             try:
                 verdict = settle(system, limits=limits).verdict
             except AssertionError as false:
@@ -623,8 +623,11 @@ class TestFirstAccepted:
         assert self.take([], "nothing looked right") == ((None, "nothing looked right"), [])
         assert self.take([WRONG], "all looked wrong")[0] == (None, "all looked wrong")
 
+    def test_a_search_without_words_and_candidates_had_no_rate_to_claim(self):
+        assert self.take([])[0] == (None, "what was found shows no rate of decay")
+
     def test_or_the_check_says_why_the_last_was_refused(self):
-        (nothing, words), _ = self.take([GOOD, WRONG][1:])
+        (nothing, words), _ = self.take([WRONG])
         assert nothing is None
         assert words.startswith("a candidate was found, but V does not decrease")
 

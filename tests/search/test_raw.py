@@ -56,6 +56,13 @@ def test_what_does_not_fit_is_not_begun(allowance, words):
         find_raw_quadratic(matrices, Time.CONTINUOUS, 0.0, allowance)
 
 
+@pytest.mark.parametrize("size", [1e150, 1e154, 1e190, 1e307])
+def test_modes_beyond_floating_point_have_no_candidate(size):
+    matrices = size * np.array([[[0.5, 1.0], [0.3, 0.2]], [[0.5, -1.0], [0.3, 0.1]]])
+    with np.errstate(all="ignore"):
+        assert find_raw_quadratic(matrices, Time.DISCRETE, 1.0, Allowance()) is None
+
+
 def test_the_library_is_loaded_by_a_search_only():
     program = "import sys, nrs_design.search.certify; print('cvxpy' in sys.modules)"
     done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True)

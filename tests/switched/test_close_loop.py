@@ -1,7 +1,9 @@
 """All modes of a design in one state, and what is said about them."""
 
+from dataclasses import dataclass
 from fractions import Fraction
 from itertools import product
+from types import MappingProxyType
 
 import numpy as np
 import pytest
@@ -12,6 +14,7 @@ from scipy.linalg import expm
 
 from nrs_design.controllers.controller_design import Controller, ControllerDesign
 from nrs_design.controllers.laws import (
+    AbstractCompliantLaw,
     Admittance,
     PositionControl,
     ProportionalDerivative,
@@ -21,6 +24,7 @@ from nrs_design.errors import AssemblyError
 from nrs_design.models.actuator import Actuator
 from nrs_design.models.contact import Elastic, KelvinBoltzmann, KelvinVoigt, Maxwell
 from nrs_design.models.contact.environment import Environment
+from nrs_design.models.linear_form import combine
 from nrs_design.models.motion_loop import MotionLoop, realize
 from nrs_design.models.plant import Plant
 from nrs_design.proof.exact import characteristic_polynomial, is_hurwitz
@@ -70,6 +74,28 @@ def assembled(*controllers, coordinates="deflection"):
     return close_loop("robot", plant, LOOP, design, coordinates)
 
 
+@dataclass(frozen=True, slots=True)
+class Lagged(AbstractCompliantLaw):
+    """A law with one state, as an admittance with inertia has one."""
+
+    name = "lagged"
+    units = MappingProxyType({"K": "rad/(N*m*s)"})
+    commands = "velocity"
+
+    K: Fraction
+
+    @property
+    def states(self):
+        return ("lag [rad/s]",)
+
+    def respond(self, force, states):
+        return states[0], [combine((-self.K, force), (F(-1), states[0]))]
+
+    @classmethod
+    def contact_text(cls, *, alone):
+        return None
+
+
 class TestAssembly:
     def test_one_mode_for_each_corner(self):
         system = assembled(impedance("in", "0.01", ("soft", "hand")), impedance("out", "0.1"))
@@ -114,8 +140,20 @@ class TestAssembly:
     def test_mixed_inertia(self):
         with pytest.raises(AssemblyError, match="different states of their own") as caught:
             assembled(impedance("a", 0), impedance("b", 1))
-        assert "(none; vm [rad/s])" in caught.value.message
+        assert "(impedance with none; impedance with vm [rad/s])" in caught.value.message
         assert "none of them" in caught.value.remedy
+
+    def test_states_are_shared_by_name_and_not_by_number(self):
+        """As many states, but others: the matrices would fit, and mean nothing together."""
+        lagged = Controller("b", Lagged(F(1)), "soft", ("soft",))
+        assert assembled(lagged).states == ("xp1", "xp2", "lag [rad/s]", "delta [rad]")
+        with pytest.raises(AssemblyError, match="different states of their own"):
+            assembled(impedance("a", 1), lagged)
+
+    def test_kinds_of_commands_are_not_mixed_unless_idle_states_are_declared(self):
+        free = Controller("p", PositionControl(), None, ())
+        with pytest.raises(AssemblyError, match="different states of their own"):
+            assembled(impedance("a", 0), free)
 
     def test_force_control_of_a_damped_environment(self):
         law = ProportionalForce(F("0.02"))

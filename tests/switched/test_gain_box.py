@@ -18,7 +18,7 @@ from nrs_design.proof.evidence import CommonQuadratic, UnstableMode
 from nrs_design.search.certify import Limits, Verdict, certify
 from nrs_design.spec import LoadedSpec, parse_spec, read_spec
 from nrs_design.spec.interval import Interval
-from nrs_design.switched.assemble import DECLARED, assemble_from_text, has_ranges
+from nrs_design.switched.assemble import DECLARED, assemble_from_text
 from nrs_design.switched.gain_box import GainBox
 from nrs_design.switched.modes import to_force_coordinates, velocity_mode
 from tests.proof.truth import combine, decrease, is_definite
@@ -179,10 +179,10 @@ class TestStatements:
         assert texts[-1] == "The gains are the single-precision numbers listed here."
 
     def test_has_ranges(self):
-        assert has_ranges(loaded(BT=BT).spec)
-        assert has_ranges(loaded(MASS=MASS, BT="2 N*m*s/rad").spec)
-        assert not has_ranges(loaded(BT="2 N*m*s/rad").spec)
-        assert not has_ranges(loaded(BT="{min: 1 N*m*s/rad, max: 9 N*m*s/rad}").spec)
+        assert loaded(BT=BT).spec.has_ranges
+        assert loaded(MASS=MASS, BT="2 N*m*s/rad").spec.has_ranges
+        assert not loaded(BT="2 N*m*s/rad").spec.has_ranges
+        assert not loaded(BT="{min: 1 N*m*s/rad, max: 9 N*m*s/rad}").spec.has_ranges
 
 
 class TestScale:

@@ -13,7 +13,7 @@ from nrs_design.models.contact.environment import Environment
 from nrs_design.pipeline import run_design
 from nrs_design.spec import LoadedSpec, parse_spec
 from nrs_design.spec.interval import Interval
-from nrs_design.switched.assemble import assemble_from_text, has_ranges
+from nrs_design.switched.assemble import assemble_from_text
 
 BOX = parse_spec(
     "kind: switched-system\nname: s\ntime: continuous\nswitching: arbitrary\n"
@@ -136,21 +136,17 @@ def test_negative_scales_are_refused():
 
 
 def test_has_ranges():
-    assert has_ranges(BOX)
-    assert has_ranges(HAND)
+    assert BOX.has_ranges
+    assert HAND.has_ranges
     untouched = TEXT.replace("environment: hand,", "environment: other,")
-    assert has_ranges(parse_spec(untouched))
+    assert parse_spec(untouched).has_ranges
     fixed = untouched.replace("{nominal: 1 N*m/rad, range: [0.25 N*m/rad, 2 N*m/rad]}", "1 N*m/rad")
-    assert not has_ranges(parse_spec(fixed))
-    assert not has_ranges(
-        parse_spec(
-            "kind: switched-system\nname: s\ntime: discrete\nswitching: arbitrary\n"
-            "parameters: {k: {nominal: 3}}\nmodes: [{name: a, A: [[k]]}]\n"
-        )
-    )
-    assert not has_ranges(
-        parse_spec(
-            untouched[: untouched.index("environments:")]
-            + "controllers: {free: {type: position}}\nswitching: arbitrary\n"
-        )
-    )
+    assert not parse_spec(fixed).has_ranges
+    assert not parse_spec(
+        "kind: switched-system\nname: s\ntime: discrete\nswitching: arbitrary\n"
+        "parameters: {k: {nominal: 3}}\nmodes: [{name: a, A: [[k]]}]\n"
+    ).has_ranges
+    assert not parse_spec(
+        untouched[: untouched.index("environments:")]
+        + "controllers: {free: {type: position}}\nswitching: arbitrary\n"
+    ).has_ranges

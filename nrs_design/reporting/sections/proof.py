@@ -12,7 +12,6 @@ from nrs_design.reporting.document import Block, Bullets, Paragraph, Section
 from nrs_design.reporting.kinds import page_of
 from nrs_design.reporting.sections.head import NO_CLAIM
 from nrs_design.spec import InteractionDesignSpec
-from nrs_design.switched.assemble import has_ranges
 
 if TYPE_CHECKING:
     from nrs_design.pipeline import Result
@@ -52,7 +51,7 @@ def _proved(result: Result, evidence: AbstractEvidence) -> tuple[Block, ...]:
     system = result.certification.system
     page, design = page_of(system, evidence), isinstance(result.loaded.spec, InteractionDesignSpec)
     proved = [evidence.claim(system), *page.meaning()]
-    if has_ranges(result.loaded.spec):
+    if result.loaded.spec.has_ranges:
         proved += page.between_corners()
     if design:
         proved.append(

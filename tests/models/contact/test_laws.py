@@ -20,6 +20,7 @@ from nrs_design.models.contact import (
     Maxwell,
     Motion,
 )
+from nrs_design.models.contact.law import AbstractLinearLaw
 from nrs_design.models.linear_form import coordinates
 from tests.identification.support import wobble
 
@@ -152,6 +153,24 @@ def test_exact_parameters_stay_exact(law):
         f"{name} = 0.333333 {unit}"
         for name, unit in zip(law.parameters(), law.units(rotational=True), strict=True)
     )
+
+
+@pytest.mark.parametrize("law", LINEAR, ids=lambda law: law.name)
+def test_what_remembers_says_what_is_kept(law):
+    alone = list(law.memory_texts("nose", alone=True))
+    assert bool(alone) == law.remembers
+    assert all("nose" in text for text in alone)
+
+
+def test_a_memory_is_spoken_of_even_if_its_law_has_no_words_of_its_own():
+    class Remembering(AbstractLinearLaw):
+        remembers = True
+        states = ("delta [rad]", "stretch [rad]")
+
+    kept = "nose keeps delta [rad] and stretch [rad] at a switch and when the parameters change."
+    assert list(Remembering.memory_texts("nose", alone=True)) == [kept]
+    (_, free) = Remembering.memory_texts("nose", alone=False)
+    assert "nose is free of force" in free
 
 
 def test_laws_load_no_numpy():

@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 from nrs_design.proof.evidence import CommonQuadratic, Shows, UnstableMode
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.system import Mode, Reset, SwitchedSystem, Switching, Time
+from tests.proof.systems import genuine
 from tests.support import dayawansa_martin, family, holds, is_definite_by_ldl, matrix
 
 # Narendra and Balakrishnan 1994: x1^2 + x2^2 works for normal stable matrices.
@@ -198,3 +199,12 @@ def test_words_and_fields():
 def test_malformed_fields(fields):
     with pytest.raises((KeyError, TypeError, ValueError, ZeroDivisionError)):
         CommonQuadratic.from_fields(fields, COMMUTING)
+
+
+def test_what_a_common_quadratic_function_carries_over_to():
+    """One convex function: averages of modes, bounds from the first moment on."""
+    _, evidence = genuine("common-quadratic")
+    assert evidence.is_common_quadratic
+    assert evidence.keeps_bound_in_mixtures
+    assert evidence.covers_mixtures
+    assert evidence.bounds_at_once

@@ -47,6 +47,28 @@ def test_names_are_those_of_modes_and_occur_once():
     for names in (("m0", "m0"), ("m0", "m7")):
         evidence = UnstableMixture(tuple((name, HALF) for name in names), "")
         assert evidence.find_fault(shears()) is not None
+    # Even where the mode that is named twice is not stable.
+    unstable = family([[1]], [[-1]])
+    twice = UnstableMixture((("m0", HALF), ("m0", HALF)), "")
+    assert twice.find_fault(unstable) == "the weights are not those of modes"
+    thrice = {"kind": "unstable-mixture", "weights": [["m0", "1/3"]] * 3}
+    with pytest.raises(ValueError, match="too many weights"):
+        read_evidence(thrice, unstable)
+
+
+@pytest.mark.parametrize(
+    ("denominator", "fault"), [(2**64, None), (2**64 + 1, "the weights have too many digits")]
+)
+def test_digits_of_weights_are_limited(denominator, fault):
+    share = Fraction(2**63 + 1, denominator)
+    assert mixed(share, 1 - share).find_fault(shears()) == fault
+
+
+@pytest.mark.parametrize("weights", [("2",), ("1/2", "3/2"), ("1e9", "1")])
+def test_no_weight_in_a_file_is_above_one(weights):
+    named = [[f"m{i}", weight] for i, weight in enumerate(weights)]
+    with pytest.raises(ValueError, match=r"digits|ratio"):
+        read_evidence({"kind": "unstable-mixture", "weights": named}, shears())
 
 
 @pytest.mark.parametrize(

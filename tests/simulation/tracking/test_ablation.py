@@ -45,6 +45,7 @@ def test_the_page_states_what_the_changes_do(changed):
         assert record.summary()["rmse"][0] == pytest.approx(float(row.split(" | ")[3]), rel=1e-2)
 
 
+@pytest.mark.slow
 def test_the_missing_rotor_inertia_is_what_costs_most(changed):
     chosen = {
         name: replace(

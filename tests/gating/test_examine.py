@@ -1,0 +1,160 @@
+"""What the gate makes of a verdict: the status of every obligation, and never a better one."""
+
+from dataclasses import replace
+from fractions import Fraction
+from pathlib import Path
+from types import SimpleNamespace
+
+import pytest
+
+from nrs_design.certificates.certificate import Certificate
+from nrs_design.design.goals import Achieved
+from nrs_design.design.measures import GAIN_MARGIN
+from nrs_design.errors import DesignError
+from nrs_design.gating.examine import Examiner, certified_rate
+from nrs_design.gating.obligations import Status
+from nrs_design.proof.system import ARBITRARY, Stay, Switching, Time
+from nrs_design.search.certify import certify
+from nrs_design.spec import read_spec
+from tests.proof.systems import genuine
+from tests.support import SOFT_TISSUE, family
+
+from .conftest import STABLE
+
+# Positive, with more digits than anybody decides about.
+ENDLESS = Fraction(1, 1 << 2_000_000)
+HALF_STABLE = family([[-1, 0], [0, -2]], [[0, 1], [-1, 0]])
+
+
+@pytest.fixture
+def examiner(tmp_path):
+    path = tmp_path / "s.nrs.yaml"
+    path.write_text(STABLE)
+    return Examiner.of(read_spec(path))
+
+
+def statuses(obligations):
+    return [(item.subject, item.status) for item in obligations]
+
+
+def test_a_mode_of_its_own_is_decided_where_the_system_is_not(examiner):
+    found = examiner.stability(HALF_STABLE, None, "nothing")
+    assert statuses(found) == [
+        ("m0", Status.PROVED),
+        ("m1", Status.REFUTED),
+        ("system", Status.INCONCLUSIVE),
+    ]
+    assert found[1].message == "mode m1 is not Hurwitz (eigenvalue about 0 +- 1j)"
+    assert "(nothing)" in found[2].message
+
+
+def test_a_refutation_is_said_of_the_system_and_of_the_mode(examiner):
+    evidence = certify(HALF_STABLE).evidence
+    found = examiner.stability(HALF_STABLE, evidence, "")
+    assert statuses(found)[1:] == [("m1", Status.REFUTED), ("system", Status.REFUTED)]
+    assert found[2].message == evidence.claim(HALF_STABLE)
+
+
+@pytest.mark.parametrize("time", Time)
+def test_numbers_that_are_too_large_leave_a_mode_undecided(examiner, time):
+    digits = family([[ENDLESS]], time=time)
+    mode, system = examiner.stability(digits, None, "")
+    assert (mode.status, system.status) == (Status.INCONCLUSIVE, Status.INCONCLUSIVE)
+    assert "too large to decide" in mode.message
+
+
+def test_a_proof_covers_modes_that_nobody_could_decide(examiner):
+    _, evidence = genuine("common-quadratic")
+    digits = family([[-ENDLESS]])
+    claimed = SimpleNamespace(shows=evidence.shows, claim=lambda system: "proved")
+    assert examiner.stability(digits, claimed, "")[0].status is Status.PROVED
+
+
+@pytest.mark.parametrize(
+    ("entry", "status", "words"),
+    [
+        (-1, Status.PROVED, "mode m0 is Hurwitz"),
+        (1, Status.MET, "mode m0 is not Hurwitz, but it must be left in time"),
+        (ENDLESS, Status.MET, "mode m0 must be left in time, stable or not"),
+    ],
+)
+def test_a_mode_that_must_be_left_may_be_unstable(examiner, entry, status, words):
+    stays = (("m0", Stay(Fraction(1), Fraction(2))),)
+    system = replace(family([[entry]], [[-1]]), switching=Switching(stays=stays))
+    first = examiner.stability(system, None, "")[0]
+    assert (first.status, first.message) == (status, words)
+    assert system.switching != ARBITRARY
+
+
+def test_a_certificate_holds_or_is_rejected(examiner):
+    held, rejected = (examiner.certificate(Path("a/b.json"), fault) for fault in (None, "altered"))
+    assert (held.status, held.message) == (Status.MET, "a/b.json holds, checked exactly")
+    assert (rejected.status, rejected.message) == (
+        Status.MISSED,
+        "a/b.json is rejected: altered",
+    )
+
+
+def ranges(highest, limit):
+    examiner = Examiner.of(read_spec(SOFT_TISSUE))
+    loop = SimpleNamespace(contact=SimpleNamespace(remembers=False))
+    item = SimpleNamespace(
+        name="insertion",
+        given=examiner.loaded.spec.controllers["insertion"],
+        highest_stiffness=highest,
+        lowest_limit=limit,
+        problem=SimpleNamespace(loop=loop),
+    )
+    (found,) = examiner.stiffness_ranges(SimpleNamespace(impedance=[item]))
+    return found
+
+
+@pytest.mark.parametrize(
+    ("limit", "status", "verb"),
+    [
+        (1.5, Status.MET, "stays below"),
+        (1.0, Status.MISSED, "reaches"),
+        (0.5, Status.MISSED, "reaches"),
+    ],
+)
+def test_a_range_that_touches_the_limit_is_missed(limit, status, verb):
+    found = ranges(1.0, limit)
+    assert found.status is status
+    assert verb in found.message
+    assert "not a proof" in found.message
+
+
+def test_an_unstable_design_has_no_margins_and_misses(examiner):
+    found = examiner.no_margins(DesignError("it oscillates"))
+    assert found.status is Status.MISSED
+    assert "it oscillates" in found.message
+
+
+@pytest.mark.parametrize(
+    ("goal", "statuses"),
+    [(None, []), (2.0, [Status.MET]), (2.5, [Status.MET]), (2.6, [Status.MISSED])],
+)
+def test_goals_are_met_missed_or_not_set(examiner, goal, statuses):
+    item = SimpleNamespace(name="a", achieved=[Achieved(GAIN_MARGIN, 2.5, "soft", goal)])
+    found = list(examiner.goals(SimpleNamespace(measured=[item])))
+    assert [obligation.status for obligation in found] == statuses
+
+
+@pytest.mark.parametrize(
+    ("example", "name"),
+    [
+        ("common-quadratic", "alpha"),
+        ("common-polynomial, discrete", "rho"),
+        ("unstable-period", None),
+        (None, None),
+    ],
+)
+def test_a_rate_is_only_what_is_proved(example, name):
+    if example is None:
+        assert certified_rate(None) == (None, None)
+        return
+    system, evidence = genuine(example)
+    certificate = Certificate("s", "0", None, {}, system, (evidence,), "0")
+    rate, found = certified_rate(certificate)
+    assert found == name
+    assert (rate is None) is (name is None)

@@ -1,0 +1,72 @@
+"""What is worst, and what lets the gate pass."""
+
+from pathlib import Path
+
+import pytest
+
+from nrs_design.errors import InternalError, SpecError
+from nrs_design.gating.obligations import (
+    GateOutcome,
+    Obligation,
+    SpecOutcome,
+    Status,
+    count_by_verdict,
+    failed,
+)
+from nrs_design.gating.rules import INTERNAL, SPEC
+
+PATH = Path("a.nrs.yaml")
+
+
+def obligation(status, rule=SPEC):
+    return Obligation(rule, PATH, "s", status, "m")
+
+
+def test_proved_and_met_pass_and_nothing_else_does():
+    passing = {status for status in Status if obligation(status).fulfilled}
+    assert passing == {Status.PROVED, Status.MET}
+    assert {status for status in Status if obligation(status).severity == 0} == passing
+
+
+def test_the_worst_comes_first_and_decides():
+    found = [obligation(status) for status in Status]
+    outcome = GateOutcome((SpecOutcome(PATH, tuple(found)),))
+    assert [item.status for item in outcome.broken] == [
+        Status.ERROR,
+        Status.MISSED,
+        Status.REFUTED,
+        Status.INCONCLUSIVE,
+    ]
+    assert outcome.severity == 3
+    assert GateOutcome(()).severity == 0
+
+
+def test_a_defect_of_the_program_is_worse_than_anything():
+    assert obligation(Status.ERROR, INTERNAL).severity > obligation(Status.ERROR).severity
+    (defect,) = failed(PATH, ZeroDivisionError("in\n  two lines")).obligations
+    assert (defect.rule, defect.message) == (INTERNAL, "ZeroDivisionError: in two lines")
+    assert failed(PATH, InternalError("they disagree")).obligations[0].severity >= 3
+
+
+@pytest.mark.parametrize(
+    ("path", "line", "words"),
+    [(PATH, 7, "wrong (do it right)"), (Path("b"), None, "b:7:3: wrong (do it right)")],
+)
+def test_an_error_in_another_file_has_no_line_in_this_one(path, line, words):
+    error = SpecError("wrong", path=path, line=7, column=3, remedy="do it right")
+    (found,) = failed(PATH, error).obligations
+    assert (found.line, found.message, found.status) == (line, words, Status.ERROR)
+
+
+def test_specs_are_counted_by_verdict_or_by_why_there_is_none():
+    specs = [
+        SpecOutcome(PATH, (), verdict="proved"),
+        SpecOutcome(PATH, (), verdict="proved"),
+        SpecOutcome(PATH, ()),
+        SpecOutcome(PATH, (), certifiable=False),
+    ]
+    assert count_by_verdict(specs) == {
+        "proved": 2,
+        "without verdict": 1,
+        "with nothing to certify": 1,
+    }

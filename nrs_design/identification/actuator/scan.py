@@ -23,6 +23,8 @@ _LONGEST = 0.1
 _ALIKE = 1e-3
 # Friction belongs to the model where it stands out of its standard error so far.
 _CLEAR = 4.0
+# Squared errors up to so many times the least are nearly as good.
+_NEARLY = 4.0
 
 
 def scan_motor(records: Sequence[ActuatorRecord]) -> Motor:
@@ -33,23 +35,23 @@ def scan_motor(records: Sequence[ActuatorRecord]) -> Motor:
     DataError
         If the output moves against the command, or not with it.
     """
-    best, solution, errors = np.inf, np.zeros(2), np.ones(2)
-    tau = delay = 0.0
-    for tried in _grid(records):
-        power, found, spread = _solve(records, *tried)
-        if power < best:
-            best, solution, errors, (tau, delay) = power, found, spread, tried
-    gain = float(solution[0])
-    if abs(gain) < _CLEAR * errors[0]:
+    tried = [(*_solve(records, *pair), *pair) for pair in _grid(records)]
+    best = min(tried, key=lambda item: item[0])
+    along = [item for item in tried if item[1][0] > _CLEAR * item[2][0]]
+    against = best[1][0] < -_CLEAR * best[2][0]
+    if not along and not against:
         raise DataError(
             "the output does not follow the command",
             remedy="check that both columns belong to one motor and one clock",
         )
-    if gain < 0:
+    # A poor model may turn the sign; that of the columns is opposite if no other fits nearly.
+    if not along or (against and min(item[0] for item in along) > _NEARLY * best[0]):
         raise DataError(
             "the output moves against the command: their signs are opposite",
             remedy="turn the sign of one column, or swap the leads of the sensor",
         )
+    _, solution, errors, tau, delay = min(along, key=lambda item: item[0])
+    gain = float(solution[0])
     clear = solution[1] > _CLEAR * errors[1] and tells_friction(records, tau, delay)
     return Motor(gain, tau, float(solution[1]) / gain if clear else None, delay)
 

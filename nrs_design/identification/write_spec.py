@@ -123,9 +123,15 @@ def merge_actuator(loaded: LoadedSpec, found: ActuatorIdentification) -> str:
     SpecError
         If the spec is no interaction design.
     DataError
-        If an interval is unlimited.
+        If an interval is unlimited, or a spec has no place for such a motor or command.
     """
     _interaction(loaded)
+    if found.unit != "rpm" or found.chosen.order != 1:
+        what = f"commands in {found.unit}" if found.unit != "rpm" else "a motor of second order"
+        raise DataError(
+            f"a spec has no place for {what}",
+            remedy="leave --write out, or record commands in rpm that a first order describes",
+        )
     document = _Document(loaded)
     node = document.root["actuator"]
     intervals = {}

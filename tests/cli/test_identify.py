@@ -127,7 +127,7 @@ def test_foreign_columns(tmp_path):
         (["tissue", SOFT[0], "--report", "page.docx"], "not a type of report"),
         (["tissue", SOFT[0], "--write", COMMUTING], "has no place for identified values"),
         (["tissue", SINUSOIDS[0]], "are missing"),
-        (["actuator", SINUSOIDS[0]], "at least 3 are needed"),
+        (["actuator", SINUSOIDS[0], SINUSOIDS[0]], "there twice"),
         (["actuator", SOFT[0]], "are missing"),
     ],
 )

@@ -1,5 +1,6 @@
 """Merging into a spec: values, comments, refusals."""
 
+from dataclasses import replace
 from fractions import Fraction
 
 import pytest
@@ -11,7 +12,7 @@ from nrs_design.identification.write_spec import merge_actuator, merge_tissue
 from nrs_design.models.contact import Elastic, KelvinVoigt, Maxwell
 from nrs_design.spec import parse_spec, read_spec
 from nrs_design.spec.environment import KelvinBoltzmannSpec, MaxwellSpec
-from tests.identification import synthetic
+from tests.identification import motors, synthetic
 from tests.identification.support import MOTOR, quick, record, sinusoids, slow
 from tests.support import COMMUTING, FORCE_LIMIT, ROBOT, SOFT_TISSUE
 
@@ -202,3 +203,12 @@ def test_what_the_range_holds_is_noted():
     soft = parse_spec(merge_tissue(read_spec(SOFT_TISSUE), found, None, None)).environments["soft"]
     assert soft.range_covers == "tolerance"
     assert "95 % of all such specimens" in found.covers
+
+
+@pytest.mark.parametrize(("kind", "unit"), [("PRBS", "V"), ("PRBS", "rpm")])
+def test_what_a_spec_has_no_place_for(kind, unit):
+    """A gain in rad/s/V must never be written as one in rad/s/rpm."""
+    made = motors.record(kind, 1, second=0.02 * (unit == "rpm"))
+    found = identify_actuator([replace(made, unit=unit)], MOTOR)
+    with pytest.raises(DataError, match="has no place for"):
+        merge_actuator(read_spec(SOFT_TISSUE), found)

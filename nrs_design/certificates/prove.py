@@ -147,10 +147,12 @@ def _statements(
     document: Mapping[str, Any], system: SwitchedSystem
 ) -> tuple[AbstractEvidence, ...]:
     # Each may take seconds: a verdict and a remark on every block, said twice, are enough.
-    if len(document["statements"]) > 2 * (1 + system.order):
+    bounds = len(system.channels) * len(system.outputs)
+    if len(document["statements"]) > 2 * (1 + system.order) + bounds:
         raise ValueError("it makes too many statements")
     statements = tuple(read_evidence(fields, system) for fields in document["statements"])
-    if sum(item.shows is not Shows.NO_COMMON_QUADRATIC for item in statements) > MAX_VERDICTS:
+    decisive = (Shows.STABILITY, Shows.INSTABILITY)
+    if sum(item.shows in decisive for item in statements) > MAX_VERDICTS:
         raise ValueError("it states its verdict too often")
     if not statements:
         raise ValueError("it states nothing")

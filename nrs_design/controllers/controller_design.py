@@ -71,6 +71,11 @@ class ControllerDesign:
     controllers: tuple[Controller, ...]
 
     @property
+    def contacts(self) -> frozenset[str]:
+        """Names of the environments that some controller may touch."""
+        return frozenset(name for c in self.controllers for name in c.contacts)
+
+    @property
     def laws(self) -> dict[str, AbstractLaw]:
         """Every law by the name of its controller, the motion controller first."""
         return {self.motion.name: self.motion} | {c.name: c.law for c in self.controllers}

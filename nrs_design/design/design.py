@@ -41,8 +41,8 @@ def design_controllers(spec: InteractionDesignSpec, plant: Plant) -> ControllerD
 def root_locus_design(spec: InteractionDesignSpec) -> PdDesign:
     """Return the PD that the root locus asks for, before any rounding or given value."""
     return design_pd(
-        spec.actuator.gain.si,
-        spec.actuator.time_constant.si,
+        spec.actuator.gain.nominal.si,
+        spec.actuator.time_constant.nominal.si,
         float(spec.motion_loop.damping_ratio),
         spec.motion_loop.settling_time.si,
     )

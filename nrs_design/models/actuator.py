@@ -6,6 +6,9 @@ from dataclasses import dataclass
 from fractions import Fraction
 from math import pi
 
+from nrs_design.errors import AssemblyError
+from nrs_design.spec.interval import Interval
+
 
 @dataclass(frozen=True, slots=True)
 class Actuator:
@@ -21,6 +24,41 @@ class Actuator:
 
     gain: Fraction
     time_constant: Fraction
+
+
+@dataclass(frozen=True, slots=True)
+class ActuatorRanges:
+    """Where gain and time constant of the actuator may be, in (rad/s)/rpm and s."""
+
+    gain: Interval
+    time_constant: Interval
+
+    @property
+    def nominal(self) -> Actuator:
+        """The actuator that the design uses."""
+        return Actuator(self.gain.nominal, self.time_constant.nominal)
+
+    @property
+    def fixed(self) -> bool:
+        """Whether both are known."""
+        return all(len(interval.ends) == 1 for interval in (self.gain, self.time_constant))
+
+    def scaled(self, scale: Fraction) -> ActuatorRanges:
+        """Return the ranges stretched about the nominal values.
+
+        Raises
+        ------
+        AssemblyError
+            If one would not stay positive.
+        """
+        ranges = ActuatorRanges(self.gain.scaled(scale), self.time_constant.scaled(scale))
+        if min(ranges.gain.low, ranges.time_constant.low) <= 0:
+            raise AssemblyError(
+                f"with its ranges scaled by {float(scale):.6g}, the actuator does not stay "
+                "physical",
+                remedy="scale the ranges by less",
+            )
+        return ranges
 
 
 @dataclass(frozen=True, slots=True)

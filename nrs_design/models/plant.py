@@ -6,11 +6,12 @@ from collections.abc import Collection
 from dataclasses import dataclass, replace
 from fractions import Fraction
 
-from nrs_design.models.actuator import Actuator
+from nrs_design.models.actuator import Actuator, ActuatorRanges
 from nrs_design.models.contact import LINEAR_LAWS
 from nrs_design.models.contact.environment import Environment
 from nrs_design.models.motion_loop import MotionLoop, close_motion_loop
-from nrs_design.spec import EnvironmentSpec, InteractionDesignSpec
+from nrs_design.spec import EnvironmentSpec, InteractionDesignSpec, RangedQuantity
+from nrs_design.spec.interval import Interval
 
 
 @dataclass(frozen=True, slots=True)
@@ -25,11 +26,14 @@ class Plant:
         In the order of the spec.
     given_loop : MotionLoop or None
         The closed motion loop, if the spec states it.
+    actuator_ranges : ActuatorRanges or None
+        Where the actuator may be, if that is more than a point.
     """
 
     actuator: Actuator
     environments: tuple[Environment, ...]
     given_loop: MotionLoop | None = None
+    actuator_ranges: ActuatorRanges | None = None
 
     def motion_loop(self, Kp: Fraction, Kd: Fraction) -> MotionLoop:
         """Return G: the one that the spec states, else the one that the PD gains make.
@@ -45,8 +49,12 @@ class Plant:
         """Return the environment of that name; the spec guarantees that it exists."""
         return next(environment for environment in self.environments if environment.name == name)
 
+    def among(self, names: Collection[str]) -> tuple[Environment, ...]:
+        """Return the environments of these names, in the order of the spec."""
+        return tuple(environment for environment in self.environments if environment.name in names)
+
     def scaled(self, scale: Fraction, touched: Collection[str]) -> Plant:
-        """Return the plant with the ranges of its touched environments stretched.
+        """Return the plant with the ranges of actuator and touched environments stretched.
 
         Every parameter is stretched about its nominal value; a scale of 1 leaves all as it is.
 
@@ -58,12 +66,13 @@ class Plant:
         if scale == 1:
             return self
         environments = (e.scaled(scale) if e.name in touched else e for e in self.environments)
-        return replace(self, environments=tuple(environments))
+        ranges = self.actuator_ranges and self.actuator_ranges.scaled(scale)
+        return replace(self, environments=tuple(environments), actuator_ranges=ranges)
 
 
 def build_plant(spec: InteractionDesignSpec) -> Plant:
     """Convert the plant of a spec to exact SI numbers, environments as the pivot sees them."""
-    actuator = Actuator(spec.actuator.gain.exact, spec.actuator.time_constant.exact)
+    ranges = ActuatorRanges(_interval(spec.actuator.gain), _interval(spec.actuator.time_constant))
     environments = tuple(
         _environment(name, environment) for name, environment in spec.environments.items()
     )
@@ -71,7 +80,11 @@ def build_plant(spec: InteractionDesignSpec) -> Plant:
     loop = None
     if stated is not None:
         loop = MotionLoop(stated.numerator, stated.denominator, given=True)
-    return Plant(actuator, environments, loop)
+    return Plant(ranges.nominal, environments, loop, None if ranges.fixed else ranges)
+
+
+def _interval(written: RangedQuantity) -> Interval:
+    return Interval(written.nominal.exact, *(end.exact for end in written.range))
 
 
 def _environment(name: str, spec: EnvironmentSpec) -> Environment:

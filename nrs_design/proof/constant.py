@@ -60,7 +60,7 @@ def system_at(system: SwitchedSystem, share: Fraction) -> SwitchedSystem:
             if own.intersection(ends)
         ),
     )
-    return replace(system, modes=tuple(modes), switching=switching)
+    return system.with_modes(tuple(modes), system.states, switching)
 
 
 def _common_stay(switching: Switching, modes: Sequence[str]) -> Stay:

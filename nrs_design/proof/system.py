@@ -143,6 +143,73 @@ ARBITRARY = Switching()
 
 
 @dataclass(frozen=True, slots=True)
+class Contact:
+    """Contact that is lost and made again at any time.
+
+    The last state is the deflection delta, the others are y. While delta is positive, the modes of
+    the system are in force; while it is not, nothing pushes, and one of the free modes is.
+
+    Parameters
+    ----------
+    free : tuple of Mode
+        The motion without force, each of shape (n, n), with any switching among them. In its last
+        column, what the deflection does to the other states, there are zeros; in its last row, what
+        the motion does to the deflection.
+    pulls : tuple of RationalMatrix, each of shape (1, n)
+        For an environment that could pull: forces ``q x`` at the corners of its ranges. While
+        delta is positive and a force within these ranges is not, there is no force, and one of the
+        free modes is in force. Empty for springs, whose force has the sign of the deflection.
+    required : bool
+        Stability must be shown through any loss of contact; otherwise a proof may take for granted
+        that contact is kept, and its claim says so.
+    """
+
+    free: tuple[Mode, ...]
+    pulls: tuple[RationalMatrix, ...] = ()
+    required: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Channel:
+    """A disturbance d that acts on the state: ``x' = A x + B d``, or ``x+ = A x + B d``.
+
+    Parameters
+    ----------
+    name, unit : str
+        What it is, such as ``velocity command`` in ``rad/s``.
+    bound : Fraction
+        Its size is at most this, at every time; in discrete time, at every step.
+    columns : tuple of RationalMatrix, each of shape (n, 1)
+        The B of every mode, and after them those of the free modes.
+    """
+
+    name: str
+    unit: str
+    bound: Fraction
+    columns: tuple[RationalMatrix, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Output:
+    """A quantity that is one of some rows times the state, and within a range any mixture of them.
+
+    Parameters
+    ----------
+    name, unit : str
+        What it is, such as ``force`` in ``N*m``.
+    rows : tuple of RationalMatrix, each of shape (1, n)
+        At the corners of its ranges. In free motion the deflection counts as zero.
+    limit : Fraction or None
+        What its size is meant to keep; for words only.
+    """
+
+    name: str
+    unit: str
+    rows: tuple[RationalMatrix, ...]
+    limit: Fraction | None = None
+
+
+@dataclass(frozen=True, slots=True)
 class SwitchedSystem:
     """A linear switched system.
 
@@ -160,6 +227,14 @@ class SwitchedSystem:
         What a statement about these matrices takes for granted about the robot.
     switching : Switching
         The signals that are possible.
+    contact : Contact or None
+        How contact is lost; None where it is kept, or where there is none to lose.
+    sample_time : Fraction or None
+        Time from one step to the next in s, in discrete time, if there is such a time.
+    channels : tuple of Channel
+        Disturbances, each acting alone; statements about stability are about none of them.
+    outputs : tuple of Output
+        What bounds can be stated for.
     """
 
     name: str
@@ -168,6 +243,26 @@ class SwitchedSystem:
     modes: tuple[Mode, ...]
     assumptions: tuple[str, ...]
     switching: Switching = ARBITRARY
+    contact: Contact | None = None
+    sample_time: Fraction | None = None
+    channels: tuple[Channel, ...] = ()
+    outputs: tuple[Output, ...] = ()
+
+    def with_modes(
+        self, modes: tuple[Mode, ...], states: tuple[str, ...], switching: Switching
+    ) -> SwitchedSystem:
+        """Return other modes for the same signals; contact, channels and outputs are left behind.
+
+        Parameters
+        ----------
+        modes : tuple of Mode
+            In the place of these.
+        states : tuple of str
+            Their states.
+        switching : Switching
+            Their rules.
+        """
+        return SwitchedSystem(self.name, self.time, states, modes, self.assumptions, switching)
 
     @property
     def order(self) -> int:
@@ -214,7 +309,12 @@ class SwitchedSystem:
         """TRUSTED: say why the rules of switching make no sense for these modes, or None."""
         names = {mode.name for mode in self.modes}
         return (
-            self._find_odd_stay(names) or self._find_odd_switch(names) or self._find_odd_ends(names)
+            self._find_odd_stay(names)
+            or self._find_odd_switch(names)
+            or self._find_odd_ends(names)
+            or self._find_odd_contact(names)
+            or self._find_odd_sample_time()
+            or self._find_odd_channel()
         )
 
     def _find_odd_stay(self, names: set[str]) -> str | None:
@@ -245,3 +345,49 @@ class SwitchedSystem:
         if ends and sorted(ends) != sorted(names):
             return "the modes are not the ends of one constant parameter"
         return None
+
+    def _find_odd_contact(self, names: set[str]) -> str | None:
+        if self.contact is None:
+            return None
+        n, free = self.order, self.contact.free
+        if n < 2 or not self.is_uniform:
+            return "contact is lost, but the modes do not share a deflection beside other states"
+        if not free or len({mode.name for mode in free} - names) < len(free):
+            return "contact is lost, but there is no free mode, or two modes have one name"
+        if not all(_is_motion(mode.A, n, self.time) for mode in free):
+            return "the deflection acts on the other states in a free mode"
+        if not all(q.is_well_formed and q.shape == (1, n) for q in self.contact.pulls):
+            return "a force is not one row over a positive denominator"
+        return None
+
+    def _find_odd_sample_time(self) -> str | None:
+        if self.sample_time is None:
+            return None
+        if self.time is Time.CONTINUOUS or self.sample_time <= 0:
+            return "the time of a step is not positive, or there are no steps"
+        return None
+
+    def _find_odd_channel(self) -> str | None:
+        n, free = self.order, () if self.contact is None else self.contact.free
+        sized = [(c.name, M, (n, 1)) for c in self.channels for M in c.columns]
+        sized += [(o.name, M, (1, n)) for o in self.outputs for M in o.rows]
+        for name, M, shape in sized:
+            if not M.is_well_formed or M.shape != shape:
+                return f"{name} does not have the size of the state"
+        for channel in self.channels:
+            if channel.bound <= 0 or len(channel.columns) != len(self.modes) + len(free):
+                return f"{channel.name} has no positive bound, or not one column for every mode"
+        if not all(output.rows for output in self.outputs):
+            return "an output has no rows"
+        if any(output.limit is not None and output.limit <= 0 for output in self.outputs):
+            return "the limit of an output is not positive"
+        names = [*(c.name for c in self.channels), *(o.name for o in self.outputs)]
+        return "two disturbances or outputs have one name" if len(set(names)) < len(names) else None
+
+
+def _is_motion(A: RationalMatrix, order: int, time: Time) -> bool:
+    """Tell whether a free mode has its shape, and the deflection only moves on from where it is."""
+    if not A.is_well_formed or A.shape != (order, order):
+        return False
+    *others, last = (row[-1] for row in A.numerators)
+    return not any(others) and last == (0 if time is Time.CONTINUOUS else A.denominator)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from fractions import Fraction
 from typing import Any
 
@@ -16,8 +16,11 @@ from nrs_design.proof.exact import bit_length
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.system import (
     ARBITRARY,
+    Channel,
+    Contact,
     FixedParameter,
     Mode,
+    Output,
     Reset,
     Stay,
     SwitchedSystem,
@@ -45,8 +48,11 @@ def system_fields(system: SwitchedSystem) -> Fields:
     return {
         "time": str(system.time),
         "states": list(system.states),
-        "modes": [{"name": mode.name, **_matrix_fields(mode.A)} for mode in system.modes],
+        "modes": _mode_fields(system.modes),
         "switching": _switching_fields(system.switching),
+        **({} if system.contact is None else {"contact": _contact_fields(system.contact)}),
+        **_channel_fields(system),
+        **({} if system.sample_time is None else {"sample_time": str(system.sample_time)}),
         "assumptions": list(system.assumptions),
     }
 
@@ -67,11 +73,12 @@ def read_system(name: str, fields: Mapping[str, Any]) -> SwitchedSystem:
         If a field is missing or malformed, a matrix has no shape or no positive denominator, two
         modes have one name, or the modes are too large to check.
     """
-    modes = tuple(
-        Mode(read_text(item["name"]), _read_matrix(item)) for item in _read_list(fields["modes"])
-    )
+    modes = _read_modes(fields["modes"])
     states = _read_texts(fields["states"])
     _check_modes(modes, len(states))
+    contact = _read_contact(fields["contact"]) if "contact" in fields else None
+    if contact is not None:
+        _check_work(contact.free * (1 + len(contact.pulls)))
     return SwitchedSystem(
         name=name,
         time=Time(read_text(fields["time"])),
@@ -79,6 +86,26 @@ def read_system(name: str, fields: Mapping[str, Any]) -> SwitchedSystem:
         modes=modes,
         assumptions=_read_texts(fields["assumptions"]),
         switching=_read_switching(fields["switching"]),
+        contact=contact,
+        channels=tuple(
+            Channel(
+                read_text(item["name"]),
+                read_text(item["unit"]),
+                read_ratio(item["bound"]),
+                tuple(_read_matrix(column) for column in _read_list(item["columns"])),
+            )
+            for item in _read_list(fields.get("channels", []))
+        ),
+        outputs=tuple(
+            Output(
+                read_text(item["name"]),
+                read_text(item["unit"]),
+                tuple(_read_matrix(row) for row in _read_list(item["rows"])),
+                None if item["limit"] is None else read_ratio(item["limit"]),
+            )
+            for item in _read_list(fields.get("outputs", []))
+        ),
+        sample_time=read_ratio(fields["sample_time"]) if "sample_time" in fields else None,
     )
 
 
@@ -90,9 +117,60 @@ def _check_modes(modes: Sequence[Mode], states: int) -> None:
         raise ValueError("a mode is not square")
     if max(sizes, default=0) != states:
         raise ValueError("the largest mode does not have the states that are named")
-    numbers = zip(sizes, (bit_length(mode.A.numerators) for mode in modes), strict=True)
-    if sum(size**3 * bits for size, bits in numbers) > MAX_FAMILY_WORK:
+    _check_work(modes)
+
+
+def _check_work(modes: Iterable[Mode]) -> None:
+    matrices = (mode.A.numerators for mode in modes)
+    if sum(len(N) ** 3 * bit_length(N) for N in matrices) > MAX_FAMILY_WORK:
         raise ValueError("the modes are too large to check")
+
+
+def _mode_fields(modes: Sequence[Mode]) -> list[Fields]:
+    return [{"name": mode.name, **_matrix_fields(mode.A)} for mode in modes]
+
+
+def _read_modes(value: object) -> tuple[Mode, ...]:
+    return tuple(Mode(read_text(item["name"]), _read_matrix(item)) for item in _read_list(value))
+
+
+def _channel_fields(system: SwitchedSystem) -> Fields:
+    """Return disturbances and outputs, if there are any."""
+    channels = [
+        {
+            "name": channel.name,
+            "unit": channel.unit,
+            "bound": str(channel.bound),
+            "columns": [_matrix_fields(column) for column in channel.columns],
+        }
+        for channel in system.channels
+    ]
+    outputs = [
+        {
+            "name": item.name,
+            "unit": item.unit,
+            "rows": [_matrix_fields(row) for row in item.rows],
+            "limit": _text(item.limit),
+        }
+        for item in system.outputs
+    ]
+    return ({"channels": channels} if channels else {}) | ({"outputs": outputs} if outputs else {})
+
+
+def _contact_fields(contact: Contact) -> Fields:
+    return {
+        "free": _mode_fields(contact.free),
+        "pulls": [_matrix_fields(row) for row in contact.pulls],
+        "required": contact.required,
+    }
+
+
+def _read_contact(fields: Mapping[str, Any]) -> Contact:
+    pulls = tuple(_read_matrix(item) for item in _read_list(fields["pulls"]))
+    required = fields["required"]
+    if not isinstance(required, bool):
+        raise TypeError("whether the loss of contact must be covered is not true or false")
+    return Contact(_read_modes(fields["free"]), pulls, required)
 
 
 def _switching_fields(switching: Switching) -> Fields | str:

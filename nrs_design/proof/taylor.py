@@ -1,12 +1,13 @@
-"""Matrix exponentials in Python integers: a Taylor series, its remainder bounded, and squaring.
+"""TRUSTED: exponentials in Python integers: a Taylor series, its remainder bounded, and squaring.
 
-It has no first word. Where flint encloses an exponential, this must meet the enclosure.
+Of matrices it has no first word: where flint encloses an exponential, this must meet the enclosure.
+The exponential of a number, as a sampled motor has it, is enclosed here.
 """
 
 from __future__ import annotations
 
 from fractions import Fraction
-from math import ceil
+from math import ceil, floor
 
 from nrs_design.proof.exact import IntegerMatrix, multiply
 from nrs_design.proof.matrix import RationalMatrix
@@ -17,6 +18,8 @@ UNIT = 2**BITS
 # The series is summed for an exponent with row sums of at most two to minus this power.
 SMALL = 8
 TERMS = 24
+# The bounds on the exponential of a number are integers over two to this power.
+BOUND_BITS = 80
 
 
 def exponential_nearly(A: RationalMatrix, time: Fraction) -> tuple[RationalMatrix, Fraction]:
@@ -50,6 +53,15 @@ def exponential_nearly(A: RationalMatrix, time: Fraction) -> tuple[RationalMatri
         error = Fraction(ceil(2 * norm * error + error**2 / UNIT + n))
         E = _divided(multiply(E, E), UNIT)
     return RationalMatrix(tuple(map(tuple, E)), UNIT), error / UNIT
+
+
+def exponential_between(x: Fraction) -> tuple[Fraction, Fraction]:
+    """Return bounds below and above exp(x), of few digits."""
+    E, error = exponential_nearly(RationalMatrix.from_rows([[x]]), Fraction(1))
+    value, unit = Fraction(E.numerators[0][0], E.denominator), 2**BOUND_BITS
+    return Fraction(floor((value - error) * unit), unit), Fraction(
+        ceil((value + error) * unit), unit
+    )
 
 
 def _identity(n: int) -> IntegerMatrix:

@@ -21,6 +21,7 @@ from nrs_design.search.common_quadratic import (
     search_preconditioned,
     search_raw,
 )
+from nrs_design.search.conewise_quadratic import search_conewise
 from nrs_design.search.family import Family
 from nrs_design.search.method import Method
 from nrs_design.search.mixture import search_mixture
@@ -81,6 +82,11 @@ class Facts:
     def may_share_an_ellipsoid(self) -> bool:
         """Whether a common quadratic function has to be searched for."""
         return self.may_share_a_function and self.system.order > 1
+
+    @property
+    def may_lose_contact(self) -> bool:
+        """Whether the system says how contact is lost."""
+        return self.system.contact is not None
 
     @property
     def has_rules(self) -> bool:
@@ -189,6 +195,12 @@ LADDER: tuple[Rung, ...] = (
         lambda f: f.may_share_a_function and not f.may_share_an_ellipsoid,
         decide_one_state,
     ),
+    Rung(
+        "conewise quadratic",
+        Method.CONEWISE_QUADRATIC,
+        lambda f: f.may_lose_contact and f.may_share_an_ellipsoid,
+        search_conewise,
+    ),
     Rung("lmi", Method.LMI, lambda f: f.may_share_an_ellipsoid, search_by_lmi),
     Rung("obstruction", Method.OBSTRUCTION, lambda f: f.may_share_a_function, search_obstruction),
     # The solver may have stalled: other coordinates, before giving up on quadratics.
@@ -209,7 +221,7 @@ LADDER: tuple[Rung, ...] = (
     Rung(
         "gradient",
         Method.GRADIENT,
-        lambda f: f.may_share_a_function and f.is_continuous,
+        lambda f: f.may_share_a_function,
         search_by_gradient,
         only_quadratic=True,
     ),

@@ -18,13 +18,31 @@ Pattern = NDArray[np.bool_]
 
 
 def merge_equal_modes(system: SwitchedSystem) -> SwitchedSystem:
-    """Keep the first of every set of equal modes; the same system if there are none."""
+    """Keep the first of every set of equal modes; the same system if there are none.
+
+    Equal modes may differ in what disturbs them, so disturbances and outputs are left behind.
+    """
     first: dict[RationalMatrix, int] = {}
     for index, mode in enumerate(system.modes):
         first.setdefault(mode.A, index)
     if len(first) == len(system.modes):
         return system
-    return replace(system, modes=tuple(system.modes[index] for index in first.values()))
+    modes = tuple(system.modes[index] for index in first.values())
+    return replace(system, modes=modes, channels=(), outputs=())
+
+
+def stand_in(name: str | None, system: SwitchedSystem, merged: SwitchedSystem) -> str | None:
+    """Return the name of the merged mode that stands for a mode of a system, if there is one.
+
+    Parameters
+    ----------
+    name : str or None
+        Of the mode.
+    system, merged : SwitchedSystem
+        Before and after `merge_equal_modes`.
+    """
+    given = next((mode for mode in system.modes if mode.name == name), None)
+    return next((mode.name for mode in merged.modes if given and mode.A == given.A), None)
 
 
 def triangular_blocks(system: SwitchedSystem) -> tuple[tuple[int, ...], ...]:

@@ -16,7 +16,7 @@ from nrs_design.spec.interaction import InteractionDesignSpec
 from nrs_design.spec.model import SpecModel
 from nrs_design.spec.motion import LimitsSpec
 from nrs_design.spec.parameters import ParameterSpec
-from nrs_design.spec.provenance import ProvenanceSpec
+from nrs_design.spec.provenance import COVERS, IdentifiedSpec
 from nrs_design.spec.quantity import Quantity, QuantityKind
 from nrs_design.spec.quantity_fields import RangedQuantity
 from nrs_design.spec.robot import RobotSpec
@@ -99,13 +99,17 @@ def _switching(switching: SwitchingSpec) -> Iterator[Line]:
 
 
 def _interaction(spec: InteractionDesignSpec) -> Iterator[Line]:
-    yield _row("actuator.gain", spec.actuator.gain, kinds.ACTUATOR_GAIN)
-    yield _row("actuator.time_constant", spec.actuator.time_constant, kinds.DURATION)
+    for name, kind in (("gain", kinds.ACTUATOR_GAIN), ("time_constant", kinds.DURATION)):
+        written = getattr(spec.actuator, name)
+        yield _row(f"actuator.{name}", written.nominal, kind)
+        if not written.fixed:
+            low, high = written.range
+            yield Line(f"actuator.{name}.range", f"[{low.text}, {high.text}]", "", "")
     if spec.actuator.intervals is not None:
         for name in ("gain", "time_constant"):
             low, high = getattr(spec.actuator.intervals, name)
             yield Line(f"actuator.intervals.{name}", f"[{low.text}, {high.text}]", "", "")
-    yield from _provenance("actuator", spec.actuator.provenance)
+    yield from _provenance("actuator", spec.actuator)
     yield from _motion_loop(spec)
     yield _row("limits.velocity", spec.limits.velocity, kinds.ANGULAR_VELOCITY)
     yield _row("limits.torque", spec.limits.torque, kinds.TORQUE)
@@ -118,6 +122,15 @@ def _interaction(spec: InteractionDesignSpec) -> Iterator[Line]:
         yield from describe_model(spec.idle_states, "idle_states")
     yield from _goals("goals", spec.goals)
     yield Line("design.significant_digits", str(spec.design.significant_digits), "", "")
+    if spec.sampling is not None:
+        yield _row("sampling.period", spec.sampling.period, kinds.DURATION)
+        least, most = spec.sampling.delay
+        delay = str(least) if least == most else f"[{least}, {most}]"
+        yield Line("sampling.delay", delay, "", "samples")
+        yield Line("sampling.admittance", spec.sampling.admittance, "", "")
+    if spec.disturbances is not None:
+        yield from describe_model(spec.disturbances, "disturbances")
+    yield Line("contact", spec.contact or "losable where proved", "", "")
     yield Line("coordinates", spec.coordinates, "", "")
     yield from _switching(spec.switching)
 
@@ -144,12 +157,21 @@ def _environment(name: str, environment: EnvironmentSpec) -> Iterator[Line]:
         yield from _ranged(f"{name}.{key}", written, turned[key], unit)
     if environment.lever_arm is not None:
         yield _row(f"{name}.lever_arm", environment.lever_arm, kinds.LEVER_ARM)
-    yield from _provenance(name, environment.provenance)
+    if environment.range_covers is not None:
+        covered = COVERS[environment.range_covers]
+        yield Line(f"{name}.range_covers", environment.range_covers, covered, "")
+    if environment.linearized_about is not None:
+        yield Line(f"{name}.linearized_about", environment.linearized_about, "", "")
+    yield from _provenance(name, environment)
 
 
-def _provenance(name: str, sources: tuple[ProvenanceSpec, ...]) -> Iterator[Line]:
-    for index, source in enumerate(sources):
+def _provenance(name: str, identified: IdentifiedSpec) -> Iterator[Line]:
+    for index, source in enumerate(identified.provenance):
         yield Line(f"{name}.provenance[{index}]", source.file, source.data, "")
+    for index, doubt in enumerate(identified.doubts):
+        yield Line(f"{name}.doubts[{index}]", doubt, "", "")
+    if identified.accept_doubt is not None:
+        yield Line(f"{name}.accept_doubt", identified.accept_doubt, "", "")
 
 
 def _ranged(name: str, written: RangedQuantity, si: RangedQuantity, unit: str) -> Iterator[Line]:

@@ -17,6 +17,13 @@ from nrs_design.spec.fields import Digits, Label, Name, Title
 from nrs_design.spec.goals import GoalsSpec, check_applicable
 from nrs_design.spec.model import SpecModel
 from nrs_design.spec.motion import ActuatorSpec, LimitsSpec, MotionLoopSpec
+from nrs_design.spec.provenance import IdentifiedSpec
+from nrs_design.spec.sampling import (
+    DisturbancesSpec,
+    SamplingSpec,
+    check_actuator_ranges,
+    check_disturbances,
+)
 from nrs_design.spec.switching import DwellTime, SwitchingRule, check_names
 
 MAX_ENTRIES = 64
@@ -56,6 +63,20 @@ class InteractionDesignSpec(SpecModel):
         description="what every impedance and force controller must achieve; the gate enforces it",
     )
     design: DesignSpec = Field(default_factory=DesignSpec, description="how gains are written down")
+    sampling: SamplingSpec | None = Field(
+        default=None,
+        description="the processor that runs the law; without it the proof is for continuous time",
+    )
+    disturbances: DisturbancesSpec | None = Field(
+        default=None,
+        description="what acts on the sampled loop from outside; its effect on the force is "
+        "bounded",
+    )
+    contact: Literal["losable", "kept"] | None = Field(
+        default=None,
+        description="whether a proof must hold while contact is lost and made again (losable), or "
+        "takes for granted that it is kept; default: losable where that can be proved",
+    )
     coordinates: Literal["deflection", "force"] = Field(
         default="deflection",
         description="state of the contact: deflection stays continuous when the stiffness "
@@ -92,6 +113,13 @@ class InteractionDesignSpec(SpecModel):
                 partial(_check_springs, *item, self.environments)
                 for item in self.controllers.items()
             ),
+            partial(check_disturbances, self.disturbances, self.sampling),
+            partial(
+                check_actuator_ranges,
+                self.actuator,
+                self.sampling,
+                given_loop=self.motion_loop.transfer_function is not None,
+            ),
             partial(_check_memories, self.controllers, self.environments, self.coordinates),
             lambda: check_applicable(
                 self.goals, {c.type for c in self.controllers.values() if c.contacts}, "goals"
@@ -105,13 +133,22 @@ class InteractionDesignSpec(SpecModel):
         return self
 
     @property
+    def identified(self) -> dict[tuple[str, ...], IdentifiedSpec]:
+        """What may have been identified from records, by the keys that lead to it."""
+        parts: dict[tuple[str, ...], IdentifiedSpec] = {("actuator",): self.actuator}
+        parts.update((("environments", name), item) for name, item in self.environments.items())
+        return parts
+
+    @property
     def touched(self) -> frozenset[str]:
         """Names of the environments that some controller touches."""
         return frozenset(name for c in self.controllers.values() for name in c.contacts)
 
     @property
     def has_ranges(self) -> bool:
-        """Whether a touched environment or a gain has a range."""
+        """Whether the actuator, a touched environment or a gain has a range."""
+        if not (self.actuator.gain.fixed and self.actuator.time_constant.fixed):
+            return True
         return any(not self.environments[name].fixed for name in self.touched) or any(
             gain.ranged for c in self.controllers.values() for gain in c.gains().values()
         )

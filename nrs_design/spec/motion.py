@@ -9,7 +9,7 @@ from pydantic import Field, model_validator
 from nrs_design.spec.faults import fault
 from nrs_design.spec.fields import Exact, UnitFraction
 from nrs_design.spec.model import SpecModel
-from nrs_design.spec.provenance import PROVENANCE, Provenance
+from nrs_design.spec.provenance import IdentifiedSpec
 from nrs_design.spec.quantity import is_less
 from nrs_design.spec.quantity_fields import (
     ActuatorGain,
@@ -17,6 +17,8 @@ from nrs_design.spec.quantity_fields import (
     Bandwidth,
     DerivativeGain,
     Duration,
+    RangedActuatorGain,
+    RangedDuration,
     Torque,
     Zero,
 )
@@ -39,27 +41,27 @@ class ActuatorIntervals(SpecModel):
     )
 
 
-class ActuatorSpec(SpecModel):
+class ActuatorSpec(IdentifiedSpec):
     """Velocity actuator ``theta_m/delta = Km/(s (tau s + 1))`` (thesis 4.1)."""
 
-    gain: ActuatorGain = Field(
+    gain: RangedActuatorGain = Field(
         description="Km, motor speed per command unit in rad/s/rpm, as in theta_m/delta = "
         "Km/(s (tau s + 1))"
     )
-    time_constant: Duration = Field(description="tau, mechanical time constant in s")
+    time_constant: RangedDuration = Field(description="tau, mechanical time constant in s")
     intervals: ActuatorIntervals | None = Field(
         default=None,
         description="95 % intervals of gain and time constant, for the record: the proof is for "
         "the nominal values",
     )
-    provenance: Provenance = Field(default=(), description=PROVENANCE)
 
     @model_validator(mode="after")
     def _check_intervals(self) -> ActuatorSpec:
         if self.intervals is None:
             return self
         for name in ("gain", "time_constant"):
-            value, (low, high) = getattr(self, name), getattr(self.intervals, name)
+            value = getattr(self, name).nominal
+            low, high = getattr(self.intervals, name)
             if is_less(value, low) or is_less(high, value):
                 raise fault(
                     f"the interval [{low.text}, {high.text}] does not hold {value.text!r}",

@@ -17,6 +17,11 @@ from nrs_design.spec.units import MAX_UNIT_LENGTH, Unit, parse_unit
 SMALLEST = 1e-30
 LARGEST = 1e30
 
+# Below and above pi, one unit of the last of 30 digits apart.
+PI_BETWEEN = (
+    Fraction("3.14159265358979323846264338327"),
+    Fraction("3.14159265358979323846264338328"),
+)
 QUANTITY_PATTERN = rf"^(?:{DECIMAL_PATTERN}|{RATIO_PATTERN}) +[A-Za-z1(][A-Za-z0-9*/^()+-]*$"
 _GLUED = re.compile(rf"({DECIMAL_PATTERN})([A-Za-z].*)")
 
@@ -76,6 +81,12 @@ class Quantity:
         if not self.is_exact:
             raise ValueError(f"{self.text!r} is not rational in SI: its unit holds a factor of pi")
         return self.rational_part
+
+    @property
+    def not_below(self) -> Fraction:
+        """A fraction not below the SI value, and above it only where the unit holds a pi."""
+        pi = PI_BETWEEN[(self.pi_power > 0) == (self.value >= 0)]
+        return self.rational_part * pi**self.pi_power
 
     @property
     def si(self) -> float:

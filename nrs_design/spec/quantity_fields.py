@@ -245,7 +245,13 @@ def _ranged_schema(kind: QuantityKind) -> WithJsonSchema:
 
 
 ActuatorGain = Annotated[Quantity, _quantity(kinds.ACTUATOR_GAIN), _schema(kinds.ACTUATOR_GAIN)]
+RangedActuatorGain = Annotated[
+    RangedQuantity, _ranged(kinds.ACTUATOR_GAIN, positive=True), _ranged_schema(kinds.ACTUATOR_GAIN)
+]
 Duration = Annotated[Quantity, _quantity(kinds.DURATION), _schema(kinds.DURATION)]
+RangedDuration = Annotated[
+    RangedQuantity, _ranged(kinds.DURATION, positive=True), _ranged_schema(kinds.DURATION)
+]
 DerivativeGain = Annotated[
     Quantity, _quantity(kinds.DERIVATIVE_GAIN), _schema(kinds.DERIVATIVE_GAIN)
 ]

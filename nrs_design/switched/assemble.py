@@ -10,7 +10,12 @@ from typing import TYPE_CHECKING
 from nrs_design.errors import AssemblyError
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.system import Mode, SwitchedSystem, Time
-from nrs_design.switched.assumptions import GIVEN_MATRICES, assume_matrices, scale_texts
+from nrs_design.switched.assumptions import (
+    GIVEN_MATRICES,
+    assume_matrices,
+    identified_texts,
+    scale_texts,
+)
 from nrs_design.switched.constraints import assemble_switching
 from nrs_design.switched.parameters import corner_modes, fixed_parameter, read_parameters
 
@@ -18,6 +23,7 @@ if TYPE_CHECKING:
     from nrs_design.controllers.controller_design import ControllerDesign
     from nrs_design.models.plant import Plant
     from nrs_design.spec import InteractionDesignSpec, Spec, SwitchedSystemSpec
+    from nrs_design.spec.sampling import SamplingSpec
 
 __all__ = ["GIVEN_MATRICES", "assemble", "assemble_from_text", "assemble_matrices"]
 
@@ -130,15 +136,45 @@ def assemble(
     from nrs_design.switched.gain_box import gain_boxes
 
     _check_scale(scale)
+    if spec.sampling is not None:
+        system = _assemble_sampled(spec, spec.sampling, plant, design, coordinates, scale)
+        return replace(system, assumptions=(*system.assumptions, *scale_texts(scale)))
     if coordinates not in ("deflection", "force"):
         raise AssemblyError(f"unknown coordinates {coordinates!r}: deflection or force")
     plant = plant.scaled(scale, spec.touched)
     loop = plant.motion_loop(design.motion.Kp, design.motion.Kd)
     boxes = gain_boxes(spec, design, scale)
     system = close_loop(
-        spec.name, plant, loop, design, coordinates, spec.switching, boxes, spec.idle_states
+        spec.name,
+        plant,
+        loop,
+        design,
+        coordinates,
+        spec.switching,
+        boxes,
+        spec.idle_states,
+        spec.contact,
     )
-    return replace(system, assumptions=(*system.assumptions, *scale_texts(scale)))
+    texts = (*system.assumptions, *identified_texts(spec), *scale_texts(scale))
+    return replace(system, assumptions=texts)
+
+
+def _assemble_sampled(
+    spec: InteractionDesignSpec,
+    sampling: SamplingSpec,
+    plant: Plant,
+    design: ControllerDesign,
+    coordinates: str | None,
+    scale: Fraction,
+) -> SwitchedSystem:
+    if coordinates != "deflection":
+        raise AssemblyError(
+            f"coordinates {coordinates!r} do not apply to the sampled loop",
+            remedy="use coordinates: deflection",
+        )
+    from nrs_design.switched.sampled_loop import close_sampled_loop
+
+    return close_sampled_loop(spec, sampling, plant.scaled(scale, spec.touched), design)
 
 
 def _check_scale(scale: Fraction) -> None:

@@ -16,10 +16,13 @@ from nrs_design.controllers.gains import idle_decay
 from nrs_design.controllers.laws import CompliantLaw
 from nrs_design.errors import AssemblyError
 from nrs_design.models.contact.environment import Environment
+from nrs_design.models.contact.kelvin_voigt import KelvinVoigt
+from nrs_design.models.contact.law import AbstractLinearLaw
+from nrs_design.models.linear_form import coordinates
 from nrs_design.models.motion_loop import MotionLoop, Realization, realize
 from nrs_design.models.plant import Plant
 from nrs_design.proof.matrix import RationalMatrix
-from nrs_design.proof.system import Mode, SwitchedSystem, Time
+from nrs_design.proof.system import Contact, Mode, SwitchedSystem, Time
 from nrs_design.spec import IdleStatesSpec, SwitchingSpec
 from nrs_design.spec.interval import Interval
 from nrs_design.switched.constraints import assemble_switching
@@ -47,6 +50,7 @@ def close_loop(
     rules: SwitchingSpec | None = None,
     boxes: Mapping[str, GainBox] | None = None,
     idle: IdleStatesSpec | None = None,
+    contact: str | None = None,
 ) -> SwitchedSystem:
     """Assemble every mode of an interaction design.
 
@@ -77,6 +81,9 @@ def close_loop(
     idle : IdleStatesSpec, optional
         What the states of impedance controllers do while another kind of controller is active; by
         default there is one kind only.
+    contact : {"losable", "kept"}, optional
+        Whether contact may be lost; by default it is where that is modelled, and a statement says
+        whether it covers it.
 
     Raises
     ------
@@ -85,12 +92,13 @@ def close_loop(
     """
     rules = rules or SwitchingSpec()
     boxes = {c.name: GainBox.point(c.law) for c in design.controllers} | {**(boxes or {})}
-    touched = _touched(design, plant)
+    touched = plant.among(design.contacts)
     _check_coordinates(coordinates, touched)
     if idle is not None:
         check_mixture(coordinates, touched)
     shared = _shared_law(design, mixed=idle is not None)
     state = _State(realize(loop), coordinates, touched, shared, idle)
+    losable = None if contact == "kept" else _lost_contact(state, design, boxes, contact)
     parts = {
         controller.name: tuple(_controller_modes(controller, plant, state, boxes[controller.name]))
         for controller in design.controllers
@@ -104,16 +112,21 @@ def close_loop(
         state.names,
         tuple(chain.from_iterable(parts.values())),
         assume_loop(
-            Assumed(design, touched, boxes, coordinates, rules, idle, shared, given=loop.given)
+            Assumed(
+                design,
+                touched,
+                boxes,
+                coordinates,
+                rules,
+                idle,
+                shared,
+                given=loop.given,
+                losable=losable is not None,
+            )
         ),
         assemble_switching(rules, groups, resets),
+        losable,
     )
-
-
-def _touched(design: ControllerDesign, plant: Plant) -> tuple[Environment, ...]:
-    """Return what some controller touches, in the order of the spec."""
-    names = {contact for controller in design.controllers for contact in controller.contacts}
-    return tuple(environment for environment in plant.environments if environment.name in names)
 
 
 def _check_coordinates(coordinates: str, touched: tuple[Environment, ...]) -> None:
@@ -246,3 +259,60 @@ def _controller_modes(
         box = state.contact_box(environment).beside(gains.box)
         for label, rows in box.corners(partial(state.rows, law, environment), name):
             yield Mode(f"{name}/{label}" if label else name, RationalMatrix.from_rows(rows))
+
+
+# What is touched where nothing is.
+NOTHING = KelvinVoigt(Fraction(0), Fraction(0))
+
+
+def _lost_contact(
+    state: _State,
+    design: ControllerDesign,
+    boxes: Mapping[str, GainBox],
+    contact: str | None,
+) -> Contact | None:
+    """Return how contact is lost, or None where that is not modelled.
+
+    Raises
+    ------
+    AssemblyError
+        If it is not modelled, and the spec asks for it.
+    """
+    damped = [e for e in state.touched if "b" in e.parameters]
+    modelled = (
+        state.idle is None
+        and state.law.commands == "velocity"
+        and state.coordinates == "deflection"
+        and not any(e.law.remembers for e in state.touched)
+        and bool(state.touched)
+    )
+    if not modelled:
+        if contact == "losable":
+            raise AssemblyError(
+                "loss of contact is modelled for impedance controllers on elastic and damped "
+                "environments in deflection coordinates",
+                remedy="use `contact: kept`",
+                at=("contact",),
+            )
+        return None
+    free = []
+    for controller in design.controllers:
+        name = f"{controller.name}/free"
+        for label, rows in boxes[controller.name].box.corners(
+            partial(_free_rows, state, controller.law), name
+        ):
+            A = RationalMatrix.from_rows(rows)
+            free.append(Mode(f"{name}/{label}" if label else name, A))
+    pulls = (_force_row(state, law) for environment in damped for law in environment.corners)
+    return Contact(tuple(free), tuple(pulls), required=contact == "losable")
+
+
+def _free_rows(state: _State, law: CompliantLaw, values: Mapping[str, Fraction]) -> Rows:
+    return velocity_mode(state.motion, law.of(values), NOTHING)
+
+
+def _force_row(state: _State, law: AbstractLinearLaw) -> RationalMatrix:
+    """Return the force of a damped spring as a row on the states."""
+    own = coordinates(state.motion.order + len(state.law.states) + 1)
+    force, _ = law.react(state.motion.output(len(own)), own[-1:])
+    return RationalMatrix.from_rows([force])

@@ -66,6 +66,8 @@ class Assumed:
         A law that has the states that all modes share.
     given : bool
         Whether the spec states the motion loop itself.
+    losable : bool
+        Whether the system says how contact is lost; then a statement says whether it is kept.
     """
 
     design: ControllerDesign
@@ -76,6 +78,7 @@ class Assumed:
     idle: IdleStatesSpec | None
     law: CompliantLaw
     given: bool
+    losable: bool = False
 
 
 def assume_loop(loop: Assumed) -> tuple[str, ...]:
@@ -144,6 +147,8 @@ def _names(design: ControllerDesign, command: Command) -> dict[str, None]:
 
 
 def _kept_texts(loop: Assumed) -> Iterator[str]:
+    if loop.losable:
+        return iter(())
     used = {controller.law.name for controller in loop.design.controllers}
     texts = (law.contact_text(alone=loop.idle is None) for law in LAWS.values() if law.name in used)
     return (text for text in texts if text is not None)

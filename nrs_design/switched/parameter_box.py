@@ -55,6 +55,11 @@ class Box:
             return interval.middle
         return 2 / (1 / interval.low + 1 / interval.high)
 
+    def values(self) -> Iterator[dict[str, Fraction]]:
+        """Yield the values of the parameters at every corner, the last one turning fastest."""
+        for ends in product(*(interval.ends for interval in self.ranges.values())):
+            yield dict(zip(self.ranges, (value for _, value in ends), strict=True))
+
     def corners(self, rows_at: RowsAt, name: str) -> Iterator[tuple[str, Rows]]:
         """Yield the corners, the last parameter turning fastest.
 
@@ -103,8 +108,8 @@ class Box:
             if len(ends) == 1:
                 continue
             found = rows_at(point)
-            n = range(len(found))
-            if any(found[i][j] * len(ends) != sum(e[i][j] for e in ends) for i in n for j in n):
+            entries = [(i, j) for i, row in enumerate(found) for j in range(len(row))]
+            if any(found[i][j] * len(ends) != sum(e[i][j] for e in ends) for i, j in entries):
                 raise InternalError(f"the matrix of mode {name} is not affine in each parameter")
 
 

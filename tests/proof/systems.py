@@ -1,6 +1,7 @@
 """Systems and genuine evidence that several tests of evidence share."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 from fractions import Fraction
 from functools import cache
 
@@ -9,7 +10,18 @@ from nrs_design.models.contact import KelvinVoigt
 from nrs_design.models.motion_loop import Realization
 from nrs_design.proof.evidence import AbstractEvidence
 from nrs_design.proof.matrix import RationalMatrix
-from nrs_design.proof.system import ARBITRARY, Mode, Reset, Stay, SwitchedSystem, Switching, Time
+from nrs_design.proof.system import (
+    ARBITRARY,
+    Channel,
+    Contact,
+    Mode,
+    Output,
+    Reset,
+    Stay,
+    SwitchedSystem,
+    Switching,
+    Time,
+)
 from nrs_design.search.certify import Limits, certify
 from nrs_design.search.method import Method
 from nrs_design.switched.modes import velocity_mode
@@ -187,11 +199,53 @@ def lossy_network(scale: Entry = 1) -> SwitchedSystem:
     return family(*matrices, time=Time.DISCRETE, switching=switching, names=names)
 
 
+def bouncing(damping: Entry = 0) -> SwitchedSystem:
+    """A mass on a viscous ground and a spring, of stiffness 1 to 2, that pushes only.
+
+    ``v' = -2 v - k delta - b v`` in contact and ``v' = -2 v`` free. With damping b, the
+    environment could pull.
+    """
+    b = Fraction(damping)
+    contact = [[[-2 - b, -k], [1, 0]] for k in (1, 2)]
+    pulls = tuple(matrix([[b, k]]) for k in (1, 2)) if b else ()
+    free = Mode("free", matrix([[-2, 0], [1, 0]]))
+    return replace(family(*contact), contact=Contact((free,), pulls))
+
+
+def bouncing_in_steps() -> SwitchedSystem:
+    """The same without damping, in steps of a tenth of a second by Euler's method."""
+    contact = [[["4/5", Fraction(-k, 10)], ["1/10", 1]] for k in (1, 2)]
+    free = Mode("free", matrix([["4/5", 0], ["1/10", 1]]))
+    system = family(*contact, time=Time.DISCRETE)
+    return replace(system, contact=Contact((free,)), sample_time=Fraction(1, 10))
+
+
+def pushed(system: SwitchedSystem, push: Entry = "1/4") -> SwitchedSystem:
+    """A bouncing mass that is pushed, with its force on a spring of 1 to 2."""
+    step = system.sample_time or Fraction(1)
+    column = matrix([[step], [0]])
+    free = () if system.contact is None else system.contact.free
+    count = len(system.modes) + len(free)
+    rows = (matrix([[0, 1]]), matrix([[0, 2]]))
+    return replace(
+        system,
+        channels=(Channel("push", "N", Fraction(push), (column,) * count),),
+        outputs=(Output("force", "N", rows, Fraction(1)),),
+    )
+
+
 SYSTEMS = {
     "mode-polynomial": lossy_network,
     "common-quadratic": lambda: dayawansa_martin(5),
     "common-polynomial": lambda: dayawansa_martin(6),
     "common-polynomial, discrete": lambda: ando_shih("0.72"),
+    "conewise-quadratic": bouncing,
+    "conewise-quadratic, pulling": lambda: bouncing(1),
+    "conewise-quadratic, discrete": bouncing_in_steps,
+    "invariant-ellipsoid": lambda: pushed(bouncing()),
+    "invariant-ellipsoid, kept": lambda: pushed(replace(bouncing(), contact=None)),
+    "invariant-ellipsoid, pulling": lambda: pushed(bouncing(1)),
+    "invariant-ellipsoid, discrete": lambda: pushed(bouncing_in_steps()),
     "no-common-quadratic": lambda: dayawansa_martin(6),
     "no-common-quadratic, discrete": lambda: ando_shih("0.99"),
     "block-triangular": degenerate_dual,

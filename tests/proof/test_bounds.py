@@ -50,6 +50,9 @@ def test_a_number_without_a_mark_is_exact(number):
         ("1000.00000049", "1000.00000049 s", "1000.00000049 s"),
         ("1000.0000000000049", "1000.00 s (rounded down)", "1000.01 s (rounded up)"),
         ("1/3", "0.333333 s (rounded down)", "0.333334 s (rounded up)"),
+        # As long as is allowed, and one digit more.
+        ("1000.000000049", "1000.000000049 s", "1000.000000049 s"),
+        ("1000.0000000049", "1000.00 s (rounded down)", "1000.01 s (rounded up)"),
         ("1e-21", "1e-21 s", "1e-21 s"),
         ("0", "0 s", "0 s"),
     ],
@@ -57,6 +60,27 @@ def test_a_number_without_a_mark_is_exact(number):
 def test_words(number, down, up):
     assert rounded_down(Fraction(number), "s") == down
     assert rounded_up(Fraction(number), "s") == up
+
+
+@pytest.mark.parametrize(
+    ("number", "text"),
+    [
+        (1 - Fraction(1, 10**30), "1 - 1e-30"),
+        (1 - Fraction(1, 3 * 10**30), "1 - 3.33333e-31"),
+        (Fraction(1), "1"),
+        (1 + Fraction(1, 10**30), "1.00001"),
+        (2 - Fraction(1, 10**30), "2.00000"),
+        (-Fraction(1, 10**30), "-1e-30"),
+    ],
+)
+def test_what_is_a_little_below_one_stays_below_it(number, text):
+    """A contraction that is rounded up to 1 would be none."""
+    assert upper(number) == text
+
+
+def test_only_what_is_rounded_is_about():
+    assert nearly(Fraction(5, 2), "s") == "2.5 s"
+    assert nearly(Fraction(1, 3), "s") == "about 0.333333 s"
 
 
 @given(st.fractions())

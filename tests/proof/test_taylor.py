@@ -4,12 +4,13 @@ from fractions import Fraction
 from math import factorial
 
 import pytest
+from flint import arb, fmpq
 from hypothesis import given
 from hypothesis import strategies as st
 
 from nrs_design.proof.enclosure import exponential, overlap, precision
 from nrs_design.proof.matrix import RationalMatrix
-from nrs_design.proof.taylor import UNIT, exponential_nearly
+from nrs_design.proof.taylor import UNIT, exponential_between, exponential_nearly
 
 DIGITS = Fraction(1, 10**60)
 
@@ -82,3 +83,19 @@ def test_a_fast_decay_over_a_long_time():
     half = e_to_the(-1) / 2
     assert error < DIGITS
     assert all(abs(entry - half) <= error + Fraction(1, 10**80) for entry in entries(M))
+
+
+@given(st.fractions(-50, 5, max_denominator=10**6))
+def test_the_exponential_of_a_number_lies_between_its_bounds(x):
+    """Flint's ball meets the bounds, which are two units of 2^-80 apart at most."""
+    low, high = exponential_between(x)
+    with precision():
+        ball = arb(fmpq(x.numerator, x.denominator)).exp()
+        assert arb(fmpq(low.numerator, low.denominator)) <= ball
+        assert ball <= arb(fmpq(high.numerator, high.denominator))
+    assert high - low <= Fraction(2, 2**80)
+
+
+def test_the_exponential_of_zero_is_one():
+    low, high = exponential_between(Fraction(0))
+    assert low <= 1 <= high

@@ -17,6 +17,8 @@ from nrs_design.proof.evidence import (
     BlockTriangular,
     CommonPolynomial,
     CommonQuadratic,
+    ConewiseQuadratic,
+    InvariantEllipsoid,
     ModePolynomial,
     ModeQuadratic,
     NoCommonQuadratic,
@@ -145,6 +147,116 @@ def _common_quadratic(system: SwitchedSystem, item: CommonQuadratic) -> bool:
             *(decrease(m.A.fractions(), item.Q, item.rate, system.time) for m in system.modes),
         )
     )
+
+
+def _conewise_quadratic(system: SwitchedSystem, item: ConewiseQuadratic) -> bool:
+    """The conditions as the class states them, in fractions."""
+    contact, Q, rate = system.contact, [list(row) for row in item.Q], item.rate
+    if contact is None or not is_rate(rate, system.time) or min(item.multipliers, default=0) < 0:
+        return False
+    if len(Q) != system.order:
+        return False
+    inner = [row[:-1] for row in Q[:-1]]
+    last = [[Fraction(int(i == len(Q) - 1))] for i in range(len(Q))]
+    forms = [Q]
+    forms += [decrease(m.A.fractions(), Q, rate, system.time) for m in system.modes]
+    if system.time is Time.CONTINUOUS:
+        pairs = [(F.A.fractions(), q.fractions()) for F in contact.free for q in contact.pulls]
+        if len(pairs) != len(item.multipliers):
+            return False
+        for mode in contact.free:
+            block = [row[:-1] for row in mode.A.fractions()[:-1]]
+            forms.append(decrease(block, inner, rate, system.time))
+        for (F, q), multiplier in zip(pairs, item.multipliers, strict=True):
+            product_ = times(last, q)
+            lag = (multiplier, product_), (multiplier, transpose(product_))
+            forms.append(combine((1, decrease(F, Q, rate, system.time)), *lag))
+        return all(is_definite(form) for form in forms)
+    if contact.pulls or len(item.multipliers) != 1:
+        return False
+
+    def shrinks(before: Rows, A: Rows, after: Rows) -> Rows:
+        return combine((rate**2, before), (-1, times(transpose(A), times(after, A))))
+
+    for mode in system.modes:
+        A = mode.A.fractions()
+        crossing = times(last, [A[-1]])
+        weight = item.multipliers[0]
+        lost = (weight, crossing), (weight, transpose(crossing))
+        forms.append(combine((1, shrinks(Q, A[:-1], inner)), *lost))
+    for mode in contact.free:
+        A = [row[:-1] for row in mode.A.fractions()]
+        forms += [shrinks(inner, A[:-1], inner), shrinks(inner, A, Q)]
+    return all(is_definite(form) for form in forms)
+
+
+def _invariant_ellipsoid(system: SwitchedSystem, item: InvariantEllipsoid) -> bool:
+    """For the state and a constant one: what raises V only if the disturbance is too large."""
+    channel = next((c for c in system.channels if c.name == item.channel), None)
+    output = next((o for o in system.outputs if o.name == item.output), None)
+    discrete = system.time is Time.DISCRETE
+    if channel is None or output is None or len(item.Q) != system.order:
+        return False
+    if item.level <= 0 or item.share <= 0 or (discrete and item.share >= 1):
+        return False
+    scale = Fraction(1, 2**item.denominator_log2)
+    Q = combine((scale, [list(map(Fraction, row)) for row in item.Q]))
+    weights = [scale * entry for entry in item.multipliers]
+    n, a, bound, contact = system.order, item.share, channel.bound, system.contact
+    free = () if contact is None else contact.free
+    wide = [
+        [[*row, *entry] for row, entry in zip(m.A.fractions(), B.fractions(), strict=True)]
+        for m, B in zip((*system.modes, *free), channel.columns, strict=True)
+    ]
+    inner, unit = [row[:-1] for row in Q[:-1]], identity(n + 1)
+
+    def ball(M: Rows) -> Rows:
+        """Return the form ``a d^2/bound^2 - a V`` of state and disturbance."""
+        zero = [Fraction(0)] * len(M)
+        kept = [[*(-a * entry for entry in row), Fraction(0)] for row in M]
+        return [*kept, [*zero, a / bound**2]]
+
+    def rise(M: Rows, A: Rows, after: Rows) -> Rows:
+        """Return the form of V' or of ``V+ - V``."""
+        size = len(M)
+        seen = identity(size + 1)[:size]
+        if discrete:
+            before = times(transpose(seen), times(M, seen))
+            return combine((1, times(transpose(A), times(after, A))), (-1, before))
+        half = times(transpose(seen), times(M, A))
+        return combine((1, half), (1, transpose(half)))
+
+    def crossing(row: list[Fraction], weight: Fraction) -> list[tuple[Fraction, Rows]]:
+        product_ = times([[entry] for entry in unit[n - 1]], [row])
+        return [(weight, product_), (weight, transpose(product_))]
+
+    touching, flying = wide[: len(system.modes)], wide[len(system.modes) :]
+    blocks = [[row[: n - 1] + row[n:] for row in A] for A in flying]
+    forms = [Q] + [combine((1, ball(Q)), (-1, rise(Q, A, Q))) for A in touching]
+    if discrete:
+        if contact is not None and (contact.pulls or len(weights) != 1):
+            return False
+        for A in touching if contact is not None else []:
+            lost = combine((1, ball(Q)), (-1, rise(Q, A[:-1], inner)), *crossing(A[-1], weights[0]))
+            forms.append(lost)
+        for A in blocks:
+            forms.append(combine((1, ball(inner)), (-1, rise(inner, A[:-1], inner))))
+            forms.append(combine((1, ball(inner)), (-1, rise(inner, A, Q))))
+    else:
+        for A in blocks:
+            forms.append(combine((1, ball(inner)), (-1, rise(inner, A[:-1], inner))))
+        pulls = () if contact is None else contact.pulls
+        pairs = [(A, q.fractions()[0]) for A in flying for q in pulls]
+        if len(pairs) != len(weights):
+            return False
+        for (A, q), weight in zip(pairs, weights, strict=True):
+            row = [*q, Fraction(0)]
+            forms.append(combine((1, ball(Q)), (-1, rise(Q, A, Q)), *crossing(row, weight)))
+    for q in output.rows:
+        row = q.fractions()[0]
+        outer = [[x * y for y in row] for x in row]
+        forms.append(combine((item.level**2, Q), (-1, outer)))
+    return min(weights, default=0) >= 0 and all(map(is_definite, forms))
 
 
 def _common_polynomial(system: SwitchedSystem, item: CommonPolynomial) -> bool:
@@ -466,6 +578,8 @@ def restrict(system: SwitchedSystem, block: tuple[int, ...]) -> SwitchedSystem:
 
 _ORACLES = {
     CommonQuadratic: _common_quadratic,
+    ConewiseQuadratic: _conewise_quadratic,
+    InvariantEllipsoid: _invariant_ellipsoid,
     CommonPolynomial: _common_polynomial,
     NoCommonQuadratic: _no_common_quadratic,
     ParameterQuadratic: _parameter_quadratic,

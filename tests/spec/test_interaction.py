@@ -145,7 +145,7 @@ IMPEDANCE_FAULTS = [
     ("0.0351 s", "0 s", "0 s", "must be positive"),
     ("0.0351 s", "-0.0351 s", "-0.0351", "must be positive"),
     ("0.0351 s", "0.0351", "0.0351", "has no unit"),
-    ("0.0351 s", "{value: 1 s}", "{value", "single value"),
+    ("0.0351 s", "{value: 1 s}", "{value", "`actuator.time_constant.nominal` is missing"),
     ("time_constant", "time_constnat", "time_constnat", "did you mean time_constant?"),
     ("0.707", "1", "1\n  settling", "between 0 and 1"),
     ("0.707", "0", "0\n  settling", "between 0 and 1"),

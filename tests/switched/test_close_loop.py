@@ -64,14 +64,14 @@ def impedance(name, Mt, contacts=("soft",)):
     return Controller(name, Admittance(F(Mt), F(2)), contacts[0], contacts)
 
 
-def assembled(*controllers, coordinates="deflection"):
+def assembled(*controllers, coordinates="deflection", contact=None):
     soft = Environment("soft", Elastic, (Interval(F(43), F(41), F(45)),))
     hand = Environment(
         "hand", KelvinVoigt, (Interval(F(50), F(25), F(90)), Interval(F(1), F(0), F(2)))
     )
     plant = Plant(Actuator(F(1), F(1)), (soft, hand))
     design = ControllerDesign(ProportionalDerivative(F(1), F(1)), controllers)
-    return close_loop("robot", plant, LOOP, design, coordinates)
+    return close_loop("robot", plant, LOOP, design, coordinates, contact=contact)
 
 
 @dataclass(frozen=True, slots=True)
@@ -119,7 +119,10 @@ class TestAssembly:
         assert "in is active only in contact with soft." in deflection
         assert "the force may jump" in deflection
         assert "not physical in lasting contact" in force
-        assert "free motion is not one of the modes" in deflection
+        kept = " ".join(assembled(impedance("in", 0), contact="kept").assumptions)
+        assert "free motion is not one of the modes" in kept
+        assert "free motion is not one of the modes" in force
+        assert "free motion" not in deflection
         position = " ".join(assembled(Controller("p", PositionControl(), None, ())).assumptions)
         assert "free motion" not in position
         assert "Contact is not lost" not in position

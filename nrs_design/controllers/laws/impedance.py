@@ -8,8 +8,11 @@ from fractions import Fraction
 from types import MappingProxyType
 from typing import ClassVar
 
+from nrs_design.controllers.float32 import to_float32
 from nrs_design.controllers.laws.law import AbstractCompliantLaw, Response
+from nrs_design.controllers.sampled import SampledAdmittance
 from nrs_design.models.linear_form import LinearForm, combine
+from nrs_design.proof.taylor import exponential_between
 from nrs_design.spec.controllers import Command, ImpedanceControllerSpec
 
 KEPT_VELOCITY = (
@@ -64,6 +67,21 @@ class Admittance(AbstractCompliantLaw[ImpedanceControllerSpec]):
         (vm,) = states
         rate = combine((1 / self.Mt, force), (-self.Bt / self.Mt, vm))
         return combine((Fraction(-1), vm)), [rate]
+
+    def sampled(self, period: Fraction, method: str) -> SampledAdmittance:
+        """Discretize ``Mt v' + Bt v = F`` (thesis 6.8).
+
+        Exactly for a force that is held: ``a = exp(-Bt T/Mt)`` and ``b = (1 - a)/Bt``; or by
+        Euler's method: ``a = 1 - Bt T/Mt`` and ``b = T/Mt``.
+        """
+        T = to_float32(period)
+        if self.Mt == 0:
+            return SampledAdmittance(None, to_float32(1 / self.Bt), T)
+        step = self.Bt * period / self.Mt
+        if method == "euler":
+            return SampledAdmittance(to_float32(1 - step), to_float32(period / self.Mt), T)
+        a, _ = exponential_between(-step)
+        return SampledAdmittance(to_float32(a), to_float32((1 - a) / self.Bt), T)
 
     @classmethod
     def contact_text(cls, *, alone: bool) -> str:

@@ -12,6 +12,7 @@ from dataclasses import dataclass, fields
 from fractions import Fraction
 from typing import ClassVar, Generic, Self, TypeVar
 
+from nrs_design.controllers.sampled import SampledAdmittance
 from nrs_design.models.linear_form import LinearForm
 from nrs_design.spec.controllers import AbstractControllerSpec, Command
 
@@ -75,6 +76,16 @@ class AbstractCompliantLaw(AbstractLaw, Generic[S]):
         states : sequence of LinearForm
             Those named in `states`.
         """
+
+    def sampled(self, period: Fraction, method: str) -> SampledAdmittance | None:
+        """Return what a processor computes once a period in s, or None where that is not modelled.
+
+        Raises
+        ------
+        DesignError
+            If a coefficient is beyond single precision.
+        """
+        return None
 
     def find_fault(self, given: S) -> str | None:
         """Say which gain is not one that the spec allows, beyond bounds and ranges; or None.

@@ -9,6 +9,8 @@ from nrs_design.proof.evidence.abstract import AbstractEvidence, Shows
 from nrs_design.proof.evidence.block_triangular import BlockTriangular
 from nrs_design.proof.evidence.common_polynomial import CommonPolynomial
 from nrs_design.proof.evidence.common_quadratic import CommonQuadratic
+from nrs_design.proof.evidence.conewise_quadratic import ConewiseQuadratic
+from nrs_design.proof.evidence.invariant_ellipsoid import InvariantEllipsoid
 from nrs_design.proof.evidence.mode_polynomial import ModePolynomial
 from nrs_design.proof.evidence.mode_quadratic import ModeQuadratic
 from nrs_design.proof.evidence.no_common_quadratic import NoCommonQuadratic
@@ -22,6 +24,8 @@ from nrs_design.proof.system import SwitchedSystem
 KINDS: tuple[type[AbstractEvidence], ...] = (
     CommonQuadratic,
     CommonPolynomial,
+    ConewiseQuadratic,
+    InvariantEllipsoid,
     ModeQuadratic,
     ModePolynomial,
     NoCommonQuadratic,
@@ -54,6 +58,8 @@ __all__ = [
     "BlockTriangular",
     "CommonPolynomial",
     "CommonQuadratic",
+    "ConewiseQuadratic",
+    "InvariantEllipsoid",
     "ModePolynomial",
     "ModeQuadratic",
     "NoCommonQuadratic",

@@ -8,6 +8,7 @@ from enum import StrEnum
 from fractions import Fraction
 from typing import Any, ClassVar, Self
 
+from nrs_design.proof.bounds import at_least
 from nrs_design.proof.evidence.fields import find_unreadable
 from nrs_design.proof.exact import (
     IntegerMatrix,
@@ -16,6 +17,10 @@ from nrs_design.proof.exact import (
     is_too_large,
 )
 from nrs_design.proof.system import SwitchedSystem, Switching
+from nrs_design.proof.text import exact_text
+
+WHILE_KEPT = "This holds as long as contact is kept, the environment pulling as it pushes."
+GROWN_IN_CONTACT = "This growth is that in kept contact, the environment pulling as it pushes."
 
 
 class Shows(StrEnum):
@@ -24,6 +29,7 @@ class Shows(StrEnum):
     STABILITY = "stability"
     INSTABILITY = "instability"
     NO_COMMON_QUADRATIC = "no common quadratic function"
+    BOUND = "a bound on an output"
 
 
 class AbstractEvidence(ABC):
@@ -42,6 +48,8 @@ class AbstractEvidence(ABC):
     attains_rate: ClassVar[bool] = False
     # What is shown of the modes is shown of their convex combinations too.
     covers_mixtures: ClassVar[bool] = False
+    # It holds while contact is lost and made again, where the system says how that happens.
+    covers_lost_contact: ClassVar[bool] = False
 
     @property
     @abstractmethod
@@ -75,9 +83,19 @@ class AbstractEvidence(ABC):
     def forms(self, system: SwitchedSystem) -> Iterator[tuple[str, IntegerMatrix]]:
         """Yield what must be positive definite, each with the name of its failure."""
 
-    @abstractmethod
     def claim(self, system: SwitchedSystem) -> str:
-        """Say in words what is shown."""
+        """Say in words what is shown, how fast in seconds, and whether contact is kept for it."""
+        said, rate = [self.claim_in_scope(system)], self.proved_rate(system)
+        if system.sample_time is not None and rate is not None:
+            said.append(_in_seconds(rate, system.sample_time))
+        if system.contact is not None and not self.covers_lost_contact:
+            unstable = self.shows is Shows.INSTABILITY
+            said.append(GROWN_IN_CONTACT if unstable else WHILE_KEPT)
+        return " ".join(said)
+
+    @abstractmethod
+    def claim_in_scope(self, system: SwitchedSystem) -> str:
+        """Say in words what is shown, for the motions that this kind of evidence speaks about."""
 
     @abstractmethod
     def to_fields(self) -> dict[str, Any]:
@@ -139,7 +157,19 @@ class AbstractEvidence(ABC):
             return f"evidence of kind {self.kind} does not cover this kind of switching"
         if not system.is_uniform and not self.allows_unequal_modes:
             return f"evidence of kind {self.kind} needs modes of equal size"
+        if system.contact is not None and system.contact.required and self._takes_contact():
+            return f"evidence of kind {self.kind} does not cover the loss of contact"
         return self.find_misfit(system)
+
+    def _takes_contact(self) -> bool:
+        """Tell whether it shows something good of kept contact only."""
+        return self.shows in (Shows.STABILITY, Shows.BOUND) and not self.covers_lost_contact
+
+
+def _in_seconds(rate: Fraction, step: Fraction) -> str:
+    """Say what a contraction rho per step is in seconds: ``-log(rho) >= 1 - rho``."""
+    alpha = at_least((1 - rate) / step, "1/s")
+    return f"A step takes {exact_text(step)} s, so that is exp(-alpha t) with alpha {alpha}."
 
 
 def find_indefinite(forms: Iterable[tuple[str, IntegerMatrix]]) -> str | None:

@@ -97,7 +97,7 @@ class BlockTriangular(AbstractEvidence):
             for failure, form in part.forms(diagonal_block(system, self.blocks[index])):
                 yield f"block {index + 1}: {failure}", form
 
-    def claim(self, system: SwitchedSystem) -> str:
+    def claim_in_scope(self, system: SwitchedSystem) -> str:
         """State the structure and what the parts show."""
         conclusion = {
             Shows.STABILITY: "every solution decays exponentially, at any rate slower than the "
@@ -179,4 +179,5 @@ def diagonal_block(system: SwitchedSystem, block: tuple[int, ...]) -> SwitchedSy
         )
         for mode in system.modes
     )
-    return replace(system, states=tuple(system.states[i] for i in block), modes=modes)
+    states = tuple(system.states[i] for i in block)
+    return system.with_modes(modes, states, system.switching)

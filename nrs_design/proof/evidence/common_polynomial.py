@@ -99,7 +99,7 @@ class CommonPolynomial(AbstractFunction):
             failure = f"V does not decrease at the claimed rate in mode {mode.name}"
             yield failure, add(decrease, N)
 
-    def claim(self, system: SwitchedSystem) -> str:
+    def claim_in_scope(self, system: SwitchedSystem) -> str:
         """State the bound on every solution."""
         degree = 2 * self.degree
         norm = f"where |x|^{degree} is a positive definite form of degree {degree} in x"

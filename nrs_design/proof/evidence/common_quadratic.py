@@ -74,7 +74,7 @@ class CommonQuadratic(AbstractFunction):
             N, denominator = mode.A.numerators, mode.A.denominator
             yield failure, form(N, denominator, self.Q, self.rate, multiply)
 
-    def claim(self, system: SwitchedSystem) -> str:
+    def claim_in_scope(self, system: SwitchedSystem) -> str:
         """State the bound on every solution."""
         return decay_claim(system, self.rate, "in the norm |x| = sqrt(x' Q x)")
 

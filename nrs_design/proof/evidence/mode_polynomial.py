@@ -111,7 +111,7 @@ class ModePolynomial(AbstractEvidence):
         for (failure, decrease), N in zip(decreases, self.vanishing, strict=True):
             yield failure, add(decrease, N)
 
-    def claim(self, system: SwitchedSystem) -> str:
+    def claim_in_scope(self, system: SwitchedSystem) -> str:
         """State the bound on every solution."""
         return bound_claim(system, self.quadratic.rate)
 
@@ -164,7 +164,7 @@ def lift_system(system: SwitchedSystem, degree: int) -> SwitchedSystem:
     )
     states = tuple(f"z{k + 1}" for k in range(max(mode.A.shape[0] for mode in modes)))
     switching = replace(system.switching, resets=resets)
-    return replace(system, states=states, modes=modes, switching=switching)
+    return system.with_modes(modes, states, switching)
 
 
 def _lift(A: RationalMatrix, degree: int) -> RationalMatrix:

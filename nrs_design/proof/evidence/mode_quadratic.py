@@ -206,7 +206,7 @@ class ModeQuadratic(AbstractFunction):
         before = [[left * q for q in row] for row in Q[edge.source.name]]
         return add(before, image, -scale.denominator)
 
-    def claim(self, system: SwitchedSystem) -> str:
+    def claim_in_scope(self, system: SwitchedSystem) -> str:
         """State the bound on every solution."""
         return bound_claim(system, self.rate)
 

@@ -67,7 +67,7 @@ class NoCommonQuadratic(AbstractEvidence):
             total = add(total, term, weight)
         yield "the sum over the modes is not positive definite", total
 
-    def claim(self, system: SwitchedSystem) -> str:
+    def claim_in_scope(self, system: SwitchedSystem) -> str:
         """State the impossibility."""
         condition = "A'Q + QA < 0" if system.time is Time.CONTINUOUS else "A'QA < Q"
         return (

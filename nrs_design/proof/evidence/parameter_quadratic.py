@@ -87,7 +87,7 @@ class ParameterQuadratic(AbstractFunction):
             mixed = add(at_low[1], at_high[0])
             yield f"V does not decrease between {low} and {high}", mixed
 
-    def claim(self, system: SwitchedSystem) -> str:
+    def claim_in_scope(self, system: SwitchedSystem) -> str:
         """State the bound on every solution."""
         count = len(system.switching.fixed_ends)
         among = "the one mode" if count == 1 else f"the {count} modes"

@@ -77,7 +77,7 @@ class UnstableMixture(AbstractEvidence):
         """Yield nothing: no matrix has to be positive definite."""
         yield from ()
 
-    def claim(self, system: SwitchedSystem) -> str:
+    def claim_in_scope(self, system: SwitchedSystem) -> str:
         """State the combination and what follows."""
         shares = " + ".join(f"{weight} {name}" for name, weight in self.weights)
         return (

@@ -69,7 +69,7 @@ class UnstableMode(AbstractEvidence):
         """Yield nothing: no matrix has to be positive definite."""
         yield from ()
 
-    def claim(self, system: SwitchedSystem) -> str:
+    def claim_in_scope(self, system: SwitchedSystem) -> str:
         """State that the mode is not stable, and what follows."""
         continuous = system.time is Time.CONTINUOUS
         region = "Hurwitz" if continuous else "Schur"

@@ -99,7 +99,7 @@ class UnstablePeriod(AbstractEvidence):
         """Yield nothing: no matrix has to be positive definite."""
         yield from ()
 
-    def claim(self, system: SwitchedSystem) -> str:
+    def claim_in_scope(self, system: SwitchedSystem) -> str:
         """State the signal and what follows."""
         continuous = system.time is Time.CONTINUOUS
         law, unit = ("x' = A x", "s") if continuous else ("x+ = A x", "steps")

@@ -67,7 +67,7 @@ class UnstableValue(AbstractEvidence):
         """Yield nothing: no matrix has to be positive definite."""
         yield from ()
 
-    def claim(self, system: SwitchedSystem) -> str:
+    def claim_in_scope(self, system: SwitchedSystem) -> str:
         """State the value and what happens there."""
         return (
             f"{value_text(system, self.share)}, which the range allows and which does not change: "

@@ -10,6 +10,8 @@ from nrs_design.proof.evidence import (
     BlockTriangular,
     CommonPolynomial,
     CommonQuadratic,
+    ConewiseQuadratic,
+    InvariantEllipsoid,
     ModePolynomial,
     ModeQuadratic,
     NoCommonQuadratic,
@@ -24,6 +26,8 @@ from nrs_design.reporting.kinds.abstract import AbstractKindPage
 from nrs_design.reporting.kinds.block_triangular import BlockTriangularPage
 from nrs_design.reporting.kinds.common_polynomial import CommonPolynomialPage
 from nrs_design.reporting.kinds.common_quadratic import CommonQuadraticPage
+from nrs_design.reporting.kinds.conewise_quadratic import ConewiseQuadraticPage
+from nrs_design.reporting.kinds.invariant_ellipsoid import InvariantEllipsoidPage
 from nrs_design.reporting.kinds.mode_polynomial import ModePolynomialPage
 from nrs_design.reporting.kinds.mode_quadratic import ModeQuadraticPage
 from nrs_design.reporting.kinds.no_common_quadratic import NoCommonQuadraticPage
@@ -37,6 +41,8 @@ KINDS: Mapping[type[AbstractEvidence], type[AbstractKindPage[Any]]] = {
     BlockTriangular: BlockTriangularPage,
     CommonPolynomial: CommonPolynomialPage,
     CommonQuadratic: CommonQuadraticPage,
+    ConewiseQuadratic: ConewiseQuadraticPage,
+    InvariantEllipsoid: InvariantEllipsoidPage,
     ModePolynomial: ModePolynomialPage,
     ModeQuadratic: ModeQuadraticPage,
     NoCommonQuadratic: NoCommonQuadraticPage,

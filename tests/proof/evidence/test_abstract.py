@@ -50,7 +50,7 @@ class Claimed(AbstractEvidence):
         for form in self.matrices:
             yield "it fails", tuple(tuple(v << self.shift for v in row) for row in form)
 
-    def claim(self, system):
+    def claim_in_scope(self, system):
         return ""
 
     def to_fields(self):
@@ -150,17 +150,19 @@ def test_the_rate_is_one_of_decay_or_there_is_none(example):
     assert rate is None or rate > 0
 
 
-FREE = {"common-quadratic", "common-polynomial", "parameter-quadratic"}
+FREE = {"common-quadratic", "common-polynomial", "conewise-quadratic", "parameter-quadratic"}
+SETS = {"common-quadratic", "conewise-quadratic", "invariant-ellipsoid"}
 RULED = {"mode-quadratic", "mode-polynomial"}
 FACTS = {
     # The careful answer is no; these kinds show more.
     "allows_unequal_modes": RULED | {"unstable-mode"},
     "attains_rate": FREE | RULED,
     "bounds_at_once": FREE,
-    "covers_mixtures": {"common-quadratic", "common-polynomial", "block-triangular"},
-    "is_common_quadratic": {"common-quadratic"},
+    "covers_lost_contact": {"conewise-quadratic", "invariant-ellipsoid"},
+    "covers_mixtures": SETS | {"common-polynomial", "block-triangular"},
+    "is_common_quadratic": {"common-quadratic", "conewise-quadratic"},
     # The blocks of the example have polynomials.
-    "keeps_bound_in_mixtures": {"common-quadratic", "parameter-quadratic"} | RULED,
+    "keeps_bound_in_mixtures": SETS | {"parameter-quadratic"} | RULED,
     "names_unstable_mode": {"unstable-mode"},
 }
 

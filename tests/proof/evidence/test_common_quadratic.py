@@ -208,3 +208,9 @@ def test_what_a_common_quadratic_function_carries_over_to():
     assert evidence.keeps_bound_in_mixtures
     assert evidence.covers_mixtures
     assert evidence.bounds_at_once
+
+
+@pytest.mark.parametrize(("modes", "words"), [(1, "its one mode"), (2, "the 2 modes")])
+def test_a_claim_counts_the_modes(modes, words):
+    evidence = CommonQuadratic(((1,),), 0, Fraction(1, 2))
+    assert words in evidence.claim(family(*[[[-1]]] * modes))

@@ -1,0 +1,61 @@
+"""The laws as a processor computes them once a period, with the coefficients that ship.
+
+Every coefficient is a single-precision number; what the arithmetic rounds besides is another
+matter. The position is taken at the sample, the force sample may be older.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import TYPE_CHECKING
+
+from nrs_design.controllers.float32 import to_float32
+
+if TYPE_CHECKING:
+    from nrs_design.controllers.laws import ProportionalDerivative
+
+
+@dataclass(frozen=True, slots=True)
+class SampledMotion:
+    """``u = Kp e + D (e - e_before)``, with the backward difference for the derivative.
+
+    Parameters
+    ----------
+    Kp : Fraction
+        In rpm/rad.
+    D : Fraction
+        Kd over the period, in rpm/rad.
+    """
+
+    Kp: Fraction
+    D: Fraction
+
+    @classmethod
+    def of(cls, law: ProportionalDerivative, period: Fraction) -> SampledMotion:
+        """Discretize the PD law (thesis 4.3) for a period in s."""
+        return cls(law.Kp, to_float32(law.Kd / period))
+
+
+@dataclass(frozen=True, slots=True)
+class SampledAdmittance:
+    """``v+ = a v + b F``, and the reference moves on by ``-T v``; without inertia ``v = b F``.
+
+    Parameters
+    ----------
+    a : Fraction or None
+        Without unit; None for a law without inertia.
+    b : Fraction
+        In rad/(s N m).
+    T : Fraction
+        The period as the processor holds it, in s.
+    """
+
+    a: Fraction | None
+    b: Fraction
+    T: Fraction
+
+    @property
+    def coefficients(self) -> dict[str, Fraction]:
+        """The coefficients by name."""
+        return ({} if self.a is None else {"a": self.a}) | {"b": self.b, "T": self.T}

@@ -1,0 +1,223 @@
+"""One quadratic function for all modes and for free motion, while contact comes and goes."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from fractions import Fraction
+from itertools import product
+from typing import Any, ClassVar, Self
+
+from nrs_design.proof.evidence.fields import (
+    Matrix,
+    matrix_fields,
+    rate_words,
+    read_dyadic,
+    read_integer,
+    read_ratio,
+)
+from nrs_design.proof.evidence.function import AbstractFunction, is_square
+from nrs_design.proof.exact import (
+    IntegerMatrix,
+    add,
+    congruence,
+    lyapunov_decrease,
+    lyapunov_factor,
+    stein_decrease,
+    stein_factor,
+)
+from nrs_design.proof.matrix import RationalMatrix
+from nrs_design.proof.system import Contact, Mode, SwitchedSystem, Time
+
+Forms = Iterator[tuple[str, IntegerMatrix]]
+
+
+@dataclass(frozen=True, slots=True)
+class ConewiseQuadratic(AbstractFunction):
+    """``V = w' Q w`` decreases in contact and free, with ``w = (y, max(delta, 0))``.
+
+    V is ``x' Q x`` in contact and ``y' Q_yy y`` free, and continuous where the two meet. In
+    continuous time it decreases
+
+    - in contact: ``-(A'Q + QA + 2 alpha Q) > 0`` for every mode;
+    - free: the same for the block of y of every free mode and of Q;
+    - deflected without force, where an environment could pull: for every free mode F and every
+      force q, ``-(F'Q + QF + 2 alpha Q) + lambda (e q + q' e') > 0`` with a lambda >= 0 of its
+      own, since there ``delta q x <= 0`` for one q at least (S-procedure).
+
+    In discrete time, with N the rows of y of a map and c that of delta:
+
+    - contact to contact: ``rho^2 Q - A'QA > 0`` for every mode;
+    - contact to free: ``rho^2 Q - N' Q_yy N + lambda (e c + c' e') > 0`` with one lambda >= 0 for
+      all modes, since there ``delta c x <= 0``. That lambda is one for all makes the condition
+      hold for convex combinations of modes;
+    - free to free, and free to contact: the depth after landing lies between 0 and ``c y``, V is
+      convex in it, so both ends suffice: ``rho^2 Q_yy - N' Q_yy N > 0`` and
+      ``rho^2 Q_yy - (N, c)' Q (N, c) > 0`` for every free mode.
+
+    Parameters
+    ----------
+    Q : tuple of tuple of int, shape (n, n)
+        Numerators of the symmetric matrix.
+    denominator_log2 : int
+        Q is these numerators over two to this power.
+    rate : Fraction
+        The alpha in 1/s, or rho per step.
+    multipliers : tuple of int
+        The lambdas, over the denominator of Q: in continuous time one for each free mode and each
+        force in turn, in discrete time a single one.
+    """
+
+    kind: ClassVar[str] = "conewise-quadratic"
+    bounds_at_once: ClassVar[bool] = True
+    covers_mixtures: ClassVar[bool] = True
+    covers_lost_contact: ClassVar[bool] = True
+
+    Q: Matrix
+    denominator_log2: int
+    rate: Fraction
+    multipliers: tuple[int, ...]
+
+    @property
+    def is_common_quadratic(self) -> bool:
+        """True: in contact it is one for all modes."""
+        return True
+
+    @property
+    def keeps_bound_in_mixtures(self) -> bool:
+        """True: the level sets of V are convex in contact, and free."""
+        return True
+
+    def find_misfit(self, system: SwitchedSystem) -> str | None:
+        """Check that contact can be lost, shapes, and the signs of rate and multipliers."""
+        if system.contact is None:
+            return "the system does not say how contact is lost"
+        if not is_square(self.Q, system.order):
+            return f"Q is not a {system.order} x {system.order} matrix"
+        if system.time is Time.DISCRETE and system.contact.pulls:
+            return "in discrete time, an environment that could pull is not covered"
+        if len(self.multipliers) != multiplier_count(system.contact, system.time):
+            return "there is not one multiplier for each condition that needs it"
+        if min(self.multipliers, default=0) < 0:
+            return "a multiplier is negative"
+        return self.find_rate_misfit(system.time)
+
+    def forms(self, system: SwitchedSystem) -> Forms:
+        """Yield Q and the decreases in contact, free, and between the two."""
+        assert system.contact is not None  # find_misfit
+        yield "Q is not symmetric and positive definite", self.Q
+        if system.time is Time.CONTINUOUS:
+            yield from self._in_continuous_time(system.modes, system.contact)
+        else:
+            yield from self._in_discrete_time(system.modes, system.contact)
+
+    def _in_continuous_time(self, modes: tuple[Mode, ...], contact: Contact) -> Forms:
+        for mode in modes:
+            yield _failure(f"in mode {mode.name}"), self._decrease(mode.A)
+        for mode in contact.free:
+            free, Q = _block(mode.A), _leading(self.Q)
+            form = lyapunov_decrease(free.numerators, free.denominator, Q, self.rate)
+            yield _failure(f"in free motion, mode {mode.name}"), form
+        pairs = product(contact.free, contact.pulls)
+        for (mode, q), multiplier in zip(pairs, self.multipliers, strict=True):
+            factor = lyapunov_factor(mode.A.denominator, self.rate)
+            form = add(
+                _scaled(self._decrease(mode.A), q.denominator),
+                _with_last(q.numerators[0]),
+                multiplier * factor,
+            )
+            yield _failure(f"while the environment lags, mode {mode.name}"), form
+
+    def _decrease(self, A: RationalMatrix) -> list[list[int]]:
+        return lyapunov_decrease(A.numerators, A.denominator, self.Q, self.rate)
+
+    def _in_discrete_time(self, modes: tuple[Mode, ...], contact: Contact) -> Forms:
+        (multiplier,), rate, inner = self.multipliers, self.rate, _leading(self.Q)
+        for mode in modes:
+            N, d = mode.A.numerators, mode.A.denominator
+            yield _failure(f"in mode {mode.name}"), stein_decrease(N, d, self.Q, rate)
+            *others, last = N
+            lost = _step_decrease(self.Q, others, d, inner, rate)
+            # The factor of this form over the denominator of its last row is an integer.
+            lost = add(lost, _with_last(last), multiplier * stein_factor(d, rate) // d)
+            yield _failure(f"where contact is lost in mode {mode.name}"), lost
+        for mode in contact.free:
+            rows = [row[:-1] for row in mode.A.numerators]
+            d = mode.A.denominator
+            kept = _step_decrease(inner, rows[:-1], d, inner, rate)
+            yield _failure(f"in free motion, mode {mode.name}"), kept
+            made = _step_decrease(inner, rows, d, self.Q, rate)
+            yield _failure(f"where contact is made, mode {mode.name}"), made
+
+    def claim_in_scope(self, system: SwitchedSystem) -> str:
+        """State the bound on every solution, with contact or without."""
+        assert system.contact is not None  # find_misfit
+        continuous = system.time is Time.CONTINUOUS
+        bound = "exp(-alpha t) |w(0)|" if continuous else "rho^t |w(0)|"
+        modes, free = len(system.modes), len(system.contact.free)
+        return (
+            "Every solution, with contact lost and made again at any time and switching "
+            f"arbitrarily among {_count(modes, 'mode')} in contact and {_count(free, 'mode')} of "
+            f"free motion, satisfies |w(t)| <= {bound} with {rate_words(self.rate, system.time)}, "
+            "where w holds the states other than the deflection, and the deflection where it is "
+            "positive, in the norm |w| = sqrt(w' Q w). Where free motion ends is not claimed."
+        )
+
+    def to_fields(self) -> dict[str, Any]:
+        """Return Q, the rate and the multipliers."""
+        return {
+            "Q": matrix_fields(self.Q, self.denominator_log2),
+            "rate": str(self.rate),
+            "multipliers": list(self.multipliers),
+        }
+
+    @classmethod
+    def from_fields(cls, fields: Mapping[str, Any], system: SwitchedSystem) -> Self:
+        """Read Q, the rate and the multipliers."""
+        Q, denominator_log2 = read_dyadic(fields["Q"])
+        multipliers = tuple(read_integer(entry) for entry in fields["multipliers"])
+        return cls(Q, denominator_log2, read_ratio(fields["rate"]), multipliers)
+
+
+def multiplier_count(contact: Contact, time: Time) -> int:
+    """Return how many multipliers the conditions need."""
+    return len(contact.free) * len(contact.pulls) if time is Time.CONTINUOUS else 1
+
+
+def _failure(where: str) -> str:
+    return f"V does not decrease at the claimed rate {where}"
+
+
+def _count(number: int, noun: str) -> str:
+    return f"{number} {noun}{'s' * (number != 1)}"
+
+
+def _block(A: RationalMatrix) -> RationalMatrix:
+    """Return the rows and columns of all states but the last."""
+    return RationalMatrix(tuple(_leading(A.numerators)), A.denominator)
+
+
+def _leading(M: IntegerMatrix) -> list[tuple[int, ...]]:
+    return [tuple(row[:-1]) for row in M[:-1]]
+
+
+def _with_last(row: tuple[int, ...]) -> list[list[int]]:
+    """Return ``e q + q' e'`` for a row q and the last unit vector e."""
+    n = len(row)
+    form = [[0] * n for _ in row]
+    for j, entry in enumerate(row):
+        form[n - 1][j] += entry
+        form[j][n - 1] += entry
+    return form
+
+
+def _scaled(M: IntegerMatrix, factor: int) -> list[list[int]]:
+    return [[factor * entry for entry in row] for row in M]
+
+
+def _step_decrease(
+    before: IntegerMatrix, N: IntegerMatrix, denominator: int, after: IntegerMatrix, rate: Fraction
+) -> list[list[int]]:
+    """Form ``rho^2 before - A' after A`` for ``A = N / denominator``, times `stein_factor`."""
+    p, q = (rate.numerator * denominator) ** 2, rate.denominator**2
+    return add(_scaled(before, p), congruence(N, after), -q)

@@ -1,0 +1,139 @@
+"""How far a disturbance can push an output: the proved level beside an adversary's run."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+
+import numpy as np
+
+from nrs_design.proof.bounds import nearly, rounded_down, rounded_up
+from nrs_design.proof.evidence import InvariantEllipsoid
+from nrs_design.proof.system import Channel, Output, Time
+from nrs_design.reporting.document import Illustration, Paragraph, Section, Table
+from nrs_design.reporting.figures.bound import draw_bound
+from nrs_design.reporting.formatting import number
+from nrs_design.reporting.kinds.abstract import AbstractKindPage
+from nrs_design.reporting.kinds.shared import words
+from nrs_design.reporting.kinds.shared.run import simulated
+from nrs_design.simulation.disturbed import DisturbedMotions, worst_disturbed
+from nrs_design.simulation.norms import Array
+from nrs_design.simulation.switched import TimeResponse, fine_step
+
+_DECIDED = (
+    "Q holds integers over a power of two, and exact arithmetic decides that no motion leaves the "
+    "set V <= 1 while the disturbance keeps its bound, and how far that set reaches. The solver "
+    "only proposed Q"
+)
+_RUN = (
+    "Simulated run from rest: an adversary chooses the modes and the sign of the largest "
+    "disturbance at every step, and improves his choice a few times. It is a bad run, not the "
+    "worst one; the shading covers the corners of the output. No run crosses the dashed lines."
+)
+# A run is as long as a set with this share needs to fill up to a thousandth, if steps are few.
+_FILLED = 7.0
+_FEWEST, _MOST = 100, 800
+
+
+class InvariantEllipsoidPage(AbstractKindPage[InvariantEllipsoid]):
+    """The level, and a run that tries to reach it."""
+
+    @property
+    def name(self) -> str:
+        """Its kind."""
+        return "bound on an output under a disturbance"
+
+    @property
+    def _channel(self) -> Channel:
+        return next(c for c in self.system.channels if c.name == self.evidence.channel)
+
+    @property
+    def _output(self) -> Output:
+        return next(o for o in self.system.outputs if o.name == self.evidence.output)
+
+    def meaning(self) -> tuple[str, ...]:
+        """Say what is not left, and how it was decided."""
+        return (
+            "From rest, the state does not leave the set V = w' Q w <= 1 while the disturbance "
+            "keeps its bound, however it changes; from any other state, V comes down to 1.",
+            *words.unneeded_rules(self.system),
+            words.decision(_DECIDED),
+        )
+
+    def between_corners(self) -> tuple[str, ...]:
+        """Say that they are covered."""
+        return (words.all_corners(self.system, self.evidence),)
+
+    def limits(self) -> tuple[str, ...]:
+        """Say what the bound is not."""
+        between = ("What happens between two steps.",) if self._is_discrete else ()
+        return (
+            "Several disturbances at once, and larger ones.",
+            "That the bound is reached: the largest possible value may be smaller.",
+            *between,
+        )
+
+    def sections(self, *, first: bool = True) -> tuple[Section, ...]:
+        """Show the level beside the run that an adversary finds."""
+        evidence, output, channel = self.evidence, self._output, self._channel
+        response, motions = self._worst()
+        values = motions.outputs(response.state)
+        found = nearly(Fraction(float(np.abs(values).max())), output.unit)
+        rows = [
+            ("Disturbance", f"|{channel.name}| <= {rounded_down(channel.bound, channel.unit)}"),
+            (f"|{output.name}|, proved never to exceed", rounded_up(evidence.level, output.unit)),
+            (f"|{output.name}|, found by simulation", found),
+        ]
+        if output.limit is not None:
+            rows.append(("Limit of the spec", nearly(output.limit, output.unit)))
+        share = number(float(evidence.share), 4)
+        unit = "per step" if self._is_discrete else "1/s"
+        text = (
+            f"The certificate holds Q and the share a = {share} {unit}: V grows by at most a times "
+            "1 - V. What was found by simulation is no part of the proof."
+        )
+        return (
+            Section(
+                f"Bound on {output.name} under {channel.name}",
+                (
+                    Paragraph(text),
+                    Table("Bound and simulation", ("Quantity", "Value"), tuple(rows)),
+                    self._illustration(response, values),
+                ),
+            ),
+        )
+
+    def run(self) -> Section:
+        """Draw the adversary's run between the bounds."""
+        response, motions = self._worst()
+        return simulated(self._illustration(response, motions.outputs(response.state)))
+
+    @property
+    def _is_discrete(self) -> bool:
+        return self.system.time is Time.DISCRETE
+
+    def _worst(self) -> tuple[TimeResponse, DisturbedMotions]:
+        system, share = self.system, float(self.evidence.share)
+        step = fine_step(system)
+        rate = -np.log1p(-share) if self._is_discrete else share
+        steps = int(np.clip(_FILLED / (rate * step), _FEWEST, _MOST))
+        motions = DisturbedMotions.of(system, self._channel, self._output, step)
+        return worst_disturbed(motions, step, steps), motions
+
+    def _illustration(self, response: TimeResponse, values: Array) -> Illustration:
+        system, output = self.system, self._output
+        shown, unit = 1.0, "steps" if self._is_discrete else "s"
+        if system.sample_time is not None:
+            shown, unit = float(system.sample_time), "s"
+        return Illustration(
+            f"bound-{self.evidence.channel}-{output.name}".replace(" ", "-"),
+            f"{output.name.capitalize()} under {self.evidence.channel}",
+            _RUN,
+            draw_bound(
+                response.time * shown,
+                values,
+                float(self.evidence.level),
+                None if output.limit is None else float(output.limit),
+                f"{output.name.capitalize()} [{output.unit}]",
+                unit,
+            ),
+        )

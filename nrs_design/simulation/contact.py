@@ -1,0 +1,76 @@
+"""Runs in which contact is lost and made again, with an adversary who chooses the modes."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from nrs_design.proof.system import SwitchedSystem, Time
+from nrs_design.simulation.norms import Array, Norm, quadratic_norm
+from nrs_design.simulation.switched import TimeResponse, times, transition_matrices
+
+
+def with_free_modes(system: SwitchedSystem) -> SwitchedSystem:
+    """Return the modes in contact and those of free motion as one family, in this order."""
+    assert system.contact is not None
+    return replace(system, modes=(*system.modes, *system.contact.free), contact=None)
+
+
+def contact_norm(Q: Array) -> Norm:
+    """Return ``sqrt(w' Q w)`` with ``w = (y, max(delta, 0))``.
+
+    Parameters
+    ----------
+    Q : ndarray, shape (n, n)
+        Symmetric and positive definite.
+    """
+    norm = quadratic_norm(Q)
+
+    def clipped(states: Array) -> Array:
+        w = states.copy()
+        w[..., -1] = np.maximum(w[..., -1], 0.0)
+        return norm(w)
+
+    return clipped
+
+
+def worst_contact(
+    system: SwitchedSystem, norm: Norm, initial: Array, step: float, steps: int
+) -> TimeResponse:
+    """Simulate the greedy adversary: always the possible mode after which the norm is largest.
+
+    Modes in contact are possible while the deflection is positive, and free ones while it is not.
+    In continuous time, contact changes at the end of a step only, so steps must be short. Nothing
+    is proved by it.
+
+    Parameters
+    ----------
+    system : SwitchedSystem
+        With its contact.
+    norm : callable
+        What to make large, as `contact_norm` gives it.
+    initial : ndarray, shape (n,)
+        State at time zero.
+    step : float
+        Time between decisions, in s; one in discrete time.
+    steps : int
+        Number of decisions N.
+
+    Returns
+    -------
+    TimeResponse
+        Its modes are those of `with_free_modes`.
+    """
+    transitions = transition_matrices(with_free_modes(system), step)
+    count = len(system.modes)
+    states, chosen = [initial], []
+    for _ in range(steps):
+        touching = bool(states[-1][-1] > 0)
+        first = 0 if touching else count
+        candidates = (transitions[:count] if touching else transitions[count:]) @ states[-1]
+        best = int(norm(candidates).argmax())
+        chosen.append(first + best)
+        states.append(candidates[best])
+    unit = 1.0 if system.time is Time.DISCRETE else step
+    return TimeResponse(times(unit, steps), np.array(states), np.array(chosen))

@@ -1,0 +1,170 @@
+"""Runs from rest in which an adversary chooses modes and disturbance to push an output far."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from nrs_design.proof.matrix import RationalMatrix
+from nrs_design.proof.system import Channel, Output, SwitchedSystem, Time
+from nrs_design.simulation.norms import Array
+from nrs_design.simulation.switched import TimeResponse, times
+
+Indices = NDArray[np.int64]
+
+# How often the adversary improves a run; after few of them it has settled.
+SWEEPS = 12
+
+
+@dataclass(frozen=True)
+class DisturbedMotions:
+    """What one step makes of state and disturbance, in floating point.
+
+    Parameters
+    ----------
+    touching, flying : ndarray, shapes (m, n, n + 1) and (f, n, n + 1)
+        Maps of the state and of a share of the largest disturbance; no free ones where contact is
+        kept.
+    rows : ndarray, shape (r, n)
+        The output at the corners of its ranges.
+    """
+
+    touching: Array
+    flying: Array
+    rows: Array
+
+    @classmethod
+    def of(
+        cls, system: SwitchedSystem, channel: Channel, output: Output, step: float
+    ) -> DisturbedMotions:
+        """Convert a system; in continuous time, the disturbance is held over a step in s."""
+        free = () if system.contact is None else system.contact.free
+        pairs = zip((*system.modes, *free), channel.columns, strict=True)
+        maps = np.array([_with_column(mode.A, B, float(channel.bound)) for mode, B in pairs])
+        if system.time is Time.CONTINUOUS:
+            maps = _held(maps, step)
+        count = len(system.modes)
+        rows = np.array([row.floats()[0] for row in output.rows])
+        return cls(maps[:count], maps[count:], rows)
+
+    @property
+    def maps(self) -> Array:
+        """The maps of all modes, those in contact first."""
+        return np.concatenate([self.touching, self.flying])
+
+    def possible(self, states: Array) -> NDArray[np.bool_]:
+        """Tell which modes are possible at states, shape (S, n); shape (S, k)."""
+        count, others = len(self.touching), len(self.flying)
+        flies = states[:, -1:] <= 0 if others else np.zeros((len(states), 1), dtype=np.bool_)
+        return np.concatenate(
+            [np.repeat(~flies, count, axis=1), np.repeat(flies, others, axis=1)], axis=1
+        )
+
+    def outputs(self, states: Array) -> Array:
+        """Return the output at states, shape (..., n), for every row; shape (..., r)."""
+        w = states
+        if len(self.flying):
+            w = states.copy()
+            w[..., -1] = np.maximum(w[..., -1], 0.0)
+        return np.asarray(w @ self.rows.T)
+
+
+def worst_disturbed(motions: DisturbedMotions, step: float, steps: int) -> TimeResponse:
+    """Simulate an adversary from rest, who makes the output at the end as large as he can.
+
+    He begins with the largest disturbance, held, in one mode, and then improves the run backwards
+    from its end: with the gradient of the output, the best mode and sign at every step. The best of
+    all these runs is a bad run, not the worst one: nothing is proved by it.
+
+    Parameters
+    ----------
+    motions : DisturbedMotions
+        What can happen.
+    step : float
+        Time of a step, in s or in steps.
+    steps : int
+        Number of decisions N.
+
+    Returns
+    -------
+    TimeResponse
+        Its modes are those in contact, the free ones after them.
+    """
+    count = len(motions.touching)
+    wanted = np.repeat(np.arange(count), 2)[:, None].repeat(steps, axis=1)
+    signs = np.tile([[1.0], [-1.0]], (count, steps))
+    best, chosen, largest = np.zeros(0), np.zeros(0, dtype=np.int64), -1.0
+    for _ in range(SWEEPS):
+        states, modes = follow(motions, wanted, signs)
+        reached = np.abs(motions.outputs(states)).max(axis=(0, 2))
+        if reached.max() > largest:
+            run = int(reached.argmax())
+            best, chosen, largest = states[:, run], modes[:, run], float(reached.max())
+        wanted, signs = _improve(motions, states)
+    return TimeResponse(times(step, steps), best, chosen)
+
+
+def follow(motions: DisturbedMotions, wanted: Indices, signs: Array) -> tuple[Array, Indices]:
+    """Simulate many runs from rest.
+
+    Parameters
+    ----------
+    motions : DisturbedMotions
+        What can happen.
+    wanted : ndarray of int, shape (S, N)
+        The mode of every run and step, where it is possible; otherwise one in its place.
+    signs : ndarray, shape (S, N)
+        Shares of the largest disturbance, from -1 to 1.
+
+    Returns
+    -------
+    ndarray of shape (N + 1, S, n), and of int of shape (N, S)
+        States, and the modes that were in force.
+    """
+    maps, count, others = motions.maps, len(motions.touching), len(motions.flying)
+    runs, steps = wanted.shape
+    states = np.zeros((steps + 1, runs, maps.shape[1]))
+    modes = np.zeros((steps, runs), dtype=np.int64)
+    for k in range(steps):
+        mode = wanted[:, k] % count
+        if others:
+            flies = states[k, :, -1] <= 0
+            mode = np.where(flies, count + (wanted[:, k] - count) % others, mode)
+        full = np.concatenate([states[k], signs[:, k, None]], axis=1)
+        states[k + 1] = (maps[mode] @ full[:, :, None])[:, :, 0]
+        modes[k] = mode
+    return states, modes
+
+
+def _improve(motions: DisturbedMotions, states: Array) -> tuple[Indices, Array]:
+    """Return the best mode and sign at every step, as far as the gradient along a run tells."""
+    maps, runs = motions.maps, np.arange(states.shape[1])
+    ends = motions.outputs(states[-1])
+    rows = np.abs(ends).argmax(axis=1)
+    gradient = motions.rows[rows] * np.where(ends[runs, rows] < 0, -1.0, 1.0)[:, None]
+    steps = len(states) - 1
+    wanted = np.zeros((len(runs), steps), dtype=np.int64)
+    signs = np.zeros((len(runs), steps))
+    for k in range(steps - 1, -1, -1):
+        pulled = np.tensordot(gradient, maps, axes=(1, 1))
+        gain = (pulled[:, :, :-1] @ states[k, :, :, None])[:, :, 0] + np.abs(pulled[:, :, -1])
+        best = np.where(motions.possible(states[k]), gain, -np.inf).argmax(axis=1)
+        own = pulled[runs, best]
+        wanted[:, k], signs[:, k] = best, np.where(own[:, -1] < 0, -1.0, 1.0)
+        gradient = own[:, :-1]
+    return wanted, signs
+
+
+def _with_column(A: RationalMatrix, B: RationalMatrix, bound: float) -> Array:
+    return np.concatenate([np.array(A.floats()), bound * np.array(B.floats())], axis=1)
+
+
+def _held(maps: Array, step: float) -> Array:
+    """Return the maps over a step of continuous time; shape (k, n, n + 1)."""
+    from scipy.linalg import expm
+
+    n = maps.shape[1]
+    square = np.concatenate([maps, np.zeros((len(maps), 1, n + 1))], axis=1)
+    return np.asarray(expm(square * step))[:, :n]

@@ -1,0 +1,143 @@
+"""The processor of an interaction design: when the law runs, and how old its force sample is."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from typing import Annotated, Literal
+
+from pydantic import Field, PlainValidator, WithJsonSchema
+
+from nrs_design.spec.faults import fault
+from nrs_design.spec.fields import read_exact
+from nrs_design.spec.model import SpecModel
+from nrs_design.spec.motion import ActuatorSpec
+from nrs_design.spec.quantity_fields import Angle, AngularVelocity, Command, Duration, Torque
+
+# Every sample of delay is a state more.
+LONGEST_DELAY = 10
+_FORM = f"write a number of samples from 0 to {LONGEST_DELAY}, or [smallest, largest]"
+
+
+def _read_delay(value: object) -> tuple[int, int]:
+    """Read one number of samples, or the smallest and the largest."""
+    ends = tuple(value) if isinstance(value, tuple | list) else (value, value)
+    if len(ends) != 2:
+        raise fault("expected a number of samples, or two of them", _FORM)
+    numbers = [read_exact(end) for end in ends]
+    if any(n.denominator != 1 or not 0 <= n <= LONGEST_DELAY for n in numbers):
+        raise fault("a delay is a whole number of samples", _FORM)
+    if numbers[1] < numbers[0]:
+        raise fault("the range of the delay ends below its start", "write [smallest, largest]")
+    return int(numbers[0]), int(numbers[1])
+
+
+_SAMPLES = {"type": "integer", "minimum": 0, "maximum": LONGEST_DELAY}
+Delay = Annotated[
+    tuple[int, int],
+    PlainValidator(_read_delay),
+    WithJsonSchema(
+        {"anyOf": [_SAMPLES, {"type": "array", "items": _SAMPLES, "minItems": 2, "maxItems": 2}]}
+    ),
+]
+
+
+class SamplingSpec(SpecModel):
+    """The law as a processor runs it: once a period, with float32 coefficients.
+
+    The derivative of the motion controller is a backward difference, the command is held between
+    samples, and motion and admittance run with one period.
+    """
+
+    period: Duration = Field(description="time between two samples in s")
+    delay: Delay = Field(
+        description="age of the force sample that the law uses, in samples: one number, or "
+        "[smallest, largest] for a delay that may differ at every sample"
+    )
+    admittance: Literal["exact", "euler"] = Field(
+        default="exact",
+        description="how Mt vm' + Bt vm = F becomes a step: exact for a force held over the "
+        "period, or one step of Euler's method",
+    )
+
+
+class DisturbancesSpec(SpecModel):
+    """Bounds on what acts on the sampled loop from outside; what is left out is zero."""
+
+    command: AngularVelocity | None = Field(
+        default=None, description="largest velocity command in rad/s, however it changes"
+    )
+    friction: Command | None = Field(
+        default=None,
+        description="largest Coulomb friction of the motor, as the speed command in rpm that it "
+        "takes",
+    )
+    encoder_step: Angle | None = Field(
+        default=None,
+        description="resolution of the measured joint angle in rad: an error of half a step",
+    )
+    force_step: Torque | None = Field(
+        default=None,
+        description="resolution of the measured torque in N*m: an error of half a step",
+    )
+
+    def bounds(self) -> dict[str, tuple[Fraction, str]]:
+        """Return the bounds by the names of what disturbs, with their units; none too small."""
+        half = Fraction(1, 2)
+        written = (
+            ("velocity command", self.command, Fraction(1), "rad/s"),
+            ("friction", self.friction, Fraction(1), "rpm"),
+            ("encoder error", self.encoder_step, half, "rad"),
+            ("force error", self.force_step, half, "N*m"),
+        )
+        return {
+            name: (share * quantity.not_below, unit)
+            for name, quantity, share, unit in written
+            if quantity is not None and quantity.value
+        }
+
+
+def check_disturbances(disturbances: DisturbancesSpec | None, sampling: object) -> None:
+    """Refuse disturbances without a sampled loop, or without any."""
+    if disturbances is None:
+        return
+    if sampling is None:
+        raise fault(
+            "disturbances are bounded in the sampled loop only",
+            "add `sampling: {period: 2 ms, delay: 1}`, or remove disturbances",
+            "disturbances",
+        )
+    if not disturbances.bounds():
+        raise fault("no disturbance is named", "name one, or remove disturbances", "disturbances")
+
+
+def check_actuator_ranges(
+    actuator: ActuatorSpec, sampling: SamplingSpec | None, *, given_loop: bool
+) -> None:
+    """Refuse ranges of the actuator where the modes do not take them up.
+
+    Parameters
+    ----------
+    actuator : ActuatorSpec
+        With or without ranges.
+    sampling : SamplingSpec or None
+        The processor, where there is one.
+    given_loop : bool
+        Whether the spec states the closed motion loop itself.
+    """
+    for name in ("gain", "time_constant"):
+        if getattr(actuator, name).fixed:
+            continue
+        if given_loop:
+            raise fault(
+                f"the {name} has a range, but the spec states the closed motion loop itself",
+                "give its nominal value only, or leave transfer_function out",
+                "actuator",
+                name,
+            )
+        if sampling is None:
+            raise fault(
+                f"a range of the {name} is covered for the sampled loop only",
+                "add `sampling: {period: 2 ms, delay: 1}`, or give its nominal value only",
+                "actuator",
+                name,
+            )

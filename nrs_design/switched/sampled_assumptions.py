@@ -1,0 +1,142 @@
+"""What a statement about the sampled loop takes for granted, in words."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+
+from nrs_design.controllers.controller_design import ControllerDesign
+from nrs_design.controllers.float32 import exact_decimal
+from nrs_design.controllers.sampled import SampledAdmittance, SampledMotion
+from nrs_design.models.actuator import ActuatorRanges
+from nrs_design.proof.text import exact_text
+from nrs_design.spec import InteractionDesignSpec
+from nrs_design.spec.interval import Interval
+from nrs_design.spec.sampling import SamplingSpec
+from nrs_design.switched.assumptions import CONTINUOUS, rule_texts
+
+_KEPT = "Contact is not lost: free motion is not one of the modes."
+_INPUTS = (
+    "All inputs are zero (velocity command, motion of the environment); all modes then rest at "
+    "one point, the state zero."
+)
+_NOT_MODELLED = (
+    "What the arithmetic of the processor rounds, the quantization of encoder and force sensor, "
+    "friction and saturation are not modelled."
+)
+_DISTURBED = (
+    "A disturbance acts where a statement names it, alone, and keeps its value from one sample to "
+    "the next; that friction changes its sign within a period is not covered.",
+    "A bound on the force holds at the samples; what happens in between is not claimed.",
+)
+_NOT_COVERED = (
+    "Contact is not lost: that an environment with damping lags behind is not modelled in the "
+    "sampled loop."
+)
+
+
+def assume_sampled(
+    spec: InteractionDesignSpec,
+    sampling: SamplingSpec,
+    ranges: ActuatorRanges,
+    motion: SampledMotion,
+    laws: Mapping[str, SampledAdmittance],
+    design: ControllerDesign,
+    *,
+    springs: bool,
+) -> tuple[str, ...]:
+    """Say what holds for the sampled loop of an interaction design.
+
+    Parameters
+    ----------
+    spec : InteractionDesignSpec
+        With the rules of switching.
+    sampling : SamplingSpec
+        Its processor.
+    ranges : ActuatorRanges
+        Where the actuator may be.
+    motion : SampledMotion
+        With its coefficients.
+    laws : mapping
+        The admittances by the names of their controllers.
+    design : ControllerDesign
+        With the contacts.
+    springs : bool
+        Whether all that is touched are springs.
+    """
+    rules = spec.switching
+    switched = f"States are {CONTINUOUS}; a switch happens at a sample."
+    return (
+        f"The law runs every {exact_text(sampling.period.exact)} s, without jitter; its command is "
+        "held in between.",
+        _delay_text(*sampling.delay),
+        f"The motor follows the linear actuator model of the spec; {_actuator_text(ranges)}.",
+        "The tissue does not load the motor: it acts through the force sensor alone.",
+        *(_DISTURBED if spec.disturbances is not None else ()),
+        _beside(spec, _INPUTS),
+        "The axes of the robot do not act on each other.",
+        *(
+            f"{c.name} is active only in contact with {' or '.join(c.contacts)}."
+            for c in design.controllers
+        ),
+        "In contact, the environment follows its linear model; its parameters stay in the declared "
+        "ranges and may change arbitrarily fast.",
+        *_contact_texts(spec, springs=springs),
+        switched,
+        *rule_texts(rules, "controller"),
+        f"The coefficients are these single-precision numbers: {_coefficients(motion, laws)}.",
+        _beside(spec, _NOT_MODELLED),
+    )
+
+
+def _beside(spec: InteractionDesignSpec, text: str) -> str:
+    """Begin a sentence that does not hold for the disturbances of the spec."""
+    if spec.disturbances is None:
+        return text
+    return f"Otherwise, {text[0].lower()}{text[1:]}"
+
+
+def _delay_text(least: int, most: int) -> str:
+    if least == most == 0:
+        return "The law uses the force sample of the moment."
+    if least == most:
+        return f"The law uses a force sample that is {_samples(most)} old."
+    return (
+        f"The law uses a force sample that is {least} to {_samples(most)} old, any of these at "
+        "every sample."
+    )
+
+
+def _samples(count: int) -> str:
+    return f"{count} sample{'s' * (count != 1)}"
+
+
+def _actuator_text(ranges: ActuatorRanges) -> str:
+    texts = (
+        f"its {name} {_interval_text(interval)} {unit}"
+        for name, interval, unit in (
+            ("gain", ranges.gain, "rad/s/rpm"),
+            ("time constant", ranges.time_constant, "s"),
+        )
+    )
+    moving = "" if ranges.fixed else ", and may change at every sample"
+    return " and ".join(texts) + moving
+
+
+def _interval_text(interval: Interval) -> str:
+    if interval.low == interval.high:
+        return f"is {exact_text(interval.low)}"
+    return f"stays in [{exact_text(interval.low)}, {exact_text(interval.high)}]"
+
+
+def _contact_texts(spec: InteractionDesignSpec, *, springs: bool) -> Iterator[str]:
+    if spec.contact == "kept":
+        yield _KEPT
+    elif not springs:
+        yield _NOT_COVERED
+
+
+def _coefficients(motion: SampledMotion, laws: Mapping[str, SampledAdmittance]) -> str:
+    texts = [f"Kp = {exact_decimal(motion.Kp)}", f"Kd/T = {exact_decimal(motion.D)}"]
+    for name, law in laws.items():
+        texts += [f"{key} of {name} = {exact_decimal(c)}" for key, c in law.coefficients.items()]
+    return ", ".join(texts)

@@ -1,0 +1,82 @@
+"""The processor in a spec: period, delay, and what has no room in the sampled loop."""
+
+from fractions import Fraction
+
+import pytest
+
+from nrs_design.errors import SpecError
+from nrs_design.spec import InteractionDesignSpec, parse_spec
+from nrs_design.spec.describe import describe
+from tests.support import SOFT_TISSUE
+
+TEXT = SOFT_TISSUE.read_text(encoding="utf-8")
+
+
+def sampled(section: str, text: str = TEXT) -> InteractionDesignSpec:
+    spec = parse_spec(f"{text}\nsampling: {section}\n")
+    assert isinstance(spec, InteractionDesignSpec)
+    return spec
+
+
+@pytest.mark.parametrize(
+    ("written", "delay"), [("0", (0, 0)), ("2", (2, 2)), ("[0, 2]", (0, 2)), ("[1, 1]", (1, 1))]
+)
+def test_reads_a_delay_or_its_range(written, delay):
+    sampling = sampled(f"{{period: 2 ms, delay: {written}}}").sampling
+    assert sampling.period.exact == Fraction(1, 500)
+    assert sampling.delay == delay
+    assert sampling.admittance == "exact"
+
+
+@pytest.mark.parametrize(
+    ("section", "said"),
+    [
+        ("{period: 2 ms}", "`sampling.delay` is missing"),
+        ("{delay: 1}", "`sampling.period` is missing"),
+        ("{period: 0 ms, delay: 1}", "must be positive"),
+        ("{period: 2, delay: 1}", "no unit"),
+        ("{period: 2 ms, delay: 1.5}", "whole number of samples"),
+        ("{period: 2 ms, delay: -1}", "whole number of samples"),
+        ("{period: 2 ms, delay: 11}", "whole number of samples"),
+        ("{period: 2 ms, delay: [2, 0]}", "ends below its start"),
+        ("{period: 2 ms, delay: [0, 1, 2]}", "two of them"),
+        ("{period: 2 ms, delay: 2 ms}", "ms"),
+        ("{period: 2 ms, delay: 1, admittance: tustin}", "admittance"),
+    ],
+)
+def test_refuses_with_place_and_remedy(section, said):
+    with pytest.raises(SpecError) as caught:
+        sampled(section)
+    assert said in f"{caught.value.message} ({caught.value.remedy})"
+    assert caught.value.line is not None
+
+
+RANGED = TEXT.replace(
+    "time_constant: 0.0351 s",
+    "time_constant: {nominal: 0.0351 s, range: [0.034 s, 0.036 s]}",
+)
+
+
+def test_ranges_of_the_actuator_need_the_sampled_loop():
+    spec = sampled("{period: 2 ms, delay: 0}", RANGED)
+    assert [end.exact for end in spec.actuator.time_constant.range] == [
+        Fraction("0.034"),
+        Fraction("0.036"),
+    ]
+    with pytest.raises(SpecError, match="covered for the sampled loop only"):
+        parse_spec(RANGED)
+
+
+def test_ranges_of_the_actuator_do_not_go_with_a_stated_loop():
+    loop = "  transfer_function: {numerator: [28, 1600], denominator: [1, 57, 1600]}\n"
+    text = RANGED.replace("motion_loop:\n", f"motion_loop:\n{loop}")
+    with pytest.raises(SpecError, match="states the closed motion loop itself"):
+        sampled("{period: 2 ms, delay: 0}", text)
+
+
+def test_check_lists_what_the_processor_does():
+    rows = {row[0]: row for row in describe(sampled("{period: 2 ms, delay: [0, 2]}", RANGED))}
+    assert rows["sampling.period"][1] == "2 ms"
+    assert rows["sampling.delay"][1] == "[0, 2]"
+    assert rows["contact"][1] == "losable where proved"
+    assert rows["actuator.time_constant.range"][1] == "[0.034 s, 0.036 s]"

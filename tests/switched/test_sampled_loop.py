@@ -1,0 +1,224 @@
+"""The sampled loop: against a step-by-step simulation, known answers, and what is not modelled."""
+
+from fractions import Fraction
+from pathlib import Path
+
+import numpy as np
+import pytest
+from scipy.linalg import expm
+
+from nrs_design.controllers.sampled import SampledAdmittance, SampledMotion
+from nrs_design.errors import AssemblyError
+from nrs_design.models.actuator import ActuatorRanges
+from nrs_design.pipeline import run_design
+from nrs_design.proof.system import SwitchedSystem, Time
+from nrs_design.spec import read_spec
+from nrs_design.spec.interval import Interval
+from nrs_design.switched.assemble import assemble
+from nrs_design.switched.sampled_loop import Frame, motor_box
+from tests.support import FORCE_LIMIT, SOFT_TISSUE
+
+TEXT = SOFT_TISSUE.read_text(encoding="utf-8")
+TOLERANCE = (
+    (
+        "gain: 4.8417e-4 rad/s/rpm",
+        "gain: {nominal: 4.8417e-4 rad/s/rpm, "
+        "range: [4.744866e-4 rad/s/rpm, 4.938534e-4 rad/s/rpm]}",
+    ),
+    (
+        "time_constant: 0.0351 s",
+        "time_constant: {nominal: 0.0351 s, range: [0.034398 s, 0.035802 s]}",
+    ),
+)
+
+
+def system_of(
+    path: Path, sampling: str, *changes: tuple[str, str], text: str = TEXT
+) -> SwitchedSystem:
+    for old, new in changes:
+        assert old in text
+        text = text.replace(old, new)
+    path = path / "sampled.nrs.yaml"
+    path.write_text(f"{text}\nsampling: {sampling}\n", encoding="utf-8")
+    designed = run_design(read_spec(path))
+    assert designed is not None
+    return assemble(designed.spec, designed.plant, designed.design, "deflection")
+
+
+def test_modes_and_states_of_the_thesis_robot(tmp_path):
+    system = system_of(tmp_path, "{period: 2 ms, delay: [0, 1]}")
+    assert system.time is Time.DISCRETE
+    assert system.sample_time == Fraction(1, 500)
+    assert system.states == (
+        "e [rad]",
+        "omega [rad/s]",
+        "e before [rad]",
+        "vm [rad/s]",
+        "F 1 before [N*m]",
+        "delta [rad]",
+    )
+    # Two controllers, two delays, two ends of k, two bounds on exp(-T/tau).
+    assert len(system.modes) == 16
+    assert len(system.contact.free) == 8
+    assert system.find_contradiction() is None
+    texts = " ".join(system.assumptions)
+    assert "0 to 1 sample old" in texts
+    assert "without jitter" in texts
+    assert "Kd/T = 1030000" in texts
+
+
+def test_a_tolerance_of_the_motor_gives_its_corners(tmp_path):
+    system = system_of(tmp_path, "{period: 2 ms, delay: [0, 1]}", *TOLERANCE)
+    assert len(system.modes) == 64
+    assert "may change at every sample" in " ".join(system.assumptions)
+
+
+def test_without_inertia_there_is_no_velocity(tmp_path):
+    system = system_of(
+        tmp_path,
+        "{period: 2 ms, delay: 0}",
+        ("min: 0.01 kg*m^2, max: 1 kg*m^2", "min: 0 kg*m^2, max: 0 kg*m^2"),
+    )
+    assert system.order == 4
+
+
+@pytest.mark.parametrize(
+    ("Bt", "delay", "limit"),
+    [("1.04", j, k) for j, k in ((0, 59.5), (1, 53.5), (2, 48.8), (5, 39.4))]
+    + [("2.15", j, k) for j, k in ((0, 155), (1, 134), (2, 118), (5, 91))],
+)
+def test_largest_stable_stiffness(Bt, delay, limit):
+    """Where the spectral radius of one mode reaches one, for Mt = 0.01 and T = 2 ms.
+
+    Found by bisection with an independent program; a stiffness of three digits.
+    """
+
+    def radius(k: float) -> float:
+        rows = np.array(_frame(delay).rows(_law(Bt), delay, _nominal(k)), dtype=float)
+        A = rows[:, : len(rows)]
+        return float(np.abs(np.linalg.eigvals(A)).max())
+
+    assert radius(limit * 0.99) < 1 < radius(limit * 1.01)
+
+
+PERIOD = Fraction(1, 500)
+TAU, KM = Fraction("0.0351"), Fraction("4.8417e-4")
+MOTION = SampledMotion(Fraction("117359.43"), Fraction(1_030_000))
+
+
+def _frame(delay: int, *, inertia: bool = True) -> Frame:
+    return Frame(PERIOD, MOTION, inertia, delay, TAU)
+
+
+def _law(Bt: str) -> SampledAdmittance:
+    a = np.exp(-float(Bt) * 0.002 / 0.01)
+    return SampledAdmittance(Fraction(a), Fraction((1 - a) / float(Bt)), PERIOD)
+
+
+def _nominal(k: float, b: float = 0.0) -> dict[str, Fraction]:
+    E = np.exp(-0.002 / 0.0351)
+    return {"Km": KM, "E": Fraction(float(E)), "k": Fraction(k), "b": Fraction(b)}
+
+
+def test_agrees_with_a_simulation_step_by_step():
+    """The law and the motor one after the other, as a program runs them, at 1,000 random states."""
+    rng = np.random.default_rng(13)
+    for _ in range(1000):
+        Kp, D = rng.uniform(1e3, 1e5), rng.uniform(0, 1e6)
+        tau, Km, T = (
+            rng.uniform(0.005, 0.1),
+            rng.uniform(1e-5, 1e-3),
+            rng.choice([0.001, 0.002, 0.01]),
+        )
+        k, b, a, gain = rng.uniform(0, 100, 4) * [1, 0.1, 0.01, 0.01]
+        longest = int(rng.integers(0, 4))
+        delay = int(rng.integers(0, longest + 1))
+        inertia = bool(rng.integers(0, 2))
+        law = SampledAdmittance(Fraction(a) if inertia else None, Fraction(gain), Fraction(T))
+        frame = Frame(
+            Fraction(T), SampledMotion(Fraction(Kp), Fraction(D)), inertia, longest, Fraction(tau)
+        )
+        values = {"Km": Km, "E": float(np.exp(-T / tau)), "k": k, "b": b}
+        rows = frame.rows(law, delay, {key: Fraction(value) for key, value in values.items()})
+        x = rng.normal(size=len(frame.states))
+        e, omega, before, theta = x[0], x[1], x[2], x[-1]
+        forces = [k * theta + b * omega, *x[3 + inertia : -1]]
+        v = x[3] if inertia else gain * forces[delay]
+        u = Kp * e + D * (e - before)
+        held = np.zeros((3, 3))
+        held[:2] = [[0, 1, 0], [0, -1 / tau, Km / tau]]
+        moved = (expm(held * T) @ [theta, omega, u])[:2]
+        reference = e + theta - T * v
+        expected = [reference - moved[0], moved[1], e]
+        expected += [a * v + gain * forces[delay]] if inertia else []
+        expected += [*forces[:longest], moved[0]]
+        got = np.array(rows, dtype=float)[:, : len(x)] @ x
+        assert got == pytest.approx(np.array(expected), rel=1e-9, abs=1e-9)
+
+
+def test_bounds_of_the_motor_hold_what_lies_between():
+    """E and s at any time constant of the range lie within their axes."""
+    tau = Interval(TAU, TAU * Fraction(9, 10), TAU * Fraction(11, 10))
+    box = motor_box(ActuatorRanges(Interval.point(KM), tau), PERIOD).ranges
+    Km, E, s = (box[symbol] for symbol in ("Km", "E", "s"))
+    assert Km == Interval.point(KM)
+    for share in np.linspace(0, 1, 50):
+        value = float(tau.low + Fraction(float(share)) * (tau.high - tau.low))
+        exponential = np.exp(-0.002 / value)
+        assert float(E.low) <= exponential * (1 + 1e-12)
+        assert exponential <= float(E.high) * (1 + 1e-12)
+        assert float(s.low) <= value * (1 - exponential) * (1 + 1e-12)
+        assert value * (1 - exponential) <= float(s.high) * (1 + 1e-12)
+
+
+BT = "Bt: {min: 0.1 N*m*s/rad, max: 20 N*m*s/rad"
+RANGED_SOFT = "{nominal: 747.1461 N/m, range: [720.56 N/m, 768.17 N/m]}"
+
+
+@pytest.mark.parametrize(
+    ("changes", "said"),
+    [
+        ([(f"{BT}}}", f"{BT}, range: [1 N*m*s/rad, 3 N*m*s/rad]}}")], "have ranges"),
+        ([("model: elastic", "model: maxwell\n    damping: 20 N*s/m")], "remembers"),
+        (
+            [
+                (RANGED_SOFT, "747.1461 N/m"),
+                ("switching: arbitrary", "switching: {dwell_time: 1 s}"),
+            ],
+            "have dwell times",
+        ),
+    ],
+)
+def test_what_the_sampled_loop_does_not_model_is_refused(tmp_path, changes, said):
+    with pytest.raises(AssemblyError, match=said) as caught:
+        system_of(tmp_path, "{period: 2 ms, delay: 0}", *changes)
+    assert "sampling" in caught.value.remedy
+    assert caught.value.at
+
+
+def test_other_controllers_are_refused(tmp_path):
+    with pytest.raises(AssemblyError, match="is a position controller"):
+        system_of(
+            tmp_path, "{period: 2 ms, delay: 0}", text=FORCE_LIMIT.read_text(encoding="utf-8")
+        )
+
+
+def test_force_coordinates_are_refused(tmp_path):
+    path = tmp_path / "sampled.nrs.yaml"
+    path.write_text(f"{TEXT}\nsampling: {{period: 2 ms, delay: 0}}\n", encoding="utf-8")
+    designed = run_design(read_spec(path))
+    with pytest.raises(AssemblyError, match="do not apply to the sampled loop"):
+        assemble(designed.spec, designed.plant, designed.design, "force")
+
+
+def test_contact_is_kept_where_the_spec_says_so(tmp_path):
+    system = system_of(tmp_path, "{period: 2 ms, delay: 0}\ncontact: kept")
+    assert system.contact is None
+    assert "Contact is not lost" in " ".join(system.assumptions)
+
+
+def test_a_damped_environment_is_kept(tmp_path):
+    damped = ("model: elastic", "model: kelvin-voigt\n    damping: 1 N*s/m")
+    system = system_of(tmp_path, "{period: 2 ms, delay: 0}", damped)
+    assert system.contact is None
+    assert "lags behind is not modelled" in " ".join(system.assumptions)

@@ -25,6 +25,7 @@ FIGURES = {
         "quadratic",
         "mode-rates",
         "run",
+        "deflection",
     ],
     "force": [
         "root-locus",

@@ -18,6 +18,7 @@ BENCHMARKS = (
     "high_order",
     "exact_check",
     "random_families",
+    "gradient_share",
     "beyond_quadratic",
     "impedance_optimum",
     "tissue_fits",

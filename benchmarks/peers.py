@@ -63,6 +63,8 @@ def gradient_ends_within(matrices: Matrices, seconds: float) -> bool:
 
 
 def _iterate(matrices: Matrices) -> None:
+    from nrs_design.proof.system import Time
     from nrs_design.search.gradient import iterate_gradient
+    from nrs_design.search.gradient_settings import Gradient
 
-    iterate_gradient(matrices, max_updates=10**9)
+    iterate_gradient(matrices, Time.CONTINUOUS, Gradient(radius=1e-2, max_updates=10**9))

@@ -22,7 +22,7 @@ ORDERS, MODES = (2, 12), (2, 5)
 
 def run(quick: bool) -> tuple[Comparison | Finding, ...]:
     """Decide all of them, and let a solver script give its opinion on the same ones."""
-    families = _draw(QUICK_COUNT if quick else COUNT)
+    families = draw_families(QUICK_COUNT if quick else COUNT)
     theirs = ours = 0.0
     counts: Counter[str] = Counter()
     for matrices in families:
@@ -55,7 +55,7 @@ def _decide(system: SwitchedSystem) -> CommonQuadraticStatus:
     return certify(system, Method.OBSTRUCTION, limits).common_quadratic
 
 
-def _draw(count: int) -> list[Matrices]:
+def draw_families(count: int) -> list[Matrices]:
     rng = np.random.default_rng(SEED)
     sizes = [
         (int(rng.integers(*ORDERS, endpoint=True)), int(rng.integers(*MODES, endpoint=True)))

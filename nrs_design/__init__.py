@@ -8,11 +8,11 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from nrs_design.api import Decision, Study, certify, check_lyapunov, load, verify
+    from nrs_design.api import Decision, Gradient, Study, certify, check_lyapunov, load, verify
 
 __version__ = "0.1.0"
 
-__all__ = ["Decision", "Study", "certify", "check_lyapunov", "load", "verify"]
+__all__ = ["Decision", "Gradient", "Study", "certify", "check_lyapunov", "load", "verify"]
 
 
 def __getattr__(name: str) -> Any:

@@ -21,7 +21,7 @@ from nrs_design.given.matrices import (
     read_rows,
     time_of,
 )
-from nrs_design.given.system import spec_of_matrices
+from nrs_design.given.system import name_modes, spec_of_matrices
 from nrs_design.output import CERTIFICATE, PAGE, write_output
 from nrs_design.ownership import check_certificate, origin_of
 from nrs_design.proof.exact import TooLargeError
@@ -29,6 +29,7 @@ from nrs_design.proof.lyapunov import LyapunovCheck, check_quadratic
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.system import Mode
 from nrs_design.search.certification import Attempt, Limits
+from nrs_design.search.gradient_settings import Gradient as Gradient
 from nrs_design.search.method import Method
 from nrs_design.spec import LoadedSpec, read_spec
 
@@ -218,12 +219,13 @@ class Study:
         coordinates: str | None = None,
         budget: float | None = None,
         max_degree: int | None = None,
+        gradient: Gradient | None = None,
     ) -> Decision:
         """Design, assemble and decide; see `certify` for the options.
 
         Parameters
         ----------
-        method, coordinates, budget, max_degree
+        method, coordinates, budget, max_degree, gradient
             As for `certify`; coordinates (for designs) are those of the spec by default.
 
         Raises
@@ -231,7 +233,7 @@ class Study:
         DesignError, AssemblyError
             If the spec has no design, or its modes make no switched system.
         """
-        limits = _limits(budget, max_degree)
+        limits = _limits(budget, max_degree, gradient)
         result = pipeline.run_certification(
             self.loaded, method=_method(method), coordinates=coordinates, limits=limits
         )
@@ -288,6 +290,7 @@ def certify(
     method: str = "auto",
     budget: float | None = None,
     max_degree: int | None = None,
+    gradient: Gradient | None = None,
 ) -> Decision:
     """Prove or refute that a switched linear system is uniformly exponentially stable.
 
@@ -321,6 +324,8 @@ def certify(
         Seconds that the search may take.
     max_degree : int, optional
         Highest degree of a polynomial function.
+    gradient : Gradient, optional
+        Settings of the gradient iteration, for the method ``"gradient"``.
 
     Returns
     -------
@@ -349,7 +354,9 @@ def certify(
         resets=resets,
         parameters=parameters,
     )
-    return Study(loaded).certify(method=method, budget=budget, max_degree=max_degree)
+    return Study(loaded).certify(
+        method=method, budget=budget, max_degree=max_degree, gradient=gradient
+    )
 
 
 def check_lyapunov(
@@ -389,11 +396,7 @@ def check_lyapunov(
     >>> nrs.check_lyapunov([[[0, 1], [-2, -3]]], [[5, 1], [1, 1]]).holds
     True
     """
-    named = (
-        dict(modes)
-        if isinstance(modes, Mapping)
-        else {f"m{index + 1}": mode for index, mode in enumerate(modes)}
-    )
+    named = name_modes(modes)
     axis = time_of(list(named.values()), time)
     exact = [Mode(label, read_matrix(A, f"mode {label}")) for label, A in named.items()]
     alpha = None if rate is None else read_number(rate, "rate")
@@ -458,8 +461,10 @@ def _method(name: str) -> Method:
     return Method(name)
 
 
-def _limits(budget: float | None, max_degree: int | None) -> Limits:
-    limits = Limits()
+def _limits(
+    budget: float | None, max_degree: int | None, gradient: Gradient | None = None
+) -> Limits:
+    limits = Limits(gradient=gradient or Gradient())
     if budget is not None:
         limits = replace(limits, budget=budget)
     return limits if max_degree is None else replace(limits, max_degree=max_degree)

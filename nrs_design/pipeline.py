@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from fractions import Fraction
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -26,6 +27,7 @@ if TYPE_CHECKING:
     from nrs_design.models.plant import Plant
     from nrs_design.models.robot import Robot
     from nrs_design.search.margin import BoxMargin, DwellMargin
+    from nrs_design.search.method_run import MethodRun
     from nrs_design.spec import InteractionDesignSpec, RobotSpec, Spec
 
 Progress = Callable[[str], None]
@@ -280,6 +282,49 @@ def run_certification(
         else None
     )
     return Result(loaded, designed, coordinates, certification, certificate)
+
+
+def run_comparison(
+    loaded: LoadedSpec,
+    limits: Limits,
+    coordinates: str | None = None,
+    progress: Progress = _silent,
+) -> tuple[SwitchedSystem, tuple[MethodRun, ...]]:
+    """Compare the gradient iteration with the LMI on the modes of a spec.
+
+    Parameters
+    ----------
+    loaded : LoadedSpec
+        As `nrs_design.spec.read_spec` gives it.
+    limits : Limits
+        How far each search goes.
+    coordinates : {"deflection", "force"}, optional
+        Overrides what the spec says.
+    progress : callable
+        Told the name of each step.
+
+    Returns
+    -------
+    SwitchedSystem
+        The exact modes.
+    tuple of MethodRun
+        The LMI first.
+
+    Raises
+    ------
+    DesignError, AssemblyError
+        If the spec has no design, or its modes make no switched system that both methods are for.
+    """
+    from nrs_design.search.certify import certify
+    from nrs_design.search.comparison import compare_methods
+
+    designed = run_design(loaded)
+    if designed is not None:
+        coordinates = coordinates or designed.spec.coordinates
+    with placed(loaded):
+        system = _assemble(loaded, designed, coordinates)
+        runs = compare_methods(partial(certify, system), limits, progress)
+        return system, runs
 
 
 def _gains(designed: Designed | None) -> Gains:

@@ -26,6 +26,7 @@ STAGES = {"models", "design", "switched", "search"}
 DOORS = {
     "nrs_design.models.robot",
     "nrs_design.search.certification",
+    "nrs_design.search.gradient_settings",
     "nrs_design.search.method",
     "nrs_design.design.measures",
 }
@@ -168,7 +169,8 @@ def test_a_report_assembles_and_searches_nothing():
     """It shows what the pipeline gives it, and draws the curves of a design."""
     below = {item.target for item in OURS if floor(item.source) == "reporting"}
     stages = {name for name in below if floor(name) in ("switched", "search")}
-    assert stages == {"nrs_design.search.certification"}
+    nouns = {"certification", "gradient_settings", "method_run"}
+    assert stages == {f"nrs_design.search.{noun}" for noun in nouns}
 
 
 VERBS = {

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import sys
+import warnings
 from collections.abc import Iterable
 from importlib import import_module
 from typing import Annotated
@@ -27,7 +28,9 @@ COMMANDS = (
     "optimize",
     "tune",
     "certify-switching",
+    "compare-methods",
     "verify",
+    "audit",
     "check-lyapunov",
     "report",
     "reproduce",
@@ -105,6 +108,9 @@ def main() -> None:
     """Run the program; an error that the user can mend is one message and exit code 2."""
     for name, value in SETTINGS.items():
         os.environ.setdefault(name, value)
+    if not sys.warnoptions:
+        # What a library has to say to programmers is none of a user's business.
+        warnings.simplefilter("ignore")
     sys.stdout, sys.stderr = lasting(sys.stdout), lasting(sys.stderr)
     try:
         _run()

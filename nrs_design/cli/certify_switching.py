@@ -2,12 +2,22 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 from nrs_design.cli import exit_codes
+from nrs_design.cli.gradient_options import (
+    GradientCoordinates,
+    MaxUpdates,
+    Radius,
+    Relaxation,
+    Seed,
+    StartMode,
+    UpdateOrder,
+)
 from nrs_design.cli.options import (
     Budget,
     CoordinatesOption,
@@ -19,12 +29,14 @@ from nrs_design.cli.options import (
     Verbose,
 )
 from nrs_design.cli.printing import note, print_json, progress, say
+from nrs_design.search.gradient_settings import Coordinates, Gradient, Order
 from nrs_design.search.method import Method
 
 if TYPE_CHECKING:
     from fractions import Fraction
 
     from nrs_design.pipeline import Result
+    from nrs_design.search.certification import Certification
     from nrs_design.search.margin import BoxMargin, DwellMargin
 
 
@@ -53,6 +65,13 @@ def certify_switching(
     shortest_dwell: Annotated[
         bool, typer.Option("--shortest-dwell", help="Find the shortest dwell time with a proof.")
     ] = False,
+    relaxation: Relaxation = 1.0,
+    radius: Radius = 1.0,
+    start_mode: StartMode = None,
+    order: UpdateOrder = Order.ROUND_ROBIN,
+    seed: Seed = 0,
+    max_updates: MaxUpdates = 20_000,
+    gradient_coordinates: GradientCoordinates = Coordinates.MEAN_NORM,
     as_json: Json = False,
     quiet: Quiet = False,
     verbose: Verbose = False,
@@ -76,7 +95,14 @@ def certify_switching(
     loaded = read_spec(spec)
     path = out or Path("reports") / f"{loaded.spec.name}.cert.json"
     check_certificate(spec, path)
+    history: list[tuple[int, float]] = []
+    gradient = Gradient(
+        relaxation, radius, start_mode, order, seed, max_updates, gradient_coordinates
+    )
+    if method is Method.GRADIENT and as_json:
+        gradient = replace(gradient, tell=lambda updates, v: history.append((updates, v)))
     limits = limits_of(loaded.spec, Overrides(max_degree, budget, memory), optimize_rate)
+    limits = replace(limits, gradient=gradient)
     with progress(f"certifying {loaded.spec.name}", quiet=quiet) as step:
         result = run_certification(
             loaded,
@@ -91,7 +117,10 @@ def certify_switching(
         write_output(path, dump(result.certificate, origin_of(spec, path)), replaces=CERTIFICATE)
     written = None if result.certificate is None else path
     if as_json:
-        print_json("certify-switching", summary(result, written) | margins_summary(box, dwell))
+        content = summary(result, written) | margins_summary(box, dwell)
+        if history:
+            content["gradient_history"] = history
+        print_json("certify-switching", content)
     elif not quiet:
         _print(result, written, verbose=verbose)
         _print_margin(box)
@@ -103,7 +132,6 @@ def summary(result: Result, path: Path | None) -> dict[str, Any]:
     """Return what ``--json`` prints."""
     certification = result.certification
     evidence = certification.evidence
-    rate = None if evidence is None else evidence.proved_rate(certification.system)
     return {
         "spec": result.loaded.spec.name,
         "spec_sha256": result.loaded.sha256,
@@ -115,10 +143,7 @@ def summary(result: Result, path: Path | None) -> dict[str, Any]:
             for statement in certification.statements
         ],
         "method": certification.method,
-        "decay_rate": None if rate is None else _safe_float(rate, certification.system.time),
-        "decay_rate_exact": None if rate is None else str(rate),
-        "decay_rate_limit": certification.rate_limit,
-        "decay_rate_unit": "1/s" if certification.system.time == "continuous" else "1 per step",
+        **rate_summary(certification),
         "time": str(certification.system.time),
         "coordinates": result.coordinates,
         "states": list(certification.system.states),
@@ -131,6 +156,18 @@ def summary(result: Result, path: Path | None) -> dict[str, Any]:
         "assumptions": list(certification.system.assumptions),
         "certificate": None if path is None else str(path),
         "certificate_id": result.certificate.id if result.certificate else None,
+    }
+
+
+def rate_summary(certification: Certification) -> dict[str, Any]:
+    """Return what ``--json`` prints about the proved rate and its limit."""
+    evidence, system = certification.evidence, certification.system
+    rate = None if evidence is None else evidence.proved_rate(system)
+    return {
+        "decay_rate": None if rate is None else _safe_float(rate, system.time),
+        "decay_rate_exact": None if rate is None else str(rate),
+        "decay_rate_limit": certification.rate_limit,
+        "decay_rate_unit": "1/s" if system.time == "continuous" else "1 per step",
     }
 
 

@@ -45,6 +45,10 @@ def report(
         typer.Option("--times", help="Add the time of every rung; pages then differ each time."),
     ] = False,
     date: Date = None,
+    compare_methods: Annotated[
+        bool,
+        typer.Option("--compare-methods", help="Add the gradient iteration beside the LMI."),
+    ] = False,
     max_degree: MaxDegree = None,
     budget: Budget = None,
     memory: Memory = None,
@@ -56,7 +60,7 @@ def report(
     Example: nrs-design report specs/neuroboscope/soft-tissue.nrs.yaml --format pdf
     """
     from nrs_design.ownership import check_owner, check_page
-    from nrs_design.pipeline import Overrides, limits_of, run_certification
+    from nrs_design.pipeline import Overrides, limits_of, run_certification, run_comparison
     from nrs_design.reporting import build_report
     from nrs_design.spec import read_spec
 
@@ -70,7 +74,9 @@ def report(
         result = run_certification(loaded, limits=limits, progress=step)
         step("figures")
         day = date.date() if date else None
-        page = build_report(result, _analysis(result, quiet=quiet), times=times, date=day)
+        runs = run_comparison(loaded, limits, progress=step)[1] if compare_methods else ()
+        analysis = _analysis(result, quiet=quiet)
+        page = build_report(result, analysis, comparison=runs, times=times, date=day)
         files = _write(page, file_format, out, spec)
     verdict = str(result.certification.verdict)
     if as_json:

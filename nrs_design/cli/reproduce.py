@@ -74,11 +74,21 @@ def _print(table: tuple[Comparison, ...]) -> None:
             row.value or "",
             row.unit,
             format_deviation(row.deviation),
+            row.tolerance,
             str(row.verdict),
         ]
         for row in table
     ]
-    columns = ["section", "quantity", "printed", "recomputed", "unit", "deviation", "verdict"]
+    columns = [
+        "section",
+        "quantity",
+        "printed",
+        "recomputed",
+        "unit",
+        "deviation",
+        "tolerance",
+        "verdict",
+    ]
     print_table("", columns, cells)
     for row in table:
         if row.note:

@@ -15,6 +15,7 @@ from nrs_design.gating.rules import (
     CERTIFICATE_HOLDS,
     GOAL,
     MODE_STABLE,
+    NOT_DOUBTED,
     SPEC,
     STIFFNESS_RANGE,
     SWITCHING_STABLE,
@@ -191,6 +192,22 @@ class Examiner:
                 status = Status.MET if found.met else Status.MISSED
                 place = self.places.goal(item.name, measure.goal)
                 yield self.obligation(GOAL, f"{item.name}: {measure.goal}", status, message, place)
+
+    def identified(self) -> Iterator[Obligation]:
+        """Yield NRS107 for everything whose identification is in doubt."""
+        spec = self.loaded.spec
+        if spec.kind != "interaction-design":
+            return
+        for at, item in spec.identified.items():
+            if not item.doubts:
+                continue
+            message = f"the identification of {at[-1]} is in doubt: {'; '.join(item.doubts)}"
+            key, status = "doubts", Status.MISSED
+            if item.accept_doubt is not None:
+                key, status = "accept_doubt", Status.MET
+                message += f"; accepted because: {item.accept_doubt}"
+            place = self.places.at(*at, key)
+            yield self.obligation(NOT_DOUBTED, at[-1], status, message, place)
 
     def cautions(self, analysis: DesignAnalysis | None) -> Iterator[Caution]:
         """Yield what is doubtful about the spec and its design."""

@@ -16,6 +16,7 @@ from nrs_design.gating.rules import (
     CERTIFICATE_HOLDS,
     LOCKED,
     MODE_STABLE,
+    NOT_DOUBTED,
     RULES,
     SPEC,
     SWITCHING_STABLE,
@@ -25,7 +26,9 @@ SCHEMA: Literal["nrs-design/lock/2"] = "nrs-design/lock/2"
 MAX_BYTES = 32 * 2**20
 MAX_SPECS = 10_000
 # What --locked decides itself; every other obligation is locked as it ended.
-DECIDED_AGAIN = frozenset({SPEC, MODE_STABLE, SWITCHING_STABLE, CERTIFICATE_HOLDS, LOCKED})
+DECIDED_AGAIN = frozenset(
+    {SPEC, MODE_STABLE, SWITCHING_STABLE, CERTIFICATE_HOLDS, LOCKED, NOT_DOUBTED}
+)
 
 
 def _check_path(text: str) -> str:

@@ -133,6 +133,7 @@ def _confirmed(
             *examiner.stability(certificate.system, certificate.evidence, ""),
             examiner.certificate(place, None),
             *_goals(examiner, entry),
+            *examiner.identified(),
             _agrees(examiner, file),
         ),
         sha256=examiner.loaded.sha256,
@@ -184,7 +185,12 @@ def _inconclusive(examiner: Examiner, entry: LockedSpec, file: Path) -> SpecOutc
     )
     return SpecOutcome(
         path=examiner.loaded.path,
-        obligations=(obligation, *_goals(examiner, entry), _agrees(examiner, file)),
+        obligations=(
+            obligation,
+            *_goals(examiner, entry),
+            *examiner.identified(),
+            _agrees(examiner, file),
+        ),
         sha256=examiner.loaded.sha256,
         verdict="inconclusive",
         common_quadratic="unknown",

@@ -154,6 +154,16 @@ GOAL = Rule(
     "Let `nrs-design optimize` choose gains that are given, widen their bounds, narrow the ranges, "
     "or relax the goal.",
 )
+NOT_DOUBTED = Rule(
+    "NRS107",
+    "Identified values are not in doubt",
+    "`nrs-design identify --write` notes beside the values why the records may not determine them "
+    "(`doubts`). A proof about such values may be about another tissue or motor than the measured "
+    "one. The gate fails on them, unless `accept_doubt` says in one line why they are used; that "
+    "line is printed with the proof, among its assumptions.",
+    "Record again as the doubt says, identify anew, or say why with `accept_doubt: REASON` beside "
+    "the doubts.",
+)
 CERTIFICATE_HOLDS = Rule(
     "NRS104",
     "The certificate holds for its spec",
@@ -199,6 +209,7 @@ RULES: Mapping[str, Rule] = MappingProxyType(
             CERTIFICATE_HOLDS,
             LOCKED,
             GOAL,
+            NOT_DOUBTED,
             INTERNAL,
         )
     }

@@ -186,7 +186,7 @@ def _examine(
     rate, rate_name = certified_rate(certificate)
     return SpecOutcome(
         path=loaded.path,
-        obligations=obligations + goals,
+        obligations=(*obligations, *goals, *examiner.identified()),
         sha256=loaded.sha256,
         verdict=str(certification.verdict),
         common_quadratic=str(certification.common_quadratic),

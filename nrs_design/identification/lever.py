@@ -1,11 +1,11 @@
-"""From a linear motion to a rotation about the pivot."""
+"""Quantities that options give, and the way from a linear motion to a rotation."""
 
 from __future__ import annotations
 
 from nrs_design.errors import DataError, SpecError
 from nrs_design.models.contact import AbstractContactLaw
-from nrs_design.spec.kinds import LEVER_ARM
-from nrs_design.spec.quantity import parse_quantity
+from nrs_design.spec.kinds import ANGLE, FORCE, LENGTH, LEVER_ARM, TORQUE
+from nrs_design.spec.quantity import QuantityKind, parse_quantity
 
 
 def parse_arm(text: str | None, *, rotational: bool) -> float | None:
@@ -18,10 +18,7 @@ def parse_arm(text: str | None, *, rotational: bool) -> float | None:
     """
     if text is None:
         return None
-    try:
-        arm = parse_quantity(text, LEVER_ARM).si
-    except SpecError as error:
-        raise DataError(f"--lever-arm: {error.message}", remedy=error.remedy) from None
+    arm = _parse("--lever-arm", text, LEVER_ARM)
     if rotational:
         raise DataError(
             "the records are rotational, and a lever arm is given", remedy="remove --lever-arm"
@@ -29,6 +26,53 @@ def parse_arm(text: str | None, *, rotational: bool) -> float | None:
     if arm <= 0:
         raise DataError(f"the lever arm {text!r} is not positive", remedy="write '0.24 m'")
     return arm
+
+
+def parse_offset(option: str, text: str | None, *, rotational: bool) -> float | None:
+    """Read ``--zero``, a position, or ``--tare``, a force.
+
+    Parameters
+    ----------
+    option : {"--zero", "--tare"}
+        Which.
+    text : str or None
+        As in ``0.1 m``; ``fit`` or nothing is None.
+    rotational : bool
+        Whether it is an angle, or a torque.
+
+    Raises
+    ------
+    DataError
+        If it is not such a quantity.
+    """
+    if text is None or text == "fit":
+        return None
+    kinds = {"--zero": (LENGTH, ANGLE), "--tare": (FORCE, TORQUE)}
+    return _parse(option, text, kinds[option][rotational])
+
+
+def parse_preload(text: str | None, *, rotational: bool) -> tuple[float, float] | None:
+    """Read ``--preload``, such as ``1 mm..3 mm``: deflections from the contact.
+
+    Raises
+    ------
+    DataError
+        If these are not two such quantities.
+    """
+    if text is None:
+        return None
+    low, dots, high = (part.strip() for part in text.partition(".."))
+    if not dots:
+        high = low
+    kind = (LENGTH, ANGLE)[rotational]
+    return _parse("--preload", low, kind), _parse("--preload", high, kind)
+
+
+def _parse(option: str, text: str, kind: QuantityKind) -> float:
+    try:
+        return parse_quantity(text, kind).si
+    except SpecError as error:
+        raise DataError(f"{option}: {error.message}", remedy=error.remedy) from None
 
 
 def units_of(law: AbstractContactLaw, rotational: bool) -> tuple[str, ...]:

@@ -15,7 +15,8 @@ CONFIDENCE = 0.95
 # Below this p-value, residuals are taken as colored.
 WHITE = 0.01
 _LAGS = 20
-_BATCHES = 20
+# Fewer would leave no degrees of freedom, more would not be independent.
+_BATCHES = 12
 # Beyond these logarithms a number leaves the floats: the interval is then unlimited.
 _HUGE = 690.0
 _SINGULAR = 1e-14
@@ -23,7 +24,7 @@ _SINGULAR = 1e-14
 
 @dataclass(frozen=True, slots=True)
 class Estimate:
-    """A positive parameter with its 95 % confidence interval.
+    """A parameter with its 95 % confidence interval.
 
     Parameters
     ----------
@@ -77,9 +78,9 @@ class Uncertainty:
         """Standard errors of the logarithms, which are relative standard errors, shape (p,)."""
         return np.sqrt(np.diag(self.covariance))
 
-    def estimates(self, logarithms: Array) -> tuple[Estimate, ...]:
+    def estimates(self, logarithms: Array, confidence: float = CONFIDENCE) -> tuple[Estimate, ...]:
         """Return the parameters with their intervals."""
-        quantile = student_quantile(self.degrees)
+        quantile = student_quantile(self.degrees, confidence)
         return tuple(
             Estimate.from_log(float(log), quantile * float(error))
             for log, error in zip(logarithms, self.errors, strict=True)
@@ -146,11 +147,48 @@ def ljung_box(residuals: Array, lags: int = _LAGS) -> float:
     return float(chdtrc(lags, statistic))
 
 
-def student_quantile(degrees: int) -> float:
-    """Return the factor from standard error to half the 95 % interval."""
+def fisher_tail(above: int, below: int, ratio: float) -> float:
+    """Return the p-value of an F-test.
+
+    Parameters
+    ----------
+    above, below : int
+        Degrees of freedom.
+    ratio : float
+        Of the two variances.
+    """
+    from scipy.special import fdtrc
+
+    return float(fdtrc(above, below, ratio))
+
+
+def student_quantile(degrees: int, confidence: float = CONFIDENCE) -> float:
+    """Return the factor from standard error to half the interval."""
     from scipy.special import stdtrit
 
-    return float(stdtrit(degrees, 0.5 + CONFIDENCE / 2))
+    return float(stdtrit(degrees, 0.5 + confidence / 2))
+
+
+def tolerance_factor(count: int, share: float, confidence: float) -> float:
+    """Return how many standard deviations about the mean hold a share of a normal population.
+
+    Each end is a one-sided tolerance limit, exact by the noncentral t distribution (Owen 1968):
+    beyond it lies at most half of what may be missed. That both hold has at least the confidence
+    asked for, as each fails with at most half the probability that one may.
+
+    Parameters
+    ----------
+    count : int
+        Sample size n >= 2.
+    share : float
+        Of the population, between the ends.
+    confidence : float
+        That the share is held.
+    """
+    from scipy.special import nctdtrit, ndtri
+
+    noncentrality = float(ndtri(0.5 + share / 2)) * math.sqrt(count)
+    return float(nctdtrit(count - 1, noncentrality, 0.5 + confidence / 2)) / math.sqrt(count)
 
 
 def _jackknife(J: Array, residuals: Array, edges: NDArray[np.int64], bread: Array) -> Array:

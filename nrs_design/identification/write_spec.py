@@ -16,8 +16,12 @@ from nrs_design.identification.statistics import Estimate
 from nrs_design.identification.tissue import TissueIdentification
 from nrs_design.models.contact import LINEAR_LAWS, AbstractLinearLaw
 from nrs_design.spec import InteractionDesignSpec, LoadedSpec, parse_spec
+from nrs_design.spec.fields import MAX_TITLE
+from nrs_design.spec.provenance import MAX_DOUBTS
 
 _DIGITS = 6
+# A longer text is a sentence, and no quantity.
+_SENTENCE = 40
 
 
 def merge_tissue(
@@ -44,11 +48,17 @@ def merge_tissue(
         If the chosen law has no place in a spec, or its range is unlimited.
     """
     model = found.chosen
-    law = model.law
+    law, ranges = found.written
     if not isinstance(law, AbstractLinearLaw):
         raise DataError(
             f"the chosen law, {law.name}, has no place in a spec",
-            remedy=f"choose one that has: --model {' or --model '.join(LINEAR_LAWS)}",
+            remedy="linearize it about a preload by --preload, or choose one that has a place: "
+            f"--model {' or --model '.join(LINEAR_LAWS)}",
+        )
+    if model.doubts and not all(map(_is_limited, ranges)):
+        raise DataError(
+            f"a range is unlimited, the records do not determine it: {model.doubts[0]}",
+            remedy="choose a simpler law with --model, or record again as the message says",
         )
     spec = _interaction(loaded)
     name = _environment(spec, environment, loaded.path)
@@ -56,7 +66,7 @@ def merge_tissue(
     node = document.root["environments"][name]
     document.put(node, "model", law.name)
     units = law.units(rotational=found.rotational)
-    for key, unit, estimate in zip(law.keys, units, model.ranges, strict=True):
+    for key, unit, estimate in zip(law.keys, units, ranges, strict=True):
         _put_range(document, node, key, _ranged(estimate, unit, key))
     for key in {key for other in LINEAR_LAWS.values() for key in other.keys}.difference(law.keys):
         document.drop(node, key)
@@ -70,8 +80,39 @@ def merge_tissue(
             path=loaded.path,
             remedy="give --lever-arm '0.24 m'",
         )
+    document.put(node, "range_covers", model.coverage)
+    if found.tangent is None:
+        document.drop(node, "linearized_about")
+    else:
+        document.put(node, "linearized_about", _preload(found))
     document.put(node, "provenance", [_provenance(record.source) for record in found.records])
+    _put_doubts(document, node, found.caveats)
     return document.text()
+
+
+def _preload(found: TissueIdentification) -> str:
+    assert found.tangent is not None
+    about, unit = found.tangent, "rad" if found.rotational else "m"
+    return f"deflections from {about.low:.6g} {unit} to {about.high:.6g} {unit}"
+
+
+def _put_doubts(document: _Document, node: Any, doubts: Sequence[str]) -> None:
+    """Note doubts; a reason that was given for others does not hold for them."""
+    texts = [_one_line(doubt) for doubt in doubts]
+    if len(texts) > MAX_DOUBTS:
+        more = len(texts) - MAX_DOUBTS + 1
+        texts = [*texts[: MAX_DOUBTS - 1], f"and {more} more"]
+    if texts != list(node.get("doubts", ())):
+        document.drop(node, "accept_doubt")
+    if texts:
+        document.put(node, "doubts", texts)
+    else:
+        document.drop(node, "doubts")
+
+
+def _one_line(text: str) -> str:
+    plain = "".join(letter if letter.isprintable() else " " for letter in text)
+    return plain if len(plain) <= MAX_TITLE else f"{plain[: MAX_TITLE - 4]} ..."
 
 
 def merge_actuator(loaded: LoadedSpec, found: ActuatorIdentification) -> str:
@@ -82,9 +123,15 @@ def merge_actuator(loaded: LoadedSpec, found: ActuatorIdentification) -> str:
     SpecError
         If the spec is no interaction design.
     DataError
-        If an interval is unlimited.
+        If an interval is unlimited, or a spec has no place for such a motor or command.
     """
     _interaction(loaded)
+    if found.unit != "rpm" or found.chosen.order != 1:
+        what = f"commands in {found.unit}" if found.unit != "rpm" else "a motor of second order"
+        raise DataError(
+            f"a spec has no place for {what}",
+            remedy="leave --write out, or record commands in rpm that a first order describes",
+        )
     document = _Document(loaded)
     node = document.root["actuator"]
     intervals = {}
@@ -140,7 +187,7 @@ def _put_range(document: _Document, node: Any, key: str, value: dict[str, Any]) 
 
 def _ranged(estimate: Estimate, unit: str, name: str) -> dict[str, Any]:
     """Write an estimate with ends rounded outwards, so that nothing is lost."""
-    if not (isfinite(estimate.high) and estimate.low > 0):
+    if not _is_limited(estimate):
         raise DataError(
             f"the interval of the {name} is unlimited: the records do not determine it",
             remedy="choose a simpler law with --model, or record more",
@@ -150,6 +197,10 @@ def _ranged(estimate: Estimate, unit: str, name: str) -> dict[str, Any]:
     nominal = min(max(_decimal(estimate.value, ROUND_HALF_EVEN), low), high)
     texts = [f"{_plain(number)} {unit}" for number in (nominal, low, high)]
     return {"nominal": texts[0], "range": texts[1:]}
+
+
+def _is_limited(estimate: Estimate) -> bool:
+    return isfinite(estimate.high) and estimate.low > 0
 
 
 def _decimal(value: float, rounding: str) -> Decimal:
@@ -223,7 +274,7 @@ class _Document:
 
 
 def _flow(value: object) -> object:
-    """Return a value in flow style, except for a list of mappings."""
+    """Return a value in flow style, except for a list of mappings or of sentences."""
     from ruamel.yaml.comments import CommentedMap, CommentedSeq
 
     if isinstance(value, dict):
@@ -232,7 +283,7 @@ def _flow(value: object) -> object:
         return mapping
     if isinstance(value, list):
         sequence = CommentedSeq(_flow(item) for item in value)
-        if not any(isinstance(item, dict) for item in value):
+        if not any(isinstance(item, dict) or len(item) > _SENTENCE for item in value):
             sequence.fa.set_flow_style()
         return sequence
     return value

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+from typing import TypeVar
+
 import numpy as np
 from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+Scalar = TypeVar("Scalar", np.float64, np.complex128)
 
 
-def run_first_order(factors: Array, inputs: Array) -> Array:
-    """Run ``y[i + 1] = factors[i] y[i] + inputs[i]`` from zero.
+def run_first_order(factors: NDArray[Scalar], inputs: NDArray[Scalar]) -> NDArray[Scalar]:
+    """Run ``y[i + 1] = factors[i] y[i] + inputs[i]`` from zero, real or complex.
 
     Parameters
     ----------
@@ -21,9 +23,10 @@ def run_first_order(factors: Array, inputs: Array) -> Array:
     ndarray, shape (n + 1,)
         Beginning with y[0] = 0.
     """
-    from scipy.linalg.lapack import dtbtrs
+    from scipy.linalg.lapack import dtbtrs, ztbtrs
 
-    banded = np.ones((2, len(inputs)), order="F")
+    banded = np.ones((2, len(inputs)), dtype=factors.dtype, order="F")
     banded[1, :-1] = -factors[1:]
-    solution, _ = dtbtrs(banded, inputs[:, None], uplo="L")
-    return np.concatenate([[0.0], solution[:, 0]])
+    solve = ztbtrs if np.iscomplexobj(inputs) else dtbtrs
+    solution, _ = solve(banded, inputs[:, None], uplo="L")
+    return np.concatenate([np.zeros(1, solution.dtype), solution[:, 0]])

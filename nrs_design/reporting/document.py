@@ -90,7 +90,7 @@ class Report:
     ----------
     name, title : str
         Of the spec; the title may be empty.
-    verdict : {"proved", "refuted", "inconclusive", "identified"}
+    verdict : {"proved", "refuted", "inconclusive", "identified", "inside", "outside"}
         Of the certification, or that this is an identification.
     claim : str
         What the certificate states about stability, or that nothing is known.

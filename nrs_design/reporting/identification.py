@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from nrs_design import __version__
-from nrs_design.identification.actuator.time_fit import simulate_angle
 from nrs_design.identification.lever import units_of
+from nrs_design.identification.tissue import OFFSET_UNITS, OFFSET_WORDS
 from nrs_design.reporting.document import Block, Bullets, Illustration, Report, Section, Table
 from nrs_design.reporting.figures.identification import (
     draw_bode,
@@ -23,18 +23,21 @@ from nrs_design.reporting.formatting import number, plural, shortened
 
 if TYPE_CHECKING:
     from nrs_design.identification.actuator import ActuatorIdentification
-    from nrs_design.identification.datasets import SinusoidRecord, Source
+    from nrs_design.identification.datasets import Source
     from nrs_design.identification.statistics import Estimate
     from nrs_design.identification.tissue import ModelFit, RecordFit, TissueIdentification
 
 IDENTIFIED = "identified"
-_FOOTER = "Page of nrs-design. An identification is an estimate, not a proof."
+FOOTER = "Page of nrs-design. An identification is an estimate, not a proof."
 _SYNTHETIC = "SYNTHETIC DATA, made by a simulation and not measured. "
 _DRAWN = 6
 _MEANING = (
     "Intervals are 95 % confidence intervals of the pooled parameters; with several records they "
     "hold the spread between records.",
-    "The range over all records also covers the interval of every single record.",
+    "The range over all records also covers the interval of every single record; its table says "
+    "what else it holds.",
+    "Position of contact and force in air are fitted with the law, if they are not given. Samples "
+    "that are not used are drawn pale.",
     "RMSE is that of the pooled parameters in each record. AIC and BIC are sums over the records, "
     "each with parameters of its own.",
     "The p-value of the whiteness test is small where residuals are not white noise: the law then "
@@ -63,50 +66,74 @@ def tissue_report(found: TissueIdentification, arm: float | None = None) -> Repo
         name=f"tissue-{chosen.law.name}",
         title=f"Tissue law from {plural(len(found.records), 'record')}",
         verdict=IDENTIFIED,
-        claim=f"{_label(found.synthetic)}{chosen.law.formula} with {values}. {found.reason}",
+        claim=f"{label_of(found.synthetic)}{chosen.law.formula} with {values}. {found.reason}",
         remarks=found.caveats,
-        facts=_facts([record.source for record in found.records]),
+        facts=facts_of([record.source for record in found.records]),
         sections=(
+            Section("What of the records is used", tuple(_used(found))),
             Section("Comparison of laws", tuple(_comparison(found))),
             Section("Parameters of the chosen law", tuple(_parameters(found, arm))),
             Section("Measured against fitted", tuple(_tissue_figures(found))),
             Section("How to read this", (Bullets("", _MEANING),), boxed=True),
-            _source_section([record.source for record in found.records]),
+            source_section([record.source for record in found.records]),
         ),
-        footer=_FOOTER,
+        footer=FOOTER,
     )
 
 
 def actuator_report(found: ActuatorIdentification) -> Report:
     """Say and draw everything about the identification of an actuator."""
     fit = found.chosen
-    values = [f"Gain {_interval(fit.gain)} (rad/s)/rpm", f"τ {_interval(fit.time_constant)} s"]
+    unit = found.unit
+    values = [f"Gain {_interval(fit.gain)} (rad/s)/{unit}", f"τ {_interval(fit.time_constant)} s"]
     if fit.friction:
-        values.append(f"friction {_interval(fit.friction)} rpm")
-    figures = found.figures
-    derived = Table(
-        "Derived with the data sheet",
-        ("Quantity", "Value [95 % interval]", "Unit"),
-        (
-            ("Armature resistance R", _interval(figures.resistance), "ohm"),
-            ("Speed over torque", _interval(figures.gradient), "rpm/(N m)"),
-        ),
-    )
+        values.append(f"friction {_interval(fit.friction)} {unit}")
+    if fit.dead_time:
+        values.append(f"dead time {_interval(fit.dead_time)} s")
     return Report(
         name="actuator",
-        title="First-order velocity model with Coulomb friction",
+        title=f"Velocity model of order {fit.order} with Coulomb friction and dead time",
         verdict=IDENTIFIED,
-        claim=f"{_label(found.synthetic)}{', '.join(values)}. {found.reason}",
-        remarks=(),
-        facts=_facts(found.sources),
+        claim=f"{label_of(found.synthetic)}{', '.join(values)}. {found.reason}",
+        remarks=tuple(f"Doubt: {doubt}." for doubt in found.doubts),
+        facts=facts_of(found.sources),
         sections=(
-            Section("Fits", (_fits(found), derived)),
-            Section("Frequency response", (_bode(found),)),
+            Section("Fits", (_fits(found), *_derived(found))),
+            *_bode(found),
             *_actuator_records(found),
-            _source_section(found.sources),
+            source_section(found.sources),
         ),
-        footer=_FOOTER,
+        footer=FOOTER,
     )
+
+
+def _used(found: TissueIdentification) -> Iterator[Block]:
+    """Say what was cut and why, and which offsets were found."""
+    rows = tuple(
+        (
+            fit.record.name,
+            f"{int(fit.trial.used.sum())} of {len(fit.record.force)}",
+            *(_offset(fit, name, found.rotational) for name in OFFSET_WORDS),
+        )
+        for fit in found.chosen.fits
+    )
+    columns = ("Record", "Samples used", *(words.capitalize() for words in OFFSET_WORDS.values()))
+    yield Table("Samples and offsets [95 % interval]", columns, rows)
+    remarks = tuple(
+        f"{fit.record.name}: {text}." for fit in found.chosen.fits for text in fit.trial.remarks
+    )
+    yield Bullets("What was found and cut", remarks)
+
+
+def _offset(fit: RecordFit, name: str, rotational: bool) -> str:
+    offset = next((item for item in fit.offsets if item.name == name), None)
+    if offset is None:
+        return "none"
+    unit, estimate = OFFSET_UNITS[name][rotational], offset.estimate
+    if not offset.fitted:
+        return f"{number(estimate.value)} {unit}, {offset.provided or 'given'}"
+    value = f"{estimate.value:.5g} [{estimate.low:.5g}, {estimate.high:.5g}] {unit}"
+    return f"{value}, {offset.provided}" if offset.provided else value
 
 
 def _comparison(found: TissueIdentification) -> Iterator[Block]:
@@ -147,12 +174,22 @@ def _parameters(found: TissueIdentification, arm: float | None) -> Iterator[Bloc
         for fit in model.fits
     ]
     rows.append(("pooled", *map(_interval, model.estimates)))
-    rows.append(("range over all records", *map(_interval, model.ranges)))
+    rows.append((f"range: {found.covers}", *map(_interval, model.ranges)))
     if arm is not None:
         turned = [f"{number(value, 6)} {unit}" for value, unit in
                   zip(law.at_pivot(arm).values, units_of(law, True), strict=True)]  # fmt: skip
         rows.append((f"pooled, at the pivot ({number(arm)} m)", *turned))
     yield Table("Estimates [95 % interval]", columns, tuple(rows))
+    notes = [model.box] if model.box else []
+    if found.tangent is not None:
+        about = found.tangent
+        values = ", ".join(map(_interval, about.ranges))
+        notes.append(
+            f"Small motions about deflections from {about.low:.5g} to {about.high:.5g}: "
+            f"stiffness and damping {values}."
+        )
+    if notes:
+        yield Bullets("", tuple(notes))
     if law.relaxation_time is not None:
         tau = (f"The force relaxes in {number(law.relaxation_time)} s at rest.",)
         yield Bullets("", tau)
@@ -180,21 +217,21 @@ def _tissue_figures(found: TissueIdentification) -> Iterator[Illustration]:
     force, deflection = (
         ("Torque [N m]", "Angle [rad]") if found.rotational else ("Force [N]", "Deflection [m]")
     )
-    note = _label(found.synthetic)
+    note = label_of(found.synthetic)
     drawn = found.chosen.fits[:_DRAWN]
     for fit, name in zip(drawn, _ids([fit.record.name for fit in drawn]), strict=True):
-        fitted = fit.law.simulate(fit.record.motion)
+        trial, used = fit.trial, fit.trial.used
         yield Illustration(
             f"fit-{name}",
             fit.record.name,
             f"{note}{_quality(fit)}",
-            draw_fit(fit.record.motion.time, fit.record.force, fitted, force),
+            draw_fit(trial.motion.time, trial.force, fit.fitted, force, used),
         )
         yield Illustration(
             f"loop-{name}",
             f"{fit.record.name}: hysteresis",
             f"{note}The area of the loop is the energy that the tissue takes up.",
-            draw_loop(fit.record.motion.deflection, fit.record.force, fitted, (deflection, force)),
+            draw_loop(trial.deflection, trial.measured, fit.fitted[used], (deflection, force)),
         )
 
 
@@ -213,53 +250,78 @@ def _fits(found: ActuatorIdentification) -> Table:
             _interval(fit.gain),
             _interval(fit.time_constant),
             _interval(fit.friction) if fit.friction else "not determined",
+            _interval(fit.dead_time) if fit.dead_time else "taken for zero",
         )
         for fit in found.fits
     )
-    columns = ("Fit", "Gain [(rad/s)/rpm]", "Time constant [s]", "Friction [rpm]")
+    columns = (
+        "Fit",
+        f"Gain [(rad/s)/{found.unit}]",
+        "Time constant [s]",
+        f"Friction [{found.unit}]",
+        "Dead time [s]",
+    )
     return Table("Estimates [95 % interval]", columns, rows)
 
 
-def _bode(found: ActuatorIdentification) -> Illustration:
-    return Illustration(
+def _derived(found: ActuatorIdentification) -> Iterator[Table]:
+    if found.figures is None:
+        return
+    yield Table(
+        "Derived with the data sheet",
+        ("Quantity", "Value [95 % interval]", "Unit"),
+        (
+            ("Armature resistance R", _interval(found.figures.resistance), "ohm"),
+            ("Speed over torque", _interval(found.figures.gradient), "rpm/(N m)"),
+        ),
+    )
+
+
+def _bode(found: ActuatorIdentification) -> Iterator[Section]:
+    if not len(found.frequency):
+        return
+    figure = Illustration(
         "bode",
         "Velocity over command",
-        f"{_label(found.synthetic)}Magnitude relative to 1 (rad/s)/rpm. The first harmonic of the "
-        "friction is taken off the command.",
+        f"{label_of(found.synthetic)}Magnitude relative to 1 (rad/s)/{found.unit}. The first "
+        "harmonic of the friction is taken off the command.",
         draw_bode(found),
     )
+    yield Section("Frequency response", (figure,))
 
 
 def _actuator_records(found: ActuatorIdentification) -> tuple[Section, ...]:
-    if not found.records or found.chosen.friction is None:
+    if not found.records or found.chosen.motor is None:
         return ()
-    by_frequency = np.argsort(found.frequency)
-    ends = dict.fromkeys([int(by_frequency[0]), int(by_frequency[-1])])
-    names = _ids([found.records[i].name for i in ends])
-    blocks = tuple(
-        _angle_figure(found, found.records[i], found.frequency[i], name)
-        for i, name in zip(ends, names, strict=True)
+    title = "Records"
+    picks = list(range(len(found.records)))[:_DRAWN]
+    if len(found.frequency):
+        title = "Slowest and fastest record"
+        order = np.argsort(found.frequency)
+        picks = list(dict.fromkeys([int(order[0]), int(order[-1])]))
+    names = _ids([found.records[i].name for i in picks])
+    blocks = tuple(_output_figure(found, i, name) for i, name in zip(picks, names, strict=True))
+    return (Section(title, blocks),)
+
+
+def _output_figure(found: ActuatorIdentification, index: int, name: str) -> Illustration:
+    record, motor = found.records[index], found.chosen.motor
+    fitted = record.output if motor is None else motor.simulate(record)
+    hertz = (
+        f": {number(found.frequency[index] / (2 * math.pi), 3)} Hz" if len(found.frequency) else ""
     )
-    return (Section("Slowest and fastest record", blocks),)
-
-
-def _angle_figure(
-    found: ActuatorIdentification, record: SinusoidRecord, frequency: float, name: str
-) -> Illustration:
-    fit = found.chosen
-    friction = fit.friction.value if fit.friction else 0.0
-    fitted = simulate_angle(record, fit.gain.value, fit.time_constant.value, friction)
-    hertz = number(frequency / (2 * math.pi), 3)
+    label = "Angle [rad]" if record.is_angle else "Velocity [rad/s]"
     return Illustration(
-        f"angle-{name}",
-        f"{record.name}: {hertz} Hz",
-        f"{_label(found.synthetic)}The chosen fit; only initial angle and velocity are adapted "
-        "to this record.",
-        draw_fit(record.time, record.angle, fitted, "Angle [rad]"),
+        f"{'angle' if record.is_angle else 'velocity'}-{name}",
+        f"{record.name}{hertz}",
+        f"{label_of(found.synthetic)}The chosen fit; only the initial state is adapted to this "
+        "record.",
+        draw_fit(record.time, record.output, fitted, label),
     )
 
 
-def _facts(sources: Iterable[Source]) -> tuple[tuple[str, str], ...]:
+def facts_of(sources: Iterable[Source]) -> tuple[tuple[str, str], ...]:
+    """Return what stands at the head of a page about data."""
     files = list(sources)
     synthetic = sum(source.synthetic for source in files)
     kind = "SYNTHETIC" if synthetic == len(files) else "mixed" if synthetic else "measured"
@@ -269,7 +331,8 @@ def _facts(sources: Iterable[Source]) -> tuple[tuple[str, str], ...]:
     )
 
 
-def _source_section(sources: Iterable[Source]) -> Section:
+def source_section(sources: Iterable[Source]) -> Section:
+    """Return the section that names the files."""
     rows = tuple(
         (source.path.name, "SYNTHETIC" if source.synthetic else "measured", source.sha256)
         for source in sources
@@ -277,7 +340,8 @@ def _source_section(sources: Iterable[Source]) -> Section:
     return Section("Data files", (Table("Files", ("File", "Data", "SHA-256"), rows),))
 
 
-def _label(synthetic: bool) -> str:
+def label_of(synthetic: bool) -> str:
+    """Return what must stand before anything that comes of synthetic data."""
     return _SYNTHETIC if synthetic else ""
 
 

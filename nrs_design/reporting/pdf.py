@@ -17,6 +17,8 @@ _TINT = {
     "refuted": "#a63603",
     "inconclusive": "#6b5b00",
     "identified": "#005a8c",
+    "inside": "#00664b",
+    "outside": "#a63603",
 }
 # In points, between the margins of A4; a figure with its heading and caption fits on one page.
 _WIDTH, _FIGURE_HEIGHT = 482.0, 610.0

@@ -9,21 +9,25 @@ from nrs_design.reporting.sections.design import design_sections
 from nrs_design.reporting.sections.evidence import evidence_sections
 from nrs_design.reporting.sections.goals import goal_facts
 from nrs_design.reporting.sections.head import claim_of, facts, proved_rate, remarks_of
+from nrs_design.reporting.sections.methods import methods_section
 from nrs_design.reporting.sections.modes import modes_section
 from nrs_design.reporting.sections.proof import proof_section
 from nrs_design.reporting.sections.tail import assumptions_section, recheck_section, rungs_section
 
 if TYPE_CHECKING:
     import datetime
+    from collections.abc import Sequence
 
     from nrs_design.design.analysis import DesignAnalysis
     from nrs_design.pipeline import Result
+    from nrs_design.search.method_run import MethodRun
 
 
 def build_report(
     result: Result,
     analysis: DesignAnalysis | None = None,
     *,
+    comparison: Sequence[MethodRun] = (),
     times: bool = False,
     date: datetime.date | None = None,
 ) -> Report:
@@ -36,6 +40,8 @@ def build_report(
     analysis : DesignAnalysis, optional
         As `nrs_design.pipeline.run_analysis` gives it. Without it the report has no margins and
         no design figures.
+    comparison : sequence of MethodRun, optional
+        As `nrs_design.pipeline.run_comparison` gives them.
     times : bool
         Add how long every rung of the search took. The same spec then gives another page each
         time.
@@ -63,6 +69,7 @@ def build_report(
             *evidence_sections(certification),
             assumptions_section(certification),
             rungs_section(certification, times=times),
+            *((methods_section(comparison, times=times),) if comparison else ()),
             recheck_section(result),
         ),
         date=date,

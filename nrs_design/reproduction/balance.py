@@ -21,6 +21,7 @@ def rows() -> tuple[Comparison, ...]:
     return (
         *_leg("left", LEFT, ours.left, "133.49"),
         *_leg("right", RIGHT, ours.right, "133.48"),
+        *_distances(ours.left),
         misprint(
             "spring on the right crank, A0C_A",
             "4.4",
@@ -38,6 +39,17 @@ def rows() -> tuple[Comparison, ...]:
             "g",
             "Half of the platform of table 3.1 is 398.6 g; 88.4 g of the two are not explained.",
         ),
+    )
+
+
+def _distances(ours: LegBalance) -> tuple[Comparison, ...]:
+    """Return where the printed counter-masses must sit; the same in both legs."""
+    return tuple(
+        reproduced(name, "4.4", printed, 1e6 * mass * at / float(text), "mm", Tolerance(5e-3))
+        for name, printed, text, mass, at in (
+            ("B_c C, left leg", "115", LEFT[0], ours.arm_mass, ours.arm_distance),
+            ("B_b A, left leg", "220", LEFT[1], ours.coupler_mass, ours.coupler_distance),
+        )
     )
 
 

@@ -14,6 +14,10 @@ Printed = str | tuple[str, ...]
 
 # Digits that a recomputed value shows, unless the print has more.
 DIGITS = 6
+# One standard for all prints: a number is reproduced if it is this near, relative to it, or nearer
+# than one unit of its last printed digit.
+STANDARD = 1e-3
+CUT_OFF = "Cut off in print, not rounded."
 
 
 class PrintVerdict(StrEnum):
@@ -21,8 +25,9 @@ class PrintVerdict(StrEnum):
 
     REPRODUCED = "reproduced"
     PRINT_IS_WRONG = "print is wrong"
+    DERIVED = "derived"
     HARDWARE_ONLY = "hardware only"
-    OMITTED_DATA = "needs data that the thesis omits"
+    NEEDS_DATA = "needs data"
     DRIFT = "drift"
 
 
@@ -49,6 +54,8 @@ class Comparison:
         ``drift`` says that the package no longer computes what this row has on record.
     note : str
         Where the print is wrong: what is right, and why.
+    tolerance : str
+        How far the value may be from what it is held against; empty where words are compared.
     """
 
     name: str
@@ -59,6 +66,7 @@ class Comparison:
     deviation: float | None
     verdict: PrintVerdict
     note: str
+    tolerance: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,6 +75,11 @@ class Tolerance:
 
     relative: float = 0.0
     absolute: float = 0.0
+
+    def __str__(self) -> str:
+        """Write it as a part of the number, or in its unit."""
+        parts = [f"{100 * self.relative:.15g} %"] if self.relative else []
+        return " or ".join(parts + ([f"{self.absolute:g}"] if self.absolute else []))
 
     def allows(self, value: Sequence[Number], target: Sequence[Number]) -> bool:
         """Tell whether a value agrees with its target; NaN agrees with nothing."""
@@ -105,8 +118,78 @@ def reproduced(
         More digits than the print has; the tolerance then is about these.
     """
     values, target = _sequence(value), _numbers(right or printed)
-    verdict = PrintVerdict.REPRODUCED if tolerance.allows(values, target) else PrintVerdict.DRIFT
-    return _row(name, section, printed, values, unit, verdict, note)
+    near = not _is_numeric(printed) or meets_standard(values, printed)
+    agrees = near and tolerance.allows(values, target)
+    verdict = PrintVerdict.REPRODUCED if agrees else PrintVerdict.DRIFT
+    if agrees and _is_cut_off(values, printed):
+        note = f"{note} {CUT_OFF}".strip()
+    return _row(name, section, printed, values, unit, verdict, note, tolerance)
+
+
+def derived(
+    name: str,
+    section: str,
+    value: Value | str,
+    unit: str = "",
+    *,
+    printed: str = "",
+    right: Printed | None = None,
+    tolerance: Tolerance | None = None,
+    holds: bool = True,
+    note: str,
+) -> Comparison:
+    """Return the row of a result that the thesis prints no number for.
+
+    Parameters
+    ----------
+    name, section, unit
+        As for `reproduced`.
+    value : str, number or sequence of numbers
+        What follows.
+    printed : str
+        What it follows from, or what the thesis says instead; it is not held against the value.
+    right : str or tuple of str, optional
+        What the value is on record to be.
+    tolerance : Tolerance, optional
+        About `right`.
+    holds : bool
+        Whether the computation still says so; if not, the row is a drift.
+    note : str
+        What it means.
+    """
+    if isinstance(value, str):
+        verdict = PrintVerdict.DERIVED if holds else PrintVerdict.DRIFT
+        return Comparison(name, section, printed, value, unit, None, verdict, note)
+    values, tolerance = _sequence(value), tolerance or Tolerance(STANDARD)
+    confirmed = holds and tolerance.allows(values, _numbers(right or ()))
+    verdict = PrintVerdict.DERIVED if confirmed else PrintVerdict.DRIFT
+    text = ", ".join(format_number(number) for number in values)
+    return Comparison(name, section, printed, text, unit, None, verdict, note, str(tolerance))
+
+
+def near(
+    name: str,
+    section: str,
+    printed: Printed,
+    value: Value,
+    unit: str,
+    tolerance: Tolerance,
+    *,
+    note: str,
+) -> Comparison:
+    """Return the row of a print that is met but for data which the thesis does not give.
+
+    Parameters
+    ----------
+    name, section, printed, value, unit, tolerance
+        As for `reproduced`; the tolerance is wider than the standard.
+    note : str
+        What is missing.
+    """
+    values = _sequence(value)
+    confirmed = tolerance.allows(values, _numbers(printed)) and not meets_standard(values, printed)
+    verdict = PrintVerdict.NEEDS_DATA if confirmed else PrintVerdict.DRIFT
+    return _row(name, section, printed, values, unit, verdict, note, tolerance)
 
 
 def misprint(
@@ -123,7 +206,7 @@ def misprint(
     """Return the row of a print that is wrong; parameters as in `reproduced`.
 
     The row is a drift if the value leaves the tolerance around what is `right`, or if the print
-    turns out to be within it.
+    turns out to meet the standard.
 
     Parameters
     ----------
@@ -136,9 +219,39 @@ def misprint(
     """
     values = _sequence(value)
     confirmed = tolerance.allows(values, _numbers(right))
-    printed_right = _is_numeric(printed) and tolerance.allows(_numbers(printed), values)
+    printed_right = _is_numeric(printed) and meets_standard(values, printed)
     verdict = PrintVerdict.PRINT_IS_WRONG if confirmed and not printed_right else PrintVerdict.DRIFT
-    return _row(name, section, printed, values, unit, verdict, note)
+    return _row(name, section, printed, values, unit, verdict, note, tolerance)
+
+
+def meets_standard(values: Sequence[Number], printed: Printed) -> bool:
+    """Tell whether all values are as near to their print as `STANDARD` or its digits ask for."""
+    texts, target = _texts(printed), _numbers(printed)
+    return len(values) == len(target) and all(
+        abs(v - p) <= max(STANDARD * abs(p), _last_digit(text))
+        for v, p, text in zip(values, target, texts, strict=True)
+    )
+
+
+def _is_cut_off(values: Sequence[Number], printed: Printed) -> bool:
+    """Tell whether a print has the digits of its value, but is not rounded from it."""
+    if not _is_numeric(printed):
+        return False
+    pairs = zip(values, _numbers(printed), map(_last_digit, _texts(printed)), strict=True)
+    return any(
+        isinstance(v, float) and p and digit / 2 < abs(v) - abs(p) < digit for v, p, digit in pairs
+    )
+
+
+def _last_digit(text: str) -> float:
+    """Return one unit of the last digit of a printed number, of a pair of its coarser part."""
+    return max(_unit(part) for part in text.removesuffix("j").split("+-"))
+
+
+def _unit(text: str) -> float:
+    mantissa, _, exponent = text.strip().partition("e")
+    decimals = len(mantissa.partition(".")[2])
+    return float(10.0 ** (int(exponent or 0) - decimals))
 
 
 def claim(
@@ -190,7 +303,7 @@ def omitted(name: str, section: str, printed: str, unit: str, note: str) -> Comp
     note : str
         What is missing.
     """
-    return Comparison(name, section, printed, None, unit, None, PrintVerdict.OMITTED_DATA, note)
+    return Comparison(name, section, printed, None, unit, None, PrintVerdict.NEEDS_DATA, note)
 
 
 def drifted(rows: Sequence[Comparison]) -> tuple[Comparison, ...]:
@@ -213,12 +326,13 @@ def _row(
     unit: str,
     verdict: PrintVerdict,
     note: str,
+    tolerance: Tolerance,
 ) -> Comparison:
     text = printed if isinstance(printed, str) else ", ".join(printed)
     deviation = _deviation(values, _numbers(printed)) if _is_numeric(printed) else None
     digits = max(DIGITS, _significant_digits(text)) if _is_numeric(printed) else DIGITS
     value = ", ".join(format_number(number, digits) for number in values)
-    return Comparison(name, section, text, value, unit, deviation, verdict, note)
+    return Comparison(name, section, text, value, unit, deviation, verdict, note, str(tolerance))
 
 
 def _deviation(values: Sequence[Number], printed: Sequence[Number]) -> float | None:
@@ -248,7 +362,11 @@ def _is_numeric(printed: Printed) -> bool:
 
 
 def _numbers(printed: Printed) -> tuple[Number, ...]:
-    return tuple(_number(text) for text in ((printed,) if isinstance(printed, str) else printed))
+    return tuple(map(_number, _texts(printed)))
+
+
+def _texts(printed: Printed) -> tuple[str, ...]:
+    return (printed,) if isinstance(printed, str) else printed
 
 
 def _number(text: str) -> Number:

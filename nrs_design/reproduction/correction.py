@@ -6,7 +6,15 @@ import numpy as np
 
 from nrs_design.models.robot import Correction, correction_coefficients
 from nrs_design.models.robot.correction import DEPTH_SINES, TABLE_3_5, WHOLE_WORKSPACE, Sine
-from nrs_design.reproduction.comparison import Comparison, Tolerance, misprint, omitted, reproduced
+from nrs_design.reproduction.comparison import (
+    Comparison,
+    Tolerance,
+    meets_standard,
+    misprint,
+    near,
+    omitted,
+    reproduced,
+)
 from nrs_design.reproduction.neuroboscope import robot
 
 # Thesis table 3.5: the rows with plain sines, in its order.
@@ -40,6 +48,10 @@ TILTS = (
     (-70.0, "table 3.7", ("1.88", "1.88"), "1.9"),
 )
 _FIGURE = "The trajectory of figure 3.7 is not in the text."
+_AXIAL = (
+    "The axial place of the platform's center of mass is not printed, nor are the samples; with "
+    "10 mm beyond d the coefficients come this near."
+)
 
 
 def rows() -> tuple[Comparison, ...]:
@@ -55,13 +67,14 @@ def rows() -> tuple[Comparison, ...]:
 
 def _sine(sine: Sine, printed: tuple[str, str, str]) -> Comparison:
     low, high = (1e3 * d for d in sine.d)
-    return reproduced(
+    return near(
         f"K_corr, phi {sine.phi:g}, psi {sine.psi:g} rad, d {low:.0f} - {high:.0f} mm",
         "table 3.5",
         printed,
         _ratios(correction_coefficients(robot(), sine)),
         "",
         Tolerance(1e-2),
+        note=_AXIAL,
     )
 
 
@@ -99,15 +112,12 @@ def _tilt(
     tilted = robot().tilted(float(np.radians(degrees)))
     depth = correction_coefficients(tilted, DEPTH_SINES)
     angles = correction_coefficients(tilted, TABLE_3_5)
+    name = f"K_corr,1 and K_corr,2 at theta4 = {degrees:g} deg"
+    found, limit = _ratios(depth)[:2], Tolerance(5e-3)
     return (
-        reproduced(
-            f"K_corr,1 and K_corr,2 at theta4 = {degrees:g} deg",
-            section,
-            sides,
-            _ratios(depth)[:2],
-            "",
-            Tolerance(5e-3),
-        ),
+        reproduced(name, section, sides, found, "", limit)
+        if meets_standard(found, sides)
+        else near(name, section, sides, found, "", limit, note=_AXIAL),
         omitted(
             f"K_corr,3 at theta4 = {degrees:g} deg",
             section,

@@ -9,7 +9,7 @@ from nrs_design.design.margins import stiffness_limit
 from nrs_design.design.transfer import TransferFunction
 from nrs_design.models.contact import Elastic
 from nrs_design.reproduction import thesis
-from nrs_design.reproduction.comparison import Comparison, Tolerance, misprint, reproduced
+from nrs_design.reproduction.comparison import Comparison, Tolerance, derived, misprint, reproduced
 
 LOOPS = (("G as in 6.1", thesis.PRINTED_LOOP), ("G exact", thesis.EXACT_LOOP))
 ZDES = thesis.TORQUE / thesis.VELOCITY
@@ -128,13 +128,13 @@ def _limit(Bt: float, used: str, section: str, right: str, tolerance: float) -> 
         f" A surgeon's hand, {HAND[0]:.1f} to {HAND[1]:.1f} N m/rad by the thesis's own figures, "
         "reaches beyond it."
     )
-    return reproduced(
+    return derived(
         f"largest stable stiffness, Mt 0.01, Bt {Bt}",
         section,
-        f"Hurwitz at {used}",
         limit,
         "N m/rad",
-        Tolerance(absolute=tolerance),
+        printed=f"Hurwitz at {used}",
+        tolerance=Tolerance(absolute=tolerance),
         right=right,
         note="The thesis states no limit." + (hand if limit < HAND[1] else ""),
     )

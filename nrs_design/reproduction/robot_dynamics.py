@@ -14,10 +14,8 @@ from nrs_design.models.robot import (
 from nrs_design.reproduction import thesis
 from nrs_design.reproduction.comparison import (
     Comparison,
-    PrintVerdict,
     Tolerance,
-    claim,
-    misprint,
+    derived,
     omitted,
     reproduced,
 )
@@ -72,14 +70,13 @@ def _angular_velocity(ours: Robot) -> Comparison:
     printed = simplified_dynamics(ours, poses, printed=True).Ms
     scale = np.abs(right).max(axis=(-1, -2), keepdims=True)
     worst = float((np.abs(printed - right) / scale).max())
-    return claim(
+    return derived(
         "angular velocity of the platform",
         "3.33",
-        "(theta_x', theta_y', 0)",
         "(theta_x', cos(theta_x) theta_y', sin(theta_x) theta_y')",
-        verdict=PrintVerdict.PRINT_IS_WRONG,
+        printed="(theta_x', theta_y', 0)",
         holds=1e-4 < worst < 1e-2,
-        note=f"An approximation: it changes Ms by at most {100 * worst:.2g} % of its "
+        note=f"The print is an approximation: it changes Ms by at most {100 * worst:.2g} % of its "
         "largest entry.",
     )
 
@@ -88,7 +85,7 @@ def _inertia_ratio(ours: Robot) -> tuple[Comparison, ...]:
     reflected = 1 / (905**2 * thesis.MOTOR.inertia)
     full = float(mass_matrix(ours, ours.home)[0, 0])
     return (
-        misprint(
+        reproduced(
             "inertia of the robot beside that of the motor, I_L/N^2 over I_r",
             "4.3",
             "4",
@@ -96,7 +93,7 @@ def _inertia_ratio(ours: Robot) -> tuple[Comparison, ...]:
             "%",
             Tolerance(1e-3),
             right="4.534",
-            note=f"With the full M11 of {full:.4f} kg m^2 at d = 200 mm it is "
-            f"{100 * full * reflected:.1f} %.",
+            note="The thesis says approximately. With the full M11 of "
+            f"{full:.4f} kg m^2 at d = 200 mm it is {100 * full * reflected:.1f} %.",
         ),
     )

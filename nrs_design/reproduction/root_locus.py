@@ -6,7 +6,7 @@ from math import degrees, exp, pi, sqrt
 
 from nrs_design.design.root_locus import PdDesign, design_pd, motion_loop_response
 from nrs_design.reproduction import thesis
-from nrs_design.reproduction.comparison import Comparison, Tolerance, misprint, reproduced
+from nrs_design.reproduction.comparison import Comparison, Tolerance, derived, reproduced
 
 
 def rows() -> tuple[Comparison, ...]:
@@ -42,28 +42,27 @@ def _design() -> tuple[Comparison, ...]:
             "rad/s",
             Tolerance(1e-4),
         ),
-        misprint(
+        reproduced(
             "angle of the zero",
             "4.28",
             "44.9914",
-            degrees(unrounded.zero_angle),
+            degrees(rounded.zero_angle),
             "deg",
             Tolerance(1e-5),
-            right="45.0182",
-            note="For the pole at 28.4767 1/s, which gives the printed zero. The printed angle is "
-            f"that of tau_m = 0.0351 s ({degrees(rounded.zero_angle):.4f}), whose zero would be "
-            f"at {rounded.zero:.4f} 1/s.",
+            note=f"For tau_m = 0.0351 s, whose zero would be at {rounded.zero:.4f} 1/s. The zero "
+            "of 4.29 is that of the pole at 28.4767 1/s, whose angle is "
+            f"{degrees(unrounded.zero_angle):.4f} deg.",
         ),
         reproduced("zero", "4.29", "56.9706", unrounded.zero, "1/s", Tolerance(5e-4)),
-        misprint(
-            "gain K",
+        derived(
+            "gain K of the magnitude condition",
             "4.30",
-            "2060",
             rounded.derivative_gain,
             "rpm s/rad",
-            Tolerance(1e-3),
+            printed="2060, chosen",
+            tolerance=Tolerance(1e-4),
             right="2065.4",
-            note="Read off the drawn locus and rounded; the magnitude condition gives this value. "
+            note="2060 is read off the drawn locus and rounded. "
             "What follows in the thesis, and here, uses 2060.",
         ),
         reproduced(
@@ -82,16 +81,14 @@ def _closed_loop() -> tuple[Comparison, ...]:
     response = motion_loop_response(loop)
     second_order = exp(-pi * thesis.DAMPING_RATIO / sqrt(1 - thesis.DAMPING_RATIO**2))
     return (
-        misprint(
+        derived(
             "closed-loop poles at K = 2060",
             "4.3",
-            "-28.4900 +- 28.49861j",
             response.poles[0],
             "rad/s",
-            Tolerance(1e-3),
+            tolerance=Tolerance(1e-4),
             right="-28.453 +- 28.448j",
-            note="The wanted poles are taken for the ones reached; with the rounded gain the poles "
-            "fall short of them.",
+            note="The thesis prints the wanted poles only; the rounded gain falls short of them.",
         ),
         reproduced(
             "damping ratio at K = 2060",
@@ -101,19 +98,18 @@ def _closed_loop() -> tuple[Comparison, ...]:
             "",
             Tolerance(1e-3),
         ),
-        misprint(
+        derived(
             "step overshoot at K = 2060",
             "4.3",
-            "that of zeta = 0.707",
             100 * response.overshoot,
             "%",
-            Tolerance(absolute=0.2),
+            tolerance=Tolerance(absolute=0.2),
             right="6.8",
-            note="No overshoot is printed. The criterion zeta = 0.707 stands for "
+            note="The criterion zeta = 0.707 stands for "
             f"{100 * second_order:.1f} % in a second-order system without a zero; the zero of "
             "the PD controller stays in the closed loop and adds to it.",
         ),
-        misprint(
+        reproduced(
             "motion loop G, numerator and denominator",
             "6.1",
             ("0.99", "56.82", "0.0351", "1.99", "56.82"),
@@ -121,6 +117,6 @@ def _closed_loop() -> tuple[Comparison, ...]:
             "",
             Tolerance(1e-3),
             right=("0.9974", "56.822", "0.0351", "1.9974", "56.822"),
-            note="Cut off instead of rounded: 6.33 prints 1.997 for the same coefficient.",
+            note="6.33 prints 1.997 for the same coefficient.",
         ),
     )

@@ -18,12 +18,22 @@ def rows() -> tuple[Comparison, ...]:
     return (*_designs(), _as_printed(), _zero_mass())
 
 
-def _designs() -> tuple[Comparison, ...]:
-    agility = ("insertion and withdrawal, Bt 2.15 and 1.04", "6.3.2.2", _withdrawal("0.01"))
-    hybrid = ("position and force control, Kp 0.02", "6.3.3.2", family("hybrid", *hybrid_rows()))
+def withdrawal(Mt: str = "0.01") -> SwitchedSystem:
+    """Return the pair of 6.3.2.2 with the right signs, in the states of the thesis."""
+    insertion, leaving = (impedance_rows(thesis.SOFT, Mt, Bt, "force") for Bt in ("2.15", "1.04"))
+    return family("withdrawal", insertion, leaving)
+
+
+def tool_and_tissue() -> SwitchedSystem:
+    """Return the pair of 6.4.1 with the right digits, in the states of the thesis."""
     tool = impedance_rows(thesis.STIFF, "0.01", "2.11", "force")
-    tissue = impedance_rows(thesis.SOFT, "0.01", "2.15", "force")
-    both = ("tool and tissue, Bt 2.11 and 2.15", "6.4.1", family("tool", tool, tissue))
+    return family("tool", tool, impedance_rows(thesis.SOFT, "0.01", "2.15", "force"))
+
+
+def _designs() -> tuple[Comparison, ...]:
+    agility = ("insertion and withdrawal, Bt 2.15 and 1.04", "6.3.2.2", withdrawal())
+    hybrid = ("position and force control, Kp 0.02", "6.3.3.2", family("hybrid", *hybrid_rows()))
+    both = ("tool and tissue, Bt 2.11 and 2.15", "6.4.1", tool_and_tissue())
     return tuple(_proved(*entry) for entry in (agility, hybrid, both))
 
 
@@ -56,7 +66,7 @@ def _as_printed() -> Comparison:
 
 
 def _zero_mass() -> Comparison:
-    without, with_mass = certify(_withdrawal("0")), certify(_withdrawal("0.01"))
+    without, with_mass = certify(withdrawal("0")), certify(withdrawal())
     return claim(
         "Bt 2.15 and 1.04 without virtual mass",
         "6.3.2.1",
@@ -67,13 +77,6 @@ def _zero_mass() -> Comparison:
         note="Stability under switching is no reason to avoid Mt = 0: with it, too, the pair has "
         "a common quadratic function.",
     )
-
-
-def _withdrawal(Mt: str) -> SwitchedSystem:
-    insertion, withdrawal = (
-        impedance_rows(thesis.SOFT, Mt, Bt, "force") for Bt in ("2.15", "1.04")
-    )
-    return family("withdrawal", insertion, withdrawal)
 
 
 def _describe(found: Certification) -> str:

@@ -10,6 +10,8 @@ from nrs_design.reproduction import (
     correction,
     experiments,
     force_loop,
+    gradient,
+    hands_on,
     impedance,
     modes,
     robot_dynamics,
@@ -37,7 +39,9 @@ TOPICS = (
     modes,
     force_loop,
     switching,
+    gradient,
     experiments,
+    hands_on,
 )
 
 

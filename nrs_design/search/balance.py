@@ -67,7 +67,12 @@ def mean_norm_coordinates(matrices: NDArray[np.float64], time: Time) -> NDArray[
     time : Time
         Continuous or discrete.
     """
-    return np.asarray(np.linalg.inv(np.linalg.cholesky(mean_norm(matrices, time))).T)
+    return round_coordinates(mean_norm(matrices, time))
+
+
+def round_coordinates(P: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return T such that ``x' P x`` is ``|z|^2`` for ``x = T z``; P is positive definite."""
+    return np.asarray(np.linalg.inv(np.linalg.cholesky(P)).T)
 
 
 def mean_norm(matrices: NDArray[np.float64], time: Time) -> NDArray[np.float64]:

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from nrs_design.certificates.certificate import CommonQuadraticStatus, Verdict, deciding
 from nrs_design.proof.evidence import AbstractEvidence
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.search.allowance import GIGABYTE
+from nrs_design.search.gradient_settings import Gradient
 
 DEFAULT_BUDGET = 60.0
 DEFAULT_MEMORY = 2 * GIGABYTE
@@ -27,12 +28,15 @@ class Limits:
         Steps that are predicted to need more bytes are not begun.
     optimize_rate : bool
         Look for the largest provable decay rate, not only for some.
+    gradient : Gradient
+        Settings of the gradient iteration.
     """
 
     max_degree: int | None = None
     budget: float = DEFAULT_BUDGET
     memory: float = DEFAULT_MEMORY
     optimize_rate: bool = True
+    gradient: Gradient = field(default_factory=Gradient)
 
 
 @dataclass(frozen=True, slots=True)

@@ -29,11 +29,12 @@ from nrs_design.search.candidates import Candidates
 from nrs_design.search.certification import Attempt, Certification, Limits
 from nrs_design.search.family import Family, floats_in_silence
 from nrs_design.search.fast_check import find_fault
+from nrs_design.search.gradient_settings import Gradient
 from nrs_design.search.invariant_ellipsoid import search_ellipsoid
 from nrs_design.search.ladder import applicable_methods, steps
 from nrs_design.search.method import Method
 from nrs_design.search.rate_limit import rate_limit
-from nrs_design.search.structure import merge_equal_modes, triangular_blocks
+from nrs_design.search.structure import merge_equal_modes, stand_in, triangular_blocks
 
 Progress = Callable[[str], None]
 
@@ -72,7 +73,8 @@ def certify(
     Raises
     ------
     DesignError
-        If the rung is not defined in discrete time.
+        If the method does not apply to the system, or settings of the gradient iteration do not
+        apply to the method or the modes.
     InternalError
         If two exact computations disagree.
     """
@@ -83,8 +85,10 @@ def certify(
             f"the method {method} does not apply to this kind of switching and time",
             remedy="use --method auto",
         )
+    _check_gradient(system, method, limits.gradient)
     simple = system.switching.is_arbitrary and system.is_uniform
     merged = merge_equal_modes(system) if simple else system
+    limits = _limits_for(merged, system, limits)
     # A contact that is lost is a matter of the whole state.
     simple = simple and system.contact is None
     blocks = triangular_blocks(merged) if simple else (tuple(range(system.order)),)
@@ -148,12 +152,34 @@ def _certify_block(
     """Certify the family of one diagonal block."""
     full = diagonal_block(system, block)
     merged = merge_equal_modes(full)
+    limits = _limits_for(merged, full, limits)
     result = _climb(merged, method, limits, allowance, progress)
     return replace(
         result,
         system=full,
         statements=_spread(result.statements, merged, full),
     )
+
+
+def _check_gradient(system: SwitchedSystem, method: Method, gradient: Gradient) -> None:
+    """Refuse settings of the gradient iteration that would not be kept."""
+    if gradient != Gradient() and method not in {Method.AUTO, Method.GRADIENT}:
+        raise DesignError(
+            f"the method {method} has no use for settings of the gradient iteration",
+            remedy="use --method gradient, or leave them out",
+        )
+    names = [mode.name for mode in system.modes]
+    if gradient.start is not None and gradient.start not in names:
+        raise DesignError(
+            f"the gradient iteration cannot start with mode {gradient.start!r}: there is none",
+            remedy=f"one of {', '.join(names)}",
+        )
+
+
+def _limits_for(merged: SwitchedSystem, system: SwitchedSystem, limits: Limits) -> Limits:
+    """Let the gradient iteration start with the mode that stands for the wanted one."""
+    start = stand_in(limits.gradient.start, system, merged)
+    return replace(limits, gradient=replace(limits.gradient, start=start))
 
 
 def _climb(
@@ -165,7 +191,12 @@ def _climb(
 ) -> Certification:
     """Try one rung after the other until one decides, or the budget is used up."""
     with floats_in_silence():
-        family = Family.of(system, allowance, optimize_rate=limits.optimize_rate)
+        family = Family.of(
+            system,
+            allowance,
+            optimize_rate=limits.optimize_rate,
+            gradient=limits.gradient,
+        )
     attempts: list[Attempt] = []
     remarks: list[AbstractEvidence] = []
     for name, search in steps(system, method, limits, allowance, lambda: bool(remarks)):

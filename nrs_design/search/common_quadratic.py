@@ -16,7 +16,7 @@ from nrs_design.search.balance import mean_norm, mean_norm_coordinates, scale
 from nrs_design.search.candidates import NO_MARGIN, OUT_OF_RANGE, Candidate, Candidates
 from nrs_design.search.decay import fastest_first, rate_of
 from nrs_design.search.family import Family
-from nrs_design.search.gradient import iterate_gradient
+from nrs_design.search.gradient import find_by_gradient, find_faster_by_gradient
 from nrs_design.search.lmi import find_common_quadratic, margins, solve_by_clarabel
 from nrs_design.search.raw import find_raw_quadratic
 from nrs_design.search.rounding import BITS, claims, digits, rate_at, round_rate, unscale
@@ -80,14 +80,21 @@ def decide_one_state(family: Family) -> Candidates[CommonQuadratic]:
 
 
 def search_by_gradient(family: Family) -> Candidates[CommonQuadratic]:
-    """Search by the Liberzon-Tempo iteration."""
+    """Search by the Liberzon-Tempo iteration; then, if asked to, raise the rate."""
     if not np.isfinite(family.limit):
         return OUT_OF_RANGE
     # The rungs below need time as well.
-    result = iterate_gradient(family.matrices, allowance=family.allowance.part(0.5))
+    allowance = family.allowance.part(0.5)
+    result = find_by_gradient(family, allowance)
     if result.Q is None:
         return f"not converged after {result.updates} updates"
-    yield from _at_own_rate(family, result.Q, f"found after {result.updates} updates")
+    words = f"found after {result.updates} updates"
+    if family.optimize_rate:
+        faster = find_faster_by_gradient(family, result.Q, allowance)
+        more = f"with a decay rate near the largest after {faster.updates} more"
+        if faster.Q is not None:
+            yield from _at_own_rate(family, faster.Q, f"{words}, {more}")
+    yield from _at_own_rate(family, result.Q, words)
     return None
 
 

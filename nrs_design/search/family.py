@@ -16,6 +16,7 @@ from nrs_design.proof.system import SwitchedSystem, Time
 from nrs_design.search.allowance import Allowance
 from nrs_design.search.balance import balance, scale
 from nrs_design.search.decay import limit_rate
+from nrs_design.search.gradient_settings import Gradient
 
 
 @dataclass(frozen=True)
@@ -36,6 +37,8 @@ class Family:
         Time and memory for the searches; unlimited by default.
     optimize_rate : bool
         Look for the largest provable decay rate, not only for some.
+    gradient : Gradient
+        Settings of the gradient iteration.
     """
 
     system: SwitchedSystem
@@ -44,6 +47,7 @@ class Family:
     limit: float
     allowance: Allowance = field(default_factory=Allowance)
     optimize_rate: bool = True
+    gradient: Gradient = field(default_factory=Gradient)
 
     @classmethod
     def of(
@@ -52,26 +56,27 @@ class Family:
         allowance: Allowance | None = None,
         *,
         optimize_rate: bool = True,
+        gradient: Gradient | None = None,
     ) -> Family:
         """Convert and balance the modes of a system; modes of unequal size only give the limit.
 
         Parameters
         ----------
-        system, allowance, optimize_rate
+        system, allowance, optimize_rate, gradient
             As for the class.
         """
-        allowance = allowance or Allowance()
+        allowance, gradient = allowance or Allowance(), gradient or Gradient()
         if not system.is_uniform:
             limit = _limit(system, [to_floats([mode.A]) for mode in system.modes])
             none = np.zeros((0, 0, 0)), np.zeros(0, dtype=np.int64)
-            return cls(system, *none, limit, allowance, optimize_rate)
+            return cls(system, *none, limit, allowance, optimize_rate, gradient)
         matrices = to_floats([mode.A for mode in system.modes])
         limit = _limit(system, [matrices])
         exponents = balance(matrices)
         scaled = scale(matrices, exponents)
         if not np.isfinite(scaled).all():
             scaled, exponents = matrices, np.zeros_like(exponents)
-        return cls(system, scaled, exponents, limit, allowance, optimize_rate)
+        return cls(system, scaled, exponents, limit, allowance, optimize_rate, gradient)
 
 
 def _limit(system: SwitchedSystem, families: list[NDArray[np.float64]]) -> float:

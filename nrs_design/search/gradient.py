@@ -1,54 +1,54 @@
 """The gradient iteration of Liberzon and Tempo (2004), as a reference (untrusted search).
 
-Thesis 5.21-5.28, with the update made iff v > 0 (the print says v > Theta).
+Thesis 5.21-5.28, with the update made iff v > 0 (the print says v > Theta). That it ends is no
+evidence: its Q goes through the exact check like any other.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from nrs_design.proof.system import Time
-from nrs_design.search.allowance import Allowance
-from nrs_design.search.balance import own_norm
+from nrs_design.search.allowance import Allowance, NotAffordableError
+from nrs_design.search.balance import mean_norm, own_norm, round_coordinates
+from nrs_design.search.decay import rate_of
+from nrs_design.search.family import Family
+from nrs_design.search.gradient_settings import Coordinates, Gradient, Order
+from nrs_design.search.rounding import rate_at
 
-RELAXATION = 1.0
-RADIUS = 1e-2
 # Seconds per round and per multiplication in it.
 PER_ROUND = 2e-5
 PER_PRODUCT = 1e-8
+# The largest v is told after so many updates each time, then whenever they have grown by a part.
+TOLD_ONE_BY_ONE = 100
+TOLD_GROWTH = 0.02
+# Where the bisection for the largest rate ends: a share of the limit.
+RATE_RESOLUTION = 1e-3
+# Updates at each rate that it tries.
+RATE_UPDATES = 2000
+
+Matrices = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True)
 class GradientResult:
     """Outcome: Q, shape (n, n), or None, and the number of updates made."""
 
-    Q: NDArray[np.float64] | None
+    Q: Matrices | None
     updates: int
 
 
-def iterate_gradient(
-    matrices: NDArray[np.float64],
-    rate: float = 0.0,
-    max_updates: int = 20_000,
-    allowance: Allowance | None = None,
-) -> GradientResult:
-    """Iterate ``Q+ = [Q - mu grad v(Q, A_i)]+`` over the modes in turn until all have v <= 0.
-
-    ``v(Q, A) = lambda_max(A'Q + QA + Theta)`` with ``Theta = I``, its gradient
-    ``A x x' + x x' A'`` with x the top eigenvector, and the step
-    ``mu = (alpha v + r |grad|) / |grad|^2``. Starts from the Lyapunov equation of the first mode.
+def find_by_gradient(family: Family, allowance: Allowance | None = None) -> GradientResult:
+    """Run the iteration in the coordinates of its settings; Q is for those of the family.
 
     Parameters
     ----------
-    matrices : ndarray, shape (m, n, n)
-        Hurwitz modes in continuous time, preferably balanced.
-    rate : float
-        The modes are shifted by this rate, in 1/s.
-    max_updates : int
-        Updates after which the search gives up.
+    family : Family
+        Stable modes, with the settings.
     allowance : Allowance, optional
         Time; unlimited by default.
 
@@ -57,35 +57,192 @@ def iterate_gradient(
     NotAffordableError
         If the time is over.
     """
-    allowance = allowance or Allowance()
-    m, n = matrices.shape[:2]
-    theta = np.eye(n)
-    shifted = matrices + rate * theta
-    Q = own_norm(shifted[0], Time.CONTINUOUS)
-    quiet = updates = i = 0
-    while quiet < m and updates < max_updates:
-        allowance.charge(PER_ROUND + PER_PRODUCT * n**3)
-        allowance.check()
-        A = shifted[i]
-        values, vectors = np.linalg.eigh(A.T @ Q + Q @ A + theta)
-        if values[-1] > 0:
-            Q = _project(Q - _step(A, vectors[:, -1], values[-1]))
-            quiet, updates = 0, updates + 1
+    T = _coordinates(family, mean_norm(family.matrices, family.system.time))
+    return _iterate_in(T, family, family.matrices, family.gradient, allowance)
+
+
+def find_faster_by_gradient(
+    family: Family, found: Matrices, allowance: Allowance | None = None
+) -> GradientResult:
+    """Bisect for the largest rate at which the iteration still ends.
+
+    Instead of mean-norm coordinates it takes those in which the best Q so far is round.
+
+    Parameters
+    ----------
+    family, allowance
+        As for `find_by_gradient`; if the time is over, the bisection ends early.
+    found : ndarray, shape (n, n)
+        A Q for some rate.
+
+    Returns
+    -------
+    GradientResult
+        The Q of the largest rate, and all updates that were made on the way.
+    """
+    settings, time = family.gradient.briefly(RATE_UPDATES), family.system.time
+    best, updates = found, 0
+    low, high = _position(family, best), 1.0
+    while high - low > RATE_RESOLUTION:
+        middle = (low + high) / 2
+        shifted = _shift(family.matrices, time, rate_at(middle, family.limit, time))
+        T = _coordinates(family, best)
+        try:
+            result = _iterate_in(T, family, shifted, settings, allowance)
+        except NotAffordableError:
+            break
+        updates += result.updates
+        if result.Q is None:
+            high = middle
         else:
-            quiet += 1
-        i = (i + 1) % m
-    return GradientResult(Q if quiet == m else None, updates)
+            low, best = max(middle, _position(family, result.Q)), result.Q
+    return GradientResult(best, updates)
 
 
-def _step(A: NDArray[np.float64], x: NDArray[np.float64], v: float) -> NDArray[np.float64]:
-    half = np.outer(A @ x, x)
-    gradient = half + half.T
+def _iterate_in(
+    T: Matrices,
+    family: Family,
+    matrices: Matrices,
+    settings: Gradient,
+    allowance: Allowance | None,
+) -> GradientResult:
+    """Iterate in z, ``x = T z``, and return Q for x."""
+    inverse, names = np.linalg.inv(T), [mode.name for mode in family.system.modes]
+    start = 0 if settings.start is None else names.index(settings.start)
+    modes = inverse @ matrices @ T
+    found = iterate_gradient(modes, family.system.time, settings, start, allowance)
+    return found if found.Q is None else replace(found, Q=inverse.T @ found.Q @ inverse)
+
+
+def iterate_gradient(
+    matrices: Matrices,
+    time: Time,
+    settings: Gradient,
+    start: int = 0,
+    allowance: Allowance | None = None,
+) -> GradientResult:
+    """Iterate ``Q+ = [Q - mu grad v(Q, A_i)]+`` over the modes until all have v <= 0.
+
+    ``v(Q, A) = lambda_max(A'Q + QA + I)`` with the gradient ``A x x' + x x' A'``, x being the top
+    eigenvector; in discrete time ``lambda_max(A'QA - Q + I)`` and ``A x x' A' - x x'``. The step is
+    ``mu = (alpha v + r |grad|) / |grad|^2``. The first Q solves the Lyapunov equation of one mode.
+
+    Parameters
+    ----------
+    matrices : ndarray, shape (m, n, n)
+        Stable modes.
+    time : Time
+        Continuous or discrete.
+    settings : Gradient
+        How to iterate; the coordinates are those of the matrices.
+    start : int
+        Which mode gives the first Q.
+    allowance : Allowance, optional
+        Time; unlimited by default.
+
+    Raises
+    ------
+    NotAffordableError
+        If the time is over.
+    """
+    allowance, m = allowance or Allowance(), len(matrices)
+    Q = own_norm(matrices[start], time)
+    order, fulfilled, updates = _order(m, settings), set[int](), 0
+    teller = _Teller(settings, matrices, time)
+    teller.tell(Q, updates)
+    while len(fulfilled) < m and updates < settings.max_updates:
+        allowance.charge(PER_ROUND + PER_PRODUCT * Q.size * len(Q))
+        allowance.check()
+        i = next(order)
+        v, x = _worst(matrices[i], Q, time)
+        if v <= 0:
+            fulfilled.add(i)
+            continue
+        Q = _project(Q - _step(matrices[i], x, v, time, settings))
+        updates += 1
+        fulfilled.clear()
+        teller.tell(Q, updates)
+    teller.tell(Q, updates, last=True)
+    return GradientResult(Q if len(fulfilled) == m else None, updates)
+
+
+def _order(modes: int, settings: Gradient) -> Iterator[int]:
+    """Yield which mode comes next."""
+    rng, i = np.random.default_rng(settings.seed), -1
+    while True:
+        drawn = settings.order == Order.RANDOM
+        i = int(rng.integers(modes)) if drawn else (i + 1) % modes
+        yield i
+
+
+def _excess(A: Matrices, Q: Matrices, time: Time) -> Matrices:
+    """Return what must be negative semidefinite; A may be a stack."""
+    if time is Time.DISCRETE:
+        return np.asarray(np.swapaxes(A, -1, -2) @ Q @ A - Q + np.eye(len(Q)))
+    half = Q @ A
+    return np.asarray(half + np.swapaxes(half, -1, -2) + np.eye(len(Q)))
+
+
+def _worst(A: Matrices, Q: Matrices, time: Time) -> tuple[float, Matrices]:
+    values, vectors = np.linalg.eigh(_excess(A, Q, time))
+    return float(values[-1]), vectors[:, -1]
+
+
+def _step(A: Matrices, x: Matrices, v: float, time: Time, settings: Gradient) -> Matrices:
+    image = A @ x
+    if time is Time.DISCRETE:
+        gradient = np.outer(image, image) - np.outer(x, x)
+    else:
+        gradient = np.outer(image, x) + np.outer(x, image)
     norm = float(np.linalg.norm(gradient))
-    return (RELAXATION * v + RADIUS * norm) / norm**2 * gradient
+    return (settings.relaxation * v + settings.radius * norm) / norm**2 * gradient
 
 
-def _project(Q: NDArray[np.float64]) -> NDArray[np.float64]:
+def _project(Q: Matrices) -> Matrices:
     """Project onto the cone of positive semidefinite matrices."""
     values, vectors = np.linalg.eigh((Q + Q.T) / 2)
-    projected: NDArray[np.float64] = (vectors * np.maximum(values, 0.0)) @ vectors.T
+    projected: Matrices = (vectors * np.maximum(values, 0.0)) @ vectors.T
     return projected
+
+
+class _Teller:
+    """Tells whoever listens how large v is over all modes, the longer the more rarely."""
+
+    def __init__(self, settings: Gradient, matrices: Matrices, time: Time) -> None:
+        self._settings, self._matrices, self._time = settings, matrices, time
+        self._next, self._told = 0, -1
+
+    def tell(self, Q: Matrices, updates: int, *, last: bool = False) -> None:
+        """Tell it if it is due, and at the end in any case, but once."""
+        due = updates >= self._next or (last and updates != self._told)
+        if not (self._settings.is_told and due):
+            return
+        self._told = updates
+        self._next = updates + 1 + int(TOLD_GROWTH * max(updates - TOLD_ONE_BY_ONE, 0))
+        excess = np.linalg.eigvalsh(_excess(self._matrices, Q, self._time))[:, -1]
+        self._settings.tell(updates, float(excess.max()))
+
+
+def _shift(matrices: Matrices, time: Time, rate: float) -> Matrices:
+    """Return modes that are stable where the given ones decay at a rate."""
+    if time is Time.DISCRETE:
+        return matrices / rate
+    return np.asarray(matrices + rate * np.eye(matrices.shape[-1]))
+
+
+def _coordinates(family: Family, norm: Matrices) -> Matrices:
+    """Return T such that the iteration runs in z, ``x = T z``; in mean norm, `norm` is round."""
+    wanted = family.gradient.coordinates
+    if wanted == Coordinates.MEAN_NORM:
+        return round_coordinates(norm)
+    if wanted == Coordinates.GIVEN:
+        return np.diag(np.ldexp(1.0, -family.exponents))
+    return np.eye(len(norm))
+
+
+def _position(family: Family, Q: Matrices) -> float:
+    """Return where the rate that Q itself shows lies between mere stability and the limit."""
+    time, limit = family.system.time, family.limit
+    rate = rate_of(family.matrices, Q, time)
+    position = rate / limit if time is Time.CONTINUOUS else (1 - rate) / (1 - limit)
+    return min(max(position, 0.0), 1.0)

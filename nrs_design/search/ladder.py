@@ -221,7 +221,7 @@ LADDER: tuple[Rung, ...] = (
     Rung(
         "gradient",
         Method.GRADIENT,
-        lambda f: f.may_share_a_function and f.is_continuous,
+        lambda f: f.may_share_a_function,
         search_by_gradient,
         only_quadratic=True,
     ),

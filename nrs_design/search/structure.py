@@ -31,6 +31,20 @@ def merge_equal_modes(system: SwitchedSystem) -> SwitchedSystem:
     return replace(system, modes=modes, channels=(), outputs=())
 
 
+def stand_in(name: str | None, system: SwitchedSystem, merged: SwitchedSystem) -> str | None:
+    """Return the name of the merged mode that stands for a mode of a system, if there is one.
+
+    Parameters
+    ----------
+    name : str or None
+        Of the mode.
+    system, merged : SwitchedSystem
+        Before and after `merge_equal_modes`.
+    """
+    given = next((mode for mode in system.modes if mode.name == name), None)
+    return next((mode.name for mode in merged.modes if given and mode.A == given.A), None)
+
+
 def triangular_blocks(system: SwitchedSystem) -> tuple[tuple[int, ...], ...]:
     """Order the states into blocks such that no block is driven by an earlier one.
 

@@ -16,7 +16,7 @@ from nrs_design.spec.interaction import InteractionDesignSpec
 from nrs_design.spec.model import SpecModel
 from nrs_design.spec.motion import LimitsSpec
 from nrs_design.spec.parameters import ParameterSpec
-from nrs_design.spec.provenance import ProvenanceSpec
+from nrs_design.spec.provenance import COVERS, IdentifiedSpec
 from nrs_design.spec.quantity import Quantity, QuantityKind
 from nrs_design.spec.quantity_fields import RangedQuantity
 from nrs_design.spec.robot import RobotSpec
@@ -109,7 +109,7 @@ def _interaction(spec: InteractionDesignSpec) -> Iterator[Line]:
         for name in ("gain", "time_constant"):
             low, high = getattr(spec.actuator.intervals, name)
             yield Line(f"actuator.intervals.{name}", f"[{low.text}, {high.text}]", "", "")
-    yield from _provenance("actuator", spec.actuator.provenance)
+    yield from _provenance("actuator", spec.actuator)
     yield from _motion_loop(spec)
     yield _row("limits.velocity", spec.limits.velocity, kinds.ANGULAR_VELOCITY)
     yield _row("limits.torque", spec.limits.torque, kinds.TORQUE)
@@ -157,12 +157,21 @@ def _environment(name: str, environment: EnvironmentSpec) -> Iterator[Line]:
         yield from _ranged(f"{name}.{key}", written, turned[key], unit)
     if environment.lever_arm is not None:
         yield _row(f"{name}.lever_arm", environment.lever_arm, kinds.LEVER_ARM)
-    yield from _provenance(name, environment.provenance)
+    if environment.range_covers is not None:
+        covered = COVERS[environment.range_covers]
+        yield Line(f"{name}.range_covers", environment.range_covers, covered, "")
+    if environment.linearized_about is not None:
+        yield Line(f"{name}.linearized_about", environment.linearized_about, "", "")
+    yield from _provenance(name, environment)
 
 
-def _provenance(name: str, sources: tuple[ProvenanceSpec, ...]) -> Iterator[Line]:
-    for index, source in enumerate(sources):
+def _provenance(name: str, identified: IdentifiedSpec) -> Iterator[Line]:
+    for index, source in enumerate(identified.provenance):
         yield Line(f"{name}.provenance[{index}]", source.file, source.data, "")
+    for index, doubt in enumerate(identified.doubts):
+        yield Line(f"{name}.doubts[{index}]", doubt, "", "")
+    if identified.accept_doubt is not None:
+        yield Line(f"{name}.accept_doubt", identified.accept_doubt, "", "")
 
 
 def _ranged(name: str, written: RangedQuantity, si: RangedQuantity, unit: str) -> Iterator[Line]:

@@ -34,6 +34,13 @@ def doubt_spec(spec: Spec) -> Iterator[Doubt]:
     """Yield what is doubtful about a spec, before anything is designed."""
     if spec.kind != "interaction-design":
         return
+    for at, item in spec.identified.items():
+        if item.doubts and item.accept_doubt is None:
+            yield Doubt(
+                (*at, "doubts"),
+                f"the identification of {at[-1]} is in doubt, and nothing says why that is "
+                "accepted (record again, or add accept_doubt)",
+            )
     for name in spec.environments:
         if name not in spec.touched:
             yield Doubt(

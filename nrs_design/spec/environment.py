@@ -9,9 +9,9 @@ from pydantic import Discriminator, Field, model_validator
 
 from nrs_design.spec import kinds
 from nrs_design.spec.faults import fault
+from nrs_design.spec.fields import Title
 from nrs_design.spec.interval import Interval
-from nrs_design.spec.model import SpecModel
-from nrs_design.spec.provenance import PROVENANCE, Provenance
+from nrs_design.spec.provenance import Coverage, IdentifiedSpec
 from nrs_design.spec.quantity import Quantity
 from nrs_design.spec.quantity_fields import (
     Damping,
@@ -33,11 +33,15 @@ _DAMPING = (
     "damping{which} at the pivot in N*m*s/rad, or at the contact point in N*s/m with lever_arm; "
     "one quantity, or {{nominal: ..., range: [lowest, highest]}}"
 )
+_COVERS = (
+    "what the identified ranges hold: confidence (the mean of the specimens), tolerance (95 % of "
+    "all specimens) or prediction (the next record), each with 95 %"
+)
 
 Number = TypeVar("Number", float, Fraction)
 
 
-class AbstractEnvironmentSpec(SpecModel):
+class AbstractEnvironmentSpec(IdentifiedSpec):
     """What all environments have in common; parameters of the law are the ranged quantities."""
 
     # Whether the force depends on more than the deflection and the velocity of the moment.
@@ -46,7 +50,12 @@ class AbstractEnvironmentSpec(SpecModel):
     has_rest: ClassVar[bool] = True
 
     lever_arm: LeverArm | None = Field(default=None, description=_LEVER_ARM)
-    provenance: Provenance = Field(default=(), description=PROVENANCE)
+    range_covers: Coverage | None = Field(default=None, description=_COVERS)
+    linearized_about: Title | None = Field(
+        default=None,
+        description="deflections that a nonlinear law was linearized about, in words: the ranges "
+        "hold small motions there",
+    )
 
     @model_validator(mode="after")
     def _check_lever_arm(self) -> Self:

@@ -17,6 +17,7 @@ from nrs_design.spec.fields import Digits, Label, Name, Title
 from nrs_design.spec.goals import GoalsSpec, check_applicable
 from nrs_design.spec.model import SpecModel
 from nrs_design.spec.motion import ActuatorSpec, LimitsSpec, MotionLoopSpec
+from nrs_design.spec.provenance import IdentifiedSpec
 from nrs_design.spec.sampling import (
     DisturbancesSpec,
     SamplingSpec,
@@ -130,6 +131,13 @@ class InteractionDesignSpec(SpecModel):
             ),
         )
         return self
+
+    @property
+    def identified(self) -> dict[tuple[str, ...], IdentifiedSpec]:
+        """What may have been identified from records, by the keys that lead to it."""
+        parts: dict[tuple[str, ...], IdentifiedSpec] = {("actuator",): self.actuator}
+        parts.update((("environments", name), item) for name, item in self.environments.items())
+        return parts
 
     @property
     def touched(self) -> frozenset[str]:

@@ -9,7 +9,7 @@ from pydantic import Field, model_validator
 from nrs_design.spec.faults import fault
 from nrs_design.spec.fields import Exact, UnitFraction
 from nrs_design.spec.model import SpecModel
-from nrs_design.spec.provenance import PROVENANCE, Provenance
+from nrs_design.spec.provenance import IdentifiedSpec
 from nrs_design.spec.quantity import is_less
 from nrs_design.spec.quantity_fields import (
     ActuatorGain,
@@ -41,7 +41,7 @@ class ActuatorIntervals(SpecModel):
     )
 
 
-class ActuatorSpec(SpecModel):
+class ActuatorSpec(IdentifiedSpec):
     """Velocity actuator ``theta_m/delta = Km/(s (tau s + 1))`` (thesis 4.1)."""
 
     gain: RangedActuatorGain = Field(
@@ -54,7 +54,6 @@ class ActuatorSpec(SpecModel):
         description="95 % intervals of gain and time constant, for the record: the proof is for "
         "the nominal values",
     )
-    provenance: Provenance = Field(default=(), description=PROVENANCE)
 
     @model_validator(mode="after")
     def _check_intervals(self) -> ActuatorSpec:

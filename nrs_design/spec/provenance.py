@@ -1,15 +1,28 @@
-"""Where an identified value comes from."""
+"""Where an identified value comes from, and what is doubtful about it."""
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from collections.abc import Mapping
+from types import MappingProxyType
+from typing import Annotated, Literal, Self
 
-from pydantic import Field
+from pydantic import Field, model_validator
 
+from nrs_design.spec.faults import fault
 from nrs_design.spec.fields import Hash, Title
 from nrs_design.spec.model import SpecModel
 
 MAX_SOURCES = 1000
+MAX_DOUBTS = 100
+
+Coverage = Literal["confidence", "tolerance", "prediction"]
+COVERS: Mapping[Coverage, str] = MappingProxyType(
+    {
+        "confidence": "the mean of the specimens with 95 % confidence, and each measured record",
+        "tolerance": "95 % of all such specimens with 95 % confidence",
+        "prediction": "the next record with 95 % probability",
+    }
+)
 
 
 class ProvenanceSpec(SpecModel):
@@ -23,4 +36,32 @@ class ProvenanceSpec(SpecModel):
 
 
 Provenance = Annotated[tuple[ProvenanceSpec, ...], Field(max_length=MAX_SOURCES)]
-PROVENANCE = "data files that the values were identified from, by nrs-design identify"
+
+
+class IdentifiedSpec(SpecModel):
+    """What `nrs-design identify --write` notes down beside the values."""
+
+    provenance: Provenance = Field(
+        default=(),
+        description="data files that the values were identified from, by nrs-design identify",
+    )
+    doubts: Annotated[tuple[Title, ...], Field(max_length=MAX_DOUBTS)] = Field(
+        default=(),
+        description="why the records may not determine the values, by nrs-design identify; the "
+        "gate fails on them (NRS107)",
+    )
+    accept_doubt: Title | None = Field(
+        default=None,
+        description="why the values are used despite the doubts: one line, which is printed with "
+        "every proof; the gate then passes",
+    )
+
+    @model_validator(mode="after")
+    def _check_acceptance(self) -> Self:
+        if self.accept_doubt is None:
+            return self
+        if not self.doubts:
+            raise fault("there are no doubts to accept", "remove accept_doubt", "accept_doubt")
+        if not self.accept_doubt.strip():
+            raise fault("no reason is given", "say in one line why", "accept_doubt")
+        return self

@@ -10,7 +10,12 @@ from typing import TYPE_CHECKING
 from nrs_design.errors import AssemblyError
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.system import Mode, SwitchedSystem, Time
-from nrs_design.switched.assumptions import GIVEN_MATRICES, assume_matrices, scale_texts
+from nrs_design.switched.assumptions import (
+    GIVEN_MATRICES,
+    assume_matrices,
+    identified_texts,
+    scale_texts,
+)
 from nrs_design.switched.constraints import assemble_switching
 from nrs_design.switched.parameters import corner_modes, fixed_parameter, read_parameters
 
@@ -150,7 +155,8 @@ def assemble(
         spec.idle_states,
         spec.contact,
     )
-    return replace(system, assumptions=(*system.assumptions, *scale_texts(scale)))
+    texts = (*system.assumptions, *identified_texts(spec), *scale_texts(scale))
+    return replace(system, assumptions=texts)
 
 
 def _assemble_sampled(

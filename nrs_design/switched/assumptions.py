@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from fractions import Fraction
+from typing import TYPE_CHECKING
 
 from nrs_design.proof.text import exact_text
 from nrs_design.spec import DwellTime, SwitchedSystemSpec, SwitchingSpec
 from nrs_design.switched.parameters import Parameter
+
+if TYPE_CHECKING:
+    from nrs_design.spec import InteractionDesignSpec
 
 MAX_LISTED = 20
 LOST_CONTACT = (
@@ -95,6 +99,24 @@ def scale_texts(scale: Fraction) -> tuple[str, ...]:
     if scale == 1:
         return ()
     return (f"All ranges of the spec are scaled about their nominal values by {scale}.",)
+
+
+def identified_texts(spec: InteractionDesignSpec) -> Iterator[str]:
+    """Say what identified ranges hold, and what is doubtful about identified values."""
+    from nrs_design.spec.provenance import COVERS
+
+    for name, environment in spec.environments.items():
+        if environment.range_covers is not None:
+            covered = COVERS[environment.range_covers]
+            yield f"The range of {name} was identified to hold {covered}."
+        if environment.linearized_about is not None:
+            about = environment.linearized_about
+            yield f"{name} is the linearization about {about}: it holds for small motions there."
+    for at, item in spec.identified.items():
+        if item.doubts:
+            why = item.accept_doubt
+            end = "nothing says why that is accepted" if why is None else f"accepted because: {why}"
+            yield f"The identification of {at[-1]} is in doubt: {'; '.join(item.doubts)}; {end}."
 
 
 def _parameter_text(parameter: Parameter) -> str:

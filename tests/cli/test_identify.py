@@ -5,6 +5,9 @@ import shutil
 
 import pytest
 
+from nrs_design.models.contact import KelvinVoigt
+from tests.identification.support import quick
+from tests.identification.unilateral import robot_record
 from tests.support import COMMUTING, ROOT, SOFT_TISSUE, run
 
 DATA = ROOT / "specs" / "data"
@@ -124,7 +127,7 @@ def test_foreign_columns(tmp_path):
         (["tissue", SOFT[0], "--report", "page.docx"], "not a type of report"),
         (["tissue", SOFT[0], "--write", COMMUTING], "has no place for identified values"),
         (["tissue", SINUSOIDS[0]], "are missing"),
-        (["actuator", SINUSOIDS[0]], "at least 3 are needed"),
+        (["actuator", SINUSOIDS[0], SINUSOIDS[0]], "there twice"),
         (["actuator", SOFT[0]], "are missing"),
     ],
 )
@@ -164,8 +167,66 @@ def test_writing_a_law_that_fits_worse_warns(tmp_path):
     arguments = ("identify", "tissue", NOSE[0], "--model", "elastic", "--write", spec, "-q")
     result = run(*arguments, cwd=tmp_path)
     assert result.returncode == 0
-    (line,) = result.stderr.splitlines()
-    assert line.startswith("warning: kelvin-boltzmann describes the records better than elastic")
+    first, *doubts = result.stderr.splitlines()
+    assert first.startswith("warning: kelvin-boltzmann describes the records better than elastic")
+    assert any("the residual is" in doubt for doubt in doubts)
+    gate = run("gate", spec, "--no-reports", cwd=tmp_path)
+    assert gate.returncode == 1
+    assert "NRS107 missed" in gate.stdout
+
+
+def robot_csv(folder, sign=1):
+    """A record in robot coordinates: 400 N/m at 0.1 m, a tare of -1.3 N, air before contact."""
+    data = robot_record(KelvinVoigt(400.0, 3.0), quick(2), 0.05, 2, zero=0.1, tare=-1.3)
+    rows = zip(data.motion.time, data.motion.deflection, sign * data.force, strict=True)
+    text = "\n".join(f"{t:.3f},{x:.7f},{f:.4f}" for t, x, f in rows)
+    path = folder / f"robot{sign}.csv"
+    path.write_text(f"time_s,deflection_m,force_N\n{text}\n")
+    return path
+
+
+def test_offsets_and_cuts_are_said(tmp_path):
+    path = robot_csv(tmp_path)
+    document = json.loads(run("identify", "tissue", path, "--json", cwd=tmp_path).stdout)
+    assert document["chosen"] == "kelvin-voigt"
+    assert document["ranges"]["k"]["low"] < 400 < document["ranges"]["k"]["high"]
+    assert document["caveats"] == []
+    (fit,) = next(m for m in document["models"] if m["law"] == "kelvin-voigt")["records"]
+    assert fit["offsets"]["zero"]["value"] == pytest.approx(0.1, abs=2e-4)
+    assert fit["offsets"]["tare"]["value"] == pytest.approx(-1.3, abs=0.02)
+    assert fit["used"] < fit["samples"]
+    assert any("at the edge of contact" in cut for cut in fit["cuts"])
+    text = run("identify", "tissue", path, "--prony", cwd=tmp_path).stdout
+    assert "3 touches" in text
+    assert "Prony series of" in text
+
+
+def test_opposite_signs_stop_the_writing(tmp_path):
+    spec = tmp_path / "copy.nrs.yaml"
+    shutil.copy(SOFT_TISSUE, spec)
+    arguments = ("identify", "tissue", robot_csv(tmp_path, -1), "--write", spec)
+    result = run(*arguments, cwd=tmp_path)
+    assert "force and deflection have opposite signs" in result.stderr
+    assert run(*arguments, "--negate-force", "-q", cwd=tmp_path).stderr == ""
+    assert "doubts" not in spec.read_text()
+
+
+@pytest.mark.parametrize(
+    ("option", "message"),
+    [
+        (("--zero", "3 N"), "--zero: "),
+        (("--tare", "3 m"), "--tare: "),
+        (("--from", "99"), "lie between --from and --to"),
+        (("--skip-cycles", "9"), "9 cycles are to be set apart"),
+        (("--covers", "tolerance"), "needs several records"),
+        (("--preload", "1 mm..2 mm"), "the same at every preload"),
+        (("--preload", "1 N"), "--preload: "),
+    ],
+)
+def test_wrong_options_of_tissue(tmp_path, option, message):
+    result = run("identify", "tissue", SOFT[0], *option, cwd=tmp_path)
+    assert result.returncode == 2
+    assert message in result.stderr
 
 
 def test_help_has_examples(tmp_path):

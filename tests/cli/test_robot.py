@@ -211,3 +211,12 @@ def test_help_imports_nothing_heavy(tmp_path):
     result = run("robot", "--help", cwd=tmp_path)
     assert result.returncode == 0
     assert all(command in result.stdout for command in COMMANDS)
+
+
+def test_inertia_and_gravity_are_corrected_apart(tmp_path):
+    found = document("correction", "--figures", "out", cwd=tmp_path)["apart"]
+    errors = found["inertia_error"]
+    assert errors["single"] > errors["rows"] > errors["entries"] > found["gravity_error"]
+    assert (tmp_path / "out" / "inertia-errors.png").stat().st_size > 10_000
+    text = run("robot", "correction", ROBOT, cwd=tmp_path).stdout
+    assert "inertia, by entries" in text

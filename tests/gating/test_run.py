@@ -200,6 +200,32 @@ class TestStiffnessRange:
             assert ("the limit 75.9" in goal.message) is (status is Status.MISSED)
 
 
+class TestDoubts:
+    """A range whose identification is in doubt, with and without a reason."""
+
+    def given(self, reason=""):
+        lines = f'    doubts: ["a: force and deflection have opposite signs"]\n{reason}'
+        return SOFT_TISSUE.read_text().replace(
+            "    model: elastic\n", f"    model: elastic\n{lines}"
+        )
+
+    def test_fails_the_gate_at_its_place_though_stability_is_proved(self, examine):
+        outcome = examine(self.given())
+        assert (outcome.specs[0].verdict, outcome.severity) == ("proved", 2)
+        (missed,) = outcome.broken
+        assert (missed.rule.id, missed.subject) == ("NRS107", "soft")
+        assert "opposite signs" in missed.message
+        assert self.given().splitlines()[missed.line - 1].strip().startswith("doubts:")
+
+    def test_passes_with_a_reason_which_stands_in_the_certificate(self, examine):
+        outcome = examine(self.given("    accept_doubt: a phantom of gel\n"))
+        assert outcome.severity == 0
+        (met,) = (item for item in outcome.specs[0].obligations if item.rule.id == "NRS107")
+        assert "accepted because: a phantom of gel" in met.message
+        written = outcome.specs[0].certificate.read_text()
+        assert "accepted because: a phantom of gel" in written
+
+
 GOALS = "goals: {max_sensitivity_peak: 2, min_delay_margin: 5 ms}\nswitching: arbitrary"
 
 

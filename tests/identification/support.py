@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
-from nrs_design.identification.datasets import SinusoidRecord, Source, TissueRecord
+from nrs_design.identification.datasets import ActuatorRecord, Source, TissueRecord
 from nrs_design.models.actuator import MotorConstants
 from nrs_design.models.contact import AbstractContactLaw, Motion
 from tests.identification import synthetic
@@ -46,9 +46,9 @@ def quick(seed: int = 0) -> Motion:
 
 def sinusoids(
     seed: int, frequencies: Sequence[float] = synthetic.FREQUENCIES
-) -> list[SinusoidRecord]:
+) -> list[ActuatorRecord]:
     return [
-        SinusoidRecord(source(f"{hertz:g}"), "", *synthetic.actuator_record(hertz, 100 * seed + i))
+        ActuatorRecord(source(f"{hertz:g}"), "", *synthetic.actuator_record(hertz, 100 * seed + i))
         for i, hertz in enumerate(frequencies)
     ]
 

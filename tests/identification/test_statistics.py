@@ -54,7 +54,7 @@ def test_colored_residuals_widen_the_interval():
     classical = noise.std() / math.sqrt(2000)
     # The mean of 2000 samples with a memory of 100 scatters as 20 independent ones would.
     assert 5 < known.errors[0] / classical < 20
-    assert known.degrees == 19
+    assert known.degrees == 11
 
 
 def test_a_parameter_without_effect_is_unknown():

@@ -1,5 +1,6 @@
 """Merging into a spec: values, comments, refusals."""
 
+from dataclasses import replace
 from fractions import Fraction
 
 import pytest
@@ -11,7 +12,7 @@ from nrs_design.identification.write_spec import merge_actuator, merge_tissue
 from nrs_design.models.contact import Elastic, KelvinVoigt, Maxwell
 from nrs_design.spec import parse_spec, read_spec
 from nrs_design.spec.environment import KelvinBoltzmannSpec, MaxwellSpec
-from tests.identification import synthetic
+from tests.identification import motors, synthetic
 from tests.identification.support import MOTOR, quick, record, sinusoids, slow
 from tests.support import COMMUTING, FORCE_LIMIT, ROBOT, SOFT_TISSUE
 
@@ -49,7 +50,7 @@ def test_only_the_environment_changes(silicone):
     assert [line for line in old if line not in new] == [
         "    stiffness: {nominal: 747.1461 N/m, range: [720.56 N/m, 768.17 N/m]}"
     ]
-    assert len(new) == len(old) + 4
+    assert len(new) == len(old) + 5
 
 
 def test_the_range_is_rounded_outwards(silicone):
@@ -179,3 +180,35 @@ def test_given_matrices_have_no_place(silicone, motor):
     ):
         with pytest.raises(SpecError, match="no place"):
             merge(read_spec(COMMUTING))
+
+
+def test_doubts_are_noted_and_a_reason_holds_for_them_only(tmp_path, silicone):
+    loaded = read_spec(SOFT_TISSUE)
+    doubtful = identify_tissue([record(KelvinVoigt(400.0, 60.0), quick(1), 0.02, 1)], "elastic")
+    text = merge_tissue(loaded, doubtful, None, None)
+    soft = parse_spec(text).environments["soft"]
+    assert soft.doubts == doubtful.caveats
+    assert (soft.range_covers, soft.accept_doubt) == ("confidence", None)
+    accepted = text.replace("    doubts:\n", "    accept_doubt: a phantom\n    doubts:\n")
+    again = merge_tissue(merged(tmp_path, accepted), doubtful, None, None)
+    assert parse_spec(again).environments["soft"].accept_doubt == "a phantom"
+    other = merge_tissue(merged(tmp_path, accepted), silicone, None, None)
+    soft = parse_spec(other).environments["soft"]
+    assert (soft.doubts, soft.accept_doubt) == ((), None)
+
+
+def test_what_the_range_holds_is_noted():
+    data = [record(Elastic(k), quick(i), 0.1, i) for i, (k, _) in enumerate(synthetic.SOFT)]
+    found = identify_tissue(data, "elastic", coverage="tolerance")
+    soft = parse_spec(merge_tissue(read_spec(SOFT_TISSUE), found, None, None)).environments["soft"]
+    assert soft.range_covers == "tolerance"
+    assert "95 % of all such specimens" in found.covers
+
+
+@pytest.mark.parametrize(("kind", "unit"), [("PRBS", "V"), ("PRBS", "rpm")])
+def test_what_a_spec_has_no_place_for(kind, unit):
+    """A gain in rad/s/V must never be written as one in rad/s/rpm."""
+    made = motors.record(kind, 1, second=0.02 * (unit == "rpm"))
+    found = identify_actuator([replace(made, unit=unit)], MOTOR)
+    with pytest.raises(DataError, match="has no place for"):
+        merge_actuator(read_spec(SOFT_TISSUE), found)

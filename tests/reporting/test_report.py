@@ -7,10 +7,11 @@ import numpy as np
 import pytest
 
 from nrs_design.errors import DesignError
-from nrs_design.pipeline import run_analysis, run_certification
+from nrs_design.pipeline import run_analysis, run_certification, run_comparison
 from nrs_design.reporting import build_report
 from nrs_design.reporting.document import Bullets, Paragraph, Table
 from nrs_design.reporting.figures.run import draw_phase_plane, draw_run
+from nrs_design.search.certification import Limits
 from nrs_design.search.method import Method
 from nrs_design.simulation.switched import TimeResponse
 from nrs_design.spec import read_spec
@@ -606,3 +607,23 @@ def test_phase_plane_of_the_motion_loop_names_its_form(report):
     item = figure(report("force"), "phase-plane")
     assert "xp1 and xp2 of the motion loop G in controllable canonical form" in item.caption
     assert item.figure.axes[0].get_ylabel() == "State xp2 of G, canonical form [no unit]"
+
+
+def test_the_gradient_iteration_stands_beside_the_lmi_where_asked_for():
+    loaded = read_spec(ROOT / "specs" / "examples" / "commuting.nrs.yaml")
+    result, limits = run_certification(loaded), Limits(optimize_rate=False)
+    _, runs = run_comparison(loaded, limits)
+    assert "methods" not in {item.name for item in build_report(result).illustrations}
+    page = build_report(result, comparison=runs)
+    section = next(item for item in page.sections if item.title == "Gradient iteration beside LMI")
+    table = next(block for block in section.blocks if isinstance(block, Table))
+    assert [row[0] for row in table.rows] == [run.name for run in runs]
+    assert all(row[2].startswith("alpha") for row in table.rows)
+    figure = next(item for item in page.illustrations if item.name == "methods").figure
+    assert [axes.get_title() for axes in figure.axes] == ["Modes in turn", "Modes at random"]
+    # Three curves, each with a mark where it ended.
+    assert [len(axes.lines) for axes in figure.axes] == [6, 6]
+    timed = build_report(result, comparison=runs, times=True)
+    section = next(item for item in timed.sections if item.title == section.title)
+    table = next(block for block in section.blocks if isinstance(block, Table))
+    assert table.columns[-1] == "Time [ms]"

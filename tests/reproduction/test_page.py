@@ -18,7 +18,8 @@ def test_page_shows_every_row():
         assert row.name in page
         assert row.printed in page
         assert row.verdict in page
-    assert "8 reproduced" in page
+        assert row.tolerance in page
+    assert "4 reproduced" in page
 
 
 def test_page_is_the_same_every_time():

@@ -18,7 +18,7 @@ from nrs_design.pipeline import run_certification
 from nrs_design.proof.evidence import BlockTriangular, CommonQuadratic, Shows
 from nrs_design.proof.system import Switching, Time
 from nrs_design.search import certify as certify_module
-from nrs_design.search import common_quadratic, ladder, lmi, unstable_mode
+from nrs_design.search import common_quadratic, gradient, ladder, lmi, unstable_mode
 from nrs_design.search.candidates import Candidate
 from nrs_design.search.certification import Limits
 from nrs_design.search.certify import certify, first_accepted
@@ -311,9 +311,9 @@ class TestMethods:
         assert result.verdict is Verdict.INCONCLUSIVE
         assert any("not converged" in attempt.outcome for attempt in result.attempts)
 
-    def test_gradient_is_refused_in_discrete_time(self):
-        with pytest.raises(DesignError, match="gradient does not apply") as caught:
-            certify(family([["1/2"]], time=Time.DISCRETE), Method.GRADIENT)
+    def test_a_method_that_does_not_apply_is_refused(self):
+        with pytest.raises(DesignError, match="mixture does not apply") as caught:
+            certify(family([["1/2"]], time=Time.DISCRETE), Method.MIXTURE)
         assert caught.value.remedy == "use --method auto"
 
     def test_steps_are_told_and_timed(self):
@@ -374,7 +374,6 @@ class TestMethods:
             (Method.MODE_POLYNOMIAL, SLOW),
             (Method.MODE_POLYNOMIAL, DISCRETE),
             (Method.MIXTURE, SLOW),
-            (Method.GRADIENT, DISCRETE),
             (Method.MIXTURE, DISCRETE),
         ],
     )
@@ -515,11 +514,7 @@ class TestLyingSolvers:
         monkeypatch.setattr(
             unstable_mode, "seems_stable", lambda family: np.ones(len(family.matrices), bool)
         )
-        monkeypatch.setattr(
-            common_quadratic,
-            "iterate_gradient",
-            lambda matrices, **options: GradientResult(None, 0),
-        )
+        monkeypatch.setattr(gradient, "iterate_gradient", lambda *_: GradientResult(None, 0))
 
     def test_the_solver(self, monkeypatch, name):
         def tell(lie):
@@ -542,9 +537,9 @@ class TestLyingSolvers:
     def test_the_gradient(self, monkeypatch, name):
         def tell(lie):
             monkeypatch.setattr(
-                common_quadratic,
+                gradient,
                 "iterate_gradient",
-                lambda matrices, **options: GradientResult(lie(matrices.shape[1]), 1),
+                lambda matrices, *_: GradientResult(lie(matrices.shape[1]), 1),
             )
 
         monkeypatch.setattr(

@@ -8,7 +8,7 @@ import pytest
 from nrs_design.errors import DesignError
 from nrs_design.proof.evidence import UnstablePeriod
 from nrs_design.proof.system import Switching
-from nrs_design.search import common_quadratic, mode_quadratic, obstruction, polynomial
+from nrs_design.search import common_quadratic, gradient, mode_quadratic, obstruction, polynomial
 from nrs_design.search.allowance import Allowance, NotAffordableError
 from nrs_design.search.certification import Limits
 from nrs_design.search.certify import Verdict, certify
@@ -60,9 +60,7 @@ def test_a_lying_semidefinite_solver_never_decides(monkeypatch, value):
 def test_a_lying_quadratic_search_never_decides(monkeypatch, value):
     monkeypatch.setattr(common_quadratic, "find_common_quadratic", lying((2, 2), value))
     monkeypatch.setattr(
-        common_quadratic,
-        "iterate_gradient",
-        lambda *_, **__: GradientResult(np.full((2, 2), value), 0),
+        gradient, "iterate_gradient", lambda *_: GradientResult(np.full((2, 2), value), 0)
     )
     for method in (Method.LMI, Method.GRADIENT):
         found = certify(dayawansa_martin(12), method, Limits(optimize_rate=False))
@@ -162,7 +160,7 @@ def test_without_a_common_quadratic_none_is_looked_for_again():
     [
         (family([[-1]], [[-2]]), ["one state", "obstruction", "gradient"]),
         (geromel_colaneri(3), ["lmi", "mode quadratic", "gradient"]),
-        (ando_shih("0.7"), ["lmi", "mode quadratic"]),
+        (ando_shih("0.7"), ["lmi", "mode quadratic", "gradient"]),
         (
             shears(Switching(fixed_ends=(("m0", "m1"),))),
             ["constant values", "parameter quadratic", "switching at constant values"],

@@ -3,7 +3,7 @@
 import pytest
 
 from nrs_design.errors import SpecError
-from nrs_design.spec import parse_spec
+from nrs_design.spec import doubt_spec, parse_spec
 from nrs_design.spec.describe import describe
 
 from .samples import IMPEDANCE, spoiled
@@ -56,3 +56,35 @@ def test_an_interval_must_hold_the_value():
     wrong = INTERVALS.replace("4.8e-4", "4.85e-4")
     with pytest.raises(SpecError, match=r"does not hold '4\.8417e-4 rad/s/rpm'"):
         parse_spec(spoiled(IMPEDANCE, GAIN, f"{GAIN}\n  {wrong}"))
+
+
+DOUBT = '    doubts: ["a: the residual is 46 % of the range of the force"]\n'
+REASON = "    accept_doubt: a phantom, to be measured again\n"
+
+
+def test_doubts_and_what_a_range_holds_are_listed():
+    spec = parse_spec(spoiled(IMPEDANCE, ARM, f"{ARM}{DOUBT}{REASON}    range_covers: tolerance\n"))
+    rows = {row.name: row for row in describe(spec)}
+    assert "46 %" in rows["environments.soft.doubts[0]"].written
+    assert rows["environments.soft.accept_doubt"].written == "a phantom, to be measured again"
+    assert rows["environments.soft.range_covers"].value.startswith("95 % of all such specimens")
+    assert not any("doubts" in doubt.at for doubt in doubt_spec(spec))
+
+
+def test_a_doubt_that_nobody_accepts_is_a_warning():
+    spec = parse_spec(spoiled(IMPEDANCE, ARM, ARM + DOUBT))
+    (doubt,) = (item for item in doubt_spec(spec) if "in doubt" in item.message)
+    assert doubt.at == ("environments", "soft", "doubts")
+
+
+@pytest.mark.parametrize(
+    ("lines", "message"),
+    [
+        (REASON, "no doubts to accept"),
+        (f'{DOUBT}    accept_doubt: " "\n', "no reason is given"),
+        ("    range_covers: everything\n", "range_covers"),
+    ],
+)
+def test_wrong_acceptance(lines, message):
+    with pytest.raises(SpecError, match=message):
+        parse_spec(spoiled(IMPEDANCE, ARM, ARM + lines))

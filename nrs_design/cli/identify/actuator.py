@@ -1,4 +1,4 @@
-"""``nrs-design identify actuator``: the motor from sinusoid records or a frequency response."""
+"""``nrs-design identify actuator``: the motor from records of commands, or a response."""
 
 from __future__ import annotations
 
@@ -43,11 +43,12 @@ def actuator(
     as_json: Json = False,
     quiet: Quiet = False,
 ) -> None:
-    """Fit gain, time constant and Coulomb friction, and derive resistance and speed over torque.
+    """Fit gain, time constant, Coulomb friction and dead time of a motor that follows a velocity.
 
-    Columns: time_s, command_rpm, angle_rad, one file (or one group of columns with the suffix _1,
-    _2, ...) per frequency; or frequency_hz, magnitude_db, phase_deg. The data sheet is that of
-    thesis table 4.1 unless given.
+    Columns: time_s, command_rpm (or _V, _A, _counts), and angle_rad or velocity_rad_s; any command
+    that moves the motor: sinusoids, steps, stairs, chirps, random ones, in open or closed loop.
+    One file is one record; groups of columns have suffixes _1, _2, ... Or a frequency response:
+    frequency_hz, magnitude_db, phase_deg. The data sheet is that of thesis table 4.1 unless given.
 
     Example: nrs-design identify actuator specs/data/actuator-*hz.csv --report reports/actuator.html
     """
@@ -71,6 +72,9 @@ def actuator(
             write_report(report, actuator_report(found), date)
     if write is not None and merged is not None:
         write_spec(write, merged, quiet=quiet)
+        # A proof will rest on these values: no option silences this.
+        for doubt in found.doubts:
+            note(f"warning: {doubt}")
     if as_json:
         print_json("identify-actuator", _summary(found))
     elif not quiet:
@@ -82,31 +86,46 @@ def actuator(
 def _print(found: ActuatorIdentification) -> None:
     if found.synthetic:
         say(SYNTHETIC)
+    unit = found.unit
     rows = [
         [
             fit.method,
             interval(fit.gain),
             interval(fit.time_constant),
             interval(fit.friction) if fit.friction else "",
+            interval(fit.dead_time) if fit.dead_time else "",
         ]
         for fit in found.fits
     ]
-    columns = ["fit [95 %]", "gain (rad/s)/rpm", "time constant s", "friction rpm"]
-    print_table("", columns, rows)
+    columns = ["fit [95 %]", f"gain (rad/s)/{unit}", "time constant s", f"friction {unit}"]
+    print_table("", [*columns, "dead time s"], rows)
     say(f"chosen: {found.chosen.method}. {found.reason}")
-    say(f"R = {interval(found.figures.resistance)} ohm")
-    say(f"speed over torque = {interval(found.figures.gradient)} rpm/(N m)")
+    if found.chosen.dead_time and found.step:
+        samples = found.chosen.dead_time.scaled(1 / found.step)
+        say(f"dead time = {interval(samples)} samples of {found.step:.4g} s")
+    motor = found.chosen.motor
+    if motor is not None and motor.damping is not None:
+        say(f"second order: damping ratio {motor.damping:.4g}; time constants add up")
+    if found.figures is not None:
+        say(f"R = {interval(found.figures.resistance)} ohm")
+        say(f"speed over torque = {interval(found.figures.gradient)} rpm/(N m)")
+    for doubt in found.doubts:
+        say(f"doubt: {doubt}")
 
 
 def _summary(found: ActuatorIdentification) -> dict[str, Any]:
+    figures = found.figures
     return {
         "synthetic": found.synthetic,
         "records": sources(found.sources),
+        "command_unit": found.unit,
+        "sampling_step_s": found.step,
         "chosen": found.chosen.method,
         "reason": found.reason,
-        "fits": [_fit(fit) for fit in found.fits],
-        "resistance_ohm": numbers(found.figures.resistance),
-        "speed_torque_gradient_rpm_per_Nm": numbers(found.figures.gradient),
+        "doubts": list(found.doubts),
+        "fits": [_fit(fit, found) for fit in found.fits],
+        "resistance_ohm": numbers(figures.resistance) if figures else None,
+        "speed_torque_gradient_rpm_per_Nm": numbers(figures.gradient) if figures else None,
         "response": [
             {"frequency_rad_s": w, "real": value.real, "imaginary": value.imag}
             for w, value in zip(found.frequency.tolist(), found.response.tolist(), strict=True)
@@ -114,11 +133,16 @@ def _summary(found: ActuatorIdentification) -> dict[str, Any]:
     }
 
 
-def _fit(fit: ActuatorFit) -> dict[str, Any]:
+def _fit(fit: ActuatorFit, found: ActuatorIdentification) -> dict[str, Any]:
+    late = fit.dead_time
     return {
         "method": fit.method,
-        "gain_rad_s_rpm": numbers(fit.gain),
+        "order": fit.order,
+        f"gain_rad_s_{found.unit}": numbers(fit.gain),
         "time_constant_s": numbers(fit.time_constant),
-        "friction_rpm": numbers(fit.friction) if fit.friction else None,
+        "damping_ratio": fit.motor.damping if fit.motor else None,
+        f"friction_{found.unit}": numbers(fit.friction) if fit.friction else None,
+        "dead_time_s": numbers(late) if late else None,
+        "dead_time_samples": numbers(late.scaled(1 / found.step)) if late and found.step else None,
         "whiteness_p": fit.uncertainty.whiteness,
     }

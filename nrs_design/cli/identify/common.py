@@ -1,4 +1,4 @@
-"""What both identifications share: options, reading with a progress bar, and writing."""
+"""What all identifications share: options, reading with a progress bar, and writing."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from nrs_design.identification.statistics import Estimate
     from nrs_design.reporting import Report
 
-DataFiles = Annotated[list[Path], typer.Argument(metavar="DATA...", help="CSV files.")]
+DataFiles = Annotated[list[Path], typer.Argument(metavar="DATA...", help="Files of data.")]
 ColumnMap = Annotated[
     list[str] | None,
     typer.Option("--map", metavar="OURS=THEIRS", help="Foreign column name, as in force_N=Fz."),

@@ -13,7 +13,7 @@ from nrs_design.cli.robot.options import Figures, write_figures
 from nrs_design.cli.tables import print_table
 
 if TYPE_CHECKING:
-    from nrs_design.models.robot import Correction, Sine, TiltTable
+    from nrs_design.models.robot import Correction, SeparateCorrection, Sine, TiltTable
 
 
 def correction(
@@ -34,7 +34,10 @@ def correction(
     """
     from nrs_design.models.robot import (
         TABLE_3_5,
+        correct_separately,
         correction_coefficients,
+        reachable_poses,
+        thesis_grid,
         thesis_tilts,
         tilt_table,
         to_csv,
@@ -45,25 +48,30 @@ def correction(
     loaded, _, robot = run_robot(spec)
     rows = [(sine, correction_coefficients(robot, sine)) for sine in TABLE_3_5]
     tilts = tilt_table(robot, thesis_tilts())
+    apart = correct_separately(robot, reachable_poses(robot, thesis_grid()))
     files: list[str] = []
     if table is not None:
         write_output(table, to_csv(tilts), replaces=TABLE)
         files.append(str(table))
         note(f"table written to {table}", quiet=quiet)
     if figures is not None:
-        from nrs_design.reporting.figures.robot import draw_correction
+        from nrs_design.reporting.figures.robot import draw_correction, draw_inertia_errors
 
         with_angles = tilt_table(robot, thesis_tilts(), TABLE_3_5)
         drawn = draw_correction(tilts, with_angles)
-        files += write_figures(figures, {"correction": drawn}, quiet=quiet)
+        named = {"correction": drawn, "inertia-errors": draw_inertia_errors(apart)}
+        files += write_figures(figures, named, quiet=quiet)
     if as_json:
         head = {"spec": loaded.spec.name, "spec_sha256": loaded.sha256}
-        print_json("robot-correction", head | _document(rows, tilts) | {"files": files})
+        print_json("robot-correction", head | _document(rows, tilts, apart) | {"files": files})
     elif not quiet:
         _print(rows, tilts)
+        _print_apart(apart)
 
 
-def _document(rows: list[tuple[Sine, Correction]], tilts: TiltTable) -> dict[str, Any]:
+def _document(
+    rows: list[tuple[Sine, Correction]], tilts: TiltTable, apart: SeparateCorrection
+) -> dict[str, Any]:
     import numpy as np
 
     return {
@@ -88,6 +96,17 @@ def _document(rows: list[tuple[Sine, Correction]], tilts: TiltTable) -> dict[str
                 strict=True,
             )
         ],
+        "apart": {
+            "gravity": apart.gravity.tolist(),
+            "inertia_rows": apart.inertia_rows.tolist(),
+            "inertia_entries": apart.inertia_entries.tolist(),
+            "gravity_error": apart.gravity_error,
+            "inertia_error": {
+                "single": apart.single_error,
+                "rows": apart.rows_error,
+                "entries": apart.entries_error,
+            },
+        },
         "units": {"angles": "rad", "d": "m", "error": "N*m"},
     }
 
@@ -116,5 +135,22 @@ def _print(rows: list[tuple[Sine, Correction]], tilts: TiltTable) -> None:
             for tilt, ratio, squares in zip(
                 tilts.tilt[::5], tilts.mean_ratio[::5], tilts.least_squares[::5], strict=True
             )
+        ],
+    )
+
+
+def _print_apart(apart: SeparateCorrection) -> None:
+    def text(row: Any) -> str:
+        return ", ".join(f"{k:.4f}" for k in row)
+
+    entries = "; ".join(text(row) for row in apart.inertia_entries)
+    print_table(
+        "inertia and gravity apart, least squares over the poses of thesis 3.3",
+        ["coefficients", "values", "error [%]"],
+        [
+            ["gravity", text(apart.gravity), f"{100 * apart.gravity_error:.1f}"],
+            ["inertia, those of gravity", text(apart.gravity), f"{100 * apart.single_error:.1f}"],
+            ["inertia, by rows", text(apart.inertia_rows), f"{100 * apart.rows_error:.1f}"],
+            ["inertia, by entries", entries, f"{100 * apart.entries_error:.1f}"],
         ],
     )

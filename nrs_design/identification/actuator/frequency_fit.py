@@ -13,6 +13,7 @@ from nrs_design.identification.actuator.friction import friction_shape
 from nrs_design.identification.actuator.model import ActuatorFit, actuator_fit
 from nrs_design.identification.actuator.phasors import Phasors, held_amplitude
 from nrs_design.identification.datasets import FrequencyResponse
+from nrs_design.identification.held import Held
 from nrs_design.identification.statistics import Uncertainty, uncertainty
 
 Array = NDArray[np.float64]
@@ -71,8 +72,10 @@ def _solve(
 
 
 def _friction_phasor(phasors: Phasors, gain: float, tau: float, friction: float) -> complex:
-    shape = friction_shape(phasors.record, gain, tau, friction)
-    return held_amplitude(phasors.record, shape, phasors.frequency)
+    record = phasors.record
+    held = Held.of(record.time, record.command, 0.0)
+    shape = friction_shape(held, gain, tau, friction)
+    return held_amplitude(record, np.append(shape, shape[-1]), phasors.frequency)
 
 
 def fit_response(data: FrequencyResponse) -> ActuatorFit:

@@ -3,24 +3,29 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from nrs_design.errors import DataError
+from nrs_design.identification.actuator.doubts import find_doubts
 from nrs_design.identification.actuator.frequency_fit import fit_phasors, fit_response
-from nrs_design.identification.actuator.model import ActuatorFit, MotorFigures
+from nrs_design.identification.actuator.model import ActuatorFit, MotorFigures, fit_of
 from nrs_design.identification.actuator.phasors import Phasors, phasors_of
-from nrs_design.identification.actuator.time_fit import fit_angles
-from nrs_design.identification.datasets import FrequencyResponse, SinusoidRecord, Source
+from nrs_design.identification.actuator.scan import scan_motor
+from nrs_design.identification.actuator.time_fit import TimeFit, fit_in_time
+from nrs_design.identification.datasets import ActuatorRecord, FrequencyResponse, Source
+from nrs_design.identification.statistics import WHITE
 from nrs_design.models.actuator import MotorConstants
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
-# Time-domain fits take every record as one batch and need some beyond the three parameters.
-_FEWEST_RECORDS = 5
+# A fit that misses more than this part of the output, in errors that are not white, has failed.
+_MISSED = 0.01
+# A second order must explain so much of what the first misses.
+_WORTHWHILE = 0.2
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -31,33 +36,43 @@ class ActuatorIdentification:
     ----------
     sources : tuple of Source
         The files.
-    records : tuple of SinusoidRecord
+    records : tuple of ActuatorRecord
         None for a ready response.
     phasors : tuple of Phasors
-        One for each record.
+        One for each record, where all are sinusoids.
     fits : tuple of ActuatorFit
         Every method that the data allow.
     chosen : ActuatorFit
-        The last of them.
+        One of them.
     reason : str
         Why that one.
-    figures : MotorFigures
-        Derived from it and the data sheet.
+    figures : MotorFigures or None
+        Derived from it and the data sheet, which are about commands in rpm.
     frequency : ndarray, shape (m,)
         In rad/s.
     response : ndarray of complex, shape (m,)
-        Velocity over command without friction, in (rad/s)/rpm.
+        Velocity over command without friction, in rad/s per unit of the command; empty where
+        records are no sinusoids.
+    doubts : tuple of str
+        What the model misses, and what that looks like.
+    unit : str
+        Of the command.
+    step : float or None
+        Usual time between samples in s; None for a ready response.
     """
 
     sources: tuple[Source, ...]
-    records: tuple[SinusoidRecord, ...]
+    records: tuple[ActuatorRecord, ...]
     phasors: tuple[Phasors, ...]
     fits: tuple[ActuatorFit, ...]
     chosen: ActuatorFit
     reason: str
-    figures: MotorFigures
+    figures: MotorFigures | None
     frequency: Array
     response: Complex
+    doubts: tuple[str, ...] = ()
+    unit: str = "rpm"
+    step: float | None = None
 
     @property
     def synthetic(self) -> bool:
@@ -66,16 +81,16 @@ class ActuatorIdentification:
 
 
 def identify_actuator(
-    data: Sequence[SinusoidRecord | FrequencyResponse],
+    data: Sequence[ActuatorRecord | FrequencyResponse],
     motor: MotorConstants,
     progress: Callable[[str], None] = lambda step: None,
 ) -> ActuatorIdentification:
-    """Fit gain, time constant and friction.
+    """Fit gain, time constant, friction and dead time.
 
     Parameters
     ----------
     data : sequence
-        Sinusoid records at three frequencies or more, or one ready frequency response.
+        Records of any commands that move the motor, or one ready frequency response.
     motor : MotorConstants
         Data sheet, for resistance and speed-torque gradient.
     progress : callable
@@ -87,15 +102,21 @@ def identify_actuator(
         If there are no data, both kinds are mixed, or they do not determine the model.
     """
     responses = [item for item in data if isinstance(item, FrequencyResponse)]
-    records = [item for item in data if isinstance(item, SinusoidRecord)]
+    records = [item for item in data if isinstance(item, ActuatorRecord)]
     if not data or (responses and records) or len(responses) > 1:
         raise DataError(
-            f"{len(records)} sinusoid records and {len(responses)} frequency responses",
-            remedy="give sinusoid records, or one frequency response",
+            f"{len(records)} records and {len(responses)} frequency responses",
+            remedy="give records of the motor, or one frequency response",
         )
     if len({(r.source.sha256, r.group) for r in records}) < len(records):
         raise DataError(
             "a record is there twice, which would narrow the intervals", remedy="name it once"
+        )
+    units = {record.unit for record in records}
+    if len(units) > 1:
+        raise DataError(
+            f"the commands are in {' and '.join(sorted(units))}",
+            remedy="give records of one driver",
         )
     progress("complex response")
     if responses:
@@ -119,28 +140,74 @@ def _from_response(data: FrequencyResponse, motor: MotorConstants) -> ActuatorId
 
 
 def _from_records(
-    records: Sequence[SinusoidRecord], motor: MotorConstants, progress: Callable[[str], None]
+    records: Sequence[ActuatorRecord], motor: MotorConstants, progress: Callable[[str], None]
 ) -> ActuatorIdentification:
-    phasors = tuple(phasors_of(record) for record in records)
-    fits = [fit_phasors(phasors)]
-    reason = f"fewer than {_FEWEST_RECORDS} records: their spread cannot be judged in time."
-    if len(records) >= _FEWEST_RECORDS:
-        progress("time domain")
-        fits.append(fit_angles(records, fits[0]))
-        reason = "the fit to the angles uses every sample."
+    phasors, fits = _from_phasors(records)
+    progress("time domain")
+    found = fit_in_time(records, scan_motor(records))
+    fits.append(fit_of("output in the time domain", found))
+    reason = "The fit to the output uses every sample."
+    if found.uncertainty.whiteness < WHITE:
+        progress("second order")
+        second = _second_order(records, found)
+        if second is not None:
+            found, fits = second, [*fits, fit_of("second order, in the time domain", second)]
+            reason = "The motor of first order fails; that of second order explains more."
     chosen = fits[-1]
-    friction = chosen.friction.value if chosen.friction else 0.0
-    V = np.array([p.velocity for p in phasors])
-    U = np.array([p.command for p in phasors])
-    sources = {record.source.sha256: record.source for record in records}
     return ActuatorIdentification(
-        sources=tuple(sources.values()),
+        sources=tuple({record.source.sha256: record.source for record in records}.values()),
         records=tuple(records),
         phasors=phasors,
         fits=tuple(fits),
         chosen=chosen,
-        reason=reason[0].upper() + reason[1:],
-        figures=chosen.figures(motor),
+        reason=reason,
+        figures=chosen.figures(motor) if records[0].unit == "rpm" and chosen.order == 1 else None,
         frequency=np.array([p.frequency for p in phasors]),
-        response=V / (U - 4 / np.pi * friction * V / np.abs(V)),
+        response=_response(phasors, chosen),
+        doubts=tuple(find_doubts(records, found, failed=_has_failed(records, found))),
+        unit=records[0].unit,
+        step=min(record.step for record in records),
     )
+
+
+def _from_phasors(
+    records: Sequence[ActuatorRecord],
+) -> tuple[tuple[Phasors, ...], list[ActuatorFit]]:
+    """Return amplitudes and the fit to them, where the records are sinusoids."""
+    try:
+        phasors = tuple(phasors_of(record) for record in records)
+    except DataError:
+        return (), []
+    try:
+        return phasors, [fit_phasors(phasors)]
+    except DataError:
+        return phasors, []
+
+
+def _response(phasors: Sequence[Phasors], fit: ActuatorFit) -> Complex:
+    friction = fit.friction.value if fit.friction else 0.0
+    V = np.array([p.velocity for p in phasors])
+    U = np.array([p.command for p in phasors])
+    return np.asarray(V / (U - 4 / np.pi * friction * V / np.abs(V)))
+
+
+def _has_failed(records: Sequence[ActuatorRecord], found: TimeFit) -> bool:
+    spread = sum(float(np.sum((r.output - r.output.mean()) ** 2)) for r in records)
+    missed = float(np.sqrt(found.errors @ found.errors / spread))
+    return found.uncertainty.whiteness < WHITE and missed > _MISSED
+
+
+def _second_order(records: Sequence[ActuatorRecord], first: TimeFit) -> TimeFit | None:
+    """Return a motor of second order if it explains clearly more."""
+    best: TimeFit | None = None
+    for damping in (1.5, 0.4):
+        try:
+            tried = fit_in_time(records, replace(first.motor, damping=damping))
+        except DataError:
+            continue
+        if best is None or tried.bic < best.bic:
+            best = tried
+    before = float(first.errors @ first.errors)
+    if best is None or float(best.errors @ best.errors) > (1 - _WORTHWHILE) * before:
+        return None
+    return best

@@ -1,4 +1,4 @@
-"""What is fitted: a first-order velocity model with Coulomb friction (thesis 4.1)."""
+"""What is fitted: a velocity model with Coulomb friction (thesis 4.1) and dead time."""
 
 from __future__ import annotations
 
@@ -8,6 +8,8 @@ from fractions import Fraction
 import numpy as np
 from numpy.typing import NDArray
 
+from nrs_design.identification.actuator.motor import Motor
+from nrs_design.identification.actuator.time_fit import TimeFit
 from nrs_design.identification.statistics import Estimate, Uncertainty, student_quantile
 from nrs_design.models.actuator import (
     Actuator,
@@ -38,20 +40,24 @@ class MotorFigures:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class ActuatorFit:
-    """``tau v' + v = gain (delta - friction sign v)``.
+    """``tau v' + v = gain (delta(t - D) - friction sign v)``.
 
     Parameters
     ----------
     method : str
         How it was found.
     gain : Estimate
-        In (rad/s)/rpm.
+        In rad/s for each unit of the command.
     time_constant : Estimate
-        In s.
+        In s; of a motor of second order the sum of both.
     friction : Estimate or None
-        Coulomb friction in rpm of the command; None where the data cannot tell.
+        Coulomb friction in units of the command; None where the data cannot tell.
     uncertainty : Uncertainty
         Of the logarithms of these, in this order.
+    dead_time : Estimate or None
+        D in s; None where it was taken for zero.
+    motor : Motor or None
+        What was fitted in time; None for a fit in the frequency domain.
     """
 
     method: str
@@ -59,10 +65,22 @@ class ActuatorFit:
     time_constant: Estimate
     friction: Estimate | None
     uncertainty: Uncertainty
+    dead_time: Estimate | None = None
+    motor: Motor | None = None
+
+    @property
+    def order(self) -> int:
+        """1, or 2 for a motor with two time constants."""
+        return 1 if self.motor is None or self.motor.damping is None else 2
 
     def response(self, frequency: Array) -> Complex:
-        """Return velocity over command without friction, in (rad/s)/rpm, at rad/s."""
-        return np.asarray(self.gain.value / (1 + 1j * frequency * self.time_constant.value))
+        """Return velocity over command without friction, in rad/s per unit, at rad/s."""
+        s = 1j * frequency
+        if self.motor is None:
+            return np.asarray(self.gain.value / (1 + s * self.time_constant.value))
+        lags = self.motor.lags
+        value = sum(c / (1 + s * t) for t, c in zip(lags.times, lags.shares, strict=True))
+        return np.asarray(self.motor.gain * value * np.exp(-s * self.motor.delay))
 
     def figures(self, motor: MotorConstants) -> MotorFigures:
         """Derive resistance and speed-torque gradient, with intervals.
@@ -94,3 +112,13 @@ def actuator_fit(method: str, logarithms: Array, known: Uncertainty) -> Actuator
     estimates = known.estimates(logarithms)
     friction = estimates[2] if len(estimates) > 2 else None
     return ActuatorFit(method, estimates[0], estimates[1], friction, known)
+
+
+def fit_of(method: str, found: TimeFit) -> ActuatorFit:
+    """Return the estimates of a fit in time; a dead time is never below zero."""
+    motor, known = found.motor, found.uncertainty
+    positive = [*known.estimates(motor.parameters)[:-1]]
+    half = student_quantile(known.degrees) * float(known.errors[-1])
+    late = Estimate(max(motor.delay, 0.0), max(motor.delay - half, 0.0), motor.delay + half)
+    friction = positive[2] if motor.friction is not None else None
+    return ActuatorFit(method, positive[0], positive[1], friction, known, late, motor)

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from nrs_design.errors import DataError
-from nrs_design.identification.datasets import SinusoidRecord
+from nrs_design.identification.datasets import ActuatorRecord
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -28,7 +28,7 @@ class Phasors:
 
     Parameters
     ----------
-    record : SinusoidRecord
+    record : ActuatorRecord
         The data.
     frequency : float
         In rad/s.
@@ -38,13 +38,13 @@ class Phasors:
         Amplitude in rad/s.
     """
 
-    record: SinusoidRecord
+    record: ActuatorRecord
     frequency: float
     command: complex
     velocity: complex
 
 
-def phasors_of(record: SinusoidRecord) -> Phasors:
+def phasors_of(record: ActuatorRecord) -> Phasors:
     """Find frequency and amplitudes of a record by least squares.
 
     The angle may drift, has harmonics from friction, and begins with a transient that is left
@@ -71,16 +71,17 @@ def phasors_of(record: SinusoidRecord) -> Phasors:
             path=record.source.path,
             remedy="record one frequency at a time",
         )
-    (angle, *_), _ = _amplitudes(record.time[late], record.angle[late], frequency, _HARMONICS)
-    return Phasors(record, frequency, command * _hold(record, frequency), 1j * frequency * angle)
+    (output, *_), _ = _amplitudes(record.time[late], record.output[late], frequency, _HARMONICS)
+    velocity = 1j * frequency * output if record.is_angle else output
+    return Phasors(record, frequency, command * _hold(record, frequency), velocity)
 
 
-def held_amplitude(record: SinusoidRecord, values: Array, frequency: float) -> complex:
+def held_amplitude(record: ActuatorRecord, values: Array, frequency: float) -> complex:
     """Return the amplitude of what is held between the samples of a record, as it acts.
 
     Parameters
     ----------
-    record : SinusoidRecord
+    record : ActuatorRecord
         With the times of the samples.
     values : ndarray, shape (n,)
         Held from each sample to the next.
@@ -92,13 +93,13 @@ def held_amplitude(record: SinusoidRecord, values: Array, frequency: float) -> c
     return amplitude * _hold(record, frequency)
 
 
-def _hold(record: SinusoidRecord, frequency: float) -> complex:
+def _hold(record: ActuatorRecord, frequency: float) -> complex:
     """Return the effect of holding a value between samples: it acts half a step later."""
     half = frequency * float(np.median(np.diff(record.time))) / 2
     return complex(np.sinc(half / np.pi) * np.exp(-1j * half))
 
 
-def _frequency(record: SinusoidRecord) -> float:
+def _frequency(record: ActuatorRecord) -> float:
     """Return the frequency in rad/s at which a sinusoid fits the command best."""
     from scipy.optimize import minimize_scalar
 

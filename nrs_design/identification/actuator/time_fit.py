@@ -1,120 +1,126 @@
-"""The model fitted to the angles themselves, by output error."""
+"""The model fitted to the outputs themselves, by output error."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from nrs_design.errors import DataError
-from nrs_design.identification.actuator.friction import friction_shape
-from nrs_design.identification.actuator.model import ActuatorFit, actuator_fit
-from nrs_design.identification.datasets import SinusoidRecord
+from nrs_design.identification.actuator.motor import Motor
+from nrs_design.identification.datasets import ActuatorRecord
 from nrs_design.identification.rounding import rounding_scatter
-from nrs_design.identification.statistics import uncertainty
-from nrs_design.models.recursion import run_first_order
+from nrs_design.identification.statistics import Uncertainty, uncertainty
 
 Array = NDArray[np.float64]
 
-_STEPS = 40
+_STEPS = 60
 _CONVERGED = 1e-6
-_DIFFERENCE = 1e-5
 _LARGEST_STEP = 0.5
+_HALVINGS = 12
+# From so many records on, their spread says how far they agree; before, that of parts of them.
+MANY_RECORDS = 5
 
 
-def fit_angles(records: Sequence[SinusoidRecord], start: ActuatorFit) -> ActuatorFit:
-    """Refine a fit in the time domain.
-
-    The command is held between samples and the velocity is solved exactly. The direction of the
-    friction is that of the model's own velocity. Initial angle and velocity of every record are
-    eliminated by linear least squares. If the errors are not white, the spread between records
-    goes into the intervals.
+@dataclass(frozen=True, slots=True, eq=False)
+class TimeFit:
+    """A motor that fits records best.
 
     Parameters
     ----------
-    records : sequence of SinusoidRecord
-        At least four, one more than there are parameters.
-    start : ActuatorFit
-        From `fit_phasors`.
+    motor : Motor
+        With its parameters.
+    uncertainty : Uncertainty
+        Of `Motor.parameters`.
+    errors : ndarray, shape (n,)
+        Measured less fitted, of all records in turn.
+    """
+
+    motor: Motor
+    uncertainty: Uncertainty
+    errors: Array
+
+    @property
+    def bic(self) -> float:
+        """Bayesian information criterion, up to a constant of the records."""
+        n = len(self.errors)
+        power = max(float(self.errors @ self.errors), np.finfo(float).tiny)
+        return n * float(np.log(power / n)) + len(self.motor.parameters) * float(np.log(n))
+
+
+def fit_in_time(records: Sequence[ActuatorRecord], start: Motor) -> TimeFit:
+    """Refine a motor in the time domain, its dead time with it.
+
+    The command is held between samples and the velocity is solved exactly. Initial angle and
+    velocity of every record are eliminated by linear least squares. If the errors are not white,
+    the spread between records, or between parts of few records, goes into the intervals.
+
+    Parameters
+    ----------
+    records : sequence of ActuatorRecord
+        At least one.
+    start : Motor
+        Says which parameters there are.
 
     Raises
     ------
     DataError
         If the iteration does not settle.
     """
-    if start.friction is None:
-        raise ValueError("the start has no friction")
-    logs = np.log([start.gain.value, start.time_constant.value, start.friction.value])
+    motor = start
+    parts = [motor.linearize(record) for record in records]
+    usual = min(record.step for record in records)
     for _ in range(_STEPS):
-        parts = [_linearize(record, logs) for record in records]
         J, error = (np.concatenate(series) for series in zip(*parts, strict=True))
-        step = np.linalg.lstsq(J, error, rcond=None)[0]
-        logs = logs + np.clip(step, -_LARGEST_STEP, _LARGEST_STEP)
-        if np.abs(step).max() < _CONVERGED:
+        scale = np.ones(J.shape[1])
+        scale[-1] = usual
+        step = scale * np.linalg.lstsq(J * scale, error, rcond=None)[0]
+        limit = np.full(len(step), _LARGEST_STEP)
+        limit[-1] = 2 * usual + motor.time_constant / 4
+        step = np.clip(step, -limit, limit)
+        small = np.abs(step / scale).max() < _CONVERGED
+        better = _improved(records, motor, step, float(error @ error))
+        if better is None or small:
             break
+        motor, parts = better
     else:
         raise DataError(
             "the fit in the time domain does not settle",
             remedy="check the records, or give a ready frequency response",
         )
-    starts = np.cumsum([0, *(len(record.time) for record in records[:-1])]).tolist()
+    J, error = (np.concatenate(series) for series in zip(*parts, strict=True))
+    return TimeFit(motor, _uncertainty(records, parts, J, error), error)
+
+
+def _improved(
+    records: Sequence[ActuatorRecord], motor: Motor, step: Array, power: float
+) -> tuple[Motor, list[tuple[Array, Array]]] | None:
+    """Return a motor along a step that fits better, or None."""
+    for halving in range(_HALVINGS):
+        tried = motor.with_parameters(motor.parameters + step / 2**halving)
+        parts = [tried.linearize(record) for record in records]
+        found = sum(float(error @ error) for _, error in parts)
+        if np.isfinite(found) and found < power:
+            return tried, parts
+    return None
+
+
+def _uncertainty(
+    records: Sequence[ActuatorRecord],
+    parts: Sequence[tuple[Array, Array]],
+    J: Array,
+    error: Array,
+) -> Uncertainty:
+    starts = None
+    if len(records) >= MANY_RECORDS:
+        starts = np.cumsum([0, *(len(record.time) for record in records[:-1])]).tolist()
     scatter = sum(
-        (rounding_scatter(r.angle, part, 1.0) for r, (part, _) in zip(records, parts, strict=True)),
-        start=np.zeros((3, 3)),
+        (
+            rounding_scatter(r.output, part, 1.0)
+            for r, (part, _) in zip(records, parts, strict=True)
+        ),
+        start=np.zeros((J.shape[1], J.shape[1])),
     )
-    known = uncertainty(J, error, starts, scatter)
-    return actuator_fit("angles in the time domain", logs, known)
-
-
-def simulate_angle(record: SinusoidRecord, gain: float, tau: float, friction: float) -> Array:
-    """Return the angle of the model in rad, shape (n,).
-
-    Initial angle and velocity are fitted to the record.
-
-    Parameters
-    ----------
-    record : SinusoidRecord
-        With command and measured angle.
-    gain : float
-        In (rad/s)/rpm.
-    tau : float
-        Time constant in s.
-    friction : float
-        In rpm of command.
-    """
-    forced = _angle(record, gain, tau, friction, friction_shape(record, gain, tau, friction))
-    free = _free(record, tau)
-    start = np.linalg.lstsq(free, record.angle - forced, rcond=None)[0]
-    return np.asarray(forced + free @ start, float)
-
-
-def _linearize(record: SinusoidRecord, logs: Array) -> tuple[Array, Array]:
-    """Return derivatives and errors of a record without what its initial state explains."""
-    shape = friction_shape(record, *np.exp(logs).tolist())
-
-    def forced(x: Array) -> Array:
-        gain, tau, friction = np.exp(x).tolist()
-        return _angle(record, gain, tau, friction, shape)
-
-    steps = _DIFFERENCE * np.eye(3)
-    J = np.column_stack([(forced(logs + h) - forced(logs - h)) / (2 * _DIFFERENCE) for h in steps])
-    free, _ = np.linalg.qr(_free(record, float(np.exp(logs[1]))))
-    both = np.column_stack([J, record.angle - forced(logs)])
-    both -= free @ (free.T @ both)
-    return both[:, :3], both[:, 3]
-
-
-def _angle(record: SinusoidRecord, gain: float, tau: float, friction: float, shape: Array) -> Array:
-    """Return the angle from rest at zero, exact for a command held between samples."""
-    dt = np.diff(record.time)
-    a = np.exp(-dt / tau)
-    drive = gain * (record.command - friction * shape)[:-1]
-    velocity = run_first_order(a, (1 - a) * drive)
-    travel = drive * dt + tau * (1 - a) * (velocity[:-1] - drive)
-    return np.concatenate([[0.0], np.cumsum(travel)])
-
-
-def _free(record: SinusoidRecord, tau: float) -> Array:
-    """Return the angles that follow from initial angle and velocity, shape (n, 2)."""
-    return np.column_stack([np.ones_like(record.time), tau * -np.expm1(-record.time / tau)])
+    return uncertainty(J, error, starts, scatter)

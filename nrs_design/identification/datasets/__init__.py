@@ -1,19 +1,23 @@
-"""Measured records: CSV files with named, unit-suffixed columns, checked before use."""
+"""Measured records: files with columns that are named by quantity and unit, checked before use."""
 
 from nrs_design.identification.datasets.records import (
+    ActuatorRecord,
     FrequencyResponse,
-    SinusoidRecord,
+    SignalRecord,
     TissueRecord,
     read_actuator,
+    read_signals,
     read_tissue,
 )
 from nrs_design.identification.datasets.table import Source
 
 __all__ = [
+    "ActuatorRecord",
     "FrequencyResponse",
-    "SinusoidRecord",
+    "SignalRecord",
     "Source",
     "TissueRecord",
     "read_actuator",
+    "read_signals",
     "read_tissue",
 ]

@@ -12,8 +12,6 @@ GAP = 3.0
 # A sensor is saturated when its extreme reading repeats while this part of the motion passes.
 _FLAT_ROWS = 10
 _FLAT_MOTION = 0.05
-# A sinusoid that is cut off at 0.99 of its amplitude rests there so long.
-_CLIPPED = 0.1
 
 
 def check_time(table: Table, time: Array) -> None:
@@ -30,6 +28,27 @@ def check_time(table: Table, time: Array) -> None:
             max(len(time) - 1, 0),
             "record longer",
         )
+    check_advance(table, time)
+    steps = np.diff(time)
+    usual = float(np.median(steps))
+    gaps = np.flatnonzero(steps > GAP * usual)
+    if len(gaps):
+        row = int(gaps[0]) + 1
+        table.fail(
+            f"a gap of {steps[row - 1]:.4g} s, where steps are {usual:.4g} s",
+            row,
+            "cut the record there and give its parts as records of their own",
+        )
+
+
+def check_advance(table: Table, time: Array) -> None:
+    """Check that time advances.
+
+    Raises
+    ------
+    DataError
+        With the row.
+    """
     steps = np.diff(time)
     stuck = np.flatnonzero(steps <= 0)
     if len(stuck):
@@ -39,15 +58,6 @@ def check_time(table: Table, time: Array) -> None:
             f"time {word}: {time[row]:.9g} s after {time[row - 1]:.9g} s",
             row,
             "sort the rows, or remove the doubled ones",
-        )
-    usual = float(np.median(steps))
-    gaps = np.flatnonzero(steps > GAP * usual)
-    if len(gaps):
-        row = int(gaps[0]) + 1
-        table.fail(
-            f"a gap of {steps[row - 1]:.4g} s, where steps are {usual:.4g} s",
-            row,
-            "cut the record there and give its parts as records of their own",
         )
 
 
@@ -80,33 +90,6 @@ def check_saturation(table: Table, name: str, values: Array, moving: Array) -> N
                     first,
                     "record with a larger measuring range",
                 )
-
-
-def check_clipped(table: Table, name: str, values: Array) -> None:
-    """Check that a sinusoid is not cut off at its extremes.
-
-    Parameters
-    ----------
-    table : Table
-        For the place in errors.
-    name : str
-        Of the column.
-    values : ndarray, shape (n,)
-        The column.
-
-    Raises
-    ------
-    DataError
-        At the first row that rests at the extreme.
-    """
-    extreme = np.abs(values) >= np.abs(values).max()
-    if float(extreme.mean()) > _CLIPPED:
-        table.fail(
-            f"the {name} rests at its extreme value in {100 * extreme.mean():.0f} % of the rows: "
-            "it is saturated, no sinusoid",
-            int(np.argmax(extreme)),
-            "record with a smaller amplitude",
-        )
 
 
 def check_varies(table: Table, name: str, values: Array) -> None:

@@ -1,4 +1,4 @@
-"""Column names: a quantity, its unit, and an optional group, such as ``angle_rad_2``."""
+"""Which columns of a file belong together."""
 
 from __future__ import annotations
 
@@ -6,26 +6,15 @@ import difflib
 from collections.abc import Mapping, Sequence
 from collections.abc import Set as AbstractSet
 from dataclasses import dataclass
-from math import pi
 from pathlib import Path
-from types import MappingProxyType
 
 from nrs_design.errors import DataError
-
-# Factor to SI for every unit that a quantity may be written in; the first is the SI unit. The
-# command of the motor driver is in rpm and stays so.
-UNITS: Mapping[str, Mapping[str, float]] = MappingProxyType(
-    {
-        "time": {"s": 1.0, "ms": 1e-3},
-        "deflection": {"m": 1.0, "mm": 1e-3},
-        "force": {"N": 1.0, "mN": 1e-3, "kN": 1e3},
-        "angle": {"rad": 1.0, "mrad": 1e-3, "deg": pi / 180},
-        "torque": {"Nm": 1.0, "mNm": 1e-3},
-        "command": {"rpm": 1.0},
-        "frequency": {"hz": 1.0, "khz": 1e3},
-        "magnitude": {"db": 1.0},
-        "phase": {"deg": pi / 180, "rad": 1.0},
-    }
+from nrs_design.identification.datasets.names import (
+    UNITS,
+    Name,
+    read_name,
+    read_stamp,
+    standard_name,
 )
 
 
@@ -41,16 +30,14 @@ class Column:
         In the file.
     factor : float
         SI value over number in the file.
+    unit : str
+        The unit that its values have then.
     """
 
     index: int
     name: str
     factor: float
-
-
-def standard_name(quantity: str) -> str:
-    """Return the name of a column in SI, such as ``force_N``."""
-    return f"{quantity}_{next(iter(UNITS[quantity]))}"
+    unit: str
 
 
 def parse_mapping(entries: Sequence[str]) -> dict[str, str]:
@@ -83,7 +70,8 @@ def find_columns(
     layouts: Sequence[tuple[str, ...]],
     mapping: Mapping[str, str],
     path: Path,
-    line: int,
+    line: int | None,
+    optional: tuple[str, ...] = (),
 ) -> tuple[tuple[str, ...], dict[str, dict[str, Column]]]:
     """Find the columns of the first layout that a header has in full.
 
@@ -97,6 +85,8 @@ def find_columns(
         From a name in the file to ours.
     path, line
         Of the header, for errors.
+    optional : tuple of str
+        Quantities that are taken where they are there.
 
     Returns
     -------
@@ -111,16 +101,22 @@ def find_columns(
         If a column is missing, is there twice, or has a wrong unit.
     """
     _check_mapped(mapping, header, path, line)
-    wanted = {quantity for layout in layouts for quantity in layout}
-    found = _grouped(header, wanted, mapping, path, line)
+    wanted = {quantity for layout in layouts for quantity in layout} | set(optional)
+    found, faults = _grouped(header, wanted, mapping, path, line)
+    for quantity, error in faults:
+        # What was mapped, or would be judged, must not fall away in silence.
+        if quantity in optional:
+            raise error
     for layout in layouts:
-        groups = _complete(found, layout)
+        groups = _complete(found, layout, optional)
         if groups:
             return layout, groups
-    raise _missing(found, header, layouts, path, line)
+    raise faults[0][1] if faults else _missing(found, header, layouts, path, line)
 
 
-def _check_mapped(mapping: Mapping[str, str], header: Sequence[str], path: Path, line: int) -> None:
+def _check_mapped(
+    mapping: Mapping[str, str], header: Sequence[str], path: Path, line: int | None
+) -> None:
     for theirs in mapping:
         if theirs not in header:
             near = difflib.get_close_matches(theirs, header, n=1)
@@ -135,60 +131,84 @@ def _grouped(
     wanted: AbstractSet[str],
     mapping: Mapping[str, str],
     path: Path,
-    line: int,
-) -> dict[str, dict[str, Column]]:
-    """Sort the columns of the wanted quantities by group and quantity."""
+    line: int | None,
+) -> tuple[dict[str, dict[str, Column]], list[tuple[str, DataError]]]:
+    """Sort the columns of the wanted quantities; also return those whose unit is not known."""
     found: dict[str, dict[str, Column]] = {}
-    for index, name in enumerate(header):
-        ours = mapping.get(name, name)
-        if ours.partition("_")[0] not in wanted:
+    faults: list[tuple[str, DataError]] = []
+    named = {_split(ours, path, "", line).quantity for ours in mapping.values()}
+    for index, text in enumerate(header):
+        ours = mapping.get(text)
+        name = read_name(text if ours is None else ours)
+        # Who maps a quantity means this column, and no other that may be called like it.
+        if name is None or name.quantity not in wanted or (ours is None and name.quantity in named):
             continue
-        quantity, unit, group = _split(ours, path, "", line)
-        if quantity in found.setdefault(group, {}):
+        if not name.known:
+            faults.append((name.quantity, _unknown_unit(name, text, "", path, line)))
+            continue
+        if name.quantity in found.setdefault(name.group, {}):
+            first = found[name.group][name.quantity].name
             raise DataError(
-                f"the {quantity} is there twice ({found[group][quantity].name!r} and {name!r})",
+                f"the {name.quantity} is there twice ({first!r} and {text!r})",
                 path=path,
                 line=line,
-                remedy="rename one of them, or tell groups apart by a suffix such as _1",
+                remedy="rename one of them, tell groups apart by a suffix such as _1, or choose "
+                f"with --map {standard_name(name.quantity)}=NAME",
             )
-        found[group][quantity] = Column(index, name, UNITS[quantity][unit])
-    return found
+        found[name.group][name.quantity] = Column(index, text, name.factor, name.read_as)
+    if "time" in wanted and not any("time" in group for group in found.values()):
+        _add_stamp(header, found)
+    return found, faults
+
+
+def _add_stamp(header: Sequence[str], found: dict[str, dict[str, Column]]) -> None:
+    """Take the first time stamp of a bag for the time."""
+    for index, text in enumerate(header):
+        name = read_stamp(text)
+        if name is not None:
+            found.setdefault("", {})["time"] = Column(index, text, name.factor, name.read_as)
+            return
 
 
 def _complete(
-    found: dict[str, dict[str, Column]], layout: tuple[str, ...]
+    found: dict[str, dict[str, Column]], layout: tuple[str, ...], optional: tuple[str, ...]
 ) -> dict[str, dict[str, Column]]:
     shared = {layout[0]: found.get("", {}).get(layout[0])}
     groups: dict[str, dict[str, Column]] = {}
     for group, columns in found.items():
         available = {key: column for key, column in shared.items() if column} | columns
         if set(layout) <= set(available):
-            groups[group] = {quantity: available[quantity] for quantity in layout}
+            taken = (*layout, *(key for key in optional if key in available))
+            groups[group] = {quantity: available[quantity] for quantity in taken}
     return groups
 
 
-def _split(name: str, path: Path | None, prefix: str, line: int | None = None) -> tuple[str, ...]:
-    """Take a name apart: quantity, unit, group."""
-    quantity, _, rest = name.partition("_")
-    unit, _, group = rest.partition("_")
-    known = UNITS.get(quantity)
-    if known is None:
+def _split(text: str, path: Path | None, prefix: str, line: int | None = None) -> Name:
+    """Take a name of ours apart, and check its unit."""
+    name = read_name(text)
+    if name is None:
         raise DataError(
-            f"{prefix}{name!r} is no column of ours",
+            f"{prefix}{text!r} is no column of ours",
             path=path,
             line=line,
             remedy=f"these are {', '.join(map(standard_name, UNITS))}",
         )
-    if unit not in known:
-        fault = f"has the unit {unit!r}" if unit else "has no unit"
-        units = " or ".join(f"{quantity}_{key}" for key in known)
-        raise DataError(
-            f"{prefix}the column {name!r} {fault}",
-            path=path,
-            line=line,
-            remedy=f"expected {units}; --map gives a column another name",
-        )
-    return quantity, unit, group
+    if not name.known:
+        raise _unknown_unit(name, text, prefix, path, line)
+    return name
+
+
+def _unknown_unit(
+    name: Name, text: str, prefix: str, path: Path | None, line: int | None
+) -> DataError:
+    fault = f"has the unit {name.unit!r}" if name.unit else "has no unit"
+    units = " or ".join(f"{name.quantity}_{key}" for key in UNITS[name.quantity])
+    return DataError(
+        f"{prefix}the column {text!r} {fault}",
+        path=path,
+        line=line,
+        remedy=f"expected {units}; --map gives a column another name",
+    )
 
 
 def _missing(
@@ -196,7 +216,7 @@ def _missing(
     header: Sequence[str],
     layouts: Sequence[tuple[str, ...]],
     path: Path,
-    line: int,
+    line: int | None,
 ) -> DataError:
     present = {quantity for columns in found.values() for quantity in columns}
     nearest = min(layouts, key=lambda layout: len(set(layout) - present))

@@ -10,7 +10,6 @@ import numpy as np
 
 from nrs_design.errors import DataError
 from nrs_design.identification.datasets.checks import (
-    check_clipped,
     check_saturation,
     check_time,
     check_varies,
@@ -20,7 +19,12 @@ from nrs_design.models.contact.motion import Motion
 
 LINEAR = ("time", "deflection", "force")
 ROTATIONAL = ("time", "angle", "torque")
-SINUSOID = ("time", "command", "angle")
+ANGLE = ("time", "command", "angle")
+VELOCITY = ("time", "command", "velocity")
+FREE = (("input", "output"),)
+FOLLOWED = tuple(
+    ("command", seen) for seen in ("angle", "velocity", "torque", "force", "deflection")
+)
 RESPONSE = ("frequency", "magnitude", "phase")
 
 
@@ -57,8 +61,8 @@ class TissueRecord:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class SinusoidRecord:
-    """Response of the actuator to a sinusoidal command.
+class ActuatorRecord:
+    """Response of the actuator to a command.
 
     Parameters
     ----------
@@ -66,20 +70,31 @@ class SinusoidRecord:
         The file.
     group : str
         Suffix of its columns, empty for none.
-    time, command, angle : ndarray, shape (n,)
-        In s, rpm and rad.
+    time, command, output : ndarray, shape (n,)
+        In s, in the unit of the command, and in rad or rad/s.
+    is_angle : bool
+        Whether the output is an angle; otherwise it is a velocity.
+    unit : str
+        Of the command, such as ``rpm``, ``V``, ``A`` or ``counts``.
     """
 
     source: Source
     group: str
     time: Array
     command: Array
-    angle: Array
+    output: Array
+    is_angle: bool = True
+    unit: str = "rpm"
 
     @property
     def name(self) -> str:
         """File name without its ending, and the group."""
         return self.source.path.stem + (f"/{self.group}" if self.group else "")
+
+    @property
+    def step(self) -> float:
+        """Usual time between samples in s."""
+        return float(np.median(np.diff(self.time)))
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -93,7 +108,7 @@ class FrequencyResponse:
     frequency : ndarray, shape (m,)
         In rad/s.
     response : ndarray of complex, shape (m,)
-        In (rad/s)/rpm.
+        In rad/s for each unit of the command.
     """
 
     source: Source
@@ -135,24 +150,83 @@ def read_tissue(
 
 def read_actuator(
     path: Path, mapping: Mapping[str, str] | None = None, progress: Progress = lambda done: None
-) -> tuple[SinusoidRecord, ...] | FrequencyResponse:
-    """Read sinusoid records, one or several groups of columns, or a ready frequency response.
+) -> tuple[ActuatorRecord, ...] | FrequencyResponse:
+    """Read records of the actuator, one or several groups of columns, or a frequency response.
 
     Parameters
     ----------
     path, mapping, progress
-        As in `read_tissue`; the columns are ``time_s, command_rpm, angle_rad`` (with suffixes
-        ``_1``, ``_2`` for groups), or ``frequency_hz, magnitude_db, phase_deg``.
+        As in `read_tissue`; the columns are ``time_s, command_rpm`` and ``angle_rad`` or
+        ``velocity_rad_s`` (with suffixes ``_1``, ``_2`` for groups), or ``frequency_hz,
+        magnitude_db, phase_deg``.
 
     Raises
     ------
     DataError
         As in `read_tissue`.
     """
-    table = read_table(path, (SINUSOID, RESPONSE), mapping or {}, progress)
+    table = read_table(path, (ANGLE, VELOCITY, RESPONSE), mapping or {}, progress)
     if table.layout == RESPONSE:
         return _response(table)
-    return tuple(_sinusoid(table, group) for group in table.groups)
+    return tuple(_actuator(table, group) for group in table.groups)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class SignalRecord:
+    """What was sent, and what came of it.
+
+    Parameters
+    ----------
+    source : Source
+        The file.
+    time, sent, seen : ndarray, shape (n,)
+        In s, and in whatever units.
+    names : tuple of str
+        Of both columns in the file.
+    """
+
+    source: Source
+    time: Array
+    sent: Array
+    seen: Array
+    names: tuple[str, str]
+
+    @property
+    def step(self) -> float:
+        """Usual time between samples in s."""
+        return float(np.median(np.diff(self.time)))
+
+
+def read_signals(
+    path: Path,
+    mapping: Mapping[str, str] | None = None,
+    progress: Progress = lambda done: None,
+) -> SignalRecord:
+    """Read two columns: a command, and what follows it.
+
+    Parameters
+    ----------
+    path, mapping, progress
+        As in `read_tissue`; the columns are ``time_s, command_rpm`` and ``angle_rad`` or another
+        measured one; any two others are mapped to ``input_any`` and ``output_any``.
+
+    Raises
+    ------
+    DataError
+        As in `read_tissue`.
+    """
+    mapping = mapping or {}
+    chosen = {"input_any", "output_any"} & set(mapping.values())
+    layouts = [("time", *pair) for pair in (FREE if chosen else FOLLOWED)]
+    table = read_table(path, layouts, mapping, progress)
+    (columns,) = _one_group(table)
+    (found,) = table.columns.values()
+    time, sent, seen = (columns[quantity] for quantity in table.layout)
+    check_time(table, time)
+    names = found[table.layout[1]].name, found[table.layout[2]].name
+    for name, values in zip(names, (sent, seen), strict=True):
+        check_varies(table, name, values)
+    return SignalRecord(table.source, time - time[0], sent, seen, names)
 
 
 def _one_group(table: Table) -> Sequence[dict[str, Array]]:
@@ -165,13 +239,14 @@ def _one_group(table: Table) -> Sequence[dict[str, Array]]:
     return list(table.groups.values())
 
 
-def _sinusoid(table: Table, group: str) -> SinusoidRecord:
-    time, command, angle = (table.groups[group][quantity] for quantity in SINUSOID)
+def _actuator(table: Table, group: str) -> ActuatorRecord:
+    time, command, output = (table.groups[group][quantity] for quantity in table.layout)
     check_time(table, time)
     check_varies(table, "command", command)
-    check_varies(table, "angle", angle)
-    check_clipped(table, "command", command)
-    return SinusoidRecord(table.source, group, time - time[0], command, angle)
+    check_varies(table, table.layout[2], output)
+    unit = table.columns[group]["command"].unit
+    is_angle = table.layout == ANGLE
+    return ActuatorRecord(table.source, group, time - time[0], command, output, is_angle, unit)
 
 
 def _response(table: Table) -> FrequencyResponse:

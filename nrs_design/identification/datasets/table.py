@@ -1,11 +1,11 @@
-"""Reading numbers from a CSV file, block by block, so that the text is never in memory at once."""
+"""Reading the columns of a file, whatever its format."""
 
 from __future__ import annotations
 
-import csv
 import hashlib
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from io import BytesIO
 from pathlib import Path
 from typing import BinaryIO, NoReturn
 
@@ -14,18 +14,15 @@ from numpy.typing import NDArray
 
 from nrs_design.errors import DataError
 from nrs_design.files import open_regular
+from nrs_design.identification.datasets.arrays import ARRAYS, check_kind, read_sheet
 from nrs_design.identification.datasets.columns import Column, find_columns
-from nrs_design.proof.text import quoted
+from nrs_design.identification.datasets.header import BLOCK, SYNTHETIC, read_header
+from nrs_design.identification.datasets.text import MAX_ROWS, Parser, read_blocks
 
 Array = NDArray[np.float64]
 Progress = Callable[[float], None]
 
-BLOCK = 1 << 20
-MAX_COLUMNS = 1000
-MAX_NAME = 100
-MAX_ROWS = 10_000_000
-MAX_PREAMBLE = 100
-SYNTHETIC = "synthetic"
+SHEET = ".xlsx"
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,14 +56,20 @@ class Table:
         Quantities that were found.
     groups : dict of str to dict of str to ndarray
         Values by group and quantity, shape (n,) each.
-    first_line : int
-        Line of the first row, for messages.
+    columns : dict of str to dict of str to Column
+        Where they come from, and their units.
+    labels : tuple of str
+        Words of the column of modes; its values are their indices.
+    first_line : int or None
+        Line of the first row, for messages; None where the file has no lines.
     """
 
     source: Source
     layout: tuple[str, ...]
     groups: dict[str, dict[str, Array]]
-    first_line: int
+    columns: dict[str, dict[str, Column]]
+    labels: tuple[str, ...]
+    first_line: int | None
 
     def fail(self, message: str, row: int, remedy: str) -> NoReturn:
         """Raise an error about a row, counted from 0.
@@ -80,14 +83,28 @@ class Table:
         remedy : str
             What to do about it.
         """
-        raise DataError(message, path=self.source.path, line=self.first_line + row, remedy=remedy)
+        line = None if self.first_line is None else self.first_line + row
+        where = f" (row {row + 1})" if line is None else ""
+        raise DataError(message + where, path=self.source.path, line=line, remedy=remedy)
 
 
 @dataclass(frozen=True, slots=True)
-class _Header:
-    names: list[str]
-    line: int
-    synthetic: bool
+class Wanted:
+    """What is looked for in a file.
+
+    Parameters
+    ----------
+    layouts : sequence of tuple of str
+        Quantities that belong together, see `names.UNITS`; the first that is there is taken.
+    mapping : mapping of str to str
+        From a name in the file to ours.
+    optional : tuple of str
+        Quantities that are taken where they are there.
+    """
+
+    layouts: Sequence[tuple[str, ...]]
+    mapping: Mapping[str, str]
+    optional: tuple[str, ...] = ()
 
 
 def read_table(
@@ -95,17 +112,17 @@ def read_table(
     layouts: Sequence[tuple[str, ...]],
     mapping: Mapping[str, str],
     progress: Progress = lambda fraction: None,
+    optional: tuple[str, ...] = (),
 ) -> Table:
     """Read the columns of one of several layouts.
 
     Parameters
     ----------
     path : Path
-        A CSV file: comments (``# ...``), one header line, rows of numbers.
-    layouts : sequence of tuple of str
-        Quantities that belong together, see `columns.UNITS`.
-    mapping : mapping of str to str
-        From a name in the file to ours.
+        Text with a line of names and rows of numbers; or ``.mat``, ``.npz``, ``.parquet``,
+        ``.xlsx``.
+    layouts, mapping, optional
+        See `Wanted`.
     progress : callable
         Told the fraction that has been read.
 
@@ -114,181 +131,126 @@ def read_table(
     DataError
         With the line, if the file cannot be read, a column is missing, or a value is no number.
     """
+    wanted = Wanted(layouts, mapping, optional)
     try:
         size = max(path.stat().st_size, 1)
         if path.is_dir():
-            raise DataError("is a folder", path=path, remedy="name CSV files")
+            raise DataError("is a folder", path=path, remedy="name files of data")
         with open_regular(path) as file:
-            return _read(file, path, layouts, mapping, lambda done: progress(done / size))
+            check_kind(file, path)
+            return _read(file, path, wanted, lambda done: progress(min(done / size, 1.0)))
     except OSError as error:
         raise DataError(
             f"cannot be read ({error.strerror})", path=path, remedy="check the name"
         ) from error
 
 
-def _read(
-    file: BinaryIO,
-    path: Path,
-    layouts: Sequence[tuple[str, ...]],
-    mapping: Mapping[str, str],
-    progress: Progress,
-) -> Table:
+def _read(file: BinaryIO, path: Path, wanted: Wanted, progress: Progress) -> Table:
+    kind = path.suffix.lower()
+    if kind in ARRAYS:
+        table = _read_arrays(file, path, wanted)
+    elif kind == SHEET:
+        digest = _digest(file)
+        table = _read_text(BytesIO(read_sheet(file, path)), path, wanted, digest, lambda done: None)
+    else:
+        table = _read_text(file, path, wanted, None, progress)
+    progress(float(path.stat().st_size))
+    return table
+
+
+def _read_arrays(file: BinaryIO, path: Path, wanted: Wanted) -> Table:
+    digest = _digest(file)
+    arrays, words = ARRAYS[path.suffix.lower()](file, path)
+    names = list(arrays)
+    layout, groups = find_columns(
+        names, wanted.layouts, wanted.mapping, path, None, wanted.optional
+    )
+    labels: list[str] = []
+    data = {
+        group: {
+            key: _values(arrays[column.name], column, path, labels) * column.factor
+            for key, column in found.items()
+        }
+        for group, found in groups.items()
+    }
+    lengths = {len(values) for columns in data.values() for values in columns.values()}
+    if len(lengths) > 1:
+        raise DataError(
+            f"its columns have different lengths: {', '.join(map(str, sorted(lengths)))}",
+            path=path,
+            remedy="save columns of one record, as long as its time",
+        )
+    synthetic = any(SYNTHETIC in text.lower() for text in (*names, *words))
+    return Table(Source(path, digest, synthetic), layout, data, groups, tuple(labels), None)
+
+
+def _digest(file: BinaryIO) -> str:
+    """Return the hash of a file, and stay at its beginning."""
     digest = hashlib.sha256()
-    header = _read_header(file, path, digest.update)
-    layout, groups = find_columns(header.names, layouts, mapping, path, header.line)
+    while chunk := file.read(BLOCK):
+        digest.update(chunk)
+    file.seek(0)
+    return digest.hexdigest()
+
+
+def _values(array: NDArray[np.generic], column: Column, path: Path, labels: list[str]) -> Array:
+    flat = array.reshape(-1)
+    if array.ndim > 1 and flat.size != max(array.shape):
+        shape = " x ".join(map(str, array.shape))
+        raise DataError(
+            f"{column.name} is {shape}, not one column",
+            path=path,
+            remedy="save each column under a name of its own, such as force_N",
+        )
+    if column.unit == "":
+        words = [str(word).strip() for word in flat.tolist()]
+        labels += dict.fromkeys(words)
+        return np.array([labels.index(word) for word in words], float)
+    if flat.dtype.kind not in "iuf":
+        raise DataError(
+            f"{column.name} does not hold real numbers", path=path, remedy="save it as numbers"
+        )
+    if len(flat) > MAX_ROWS:
+        raise _too_long(path)
+    values = flat.astype(float)
+    bad = np.flatnonzero(~np.isfinite(values))
+    if len(bad):
+        raise DataError(
+            f"{column.name} is {values[bad[0]]} (row {bad[0] + 1})",
+            path=path,
+            remedy="cut the record so that all values are finite",
+        )
+    return values
+
+
+def _read_text(
+    file: BinaryIO, path: Path, wanted: Wanted, digest: str | None, progress: Progress
+) -> Table:
+    hashed = hashlib.sha256()
+    header = read_header(file, path, wanted.mapping, hashed.update)
+    layout, groups = find_columns(
+        header.names, wanted.layouts, wanted.mapping, path, header.line, wanted.optional
+    )
     columns = sorted({column for group in groups.values() for column in group.values()},
                      key=lambda column: column.index)  # fmt: skip
-    parser = _Parser(path, header, columns)
+    parser = Parser(path, header, columns)
     parts: list[Array] = []
     rows = 0
-    for block in _blocks(file, path, digest.update):
+    for block in read_blocks(file, path, header.rest, hashed.update):
         parts.append(parser.parse(block, header.line + 1 + rows))
         rows += len(parts[-1])
         progress(float(file.tell()))
         if rows > MAX_ROWS:
-            raise DataError(
-                f"has more than {MAX_ROWS} rows", path=path, remedy="record at a lower rate"
-            )
+            raise _too_long(path)
     values = np.concatenate(parts) if parts else np.empty((0, len(columns)))
     at = {column: i for i, column in enumerate(columns)}
     data = {
         name: {key: values[:, at[column]] * column.factor for key, column in group.items()}
         for name, group in groups.items()
     }
-    source = Source(path, digest.hexdigest(), header.synthetic)
-    return Table(source, layout, data, header.line + 1)
+    source = Source(path, digest or hashed.hexdigest(), header.synthetic)
+    return Table(source, layout, data, groups, tuple(parser.labels), header.line + 1)
 
 
-def _read_header(file: BinaryIO, path: Path, seen: Callable[[bytes], None]) -> _Header:
-    synthetic = False
-    for line in range(1, MAX_PREAMBLE + 1):
-        raw = file.readline(BLOCK)
-        seen(raw)
-        try:
-            text = raw.decode("utf-8-sig" if line == 1 else "utf-8").strip()
-        except UnicodeDecodeError:
-            raise DataError(
-                "is no UTF-8 text", path=path, line=line, remedy="save it as CSV in UTF-8"
-            ) from None
-        if not raw:
-            break
-        if text.startswith("#"):
-            synthetic = synthetic or SYNTHETIC in text.lower()
-        elif text:
-            return _Header(_names(text, path, line), line, synthetic)
-    raise DataError("has no header line", path=path, remedy="name the columns in the first line")
-
-
-def _names(text: str, path: Path, line: int) -> list[str]:
-    if text.count(",") >= MAX_COLUMNS or max(map(len, text.split(","))) > MAX_NAME:
-        raise DataError(
-            f"has more than {MAX_COLUMNS} columns, or one with a name of over {MAX_NAME} letters",
-            path=path,
-            line=line,
-            remedy="save the columns that are needed, under short names",
-        )
-    try:
-        names = [name.strip() for name in next(csv.reader([text]))]
-    except csv.Error as error:
-        raise DataError(
-            f"has a header line that is no CSV ({error})",
-            path=path,
-            line=line,
-            remedy="save it with one header line and line ends of one kind",
-        ) from None
-    if len(names) == 1:
-        for separator, word in ((";", "semicolons"), ("\t", "tabs")):
-            if separator in text:
-                raise DataError(
-                    f"its columns are separated by {word}",
-                    path=path,
-                    line=line,
-                    remedy="save it with commas, and numbers with a decimal point",
-                )
-    if all(_is_number(name) for name in names):
-        raise DataError(
-            "begins with numbers, not with the names of its columns",
-            path=path,
-            line=line,
-            remedy="add a header such as time_s,deflection_m,force_N",
-        )
-    return names
-
-
-def _blocks(file: BinaryIO, path: Path, seen: Callable[[bytes], None]) -> Iterator[bytes]:
-    """Yield blocks of whole lines."""
-    rest = b""
-    while chunk := file.read(BLOCK):
-        seen(chunk)
-        body, newline, tail = chunk.rpartition(b"\n")
-        if newline:
-            yield rest + body + newline
-            rest = tail
-        elif len(rest) > BLOCK:
-            raise DataError("has a line of over 1 MiB", path=path, remedy="save it as CSV")
-        else:
-            rest += chunk
-    if rest.strip():
-        yield rest
-
-
-@dataclass(frozen=True, slots=True)
-class _Parser:
-    path: Path
-    header: _Header
-    columns: list[Column]
-
-    def parse(self, block: bytes, line: int) -> Array:
-        """Read a block that begins at a line; find out what is wrong only if something is."""
-        lines = block.decode("ascii", "replace").replace("\r\n", "\n").split("\n")
-        while lines and not lines[-1].strip():
-            lines.pop()
-        if not lines:
-            return np.empty((0, len(self.columns)))
-        width = len(self.header.names)
-        regular = block.count(b",") == len(lines) * (width - 1) and all(lines)
-        used = [column.index for column in self.columns]
-        try:
-            values = np.loadtxt(lines, delimiter=",", usecols=used, ndmin=2, comments=None)
-        except ValueError:
-            regular = False
-        if not regular or len(values) != len(lines) or not np.isfinite(values).all():
-            self._explain(lines, line)
-        return np.asarray(values, float)
-
-    def _explain(self, lines: list[str], line: int) -> NoReturn:
-        width = len(self.header.names)
-        for number, text in enumerate(lines, start=line):
-            cells = text.split(",")
-            if not text.strip():
-                self._fail("the row is empty", number, "remove it")
-            if len(cells) != width:
-                self._fail(
-                    f"the row has {len(cells)} values, the header {width}",
-                    number,
-                    "complete the row, or end the record before it",
-                )
-            for column in self.columns:
-                self._check(cells[column.index].strip(), column.name, number)
-        raise DataError("cannot be read", path=self.path, line=line, remedy="save it as plain CSV")
-
-    def _check(self, cell: str, name: str, line: int) -> None:
-        if not cell:
-            self._fail(f"{name} is missing", line, "end the record before it, or fill the gap")
-        if not _is_number(cell):
-            self._fail(f"{name} is {quoted(cell)}, not a number", line, "write decimal numbers")
-        if not np.isfinite(float(cell)):
-            self._fail(
-                f"{name} is {cell[:30]}", line, "cut the record so that all values are finite"
-            )
-
-    def _fail(self, message: str, line: int, remedy: str) -> NoReturn:
-        raise DataError(message, path=self.path, line=line, remedy=remedy)
-
-
-def _is_number(text: str) -> bool:
-    try:
-        float(text)
-    except ValueError:
-        return False
-    return "_" not in text and text.isascii()
+def _too_long(path: Path) -> DataError:
+    return DataError(f"has more than {MAX_ROWS} rows", path=path, remedy="record at a lower rate")

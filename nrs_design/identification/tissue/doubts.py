@@ -7,10 +7,12 @@ from collections.abc import Iterator
 import numpy as np
 from numpy.typing import NDArray
 
-from nrs_design.identification.datasets import TissueRecord
 from nrs_design.identification.rounding import rounding_of_velocity
-from nrs_design.identification.statistics import Uncertainty
+from nrs_design.identification.statistics import Uncertainty, student_quantile
+from nrs_design.identification.tissue.residuals import doubt_residuals
+from nrs_design.identification.tissue.trial import Trial
 from nrs_design.models.contact import AbstractContactLaw
+from nrs_design.models.contact.law import STIFFNESS
 
 Array = NDArray[np.float64]
 
@@ -24,28 +26,35 @@ _LOADED = 0.1
 
 def doubts(
     law: AbstractContactLaw,
-    record: TissueRecord,
+    trial: Trial,
     found: Uncertainty,
     bounds: tuple[Array, Array],
+    residuals: Array,
+    sensitivities: Array,
 ) -> tuple[str, ...]:
     """List what makes a fit doubtful, in words; nothing for a sound one.
 
     Parameters
     ----------
-    law : AbstractTissueLaw
+    law : AbstractContactLaw
         That was fitted.
-    record : TissueRecord
-        To which data.
+    trial : Trial
+        To which data; n used samples.
     found : Uncertainty
         Of its parameters.
     bounds : tuple of ndarray
         Logarithms between which they were sought: lower, upper.
+    residuals : ndarray, shape (n,)
+        Measured less fitted force.
+    sensitivities : ndarray, shape (n, p + m)
+        Derivatives of the force by p parameters and m offsets.
     """
     return (
+        *doubt_residuals(trial, residuals, sensitivities, len(law.values)),
         *_bounds(law, bounds),
         *_errors(law, found),
-        *_times(law, record),
-        *_motion(law, record),
+        *_times(law, trial),
+        *_motion(law, trial),
     )
 
 
@@ -58,30 +67,32 @@ def _bounds(law: AbstractContactLaw, bounds: tuple[Array, Array]) -> Iterator[st
 
 
 def _errors(law: AbstractContactLaw, found: Uncertainty) -> Iterator[str]:
-    for name, error in zip(law.parameters(), found.errors, strict=True):
+    quantile = student_quantile(found.degrees)
+    for name, kind, error in zip(law.parameters(), law.kinds, found.errors, strict=True):
         if not error <= LARGEST_ERROR:
             size = f"{100 * error:.0f} %" if error < 10 else "over 1000 %"
             yield f"{name} has a relative standard error of {size}"
+        if kind == STIFFNESS and not quantile * error < 1:
+            yield f"the interval of {name} reaches 0"
 
 
-def _times(law: AbstractContactLaw, record: TissueRecord) -> Iterator[str]:
+def _times(law: AbstractContactLaw, trial: Trial) -> Iterator[str]:
     tau = law.relaxation_time
     if tau is None:
         return
-    if tau > record.duration:
+    if tau > trial.duration:
         yield (
-            f"the record ({record.duration:.3g} s) is shorter than the relaxation time "
-            f"({tau:.3g} s)"
+            f"the record ({trial.duration:.3g} s) is shorter than the relaxation time ({tau:.3g} s)"
         )
-    step = float(np.median(record.motion.steps))
+    step = float(np.median(trial.motion.steps))
     if tau < step:
         yield f"the relaxation time ({tau:.3g} s) is below the step of the record ({step:.3g} s)"
 
 
-def _motion(law: AbstractContactLaw, record: TissueRecord) -> Iterator[str]:
-    motion = record.motion
+def _motion(law: AbstractContactLaw, trial: Trial) -> Iterator[str]:
+    motion = trial.motion
     if law.takes_velocity:
-        part = rounding_of_velocity(motion.time, motion.deflection)
+        part = rounding_of_velocity(motion.time, trial.position)
         if part > _ROUNDING:
             yield (
                 f"{100 * min(part, 1.0):.0f} % of the power of the velocity is rounding of the "

@@ -7,8 +7,13 @@ from dataclasses import dataclass
 
 from nrs_design.errors import DataError
 from nrs_design.identification.datasets import TissueRecord
+from nrs_design.identification.statistics import Estimate
 from nrs_design.identification.tissue.pool import ModelFit, fit_model
-from nrs_design.models.contact import LAWS
+from nrs_design.identification.tissue.ranges import check_spread
+from nrs_design.identification.tissue.tangent import Tangent, tangent
+from nrs_design.identification.tissue.trial import Preparation, Trial, prepare
+from nrs_design.models.contact import LAWS, AbstractContactLaw
+from nrs_design.spec.provenance import COVERS, Coverage
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -25,12 +30,22 @@ class TissueIdentification:
         One of them.
     reason : str
         Why that one.
+    tangent : Tangent or None
+        Of the chosen law about a preload, if one is given.
     """
 
     records: tuple[TissueRecord, ...]
     models: tuple[ModelFit, ...]
     chosen: ModelFit
     reason: str
+    tangent: Tangent | None = None
+
+    @property
+    def written(self) -> tuple[AbstractContactLaw, tuple[Estimate, ...]]:
+        """The law and the ranges for a spec: of the chosen law, or of its tangent."""
+        if self.tangent is not None:
+            return self.tangent.law, self.tangent.ranges
+        return self.chosen.law, self.chosen.ranges
 
     @property
     def synthetic(self) -> bool:
@@ -50,6 +65,16 @@ class TissueIdentification:
         return (better, *self.chosen.doubts)
 
     @property
+    def trials(self) -> tuple[Trial, ...]:
+        """The records as they were fitted."""
+        return tuple(fit.trial for fit in self.chosen.fits)
+
+    @property
+    def covers(self) -> str:
+        """What the ranges hold, in words."""
+        return COVERS[self.chosen.coverage]
+
+    @property
     def rotational(self) -> bool:
         """Whether the parameters are those of a rotation."""
         return self.records[0].rotational
@@ -58,6 +83,9 @@ class TissueIdentification:
 def identify_tissue(
     records: Sequence[TissueRecord],
     law: str | None = None,
+    preparation: Preparation | None = None,
+    coverage: Coverage = "confidence",
+    preload: tuple[float, float] | None = None,
     progress: Callable[[str], None] = lambda step: None,
 ) -> TissueIdentification:
     """Fit all laws to all records and choose.
@@ -68,21 +96,32 @@ def identify_tissue(
         Linear ones or rotational ones.
     law : str, optional
         Name of the law to choose whatever the comparison says.
+    preparation : Preparation, optional
+        What is done to each record first: air and rupture cut off, offsets fitted or given.
+    coverage : {"confidence", "tolerance", "prediction"}
+        What the ranges shall hold: the mean of the specimens, 95 % of them, or the next one.
+    preload : tuple of float, optional
+        Least and largest deflection in m (rad) about which a power law is linearized.
     progress : callable
         Told the name of each law.
 
     Raises
     ------
     DataError
-        If there is no record, linear and rotational ones are mixed, or one is there twice.
+        If there is no record, linear and rotational ones are mixed, or one is there twice; if too
+        little of one is left to fit, or the records are too few for what ranges shall hold.
     """
     _check(records)
+    if coverage != "confidence":
+        check_spread(coverage, len(records))
+    trials = [prepare(record, preparation) for record in records]
     models = []
     for name, kind in LAWS.items():
         progress(name)
-        models.append(fit_model(kind, records))
+        models.append(fit_model(kind, trials, coverage))
     chosen, reason = _choose(models) if law is None else _told(models, law)
-    return TissueIdentification(tuple(records), tuple(models), chosen, reason)
+    about = None if preload is None else tangent(chosen, preload)
+    return TissueIdentification(tuple(records), tuple(models), chosen, reason, about)
 
 
 def _check(records: Sequence[TissueRecord]) -> None:

@@ -1,26 +1,43 @@
-"""One law fitted to one record: the simulated force against the measured one."""
+"""One law fitted to one record: the simulated force against the measured one.
+
+The search is over the parameters of the law alone; `problem` eliminates the offsets.
+"""
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from nrs_design.identification.datasets import TissueRecord
 from nrs_design.identification.rounding import rounding_scatter
-from nrs_design.identification.statistics import Estimate, Uncertainty, uncertainty
+from nrs_design.identification.statistics import (
+    CONFIDENCE,
+    Estimate,
+    Uncertainty,
+    uncertainty,
+)
 from nrs_design.identification.tissue.doubts import doubts
-from nrs_design.identification.tissue.starts import box, scan
-from nrs_design.models.contact import AbstractContactLaw, Motion
+from nrs_design.identification.tissue.offsets import (
+    Offset,
+    estimate_offsets,
+    fits_zero,
+)
+from nrs_design.identification.tissue.problem import Problem
+from nrs_design.identification.tissue.starts import box
+from nrs_design.identification.tissue.trial import Trial, prepare
+from nrs_design.models.contact import AbstractContactLaw
 
 Array = NDArray[np.float64]
 
 STARTS = 3
 # Samples that suffice to find the right valley.
-COARSE = 20_000
+COARSE = 4_000
 # Starts whose costs end within this factor of the best one have found the same valley.
 _SAME = 1e-6
+# How far the position of contact is sought from where it was found, in travels of the record.
+_REACH = 0.5
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -29,32 +46,55 @@ class RecordFit:
 
     Parameters
     ----------
-    record : TissueRecord
-        The data.
+    trial : Trial
+        The data as they were fitted.
     law : AbstractContactLaw
         With the fitted parameters.
+    offsets : tuple of Offset
+        Position of contact, tare and drift.
+    fitted : ndarray, shape (n,)
+        Force of law and offsets in all samples of the trial.
     uncertainty : Uncertainty
         Of the logarithms of the parameters.
     rmse : float
         Root of the mean squared force error, in N (N m).
+    free : int
+        Parameters and offsets that were fitted.
     agreeing, starts : int
         How many searches there were, and how many of them ended here.
     doubts : tuple of str
         Why the record may not determine the parameters.
     """
 
-    record: TissueRecord
+    trial: Trial
     law: AbstractContactLaw
+    offsets: tuple[Offset, ...]
+    fitted: Array
     uncertainty: Uncertainty
     rmse: float
+    free: int
     agreeing: int
     starts: int
     doubts: tuple[str, ...]
 
     @property
+    def record(self) -> TissueRecord:
+        """The record as it was read."""
+        return self.trial.record
+
+    @property
     def estimates(self) -> tuple[Estimate, ...]:
         """The parameters with their 95 % intervals."""
-        return self.uncertainty.estimates(np.log(self.law.values))
+        return self.estimates_at(CONFIDENCE)
+
+    def estimates_at(self, confidence: float) -> tuple[Estimate, ...]:
+        """Return the parameters with intervals of some confidence."""
+        return self.uncertainty.estimates(np.log(self.law.values), confidence)
+
+    @property
+    def r2(self) -> float:
+        """Part of the variance of the force that is explained."""
+        return 1 - self.rmse**2 / float(np.var(self.trial.measured))
 
     @property
     def aic(self) -> float:
@@ -64,106 +104,142 @@ class RecordFit:
     @property
     def bic(self) -> float:
         """Schwarz's criterion ``n log(SSE/n) + (p + 1) log n``."""
-        return self._fidelity + self._count * float(np.log(len(self.record.force)))
+        return self._fidelity + self._count * float(np.log(self._samples))
+
+    @property
+    def _samples(self) -> int:
+        return int(self.trial.used.sum())
 
     @property
     def _fidelity(self) -> float:
-        return 2 * len(self.record.force) * float(np.log(max(self.rmse, np.finfo(float).tiny)))
+        return 2 * self._samples * float(np.log(max(self.rmse, np.finfo(float).tiny)))
 
     @property
     def _count(self) -> int:
-        """Parameters, and the variance of the noise."""
-        return len(self.law.values) + 1
+        """Parameters, offsets, and the variance of the noise."""
+        return self.free + 1
 
 
-def fit_record(kind: type[AbstractContactLaw], record: TissueRecord) -> RecordFit:
+def fit_record(kind: type[AbstractContactLaw], record: TissueRecord | Trial) -> RecordFit:
     """Fit a law by output error.
 
     Minimizes the squared difference of measured and simulated force over the logarithms of the
-    parameters. Simulation and derivatives are exact for a piecewise linear deflection; the force
-    is never differentiated.
+    parameters, with offsets of force and deflection. Simulation and derivatives are exact for a
+    piecewise linear deflection; the force is never differentiated.
 
     Parameters
     ----------
     kind : type
         One of `nrs_design.models.contact.LAWS`.
-    record : TissueRecord
-        n samples.
+    record : TissueRecord or Trial
+        n samples; a record is prepared in the default way.
     """
-    bounds, coarse = box(kind, record), _thin(record)
-    candidates = sorted(scan(kind, coarse), key=lambda law: rmse(law, coarse))[:STARTS]
-    ends = [_search(kind, coarse, law, bounds) for law in candidates]
-    costs = np.array([rmse(law, coarse) ** 2 for law in ends])
+    trial = record if isinstance(record, Trial) else prepare(record)
+    bounds = box(kind, trial)
+    problem = Problem(kind, trial)
+    coarse = Problem(kind, trial.thinned(-(-len(trial.force) // COARSE)))
+    candidates = sorted(coarse.starts(), key=coarse.cost)
+    ends = [_search(coarse, start, bounds) for start in candidates[:STARTS]]
+    costs = np.array([coarse.cost(end) for end in ends])
     best = int(np.argmin(costs))
-    law = ends[best] if coarse is record else _search(kind, record, ends[best], bounds)
-    known = _uncertainty(law, record)
+    point = ends[best]
+    if coarse.trial is not trial:
+        point = _search(problem, point, bounds)
+    agreeing = int(np.sum(costs <= costs[best] * (1 + _SAME)))
+    return _judge(problem, point, bounds, agreeing, len(ends))
+
+
+def rmse(law: AbstractContactLaw, record: TissueRecord | Trial) -> float:
+    """Return the root of the mean squared force error, with the best offsets for this law."""
+    trial = record if isinstance(record, Trial) else prepare(record)
+    problem = Problem(type(law), trial)
+    point = np.append(np.log(law.values), problem.no_shift)
+    if fits_zero(type(law), trial):
+        point = _place(problem, point)
+    return float(np.sqrt(problem.cost(point)))
+
+
+def _judge(
+    problem: Problem, point: Array, bounds: tuple[Array, Array], agreeing: int, starts: int
+) -> RecordFit:
+    trial, law = problem.trial, problem.law(point)
+    constants, residuals = problem.solve(point)
+    J = np.column_stack([problem.sensitivities(point), problem.constants(point)])
+    known = _uncertainty(trial, J, residuals)
+    p = len(law.values)
+    shift = problem.shift(point) if len(point) > p else None
+    offsets = estimate_offsets(
+        law, trial, problem.names, constants[: len(problem.names)], shift, known
+    )
+    own = Uncertainty(known.covariance[:p, :p], known.degrees, known.whiteness)
+    said = list(doubts(law, trial, own, bounds, residuals, J))
+    if shift is not None and abs(point[p]) > _REACH * (1 - 1e-3):
+        said.append("the position of contact is at the end of its box")
     return RecordFit(
-        record=record,
+        trial=trial,
         law=law,
-        uncertainty=known,
-        rmse=rmse(law, record),
-        agreeing=int(np.sum(costs <= costs[best] * (1 + _SAME))),
-        starts=len(ends),
-        doubts=doubts(law, record, known, bounds),
+        offsets=offsets,
+        fitted=problem.simulate_all(point, constants),
+        uncertainty=own,
+        rmse=float(np.sqrt(np.mean(residuals**2))),
+        free=J.shape[1],
+        agreeing=agreeing,
+        starts=starts,
+        doubts=tuple(said),
     )
 
 
-def _thin(record: TissueRecord) -> TissueRecord:
-    """Return a shorter record to search in; only the last search needs every sample."""
-    every = -(-len(record.force) // COARSE)
-    if every == 1:
-        return record
-    motion = Motion(record.motion.time[::every], record.motion.deflection[::every])
-    return replace(record, motion=motion, force=record.force[::every])
+def _uncertainty(trial: Trial, J: Array, residuals: Array) -> Uncertainty:
+    deflection = trial.deflection
+    moving = np.linalg.norm(deflection - deflection.mean())
+    stiffness = float(np.linalg.norm(trial.measured - trial.measured.mean()) / moving)
+    scatter = rounding_scatter(deflection, J, stiffness)
+    return uncertainty(J, residuals, scatter=scatter)
 
 
-def residuals(law: AbstractContactLaw, record: TissueRecord) -> Array:
-    """Return measured less simulated force, shape (n,)."""
-    return record.force - law.simulate(record.motion)
+def _place(problem: Problem, point: Array) -> Array:
+    """Return the point with the best position of contact for its law."""
+    from scipy.optimize import minimize_scalar
+
+    def at(shift: float) -> Array:
+        return np.append(point[:-1], shift)
+
+    grid = np.linspace(-_REACH, _REACH, 41)
+    near = float(grid[int(np.argmin([problem.cost(at(shift)) for shift in grid]))])
+    step = float(grid[1] - grid[0])
+    found = minimize_scalar(
+        lambda shift: problem.cost(at(float(shift))),
+        bounds=(max(near - step, -_REACH), min(near + step, _REACH)),
+        method="bounded",
+    )
+    return at(float(found.x))
 
 
-def rmse(law: AbstractContactLaw, record: TissueRecord) -> float:
-    """Return the root of the mean squared force error."""
-    return float(np.sqrt(np.mean(residuals(law, record) ** 2)))
-
-
-def _uncertainty(law: AbstractContactLaw, record: TissueRecord) -> Uncertainty:
-    J = law.sensitivities(record.motion)
-    stiffness = float(np.linalg.norm(record.force) / np.linalg.norm(record.motion.deflection))
-    scatter = rounding_scatter(record.motion.deflection, J, stiffness)
-    return uncertainty(J, residuals(law, record), scatter=scatter)
-
-
-def _search(
-    kind: type[AbstractContactLaw],
-    record: TissueRecord,
-    start: AbstractContactLaw,
-    bounds: tuple[Array, Array],
-) -> AbstractContactLaw:
+def _search(problem: Problem, start: Array, bounds: tuple[Array, Array]) -> Array:
     from scipy.optimize import least_squares
 
-    scale = float(np.sqrt(np.mean(record.force**2)))
-    low, high = bounds
+    p = len(problem.kind.kinds)
+    scale = float(np.std(problem.force)) or 1.0
+    reach = np.full(len(start) - p, _REACH)
+    low, high = np.append(bounds[0], -reach), np.append(bounds[1], reach)
     # The search needs room around its start.
     room = 1e-6 * (high - low)
-    x0 = np.clip(np.log(start.values), low + room, high - room)
-
-    def law_at(x: Array) -> AbstractContactLaw:
-        return kind(*np.exp(x).tolist())
 
     def error(x: Array) -> Array:
-        return -residuals(law_at(x), record) / scale
+        return -problem.left(x) / scale
 
     def slope(x: Array) -> Array:
-        return law_at(x).sensitivities(record.motion) / scale
+        J = problem.slopes(x)
+        J[:, p:] *= problem.travel
+        return J / scale
 
     found = least_squares(
         error,
-        x0,
+        np.clip(start, low + room, high - room),
         jac=slope,
         bounds=(low, high),
         xtol=1e-10,
         ftol=1e-12,
         gtol=1e-12,
     )
-    return law_at(np.asarray(found.x))
+    return np.asarray(found.x)

@@ -10,9 +10,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from nrs_design.identification.datasets import TissueRecord
-from nrs_design.identification.statistics import Estimate, student_quantile
+from nrs_design.identification.statistics import CONFIDENCE, Estimate, student_quantile
 from nrs_design.identification.tissue.output_error import RecordFit, fit_record, rmse
+from nrs_design.identification.tissue.ranges import (
+    box_remark,
+    hull,
+    joint_level,
+    spread_ranges,
+)
+from nrs_design.identification.tissue.trial import Trial, prepare
 from nrs_design.models.contact import AbstractContactLaw
+from nrs_design.spec.provenance import Coverage
 
 Array = NDArray[np.float64]
 
@@ -33,17 +41,40 @@ class ModelFit:
         With the pooled parameters.
     estimates : tuple of Estimate
         Pooled parameters with 95 % intervals that contain the spread between records.
-    ranges : tuple of Estimate
-        The same, widened to the interval of every single record: what a proof should cover.
     rmse : tuple of float
         Of the pooled law in each record, as in thesis tables 2.4 and 2.5.
+    coverage : {"confidence", "tolerance", "prediction"}
+        What the ranges hold.
     """
 
     fits: tuple[RecordFit, ...]
     law: AbstractContactLaw
     estimates: tuple[Estimate, ...]
-    ranges: tuple[Estimate, ...]
     rmse: tuple[float, ...]
+    coverage: Coverage
+
+    @property
+    def ranges(self) -> tuple[Estimate, ...]:
+        """What a proof should cover: see `nrs_design.identification.tissue.ranges`.
+
+        Raises
+        ------
+        DataError
+            If the records are too few for what they shall hold.
+        """
+        level = joint_level(len(self.estimates))
+        single = [fit.estimates_at(level) for fit in self.fits]
+        if self.coverage != "confidence":
+            logs = np.log([fit.law.values for fit in self.fits])
+            return spread_ranges(self.coverage, logs, single)
+        pooled = pool(self.fits, level)
+        return tuple(hull(e, [row[i] for row in single]) for i, e in enumerate(pooled))
+
+    @property
+    def box(self) -> str:
+        """What the ranges hold together, in words; empty for one parameter."""
+        covariances = [fit.uncertainty.covariance for fit in self.fits]
+        return box_remark(self.law.parameters(), covariances)
 
     @property
     def aic(self) -> float:
@@ -61,26 +92,30 @@ class ModelFit:
         return tuple(f"{fit.record.name}: {text}" for fit in self.fits for text in fit.doubts)
 
 
-def fit_model(kind: type[AbstractContactLaw], records: Sequence[TissueRecord]) -> ModelFit:
+def fit_model(
+    kind: type[AbstractContactLaw],
+    records: Sequence[TissueRecord | Trial],
+    coverage: Coverage = "confidence",
+) -> ModelFit:
     """Fit a law to every record, and pool the parameters.
 
     Parameters
     ----------
     kind : type
         One of `nrs_design.models.contact.LAWS`.
-    records : sequence of TissueRecord
+    records : sequence of TissueRecord or Trial
         At least one, all linear or all rotational.
+    coverage : {"confidence", "tolerance", "prediction"}
+        What the ranges shall hold.
     """
-    fits = tuple(fit_record(kind, record) for record in records)
-    estimates = pool(fits)
-    law = kind(*(estimate.value for estimate in estimates))
-    ranges = tuple(
-        _hull(pooled, [fit.estimates[i] for fit in fits]) for i, pooled in enumerate(estimates)
-    )
-    return ModelFit(fits, law, estimates, ranges, tuple(rmse(law, record) for record in records))
+    trials = [item if isinstance(item, Trial) else prepare(item) for item in records]
+    fits = tuple(fit_record(kind, trial) for trial in trials)
+    law = kind(*(estimate.value for estimate in pool(fits)))
+    errors = tuple(rmse(law, trial) for trial in trials)
+    return ModelFit(fits, law, pool(fits), errors, coverage)
 
 
-def pool(fits: Sequence[RecordFit]) -> tuple[Estimate, ...]:
+def pool(fits: Sequence[RecordFit], confidence: float = CONFIDENCE) -> tuple[Estimate, ...]:
     """Pool the parameters of several fits of one law.
 
     Records of one tissue differ by more than their noise. Each logarithm is a weighted mean, the
@@ -89,13 +124,13 @@ def pool(fits: Sequence[RecordFit]) -> tuple[Estimate, ...]:
     distribution with one degree of freedom less than there are records (Hartung and Knapp 2001).
     """
     if len(fits) == 1:
-        return fits[0].estimates
+        return fits[0].estimates_at(confidence)
     logs = np.log([fit.law.values for fit in fits])
     variances = np.array([np.diag(fit.uncertainty.covariance) for fit in fits])
-    return tuple(_pool(x, s) for x, s in zip(logs.T, variances.T, strict=True))
+    return tuple(_pool(x, s, confidence) for x, s in zip(logs.T, variances.T, strict=True))
 
 
-def _pool(logs: Array, variances: Array) -> Estimate:
+def _pool(logs: Array, variances: Array, confidence: float) -> Estimate:
     count = len(logs)
     weights = 1 / (variances + _between(logs, variances))
     within = 1 / float(weights.sum())
@@ -106,7 +141,7 @@ def _pool(logs: Array, variances: Array) -> Estimate:
         # One record decides: there is no scatter to tell the error from.
         variance = max(variance, within)
     error = math.sqrt(variance)
-    return Estimate.from_log(mean, student_quantile(count - 1) * error)
+    return Estimate.from_log(mean, student_quantile(count - 1, confidence) * error)
 
 
 def _between(logs: Array, variances: Array) -> float:
@@ -118,9 +153,3 @@ def _between(logs: Array, variances: Array) -> float:
     slack = total - float(weights @ weights) / total
     # Without slack, one record has all the weight.
     return max(0.0, excess / slack) if slack > _SLACK * total else 0.0
-
-
-def _hull(pooled: Estimate, single: Sequence[Estimate]) -> Estimate:
-    low = min(pooled.low, *(estimate.low for estimate in single))
-    high = max(pooled.high, *(estimate.high for estimate in single))
-    return Estimate(pooled.value, low, high)

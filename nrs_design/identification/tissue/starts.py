@@ -11,9 +11,10 @@ from collections.abc import Callable, Iterator, Mapping
 import numpy as np
 from numpy.typing import NDArray
 
-from nrs_design.identification.datasets import TissueRecord
+from nrs_design.identification.tissue.trial import Trial
 from nrs_design.models.contact import (
     AbstractContactLaw,
+    AbstractLinearLaw,
     Elastic,
     HuntCrossley,
     KelvinBoltzmann,
@@ -35,40 +36,61 @@ _STIFFNESS_BOX = 1e4
 _SHORTEST, _LONGEST = 1e-4, 1e3
 
 
-def scan(kind: type[AbstractContactLaw], record: TissueRecord) -> Iterator[AbstractContactLaw]:
-    """Yield candidates for the start of a search."""
-    return _SCANS[kind](record)
+def scan(
+    kind: type[AbstractContactLaw], trial: Trial, offsets: Array
+) -> Iterator[AbstractContactLaw]:
+    """Yield candidates for the start of a search.
+
+    Parameters
+    ----------
+    kind : type
+        One of `nrs_design.models.contact.LAWS`.
+    trial : Trial
+        n used samples.
+    offsets : ndarray, shape (n, m)
+        What each offset adds to the force.
+    """
+    basis, used = np.linalg.qr(offsets)[0], trial.used
+
+    def linear(*regressors: Array) -> tuple[float, ...]:
+        X = np.column_stack([regressor[used] for regressor in regressors])
+        return _linear(trial.measured, X, basis)
+
+    return _SCANS[kind](trial, linear)
 
 
-def _elastic(record: TissueRecord) -> Iterator[Elastic]:
-    yield Elastic(*_linear(record.force, record.motion.deflection))
+# Fits positive factors of regressors over all samples to the force.
+Linear = Callable[..., tuple[float, ...]]
 
 
-def _kelvin_voigt(record: TissueRecord) -> Iterator[KelvinVoigt]:
-    yield KelvinVoigt(*_linear(record.force, record.motion.deflection, record.motion.velocity))
+def _elastic(trial: Trial, linear: Linear) -> Iterator[Elastic]:
+    yield Elastic(*linear(trial.motion.deflection))
 
 
-def _maxwell(record: TissueRecord) -> Iterator[Maxwell]:
-    for tau in _time_constants(record):
-        (k,) = _linear(record.force, relax(record.motion, tau)[0])
+def _kelvin_voigt(trial: Trial, linear: Linear) -> Iterator[KelvinVoigt]:
+    yield KelvinVoigt(*linear(trial.motion.deflection, trial.motion.velocity))
+
+
+def _maxwell(trial: Trial, linear: Linear) -> Iterator[Maxwell]:
+    for tau in _time_constants(trial):
+        (k,) = linear(relax(trial.motion, tau)[0])
         yield Maxwell(k, k * tau)
 
 
-def _kelvin_boltzmann(record: TissueRecord) -> Iterator[KelvinBoltzmann]:
-    for tau in _time_constants(record):
-        y, _ = relax(record.motion, tau)
-        eta1, arm = _linear(record.force, record.motion.deflection, y)
+def _kelvin_boltzmann(trial: Trial, linear: Linear) -> Iterator[KelvinBoltzmann]:
+    for tau in _time_constants(trial):
+        eta1, arm = linear(trial.motion.deflection, relax(trial.motion, tau)[0])
         yield KelvinBoltzmann.from_eta(eta1, (eta1 + arm) * tau, tau)
 
 
-def _hunt_crossley(record: TissueRecord) -> Iterator[HuntCrossley]:
+def _hunt_crossley(trial: Trial, linear: Linear) -> Iterator[HuntCrossley]:
     for phi in np.linspace(LEAST_EXPONENT, LARGEST_EXPONENT, _EXPONENTS).tolist():
-        power = np.maximum(record.motion.deflection, 0.0) ** phi
-        rho, lam = _linear(record.force, power, power * record.motion.velocity)
+        power = np.maximum(trial.motion.deflection, 0.0) ** phi
+        rho, lam = linear(power, power * trial.motion.velocity)
         yield HuntCrossley(rho, lam, phi)
 
 
-Scan = Callable[[TissueRecord], Iterator[AbstractContactLaw]]
+Scan = Callable[[Trial, Linear], Iterator[AbstractContactLaw]]
 _SCANS: Mapping[type[AbstractContactLaw], Scan] = {
     Elastic: _elastic,
     KelvinVoigt: _kelvin_voigt,
@@ -78,17 +100,17 @@ _SCANS: Mapping[type[AbstractContactLaw], Scan] = {
 }
 
 
-def box(kind: type[AbstractContactLaw], record: TissueRecord) -> tuple[Array, Array]:
+def box(kind: type[AbstractContactLaw], trial: Trial) -> tuple[Array, Array]:
     """Return the bounds of the logarithms of the parameters.
 
     They are so wide that only a parameter which the record does not determine reaches them; the
     exponent is kept between 1.1 and 1.3 as in thesis 2.5.
     """
-    k = _norm(record.force) / _norm(record.motion.deflection)
-    step = float(np.median(record.motion.steps))
+    k = trial.span / float(np.ptp(trial.deflection))
+    step = float(np.median(trial.motion.steps))
     stiffness = (k / _STIFFNESS_BOX, k * _STIFFNESS_BOX)
-    damping = (k * step * _SHORTEST, k * record.duration * _LONGEST)
-    reach = float(np.max(np.abs(record.motion.deflection)))
+    damping = (k * step * _SHORTEST, k * trial.duration * _LONGEST)
+    reach = float(np.max(np.abs(trial.deflection)))
     power = reach ** (LEAST_EXPONENT - 1), reach**LARGEST_EXPONENT
     bounds = {
         STIFFNESS: stiffness,
@@ -101,23 +123,40 @@ def box(kind: type[AbstractContactLaw], record: TissueRecord) -> tuple[Array, Ar
     return low, high
 
 
-def _time_constants(record: TissueRecord) -> list[float]:
-    step = float(np.median(record.motion.steps))
-    return [float(tau) for tau in np.geomspace(2 * step, 5 * record.duration, _SCAN)]
+def reduce_series(rest: float, arms: Array, times: Array) -> AbstractLinearLaw | None:
+    """Return the one relaxation that stands for several; None if the arms vanish.
+
+    It keeps the stiffness at rest, the stiffness that a sudden motion meets, and the impulse that
+    the relaxation takes up, ``sum E_i tau_i``.
+
+    Parameters
+    ----------
+    rest : float
+        Stiffness at rest.
+    arms, times : ndarray, shape (m,)
+        Stiffness and relaxation time of each arm.
+    """
+    total = float(arms.sum())
+    if not total > 0 or not rest > 0:
+        return None
+    tau = float(arms @ times) / total
+    return KelvinBoltzmann.from_eta(rest, (rest + total) * tau, tau)
 
 
-def _linear(force: Array, *regressors: Array) -> tuple[float, ...]:
+def _time_constants(trial: Trial) -> list[float]:
+    step = float(np.median(trial.motion.steps))
+    return [float(tau) for tau in np.geomspace(2 * step, 5 * trial.duration, _SCAN)]
+
+
+def _linear(force: Array, X: Array, basis: Array) -> tuple[float, ...]:
     """Fit positive coefficients: least squares, what comes out too small is lifted."""
-    X = np.column_stack(regressors)
+    force = force - basis @ (basis.T @ force)
+    X = X - basis @ (basis.T @ X)
     size = np.maximum(np.linalg.norm(X, axis=0), np.finfo(float).tiny)
     scaled = np.linalg.lstsq(X / size, force, rcond=None)[0]
-    floor = _FLOOR * _norm(force)
+    floor = _FLOOR * float(np.linalg.norm(force))
     if (scaled < floor).any() and len(size) > 1:
         # Without the offending terms, as a nonnegative fit would have it.
         alone = (X / size).T @ force
         scaled = np.where(scaled < floor, 0.0, np.maximum(alone, floor))
     return tuple(float(c) for c in np.maximum(scaled, floor) / size)
-
-
-def _norm(values: Array) -> float:
-    return float(np.linalg.norm(values))

@@ -7,7 +7,11 @@ from nrs_design.models.contact.elastic import Elastic
 from nrs_design.models.contact.hunt_crossley import HuntCrossley
 from nrs_design.models.contact.kelvin_boltzmann import KelvinBoltzmann
 from nrs_design.models.contact.kelvin_voigt import KelvinVoigt
-from nrs_design.models.contact.law import AbstractContactLaw, AbstractLinearLaw
+from nrs_design.models.contact.law import (
+    AbstractContactLaw,
+    AbstractLinearLaw,
+    AbstractNonlinearLaw,
+)
 from nrs_design.models.contact.maxwell import Maxwell
 from nrs_design.models.contact.motion import Motion
 
@@ -26,6 +30,7 @@ __all__ = [
     "LINEAR_LAWS",
     "AbstractContactLaw",
     "AbstractLinearLaw",
+    "AbstractNonlinearLaw",
     "Elastic",
     "HuntCrossley",
     "KelvinBoltzmann",

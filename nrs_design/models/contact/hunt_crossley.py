@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, ClassVar
 
-from nrs_design.models.contact.law import AbstractContactLaw
+from nrs_design.models.contact.law import AbstractNonlinearLaw
 
 if TYPE_CHECKING:
     from nrs_design.models.contact.motion import Array, Motion
@@ -15,7 +16,7 @@ LEAST_EXPONENT, LARGEST_EXPONENT = 1.1, 1.3
 
 
 @dataclass(frozen=True)
-class HuntCrossley(AbstractContactLaw):
+class HuntCrossley(AbstractNonlinearLaw):
     """A spring and a damper that both stiffen with the deflection; no force without contact.
 
     Parameters
@@ -55,6 +56,14 @@ class HuntCrossley(AbstractContactLaw):
         spring, damper = self.rho * power, self.lam * power * motion.velocity
         return np.column_stack([spring, damper, self.phi * logarithm * (spring + damper)])
 
+    def slope(self, motion: Motion) -> Array:
+        """Return the derivative of `simulate` by the deflection, shape (n,), in N/m (N m/rad)."""
+        import numpy as np
+
+        power = self.phi * np.maximum(motion.deflection, 0.0) ** (self.phi - 1)
+        touching = motion.deflection > 0
+        return np.asarray(touching * power * (self.rho + self.lam * motion.velocity))
+
     def at_pivot(self, radius: float) -> HuntCrossley:
         """Return ``rho r^(phi+1)`` and ``lam r^(phi+2)``; the exponent stays."""
         return HuntCrossley(
@@ -75,3 +84,10 @@ class HuntCrossley(AbstractContactLaw):
         """
         k = self.phi * self.rho * deflection ** (self.phi - 1)
         return k, self.lam * deflection**self.phi
+
+    def tangent_sensitivities(self, deflection: float) -> Array:
+        """Return the derivatives of log k and log b by log rho, log lam and log phi, (2, 3)."""
+        import numpy as np
+
+        grows = self.phi * math.log(deflection)
+        return np.array([[1.0, 0.0, 1.0 + grows], [0.0, 1.0, grows]])

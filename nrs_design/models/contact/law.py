@@ -81,6 +81,23 @@ class AbstractContactLaw(ABC):
 
 
 @dataclass(frozen=True)
+class AbstractNonlinearLaw(AbstractContactLaw):
+    """A law that enters a design by its tangent: a spring and a damper about a deflection."""
+
+    @abstractmethod
+    def slope(self, motion: Motion) -> Array:
+        """Return the derivative of `simulate` by the deflection, shape (n,), in N/m (N m/rad)."""
+
+    @abstractmethod
+    def tangent(self, deflection: float) -> tuple[float, float]:
+        """Return stiffness and damping of small motions about a deflection."""
+
+    @abstractmethod
+    def tangent_sensitivities(self, deflection: float) -> Array:
+        """Return the derivatives of their logarithms by those of the parameters, (2, p)."""
+
+
+@dataclass(frozen=True)
 class AbstractLinearLaw(AbstractContactLaw):
     """A law that is linear, so that it can enter a design and a proof."""
 

@@ -40,6 +40,7 @@ from nrs_design.models.robot.kinematics import (
     singularity_margins,
 )
 from nrs_design.models.robot.robot import Leg, Robot, TaskLimits, Workspace, build_robot
+from nrs_design.models.robot.separate_correction import SeparateCorrection, correct_separately
 from nrs_design.models.robot.shares import TorqueShares, torque_shares
 from nrs_design.models.robot.simplified import (
     SimplifiedDynamics,
@@ -66,6 +67,7 @@ __all__ = [
     "JointPeaks",
     "Leg",
     "Robot",
+    "SeparateCorrection",
     "SimplifiedDynamics",
     "Sine",
     "SingularityMargins",
@@ -77,6 +79,7 @@ __all__ = [
     "balanced_robot",
     "build_robot",
     "coriolis_matrix",
+    "correct_separately",
     "correction_coefficients",
     "design_balance",
     "direct_kinematics",

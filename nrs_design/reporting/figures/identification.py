@@ -31,10 +31,17 @@ Array = NDArray[np.float64]
 # More points than these cannot be told apart on a page.
 _POINTS = 1500
 _MEASURED = "#7d8894"
+_UNUSED = "#d9b7a0"
 
 
 @styled
-def draw_fit(time: Array, measured: Array, fitted: Array, label: str) -> Figure:
+def draw_fit(
+    time: Array,
+    measured: Array,
+    fitted: Array,
+    label: str,
+    used: NDArray[np.bool_] | None = None,
+) -> Figure:
     """Draw a measured and a fitted output over time, and their difference below.
 
     Parameters
@@ -45,15 +52,20 @@ def draw_fit(time: Array, measured: Array, fitted: Array, label: str) -> Figure:
         Outputs.
     label : str
         What they are, with the unit.
+    used : ndarray of bool, shape (n,), optional
+        Samples that were fitted; the others are pale. By default all.
     """
     pick = _thin(len(time))
+    kept = np.ones(len(time), bool)[pick] if used is None else used[pick]
     figure = new_figure(4.4)
     above, below = figure.subplots(2, 1, sharex=True, height_ratios=[2.4, 1.0])
-    above.plot(time[pick], measured[pick], ".", color=_MEASURED, markersize=4.0, label="data")
-    above.plot(time[pick], fitted[pick], color=BLUE, label="fitted", linewidth=1.4)
+    t, data, curve = time[pick], measured[pick], fitted[pick]
+    above.plot(t[kept], data[kept], ".", color=_MEASURED, markersize=4.0, label="data")
+    if not kept.all():
+        above.plot(t[~kept], data[~kept], "x", color=_UNUSED, markersize=3.5, label="not used")
+    above.plot(t, np.where(kept, curve, np.nan), color=BLUE, label="fitted", linewidth=1.4)
     above.set_ylabel(label)
-    error = (measured - fitted)[pick]
-    below.plot(time[pick], error, ".", color=VERMILLION, markersize=2.5)
+    below.plot(t[kept], (data - curve)[kept], ".", color=VERMILLION, markersize=2.5)
     below.axhline(0.0, color=INK, linewidth=0.8)
     below.set_ylabel("Data - fitted")
     below.set_xlabel("Time [s]")

@@ -9,6 +9,7 @@ import numpy as np
 
 from nrs_design.models.robot import (
     Robot,
+    SeparateCorrection,
     TiltTable,
     pose_grid,
     reach_margin,
@@ -17,6 +18,7 @@ from nrs_design.models.robot import (
     torque_shares,
 )
 from nrs_design.reporting.style import (
+    BLUE,
     CYCLE,
     INK,
     MUTED,
@@ -165,4 +167,26 @@ def draw_balance(gravity: Array, residual: Array) -> Figure:
     axes.set_ylabel("Static torque [N·m]")
     axes.set_ylim(0, None)
     legend(figure, axes, 2)
+    return figure
+
+
+@styled
+def draw_inertia_errors(apart: SeparateCorrection) -> Figure:
+    """Draw the error of the corrected mass matrix with one, three and nine coefficients of its own.
+
+    Parameters
+    ----------
+    apart : SeparateCorrection
+        As `nrs_design.models.robot.correct_separately` gives it.
+    """
+    figure, axes = new_axes(2.4)
+    names = ("those of gravity", "by rows", "by entries")
+    errors = [100 * e for e in (apart.single_error, apart.rows_error, apart.entries_error)]
+    bars = axes.barh(names, errors, color=BLUE, height=0.6)
+    axes.bar_label(bars, [f"{error:.1f} %" for error in errors], padding=3)
+    axes.invert_yaxis()
+    axes.set_xlim(0, 1.2 * max(errors))
+    axes.grid(visible=False, axis="y")
+    axes.set_xlabel("Error of the corrected mass matrix [%]")
+    axes.set_ylabel("Coefficients of inertia")
     return figure

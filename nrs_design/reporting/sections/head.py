@@ -12,6 +12,7 @@ from nrs_design.proof.evidence import AbstractEvidence, Shows
 from nrs_design.proof.system import SwitchedSystem, Time
 from nrs_design.reporting.formatting import plural, shortened
 from nrs_design.spec import InteractionDesignSpec, RobotSpec
+from nrs_design.spec.provenance import COVERS
 
 if TYPE_CHECKING:
     from nrs_design.pipeline import Result
@@ -116,11 +117,16 @@ def _provenance(result: Result) -> Iterator[tuple[str, str]]:
     spec = result.loaded.spec
     if not isinstance(spec, InteractionDesignSpec):
         return
-    parts = {"actuator": spec.actuator.provenance}
-    parts |= {name: environment.provenance for name, environment in spec.environments.items()}
-    for name, sources in parts.items():
-        if sources:
-            kinds = " and ".join(sorted({source.data.upper() for source in sources}))
-            count = plural(len(sources), "record")
-            files = shortened([source.file for source in sources], 3)
+    for at, item in spec.identified.items():
+        name = at[-1]
+        if item.provenance:
+            kinds = " and ".join(sorted({source.data.upper() for source in item.provenance}))
+            count = plural(len(item.provenance), "record")
+            files = shortened([source.file for source in item.provenance], 3)
             yield (f"Data for {name}", f"{kinds} data, {count}: {files}")
+        if item.doubts:
+            accepted = f"accepted: {item.accept_doubt}" if item.accept_doubt else "NOT accepted"
+            yield (f"Doubts about {name}", f"{shortened(list(item.doubts), 3)} ({accepted})")
+    for name, environment in spec.environments.items():
+        if environment.range_covers is not None:
+            yield (f"Range of {name} holds", COVERS[environment.range_covers])

@@ -4,16 +4,14 @@ import numpy as np
 import pytest
 
 from nrs_design.identification.actuator.friction import friction_shape
-from nrs_design.identification.datasets import SinusoidRecord
-from tests.identification.support import source
+from nrs_design.identification.held import Held
 from tests.identification.synthetic import FRICTION, GAIN, TIME_CONSTANT
 
 
 def held(command, step=2e-3):
-    time = step * np.arange(len(command))
-    return SinusoidRecord(
-        source("made"), "", time, np.array(command, float), np.zeros(len(command))
-    )
+    """The last command acts for a step, too, so that there is an interval for each."""
+    time = step * np.arange(len(command) + 1)
+    return Held.of(time, np.array([*command, command[-1]], float), 0.0)
 
 
 def shape(command):

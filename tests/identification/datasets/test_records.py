@@ -100,7 +100,7 @@ def test_groups_of_columns(tmp_path):
     one, two = read_actuator(path)
     assert (one.name, two.name) == ("record/1", "record/2")
     assert two.command.max() == pytest.approx(one.command.max() / 2)
-    assert two.angle[-1] == pytest.approx(np.radians(one.angle[-1]))
+    assert two.output[-1] == pytest.approx(np.radians(one.output[-1]))
 
 
 def test_tissue_takes_one_group(tmp_path):
@@ -109,11 +109,21 @@ def test_tissue_takes_one_group(tmp_path):
         read_tissue(write(tmp_path, header, TIME, *[DEFLECTION] * 4))
 
 
-def test_clipped_command(tmp_path):
+@pytest.mark.parametrize(
+    ("header", "scale", "unit", "is_angle"),
+    [
+        ("time_s,command_rpm,angle_rad", 1.0, "rpm", True),
+        ("time_s,command_mV,velocity_rad_s", 1e-3, "V", False),
+        ("time_s,command_counts,velocity_rpm", 1.0, "counts", False),
+        ("Time [s],Command [A],Speed [deg/s]", 1.0, "A", False),
+    ],
+)
+def test_commands_and_outputs(tmp_path, header, scale, unit, is_angle):
+    """A command that was cut off is still what was commanded."""
     command = np.clip(3000 * np.sin(20 * TIME), -2800, 2800)
-    path = write(tmp_path, "time_s,command_rpm,angle_rad", TIME, command, TIME)
-    with pytest.raises(DataError, match="is saturated, no sinusoid"):
-        read_actuator(path)
+    (record,) = read_actuator(write(tmp_path, header, TIME, command, TIME))
+    assert record.command.max() == pytest.approx(2800 * scale)
+    assert (record.unit, record.is_angle) == (unit, is_angle)
 
 
 def test_ready_response(tmp_path):

@@ -25,3 +25,18 @@ def test_tangent_is_the_slope():
 
     assert k == pytest.approx((static(0.2 + h) - static(0.2 - h)) / (2 * h), rel=1e-6)
     assert b == pytest.approx(15.328 * 0.2**1.2)
+
+
+def test_slope_and_tangent_are_derivatives():
+    law, step = NOSE, 1e-7
+    time = np.linspace(0, 3, 60)
+    there = Motion(time, 0.15 + 0.1 * np.sin(time))
+    moved = Motion(there.time, there.deflection + step)
+    assert law.slope(there) == pytest.approx(
+        (law.simulate(moved) - law.simulate(there)) / step, rel=1e-4, abs=1e-5
+    )
+    for i in range(3):
+        logs = np.log(law.values)
+        logs[i] += 1e-6
+        rise = np.log(HuntCrossley(*np.exp(logs)).tangent(0.1)) - np.log(law.tangent(0.1))
+        assert law.tangent_sensitivities(0.1)[:, i] == pytest.approx(rise / 1e-6, rel=1e-4)

@@ -1,0 +1,187 @@
+"""``nrs-design audit``: hold a log of the running robot against what was proved."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from nrs_design.cli import exit_codes
+from nrs_design.cli.identify.common import (
+    SYNTHETIC,
+    ColumnMap,
+    ReportTo,
+    check_report,
+    read_all,
+    sources,
+    write_report,
+)
+from nrs_design.cli.options import Date, Json, Quiet
+from nrs_design.cli.printing import note, print_json, progress, say
+from nrs_design.cli.tables import print_table
+from nrs_design.errors import CertificateError
+
+if TYPE_CHECKING:
+    from nrs_design.identification.running import Check, RunJudgement
+    from nrs_design.spec import LoadedSpec
+
+_EXIT = {
+    "inside": exit_codes.PROVED,
+    "outside": exit_codes.REFUTED,
+    "inconclusive": exit_codes.INCONCLUSIVE,
+}
+_COLOUR = {"inside": "proved", "outside": "refuted", "inconclusive": "inconclusive"}
+UNPROVED = "UNPROVED SPEC: {reason}; its ranges are only declared."
+
+
+def audit(
+    log: Annotated[Path, typer.Argument(metavar="LOG", help="Log of the running robot.")],
+    spec: Annotated[Path, typer.Argument(metavar="SPEC", help="The spec that it runs by.")],
+    certificate: Annotated[
+        Path | None,
+        typer.Option(metavar="CERT", help="Certificate of that spec; without it, none is proved."),
+    ] = None,
+    window: Annotated[
+        float, typer.Option(metavar="SECONDS", min=1e-3, help="Window of the stiffness.")
+    ] = 0.5,
+    command_limit: Annotated[
+        float | None,
+        typer.Option(metavar="NUMBER", min=0.0, help="Where the driver saturates, as logged."),
+    ] = None,
+    columns: ColumnMap = None,
+    report: ReportTo = None,
+    date: Date = None,
+    as_json: Json = False,
+    quiet: Quiet = False,
+) -> None:
+    """Tell whether a run stayed inside what was proved: stiffness, contact, times, delay, force.
+
+    Columns, as far as they are there: time_s; angle_rad and torque_Nm (or deflection_m and
+    force_N); command_rpm; velocity_rad_s; mode, the name of the controller in force. A violation of
+    the stiffness is claimed only where a whole 95 % interval lies outside the range; what cannot be
+    judged is said.
+
+    Exit code 0: inside. 1: left. 3: not everything could be judged, or the spec is not proved.
+
+    Example: nrs-design audit run.csv soft-tissue.nrs.yaml --certificate soft-tissue.cert.json
+    """
+    from nrs_design.identification.running import bounds_of, judge_run, read_run
+    from nrs_design.spec import read_spec
+
+    check_report(report)
+    loaded = read_spec(spec)
+    bounds = bounds_of(loaded)
+    reason = _unproved(certificate, loaded)
+    (run,) = read_all([log], read_run, columns or [], quiet=quiet)
+    with progress("judging", quiet=quiet) as step:
+        found = judge_run(
+            run, bounds, proved=not reason, window=window, command_limit=command_limit
+        )
+        if report is not None:
+            from nrs_design.reporting.running import run_report
+
+            step("figures")
+            write_report(report, run_report(found, loaded.spec.name, reason), date)
+    if as_json:
+        print_json("audit", _summary(found, loaded, certificate, reason))
+    elif not quiet:
+        _print(found, loaded.spec.name, reason)
+    if report is not None:
+        note(f"page written to {report}", quiet=quiet)
+    raise typer.Exit(_EXIT[found.verdict])
+
+
+def _unproved(certificate: Path | None, loaded: LoadedSpec) -> str:
+    """Say why the spec is not proved; empty if a certificate proves it.
+
+    Raises
+    ------
+    CertificateError
+        If the certificate is rejected.
+    """
+    from nrs_design.certificates.verify import verify
+
+    if certificate is None:
+        return "no certificate is named"
+    outcome = verify(certificate, loaded)
+    if outcome.certificate is None or outcome.fault is not None:
+        raise CertificateError(
+            f"the certificate is rejected: {outcome.fault}",
+            path=certificate,
+            remedy="make it anew with certify-switching --out, or name the spec that it is for",
+        )
+    verdict = outcome.certificate.verdict
+    return "" if verdict == "proved" else f"its certificate says {verdict}"
+
+
+def _print(found: RunJudgement, name: str, reason: str) -> None:
+    if found.log.source.synthetic:
+        say(SYNTHETIC)
+    if reason:
+        say(UNPROVED.format(reason=reason))
+    word = found.verdict.upper()
+    claim = "the run stayed inside what was proved"
+    if found.verdict == "outside":
+        claim = "the run left its bounds"
+    elif found.verdict == "inconclusive":
+        claim = "no bound was left as far as could be judged"
+    say(f"{name}: {word}: {claim}")
+    first = found.first
+    if first is not None and first.first is not None:
+        say(f"first at t = {first.first.time:.6g} s: {first.name}: {first.first.words}")
+    rows = [[c.name, c.status, c.measured, c.allowed, c.basis, _when(c)] for c in found.checks]
+    print_table("", ["check", "outcome", "measured", "allowed", "which is", "first at s"], rows)
+    for check in found.checks:
+        if check.status == "not modelled":
+            say(f"not covered: the proof takes for granted that there is no {check.name}")
+        if check.status == "not judged":
+            say(f"not judged: {check.name}: {check.measured}")
+
+
+def _when(check: Check) -> str:
+    return "" if check.first is None else f"{check.first.time:.6g}"
+
+
+def _summary(
+    found: RunJudgement, loaded: LoadedSpec, certificate: Path | None, reason: str
+) -> dict[str, Any]:
+    first = found.first
+    return {
+        "verdict": found.verdict,
+        "proved": found.proved,
+        "unproved_because": reason or None,
+        "synthetic": found.log.source.synthetic,
+        "log": sources([found.log.source]),
+        "spec": {"name": loaded.spec.name, "sha256": loaded.sha256},
+        "certificate": None if certificate is None else str(certificate),
+        "first_violation": _violation(first) if first is not None else None,
+        "checks": [
+            {
+                "name": c.name,
+                "status": str(c.status),
+                "measured": c.measured,
+                "allowed": c.allowed or None,
+                "basis": c.basis or None,
+                "first_violation": _violation(c),
+            }
+            for c in found.checks
+        ],
+        "stiffness": [
+            {
+                "from_s": found.log.begin + float(found.log.time[w.first]),
+                "to_s": found.log.begin + float(found.log.time[w.last - 1]),
+                "value_Nm_rad": w.value,
+                "low_Nm_rad": w.low,
+                "high_Nm_rad": w.high,
+            }
+            for w in found.windows
+            if w.high < float("inf")
+        ],
+    }
+
+
+def _violation(check: Check) -> dict[str, Any] | None:
+    if check.first is None:
+        return None
+    return {"check": check.name, "time_s": check.first.time, "what": check.first.words}

@@ -1,0 +1,120 @@
+"""``nrs-design compare-methods``: the gradient iteration beside the LMI."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from nrs_design.cli import exit_codes
+from nrs_design.cli.gradient_options import MaxUpdates, Radius, Relaxation, Seed, StartMode
+from nrs_design.cli.options import Budget, CoordinatesOption, Json, Memory, Quiet, SpecFile
+from nrs_design.cli.printing import note, print_json, progress, say
+from nrs_design.cli.tables import print_table
+from nrs_design.search.gradient_settings import Gradient
+
+if TYPE_CHECKING:
+    from nrs_design.proof.system import SwitchedSystem
+    from nrs_design.search.method_run import MethodRun
+    from nrs_design.spec import LoadedSpec
+
+
+def compare_methods(
+    spec: SpecFile,
+    coordinates: Annotated[
+        CoordinatesOption | None,
+        typer.Option(help="Override the spec: deflection (physical) or force (the thesis's)."),
+    ] = None,
+    optimize_rate: Annotated[
+        bool, typer.Option(help="Let every method look for the largest decay rate, too.")
+    ] = False,
+    relaxation: Relaxation = 1.0,
+    radius: Radius = 1.0,
+    start_mode: StartMode = None,
+    seed: Seed = 0,
+    max_updates: MaxUpdates = 20_000,
+    budget: Budget = None,
+    memory: Memory = None,
+    figure: Annotated[
+        Path | None, typer.Option(metavar="FILE", help="Draw v against updates as a PNG image.")
+    ] = None,
+    as_json: Json = False,
+    quiet: Quiet = False,
+) -> None:
+    """Look for a common quadratic function by LMI and by the Liberzon-Tempo gradient iteration.
+
+    The iteration runs in three kinds of coordinates, with the modes in turn and at random. What
+    any of them finds is checked exactly; that an iteration ends is no evidence. Exit code 0 if one
+    of them proved stability, 1 if a mode was refuted, 3 otherwise.
+
+    Example: nrs-design compare-methods specs/neuroboscope/soft-tissue.nrs.yaml
+    """
+    from nrs_design.pipeline import Overrides, limits_of, run_comparison
+    from nrs_design.spec import read_spec
+
+    loaded = read_spec(spec)
+    gradient = Gradient(relaxation, radius, start_mode, seed=seed, max_updates=max_updates)
+    limits = limits_of(loaded.spec, Overrides(budget=budget, memory=memory), optimize_rate)
+    limits = replace(limits, gradient=gradient)
+    states = None if coordinates is None else str(coordinates)
+    with progress(f"comparing on {loaded.spec.name}", quiet=quiet) as step:
+        system, runs = run_comparison(loaded, limits, states, step)
+    if figure is not None:
+        _draw(runs, figure)
+    if as_json:
+        print_json("compare-methods", _summary(loaded, system, runs))
+    elif not quiet:
+        _print(loaded, system, runs)
+    if figure is not None:
+        note(f"figure written to {figure}", quiet=quiet)
+    verdicts = [str(run.certification.verdict) for run in runs]
+    best = next((v for v in ("refuted", "proved") if v in verdicts), "inconclusive")
+    raise typer.Exit(exit_codes.OF_VERDICT[best])
+
+
+def _summary(
+    loaded: LoadedSpec, system: SwitchedSystem, runs: tuple[MethodRun, ...]
+) -> dict[str, Any]:
+    from nrs_design.cli.certify_switching import rate_summary
+
+    return {
+        "spec": loaded.spec.name,
+        "spec_sha256": loaded.sha256,
+        "time": str(system.time),
+        "states": list(system.states),
+        "modes": [mode.name for mode in system.modes],
+        "runs": [
+            {
+                "method": str(run.method),
+                "coordinates": run.coordinates and str(run.coordinates),
+                "order": run.order and str(run.order),
+                "verdict": str(run.certification.verdict),
+                "outcome": run.outcome,
+                "updates": run.updates,
+                "seconds": round(run.seconds, 6),
+                **rate_summary(run.certification),
+                "condition": run.condition,
+                "history": [list(map(list, history)) for history in run.histories],
+            }
+            for run in runs
+        ],
+    }
+
+
+def _print(loaded: LoadedSpec, system: SwitchedSystem, runs: tuple[MethodRun, ...]) -> None:
+    from nrs_design.reporting.sections.methods import COLUMNS, cells_of
+
+    rows = [[*cells_of(run), f"{1e3 * run.seconds:.1f}"] for run in runs]
+    modes = len(system.modes)
+    print_table(f"{loaded.spec.name}: {modes} modes", [*COLUMNS, "time\nms"], rows)
+    say("Rates are proved; the condition number of Q is for the states of the modes.")
+
+
+def _draw(runs: tuple[MethodRun, ...], path: Path) -> None:
+    from nrs_design.output import PNG, write_output
+    from nrs_design.reporting.figures.methods import draw_histories
+    from nrs_design.reporting.images import to_png
+
+    write_output(path, to_png(draw_histories(runs)), replaces=PNG)

@@ -1,0 +1,122 @@
+"""The motor in time: its output for given parameters, and how that depends on them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Self
+
+import numpy as np
+from numpy.typing import NDArray
+
+from nrs_design.identification.actuator.friction import friction_shape
+from nrs_design.identification.datasets import ActuatorRecord
+from nrs_design.identification.held import Held, Lags
+
+Array = NDArray[np.float64]
+
+# Of a logarithm; and of the dead time, in samples and in these.
+_DIFFERENCE = 1e-5
+_DELAY_DIFFERENCE = 100.0
+
+
+@dataclass(frozen=True, slots=True)
+class Motor:
+    """``velocity = lags (gain (command(t - delay) - friction sign(velocity)))``.
+
+    Parameters
+    ----------
+    gain : float
+        In rad/s for each unit of the command.
+    time_constant : float
+        In s; of a motor of second order the sum of both.
+    friction : float or None
+        In units of the command; None leaves it out.
+    delay : float
+        Dead time in s.
+    damping : float or None
+        Damping ratio of a motor of second order.
+    """
+
+    gain: float
+    time_constant: float
+    friction: float | None
+    delay: float
+    damping: float | None = None
+
+    @property
+    def lags(self) -> Lags:
+        """Its linear part of unit gain."""
+        if self.damping is None:
+            return Lags.first_order(self.time_constant)
+        return Lags.second_order(2 * self.damping / self.time_constant, self.damping)
+
+    @property
+    def parameters(self) -> Array:
+        """Logarithms of all but the dead time, and the dead time in s."""
+        positive = (self.gain, self.time_constant, self.friction, self.damping)
+        return np.array([*(np.log(p) for p in positive if p is not None), self.delay])
+
+    def with_parameters(self, x: Array) -> Self:
+        """Return the same kind of motor with other parameters."""
+        values = iter(np.exp(x[:-1]).tolist())
+        gain, tau = next(values), next(values)
+        friction = None if self.friction is None else next(values)
+        damping = None if self.damping is None else next(values)
+        return replace(
+            self, gain=gain, time_constant=tau, friction=friction, damping=damping,
+            delay=float(x[-1]),
+        )  # fmt: skip
+
+    def hold(self, record: ActuatorRecord) -> tuple[Held, Array | None]:
+        """Return the command of a record as it acts, and the shape of the friction."""
+        held = Held.of(record.time, record.command, self.delay)
+        if self.friction is None:
+            return held, None
+        return held, friction_shape(held, self.gain, self.time_constant, self.friction)
+
+    def forced(self, record: ActuatorRecord, held: Held, shape: Array | None) -> Array:
+        """Return the output from rest at the samples of a record, shape (n,).
+
+        Parameters
+        ----------
+        record : ActuatorRecord
+            It says which output.
+        held, shape
+            As `hold` gives them.
+        """
+        friction = 0.0 if shape is None or self.friction is None else self.friction * shape
+        inputs = self.gain * (held.command - friction)
+        output = self.lags.angle if record.is_angle else self.lags.velocity
+        return output(held, inputs)[held.samples]
+
+    def free(self, record: ActuatorRecord) -> Array:
+        """Return what initial angle and velocity add, shape (n, p)."""
+        return self.lags.free(record.time, angle=record.is_angle)
+
+    def simulate(self, record: ActuatorRecord) -> Array:
+        """Return the output in rad or rad/s, its initial state fitted to a record, shape (n,)."""
+        forced = self.forced(record, *self.hold(record))
+        free = self.free(record)
+        start = np.linalg.lstsq(free, record.output - forced, rcond=None)[0]
+        return np.asarray(forced + free @ start, float)
+
+    def linearize(self, record: ActuatorRecord) -> tuple[Array, Array]:
+        """Return derivatives and errors of a record without what its initial state explains.
+
+        With the parameters, the times move at which the motor turns or sticks: differences of
+        whole simulations see it.
+        """
+        x = self.parameters
+        sizes = np.full(len(x), _DIFFERENCE)
+        sizes[-1] *= _DELAY_DIFFERENCE * record.step
+
+        def output(y: Array) -> Array:
+            motor = self.with_parameters(y)
+            return motor.forced(record, *motor.hold(record))
+
+        steps = np.diag(sizes)
+        columns = [(output(x + h) - output(x - h)) / (2 * h.sum()) for h in steps]
+        free, _ = np.linalg.qr(self.free(record))
+        both = np.column_stack([*columns, record.output - output(x)])
+        both -= free @ (free.T @ both)
+        return both[:, :-1], both[:, -1]

@@ -1,0 +1,108 @@
+"""Where a fit in time begins: a scan over time constant and dead time."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from nrs_design.errors import DataError
+from nrs_design.identification.actuator.motor import Motor
+from nrs_design.identification.datasets import ActuatorRecord
+from nrs_design.identification.held import Held, Lags
+
+Array = NDArray[np.float64]
+
+_TIME_CONSTANTS = 14
+# In samples.
+_DELAYS = (0.0, 0.5, 1.0, 2.0, 4.0, 8.0, 16.0, 32.0)
+# Of a record, the largest part that a dead time or a time constant may take.
+_LONGEST = 0.1
+# Two effects that are alike to this part of their power cannot be told apart.
+_ALIKE = 1e-3
+# Friction belongs to the model where it stands out of its standard error so far.
+_CLEAR = 4.0
+# Squared errors up to so many times the least are nearly as good.
+_NEARLY = 4.0
+
+
+def scan_motor(records: Sequence[ActuatorRecord]) -> Motor:
+    """Return the best of many motors; whatever the command is, gain and friction are linear.
+
+    Raises
+    ------
+    DataError
+        If the output moves against the command, or not with it.
+    """
+    tried = [(*_solve(records, *pair), *pair) for pair in _grid(records)]
+    best = min(tried, key=lambda item: item[0])
+    along = [item for item in tried if item[1][0] > _CLEAR * item[2][0]]
+    against = best[1][0] < -_CLEAR * best[2][0]
+    if not along and not against:
+        raise DataError(
+            "the output does not follow the command",
+            remedy="check that both columns belong to one motor and one clock",
+        )
+    # A poor model may turn the sign; that of the columns is opposite if no other fits nearly.
+    if not along or (against and min(item[0] for item in along) > _NEARLY * best[0]):
+        raise DataError(
+            "the output moves against the command: their signs are opposite",
+            remedy="turn the sign of one column, or swap the leads of the sensor",
+        )
+    _, solution, errors, tau, delay = min(along, key=lambda item: item[0])
+    gain = float(solution[0])
+    clear = solution[1] > _CLEAR * errors[1] and tells_friction(records, tau, delay)
+    return Motor(gain, tau, float(solution[1]) / gain if clear else None, delay)
+
+
+def tells_friction(records: Sequence[ActuatorRecord], tau: float, delay: float) -> bool:
+    """Whether friction acts otherwise than a smaller gain would; under one step it does not.
+
+    Parameters
+    ----------
+    records : sequence of ActuatorRecord
+        All that are fitted at once.
+    tau, delay : float
+        Time constant and dead time in s.
+    """
+    X = np.concatenate([_regressors(record, tau, delay)[0] for record in records])
+    power = np.einsum("ij,ij->j", X, X)
+    if not power.all():
+        return False
+    return float(X[:, 0] @ X[:, 1]) ** 2 < (1 - _ALIKE) * float(power[0] * power[1])
+
+
+def _grid(records: Sequence[ActuatorRecord]) -> Iterator[tuple[float, float]]:
+    step = min(record.step for record in records)
+    longest = _LONGEST * max(record.time[-1] for record in records)
+    taus = np.geomspace(step, max(longest, 4 * step), _TIME_CONSTANTS)
+    delays = [d * step for d in _DELAYS if d * step <= longest]
+    return ((float(tau), delay) for delay in delays for tau in taus)
+
+
+def _solve(
+    records: Sequence[ActuatorRecord], tau: float, delay: float
+) -> tuple[float, Array, Array]:
+    """Return squared errors, gain and gain times friction, and their standard errors."""
+    rows = [_regressors(record, tau, delay) for record in records]
+    X = np.concatenate([x for x, _ in rows])
+    y = np.concatenate([y for _, y in rows])
+    solution = np.linalg.lstsq(X, y, rcond=None)[0]
+    rest = y - X @ solution
+    power = float(rest @ rest)
+    inverse = np.linalg.pinv(X.T @ X)
+    spread = np.sqrt(np.diag(inverse) * power / max(len(y) - 2, 1))
+    return power, np.asarray(solution, float), np.maximum(spread, np.finfo(float).tiny)
+
+
+def _regressors(record: ActuatorRecord, tau: float, delay: float) -> tuple[Array, Array]:
+    held = Held.of(record.time, record.command, delay)
+    lags = Lags.first_order(tau)
+    against = -np.sign(lags.velocity(held, held.command)[:-1])
+    output = lags.angle if record.is_angle else lags.velocity
+    columns = [output(held, inputs)[held.samples] for inputs in (held.command, against)]
+    free, _ = np.linalg.qr(lags.free(record.time, angle=record.is_angle))
+    both = np.column_stack([*columns, record.output])
+    both -= free @ (free.T @ both)
+    return both[:, :2], both[:, 2]

@@ -1,0 +1,189 @@
+"""Files that hold arrays, not text: MATLAB, NumPy, Parquet, Excel."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
+from importlib import import_module
+from pathlib import Path
+from types import MappingProxyType
+from typing import Any, BinaryIO
+
+import numpy as np
+from numpy.typing import NDArray
+
+from nrs_design.errors import DataError
+
+Arrays = dict[str, NDArray[Any]]
+# Columns by name, and the words that the file holds beside them.
+Content = tuple[Arrays, tuple[str, ...]]
+
+MAX_BYTES = 1 << 30
+_EXTRA = "pip install 'nrs-design[tables]', or save it as CSV"
+# How files begin that are often named for what they are not, and what to do with them.
+_BEGINNINGS = (
+    (b"\x89HDF", "is an HDF5 file (MATLAB's -v7.3?)", "save it with save(..., '-v7'), or as CSV"),
+    (b"\x1f\x8b", "is compressed", "unpack it first"),
+    (b"#ROSBAG", "is a bag of ROS messages", "turn its topics into CSV first"),
+    (b"SQLite format 3", "is a database, or a bag of ROS messages", "turn it into CSV first"),
+    (b"\x89MCAP0", "is a bag of ROS messages", "turn its topics into CSV first"),
+    (b"\xd0\xcf\x11\xe0", "is an old Excel file", "save it as .xlsx or as CSV"),
+    (b"TDSm", "is a TDMS file of LabVIEW", "export it as text"),
+    (b"%PDF", "is a PDF", "name the file of data"),
+    (b"PK\x03\x04", "is a zip archive", "name it .xlsx or .npz if it is one, or unpack it"),
+    (b"PAR1", "is a Parquet file", "name it .parquet"),
+    (b"MATLAB 5.0", "is a file of MATLAB", "name it .mat"),
+)
+_MATLAB_HDF = b"MATLAB 7.3"
+
+
+def check_kind(file: BinaryIO, path: Path) -> None:
+    """Refuse a file that is not what its name says; stay at its beginning.
+
+    Raises
+    ------
+    DataError
+        That says what it is.
+    """
+    start = file.read(32)
+    file.seek(0)
+    kind = path.suffix.lower()
+    own = {".xlsx": b"PK", ".npz": b"PK", ".parquet": b"PAR1", ".mat": b"MATLAB 5.0"}.get(kind, b"")
+    if start.startswith(_MATLAB_HDF):
+        start = b"\x89HDF"
+    if own and start.startswith(own):
+        return
+    for begins, what, remedy in _BEGINNINGS:
+        if start.startswith(begins):
+            raise DataError(what, path=path, remedy=remedy)
+    if own and kind != ".mat":
+        raise DataError(
+            f"is no {kind} file", path=path, remedy="save it anew, or name it for what it is"
+        )
+
+
+def read_mat(file: BinaryIO, path: Path) -> Content:
+    """Read the variables of a MATLAB file; the field f of a structure s is called ``s.f``.
+
+    Parameters
+    ----------
+    file : binary file
+        At its beginning.
+    path : Path
+        For errors.
+
+    Raises
+    ------
+    DataError
+        If it is damaged.
+    """
+    from scipy.io import loadmat
+
+    _check_size(file, path)
+    # Its types name paths only.
+    opened: Any = file
+    with _reading(path, "MATLAB"):
+        content = loadmat(opened, squeeze_me=True, struct_as_record=False)
+    return _sorted(_flat({k: v for k, v in content.items() if not k.startswith("__")}))
+
+
+def read_npz(file: BinaryIO, path: Path) -> Content:
+    """Read the arrays of a NumPy archive; never an object, which would run its own code."""
+    import zipfile
+
+    with _reading(path, "NumPy"):
+        unpacked = sum(info.file_size for info in zipfile.ZipFile(file).infolist())
+    if unpacked > MAX_BYTES:
+        raise DataError("unpacks to over 1 GiB", path=path, remedy="save the columns needed")
+    file.seek(0)
+    with _reading(path, "NumPy"), np.load(file, allow_pickle=False) as archive:
+        return _sorted(dict(archive.items()))
+
+
+def read_parquet(file: BinaryIO, path: Path) -> Content:
+    """Read the columns of a Parquet file."""
+    _check_size(file, path)
+    pandas = _pandas(path, "pyarrow")
+    with _reading(path, "Parquet"):
+        frame = pandas.read_parquet(file)
+        return _sorted({str(name): np.asarray(frame[name]) for name in frame.columns})
+
+
+def read_sheet(file: BinaryIO, path: Path) -> bytes:
+    """Return the first sheet of an Excel file as text with tabs, line by line."""
+    file.seek(0)
+    _check_size(file, path)
+    pandas = _pandas(path, "openpyxl")
+    with _reading(path, "Excel"):
+        frame = pandas.read_excel(file, header=None, dtype=object, engine="openpyxl", sheet_name=0)
+    rows = ("\t".join(map(_cell, row)) for row in frame.itertuples(index=False))
+    return "\n".join(rows).encode()
+
+
+ARRAYS: Mapping[str, Callable[[BinaryIO, Path], Content]] = MappingProxyType(
+    {".mat": read_mat, ".npz": read_npz, ".parquet": read_parquet}
+)
+
+
+@contextmanager
+def _reading(path: Path, kind: str) -> Iterator[None]:
+    """Keep libraries silent; whatever they raise says that the file is damaged."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        try:
+            yield
+        except Exception as error:
+            raise DataError(
+                f"is no readable {kind} file ({_first_line(error)})",
+                path=path,
+                remedy="save it anew, or as CSV",
+            ) from error
+
+
+def _first_line(error: Exception) -> str:
+    text = str(error).strip().splitlines()
+    return (text[0] if text else type(error).__name__)[:100]
+
+
+def _check_size(file: BinaryIO, path: Path) -> None:
+    size = file.seek(0, 2)
+    file.seek(0)
+    if size > MAX_BYTES:
+        raise DataError("has more than 1 GiB", path=path, remedy="save the columns needed")
+
+
+def _pandas(path: Path, engine: str) -> Any:
+    """Return pandas, if it and what it reads such a file with are installed."""
+    try:
+        import_module(engine)
+        return import_module("pandas")
+    except ImportError as error:
+        raise DataError(
+            f"reading {path.suffix} files needs {error.name}, which is not installed",
+            path=path,
+            remedy=_EXTRA,
+        ) from None
+
+
+def _cell(value: object) -> str:
+    if value is None or value != value:
+        return ""
+    return str(value).replace("\t", " ").replace("\n", " ")
+
+
+def _flat(values: Mapping[str, Any], prefix: str = "") -> Iterator[tuple[str, Any]]:
+    for name, value in values.items():
+        fields = getattr(value, "_fieldnames", None)
+        if fields is None:
+            yield prefix + name, value
+        else:
+            yield from _flat({f: getattr(value, f) for f in fields}, f"{prefix}{name}.")
+
+
+def _sorted(items: Any) -> Content:
+    """Return all arrays, and the words among them."""
+    arrays = {name: np.asarray(value) for name, value in dict(items).items()}
+    words = [name for name, value in arrays.items() if value.dtype.kind in "US"]
+    texts = tuple(" ".join(map(str, arrays[name].reshape(-1)[:100])) for name in words)
+    return arrays, texts

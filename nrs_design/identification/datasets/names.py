@@ -1,0 +1,186 @@
+"""What a column is called: a quantity, its unit, and an optional group."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass
+from math import pi
+from types import MappingProxyType
+
+# Newtons in a kilogram-force, exactly.
+KGF = 9.80665
+_TURN = 2 * pi / 60
+
+# Factor to SI for every unit that a quantity may be written in; the first is the SI unit. A command
+# stays in the unit of its driver: rpm of a command are a number, not a velocity.
+UNITS: Mapping[str, Mapping[str, float]] = MappingProxyType(
+    {
+        "time": {"s": 1.0, "ms": 1e-3, "us": 1e-6, "ns": 1e-9, "min": 60.0},
+        "deflection": {"m": 1.0, "mm": 1e-3, "cm": 1e-2, "um": 1e-6},
+        "force": {"N": 1.0, "mN": 1e-3, "kN": 1e3, "kgf": KGF, "gf": KGF / 1000},
+        "angle": {"rad": 1.0, "mrad": 1e-3, "deg": pi / 180},
+        "torque": {"Nm": 1.0, "mNm": 1e-3, "Nmm": 1e-3},
+        "velocity": {"rad_s": 1.0, "deg_s": pi / 180, "rpm": _TURN},
+        "command": {"rpm": 1.0, "V": 1.0, "mV": 1e-3, "A": 1.0, "mA": 1e-3, "counts": 1.0},
+        "mode": {"": 1.0},
+        "input": {"any": 1.0},
+        "output": {"any": 1.0},
+        "frequency": {"hz": 1.0, "khz": 1e3},
+        "magnitude": {"db": 1.0},
+        "phase": {"deg": pi / 180, "rad": 1.0},
+    }
+)
+# The unit that values of a command have once they are read.
+_READ_AS = {"mV": "V", "mA": "A"}
+_SYNONYMS = {
+    "load": "force",
+    "displacement": "deflection",
+    "extension": "deflection",
+    "indentation": "deflection",
+    "moment": "torque",
+    "speed": "velocity",
+}
+# How other programs spell a unit, in small letters without blanks.
+_SPELLINGS = {
+    "sec": "s",
+    "second": "s",
+    "seconds": "s",
+    "msec": "ms",
+    "usec": "us",
+    "µs": "us",
+    "nsec": "ns",
+    "µm": "um",
+    "n": "N",
+    "newton": "N",
+    "newtons": "N",
+    "n*m": "Nm",
+    "n-m": "Nm",
+    "n.m": "Nm",
+    "°": "deg",
+    "degree": "deg",
+    "degrees": "deg",
+    "radians": "rad",
+    "rad/s": "rad_s",
+    "deg/s": "deg_s",
+    "°/s": "deg_s",
+    "rev/min": "rpm",
+    "1/min": "rpm",
+    "volt": "V",
+    "volts": "V",
+    "pwm": "counts",
+    "kilonewton": "kN",
+    "kp": "kgf",
+}
+_BRACKETED = re.compile(r"^(?P<what>[^\[\](){}]+?)\s*[\[({](?P<unit>[^\[\](){}]*)[\])}]$")
+_SLASHED = re.compile(r"^(?P<what>[A-Za-z ]+?)\s*/\s*(?P<unit>\S+)$")
+# Of messages in bags that were turned into text; nanoseconds since 1970.
+_STAMP = re.compile(r"(^%time|(^|[./_])stamp)$")
+_PLOTTED_TIME = "__time"
+
+
+@dataclass(frozen=True, slots=True)
+class Name:
+    """A name, taken apart.
+
+    Parameters
+    ----------
+    quantity : str
+        Of `UNITS`.
+    unit : str
+        As written, or as we write it where that is known.
+    group : str
+        Suffix, empty for none.
+    """
+
+    quantity: str
+    unit: str
+    group: str = ""
+
+    @property
+    def known(self) -> bool:
+        """Whether the quantity may be written in this unit."""
+        return self.unit in UNITS[self.quantity]
+
+    @property
+    def factor(self) -> float:
+        """SI value over number in the file."""
+        return UNITS[self.quantity][self.unit]
+
+    @property
+    def read_as(self) -> str:
+        """The unit after multiplication by the factor."""
+        if self.quantity == "command":
+            return _READ_AS.get(self.unit, self.unit)
+        return next(iter(UNITS[self.quantity]))
+
+
+def standard_name(quantity: str) -> str:
+    """Return the name of a column in SI, such as ``force_N``."""
+    unit = next(iter(UNITS[quantity]))
+    return f"{quantity}_{unit}" if unit else quantity
+
+
+def read_name(text: str) -> Name | None:
+    """Take a name apart, such as ``angle_rad_2``, ``Force [N]``, ``Load (kN)`` or ``Time/s``.
+
+    Returns
+    -------
+    Name or None
+        None if it names no quantity of ours; its unit may be unknown or empty.
+    """
+    text = text.strip()
+    bracketed = _BRACKETED.match(text) or _SLASHED.match(text)
+    if bracketed:
+        quantity = _quantity(bracketed["what"])
+        return Name(quantity, read_unit(bracketed["unit"], quantity)) if quantity else None
+    word, _, rest = text.partition("_")
+    if word in UNITS:
+        return Name(word, *_unit_and_group(rest, word))
+    if text.lower() in UNITS:
+        return Name(text.lower(), "")
+    synonym, _, rest = text.lower().partition("_")
+    quantity = _SYNONYMS.get(synonym)
+    # A foreign word without its unit is none of ours.
+    if quantity is None or not rest:
+        return None
+    name = Name(quantity, *_unit_and_group(text.partition("_")[2], quantity))
+    return name if name.known else None
+
+
+def read_stamp(text: str) -> Name | None:
+    """Take a time stamp of a bag for a time, such as ``%time`` or ``/force.header.stamp``."""
+    if text == _PLOTTED_TIME:
+        return Name("time", "s")
+    return Name("time", "ns") if _STAMP.search(text) else None
+
+
+def read_unit(text: str, quantity: str) -> str:
+    """Return our name of a unit, or the text itself if it is not known.
+
+    Parameters
+    ----------
+    text : str
+        As written, such as ``N·m`` or ``sec``.
+    quantity : str
+        What is measured.
+    """
+    plain = text.strip().replace("μ", "µ").replace("·", "*").replace("⋅", "*")
+    if plain in UNITS[quantity]:
+        return plain
+    found = _SPELLINGS.get(plain.lower().replace(" ", ""), plain)
+    return {"Hz": "hz", "kHz": "khz", "dB": "db"}.get(found, found)
+
+
+def _quantity(text: str) -> str | None:
+    word = text.strip().lower()
+    return word if word in UNITS else _SYNONYMS.get(word)
+
+
+def _unit_and_group(rest: str, quantity: str) -> tuple[str, str]:
+    """Split at the longest unit that fits: ``rad_s_2`` is rad/s of group 2."""
+    for unit in sorted(filter(None, UNITS[quantity]), key=len, reverse=True):
+        if rest == unit or rest.startswith(f"{unit}_"):
+            return unit, rest[len(unit) + 1 :]
+    unit, _, group = rest.partition("_")
+    return read_unit(unit, quantity), group

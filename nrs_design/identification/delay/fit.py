@@ -1,0 +1,134 @@
+"""A delay by least squares, beside the dynamics that it must not be mistaken for."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from nrs_design.identification.datasets import SignalRecord
+from nrs_design.identification.delay.models import AbstractFollower
+from nrs_design.identification.statistics import Uncertainty, uncertainty
+
+Array = NDArray[np.float64]
+
+_STEPS = 40
+_HALVINGS = 10
+_CONVERGED = 1e-7
+_DIFFERENCE = 1e-4
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class DelayFit:
+    """One model with the delay that fits best.
+
+    Parameters
+    ----------
+    follower : AbstractFollower
+        The model.
+    delay : float
+        In s.
+    uncertainty : Uncertainty
+        Of the delay in samples, first, and of the logarithms of the other parameters.
+    sensitivity, errors : ndarray, shape (m,)
+        Change of the output by one sample of delay, and measured less fitted.
+    rows : ndarray of int, shape (m,)
+        Samples that were fitted: those that the command before the record cannot reach.
+    fitted : ndarray, shape (n,)
+        Output of the model.
+    solution : ndarray, shape (p,)
+        Gain, offset and initial state: factors of the columns of the model.
+    """
+
+    follower: AbstractFollower
+    delay: float
+    uncertainty: Uncertainty
+    sensitivity: Array
+    errors: Array
+    rows: NDArray[np.int64]
+    fitted: Array
+    solution: Array
+
+    @property
+    def gain(self) -> float:
+        """Output over input."""
+        return float(self.solution[0])
+
+    def output(self, record: SignalRecord, delay: float) -> Array:
+        """Return the output of the model with another delay in s, shape (n,)."""
+        return np.asarray(self.follower.columns(record, delay) @ self.solution, float)
+
+    @property
+    def bic(self) -> float:
+        """Bayesian information criterion, up to a constant of the record."""
+        n = len(self.errors)
+        power = max(float(self.errors @ self.errors), np.finfo(float).tiny)
+        count = 1 + len(self.follower.shape)
+        return n * float(np.log(power / n)) + count * float(np.log(n))
+
+
+def fit_delay(
+    record: SignalRecord, follower: AbstractFollower, delay: float, rows: NDArray[np.int64]
+) -> DelayFit:
+    """Refine delay and shape of a model by Gauss-Newton steps.
+
+    Gain, offset and initial state are eliminated in every step.
+
+    Parameters
+    ----------
+    record : SignalRecord
+        What was sent and seen.
+    follower : AbstractFollower
+        The model, with a first guess of its shape.
+    delay : float
+        First guess in s.
+    rows : ndarray of int
+        Samples that count.
+    """
+    x = np.array([delay / record.step, *follower.shape])
+    limit = np.array([2.0, *[0.5] * len(follower.shape)])
+    error = _errors(record, follower, x, rows)
+    for _ in range(_STEPS):
+        J = _sensitivities(record, follower, x, rows)
+        step = np.clip(np.linalg.lstsq(J, error, rcond=None)[0], -limit, limit)
+        for halving in range(_HALVINGS):
+            tried = x + step / 2**halving
+            found = _errors(record, follower, tried, rows)
+            if found @ found < error @ error:
+                x, error = tried, found
+                break
+        else:
+            break
+        if np.abs(step).max() < _CONVERGED:
+            break
+    J = _sensitivities(record, follower, x, rows)
+    shaped = replace(follower, shape=tuple(x[1:].tolist()))
+    columns = shaped.columns(record, float(x[0]) * record.step)
+    solution = np.linalg.lstsq(columns[rows], record.seen[rows], rcond=None)[0].astype(float)
+    return DelayFit(
+        shaped, float(x[0]) * record.step, uncertainty(J, error), J[:, 0], error, rows,
+        columns @ solution, solution,
+    )  # fmt: skip
+
+
+def _errors(
+    record: SignalRecord, follower: AbstractFollower, x: Array, rows: NDArray[np.int64]
+) -> Array:
+    shaped = replace(follower, shape=tuple(x[1:].tolist()))
+    columns = shaped.columns(record, float(x[0]) * record.step)[rows]
+    basis, _ = np.linalg.qr(columns / np.maximum(np.linalg.norm(columns, axis=0), 1e-300))
+    seen = record.seen[rows]
+    return np.asarray(seen - basis @ (basis.T @ seen), float)
+
+
+def _sensitivities(
+    record: SignalRecord, follower: AbstractFollower, x: Array, rows: NDArray[np.int64]
+) -> Array:
+    """Return derivatives of the fitted output by the parameters."""
+    columns = [
+        (_errors(record, follower, x - h, rows) - _errors(record, follower, x + h, rows))
+        / (2 * _DIFFERENCE)
+        for h in _DIFFERENCE * np.eye(len(x))
+    ]
+    return np.column_stack(columns)

@@ -1,0 +1,259 @@
+"""The delay between two columns of a record."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+
+from nrs_design.errors import DataError
+from nrs_design.identification.datasets import SignalRecord
+from nrs_design.identification.delay.fit import DelayFit, fit_delay
+from nrs_design.identification.delay.models import (
+    AbstractFollower,
+    Copy,
+    FirstOrder,
+    Integrator,
+    SecondOrder,
+)
+from nrs_design.identification.statistics import CONFIDENCE, WHITE, Estimate, student_quantile
+
+Array = NDArray[np.float64]
+
+# Largest delay that is looked for, as a part of the record.
+_LONGEST = 0.1
+_PARTS = 10
+_PART_STEPS = 6
+# In samples: a difference for derivatives, and one that is worth a word.
+_PART_SHIFT = 0.05
+_NOTABLE = 0.1
+# Below this correlation the columns have nothing to do with each other.
+_RELATED = 0.2
+# Model misses so much of the motion, in errors that are not white: that is a doubt.
+_MISSED = 0.02
+_TIMES = (0.3, 1.0, 3.0, 10.0, 30.0, 100.0)
+_SHIFTS = (0.0, 0.5, 1.0, 2.0, 4.0, 8.0, 16.0, 32.0)
+_SCANNED = 5000
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class DelayIdentification:
+    """What a record says about a delay.
+
+    Parameters
+    ----------
+    record : SignalRecord
+        The data.
+    fits : tuple of DelayFit
+        One for each model.
+    chosen : DelayFit
+        That of the least BIC.
+    delay : Estimate
+        In s, with a 95 % interval.
+    samples : Estimate
+        The same in samples of the record.
+    peak : tuple of float
+        Lag in s at which both columns are most alike, lag of the dynamics included, and their
+        correlation there.
+    parts : tuple of (float, Estimate)
+        The delay in samples in parts of the record, by their middle in s, at 95 % for all of them
+        together.
+    whole_samples : tuple of int
+        From and to: they hold the interval and every part of the record. Where errors are not
+        noise, they hold those of a copy, too: then a lag may stand for a part of the delay.
+    doubts : tuple of str
+        What speaks against it.
+    """
+
+    record: SignalRecord
+    fits: tuple[DelayFit, ...]
+    chosen: DelayFit
+    delay: Estimate
+    samples: Estimate
+    peak: tuple[float, float]
+    parts: tuple[tuple[float, Estimate], ...]
+    whole_samples: tuple[int, int]
+    doubts: tuple[str, ...]
+
+
+def identify_delay(record: SignalRecord) -> DelayIdentification:
+    """Find the delay by cross-correlation, then by a fit beside the dynamics.
+
+    Raises
+    ------
+    DataError
+        If the columns have nothing to do with each other.
+    """
+    peak = correlation_peak(record)
+    if abs(peak[1]) < _RELATED:
+        raise DataError(
+            f"{record.names[1]} does not follow {record.names[0]}: their largest correlation is "
+            f"{peak[1]:.2f}",
+            path=record.source.path,
+            remedy="name other columns with --command and --measured, or record a livelier motion",
+        )
+    skipped = max(peak[0], 0.0) + 5 * record.step
+    rows = np.flatnonzero(record.time >= skipped)
+    fits = tuple(fit_delay(record, *start, rows) for start in _starts(record, peak[0], rows))
+    chosen = min(fits, key=lambda fit: fit.bic)
+    step = record.step
+    half = student_quantile(chosen.uncertainty.degrees) * float(chosen.uncertainty.errors[0])
+    value = chosen.delay / step
+    samples = Estimate(max(value, 0.0), max(value - half, 0.0), max(value + half, 0.0))
+    parts = tuple(_parts(record, chosen, value))
+    held = [samples, *(part for _, part in parts)]
+    if chosen.uncertainty.whiteness < WHITE:
+        copy = fits[0]
+        held += [part for _, part in _parts(record, copy, copy.delay / step)]
+    whole = math.floor(min(e.low for e in held)), math.ceil(max(e.high for e in held))
+    return DelayIdentification(
+        record, fits, chosen, samples.scaled(step), samples, peak, parts,
+        (max(whole[0], 0), max(whole[1], 0)),
+        tuple(_doubts(record, chosen, value, half, parts)),
+    )  # fmt: skip
+
+
+def correlation_peak(record: SignalRecord) -> tuple[float, float]:
+    """Return the lag in s at which both columns are most alike, and their correlation there.
+
+    Columns are compared by their changes where those are alike more clearly, which is so for
+    columns that drift.
+    """
+    found = [_peak(record, difference=difference) for difference in (False, True)]
+    return max(found, key=lambda pair: abs(pair[1]))
+
+
+def _peak(record: SignalRecord, *, difference: bool) -> tuple[float, float]:
+    count = len(record.time)
+    even = np.linspace(record.time[0], record.time[-1], count)
+    u, y = (np.interp(even, record.time, values) for values in (record.sent, record.seen))
+    if difference:
+        u, y = np.diff(u), np.diff(y)
+    longest = max(int(_LONGEST * count), 2)
+    lags = np.arange(-longest, longest + 1)
+    alike = _correlations(u - np.mean(u), y - np.mean(y), lags)
+    best = int(np.argmax(np.abs(alike)))
+    return float(lags[best]) * float(even[1] - even[0]), float(alike[best])
+
+
+def _correlations(u: Array, y: Array, lags: NDArray[np.int64]) -> Array:
+    """Return the correlation of ``u[i]`` with ``y[i + lag]`` where both are there."""
+    size = 1 << (2 * len(u) - 1).bit_length()
+    cross = np.fft.irfft(np.conj(np.fft.rfft(u, size)) * np.fft.rfft(y, size), size)[lags]
+    counts = len(u) - np.abs(lags)
+    first = np.maximum(lags, 0)
+
+    def sums(values: Array, begin: NDArray[np.int64]) -> Array:
+        total = np.concatenate([[0.0], np.cumsum(values)])
+        return np.asarray(total[begin + counts] - total[begin])
+
+    sum_u, sum_y = sums(u, first - lags), sums(y, first)
+    power_u = sums(u**2, first - lags) - sum_u**2 / counts
+    power_y = sums(y**2, first) - sum_y**2 / counts
+    scale = np.sqrt(np.maximum(power_u * power_y, 0.0))
+    return np.asarray((cross - sum_u * sum_y / counts) / np.maximum(scale, 1e-300))
+
+
+def _starts(
+    record: SignalRecord, lag: float, rows: NDArray[np.int64]
+) -> Iterator[tuple[AbstractFollower, float]]:
+    """Yield each model with the best of some delays and time constants."""
+    yield Copy(()), lag
+    step = record.step
+    times = [t * step for t in _TIMES]
+    families: list[list[AbstractFollower]] = [
+        [FirstOrder((math.log(t),)) for t in times],
+        [SecondOrder((math.log(t), math.log(z))) for t in times for z in (0.5, 1.2)],
+        [Integrator((math.log(t),)) for t in times],
+    ]
+    longest = _LONGEST * record.time[-1]
+    delays = sorted({min(d * step, longest) for d in _SHIFTS} | {max(lag, 0.0)})
+    part = _beginning(record)
+    inside = rows[rows < len(part.time)]
+    for family in families:
+        pairs = [(follower, delay) for follower in family for delay in delays]
+        yield min(pairs, key=lambda pair: _missed(part, pair[0], pair[1], inside))
+
+
+def _beginning(record: SignalRecord) -> SignalRecord:
+    """Return so much of a record as a scan needs."""
+    cut = slice(0, _SCANNED)
+    time, sent, seen = record.time[cut], record.sent[cut], record.seen[cut]
+    return SignalRecord(record.source, time, sent, seen, record.names)
+
+
+def _missed(
+    record: SignalRecord, follower: AbstractFollower, delay: float, rows: NDArray[np.int64]
+) -> float:
+    columns = follower.columns(record, delay)[rows]
+    solution = np.linalg.lstsq(columns, record.seen[rows], rcond=None)[0]
+    return float(np.sum((record.seen[rows] - columns @ solution) ** 2))
+
+
+def _parts(record: SignalRecord, fit: DelayFit, value: float) -> Iterator[tuple[float, Estimate]]:
+    """Yield the delay in parts of the record, beside the dynamics of the whole."""
+    edges = np.arange(_PARTS + 1) * len(fit.rows) // _PARTS
+    noise = float(fit.errors @ fit.errors) / max(len(fit.errors) - len(fit.follower.shape) - 3, 1)
+    total = float(fit.sensitivity @ fit.sensitivity)
+    quantile = student_quantile(len(fit.errors), 1 - (1 - CONFIDENCE) / _PARTS)
+    for first, last in pairwise(edges.tolist()):
+        # A part without motion tells nothing about a delay.
+        if float(np.sum(fit.sensitivity[first:last] ** 2)) <= total / _PARTS**2:
+            continue
+        rows = fit.rows[first:last]
+        own, power = _own_delay(record, fit, rows, value)
+        half = quantile * math.sqrt(noise / power) if power else math.inf
+        yield float(record.time[rows].mean()), Estimate(own, own - half, own + half)
+
+
+def _own_delay(
+    record: SignalRecord, fit: DelayFit, rows: NDArray[np.int64], value: float
+) -> tuple[float, float]:
+    """Return the delay in samples that fits some rows best, and how much they tell about it."""
+    own, power = value, 0.0
+    for _ in range(_PART_STEPS):
+        late, early = (
+            fit.output(record, (own + d) * record.step)[rows] for d in (_PART_SHIFT, -_PART_SHIFT)
+        )
+        slope = (late - early) / (2 * _PART_SHIFT)
+        power = float(slope @ slope)
+        if not power:
+            break
+        error = record.seen[rows] - fit.output(record, own * record.step)[rows]
+        own += float(np.clip(slope @ error / power, -2.0, 2.0))
+    return own, power
+
+
+def _doubts(
+    record: SignalRecord,
+    fit: DelayFit,
+    value: float,
+    half: float,
+    parts: Sequence[tuple[float, Estimate]],
+) -> Iterator[str]:
+    if value + half < 0:
+        yield (
+            f"{record.names[1]} comes {-value:.3g} samples before {record.names[0]}: the columns "
+            "are swapped, or their clocks differ"
+        )
+    if fit.gain < 0:
+        yield f"{record.names[1]} moves against {record.names[0]}: their signs are opposite"
+    seen = record.seen[fit.rows]
+    missed = float(np.linalg.norm(fit.errors) / np.linalg.norm(seen - seen.mean()))
+    if missed > _MISSED and fit.uncertainty.whiteness < WHITE:
+        yield f"the model misses {100 * missed:.2g} % of the motion, in errors that are not noise"
+    steps = np.diff(record.time)
+    jitter = float(np.ptp(steps)) / record.step
+    if jitter > 0.1:
+        yield f"the steps of time vary by {100 * jitter:.0f} %: a sample is no unit of time here"
+    earliest = min((part for _, part in parts), key=lambda part: part.high, default=None)
+    latest = max((part for _, part in parts), key=lambda part: part.low, default=None)
+    if earliest and latest and earliest.high + _NOTABLE < latest.low:
+        yield (
+            f"the delay varies: at most {earliest.high:.3g} samples in one part of the record, at "
+            f"least {latest.low:.3g} in another"
+        )

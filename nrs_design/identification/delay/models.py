@@ -1,0 +1,88 @@
+"""What may lie between a command and its measurement, beside a delay."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from nrs_design.identification.datasets import SignalRecord
+from nrs_design.identification.held import Held, Lags
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True)
+class AbstractFollower(ABC):
+    """A model of what follows a command; gain, offset and initial state are linear.
+
+    Parameters
+    ----------
+    shape : tuple of float
+        Logarithms of its other parameters.
+    """
+
+    shape: tuple[float, ...]
+
+    name: ClassVar[str]
+
+    @abstractmethod
+    def columns(self, record: SignalRecord, delay: float) -> Array:
+        """Return what the output is a combination of, shape (n, p), at a delay in s."""
+
+
+class Copy(AbstractFollower):
+    """The command itself, later; between samples it is smooth."""
+
+    name: ClassVar[str] = "a copy"
+
+    def columns(self, record: SignalRecord, delay: float) -> Array:
+        """Return the command and a constant."""
+        from scipy.interpolate import CubicSpline
+
+        at = np.clip(record.time - delay, record.time[0], record.time[-1])
+        return np.column_stack([CubicSpline(record.time, record.sent)(at), np.ones_like(at)])
+
+
+class FirstOrder(AbstractFollower):
+    """A first-order lag of the command that is held between samples."""
+
+    name: ClassVar[str] = "a first-order lag"
+
+    def columns(self, record: SignalRecord, delay: float) -> Array:
+        """Return output, constant and the initial state."""
+        return _following(record, Lags.first_order(float(np.exp(self.shape[0]))), delay)
+
+
+class SecondOrder(AbstractFollower):
+    """A second-order lag, as of a position loop."""
+
+    name: ClassVar[str] = "a second-order lag"
+
+    def columns(self, record: SignalRecord, delay: float) -> Array:
+        """Return output, constant and the initial state."""
+        tau, damping = np.exp(self.shape).tolist()
+        return _following(record, Lags.second_order(1 / tau, damping), delay)
+
+
+class Integrator(AbstractFollower):
+    """The integral of a first-order lag, as of a motor that is commanded a velocity."""
+
+    name: ClassVar[str] = "a lag and an integrator"
+
+    def columns(self, record: SignalRecord, delay: float) -> Array:
+        """Return output, constant and the initial state; a drift of the command, too."""
+        lags = Lags.first_order(float(np.exp(self.shape[0])))
+        held = Held.of(record.time, record.sent, delay)
+        angle = lags.angle(held, held.command)[held.samples]
+        return np.column_stack([angle, lags.free(record.time, angle=True), record.time])
+
+
+def _following(record: SignalRecord, lags: Lags, delay: float) -> Array:
+    held = Held.of(record.time, record.sent, delay)
+    output = lags.velocity(held, held.command)[held.samples]
+    free = lags.free(record.time, angle=False)
+    return np.column_stack([output, np.ones_like(output), free])

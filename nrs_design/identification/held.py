@@ -1,0 +1,145 @@
+"""Commands that are held between samples and act later, and what linear models make of them.
+
+Exact for any steps of time and any delay: a command that acts within a step parts it.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any, Self
+
+import numpy as np
+from numpy.typing import NDArray
+
+from nrs_design.models.recursion import run_first_order
+
+Array = NDArray[np.float64]
+
+# Poles that are nearer to each other are taken apart by so much.
+_APART = 1e-4
+
+
+@dataclass(frozen=True)
+class Held:
+    """A command as it acts: constant between the times of a grid that holds all samples.
+
+    Parameters
+    ----------
+    grid : ndarray, shape (m,)
+        Times in s.
+    command : ndarray, shape (m - 1,)
+        From each time to the next.
+    samples : ndarray of int, shape (n,)
+        Where the samples are in the grid.
+    """
+
+    grid: Array
+    command: Array
+    samples: NDArray[np.int64]
+
+    @classmethod
+    def of(cls, time: Array, command: Array, delay: float) -> Self:
+        """Hold every command from its sample to the next, and let it act later.
+
+        The first one was there before; the last one acts at no sample.
+
+        Parameters
+        ----------
+        time : ndarray, shape (n,)
+            Of the samples, in s.
+        command : ndarray, shape (n,)
+            In any unit.
+        delay : float
+            In s.
+        """
+        acts = time + delay
+        inside = acts[(acts > time[0]) & (acts < time[-1])]
+        grid = np.union1d(time, inside)
+        index = np.searchsorted(acts, grid[:-1], side="right") - 1
+        return cls(grid, command[np.maximum(index, 0)], np.searchsorted(grid, time))
+
+    @cached_property
+    def steps(self) -> Array:
+        """Lengths of the intervals in s, shape (m - 1,)."""
+        return np.diff(self.grid)
+
+
+@dataclass(frozen=True, slots=True)
+class Lags:
+    """A linear model of unit gain as a sum of first-order lags.
+
+    Parameters
+    ----------
+    times : tuple of complex
+        Time constants in s.
+    shares : tuple of complex
+        They add up to 1.
+    """
+
+    times: tuple[complex, ...]
+    shares: tuple[complex, ...]
+
+    @classmethod
+    def first_order(cls, time_constant: float) -> Self:
+        """Return ``1/(tau s + 1)``."""
+        return cls((time_constant,), (1.0,))
+
+    @classmethod
+    def second_order(cls, frequency: float, damping: float) -> Self:
+        """Return ``w^2/(s^2 + 2 zeta w s + w^2)``; equal poles are taken apart a little."""
+        if abs(damping - 1) < _APART:
+            damping = 1 + _APART
+        root = np.sqrt(complex(damping**2 - 1))
+        p, q = frequency * (-damping + root), frequency * (-damping - root)
+        return cls(
+            (complex(-1 / p), complex(-1 / q)), (complex(-q / (p - q)), complex(p / (p - q)))
+        )
+
+    def velocity(self, held: Held, inputs: Array) -> Array:
+        """Return the output of the model from rest, shape (m,).
+
+        Parameters
+        ----------
+        held : Held
+            The grid.
+        inputs : ndarray, shape (m - 1,)
+            Held between the times of the grid.
+        """
+        parts = (s * _lag(t, held.steps, inputs)[0] for t, s in self._pairs())
+        return np.asarray(sum(parts).real, float)
+
+    def angle(self, held: Held, inputs: Array) -> Array:
+        """Return the integral of the output, from zero; parameters as for `velocity`."""
+        parts = (s * _lag(t, held.steps, inputs)[1] for t, s in self._pairs())
+        return np.asarray(sum(parts).real, float)
+
+    def free(self, time: Array, *, angle: bool) -> Array:
+        """Return the outputs that follow from initial states alone, shape (n, p).
+
+        Parameters
+        ----------
+        time : ndarray, shape (n,)
+            In s.
+        angle : bool
+            Whether the output is the integral, which may begin anywhere.
+        """
+        ends = [np.exp(-(time - time[0]) / t) for t in self.times]
+        columns = [part for end in ends for part in (end.real, end.imag)]
+        kept = [c for c in columns[: 2 * len(self.times)] if np.any(np.abs(c) > 0)]
+        if self.times[0].imag:
+            kept = kept[:2]
+        return np.column_stack([np.ones_like(time), *kept] if angle else kept)
+
+    def _pairs(self) -> zip[tuple[complex, complex]]:
+        return zip(self.times, self.shares, strict=True)
+
+
+def _lag(time_constant: complex, steps: Array, inputs: Array) -> tuple[Any, Any]:
+    """Return output and its integral of one lag from rest, exact for held inputs."""
+    tau = time_constant if np.imag(time_constant) else float(np.real(time_constant))
+    a = np.exp(-steps / tau)
+    inputs = inputs.astype(a.dtype)
+    output = run_first_order(a, (1 - a) * inputs)
+    travel = inputs * steps + tau * (1 - a) * (output[:-1] - inputs)
+    return output, np.concatenate([np.zeros(1, travel.dtype), np.cumsum(travel)])

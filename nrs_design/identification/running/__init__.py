@@ -1,0 +1,18 @@
+"""Whether a run stayed inside what was proved."""
+
+from nrs_design.identification.running.bounds import RunBounds, bounds_of
+from nrs_design.identification.running.check import Check, Status, Violation
+from nrs_design.identification.running.judge import RunJudgement, judge_run
+from nrs_design.identification.running.log import RunLog, read_run
+
+__all__ = [
+    "Check",
+    "RunBounds",
+    "RunJudgement",
+    "RunLog",
+    "Status",
+    "Violation",
+    "bounds_of",
+    "judge_run",
+    "read_run",
+]

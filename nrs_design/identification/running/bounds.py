@@ -1,0 +1,117 @@
+"""What a spec promises about a run, as far as a log can show it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from nrs_design.errors import DesignError
+from nrs_design.spec import InteractionDesignSpec, LoadedSpec
+from nrs_design.spec.environment import AbstractEnvironmentSpec
+
+
+@dataclass(frozen=True, slots=True)
+class Stiffness:
+    """Stiffness that a controller may meet, in N m/rad.
+
+    Parameters
+    ----------
+    ranges : tuple of (float, float)
+        Of the environments that it touches.
+    foreign : tuple of str
+        Environments among them that no window can tell.
+    """
+
+    ranges: tuple[tuple[float, float], ...]
+    foreign: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class RunBounds:
+    """What a run may do.
+
+    Parameters
+    ----------
+    stiffness : mapping of str to Stiffness or None
+        By controller; None for one without contact.
+    stays : mapping of str to (float, float)
+        Shortest and longest time in each controller, in s.
+    transitions : frozenset of (str, str) or None
+        Allowed switches; None allows all.
+    torque : float
+        Largest torque in N m.
+    delay : float or None
+        Delay margin that the design must keep, in s; None if none is asked for.
+    lever_arm : float or None
+        That turns linear columns into rotational ones, in m; None where environments have none or
+        several.
+    """
+
+    stiffness: Mapping[str, Stiffness | None]
+    stays: Mapping[str, tuple[float, float]]
+    transitions: frozenset[tuple[str, str]] | None
+    torque: float
+    delay: float | None
+    lever_arm: float | None
+
+    def stiffness_in(self, mode: str | None) -> Stiffness | None:
+        """Return what a controller may meet; for None, what any of them may."""
+        if mode is not None:
+            return self.stiffness[mode]
+        known = [item for item in self.stiffness.values() if item is not None]
+        if len(known) < len(self.stiffness):
+            return None
+        ranges = dict.fromkeys(pair for item in known for pair in item.ranges)
+        foreign = dict.fromkeys(name for item in known for name in item.foreign)
+        return Stiffness(tuple(ranges), tuple(foreign))
+
+
+def bounds_of(loaded: LoadedSpec) -> RunBounds:
+    """Read the bounds out of a spec.
+
+    Raises
+    ------
+    DesignError
+        If it is no interaction design.
+    """
+    spec = loaded.spec
+    if not isinstance(spec, InteractionDesignSpec):
+        raise DesignError(
+            f"a spec of kind {spec.kind} says nothing that a log could be held against",
+            path=loaded.path,
+            remedy="name a spec of kind interaction-design",
+        )
+    arms = {e.lever_arm.si for e in spec.environments.values() if e.lever_arm is not None}
+    transitions = spec.switching.transitions
+    margin = spec.goals.min_delay_margin if spec.goals else None
+    return RunBounds(
+        stiffness={name: _stiffness(spec, name) for name in spec.controllers},
+        stays={name: _stay(spec, name) for name in spec.controllers},
+        transitions=None if transitions is None else frozenset(transitions),
+        torque=spec.limits.torque.si,
+        delay=None if margin is None else margin.si,
+        lever_arm=arms.pop() if len(arms) == 1 else None,
+    )
+
+
+def _stiffness(spec: InteractionDesignSpec, name: str) -> Stiffness | None:
+    controller = spec.controllers[name]
+    if not controller.contacts:
+        return None
+    touched = {contact: spec.environments[contact] for contact in controller.contacts}
+    plain = [e for e in touched.values() if not e.remembers]
+    foreign = tuple(contact for contact, e in touched.items() if e.remembers)
+    return Stiffness(tuple(_range(environment) for environment in plain), foreign)
+
+
+def _range(environment: AbstractEnvironmentSpec) -> tuple[float, float]:
+    stiffness = environment.exact_at_pivot()["stiffness"]
+    return float(stiffness.low), float(stiffness.high)
+
+
+def _stay(spec: InteractionDesignSpec, name: str) -> tuple[float, float]:
+    shortest, longest = spec.switching.stay(name)
+    return (
+        float(shortest.value) if shortest else 0.0,
+        float(longest.value) if longest else float("inf"),
+    )

@@ -1,0 +1,62 @@
+"""The nouns of a judgement."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import StrEnum
+
+
+class Status(StrEnum):
+    """How a run stands to one bound."""
+
+    INSIDE = "inside"
+    OUTSIDE = "outside"
+    # It may be either: intervals lie across the bound.
+    UNDECIDED = "undecided"
+    NOT_JUDGED = "not judged"
+    # The proof has no bound for it: it takes for granted that there is none of it.
+    NOT_MODELLED = "not modelled"
+
+
+@dataclass(frozen=True, slots=True)
+class Violation:
+    """Where a run first left a bound.
+
+    Parameters
+    ----------
+    time : float
+        In s, as in the log.
+    words : str
+        What happened.
+    """
+
+    time: float
+    words: str
+
+
+@dataclass(frozen=True, slots=True)
+class Check:
+    """One bound and what the run says about it.
+
+    Parameters
+    ----------
+    name : str
+        What is judged.
+    status : Status
+        The outcome.
+    measured : str
+        What the log shows; for what is not judged, why.
+    allowed : str
+        The bound.
+    basis : str
+        Where the bound comes from.
+    first : Violation or None
+        The first time it was left.
+    """
+
+    name: str
+    status: Status
+    measured: str
+    allowed: str
+    basis: str
+    first: Violation | None = None

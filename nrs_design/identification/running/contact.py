@@ -1,0 +1,154 @@
+"""Stiffness and contact, window by window."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from nrs_design.identification.running.bounds import RunBounds, Stiffness
+from nrs_design.identification.running.check import Check, Status, Violation
+from nrs_design.identification.running.log import RunLog
+from nrs_design.identification.running.stiffness import Window, cut_windows, stiffness_of
+
+Array = NDArray[np.float64]
+
+# Less than this part of the least stiffness is no contact.
+_FREE = 0.1
+# So many windows in which force and deflection oppose each other are no accident.
+_OPPOSED = 0.5
+
+
+@dataclass(frozen=True, slots=True)
+class _Judged:
+    window: Window
+    allowed: Stiffness
+    status: Status
+    free: bool
+
+
+def judge_contact(
+    log: RunLog, bounds: RunBounds, length: float, *, proved: bool
+) -> tuple[Check, Check, list[Window]]:
+    """Judge stiffness and contact; a violation is claimed only where a whole interval is outside.
+
+    Parameters
+    ----------
+    log : RunLog
+        The data.
+    bounds : RunBounds
+        What the spec promises.
+    length : float
+        Of a window, in s.
+    proved : bool
+        Whether that is proved.
+    """
+    basis = "proved range" if proved else "range of the spec, not proved"
+    reason = _missing(log, bounds)
+    if reason:
+        return _not_judged("stiffness", reason), _not_judged("contact", reason), []
+    turn = 1.0
+    x, f = log.columns.get("angle"), log.columns.get("torque")
+    if x is None or f is None:
+        turn = (bounds.lever_arm or 1.0) ** 2
+        x, f = log.columns["deflection"], log.columns["force"]
+    spans = list(cut_windows(log.time, log.modes, length))
+    windows = [
+        replace(w, value=w.value * turn, low=w.low * turn, high=w.high * turn)
+        for w in stiffness_of(log.time, x, f, spans)
+    ]
+    judged = [item for w in windows for item in [_judge(log, bounds, w)] if item is not None]
+    told = [w for w in windows if w.low > -np.inf]
+    if told and sum(w.high < 0 for w in told) > _OPPOSED * len(told):
+        reason = "force and deflection have opposite signs; turn one with another column"
+        return _not_judged("stiffness", reason), _not_judged("contact", reason), windows
+    return _stiffness(log, judged, basis), _contact(log, judged, windows), windows
+
+
+def _missing(log: RunLog, bounds: RunBounds) -> str:
+    """Say why no window tells a stiffness, or nothing."""
+    if {"angle", "torque"} <= log.columns.keys():
+        return _strangers(log, bounds)
+    if not {"deflection", "force"} <= log.columns.keys():
+        turning = {"angle", "torque"} & log.columns.keys()
+        pair = ("angle", "torque") if turning else ("deflection", "force")
+        gone = [name for name in pair if name not in log.columns]
+        return f"no column for {' and '.join(gone)}"
+    if bounds.lever_arm is None:
+        return "the log is linear, and the spec names no lever arm that all environments share"
+    return _strangers(log, bounds)
+
+
+def _strangers(log: RunLog, bounds: RunBounds) -> str:
+    """Say which names of modes are none of the spec, or which law no window tells."""
+    unknown = [label for label in log.labels if label not in bounds.stiffness]
+    if unknown:
+        known = ", ".join(bounds.stiffness)
+        return f"{unknown[0]!r} is no controller of the spec, which has {known}"
+    foreign = {n for s in bounds.stiffness.values() if s is not None for n in s.foreign}
+    if foreign:
+        return f"{', '.join(sorted(foreign))} remembers: a window has no stiffness of its own"
+    if all(s is None for s in bounds.stiffness.values()):
+        return "no controller has contact"
+    if log.modes is None and bounds.stiffness_in(None) is None:
+        return "no column for mode, and not every controller has contact"
+    return ""
+
+
+def _judge(log: RunLog, bounds: RunBounds, window: Window) -> _Judged | None:
+    """Judge one window; None in a mode without contact."""
+    modes = log.modes
+    mode = None if modes is None else log.labels[modes[window.first]]
+    allowed = bounds.stiffness_in(mode)
+    if allowed is None:
+        return None
+    least = min(low for low, _ in allowed.ranges)
+    if any(low <= window.low and window.high <= high for low, high in allowed.ranges):
+        return _Judged(window, allowed, Status.INSIDE, free=False)
+    if all(window.high < low or window.low > high for low, high in allowed.ranges):
+        return _Judged(window, allowed, Status.OUTSIDE, free=_is_free(window, least))
+    return _Judged(window, allowed, Status.UNDECIDED, free=False)
+
+
+def _is_free(window: Window, least: float) -> bool:
+    return max(abs(window.low), abs(window.high)) < _FREE * least
+
+
+def _stiffness(log: RunLog, judged: list[_Judged], basis: str) -> Check:
+    touching = [item for item in judged if not item.free]
+    ranges = dict.fromkeys(pair for item in judged for pair in item.allowed.ranges)
+    allowed = " or ".join(f"{low:.5g} to {high:.5g} N m/rad" for low, high in ranges)
+    outside = [item for item in touching if item.status is Status.OUTSIDE]
+    inside = [item for item in touching if item.status is Status.INSIDE]
+    open_ends = len(touching) - len(outside) - len(inside)
+    if not touching:
+        return Check("stiffness", Status.NOT_JUDGED, "no window in contact", allowed, basis)
+    measured = f"{len(inside)} of {len(touching)} windows inside, {len(outside)} outside"
+    measured += f", {open_ends} undecided" if open_ends else ""
+    if outside:
+        w = outside[0].window
+        words = f"k = {w.value:.4g} [{w.low:.4g}, {w.high:.4g}] N m/rad"
+        first = Violation(log.begin + float(log.time[w.first]), words)
+        return Check("stiffness", Status.OUTSIDE, measured, allowed, basis, first)
+    status = Status.UNDECIDED if open_ends else Status.INSIDE
+    return Check("stiffness", status, measured, allowed, basis)
+
+
+def _contact(log: RunLog, judged: list[_Judged], windows: list[Window]) -> Check:
+    allowed, basis = "kept all the time", "assumption of the proof"
+    free = [item for item in judged if item.free]
+    if not free:
+        status = Status.INSIDE if judged and len(judged) == len(windows) else Status.UNDECIDED
+        if any(item.status is Status.UNDECIDED and item.window.low <= 0 for item in judged):
+            status = Status.UNDECIDED
+        return Check("contact", status, "no window without contact", allowed, basis)
+    w = free[0].window
+    words = f"k = {w.value:.3g} [{w.low:.3g}, {w.high:.3g}] N m/rad: free motion"
+    first = Violation(log.begin + float(log.time[w.first]), words)
+    measured = f"{len(free)} of {len(judged)} windows without contact"
+    return Check("contact", Status.OUTSIDE, measured, allowed, basis, first)
+
+
+def _not_judged(name: str, reason: str) -> Check:
+    return Check(name, Status.NOT_JUDGED, reason, "", "")

@@ -1,0 +1,97 @@
+"""Every check of a run against its bounds."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from nrs_design.identification.running.bounds import RunBounds
+from nrs_design.identification.running.check import Check, Status
+from nrs_design.identification.running.contact import judge_contact
+from nrs_design.identification.running.log import RunLog
+from nrs_design.identification.running.signals import (
+    judge_delay,
+    judge_force,
+    judge_jitter,
+    judge_saturation,
+)
+from nrs_design.identification.running.stays import judge_stays
+from nrs_design.identification.running.stiffness import Window
+
+# In s; long enough for some rows of any loop, short beside the motion of a hand.
+WINDOW = 0.5
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class RunJudgement:
+    """All checks of a run.
+
+    Parameters
+    ----------
+    log : RunLog
+        The data.
+    bounds : RunBounds
+        What the spec promises.
+    proved : bool
+        Whether a valid certificate for this spec proves it; otherwise bounds are only declared.
+    checks : tuple of Check
+        One for each bound.
+    windows : tuple of Window
+        Stiffness at the pivot in N m/rad.
+    """
+
+    log: RunLog
+    bounds: RunBounds
+    proved: bool
+    checks: tuple[Check, ...]
+    windows: tuple[Window, ...]
+
+    @property
+    def first(self) -> Check | None:
+        """The check that was violated first, or None."""
+        left = [check for check in self.checks if check.first is not None]
+        return min(left, key=lambda c: c.first.time if c.first else 0.0, default=None)
+
+    @property
+    def verdict(self) -> str:
+        """``outside``, ``inside``, or ``inconclusive``."""
+        statuses = {check.status for check in self.checks}
+        if Status.OUTSIDE in statuses:
+            return "outside"
+        open_ends = {Status.UNDECIDED, Status.NOT_JUDGED} & statuses
+        return "inside" if self.proved and not open_ends else "inconclusive"
+
+
+def judge_run(
+    log: RunLog,
+    bounds: RunBounds,
+    *,
+    proved: bool,
+    window: float = WINDOW,
+    command_limit: float | None = None,
+) -> RunJudgement:
+    """Hold a log against the bounds of a spec.
+
+    Parameters
+    ----------
+    log : RunLog
+        The data.
+    bounds : RunBounds
+        What the spec promises.
+    proved : bool
+        Whether a valid certificate proves it.
+    window : float
+        Length of the windows of stiffness in s.
+    command_limit : float, optional
+        Where the driver saturates, in units of the command.
+    """
+    stiffness, contact, windows = judge_contact(log, bounds, window, proved=proved)
+    checks = (
+        stiffness,
+        contact,
+        judge_stays(log, bounds),
+        judge_delay(log, bounds),
+        judge_jitter(log),
+        judge_saturation(log, command_limit),
+        judge_force(log, bounds),
+    )
+    return RunJudgement(log, bounds, proved, checks, tuple(windows))

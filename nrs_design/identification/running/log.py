@@ -1,0 +1,89 @@
+"""The log of a running loop, with whatever columns it has."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from nrs_design.errors import DataError
+from nrs_design.identification.datasets.checks import FEWEST_ROWS, check_advance
+from nrs_design.identification.datasets.table import Progress, Source, read_table
+
+Array = NDArray[np.float64]
+
+_OPTIONAL = ("angle", "torque", "deflection", "force", "velocity", "command", "mode")
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class RunLog:
+    """A log.
+
+    Parameters
+    ----------
+    source : Source
+        The file.
+    time : ndarray, shape (n,)
+        In s, from zero.
+    columns : dict of str to ndarray
+        By quantity, shape (n,) each, in SI; the mode as an index into the labels.
+    labels : tuple of str
+        Names of modes in the order in which they come.
+    begin : float
+        Time of the first row in the file, in s.
+    command_unit : str
+        Of the command, if there is one.
+    """
+
+    source: Source
+    time: Array
+    columns: dict[str, Array]
+    labels: tuple[str, ...]
+    begin: float
+    command_unit: str
+
+    @property
+    def step(self) -> float:
+        """Usual time between rows in s."""
+        return float(np.median(np.diff(self.time)))
+
+    @property
+    def modes(self) -> NDArray[np.int64] | None:
+        """Index of the label in force at every row, or None."""
+        return self.columns["mode"].astype(np.int64) if "mode" in self.columns else None
+
+
+def read_run(
+    path: Path, mapping: Mapping[str, str] | None = None, progress: Progress = lambda done: None
+) -> RunLog:
+    """Read ``time_s`` and those of the other columns that are there.
+
+    Parameters
+    ----------
+    path, mapping, progress
+        As in `read_tissue`; the columns are ``angle_rad, torque_Nm`` or ``deflection_m, force_N``,
+        ``velocity_rad_s``, ``command_UNIT`` and ``mode``, the name of the controller in force.
+
+    Raises
+    ------
+    DataError
+        If there is no time, it does not advance, or there is nothing beside it.
+    """
+    table = read_table(path, (("time",),), mapping or {}, progress, _OPTIONAL)
+    columns = dict(table.groups.get("", {}))
+    time = columns.pop("time", np.empty(0))
+    if not columns:
+        raise DataError(
+            "has no column beside the time that could be judged",
+            path=path,
+            remedy="name columns such as angle_rad, torque_Nm, command_rpm, mode; see --map",
+        )
+    if len(time) < FEWEST_ROWS:
+        table.fail(f"the log has {len(time)} rows, at least {FEWEST_ROWS} are needed",
+                   max(len(time) - 1, 0), "log longer")  # fmt: skip
+    check_advance(table, time)
+    unit = table.columns[""]["command"].unit if "command" in columns else ""
+    return RunLog(table.source, time - time[0], columns, table.labels, float(time[0]), unit)

@@ -1,0 +1,119 @@
+"""Delay, jitter, saturation and force."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from nrs_design.errors import DataError
+from nrs_design.identification.datasets import SignalRecord
+from nrs_design.identification.delay import identify_delay
+from nrs_design.identification.running.bounds import RunBounds
+from nrs_design.identification.running.check import Check, Status, Violation
+from nrs_design.identification.running.log import RunLog
+from nrs_design.identification.running.stiffness import noise_variance
+from nrs_design.identification.statistics import CONFIDENCE, student_quantile
+
+_CONTINUOUS = "none: the proof is in continuous time"
+_ASSUMED = "taken for granted by the proof"
+
+
+def judge_delay(log: RunLog, bounds: RunBounds) -> Check:
+    """Judge how late the motion follows the command.
+
+    Parameters
+    ----------
+    log : RunLog
+        The data.
+    bounds : RunBounds
+        What the spec promises.
+    """
+    seen = next((name for name in ("angle", "velocity") if name in log.columns), None)
+    if "command" not in log.columns or seen is None:
+        gone = "command" if "command" not in log.columns else "angle or velocity"
+        return Check("delay", Status.NOT_JUDGED, f"no column for {gone}", "", "")
+    pair = log.columns["command"], log.columns[seen]
+    try:
+        found = identify_delay(SignalRecord(log.source, log.time, *pair, ("command", seen)))
+    except DataError as error:
+        return Check("delay", Status.NOT_JUDGED, error.message, "", "")
+    low, high = found.delay.low, found.delay.high
+    words = f"{found.delay.value:.3g} [{low:.3g}, {high:.3g}] s"
+    if found.doubts:
+        return Check("delay", Status.NOT_JUDGED, f"{words}, in doubt: {found.doubts[0]}", "", "")
+    if bounds.delay is None:
+        return Check("delay", Status.NOT_MODELLED, words, _CONTINUOUS, _ASSUMED)
+    status = Status.UNDECIDED if high >= bounds.delay else Status.INSIDE
+    first = None
+    if low > bounds.delay:
+        status, first = Status.OUTSIDE, Violation(log.begin, words)
+    allowed = f"below {bounds.delay:g} s"
+    return Check("delay", status, words, allowed, "delay margin of the design", first)
+
+
+def judge_jitter(log: RunLog) -> Check:
+    """Judge how even the steps of time are.
+
+    Parameters
+    ----------
+    log : RunLog
+        The data.
+    """
+    steps = np.diff(log.time)
+    words = f"steps from {steps.min():.4g} to {steps.max():.4g} s, usually {log.step:.4g} s"
+    return Check("jitter", Status.NOT_MODELLED, words, _CONTINUOUS, _ASSUMED)
+
+
+def judge_saturation(log: RunLog, limit: float | None) -> Check:
+    """Judge whether the command met its limit.
+
+    Parameters
+    ----------
+    log : RunLog
+        The data.
+    limit : float or None
+        Of the driver, in units of the command.
+    """
+    if "command" not in log.columns:
+        return Check("saturation", Status.NOT_JUDGED, "no column for command", "", "")
+    size = np.abs(log.columns["command"])
+    largest = f"largest command {size.max():.5g} {log.command_unit}"
+    if limit is None:
+        reason = f"{largest}; where the driver saturates is not known: give --command-limit"
+        return Check("saturation", Status.NOT_JUDGED, reason, "", "")
+    allowed = f"below {limit:g} {log.command_unit}"
+    met = np.flatnonzero(size >= limit)
+    if not len(met):
+        return Check("saturation", Status.INSIDE, largest, allowed, _ASSUMED)
+    words = f"the command is {log.columns['command'][met[0]]:.5g} {log.command_unit}"
+    first = Violation(log.begin + float(log.time[met[0]]), words)
+    return Check("saturation", Status.OUTSIDE, largest, allowed, _ASSUMED, first)
+
+
+def judge_force(log: RunLog, bounds: RunBounds) -> Check:
+    """Judge the torque against the limit of the design.
+
+    Parameters
+    ----------
+    log : RunLog
+        The data.
+    bounds : RunBounds
+        What the spec promises.
+    """
+    allowed, basis = f"up to {bounds.torque:g} N m", "limit of the spec; no proof bounds it"
+    torque = log.columns.get("torque")
+    if torque is None and "force" in log.columns and bounds.lever_arm is not None:
+        torque = log.columns["force"] * bounds.lever_arm
+    if torque is None:
+        return Check("force", Status.NOT_JUDGED, "no column for torque or force", allowed, basis)
+    size = np.abs(torque)
+    largest = f"largest torque {size.max():.4g} N m"
+    # So far may noise reach in any row, at 95 % for all of them together.
+    reach = student_quantile(len(size), 1 - (1 - CONFIDENCE) / len(size))
+    reach *= float(np.sqrt(noise_variance(torque)))
+    over = np.flatnonzero(size - reach > bounds.torque)
+    if not len(over):
+        status = Status.UNDECIDED if size.max() > bounds.torque else Status.INSIDE
+        return Check("force", status, f"{largest}, noise up to {reach:.2g} N m", allowed, basis)
+    words = f"the torque is {torque[over[0]]:.4g} N m"
+    first = Violation(log.begin + float(log.time[over[0]]), words)
+    return Check("force", Status.OUTSIDE, largest, allowed, basis, first)

@@ -1,0 +1,138 @@
+"""Stiffness in windows of a log, each with an interval that holds whatever is noisy."""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from nrs_design.identification.rounding import resolution
+from nrs_design.identification.statistics import CONFIDENCE, student_quantile
+
+Array = NDArray[np.float64]
+
+FEWEST_ROWS = 20
+# A gap of more than so many usual steps ends a window.
+_GAP = 3.0
+# For how many times its estimate the noise of the deflection is taken.
+_NOISIER = 2.0
+
+
+@dataclass(frozen=True, slots=True)
+class Window:
+    """Stiffness in one window.
+
+    Parameters
+    ----------
+    first, last : int
+        First row, and the row after the last one.
+    value : float
+        Least squares, in force over deflection.
+    low, high : float
+        The interval, at 95 % for all windows together; infinite where nothing moves.
+    """
+
+    first: int
+    last: int
+    value: float
+    low: float
+    high: float
+
+
+def cut_windows(
+    time: Array, modes: NDArray[np.int64] | None, length: float
+) -> Iterator[tuple[int, int]]:
+    """Yield first row and end of windows that span neither a gap nor a switch.
+
+    Parameters
+    ----------
+    time : ndarray, shape (n,)
+        In s.
+    modes : ndarray of int or None, shape (n,)
+        In force at every row.
+    length : float
+        In s.
+    """
+    steps = np.diff(time)
+    breaks = steps > _GAP * float(np.median(steps))
+    if modes is not None:
+        breaks |= np.diff(modes) != 0
+    edges = [0, *(np.flatnonzero(breaks) + 1).tolist(), len(time)]
+    for begin, end in itertools.pairwise(edges):
+        count = max(round(float(time[end - 1] - time[begin]) / length), 1)
+        cuts = np.linspace(begin, end, count + 1).astype(int).tolist()
+        for first, last in itertools.pairwise(cuts):
+            if last - first >= FEWEST_ROWS:
+                yield first, last
+
+
+def stiffness_of(
+    time: Array, deflection: Array, force: Array, spans: list[tuple[int, int]]
+) -> list[Window]:
+    """Estimate ``F = c + k x + b x'`` in every window.
+
+    The lower end is that of the regression of force on deflection, which noise of the deflection
+    draws towards zero. The upper end is the smaller of two: that of the reverse regression, which
+    noise of the force draws away (Frisch 1934); and the lower one without the part of the
+    deflection that may be noise. Correlation of the errors widens both.
+
+    Parameters
+    ----------
+    time, deflection, force : ndarray, shape (n,)
+        Columns of the log.
+    spans : list of (int, int)
+        First row and end of every window.
+    """
+    confidence = 1 - (1 - CONFIDENCE) / max(len(spans), 1)
+    velocity = np.gradient(deflection, time)
+    return [
+        _window((first, last), deflection, velocity, force, confidence) for first, last in spans
+    ]
+
+
+def _window(
+    span: tuple[int, int], deflection: Array, velocity: Array, force: Array, confidence: float
+) -> Window:
+    first, last = span
+    x, v, f = (column[first:last] for column in (deflection, velocity, force))
+    others = np.column_stack([np.ones_like(x), v / max(float(np.abs(v).max()), 1e-300)])
+    basis, _ = np.linalg.qr(others)
+    x, y = (c - basis @ (basis.T @ c) for c in (x, f))
+    power, cross = float(x @ x), float(x @ y)
+    if power <= 1e-20 or cross == 0.0:
+        return Window(first, last, 0.0, -math.inf, math.inf)
+    k = cross / power
+    quantile = student_quantile(len(x) - 3, confidence)
+    half = quantile * _error(x, y)
+    # One over the stiffness, in the reverse regression.
+    yielding = abs(cross) / float(y @ y) - quantile * _error(y, x)
+    reverse = 1 / yielding if yielding > 0 else math.inf
+    # The part of the power of the deflection that is no noise.
+    real = 1 - _NOISIER * noise_variance(deflection[first:last]) * len(x) / power
+    drawn = (abs(k) + half) / real if real > 0 else math.inf
+    low = abs(k) - half
+    if low < 0:
+        low = low / real if real > 0 else -math.inf
+    high = min(reverse, drawn)
+    return Window(first, last, k, *((low, high) if k > 0 else (-high, -low)))
+
+
+def noise_variance(x: Array) -> float:
+    """Return the variance of white noise on a smooth signal, and of its rounding."""
+    rough = np.diff(x, 3)
+    # The binomial coefficients 1, 3, 3, 1 have squares that add up to 20.
+    return float(rough @ rough) / len(rough) / 20 + resolution(x) ** 2 / 12
+
+
+def _error(x: Array, y: Array) -> float:
+    """Return the standard error of the slope of y over x, whose errors may be correlated."""
+    power = float(x @ x)
+    rest = y - float(x @ y) / power * x
+    size = float(rest @ rest)
+    alike = float(rest[1:] @ rest[:-1]) / max(size, 1e-300)
+    inflation = (1 + max(alike, 0.0)) / max(1 - alike, 1e-3)
+    return math.sqrt(size / (len(x) - 3) / power * inflation)

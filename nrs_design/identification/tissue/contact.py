@@ -1,0 +1,196 @@
+"""Where a probe meets the tissue: air before and after, several touches, loss while it pulls back.
+
+In air the force stays while the probe moves; in contact it rises. The position of contact is the
+corner of a curve that is flat on one side, found by least squares over a grid of corners.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from nrs_design.identification.datasets import TissueRecord
+from nrs_design.identification.tissue.cycles import find_cycles
+
+Array = NDArray[np.float64]
+Flags = NDArray[np.bool_]
+
+_GRID = 50
+_COARSE = 500
+_REFINED = 3
+_FINE = 15
+_RIDGE = 1e-9
+_CYCLES = 4
+# Air must be this part of the travel at least, with so many samples.
+_LEAST_AIR = 0.01
+_FEWEST = 10
+# Stiffness of air over that of the contact: what is stiffer is tissue.
+_FLAT = 0.3
+# A corner must lower n log(SSE) by this against a smooth curve without one, and explain so much.
+_BETTER = 20.0
+_EXPLAINED = 0.1
+# A smoothed force beyond so many of its standard deviations from the air is one of contact.
+_CLEAR = 5.0
+_SMOOTH = 5
+
+
+@dataclass(frozen=True, slots=True)
+class Touch:
+    """Rows of one touch.
+
+    Parameters
+    ----------
+    first, end : int
+        Beyond the position of contact.
+    met, lost : int
+        With force. Where the tissue is not at rest, it is met later than at the position of
+        contact, and lost earlier.
+    """
+
+    first: int
+    met: int
+    lost: int
+    end: int
+
+
+@dataclass(frozen=True, eq=False)
+class Contact:
+    """Which samples are in contact.
+
+    Parameters
+    ----------
+    zero : float
+        Position of contact, m (rad); the deflection is counted from it.
+    side : int
+        1 if the tissue is where positions are larger, else -1.
+    beyond : ndarray of bool, shape (n,)
+        Beyond the position of contact.
+    clear : ndarray of bool, shape (n,)
+        With a force that is clearly not that of the air.
+    """
+
+    zero: float
+    side: int
+    beyond: Flags
+    clear: Flags
+
+    @cached_property
+    def touches(self) -> tuple[Touch, ...]:
+        """How often and when the probe meets the tissue."""
+        padded = np.concatenate([[False], self.beyond, [False]])
+        edges = np.flatnonzero(padded[1:] != padded[:-1]).reshape(-1, 2).tolist()
+        found = []
+        for first, end in edges:
+            clear = np.flatnonzero(self.clear[first:end])
+            if len(clear):
+                rows = first, first + int(clear[0]), first + int(clear[-1]) + 1, end
+                found.append(Touch(*rows))
+        return tuple(found)
+
+
+def find_contact(record: TissueRecord) -> Contact | None:
+    """Find where contact begins; None if no air shows in the record.
+
+    Parameters
+    ----------
+    record : TissueRecord
+        Position and force in any zero; n samples.
+    """
+    x, force = record.motion.deflection, record.force
+    velocity = _smoothed(record.motion.velocity)
+    # Later touches may meet a tissue that has not come back, so that the first one tells best.
+    best: tuple[float, float, int] | None = None
+    for cycle in find_cycles(x)[:_CYCLES]:
+        for side in (1, -1):
+            rows = _loading(side * x, side * velocity, cycle)
+            found = _corner(side * x[rows], velocity[rows], force[rows])
+            if found is not None and (best is None or found[1] < best[1]):
+                best = (*found, side)
+        if best is not None:
+            break
+    if best is None:
+        return None
+    corner, _, side = best
+    beyond = side * x > corner
+    return Contact(side * corner, side, beyond, _clear(force, beyond))
+
+
+def _loading(u: Array, velocity: Array, cycle: slice) -> NDArray[np.intp]:
+    """Pick samples on the way in: a tissue that relaxes lets go elsewhere than it was met."""
+    rows = np.arange(len(u))[cycle]
+    way_in = rows[velocity[cycle] > 0.02 * np.abs(velocity[cycle]).max()]
+    rows = way_in if len(way_in) >= 5 * _FEWEST else rows
+    return rows[:: -(-len(rows) // _COARSE)]
+
+
+def _corner(u: Array, velocity: Array, force: Array) -> tuple[float, float] | None:
+    """Return the best corner and its squared error, if it is one."""
+    low, span = float(u.min()), float(np.ptp(u))
+    # Between 0 and 1, powers are told apart.
+    v, centered = (u - low) / span, force - force.mean()
+    grid = np.linspace(0.5 * _LEAST_AIR, 0.95, _GRID)
+    step = float(grid[1] - grid[0])
+    for _ in range(_REFINED):
+        errors = _errors(np.maximum(v - grid[:, None], 0.0), velocity, centered)
+        at = int(np.argmin(errors))
+        best, error = float(grid[at]), float(errors[at])
+        grid = np.linspace(max(best - step, 0.0), min(best + step, 1.0), _FINE)
+        step = float(grid[1] - grid[0])
+    air = v < best
+    if min(air.sum(), (~air).sum()) < _FEWEST or best < _LEAST_AIR:
+        return None
+    smooth = float(_errors(v[None], velocity, centered)[0])
+    if smooth < error * np.exp(_BETTER / len(u)):
+        return None
+    if error > (1 - _EXPLAINED) * float(centered @ centered):
+        return None
+    return (low + best * span, error) if _is_flat(u, force, low + best * span) else None
+
+
+def _errors(w: Array, velocity: Array, force: Array) -> Array:
+    """Squared errors of a curve that leaves a constant where w leaves zero, shape (m,).
+
+    The curve is quadratic, with a force in proportion to the velocity: that begins with a jump.
+
+    Parameters
+    ----------
+    w : ndarray, shape (m, n)
+        Deflections between 0 and 1, for m corners.
+    velocity, force : ndarray, shape (n,)
+        In any unit.
+    """
+    X = np.stack([np.ones_like(w), w, w**2, velocity * (w > 0)], axis=2)
+    size = np.maximum(np.sqrt(np.einsum("mni,mni->mi", X, X)), np.finfo(float).tiny)
+    X /= size[:, None, :]
+    gram = np.einsum("mni,mnj->mij", X, X) + _RIDGE * np.eye(4)
+    found = np.linalg.solve(gram, np.einsum("mni,n->mi", X, force)[:, :, None])
+    rest = force - np.einsum("mni,mi->mn", X, found[:, :, 0])
+    return np.asarray(np.einsum("mn,mn->m", rest, rest))
+
+
+def _is_flat(u: Array, force: Array, corner: float) -> bool:
+    """Tell whether the force stays in air: a slope that is small against that of the contact."""
+    air = u < corner
+    inside = u - u.mean()
+    centered = inside[air] - inside[air].mean()
+    slope = float(centered @ force[air]) / max(float(centered @ centered), np.finfo(float).tiny)
+    noise = force[air] - force[air].mean() - slope * centered
+    error = float(np.sqrt(np.mean(noise**2) / max(float(centered @ centered), 1e-300)))
+    rise = float(np.abs(force[~air] - force[air].mean()).max()) / float(u.max() - corner)
+    return abs(slope) + 2 * error < _FLAT * rise
+
+
+def _clear(force: Array, beyond: Flags) -> Flags:
+    """Find where the force is clearly not that of the air."""
+    air = force[~beyond]
+    noise = float(np.std(air)) / np.sqrt(_SMOOTH)
+    away = np.abs(_smoothed(force) - float(np.median(air)))
+    return np.asarray(beyond & (away > _CLEAR * noise))
+
+
+def _smoothed(values: Array) -> Array:
+    padded = np.pad(values, _SMOOTH // 2, mode="edge")
+    return np.convolve(padded, np.full(_SMOOTH, 1 / _SMOOTH), "valid")

@@ -1,0 +1,186 @@
+"""Offsets of a record: where contact begins, and what the force sensor shows in air.
+
+For a law that is linear in its deflection, both are constants that add to the force: one in air and
+one in contact. Where a record has no air, only their sum shows, and one of them must be given, or
+taken as zero, to tell the other.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from types import MappingProxyType
+
+import numpy as np
+from numpy.typing import NDArray
+
+from nrs_design.identification.statistics import Estimate, Uncertainty, student_quantile
+from nrs_design.identification.tissue.trial import Trial
+from nrs_design.models.contact import AbstractContactLaw, AbstractLinearLaw, Motion
+
+Array = NDArray[np.float64]
+
+TARE, CONTACT, DRIFT = "tare", "contact", "drift"
+# In words, and with the units of a linear motion and of a rotation.
+OFFSET_WORDS: Mapping[str, str] = MappingProxyType(
+    {"zero": "position of contact", "tare": "force in air", "drift": "drift of the force"}
+)
+OFFSET_UNITS: Mapping[str, tuple[str, str]] = MappingProxyType(
+    {"zero": ("m", "rad"), "tare": ("N", "N m"), "drift": ("N/s", "N m/s")}
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Offset:
+    """An offset with its 95 % interval.
+
+    Parameters
+    ----------
+    name : str
+        ``zero`` (position of contact), ``tare`` (force in air) or ``drift`` (of the tare).
+    estimate : Estimate
+        In m, N or N/s (rad, N m, N m/s).
+    fitted : bool
+        Whether it was fitted; else it is as given.
+    provided : str
+        What it rests on, empty for the record alone.
+    """
+
+    name: str
+    estimate: Estimate
+    fitted: bool
+    provided: str = ""
+
+
+def is_linear(kind: type[AbstractContactLaw]) -> bool:
+    """Tell whether an offset of the deflection only adds a constant to the force of a law."""
+    return issubclass(kind, AbstractLinearLaw)
+
+
+def fits_zero(kind: type[AbstractContactLaw], trial: Trial) -> bool:
+    """Tell whether the position of contact is a parameter that enters nonlinearly."""
+    return not is_linear(kind) and trial.preparation.zero is None
+
+
+def offset_names(kind: type[AbstractContactLaw], trial: Trial) -> tuple[str, ...]:
+    """Return the offsets that add to the force in proportion."""
+    wanted, names = trial.preparation, []
+    keeps_force = issubclass(kind, AbstractLinearLaw) and kind.has_rest
+    if wanted.tare is None:
+        names.append(TARE)
+    if keeps_force and wanted.zero is None and (trial.found is not None or not names):
+        names.append(CONTACT)
+    return (*names, DRIFT) if trial.drift else tuple(names)
+
+
+def offset_columns(names: Sequence[str], trial: Trial) -> Array:
+    """Return the force that a unit of each offset adds to the used samples, shape (n, m)."""
+    used = trial.used
+    columns = {
+        TARE: np.ones(len(used)),
+        CONTACT: trial.touching.astype(float),
+        DRIFT: trial.motion.time - trial.motion.time[0],
+    }
+    made = [columns[name][used] for name in names]
+    return np.column_stack(made) if made else np.zeros((int(used.sum()), 0))
+
+
+def measured(trial: Trial) -> Array:
+    """Return the force of the used samples, less a tare that is given."""
+    tare = trial.preparation.tare
+    return trial.measured if tare is None else trial.measured - trial.side * tare
+
+
+def estimate_offsets(
+    law: AbstractContactLaw,
+    trial: Trial,
+    names: Sequence[str],
+    values: Array,
+    shift: float | None,
+    known: Uncertainty,
+) -> tuple[Offset, ...]:
+    """Turn fitted constants into the position of contact, the tare and its drift.
+
+    Parameters
+    ----------
+    law : AbstractContactLaw
+        As fitted, with p parameters.
+    trial : Trial
+        To which data.
+    names : sequence of str
+        As `offset_names` gives them.
+    values : ndarray, shape (m,)
+        Of these constants.
+    shift : float or None
+        Fitted move of the position of contact, for a law where it enters nonlinearly.
+    known : Uncertainty
+        Of p logarithms, the move if there is one, and the m constants, in this order.
+    """
+    first = len(law.values) + (shift is not None)
+    at = {name: first + i for i, name in enumerate(names)}
+    value = dict(zip(names, values.tolist(), strict=True))
+    reader = _Reader(trial, known)
+    offsets = [_zero(law, trial, at, value, shift, reader)]
+    wanted = trial.preparation
+    if wanted.tare is not None:
+        offsets.append(Offset("tare", Estimate(wanted.tare, wanted.tare, wanted.tare), False))
+    elif trial.found is None and wanted.zero is None and is_linear(type(law)) and _static(law)[0]:
+        offsets.append(Offset("tare", Estimate(0.0, 0.0, 0.0), False, "taken as zero"))
+    else:
+        offsets.append(Offset("tare", reader.signed(at[TARE], value[TARE]), True))
+    if DRIFT in at:
+        offsets.append(Offset("drift", reader.signed(at[DRIFT], value[DRIFT]), True))
+    return tuple(offset for offset in offsets if offset is not None)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Reader:
+    """Turns fitted values into intervals in the signs of the record."""
+
+    trial: Trial
+    known: Uncertainty
+
+    def signed(self, at: int, value: float) -> Estimate:
+        gradient = np.zeros(len(self.known.covariance))
+        gradient[at] = 1.0
+        return self.combined(value, gradient)
+
+    def combined(self, value: float, gradient: Array, reference: float = 0.0) -> Estimate:
+        variance = float(gradient @ self.known.covariance @ gradient)
+        half = student_quantile(self.known.degrees) * math.sqrt(max(variance, 0.0))
+        middle = reference + self.trial.side * value
+        return Estimate(middle, middle - half, middle + half)
+
+
+def _zero(
+    law: AbstractContactLaw,
+    trial: Trial,
+    at: dict[str, int],
+    value: dict[str, float],
+    shift: float | None,
+    reader: _Reader,
+) -> Offset | None:
+    wanted, p = trial.preparation, len(law.values)
+    if wanted.zero is not None:
+        return Offset("zero", Estimate(wanted.zero, wanted.zero, wanted.zero), False)
+    gradient = np.zeros(len(reader.known.covariance))
+    if shift is not None:
+        gradient[p] = 1.0
+        return Offset("zero", reader.combined(shift, gradient, trial.reference), True)
+    stiffness, slopes = _static(law)
+    name = CONTACT if CONTACT in at else TARE
+    if not stiffness or name not in at:
+        # A law without rest does not tell.
+        return None
+    moved = -value[name] / stiffness
+    gradient[:p] = -moved / stiffness * slopes
+    gradient[at[name]] = -1 / stiffness
+    provided = "" if trial.found is not None or wanted.tare is not None else "if the tare is 0"
+    return Offset("zero", reader.combined(moved, gradient, trial.reference), True, provided)
+
+
+def _static(law: AbstractContactLaw) -> tuple[float, Array]:
+    """Return the stiffness at rest, and its derivatives by the logarithms of the parameters."""
+    rest = Motion(np.array([0.0, 1.0]), np.ones(2))
+    return float(law.simulate(rest)[0]), law.sensitivities(rest)[0]

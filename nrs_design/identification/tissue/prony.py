@@ -1,0 +1,159 @@
+"""A Prony series: a spring beside several relaxing arms, as many as the data ask for.
+
+Designs know one relaxation. The series says whether one is enough, and what is lost with it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from nrs_design.identification.tissue.offsets import measured, offset_columns, offset_names
+from nrs_design.identification.tissue.starts import reduce_series
+from nrs_design.identification.tissue.trial import Trial
+from nrs_design.models.contact import Elastic
+from nrs_design.models.contact.law import AbstractLinearLaw
+from nrs_design.models.contact.relaxation import relax
+
+Array = NDArray[np.float64]
+
+MOST_TERMS = 3
+_GRID = 12
+_COARSE = 5_000
+# Another term must lower BIC by this much.
+_BIC = 10.0
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Series:
+    """A Prony series of one record.
+
+    Parameters
+    ----------
+    record : str
+        Its name.
+    rest : float
+        Stiffness at rest, N/m (N m/rad).
+    arms, times : tuple of float
+        Stiffness in N/m (N m/rad) and relaxation time in s of each arm, the fastest first.
+    rmse : float
+        Root of the mean squared force error, in N (N m).
+    bic : tuple of float
+        Of the series with one term, two, and so on.
+    reduced : AbstractLinearLaw or None
+        The one relaxation that stands for all of them.
+    """
+
+    record: str
+    rest: float
+    arms: tuple[float, ...]
+    times: tuple[float, ...]
+    rmse: float
+    bic: tuple[float, ...]
+    reduced: AbstractLinearLaw | None
+
+
+def fit_series(trial: Trial) -> Series:
+    """Fit series of one to three terms, and choose by BIC.
+
+    Parameters
+    ----------
+    trial : Trial
+        As `nrs_design.identification.tissue.prepare` makes it.
+    """
+    thin = trial.thinned(-(-len(trial.force) // _COARSE))
+    fits = [_fit(thin, terms) for terms in range(1, MOST_TERMS + 1)]
+    best = fits[0]
+    for fit in fits[1:]:
+        if fit.bic < best.bic - _BIC and np.all(fit.values[1:] > 0):
+            best = fit
+    order = np.argsort(best.times)
+    rest, arms, times = float(best.values[0]), best.values[1:][order], best.times[order]
+    return Series(
+        trial.record.name,
+        rest,
+        tuple(arms.tolist()),
+        tuple(times.tolist()),
+        best.rmse,
+        tuple(fit.bic for fit in fits),
+        reduce_series(rest, arms, times),
+    )
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Fit:
+    """Stiffness at rest and of the arms, with their relaxation times."""
+
+    values: Array
+    times: Array
+    rmse: float
+    bic: float
+
+
+def _fit(trial: Trial, terms: int) -> _Fit:
+    from scipy.optimize import least_squares
+
+    step, duration = float(np.median(trial.motion.steps)), trial.duration
+    low, high = np.log(step), np.log(3 * duration)
+    ends = []
+
+    def error_at(logs: Array) -> Array:
+        return _solve(trial, np.exp(logs))[1]
+
+    for start in _starts(trial, terms, low, high):
+        found = least_squares(
+            error_at,
+            start,
+            bounds=(low, high),
+            diff_step=np.full(terms, 1e-4),
+            xtol=1e-8,
+        )
+        ends.append((float(found.cost), np.exp(found.x)))
+    times = min(ends, key=lambda end: end[0])[1]
+    values, error = _solve(trial, times)
+    n = len(error)
+    count = 1 + 2 * terms + len(offset_names(Elastic, trial)) + terms * len(trial.unrested) + 1
+    rmse = float(np.sqrt(np.mean(error**2)))
+    bic = 2 * n * float(np.log(max(rmse, np.finfo(float).tiny))) + count * float(np.log(n))
+    return _Fit(values, times, rmse, bic)
+
+
+def _starts(trial: Trial, terms: int, low: float, high: float) -> Sequence[Array]:
+    """Spread the times evenly, and take those that a nonnegative fit over a grid picks."""
+    even = np.linspace(low, high, terms + 2)[1:-1]
+    grid = np.linspace(low + 0.5, high - 0.5, _GRID)
+    weights = _solve(trial, np.exp(grid))[0][1:]
+    picked = np.sort(grid[np.argsort(weights)[-terms:]])
+    return even, picked
+
+
+def _solve(trial: Trial, times: Array) -> tuple[Array, Array]:
+    """Return the nonnegative stiffnesses for given relaxation times, and the error."""
+    from scipy.optimize import nnls
+
+    used, motion = trial.used, trial.motion
+    parts = [motion.deflection, *(relax(motion, float(tau))[0] for tau in times)]
+    X = np.column_stack([np.where(trial.touching, part, 0.0)[used] for part in parts])
+    basis = np.linalg.qr(_constants(trial, times))[0]
+    force = measured(trial)
+    force = force - basis @ (basis.T @ force)
+    X -= basis @ (basis.T @ X)
+    size = np.maximum(np.linalg.norm(X, axis=0), np.finfo(float).tiny)
+    values = nnls(X / size, force)[0]
+    return np.asarray(values / size), np.asarray(force - (X / size) @ values)
+
+
+def _constants(trial: Trial, times: Array) -> Array:
+    """Return what adds in proportion: offsets, and what the arms hold when a touch begins."""
+    time = trial.motion.time
+    columns = []
+    for rows in trial.unrested:
+        for tau in times:
+            column = np.zeros(len(time))
+            column[rows] = np.exp(-(time[rows] - time[rows.start]) / tau)
+            columns.append(column[trial.used])
+    offsets = offset_columns(offset_names(Elastic, trial), trial)
+    return np.column_stack([offsets, *columns])

@@ -1,0 +1,128 @@
+"""The range of a parameter that a proof shall cover: what it holds is a choice with a name.
+
+- ``confidence``: the mean of the specimens.
+- ``tolerance``: a share of all specimens like those of the records.
+- ``prediction``: the specimen of the next record.
+
+All hold the interval of every measured record too. Several parameters make a box: each side has
+its share of the 5 % that may fail (Bonferroni), so that the box as a whole holds with 95 %.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from nrs_design.errors import DataError
+from nrs_design.identification.statistics import (
+    CONFIDENCE,
+    Estimate,
+    student_quantile,
+    tolerance_factor,
+)
+from nrs_design.spec.provenance import Coverage
+
+Array = NDArray[np.float64]
+
+_FEWEST = 2
+# Weaker correlations leave an ellipse that all but fills its box.
+_CORRELATED = 0.3
+
+
+def joint_level(count: int) -> float:
+    """Return the level of each of so many intervals that hold together with 95 %."""
+    return 1 - (1 - CONFIDENCE) / count
+
+
+def spread_ranges(
+    coverage: Coverage, logarithms: Array, single: Sequence[Sequence[Estimate]]
+) -> tuple[Estimate, ...]:
+    """Return ranges that hold other specimens than those measured.
+
+    The scatter between the records is that of the specimens and of the fits together, which errs
+    to the wide side. Logarithms are taken as normal.
+
+    Parameters
+    ----------
+    coverage : {"tolerance", "prediction"}
+        What the ranges hold.
+    logarithms : ndarray, shape (n, p)
+        Of the p parameters in n records.
+    single : sequence of sequence of Estimate
+        The p intervals of each record.
+
+    Raises
+    ------
+    DataError
+        If there is one record only.
+    """
+    n, p = logarithms.shape
+    check_spread(coverage, n)
+    level = joint_level(p)
+    if coverage == "tolerance":
+        factor = tolerance_factor(n, share=level, confidence=level)
+    else:
+        factor = student_quantile(n - 1, level) * math.sqrt(1 + 1 / n)
+    means, scatter = logarithms.mean(axis=0), logarithms.std(axis=0, ddof=1)
+    return tuple(
+        hull(Estimate.from_log(float(m), factor * float(s)), [row[i] for row in single])
+        for i, (m, s) in enumerate(zip(means, scatter, strict=True))
+    )
+
+
+def check_spread(coverage: Coverage, count: int) -> None:
+    """Check that so many records tell how specimens differ.
+
+    Raises
+    ------
+    DataError
+        If there is one only.
+    """
+    if count < _FEWEST:
+        raise DataError(
+            f"a range for {coverage} needs several records, and there is one: it says nothing of "
+            "the spread between specimens",
+            remedy="give more records, or take --covers confidence",
+        )
+
+
+def hull(pooled: Estimate, single: Sequence[Estimate]) -> Estimate:
+    """Widen an interval to those of single records."""
+    low = min(pooled.low, *(estimate.low for estimate in single))
+    high = max(pooled.high, *(estimate.high for estimate in single))
+    return Estimate(pooled.value, low, high)
+
+
+def box_remark(names: Sequence[str], covariances: Sequence[Array]) -> str:
+    """Say what a box of ranges holds where parameters are correlated; empty for one parameter.
+
+    Parameters
+    ----------
+    names : sequence of str
+        Of the p parameters.
+    covariances : sequence of ndarray, shape (p, p)
+        Of their logarithms in each record.
+    """
+    if len(names) < 2:
+        return ""
+    together = (
+        f"The ranges are a box: each side holds with {100 * joint_level(len(names)):.4g} %, so "
+        "that the box holds with 95 %."
+    )
+    mean = np.mean([_correlation(covariance) for covariance in covariances], axis=0)
+    size = np.abs(np.triu(mean, 1))
+    if size.max() < _CORRELATED:
+        return together
+    i, j = divmod(int(np.argmax(size)), len(names))
+    return (
+        f"{together} {names[i]} and {names[j]} correlate by {mean[i, j]:.2f}: what is plausible is "
+        "an ellipse inside, and the proof covers the whole box around it."
+    )
+
+
+def _correlation(covariance: Array) -> Array:
+    size = np.sqrt(np.maximum(np.diag(covariance), np.finfo(float).tiny))
+    return np.asarray(covariance / np.outer(size, size))

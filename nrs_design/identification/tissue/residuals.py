@@ -1,0 +1,171 @@
+"""What residuals say against a fit: how large they are, and what they still follow."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+from numpy.typing import NDArray
+
+from nrs_design.identification.statistics import (
+    WHITE,
+    fisher_tail,
+    ljung_box,
+    student_quantile,
+    uncertainty,
+)
+from nrs_design.identification.tissue.trial import Trial
+
+Array = NDArray[np.float64]
+
+# Parts of the range of the force: of the whole residual, and of what it follows.
+LARGEST_RESIDUAL = 0.1
+LARGEST_STRUCTURE = 0.03
+LEAST_R2 = 0.9
+# A cycle that is stiffer than the others by this much is conditioning.
+_CONDITIONING = 0.05
+_BINS = 12
+_SPREADS = 3.0
+# An offset that was given disagrees where another lowers BIC by this much.
+_BIC = 10.0
+
+
+def doubt_residuals(
+    trial: Trial, residuals: Array, sensitivities: Array, count: int
+) -> Iterator[str]:
+    """Yield in words what the residuals say against a fit.
+
+    Parameters
+    ----------
+    trial : Trial
+        With n used samples.
+    residuals : ndarray, shape (n,)
+        Measured less fitted force.
+    sensitivities : ndarray, shape (n, p + m)
+        Derivatives of the force by parameters and offsets.
+    count : int
+        p, number of parameters.
+    """
+    yield from _signs(trial, sensitivities[:, count:])
+    yield from _size(trial, residuals)
+    yield from _structure(trial, residuals)
+    yield from _given_offsets(trial, residuals, sensitivities)
+    yield from _conditioning(trial, residuals)
+
+
+def explained(trial: Trial, residuals: Array) -> float:
+    """Return R², the part of the variance of the force that a fit explains."""
+    total = float(np.var(trial.measured))
+    return 1 - float(np.mean(residuals**2)) / total if total else 0.0
+
+
+def structure(values: Array, residuals: Array) -> tuple[float, float]:
+    """Tell how residuals follow a quantity, by their means in groups of equal size.
+
+    Parameters
+    ----------
+    values : ndarray, shape (n,)
+        The quantity.
+    residuals : ndarray, shape (n,)
+        In N (N m).
+
+    Returns
+    -------
+    tuple of float
+        Root mean square of what they follow, in N (N m), and the p-value of the F-test of one-way
+        analysis of variance.
+    """
+    order = np.argsort(values, kind="stable")
+    groups = np.array_split(residuals[order], _BINS)
+    means = np.array([group.mean() for group in groups])
+    sizes = np.array([len(group) for group in groups])
+    within = sum(float(np.sum((g - m) ** 2)) for g, m in zip(groups, means, strict=True))
+    within /= len(residuals) - _BINS
+    between = float(sizes @ (means - residuals.mean()) ** 2) / (_BINS - 1)
+    if within == 0.0:
+        return 0.0, 1.0
+    follows = max(0.0, (between - within) * (_BINS - 1) / len(residuals))
+    return follows**0.5, fisher_tail(_BINS - 1, len(residuals) - _BINS, between / within)
+
+
+def _signs(trial: Trial, offsets: Array) -> Iterator[str]:
+    X = np.column_stack([trial.deflection, offsets])
+    found = np.linalg.lstsq(X, trial.measured, rcond=None)[0]
+    known = uncertainty(X, trial.measured - X @ found)
+    if found[0] + student_quantile(known.degrees) * known.errors[0] < 0:
+        yield (
+            "force and deflection have opposite signs (--negate-force if the sensor measures the "
+            "force on the probe)"
+        )
+
+
+def _size(trial: Trial, residuals: Array) -> Iterator[str]:
+    part = float(np.sqrt(np.mean(residuals**2))) / trial.span
+    r2 = explained(trial, residuals)
+    if part > LARGEST_RESIDUAL or r2 < LEAST_R2:
+        yield f"the residual is {100 * part:.2g} % of the range of the force (R² = {r2:.2g})"
+
+
+def _structure(trial: Trial, residuals: Array) -> Iterator[str]:
+    touching = trial.touching[trial.used]
+    inside = residuals[touching]
+    motion, span = trial.motion, trial.span
+    for values, what in (
+        (trial.deflection[touching], "the deflection: the tissue is not linear in it"),
+        (motion.velocity[trial.used][touching], "the velocity: the law has another damping"),
+    ):
+        size, p = structure(values, inside)
+        if size > LARGEST_STRUCTURE * span and p < WHITE:
+            part = f"{100 * size / span:.2g} % of the range of the force, F-test p = {p:.1g}"
+            yield f"the residuals follow {what} ({part})"
+    size, _ = structure(motion.time[trial.used], residuals)
+    p = ljung_box(residuals)
+    if size > LARGEST_STRUCTURE * span and p < WHITE:
+        part = f"{100 * size / span:.2g} % of the range of the force, Ljung-Box p = {p:.1g}"
+        yield f"the residuals are not white but wander with time ({part})"
+
+
+def _given_offsets(trial: Trial, residuals: Array, sensitivities: Array) -> Iterator[str]:
+    wanted = trial.preparation
+    if wanted.zero is None and wanted.tare is None:
+        return
+    n = len(residuals)
+    columns = np.column_stack([np.ones(n), trial.touching[trial.used]])
+    X = np.column_stack([sensitivities, columns])
+    size = np.maximum(np.linalg.norm(X, axis=0), np.finfo(float).tiny)
+    found, _, rank, _ = np.linalg.lstsq(X / size, residuals, rcond=1e-9)
+    left = residuals - (X / size) @ found
+    more = int(rank) - np.linalg.matrix_rank(sensitivities / size[: sensitivities.shape[1]])
+    if more < 1 or not (left @ left):
+        return
+    gain = n * float(np.log((residuals @ residuals) / (left @ left))) - more * float(np.log(n))
+    # Colored residuals hold fewer samples than they count.
+    gain *= 1.0 if ljung_box(left) >= WHITE else _BINS / n * 2
+    if gain > _BIC:
+        yield (
+            f"a fit with a free offset is better (BIC {gain:.3g} less): the given zero or tare "
+            "disagrees with the record"
+        )
+
+
+def _conditioning(trial: Trial, residuals: Array) -> Iterator[str]:
+    """Compare the first loading cycle with the later ones (Mullins effect)."""
+    rest, fitted = np.full(len(trial.force), np.nan), np.full(len(trial.force), np.nan)
+    rest[trial.used] = residuals
+    fitted[trial.used] = trial.measured - residuals - (trial.measured - residuals).min()
+    gains = []
+    for cycle in trial.cycles:
+        inside = np.isfinite(rest[cycle])
+        f = fitted[cycle][inside]
+        if inside.sum() >= _BINS and np.ptp(f) > 0.5 * trial.span:
+            gains.append(float(f @ rest[cycle][inside]) / float(f @ f))
+    if len(gains) < 3:
+        return
+    first, later = gains[0], np.array(gains[1:])
+    more = first - float(later.mean())
+    if abs(more) > max(_CONDITIONING, _SPREADS * float(np.ptp(later))):
+        word = "stiffer" if more > 0 else "softer"
+        yield (
+            f"the first loading cycle is {100 * abs(more):.2g} % {word} than the later ones "
+            "(conditioning): --skip-cycles sets it apart"
+        )

@@ -1,0 +1,99 @@
+"""Rupture: the force falls while the probe goes on."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from nrs_design.models.contact import Motion
+
+Array = NDArray[np.float64]
+
+# The force falls by this part of its range ...
+_FALL = 0.15
+# ... within this part of the record, and at least so many samples ...
+_WINDOW = 0.02
+_FEWEST = 3
+# ... while the probe goes on at this part of its speed before, or faster: a damper gives way too
+# where the probe slows down.
+_GOES_ON = 0.9
+# And it stays below what it was: the part of the fall that may come back in the next window.
+_COMES_BACK = 0.5
+# And it is so many times the usual change between two samples.
+_NOISE = 5.0
+# Before it, the force rises by this part of its range in the same time, and the probe moves.
+_GROWTH = 0.02
+
+
+@dataclass(frozen=True, slots=True)
+class Rupture:
+    """Where a tissue tears.
+
+    Parameters
+    ----------
+    peak : int
+        Last row before the force falls.
+    fall : float
+        By which part of its range.
+    time : float
+        In s.
+    """
+
+    peak: int
+    fall: float
+    time: float
+
+    @property
+    def reason(self) -> str:
+        """In words."""
+        return (
+            f"rupture at {self.time:.4g} s: the force falls by {100 * self.fall:.0f} % of its "
+            "range while the probe goes on"
+        )
+
+
+def find_rupture(motion: Motion, force: Array) -> Rupture | None:
+    """Find the first rupture, None if there is none.
+
+    Parameters
+    ----------
+    motion : Motion
+        Position; n samples.
+    force : ndarray, shape (n,)
+        Of either sign.
+    """
+    n = len(force)
+    window = max(round(_WINDOW * n), _FEWEST)
+    if n < 4 * window:
+        return None
+    x = motion.deflection
+    size = _smoothed(force - np.median(force[:window]), max(window // 2, 1))
+    # Into the tissue, and against it: where the force is largest.
+    top = int(np.argmax(np.abs(size)))
+    size, inward = size * np.sign(size[top]), float(np.sign(x[top] - x[0]))
+    span = float(np.ptp(size))
+    if span == 0.0:
+        return None
+    rows = np.arange(window, n - 2 * window)
+    falls = (size[rows] - size[rows + window]) / span
+    stays = (size[rows] - size[rows + 2 * window]) / span > _COMES_BACK * falls
+    before, after = x[rows] - x[rows - window], x[rows + window] - x[rows]
+    before, after = inward * before, inward * after
+    on = (before > _GROWTH / 4 * np.ptp(x)) & (after > _GOES_ON * before)
+    grew = size[rows] - size[rows - window] > _GROWTH * span
+    noise = float(np.median(np.abs(np.diff(force)))) / span
+    hits = rows[(falls > max(_FALL, _NOISE * noise)) & stays & on & grew]
+    if not len(hits):
+        return None
+    first = int(hits[0])
+    peak = first + int(np.argmax(size[first : first + window]))
+    # Before the peak, a tissue may already give way.
+    fall = float(size[peak] - size[peak : peak + 2 * window].min()) / span
+    return Rupture(peak, fall, float(motion.time[peak]))
+
+
+def _smoothed(values: Array, count: int) -> Array:
+    padded = np.pad(values, (count // 2, count - 1 - count // 2), mode="edge")
+    return np.convolve(padded, np.full(count, 1 / count), "valid")

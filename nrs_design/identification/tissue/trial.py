@@ -1,0 +1,337 @@
+"""A record made ready for a fit: what of it is used, from where deflection and force count."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from nrs_design.errors import DataError
+from nrs_design.identification.datasets import TissueRecord
+from nrs_design.identification.tissue.contact import Contact, find_contact
+from nrs_design.identification.tissue.cycles import find_cycles
+from nrs_design.identification.tissue.drift import drifts
+from nrs_design.identification.tissue.rupture import find_rupture
+from nrs_design.identification.tissue.surface import surface
+from nrs_design.models.contact import Motion
+
+Array = NDArray[np.float64]
+Flags = NDArray[np.bool_]
+
+FEWEST = 50
+# So near to the position of contact, as a part of the travel, a sample may be in air or not.
+_EDGE = 0.02
+# A record that begins at this part of its deflection need not begin relaxed.
+_LOADED = 0.1
+
+
+@dataclass(frozen=True, slots=True)
+class Preparation:
+    """What is done to every record before it is fitted.
+
+    Parameters
+    ----------
+    start, end : float or None
+        Part of the record, in s from its beginning.
+    contact : {"auto", "given"}
+        Look for air, or take the whole record as in contact.
+    zero : float or None
+        Position of contact in m (rad); None fits it.
+    tare : float or None
+        Force in air in N (N m); None fits it.
+    drift : {"auto", "fit", "none"}
+        Whether the tare moves in proportion to time; ``auto`` asks the air.
+    skip_cycles : int
+        First loading cycles that are set apart.
+    negate : bool
+        Change the sign of the force.
+    """
+
+    start: float | None = None
+    end: float | None = None
+    contact: Literal["auto", "given"] = "auto"
+    zero: float | None = None
+    tare: float | None = None
+    drift: Literal["auto", "fit", "none"] = "auto"
+    skip_cycles: int = 0
+    negate: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Cut:
+    """A part of a record that is not used.
+
+    Parameters
+    ----------
+    first, last : float
+        Time in s from the beginning of the record.
+    reason : str
+        Why.
+    samples : int
+        How many there are.
+    """
+
+    first: float
+    last: float
+    reason: str
+    samples: int
+
+    def __str__(self) -> str:
+        """Return it in words."""
+        when = f"{self.first:.4g} s to {self.last:.4g} s"
+        return f"{self.samples} samples from {when}: {self.reason}"
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Trial:
+    """A record as it is fitted.
+
+    Parameters
+    ----------
+    record : TissueRecord
+        As it was read.
+    preparation : Preparation
+        What was asked for.
+    motion : Motion
+        Deflection of the tissue, positive into it and 0 in air; n samples.
+    position : ndarray, shape (n,)
+        The same, but negative in air.
+    force : ndarray, shape (n,)
+        On the tissue in N (N m), with any tare.
+    used : ndarray of bool, shape (n,)
+        Samples that are fitted.
+    touching : ndarray of bool, shape (n,)
+        Samples in contact.
+    reference : float
+        Position that the deflection is counted from, m (rad).
+    side : int
+        1 if the tissue is where positions are larger, else -1.
+    found : Contact or None
+        None if no air shows, or was not looked for.
+    drift : bool
+        Whether the tare is fitted as moving.
+    cuts : tuple of Cut
+        What is not used, and why.
+    cycles : tuple of slice
+        Loading cycles, among all samples.
+    """
+
+    record: TissueRecord
+    preparation: Preparation
+    motion: Motion
+    position: Array
+    force: Array
+    used: Flags
+    touching: Flags
+    reference: float
+    side: int
+    found: Contact | None
+    drift: bool
+    cuts: tuple[Cut, ...]
+    cycles: tuple[slice, ...]
+
+    @property
+    def unrested(self) -> tuple[slice, ...]:
+        """Stretches in contact that may not begin at rest: touches, and a loaded start.
+
+        A touch begins where the position of contact is, which is known with an error.
+        """
+        padded = np.concatenate([[False], self.touching, [False]])
+        edges = np.flatnonzero(padded[1:] != padded[:-1]).reshape(-1, 2).tolist()
+        loaded = float(self.motion.deflection[0]) > _LOADED * float(self.motion.deflection.max())
+        if self.found is None and not loaded:
+            return ()
+        return tuple(slice(a, b) for a, b in edges if self.used[a:b].any())
+
+    @property
+    def measured(self) -> Array:
+        """Force of the samples that are used."""
+        return self.force[self.used]
+
+    @property
+    def deflection(self) -> Array:
+        """Deflection of the samples that are used."""
+        return self.motion.deflection[self.used]
+
+    @property
+    def duration(self) -> float:
+        """From first to last sample, in s."""
+        return float(self.motion.time[-1] - self.motion.time[0])
+
+    @property
+    def span(self) -> float:
+        """Range of the force that is used, in N (N m)."""
+        return float(np.ptp(self.measured))
+
+    @property
+    def remarks(self) -> tuple[str, ...]:
+        """What was found about contact, tare and parts that are not used, in words."""
+        return tuple(self._remarks())
+
+    def _remarks(self) -> Iterator[str]:
+        if self.found is not None:
+            part = 100 * float(np.mean(~self.touching))
+            count = len(self.found.touches)
+            yield f"{count} {'touch' if count == 1 else 'touches'}; {part:.0f} % of it is air"
+        elif self.preparation.contact == "auto":
+            yield "no air shows: all of it is taken as in contact"
+        if self.drift:
+            yield "the tare is fitted as moving in proportion to time"
+        yield from map(str, self.cuts)
+
+    def shifted(self, shift: float) -> Motion:
+        """Return the deflection from a position of contact that lies by so much deeper."""
+        return Motion(self.motion.time, self.position - shift)
+
+    def everything(self) -> Trial:
+        """Return the trial with all samples used."""
+        return replace(self, used=np.ones(len(self.force), bool))
+
+    def thinned(self, every: int) -> Trial:
+        """Return the trial with one of so many samples."""
+        if every == 1:
+            return self
+        pick = slice(None, None, every)
+        motion = Motion(self.motion.time[pick], self.motion.deflection[pick])
+        return replace(
+            self,
+            motion=motion,
+            position=self.position[pick],
+            force=self.force[pick],
+            used=self.used[pick],
+            touching=self.touching[pick],
+        )
+
+
+def prepare(record: TissueRecord, preparation: Preparation | None = None) -> Trial:
+    """Cut a record to what can be fitted.
+
+    Parameters
+    ----------
+    record : TissueRecord
+        As it was read.
+    preparation : Preparation, optional
+        By default, air, rupture and drift are looked for, and both zeros are fitted.
+
+    Raises
+    ------
+    DataError
+        If too little of the record is left.
+    """
+    wanted = preparation or Preparation()
+    kept, cuts = _window(record, wanted)
+    rupture = find_rupture(kept.motion, kept.force)
+    if rupture is not None:
+        rows = slice(rupture.peak, len(kept.force))
+        cuts.append(_cut(kept.motion.time, _flags(len(kept.force), rows), rupture.reason))
+        kept = _rows(kept, slice(0, rupture.peak))
+    found = find_contact(kept) if wanted.contact == "auto" else None
+    return _assemble(record, kept, wanted, found, cuts)
+
+
+def _assemble(
+    record: TissueRecord,
+    kept: TissueRecord,
+    wanted: Preparation,
+    found: Contact | None,
+    cuts: list[Cut],
+) -> Trial:
+    x, time = kept.motion.deflection, kept.motion.time
+    side = _side(x) if found is None else found.side
+    reference = _reference(x, side, wanted, found)
+    deflection = position = side * (x - reference)
+    used = touching = np.ones(len(x), bool)
+    if found is not None:
+        width = _EDGE * float(np.ptp(x))
+        deflection, touching = surface(time, position, found.touches, width)
+        edge = np.abs(position) < width
+        free = found.beyond & ~touching & ~edge
+        cuts += _runs(time, edge, "at the edge of contact")
+        cuts += _runs(time, free, "no contact yet: the tissue has not come back from a touch")
+        used = ~edge & ~free
+    cycles = find_cycles(deflection)
+    used = used & ~_skipped(time, cycles, wanted, cuts)
+    if used.sum() < FEWEST or np.ptp(x[used]) == 0:
+        raise DataError(
+            f"{used.sum()} samples in {len(x)} are left to fit, at least {FEWEST} are needed",
+            path=record.source.path,
+            remedy="record longer, or say with --contact given, --from or --to what to use",
+        )
+    force = side * kept.force
+    air = used & ~touching
+    moving = wanted.drift == "fit" or (wanted.drift == "auto" and drifts(time, force, air))
+    motion = Motion(time, deflection)
+    return Trial(
+        record, wanted, motion, position, force, used, touching, reference, side, found, moving,
+        tuple(cuts), cycles,
+    )  # fmt: skip
+
+
+def _window(record: TissueRecord, wanted: Preparation) -> tuple[TissueRecord, list[Cut]]:
+    time = record.motion.time
+    start = -np.inf if wanted.start is None else wanted.start
+    end = np.inf if wanted.end is None else wanted.end
+    rows = np.flatnonzero((time >= start) & (time <= end))
+    if len(rows) < FEWEST:
+        raise DataError(
+            f"{len(rows)} samples lie between --from and --to, at least {FEWEST} are needed",
+            path=record.source.path,
+            remedy=f"the record lasts from 0 s to {record.duration:.6g} s",
+        )
+    kept = _rows(record, slice(int(rows[0]), int(rows[-1]) + 1))
+    outside = np.ones(len(time), bool)
+    outside[rows] = False
+    if wanted.negate:
+        kept = replace(kept, force=-kept.force)
+    return kept, _runs(time, outside, "outside --from and --to")
+
+
+def _rows(record: TissueRecord, rows: slice) -> TissueRecord:
+    motion = Motion(record.motion.time[rows], record.motion.deflection[rows])
+    return replace(record, motion=motion, force=record.force[rows])
+
+
+def _side(x: Array) -> int:
+    """Take the tissue where positions are larger, unless all of them are negative."""
+    return -1 if x.max() < 0.05 * np.ptp(x) and x.min() < -0.5 * np.ptp(x) else 1
+
+
+def _reference(x: Array, side: int, wanted: Preparation, found: Contact | None) -> float:
+    if wanted.zero is not None:
+        return wanted.zero
+    if found is not None:
+        return found.zero
+    return side * float(np.min(side * x))
+
+
+def _skipped(time: Array, cycles: tuple[slice, ...], wanted: Preparation, cuts: list[Cut]) -> Flags:
+    skipped = np.zeros(len(time), bool)
+    if not wanted.skip_cycles:
+        return skipped
+    if wanted.skip_cycles >= len(cycles):
+        raise DataError(
+            f"{wanted.skip_cycles} cycles are to be set apart, and there are {len(cycles)}",
+            remedy="leave at least one: give a smaller --skip-cycles",
+        )
+    skipped[: cycles[wanted.skip_cycles].start] = True
+    cuts += _runs(time, skipped, "first loading cycles, set apart")
+    return skipped
+
+
+def _flags(count: int, rows: slice) -> Flags:
+    flags = np.zeros(count, bool)
+    flags[rows] = True
+    return flags
+
+
+def _cut(time: Array, flags: Flags, reason: str) -> Cut:
+    inside = np.flatnonzero(flags)
+    return Cut(float(time[inside[0]]), float(time[inside[-1]]), reason, len(inside))
+
+
+def _runs(time: Array, flags: Flags, reason: str) -> list[Cut]:
+    """Sum up all samples with one reason: they may be many short stretches."""
+    return [_cut(time, flags, reason)] if flags.any() else []

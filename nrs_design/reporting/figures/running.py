@@ -1,0 +1,91 @@
+"""Figures of a run."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from nrs_design.reporting.style import (
+    ALARM,
+    BLUE,
+    INK,
+    MUTED,
+    VERMILLION,
+    new_axes,
+    new_figure,
+    styled,
+)
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+    from nrs_design.identification.running import RunJudgement
+
+_POINTS = 1500
+_LABELS = {
+    "angle": "Angle [rad]",
+    "torque": "Torque [N m]",
+    "deflection": "Deflection [m]",
+    "force": "Force [N]",
+    "velocity": "Velocity [rad/s]",
+    "command": "Command",
+    "mode": "Mode",
+}
+
+
+@styled
+def draw_stiffness(found: RunJudgement) -> Figure:
+    """Draw the stiffness in every window over time, and the ranges of the spec."""
+    log = found.log
+    figure, axes = new_axes(3.6)
+    known = [s for s in found.bounds.stiffness.values() if s is not None]
+    ranges = dict.fromkeys(pair for item in known for pair in item.ranges)
+    top = 1.8 * max((high for _, high in ranges), default=1.0)
+    bottom = -0.2 * top
+    for low, high in ranges:
+        axes.axhspan(low, high, color="#dcebf5", linewidth=0)
+    for w in found.windows:
+        if not w.high < np.inf:
+            continue
+        middle = log.begin + float(log.time[w.first : w.last].mean())
+        left = any(low <= w.high and w.low <= high for low, high in ranges)
+        tint = BLUE if left else VERMILLION
+        axes.plot([middle, middle], [max(w.low, bottom), min(w.high, top)], color=tint)
+        axes.plot(middle, min(max(w.value, bottom), top), "o", color=tint, markersize=4)
+    axes.set_ylim(bottom, top)
+    axes.set_xlim(log.begin, log.begin + float(log.time[-1]))
+    axes.set_xlabel("Time [s]")
+    axes.set_ylabel("Stiffness at the pivot [N m/rad]")
+    _mark(found, axes)
+    return figure
+
+
+@styled
+def draw_run(found: RunJudgement) -> Figure:
+    """Draw every column of the log over time."""
+    log = found.log
+    names = [name for name in _LABELS if name in log.columns]
+    figure = new_figure(0.8 + 1.15 * len(names))
+    rows = figure.subplots(len(names), 1, sharex=True, squeeze=False)[:, 0]
+    pick = slice(None, None, max(1, -(-len(log.time) // _POINTS)))
+    for axes, name in zip(rows, names, strict=True):
+        values = log.columns[name][pick]
+        axes.step(log.begin + log.time[pick], values, where="post", color=INK, linewidth=1.0)
+        label = _LABELS[name] + (f" [{log.command_unit}]" if name == "command" else "")
+        axes.set_ylabel(label, fontsize=8.5)
+        if name == "mode":
+            axes.set_yticks(range(len(log.labels)), log.labels)
+        if name == "torque":
+            for sign in (-1, 1):
+                axes.axhline(sign * found.bounds.torque, color=MUTED, linestyle=":", linewidth=1)
+        _mark(found, axes)
+    rows[-1].set_xlabel("Time [s]")
+    return figure
+
+
+def _mark(found: RunJudgement, axes: Axes) -> None:
+    first = found.first
+    if first is not None and first.first is not None:
+        axes.axvline(first.first.time, color=ALARM, linestyle="--", linewidth=1.2)

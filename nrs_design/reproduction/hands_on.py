@@ -1,0 +1,48 @@
+"""Chapter 7: the admittances of the hands-on controlled robot, table 7.1."""
+
+from __future__ import annotations
+
+from nrs_design.design.impedance import ImpedanceLoop
+from nrs_design.design.margins import stiffness_limit
+from nrs_design.design.root_locus import motion_loop_response
+from nrs_design.models.contact import Elastic
+from nrs_design.reproduction import thesis
+from nrs_design.reproduction.comparison import Comparison, Tolerance, derived
+
+# Mt in kg m^2 and Bt in kg m^2/s of each experiment.
+ADMITTANCES = ((1, 4), (2, 4), (3, 4), (1, 8), (2, 8), (3, 8))
+PRINTED = "Mt 1, 2, 3, 1, 2, 3; Bt 4, 4, 4, 8, 8, 8"
+# Any stiffness will do: the limit does not hang on it.
+LOOP = ImpedanceLoop(thesis.EXACT_LOOP, Elastic(float(thesis.SOFT)))
+
+
+def rows() -> tuple[Comparison, Comparison]:
+    """Compute the poles of G Y and the stiffness of a hand that destabilizes the robot."""
+    poles = tuple(-Bt / Mt for Mt, Bt in ADMITTANCES)
+    motion = motion_loop_response(thesis.EXACT_LOOP).poles
+    limits = tuple(stiffness_limit(LOOP, Mt, Bt) for Mt, Bt in ADMITTANCES)
+    return (
+        derived(
+            "pole of the admittance, each experiment",
+            "table 7.1",
+            poles,
+            "1/s",
+            printed=PRINTED,
+            right=("-4", "-2", "-1.33333", "-8", "-4", "-2.66667"),
+            tolerance=Tolerance(1e-5),
+            holds=all(pole.real < 0 for pole in motion),
+            note="With the poles of the motion loop all are stable, as 7.2.1 says, while nothing "
+            "but the operator's torque acts.",
+        ),
+        derived(
+            "largest stable stiffness of the hand, each experiment",
+            "table 7.1",
+            limits,
+            "N m/rad",
+            printed=PRINTED,
+            right=("205.28", "214.206", "218.007", "389.547", "410.559", "421.715"),
+            tolerance=Tolerance(1e-3),
+            note="A hand that holds on is an environment. The thesis's own figures for surgeons' "
+            "hands are 25.0 to 90.4 N m/rad.",
+        ),
+    )

@@ -1,0 +1,99 @@
+"""The settings of the gradient iteration: a noun, which imports no numerical library."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from enum import StrEnum
+from math import isfinite
+
+from nrs_design.errors import DesignError
+
+
+class Coordinates(StrEnum):
+    """States in which the iteration runs; the same function is found or missed, but not as fast."""
+
+    MEAN_NORM = "mean-norm"
+    BALANCED = "balanced"
+    GIVEN = "given"
+
+
+class Order(StrEnum):
+    """How the next mode is taken."""
+
+    ROUND_ROBIN = "round-robin"
+    RANDOM = "random"
+
+
+def _tell_nobody(updates: int, largest: float) -> None:
+    """Take no note of how the iteration goes."""
+
+
+@dataclass(frozen=True, slots=True)
+class Gradient:
+    """Settings of the iteration of Liberzon and Tempo (2004); thesis 5.21-5.28.
+
+    Parameters
+    ----------
+    relaxation : float
+        The alpha of 5.25, from 0 to 2.
+    radius : float
+        The r of 5.25, above 0: a step is at least so long, in the norm of Frobenius.
+    start : str or None
+        The mode whose own Lyapunov equation gives the first Q; by default the first one.
+    order : Order
+        Modes in turn, as 5.26 has it, or drawn at random.
+    seed : int
+        Of the random order.
+    max_updates : int
+        Updates after which the iteration gives up.
+    coordinates : Coordinates
+        ``mean-norm``, where the mean of the modes' own norms is round; ``balanced`` by powers of
+        two; ``given``, the states of the modes, as the thesis has it.
+    tell : callable
+        Told the number of updates and the largest v over all modes: at the start, after each of
+        the first hundred updates, then ever more rarely, and at the end. Of a family that falls
+        into blocks, each block begins anew at zero.
+
+    Raises
+    ------
+    DesignError
+        If a number is out of its range.
+    """
+
+    relaxation: float = 1.0
+    radius: float = 1.0
+    start: str | None = None
+    order: Order = Order.ROUND_ROBIN
+    seed: int = 0
+    max_updates: int = 20_000
+    coordinates: Coordinates = Coordinates.MEAN_NORM
+    tell: Callable[[int, float], None] = _tell_nobody
+
+    def __post_init__(self) -> None:
+        """Refuse what the iteration is not defined for."""
+        _require(0 <= self.relaxation <= 2, "relaxation", self.relaxation, "from 0 to 2")
+        _require(self.radius > 0 and isfinite(self.radius), "radius", self.radius, "above 0")
+        _require(self.seed >= 0, "seed", self.seed, "of at least 0")
+        _require(self.max_updates >= 0, "limit of updates", self.max_updates, "of at least 0")
+        _require(self.order in set(Order), "order", self.order, f"out of {', '.join(Order)}")
+        known = ", ".join(Coordinates)
+        _require(
+            self.coordinates in set(Coordinates), "states", self.coordinates, f"out of {known}"
+        )
+
+    def briefly(self, updates: int) -> Gradient:
+        """Return settings for a try of at most so many updates, which nobody is told about."""
+        return replace(self, max_updates=min(updates, self.max_updates), tell=_tell_nobody)
+
+    @property
+    def is_told(self) -> bool:
+        """Whether anybody listens to how the iteration goes."""
+        return self.tell is not _tell_nobody
+
+
+def _require(holds: bool, name: str, value: object, wanted: str) -> None:
+    if not holds:
+        raise DesignError(
+            f"the gradient iteration cannot run with {name} {value}", remedy=f"give one {wanted}"
+        )

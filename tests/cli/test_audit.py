@@ -1,0 +1,130 @@
+"""`nrs-design audit` and `identify delay`, as a user types them."""
+
+import json
+import shutil
+
+import numpy as np
+import pytest
+
+from tests.identification import runs, signals
+from tests.support import ROOT, SOFT_TISSUE, run
+
+LIMIT = ("--command-limit", "3000")
+
+
+@pytest.fixture(scope="module")
+def proof(tmp_path_factory):
+    """The spec with its certificate, made anew."""
+    folder = tmp_path_factory.mktemp("proof")
+    spec = folder / "soft-tissue.nrs.yaml"
+    shutil.copy(SOFT_TISSUE, spec)
+    certificate = folder / "soft-tissue.cert.json"
+    done = run("certify-switching", spec, "--out", certificate, cwd=folder)
+    assert done.returncode == 0, done.stderr
+    return spec, certificate
+
+
+def write(tmp_path, **options):
+    path = tmp_path / "run.csv"
+    path.write_text(runs.text(*runs.run(**options)))
+    return path
+
+
+def without_command(tmp_path):
+    path = write(tmp_path)
+    t, angle, torque, _, mode = runs.run()
+    # A motor that follows its command 1 sample later, so that the delay can be told.
+    command = np.append(angle[1:], angle[-1]) * 1e5
+    path.write_text(runs.text(t, angle, torque, command, mode))
+    return path
+
+
+def test_inside(tmp_path, proof):
+    spec, certificate = proof
+    done = run("audit", without_command(tmp_path), spec, "--certificate", certificate, *LIMIT,
+               "--report", "run.pdf", cwd=tmp_path)  # fmt: skip
+    assert done.returncode == 0, done.stdout
+    assert (tmp_path / "run.pdf").read_bytes().startswith(b"%PDF")
+    assert "soft-tissue: INSIDE: the run stayed inside what was proved" in done.stdout
+    assert "not covered: the proof takes for granted that there is no delay" in done.stdout
+    assert "UNPROVED" not in done.stdout
+
+
+def test_outside(tmp_path, proof):
+    spec, certificate = proof
+    done = run("audit", write(tmp_path, stiffness=60.0), spec, "--certificate", certificate,
+               "--json", cwd=tmp_path)  # fmt: skip
+    assert done.returncode == 1
+    document = json.loads(done.stdout)
+    assert document["schema"] == "nrs-design/audit/1"
+    assert (document["verdict"], document["proved"]) == ("outside", True)
+    assert document["first_violation"]["check"] == "stiffness"
+    assert document["first_violation"]["time_s"] == 0.0
+    assert document["synthetic"] is True
+    assert all(w["low_Nm_rad"] < 60.0 < w["high_Nm_rad"] for w in document["stiffness"])
+
+
+def test_an_unproved_spec_is_said_loudly(tmp_path):
+    done = run("audit", write(tmp_path), SOFT_TISSUE, cwd=tmp_path)
+    assert done.returncode == 3
+    assert "UNPROVED SPEC: no certificate is named" in done.stdout
+    assert "not judged: saturation" in done.stdout
+
+
+def test_a_foreign_certificate_is_rejected(tmp_path, proof):
+    _, certificate = proof
+    other = ROOT / "specs/neuroboscope/retuned-gains.nrs.yaml"
+    done = run("audit", write(tmp_path), other, "--certificate", certificate, cwd=tmp_path)
+    assert done.returncode == 2
+    assert "the certificate is rejected: it belongs to another spec" in done.stderr
+
+
+@pytest.mark.parametrize("ending", ["html", "pdf"])
+@pytest.mark.parametrize(("stiffness", "code"), [(43.0, 3), (60.0, 1)])
+def test_report(tmp_path, ending, stiffness, code):
+    page = tmp_path / f"page.{ending}"
+    log = write(tmp_path, stiffness=stiffness)
+    done = run("audit", log, SOFT_TISSUE, "--report", page, "-q", cwd=tmp_path)
+    assert done.returncode == code, done.stderr
+    assert page.read_bytes()[:4] in (b"<!DO", b"%PDF")
+
+
+def test_delay(tmp_path):
+    record = signals.copy(1)
+    rows = np.column_stack([record.time, record.sent, record.seen])
+    np.savetxt(tmp_path / "loop.csv", rows, "%.6f", ",", header="time_s,raw,used", comments="")
+    arguments = ("identify", "delay", "loop.csv", "--command", "raw", "--measured", "used")
+    done = run(*arguments, "--json", "--report", "delay.html", cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    document = json.loads(done.stdout)
+    samples = document["delay_samples"]
+    assert samples["low"] < signals.DELAY < samples["high"]
+    assert document["sampling_step_s"] == pytest.approx(0.002)
+    assert document["whole_samples"][1] >= 3
+    assert (tmp_path / "delay.html").exists()
+    text = run(*arguments, cwd=tmp_path).stdout
+    assert "used is most like raw" in text
+    assert "samples of 0.002 s [95 %]" in text
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (["loop.csv", "--command", "raw"], "name both columns"),
+        (["loop.csv", "--command", "raw", "--measured", "usd"], "there is no column 'usd' to map"),
+        (["loop.csv"], "are missing"),
+        (["none.csv"], "cannot be read"),
+    ],
+)
+def test_wrong_delays(tmp_path, arguments, message):
+    (tmp_path / "loop.csv").write_text("time_s,raw,used\n" + "0,1,2\n" * 60)
+    done = run("identify", "delay", *arguments, cwd=tmp_path)
+    assert done.returncode == 2
+    assert message in done.stderr
+
+
+def test_help_has_examples(tmp_path):
+    assert "Example: nrs-design audit run.csv" in run("audit", "-h", cwd=tmp_path).stdout
+    assert "Example: nrs-design identify delay" in run(
+        "identify", "delay", "-h", cwd=tmp_path
+    ).stdout  # fmt: skip

@@ -1,0 +1,25 @@
+"""A 95 % interval holds the truth in 92 to 98 % of 200 synthetic records of any command."""
+
+import numpy as np
+import pytest
+
+from nrs_design.identification.actuator import identify_actuator
+from tests.identification import motors
+from tests.identification.support import MOTOR
+
+SEEDS = 200
+TRUTH = (motors.GAIN, motors.TIME_CONSTANT, motors.FRICTION, motors.DELAY)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("is_angle", [True, False])
+@pytest.mark.parametrize("kind", ["stair", "chirp", "PRBS", "multisine", "closed loop"])
+def test_any_command(kind, is_angle):
+    hits = []
+    for seed in range(SEEDS):
+        fit = identify_actuator([motors.record(kind, seed, is_angle=is_angle)], MOTOR).chosen
+        estimates = (fit.gain, fit.time_constant, fit.friction, fit.dead_time)
+        hits.append([e.covers(v) for e, v in zip(estimates, TRUTH, strict=True)])
+    rates = np.mean(hits, axis=0)
+    assert (rates >= 0.92).all(), rates
+    assert (rates <= 0.98).all(), rates

@@ -1,0 +1,168 @@
+"""Files as other programs write them: read without help, or with `--map`."""
+
+import warnings
+
+import numpy as np
+import pytest
+from scipy.io import savemat
+
+from nrs_design.errors import DataError
+from nrs_design.identification.datasets import read_tissue
+from nrs_design.identification.datasets.columns import parse_mapping
+from nrs_design.identification.datasets.names import Name, read_name, read_stamp
+
+N = 80
+TIME = np.arange(N) / 100
+DEFLECTION = 0.005 * (1 - np.cos(9 * TIME))
+FORCE = 750 * DEFLECTION
+
+
+def rows(separator, decimal=".", scales=(1.0, 1.0, 1.0)):
+    lines = (
+        separator.join(f"{value * scale:.6f}" for value, scale in zip(row, scales, strict=True))
+        for row in zip(TIME, DEFLECTION, FORCE, strict=True)
+    )
+    return "\n".join(lines).replace(".", decimal) + "\n"
+
+
+INSTRON = (
+    'Specimen label,"Pork, belly"\nRate,"1,000",mm/min\n\nTime,Extension,Load\n(s),(mm),(kN)\n'
+    + rows(",", scales=(1, 1e3, 1e-3))
+)
+LABVIEW = "LabVIEW Measurement\nSeparator\tTab\n***End_of_Header***\n" + (
+    "Time [ms]\tDeflection [mm]\tForce [mN]\n" + rows("\t", ",", (1e3, 1e3, 1e3))
+)
+GERMAN = "sep=;\nTime (s);Deflection (mm);Force (N)\n" + rows(";", ",", (1, 1e3, 1))
+ROS = "%time,/tool.pose.z,/ft_sensor.wrench.force.z\n" + "".join(
+    f"{1_700_000_000_000_000_000 + int(t * 1e9)},{d:.6f},{f:.6f}\n"
+    for t, d, f in zip(TIME, DEFLECTION, FORCE, strict=True)
+)
+FROM_ROS = ["deflection_m=/tool.pose.z", "force_N=/ft_sensor.wrench.force.z"]
+
+SLASHES = "Time/s;Indentation/mm;Force/gf\n" + rows(";", ".", (1, 1e3, 1e3 / 9.80665))
+MARKED = "\ufefftime_s,deflection_um,force_kgf\n" + rows(",", ".", (1, 1e6, 1 / 9.80665))
+FOREIGN = "t;x;F\ns;mm;N\n" + rows(";", ",", (1, 1e3, 1))
+FROM_FOREIGN = ["time_s=t", "deflection_mm=x", "force_N=F"]
+
+STYLES = {
+    "commented header of NumPy": ("# time_s deflection_m force_N\n" + rows(" "), []),
+    "tabs": ("time_s\tdeflection_m\tforce_N\n" + rows("\t"), []),
+    "semicolons and decimal commas": (GERMAN, []),
+    "a testing machine": (INSTRON, []),
+    "LabVIEW": (LABVIEW, []),
+    "grams and slashes": (SLASHES, []),
+    "a bag": (ROS, FROM_ROS),
+    "a byte order mark": (MARKED, []),
+    "foreign names above units": (FOREIGN, FROM_FOREIGN),
+}
+
+
+def check(record):
+    assert record.motion.time == pytest.approx(TIME, abs=1e-6)
+    assert record.motion.deflection == pytest.approx(DEFLECTION, abs=1e-6)
+    assert record.force == pytest.approx(FORCE, abs=2e-3)
+
+
+@pytest.mark.parametrize("style", STYLES)
+def test_text(tmp_path, style):
+    text, entries = STYLES[style]
+    path = tmp_path / "record.txt"
+    path.write_text(text, encoding="utf-8")
+    check(read_tissue(path, parse_mapping(entries)))
+
+
+def test_micro_sign_of_windows(tmp_path):
+    path = tmp_path / "record.csv"
+    text = "Time [s];Deflection [µm];Force [N]\n" + rows(";", ",", (1, 1e6, 1))
+    path.write_bytes(text.encode("cp1252"))
+    check(read_tissue(path))
+
+
+def test_matlab(tmp_path):
+    path = tmp_path / "record.mat"
+    savemat(path, {"time_s": TIME, "data": {"x": DEFLECTION[:, None] * 1e3, "F": FORCE}})
+    check(read_tissue(path, parse_mapping(["deflection_mm=data.x", "force_N=data.F"])))
+
+
+@pytest.mark.parametrize("synthetic", [False, True])
+def test_numpy(tmp_path, synthetic):
+    path = tmp_path / "record.npz"
+    note = "a synthetic record" if synthetic else "measured"
+    np.savez(path, time_s=TIME, deflection_m=DEFLECTION, force_N=FORCE, note=note)
+    record = read_tissue(path)
+    check(record)
+    assert record.source.synthetic is synthetic
+
+
+@pytest.mark.parametrize("ending", ["parquet", "xlsx"])
+def test_tables(tmp_path, ending):
+    pytest.importorskip("pyarrow" if ending == "parquet" else "openpyxl")
+    pandas = pytest.importorskip("pandas")
+    path = tmp_path / f"record.{ending}"
+    frame = pandas.DataFrame({"time_s": TIME, "Force [N]": FORCE, "deflection_m": DEFLECTION})
+    frame.to_parquet(path) if ending == "parquet" else frame.to_excel(path, index=False)
+    check(read_tissue(path))
+
+
+def test_readers_are_silent(tmp_path):
+    """NumPy warns of a table without rows."""
+    path = tmp_path / "record.csv"
+    path.write_text("time_s,deflection_m,force_N\n")
+    with warnings.catch_warnings(record=True) as heard:
+        warnings.simplefilter("always")
+        with pytest.raises(DataError):
+            read_tissue(path)
+    assert heard == []
+
+
+@pytest.mark.parametrize(
+    ("text", "name"),
+    [
+        ("angle_rad_2", Name("angle", "rad", "2")),
+        ("velocity_rad_s", Name("velocity", "rad_s")),
+        ("velocity_rad_s_a_b", Name("velocity", "rad_s", "a_b")),
+        ("Speed (rpm)", Name("velocity", "rpm")),
+        ("Torque [N·m]", Name("torque", "Nm")),
+        ("Angle [°]", Name("angle", "deg")),
+        ("Deflection [μm]", Name("deflection", "um")),
+        ("Command (mV)", Name("command", "mV")),
+        ("command_pwm", Name("command", "counts")),
+        ("Force", Name("force", "")),
+        ("Force (lbf)", Name("force", "lbf")),
+        ("Force (mn)", Name("force", "mn")),
+        ("Load cell serial", None),
+        ("Load", None),
+        ("Fz", None),
+    ],
+)
+def test_names(text, name):
+    assert read_name(text) == name
+
+
+def test_mega_is_not_milli():
+    assert not read_name("force_MN").known
+
+
+def test_factors():
+    """1 kgf = 9.80665 N by definition; 1 rpm = 2 pi/60 rad/s, but a command in rpm is a number."""
+    assert read_name("force_kgf").factor == 9.80665
+    assert read_name("force_gf").factor == pytest.approx(9.80665e-3)
+    assert read_name("velocity_rpm").factor == pytest.approx(2 * np.pi / 60)
+    assert (read_name("command_rpm").factor, read_name("command_rpm").read_as) == (1.0, "rpm")
+    assert (read_name("command_mV").factor, read_name("command_mV").read_as) == (1e-3, "V")
+
+
+@pytest.mark.parametrize("text", ["%time", "field.header.stamp", "/ft/header/stamp", "stamp"])
+def test_stamps_are_nanoseconds(text):
+    assert read_stamp(text) == Name("time", "ns")
+
+
+def test_a_word_that_ends_like_a_stamp_is_none():
+    assert read_stamp("restamp") is None
+
+
+def test_a_mapped_quantity_is_the_mapped_column(tmp_path):
+    path = tmp_path / "record.csv"
+    text = "time_s,deflection_m,force_raw,force_N\n" + rows(",").replace("\n", ",1\n")
+    path.write_text(text)
+    check(read_tissue(path, parse_mapping(["force_N=force_raw"])))

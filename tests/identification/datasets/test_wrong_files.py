@@ -1,0 +1,187 @@
+"""Wrong files: each has one message that says what, where and what to do."""
+
+import sys
+
+import numpy as np
+import pytest
+from scipy.io import savemat
+
+from nrs_design.errors import DataError
+from nrs_design.identification.datasets import read_actuator, read_tissue
+from tests.support import run
+
+HEAD = "time_s,deflection_m,force_N\n"
+BODY = [f"{0.01 * i:.2f},{0.001 * (i % 20):.3f},{i % 20}" for i in range(60)]
+
+
+def text(head=HEAD, replace=(), body=BODY):
+    lines = list(body)
+    for at, line in replace:
+        lines[at] = line
+    return (head + "\n".join(lines) + "\n").encode()
+
+
+def column(index, values):
+    rows = [line.split(",") for line in BODY]
+    for row, value in zip(rows, values, strict=True):
+        row[index] = str(value)
+    return text(body=[",".join(row) for row in rows])
+
+
+TIME = np.arange(60) / 100
+FLAT = np.minimum(np.arange(60), 30)
+# Name of the file, its content, what is said (a pattern), and the line.
+WRONG = {
+    "empty": ("a.csv", b"", "has no header line", None),
+    "only comments": ("a.csv", b"# a\n# b\n", "has no header line", None),
+    "no rows": ("a.csv", HEAD.encode(), "has 0 rows", 2),
+    "no header": ("a.csv", text(head=""), "begins with numbers", 1),
+    "UTF-16": ("a.csv", text().decode().encode("utf-16"), "UTF-16", 1),
+    "binary": ("a.csv", b"\x00\x01\x02" * 50, "is no text", 1),
+    "Excel named CSV": ("a.csv", b"PK\x03\x04" + bytes(100), "zip archive", None),
+    "old Excel": ("a.xls", b"\xd0\xcf\x11\xe0" + bytes(100), "old Excel", None),
+    "compressed": ("a.csv.gz", b"\x1f\x8b" + bytes(100), "is compressed", None),
+    "a bag": ("a.bag", b"#ROSBAG V2.0\n" + bytes(100), "bag of ROS", None),
+    "a bag of ROS 2": ("a.db3", b"SQLite format 3\x00" + bytes(100), "bag of ROS", None),
+    "MATLAB 7.3": ("a.mat", b"MATLAB 7.3 MAT-file" + bytes(100), "HDF5", None),
+    "broken MATLAB": ("a.mat", b"MATLAB 5.0 MAT-file" + bytes(300), "no readable MATLAB", None),
+    "no NumPy": ("a.npz", b"hello", "no .npz file", None),
+    "broken NumPy": ("a.npz", b"PK\x03\x04" + bytes(50), "no readable NumPy", None),
+    "no Parquet": ("a.parquet", text(), "no .parquet file", None),
+    "PDF": ("a.csv", b"%PDF-1.7 " + bytes(50), "is a PDF", None),
+    "TDMS": ("a.tdms", b"TDSm" + bytes(50), "LabVIEW", None),
+    "force missing": ("a.csv", text(HEAD.replace("force_N", "temp_C")), "force_N are missing", 1),
+    "no unit": ("a.csv", text(HEAD.replace("force_N", "Force")), "has no unit", 1),
+    "unknown unit": ("a.csv", text(HEAD.replace("force_N", "Force [lbf]")), "unit 'lbf'", 1),
+    "mega for milli": ("a.csv", text(HEAD.replace("force_N", "force_MN")), "unit 'MN'", 1),
+    "quantity twice": ("a.csv", text("time_s,force_N,Load [N]\n"), "there twice", 1),
+    "empty cell": ("a.csv", text(replace=[(5, "0.05,,5")]), "deflection_m is missing", 7),
+    "short row": ("a.csv", text(replace=[(5, "0.05,5")]), "row has 2 values", 7),
+    "empty row": ("a.csv", text(replace=[(5, "")]), "row is empty", 7),
+    "a word": ("a.csv", text(replace=[(5, "0.05,0.1,off")]), "'off', not a number", 7),
+    "not finite": ("a.csv", text(replace=[(5, "0.05,0.1,nan")]), "force_N is nan", 7),
+    "thousands": (
+        "a.csv",
+        text(HEAD.replace(",", ";"), body=[f"{i};{i % 9};1,{100 + i}" for i in range(60)]),
+        "may be",
+        2,
+    ),
+    "a point among commas": (
+        "a.csv",
+        text(
+            HEAD.replace(",", ";"),
+            [(7, "1.234;0,1;7,5")],
+            [line.replace(",", ";").replace(".", ",") for line in BODY],
+        ),
+        "decimal comma",
+        9,
+    ),
+    "decimal commas between commas": (
+        "a.csv",
+        text(body=[f"0,{i:02d},0,00{i % 9},{i}" for i in range(60)]),
+        "row has 5 values",
+        2,
+    ),
+    "time repeats": ("a.csv", text(replace=[(5, BODY[4])]), "time repeats", 7),
+    "time goes back": ("a.csv", text(replace=[(5, "0.01,0.005,5")]), "time goes back", 7),
+    "a gap": ("a.csv", text(body=[*BODY[:55], "9.5,0.01,3"]), "a gap of", None),
+    "too short": ("a.csv", text(body=BODY[:10]), "has 10 rows", 11),
+    "nothing moves": ("a.csv", column(1, [0.1] * 60), "deflection never changes", 2),
+    "sensor saturated": ("a.csv", column(2, FLAT), "saturated", 32),
+    "endless line": ("a.csv", text() + b"1" * (4 << 20), "line of over 1 MiB", None),
+    "line end of old Macs": ("a.csv", text().replace(b"\n", b"\r"), "header line", 1),
+    "lengths differ": (
+        "a.npz",
+        {"time_s": TIME, "deflection_m": TIME[1:], "force_N": TIME},
+        "different lengths",
+        None,
+    ),
+    "a matrix": (
+        "a.npz",
+        {"time_s": TIME, "deflection_m": np.ones((60, 3)), "force_N": TIME},
+        "60 x 3",
+        None,
+    ),
+    "words in NumPy": (
+        "a.mat",
+        {"time_s": TIME, "deflection_m": TIME, "force_N": TIME + 1j},
+        "does not hold real numbers",
+        None,
+    ),
+    "NaN in MATLAB": (
+        "a.mat",
+        {"time_s": TIME, "deflection_m": TIME, "force_N": np.where(TIME == 0.05, np.nan, 1)},
+        r"force_N is nan \(row 6\)",
+        None,
+    ),
+    "time repeats in NumPy": (
+        "a.npz",
+        {"time_s": np.zeros(60), "deflection_m": TIME, "force_N": TIME},
+        r"time repeats.*\(row 2\)",
+        None,
+    ),
+}  # fmt: skip
+
+
+def write(tmp_path, name, content):
+    path = tmp_path / name
+    if isinstance(content, bytes):
+        path.write_bytes(content)
+    elif path.suffix == ".npz":
+        np.savez(path, **content)
+    else:
+        savemat(path, content)
+    return path
+
+
+def test_there_are_forty():
+    assert len(WRONG) >= 40
+
+
+@pytest.mark.parametrize("case", WRONG)
+def test_one_message(tmp_path, case):
+    name, content, message, line = WRONG[case]
+    path = write(tmp_path, name, content)
+    with pytest.raises(DataError, match=message) as caught:
+        read_tissue(path)
+    error = caught.value
+    assert error.path == path
+    assert error.remedy
+    assert line is None or error.line == line
+    assert "\n" not in str(error)
+    assert len(str(error)) < 500
+
+
+@pytest.mark.parametrize("case", ["empty", "UTF-16", "a bag", "sensor saturated", "a matrix"])
+def test_nothing_is_half_written(tmp_path, case):
+    name, content, _, _ = WRONG[case]
+    path = write(tmp_path, name, content)
+    done = run("identify", "tissue", path, "--report", "page.html", "--json", cwd=tmp_path)
+    assert done.returncode == 2
+    assert done.stderr.count("error[NRS006]") == 1
+    assert "warning" not in done.stderr.lower()
+    assert [file.name for file in tmp_path.iterdir()] == [name]
+
+
+def test_an_archive_of_objects_is_not_run(tmp_path):
+    path = tmp_path / "a.npz"
+    np.savez(path, time_s=np.array([{}], dtype=object))
+    with pytest.raises(DataError, match="Object arrays cannot be loaded"):
+        read_tissue(path)
+
+
+@pytest.mark.parametrize(("ending", "package"), [("parquet", "pyarrow"), ("xlsx", "openpyxl")])
+def test_the_extra_is_named(tmp_path, monkeypatch, ending, package):
+    monkeypatch.setitem(sys.modules, package, None)
+    path = tmp_path / f"a.{ending}"
+    path.write_bytes(b"PAR1" if ending == "parquet" else b"PK\x03\x04")
+    with pytest.raises(DataError, match=package) as caught:
+        read_tissue(path)
+    assert "nrs-design[tables]" in caught.value.remedy
+
+
+def test_an_actuator_needs_its_columns(tmp_path):
+    path = write(tmp_path, "a.csv", text())
+    with pytest.raises(DataError, match="missing") as caught:
+        read_actuator(path)
+    assert "command" in caught.value.remedy

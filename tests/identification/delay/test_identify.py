@@ -1,0 +1,100 @@
+"""The delay of a running loop."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from nrs_design.errors import DataError
+from nrs_design.identification.delay import identify_delay
+from nrs_design.identification.delay.identify import correlation_peak
+from tests.identification import motors, signals
+
+SEEDS = 200
+LATE = motors.DELAY * signals.RATE
+
+
+def test_a_copy():
+    found = identify_delay(signals.copy(1))
+    assert found.chosen.follower.name == "a copy"
+    assert found.samples.covers(signals.DELAY)
+    assert found.samples.high - found.samples.low < 0.5
+    assert found.delay.value == pytest.approx(found.samples.value / signals.RATE)
+    assert found.chosen.gain == pytest.approx(0.9, abs=0.01)
+    low, high = found.whole_samples
+    assert low <= 2 < 3 <= high
+    assert found.doubts == ()
+
+
+def test_a_whole_number_of_samples_without_noise():
+    record = signals.copy(1)
+    seen = np.concatenate([np.full(4, record.sent[0]), record.sent[:-4]])
+    found = identify_delay(replace(record, seen=seen))
+    assert found.samples.value == pytest.approx(4.0, abs=1e-6)
+    assert found.whole_samples in {(4, 4), (3, 4), (4, 5), (3, 5)}
+
+
+@pytest.mark.parametrize(
+    ("options", "name"),
+    [
+        ({}, "a first-order lag"),
+        ({"second": 0.02}, "a second-order lag"),
+        ({"kind": "multisine", "is_angle": True}, "a lag and an integrator"),
+    ],
+)
+def test_dynamics_are_no_delay(options, name):
+    found = identify_delay(signals.lag(1, **options))
+    assert found.chosen.follower.name == name
+    assert found.samples.value == pytest.approx(LATE, abs=0.15)
+    if "integrator" not in name:
+        # Both columns are most alike much later than the dead time.
+        assert found.peak[0] > 2 * motors.DELAY
+
+
+def test_a_delay_that_varies_is_said():
+    delay = np.where(np.arange(signals.COUNT) < 1000, 1.0, 4.0)
+    found = identify_delay(signals.copy(2, delay=delay))
+    assert any("varies" in doubt for doubt in found.doubts)
+    low, high = found.whole_samples
+    assert low <= 1
+    assert high >= 4
+
+
+def test_opposite_signs_are_said():
+    found = identify_delay(signals.copy(3, gain=-0.9))
+    assert any("opposite" in doubt for doubt in found.doubts)
+
+
+def test_swapped_columns_are_said():
+    record = signals.copy(4)
+    found = identify_delay(replace(record, sent=record.seen, seen=record.sent))
+    assert any("before" in doubt for doubt in found.doubts)
+    assert found.samples.value == 0.0
+
+
+def test_columns_without_relation():
+    record = signals.copy(5)
+    with pytest.raises(DataError, match="does not follow") as caught:
+        identify_delay(replace(record, seen=np.random.default_rng(0).normal(size=signals.COUNT)))
+    assert "--command" in caught.value.remedy
+
+
+def test_peak_of_the_correlation():
+    lag, correlation = correlation_peak(signals.copy(1, delay=7.0, noise=0.0))
+    assert lag == pytest.approx(7 / signals.RATE, rel=1e-6)
+    assert correlation > 0.99
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("kind", ["copy", "lag", "integrator"])
+def test_coverage(kind):
+    hits = []
+    for seed in range(SEEDS):
+        if kind == "copy":
+            record, truth = signals.copy(seed), signals.DELAY
+        elif kind == "lag":
+            record, truth = signals.lag(seed), LATE
+        else:
+            record, truth = signals.lag(seed, "multisine", is_angle=True), LATE
+        hits.append(identify_delay(record).samples.covers(truth))
+    assert 0.92 <= np.mean(hits) <= 0.98, np.mean(hits)

@@ -1,0 +1,237 @@
+"""Whether a run stayed inside: only what a whole interval shows is a violation."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from nrs_design.errors import DataError, DesignError
+from nrs_design.identification.datasets.columns import parse_mapping
+from nrs_design.identification.running import bounds_of, judge_run, read_run
+from nrs_design.identification.running.stiffness import cut_windows, stiffness_of
+from nrs_design.spec import read_spec
+from tests.identification import runs
+from tests.support import COMMUTING, ROBOT, SOFT_TISSUE
+
+SOFT = bounds_of(read_spec(SOFT_TISSUE))
+
+
+def log(tmp_path, data=None, text=None, entries=()):
+    path = tmp_path / "run.csv"
+    path.write_text(runs.text(*(data or runs.run())) if text is None else text)
+    return read_run(path, parse_mapping(entries))
+
+
+def judged(record, bounds=SOFT, **options):
+    return judge_run(record, bounds, proved=True, **options)
+
+
+def check(found, name):
+    return next(item for item in found.checks if item.name == name)
+
+
+def test_bounds_of_the_spec():
+    """Thesis 6.1 and 6.3.1.1: 720.56 to 768.17 N/m at 0.24 m."""
+    (pair,) = SOFT.stiffness["insertion"].ranges
+    assert pair == pytest.approx((720.56 * 0.24**2, 768.17 * 0.24**2))
+    assert (SOFT.torque, SOFT.transitions, SOFT.delay) == (0.3, None, None)
+    with pytest.raises(DesignError, match="kind switched-system"):
+        bounds_of(read_spec(COMMUTING))
+
+
+def test_a_good_run(tmp_path):
+    found = judged(log(tmp_path), command_limit=3000)
+    assert {c.name: str(c.status) for c in found.checks} == {
+        "stiffness": "inside",
+        "contact": "inside",
+        "dwell times": "inside",
+        "delay": "not judged",
+        "jitter": "not modelled",
+        "saturation": "inside",
+        "force": "inside",
+    }
+    assert found.verdict == "inconclusive"
+    assert found.first is None
+
+
+def test_nothing_is_inside_an_unproved_spec(tmp_path):
+    text = "\n".join(line.rsplit(",", 2)[0] for line in runs.text(*runs.run()).split("\n"))
+    found = judge_run(log(tmp_path, text=text), SOFT, proved=False)
+    assert found.verdict == "inconclusive"
+    assert check(found, "stiffness").basis == "range of the spec, not proved"
+
+
+def test_the_first_violation_has_its_time(tmp_path):
+    data = runs.run(stiffness=lambda t: np.where(t > 6, 50.0, runs.STIFFNESS))
+    found = judged(log(tmp_path, data))
+    assert found.verdict == "outside"
+    assert found.first.name == "stiffness"
+    assert 6.0 <= found.first.first.time < 6.6
+    assert "k = 50" in found.first.first.words
+
+
+def test_a_range_is_left_only_by_a_whole_interval(tmp_path):
+    """1 % above the range, with noise of a size that hides it."""
+    data = runs.run(stiffness=44.247 * 1.01, noise=0.02)
+    assert str(check(judged(log(tmp_path, data)), "stiffness").status) == "undecided"
+
+
+def test_lost_contact(tmp_path):
+    found = judged(log(tmp_path, runs.run(free=2.0)))
+    contact = check(found, "contact")
+    assert str(contact.status) == "outside"
+    assert contact.first.time == 0.0
+    assert str(check(found, "stiffness").status) != "outside"
+
+
+def test_opposite_signs_are_named(tmp_path):
+    t, angle, torque, command, mode = runs.run()
+    found = judged(log(tmp_path, (t, angle, -torque, command, mode)))
+    assert "opposite signs" in check(found, "stiffness").measured
+    assert found.verdict == "inconclusive"
+
+
+def test_time_in_the_log_counts(tmp_path):
+    t, *rest = runs.run(stiffness=60.0)
+    assert judged(log(tmp_path, (t + 100.0, *rest))).first.first.time == pytest.approx(100.0)
+
+
+def test_a_linear_log(tmp_path):
+    """The lever arm of the spec, 0.24 m."""
+    t, angle, torque, *_ = runs.run()
+    rows = "\n".join(
+        f"{a:.4f},{b:.8f},{c:.6f}" for a, b, c in zip(t, angle * 0.24, torque / 0.24, strict=True)
+    )
+    found = judged(log(tmp_path, text=f"time_s,deflection_m,force_N\n{rows}\n"))
+    assert str(check(found, "stiffness").status) == "inside"
+    assert "0.2" in check(found, "force").measured
+
+
+@pytest.mark.parametrize(
+    ("name", "reason"),
+    [("angle", "no column for angle"), ("torque", "no column for torque")],
+)
+def test_missing_columns_are_said(tmp_path, name, reason):
+    record = log(tmp_path)
+    columns = {key: values for key, values in record.columns.items() if key != name}
+    found = judged(replace(record, columns=columns))
+    assert check(found, "stiffness").measured == reason
+
+
+def test_saturation_and_force(tmp_path):
+    t, angle, torque, command, mode = runs.run()
+    torque = torque + np.where(np.arange(len(t)) == 3000, 0.3, 0.0)
+    found = judged(log(tmp_path, (t, angle, torque, command, mode)), command_limit=1990.0)
+    assert check(found, "force").first.time == pytest.approx(6.0)
+    saturated = check(found, "saturation")
+    assert saturated.first.time == pytest.approx(t[np.argmax(np.abs(np.round(command, 2)) >= 1990)])
+    # A reading above the limit that noise explains is no violation.
+    noisy = log(tmp_path, runs.run(stiffness=52.0, noise=0.02))
+    assert str(check(judged(noisy), "force").status) == "undecided"
+    assert "give --command-limit" in check(judged(log(tmp_path)), "saturation").measured
+
+
+def test_jitter_is_measured(tmp_path):
+    t, *rest = runs.run()
+    t = t + np.where(np.arange(len(t)) % 7 == 0, 0.0009, 0.0)
+    assert "0.0011 to 0.0029" in check(judged(log(tmp_path, (t, *rest))), "jitter").measured
+
+
+def test_a_strange_mode(tmp_path):
+    t, angle, torque, command, mode = runs.run()
+    mode = np.where(mode == "insertion", "idle", mode)
+    found = judged(log(tmp_path, (t, angle, torque, command, mode)))
+    assert "'idle' is no controller" in check(found, "stiffness").measured
+    assert str(check(found, "dwell times").status) == "not judged"
+
+
+def with_switching(tmp_path, rules):
+    """The nominal tissue: a dwell time and a range exclude each other."""
+    text = SOFT_TISSUE.read_text().replace("switching: arbitrary", f"switching: {rules}")
+    text = text.replace("{nominal: 747.1461 N/m, range: [720.56 N/m, 768.17 N/m]}", "747 N/m")
+    path = tmp_path / "spec.nrs.yaml"
+    path.write_text(text)
+    return bounds_of(read_spec(path))
+
+
+@pytest.mark.parametrize(
+    ("rules", "status", "words"),
+    [
+        ("{dwell_time: 2 s}", "inside", None),
+        # The log tells 2.5 s to a row; what no reading allows is a violation, and nothing else.
+        ("{dwell_time: 2.5 s}", "inside", None),
+        ("{dwell_time: 2.503 s}", "outside", "insertion lasted|withdrawal lasted"),
+        ("{dwell_time: 1 s, longest_dwell_time: 2 s}", "outside", "insertion lasted 2.498 s"),
+        ("{transitions: [[insertion, withdrawal]]}", "outside", "withdrawal was followed by"),
+    ],
+)
+def test_dwell_times(tmp_path, rules, status, words):
+    found = check(judged(log(tmp_path), with_switching(tmp_path, rules)), "dwell times")
+    assert str(found.status) == status
+    if words is not None:
+        assert any(word in found.first.words for word in words.split("|"))
+
+
+def test_rules_without_a_column(tmp_path):
+    text = "\n".join(line.rsplit(",", 1)[0] for line in runs.text(*runs.run()).split("\n"))
+    record = log(tmp_path, text=text)
+    assert str(check(judged(record), "dwell times").status) == "inside"
+    found = judged(record, with_switching(tmp_path, "{dwell_time: 2 s}"))
+    assert check(found, "dwell times").measured == "no column for mode"
+
+
+def test_a_tissue_that_remembers(tmp_path):
+    bounds = bounds_of(read_spec(ROBOT / "nose.nrs.yaml"))
+    text = "\n".join(line.rsplit(",", 1)[0] for line in runs.text(*runs.run()).split("\n"))
+    assert "remembers" in check(judged(log(tmp_path, text=text), bounds), "stiffness").measured
+
+
+def test_windows_end_at_switches_and_gaps():
+    time = np.concatenate([np.arange(100) / 100, 3 + np.arange(100) / 100])
+    modes = np.repeat([0, 1, 1], [50, 50, 100])
+    assert list(cut_windows(time, modes, 0.5)) == [(0, 50), (50, 100), (100, 150), (150, 200)]
+    assert list(cut_windows(time, None, 2.0)) == [(0, 100), (100, 200)]
+
+
+def test_noise_of_the_deflection_narrows_nothing():
+    """Regression on a noisy deflection alone would give k/2, and be sure of it."""
+    random = np.random.default_rng(0)
+    t = np.arange(500) / 500
+    x = 1e-3 * np.sin(9 * t)
+    noisy = x + np.std(x) * random.normal(size=500)
+    (window,) = stiffness_of(t, noisy, 43.0 * x, [(0, 500)])
+    assert window.value < 30
+    assert window.low < 43.0 < window.high
+
+
+def test_no_window_where_nothing_moves():
+    t = np.arange(100) / 100
+    (window,) = stiffness_of(t, np.ones(100), np.ones(100), [(0, 100)])
+    assert (window.low, window.high) == (-np.inf, np.inf)
+
+
+def test_false_alarms_are_rare():
+    """At the very end of the range, 20 windows together claim a violation in at most 5 %."""
+    alarms = 0
+    for seed in range(100):
+        t, x, f, *_ = runs.run(seed, noise=0.005)
+        spans = list(cut_windows(t, None, 0.5))
+        windows = stiffness_of(t, x, f, spans)
+        alarms += any(not w.low <= runs.STIFFNESS <= w.high for w in windows)
+    assert alarms <= 10
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("time_s,other\n" + "0,1\n" * 60, "no column beside the time"),
+        ("angle_rad,torque_Nm\n" + "0,1\n" * 60, "time_s are missing"),
+        ("time_s,angle_rad\n" + "0,1\n" * 60, "time repeats"),
+        ("time_s,angle_rad\n0,1\n1,2\n", "has 2 rows"),
+        ("time_s,torque_lbf\n" + "0,1\n" * 60, "unit 'lbf'"),
+    ],
+)
+def test_wrong_logs(tmp_path, text, message):
+    with pytest.raises(DataError, match=message) as caught:
+        log(tmp_path, text=text)
+    assert caught.value.remedy

@@ -1,0 +1,60 @@
+"""Held commands and linear models of them, against a simulation in fine steps."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from scipy.signal import lsim, lti
+
+from nrs_design.identification.held import Held, Lags
+
+TIME = np.cumsum(np.random.default_rng(0).uniform(0.001, 0.004, 300)) - 0.001
+COMMAND = np.repeat(np.random.default_rng(1).normal(size=20), 15)
+FINE = np.linspace(TIME[0], TIME[-1], 200_001)
+
+
+def late(delay):
+    index = np.searchsorted(TIME + delay, FINE, side="right") - 1
+    return COMMAND[np.maximum(index, 0)]
+
+
+@given(st.floats(0, 0.02))
+@settings(max_examples=30, deadline=None)
+def test_the_command_acts_later(delay):
+    held = Held.of(TIME, COMMAND, delay)
+    assert held.grid[held.samples] == pytest.approx(TIME)
+    middle = (held.grid[1:] + held.grid[:-1]) / 2
+    index = np.searchsorted(TIME + delay, middle, side="right") - 1
+    assert (held.command == COMMAND[np.maximum(index, 0)]).all()
+
+
+@pytest.mark.parametrize("delay", [0.0, 0.0031, 0.02])
+@pytest.mark.parametrize(
+    ("lags", "system"),
+    [
+        (Lags.first_order(0.03), lti([1], [0.03, 1])),
+        (Lags.second_order(40.0, 0.3), lti([1600], [1, 24, 1600])),
+        (Lags.second_order(40.0, 1.7), lti([1600], [1, 136, 1600])),
+        (Lags.second_order(40.0, 1.0), lti([1600], [1, 80, 1600])),
+    ],
+)
+def test_against_fine_steps(lags, system, delay):
+    held = Held.of(TIME, COMMAND, delay)
+    _, output, _ = lsim(system, late(delay), FINE - FINE[0], interp=False)
+    wanted = np.interp(TIME, FINE, output)
+    assert lags.velocity(held, held.command)[held.samples] == pytest.approx(wanted, abs=3e-3)
+    angle = np.concatenate([[0], np.cumsum((output[1:] + output[:-1]) / 2 * np.diff(FINE))])
+    found = lags.angle(held, held.command)[held.samples]
+    assert found == pytest.approx(np.interp(TIME, FINE, angle), abs=1e-4)
+
+
+def test_shares_add_up():
+    for damping in (0.2, 1.0, 3.0):
+        assert sum(Lags.second_order(10.0, damping).shares) == pytest.approx(1.0)
+
+
+@pytest.mark.parametrize(("damping", "columns"), [(0.4, 2), (2.0, 2)])
+def test_free_motion_has_two_states(damping, columns):
+    lags = Lags.second_order(30.0, damping)
+    assert lags.free(TIME, angle=False).shape == (300, columns)
+    assert lags.free(TIME, angle=True).shape == (300, columns + 1)

@@ -1,0 +1,39 @@
+"""Air, touches and loss of contact."""
+
+import numpy as np
+import pytest
+
+from nrs_design.identification.tissue.contact import find_contact
+from nrs_design.models.contact import Elastic, HuntCrossley, KelvinVoigt, Maxwell
+from tests.identification import synthetic
+from tests.identification.support import quick, record, slow
+from tests.identification.unilateral import robot_record
+
+STIFF = [Elastic(400.0), KelvinVoigt(400.0, 8.0), HuntCrossley(1500.0, 3000.0, 1.25)]
+SOFT = [synthetic.NOSE, synthetic.CONCHA, Maxwell(1.129, 20.0)]
+
+
+@pytest.mark.parametrize("side", [1, -1])
+@pytest.mark.parametrize("law", [*STIFF, *SOFT], ids=lambda law: law.name)
+def test_contact_is_found_on_either_side(law, side):
+    motion, noise = (quick(1), 0.03) if law in STIFF else (slow(1), 0.01)
+    found = find_contact(robot_record(law, motion, noise, 1, zero=0.1, tare=-0.1, side=side))
+    assert found.side == side
+    assert found.zero == pytest.approx(0.1, abs=0.1 * np.ptp(motion.deflection))
+    # A Maxwell tissue does not come back, so that a shallow touch may miss it.
+    assert len(found.touches) >= 3
+
+
+@pytest.mark.parametrize("law", [*STIFF, *SOFT], ids=lambda law: law.name)
+def test_without_air_nothing_is_found(law):
+    motion, noise = (quick, 0.05) if law in STIFF else (slow, 0.015)
+    assert not any(find_contact(record(law, motion(seed), noise, seed)) for seed in range(10))
+
+
+def test_a_tissue_that_relaxes_is_lost_early_and_met_late():
+    found = find_contact(robot_record(synthetic.CONCHA, slow(2), 0.005, 2))
+    for touch in found.touches:
+        assert touch.first <= touch.met < touch.lost <= touch.end
+    second = found.touches[1]
+    assert second.met > second.first
+    assert second.lost < second.end

@@ -1,0 +1,83 @@
+"""What the range in a spec holds: the mean, most specimens, or the next one."""
+
+import numpy as np
+import pytest
+
+from nrs_design.errors import DataError
+from nrs_design.identification.statistics import Estimate, tolerance_factor
+from nrs_design.identification.tissue import identify_tissue
+from nrs_design.identification.tissue.ranges import box_remark, joint_level, spread_ranges
+from nrs_design.models.contact import Elastic
+from tests.identification.support import quick, record
+
+POINT = Estimate(1.0, 1.0, 1.0)
+
+
+# One-sided factors for a share of 95 % with 95 % confidence, as tabulated (Owen 1968; ISO 16269-6).
+@pytest.mark.parametrize(
+    ("count", "factor"), [(2, 26.260), (3, 7.656), (5, 4.203), (10, 2.911), (30, 2.220)]
+)
+def test_tolerance_factors_of_the_tables(count, factor):
+    assert tolerance_factor(count, share=0.9, confidence=0.9) == pytest.approx(factor, abs=1e-3)
+
+
+def samples(seed, n, p=1):
+    return np.random.default_rng(seed).standard_normal((n, p))
+
+
+def inside(ranges, logs):
+    return np.all(
+        [(np.exp(x) >= r.low) & (np.exp(x) <= r.high) for r, x in zip(ranges, logs.T, strict=True)],
+        axis=0,
+    )
+
+
+@pytest.mark.parametrize("count", [3, 8])
+@pytest.mark.parametrize("p", [1, 2])
+def test_a_prediction_holds_the_next_record(count, p):
+    hits = [
+        inside(spread_ranges("prediction", logs[:-1], [[POINT] * p] * count), logs[-1:])[0]
+        for seed in range(1000)
+        for logs in [samples(seed, count + 1, p)]
+    ]
+    # Bonferroni errs to the wide side.
+    assert 0.93 < np.mean(hits) < 0.98
+
+
+@pytest.mark.parametrize("count", [3, 8])
+def test_a_tolerance_range_holds_its_share(count):
+    from scipy.special import ndtr
+
+    held = []
+    for seed in range(1000):
+        (found,) = spread_ranges("tolerance", samples(seed, count), [[POINT]] * count)
+        held.append(ndtr(np.log(found.high)) - ndtr(np.log(found.low)) >= 0.95)
+    assert np.mean(held) >= 0.95
+
+
+def specimens(count):
+    factors = np.exp(0.03 * np.random.default_rng(1).standard_normal(count))
+    return [record(Elastic(750 * f), quick(i), 0.1, i) for i, f in enumerate(factors)]
+
+
+def test_each_kind_of_range_is_wider_than_the_last():
+    data = specimens(5)
+    mean, next_, most = (
+        identify_tissue(data, "elastic", coverage=name).chosen.ranges[0]
+        for name in ("confidence", "prediction", "tolerance")
+    )
+    assert most.low < next_.low < mean.low < mean.high < next_.high < most.high
+
+
+def test_one_record_says_nothing_of_the_next():
+    with pytest.raises(DataError, match="needs several records"):
+        identify_tissue(specimens(1), coverage="tolerance")
+
+
+def test_a_box_is_called_a_box():
+    assert box_remark(["k"], [np.eye(1)]) == ""
+    assert joint_level(2) == pytest.approx(0.975)
+    said = box_remark(["k1", "b"], [np.array([[1.0, 0.9], [0.9, 1.0]])])
+    assert "k1 and b correlate by 0.90" in said
+    assert "the proof covers the whole box" in said
+    assert "correlate" not in box_remark(["k", "b"], [np.eye(2)])

@@ -1,0 +1,52 @@
+"""A power law about a preload."""
+
+import pytest
+
+from nrs_design.errors import DataError
+from nrs_design.identification.tissue import identify_tissue
+from nrs_design.identification.write_spec import merge_tissue
+from nrs_design.models.contact import Elastic, HuntCrossley
+from nrs_design.spec import parse_spec, read_spec
+from tests.identification.support import quick, record
+from tests.support import SOFT_TISSUE
+
+LAW = HuntCrossley(1500.0, 3000.0, 1.2)
+PRELOAD = (0.002, 0.004)
+
+
+def identified(count, **options):
+    data = [record(LAW, quick(seed), 0.02, seed) for seed in range(count)]
+    return identify_tissue(data, "hunt-crossley", **options)
+
+
+@pytest.mark.parametrize("count", [1, 3])
+def test_the_true_tangents_are_in_the_range(count):
+    stiffness, damping = identified(count, preload=PRELOAD).tangent.ranges
+    for depth in (0.002, 0.003, 0.004):
+        k, b = LAW.tangent(depth)
+        assert stiffness.covers(k)
+        assert damping.covers(b)
+    assert stiffness.high / stiffness.low < 3
+
+
+def test_it_is_written_as_a_spring_and_a_damper():
+    found = identified(2, preload=PRELOAD)
+    soft = parse_spec(merge_tissue(read_spec(SOFT_TISSUE), found, None, None)).environments["soft"]
+    assert soft.model == "kelvin-voigt"
+    assert soft.linearized_about == "deflections from 0.002 m to 0.004 m"
+    k, b = LAW.tangent(0.003)
+    low, high = soft.stiffness.range
+    assert low.si < k < high.si
+    low, high = soft.damping.range
+    assert low.si < b < high.si
+
+
+def test_a_linear_law_has_none():
+    with pytest.raises(DataError, match="the same at every preload"):
+        identify_tissue([record(Elastic(750.0), quick(), 0.1)], "elastic", preload=PRELOAD)
+
+
+@pytest.mark.parametrize("preload", [(0.0, 0.001), (0.002, 0.001), (0.001, 0.02)])
+def test_beyond_the_record(preload):
+    with pytest.raises(DataError, match="are not within the deflections"):
+        identified(1, preload=preload)

@@ -1,0 +1,52 @@
+"""What of a record is used."""
+
+import numpy as np
+import pytest
+
+from nrs_design.errors import DataError
+from nrs_design.identification.tissue import Preparation, fit_record, identify_tissue, prepare
+from nrs_design.models.contact import Elastic, KelvinVoigt
+from tests.identification.support import quick, record
+
+DATA = record(Elastic(750.0), quick(1), 0.1, 1)
+
+
+def test_a_part_of_the_record():
+    trial = prepare(DATA, Preparation(start=5.0, end=10.0))
+    assert (trial.motion.time[0], trial.motion.time[-1]) == pytest.approx((5.0, 10.0))
+    assert trial.record is DATA
+    assert "outside --from and --to" in str(trial.cuts[0])
+    assert trial.cuts[0].samples == len(DATA.force) - len(trial.force)
+    assert fit_record(Elastic, trial).estimates[0].covers(750.0)
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        ({"start": 14.9}, "lie between --from and --to"),
+        ({"skip_cycles": 3}, "3 cycles are to be set apart, and there are 3"),
+    ],
+)
+def test_too_little_left(options, message):
+    with pytest.raises(DataError, match=message):
+        prepare(DATA, Preparation(**options))
+
+
+def conditioned():
+    """The first of three cycles is 30 % stiffer, as a tissue that is loaded the first time."""
+    motion = quick(2)
+    first = motion.time < 5.0
+    force = np.where(first, 1.3, 1.0) * KelvinVoigt(750.0, 3.0).simulate(motion)
+    force += 0.05 * np.random.default_rng(2).standard_normal(len(force))
+    return type(DATA)(DATA.source, motion, force, False)
+
+
+def test_the_first_cycle_is_doubted_and_set_apart():
+    found = identify_tissue([conditioned()], "kelvin-voigt")
+    assert any("first loading cycle is" in doubt for doubt in found.caveats)
+    preparation = Preparation(skip_cycles=1)
+    found = identify_tissue([conditioned()], "kelvin-voigt", preparation)
+    (fit,) = found.chosen.fits
+    assert fit.estimates[0].covers(750.0)
+    assert found.caveats == ()
+    assert "set apart" in "; ".join(fit.trial.remarks)

@@ -13,7 +13,7 @@ from nrs_design.controllers.laws import LAWS, CompliantLaw
 from nrs_design.models.contact.environment import Environment
 from nrs_design.spec import IdleStatesSpec, SwitchingSpec
 from nrs_design.spec.controllers import Command
-from nrs_design.switched.assumptions import CONTINUOUS, rule_texts
+from nrs_design.switched.assumptions import CONTINUOUS, LOST_CONTACT, rule_texts
 from nrs_design.switched.gain_box import GainBox
 
 _GIVEN_LOOP = (
@@ -148,7 +148,7 @@ def _names(design: ControllerDesign, command: Command) -> dict[str, None]:
 
 def _kept_texts(loop: Assumed) -> Iterator[str]:
     if loop.losable:
-        return iter(())
+        return iter((LOST_CONTACT,))
     used = {controller.law.name for controller in loop.design.controllers}
     texts = (law.contact_text(alone=loop.idle is None) for law in LAWS.values() if law.name in used)
     return (text for text in texts if text is not None)

@@ -126,7 +126,7 @@ def test_line_ends_stay(tmp_path, silicone):
 def test_actuator(motor):
     loaded = read_spec(FORCE_LIMIT)
     spec = parse_spec(merge_actuator(loaded, motor))
-    assert spec.actuator.gain.si == pytest.approx(motor.chosen.gain.value, rel=1e-5)
+    assert spec.actuator.gain.nominal.si == pytest.approx(motor.chosen.gain.value, rel=1e-5)
     low, high = spec.actuator.intervals.time_constant
     assert low.si <= motor.chosen.time_constant.low
     assert high.si >= motor.chosen.time_constant.high

@@ -162,6 +162,11 @@ def fisher_tail(above: int, below: int, ratio: float) -> float:
     return float(fdtrc(above, below, ratio))
 
 
+def joint_level(count: int) -> float:
+    """Return the level of each of so many intervals that hold together with 95 %."""
+    return 1 - (1 - CONFIDENCE) / count
+
+
 def student_quantile(degrees: int, confidence: float = CONFIDENCE) -> float:
     """Return the factor from standard error to half the interval."""
     from scipy.special import stdtrit

@@ -172,9 +172,11 @@ def test_a_dead_time_is_a_doubt_and_no_age_of_the_force(spec):
 
 
 def test_doubts_about_the_actuator_are_noted():
-    made = motors.record("PRBS", 1, delay=0.0, limit=0.6 * motors.AMPLITUDE)
+    made = motors.record("multisine", 1, limit=1800.0)
     found = identify_actuator([made], MOTOR)
     spec = parse_spec(merge_actuator(read_spec(SOFT_TISSUE), found))
+    assert found.doubts
+    assert spec.actuator.doubts == found.caveats
     assert any("saturation" in doubt for doubt in spec.actuator.doubts)
 
 

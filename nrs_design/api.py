@@ -21,7 +21,7 @@ from nrs_design.given.matrices import (
     read_rows,
     time_of,
 )
-from nrs_design.given.system import spec_of_matrices
+from nrs_design.given.system import name_modes, spec_of_matrices
 from nrs_design.output import CERTIFICATE, PAGE, write_output
 from nrs_design.ownership import check_certificate, origin_of
 from nrs_design.proof.exact import TooLargeError
@@ -396,11 +396,7 @@ def check_lyapunov(
     >>> nrs.check_lyapunov([[[0, 1], [-2, -3]]], [[5, 1], [1, 1]]).holds
     True
     """
-    named = (
-        dict(modes)
-        if isinstance(modes, Mapping)
-        else {f"m{index + 1}": mode for index, mode in enumerate(modes)}
-    )
+    named = name_modes(modes)
     axis = time_of(list(named.values()), time)
     exact = [Mode(label, read_matrix(A, f"mode {label}")) for label, A in named.items()]
     alpha = None if rate is None else read_number(rate, "rate")

@@ -180,6 +180,20 @@ def test_wrong_options():
         nrs.certify([[[-1]]], time="now")
     with pytest.raises(SpecError, match="there is no mode"):
         nrs.certify([[[-1]], [[-2]]], transitions=[("m1", "m9")])
+    for transitions in (["m1", "m2"], "m1"):
+        with pytest.raises(SpecError, match="expected two names"):
+            nrs.certify([[[-1]], [[-2]]], transitions=transitions)
+
+
+@pytest.mark.parametrize(
+    "matrix", [-np.eye(2), [[-1, 0], [0, -1]], control.ss(-np.eye(2), np.eye(2), np.eye(2), 0)]
+)
+def test_one_matrix_is_no_list_of_modes(matrix):
+    for ask in (nrs.certify, lambda modes: nrs.check_lyapunov(modes, [[1, 0], [0, 1]])):
+        with pytest.raises(SpecError, match="one matrix") as caught:
+            ask(matrix)
+        assert "[A]" in caught.value.remedy
+    assert nrs.certify([matrix]).verdict == "proved"
 
 
 def test_check_lyapunov_says_where_it_fails():

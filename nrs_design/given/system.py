@@ -45,9 +45,7 @@ def spec_of_matrices(
     SpecError
         If anything about it is wrong, in the words of a spec.
     """
-    named = dict(modes) if isinstance(modes, Mapping) else _numbered(modes)
-    if not named:
-        raise SpecError("no modes are given", remedy="give at least one matrix")
+    named = name_modes(modes)
     axis = time_of(list(named.values()), time)
     unit = "s" if axis == "continuous" else "steps"
     times = {"dwell_time": dwell_time, "longest_dwell_time": longest_dwell_time}
@@ -77,9 +75,23 @@ def spec_of_matrices(
     return _validated(document, name)
 
 
-def _numbered(modes: Sequence[object]) -> dict[str, object]:
-    """Name modes that have no names; state spaces of python-control bring some."""
-    return {f"m{index + 1}": mode for index, mode in enumerate(modes)}
+def name_modes(modes: Sequence[object] | Mapping[str, object]) -> dict[str, object]:
+    """Return modes by name: m1, m2, ... where they have no names.
+
+    Raises
+    ------
+    SpecError
+        If there are none, or one matrix stands for a list of them.
+    """
+    if isinstance(modes, Mapping):
+        named = dict(modes)
+    elif is_state_space(modes) or _depth(modes) == 2:
+        raise SpecError("the modes are one matrix", remedy="put it into a list: [A]")
+    else:
+        named = {f"m{index + 1}": mode for index, mode in enumerate(modes)}
+    if not named:
+        raise SpecError("no modes are given", remedy="give at least one matrix")
+    return named
 
 
 def _entries(matrix: object, label: str, uncertain: bool) -> list[list[str]]:
@@ -124,7 +136,10 @@ def _switching(
         key: _dwell_times(value, key, unit) for key, value in times.items() if value is not None
     }
     if transitions is not None:
-        rules["transitions"] = [[*map(str, pair)] for pair in transitions]
+        # A text is no pair, though it has letters to unpack: what is wrong with it is said later.
+        rules["transitions"] = [
+            pair if isinstance(pair, str) else [*map(str, pair)] for pair in transitions
+        ]
     return rules or "arbitrary"
 
 

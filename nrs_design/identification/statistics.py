@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from decimal import ROUND_CEILING, ROUND_FLOOR, Context, Decimal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,6 +13,7 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 
 CONFIDENCE = 0.95
+_DIGITS = 5
 # Below this p-value, residuals are taken as colored.
 WHITE = 0.01
 _LAGS = 20
@@ -45,6 +47,17 @@ class Estimate:
             return cls(math.exp(logarithm), 0.0, math.inf)
         ends = math.exp(logarithm - half_width), math.exp(logarithm + half_width)
         return cls(math.exp(logarithm), *ends)
+
+    def __str__(self) -> str:
+        """Return value and interval in words, its ends rounded outwards."""
+        wide = self.widened
+        return f"{self.value:.{_DIGITS}g} [{wide.low:.{_DIGITS}g}, {wide.high:.{_DIGITS}g}]"
+
+    @property
+    def widened(self) -> Estimate:
+        """The estimate with ends rounded outwards to the digits that are shown."""
+        low, high = _rounded(self.low, ROUND_FLOOR), _rounded(self.high, ROUND_CEILING)
+        return Estimate(self.value, low, high)
 
     def covers(self, value: float) -> bool:
         """Tell whether a value lies in the interval."""
@@ -210,6 +223,10 @@ def tolerance_factor(count: int, share: float, confidence: float) -> float:
 
     noncentrality = float(ndtri(0.5 + share / 2)) * math.sqrt(count)
     return float(nctdtrit(count - 1, noncentrality, 0.5 + confidence / 2)) / math.sqrt(count)
+
+
+def _rounded(value: float, rounding: str) -> float:
+    return float(Context(prec=_DIGITS, rounding=rounding).create_decimal(Decimal(value)))
 
 
 def _jackknife(J: Array, residuals: Array, edges: NDArray[np.int64], bread: Array) -> Array:

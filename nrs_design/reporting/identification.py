@@ -132,7 +132,7 @@ def _offset(fit: RecordFit, name: str, rotational: bool) -> str:
     unit, estimate = OFFSET_UNITS[name][rotational], offset.estimate
     if not offset.fitted:
         return f"{number(estimate.value)} {unit}, {offset.provided or 'given'}"
-    value = f"{estimate.value:.5g} [{estimate.low:.5g}, {estimate.high:.5g}] {unit}"
+    value = f"{estimate} {unit}"
     return f"{value}, {offset.provided}" if offset.provided else value
 
 
@@ -346,7 +346,8 @@ def label_of(synthetic: bool) -> str:
 
 
 def _interval(estimate: Estimate) -> str:
-    return f"{_short(estimate.value)} [{_short(estimate.low)}, {_short(estimate.high)}]"
+    wide = estimate.widened
+    return f"{_short(estimate.value)} [{_short(wide.low)}, {_short(wide.high)}]"
 
 
 def _short(value: float) -> str:

@@ -6,7 +6,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from nrs_design.proof.evidence import CommonQuadratic
 from nrs_design.search.certification import Certification
 from nrs_design.search.gradient_settings import Coordinates, Order
 from nrs_design.search.method import Method
@@ -62,9 +61,13 @@ class MethodRun:
     @property
     def condition(self) -> float | None:
         """Condition number of Q, in the states of the modes; None without a single Q."""
-        evidence = self.certification.evidence
-        if not isinstance(evidence, CommonQuadratic):
+        evidence, system = self.certification.evidence, self.certification.system
+        if evidence is None or not evidence.is_common_quadratic:
             return None
-        largest = max(abs(entry) for row in evidence.Q for entry in row)
-        scaled = np.array([[entry / largest for entry in row] for row in evidence.Q])
+        # The first form of such evidence is its function, or that of its first block.
+        _, Q = next(iter(evidence.forms(system)))
+        if len(Q) < system.order:
+            return None
+        largest = max(abs(entry) for row in Q for entry in row)
+        scaled = np.array([[entry / largest for entry in row] for row in Q])
         return float(np.linalg.cond(scaled))

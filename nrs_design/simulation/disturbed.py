@@ -39,7 +39,19 @@ class DisturbedMotions:
     def of(
         cls, system: SwitchedSystem, channel: Channel, output: Output, step: float
     ) -> DisturbedMotions:
-        """Convert a system; in continuous time, the disturbance is held over a step in s."""
+        """Convert a system to floating point.
+
+        Parameters
+        ----------
+        system : SwitchedSystem
+            With its modes, and the free ones where contact may be lost.
+        channel : Channel
+            The disturbance.
+        output : Output
+            What it moves.
+        step : float
+            Time of a step in s, over which the disturbance is held; one in discrete time.
+        """
         free = () if system.contact is None else system.contact.free
         pairs = zip((*system.modes, *free), channel.columns, strict=True)
         maps = np.array([_with_column(mode.A, B, float(channel.bound)) for mode, B in pairs])

@@ -14,6 +14,10 @@ if TYPE_CHECKING:
     from nrs_design.spec import InteractionDesignSpec
 
 MAX_LISTED = 20
+LOST_CONTACT = (
+    "Contact is lost where the deflection is not positive, or where the environment would have to "
+    "pull; its surface is then back in its place at once."
+)
 CONTINUOUS = "continuous at a switch (identity resets)"
 _STAYS = {
     "dwell_time": "stays active for at least",

@@ -164,7 +164,7 @@ def _shared_law(design: ControllerDesign, *, mixed: bool) -> CompliantLaw:
     kinds = {(law.commands, law.states) for law in leading}
     kinds |= {(law.commands, law.states) for law in laws if mixed and law.states}
     if len(kinds) > 1:
-        kept = [f"{law.name} with {', '.join(law.states) or 'none'}" for law in laws]
+        kept = [f"{law.name} with {', '.join(law.states) or 'no state'}" for law in laws]
         found = "; ".join(dict.fromkeys(kept))
         raise AssemblyError(
             f"the controllers keep different states of their own ({found}), so their modes share "

@@ -12,7 +12,8 @@ from nrs_design.controllers.gains import idle_decay
 from nrs_design.controllers.laws import LAWS, CompliantLaw
 from nrs_design.models.contact.environment import Environment
 from nrs_design.spec import IdleStatesSpec, SwitchingSpec
-from nrs_design.switched.assumptions import CONTINUOUS, rule_texts
+from nrs_design.spec.controllers import Command
+from nrs_design.switched.assumptions import CONTINUOUS, LOST_CONTACT, rule_texts
 from nrs_design.switched.gain_box import GainBox
 
 _GIVEN_LOOP = (
@@ -91,7 +92,7 @@ def assume_loop(loop: Assumed) -> tuple[str, ...]:
             environment.law.memory_texts(environment.name, alone=len(loop.touched) == 1)
             for environment in loop.touched
         ),
-        *(_idle_texts(loop.idle, loop.law) if loop.idle is not None else ()),
+        *(_idle_texts(loop, loop.idle) if loop.idle is not None else ()),
         *_kept_texts(loop),
         *_switch_texts(loop.rules, reset=loop.idle is not None and loop.idle.reset),
         _NOT_MODELLED,
@@ -110,20 +111,23 @@ def _contact_texts(loop: Assumed) -> Iterator[str]:
         yield _AT_A_SWITCH[loop.coordinates]
 
 
-def _idle_texts(idle: IdleStatesSpec, law: CompliantLaw) -> Iterator[str]:
-    """Say what is taken for granted about the states of impedance controllers."""
-    what = " and ".join((*law.state_words, "the position reference"))
+def _idle_texts(loop: Assumed, idle: IdleStatesSpec) -> Iterator[str]:
+    """Say what is taken for granted about the states of controllers that command a velocity."""
+    driving = " and ".join(_names(loop.design, "velocity"))
+    others = " or ".join(_names(loop.design, "position"))
+    what = " and ".join((*loop.law.state_words, "the position reference"))
     decay = idle_decay(idle)
     meanwhile = f"decay at {exact_decimal(decay)} 1/s" if decay else "are held"
     yield (
-        f"Impedance controllers integrate their velocity to a position reference of the motion "
-        f"loop. While a position or force controller is active, {what} of the impedance "
+        f"{driving.capitalize()} controllers integrate their velocity to a position reference of "
+        f"the motion loop. While a {others} controller is active, {what} of the {driving} "
         f"controllers act on nothing and {meanwhile}."
     )
     if idle.reset:
+        rest = "".join(f", with {state.split()[0]} = 0" for state in loop.law.states)
         yield (
-            "At a switch from an impedance controller to a position or force controller they are "
-            "set to zero: an impedance controller starts from the rest position, with vm = 0."
+            f"At a switch from {driving} controllers to {others} controllers they are set to zero: "
+            f"{driving} controllers start from the rest position{rest}."
         )
     yield (
         "The commanded position is that at which the contact carries no force; position and "
@@ -136,9 +140,15 @@ def _idle_texts(idle: IdleStatesSpec, law: CompliantLaw) -> Iterator[str]:
     )
 
 
+def _names(design: ControllerDesign, command: Command) -> dict[str, None]:
+    """Return the names of the laws that give the motion loop such a command, each once."""
+    laws = (controller.law for controller in design.controllers)
+    return dict.fromkeys(law.name for law in laws if law.commands == command)
+
+
 def _kept_texts(loop: Assumed) -> Iterator[str]:
     if loop.losable:
-        return iter(())
+        return iter((LOST_CONTACT,))
     used = {controller.law.name for controller in loop.design.controllers}
     texts = (law.contact_text(alone=loop.idle is None) for law in LAWS.values() if law.name in used)
     return (text for text in texts if text is not None)

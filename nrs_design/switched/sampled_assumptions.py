@@ -12,7 +12,7 @@ from nrs_design.proof.text import exact_text
 from nrs_design.spec import InteractionDesignSpec
 from nrs_design.spec.interval import Interval
 from nrs_design.spec.sampling import SamplingSpec
-from nrs_design.switched.assumptions import CONTINUOUS, rule_texts
+from nrs_design.switched.assumptions import CONTINUOUS, LOST_CONTACT, rule_texts
 
 _KEPT = "Contact is not lost: free motion is not one of the modes."
 _INPUTS = (
@@ -133,6 +133,8 @@ def _contact_texts(spec: InteractionDesignSpec, *, springs: bool) -> Iterator[st
         yield _KEPT
     elif not springs:
         yield _NOT_COVERED
+    else:
+        yield LOST_CONTACT
 
 
 def _coefficients(motion: SampledMotion, laws: Mapping[str, SampledAdmittance]) -> str:

@@ -72,6 +72,7 @@ SPECS = {
 NUMBERS = {
     "common-quadratic": {"Q"},
     "common-polynomial": {"Q", "vanishing"},
+    "conewise-quadratic": {"Q", "multipliers"},
     "mode-quadratic": {"functions"},
     "parameter-quadratic": {"Q_low", "Q_high"},
     "no-common-quadratic": {"factors"},
@@ -83,7 +84,7 @@ ANY_RATE = Limits(optimize_rate=False)
 FIRST = ("statements", 0)
 Q = (*FIRST, "Q")
 DROP = object()
-NOT_ITS_MODES = "its field 'modes' is not that of the spec"
+NOT_ITS_MODES = "is not that of the spec"
 
 
 @pytest.fixture(scope="module", params=SPECS)
@@ -146,7 +147,7 @@ def changed(document, path, value):
 def with_modes(document, spec):
     """Copy of a document with the modes that its gains make of a spec."""
     system = assemble_from_text(spec.spec, document["gains"], document["coordinates"])
-    return {**document, "modes": system_fields(system)["modes"]}
+    return {**document, **system_fields(system)}
 
 
 def restate(document, **fields):
@@ -263,8 +264,7 @@ class TestLegitimate:
         document, spec = impedance
         slower = Fraction(at(document, FIRST)["rate"]) / 2
         certificate = verify_document(document, spec).certificate
-        evidence = CommonQuadratic(certificate.evidence.Q, 0, slower)
-        words = evidence.claim(certificate.system)
+        words = replace(certificate.evidence, rate=slower).claim(certificate.system)
         restated = restate(document, rate=str(slower), claim=words)
         assert self.accept(restated, spec).evidence.rate == slower
 
@@ -273,7 +273,7 @@ class TestLegitimate:
         # One unit in the last place of the single-precision 2.15.
         other = Fraction(document["gains"]["insertion"]["Bt"]) + Fraction(1, 2**22)
         tampered = changed(document, ("gains", "insertion", "Bt"), exact_decimal(other))
-        assert verify_document(resign(tampered), spec).fault == NOT_ITS_MODES
+        assert NOT_ITS_MODES in verify_document(resign(tampered), spec).fault
         own = with_modes(tampered, spec)
         assert self.accept(own, spec).gains["insertion"]["Bt"] == exact_decimal(other)
 
@@ -422,6 +422,35 @@ class TestForgery:
                 if name != "given":
                     forged = {**document, "statements": [statement]}
                     assert verify_document(resign(forged), spec).fault is not None
+
+    def test_a_bound_with_other_names_or_numbers(self, tmp_path):
+        text = SOFT_TISSUE.read_text().replace("[720.56 N/m, 768.17 N/m]", "[747 N/m, 748 N/m]")
+        path = tmp_path / "bounded.nrs.yaml"
+        path.write_text(
+            f"{text}\nsampling: {{period: 2 ms, delay: 0}}\ndisturbances: {{command: 8 deg/s}}\n"
+        )
+        spec = read_spec(path)
+        document = json.loads(dump(run_certification(spec, limits=ANY_RATE).certificate))
+        assert verify_document(document, spec).fault is None
+        proof, bound = document["statements"]
+        assert bound["kind"] == "invariant-ellipsoid"
+        assert "force" in bound["claim"]
+        for field, value in (
+            ("level", str(Fraction(bound["level"]) * Fraction(9, 10))),
+            ("channel", "friction"),
+            ("output", "torque"),
+            ("multipliers", []),
+            ("share", "1"),
+        ):
+            forged = {**document, "statements": [proof, {**bound, field: value}]}
+            assert verify_document(resign(forged), spec).fault is not None
+        for field, key, value in (("channels", "bound", "1/1000"), ("outputs", "limit", "9")):
+            changed_ = {**document, field: [{**document[field][0], key: value}]}
+            assert verify_document(resign(changed_), spec).fault is not None
+        alone = {**document, "statements": [bound], "verdict": "inconclusive"}
+        outcome = verify_document(resign(alone), spec)
+        assert outcome.fault is None
+        assert outcome.certificate.verdict == "inconclusive"
 
     def test_a_false_remark_beside_a_true_proof(self, given):
         document, spec = given

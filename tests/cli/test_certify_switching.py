@@ -36,7 +36,7 @@ def test_proved(tmp_path):
     result = typed("certify-switching", SOFT_TISSUE, cwd=tmp_path)
     assert result.returncode == 0, result.stderr
     assert result.stdout.startswith("soft-tissue: PROVED (common quadratic function: exists)")
-    assert "Every solution of x' = A x" in result.stdout
+    assert "Every solution, with contact lost and made again" in result.stdout
     assert "taken for granted:" in result.stdout
     assert "certificate written to reports/soft-tissue.cert.json" in result.stderr
     document = json.loads((tmp_path / "reports" / "soft-tissue.cert.json").read_text())
@@ -336,13 +336,13 @@ def test_json(tmp_path):
     assert document["schema"] == "nrs-design/certify-switching/1"
     assert document["verdict"] == "proved"
     assert document["common_quadratic"] == "exists"
-    assert document["method"] == "lmi"
+    assert document["method"] == "conewise quadratic"
     assert document["decay_rate"] == pytest.approx(3.914, abs=0.01)
     assert document["decay_rate_unit"] == "1/s"
     (statement,) = certificate["statements"]
     assert document["decay_rate_exact"] == statement["rate"]
     assert document["decay_rate"] <= document["decay_rate_limit"]
-    assert document["statements"] == [{"kind": "common-quadratic", "claim": statement["claim"]}]
+    assert document["statements"] == [{"kind": "conewise-quadratic", "claim": statement["claim"]}]
     assert document["modes"] == [mode["name"] for mode in certificate["modes"]]
     assert document["gains"] == certificate["gains"]
     assert document["assumptions"] == certificate["assumptions"]

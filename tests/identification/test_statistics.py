@@ -23,6 +23,12 @@ def test_quantile(degrees, quantile):
     assert student_quantile(degrees) == pytest.approx(quantile, abs=5e-4)
 
 
+def test_an_interval_is_shown_rounded_outwards():
+    assert str(Estimate(399.948, 399.776, 400.1211)) == "399.95 [399.77, 400.13]"
+    assert str(Estimate(2.0, 0.0, math.inf)) == "2 [0, inf]"
+    assert str(Estimate(0.25, -1.000001, 1.0)) == "0.25 [-1.0001, 1]"
+
+
 def test_interval_is_symmetric_in_the_logarithm():
     estimate = Estimate.from_log(math.log(2.0), math.log(3.0))
     assert (estimate.value, estimate.low, estimate.high) == pytest.approx((2.0, 2 / 3, 6.0))

@@ -26,6 +26,7 @@ FIGURES = {
         "quadratic",
         "mode-rates",
         "run",
+        "deflection",
     ],
     "force": [
         "root-locus",

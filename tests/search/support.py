@@ -3,13 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from decimal import Decimal
 from typing import Any
 
+from nrs_design.pipeline import run_design
 from nrs_design.proof.evidence import AbstractEvidence
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.search.candidates import Candidates
 from nrs_design.search.certify import first_accepted
 from nrs_design.search.family import Family, floats_in_silence
+from nrs_design.spec import LoadedSpec, parse_spec
+from nrs_design.switched.assemble import assemble
 
 
 def outcome(
@@ -30,3 +34,39 @@ def found(
 ) -> AbstractEvidence | None:
     """Return what the exact check accepts of a search."""
     return outcome(search, system, **options)[0]
+
+
+TEXT = """\
+kind: interaction-design
+name: soft
+actuator: {gain: GAIN, time_constant: TAU}
+motion_loop: {damping_ratio: 0.707, settling_time: 0.1404 s, derivative_gain: 2060 rpm*s/rad,
+              zero: 56.9706 1/s}
+limits: {velocity: 8 deg/s, torque: 0.3 N*m, bandwidth: 2 Hz}
+environments:
+  soft: {model: elastic, stiffness: {nominal: LOW N*m/rad, range: [LOW N*m/rad, HIGH N*m/rad]}}
+controllers:
+CONTROLLERS
+switching: arbitrary
+"""
+
+
+def thesis_robot(
+    k: tuple[str, str], Bt: tuple[str, ...], Mt: str, tolerance: str = "0", **sections: str
+) -> SwitchedSystem:
+    """Return the loop of the thesis with impedance controllers on a spring, as a spec says it."""
+    lines = (
+        f"  c{i}: {{type: impedance, environment: soft, Mt: {Mt} kg*m^2, Bt: {b} N*m*s/rad}}"
+        for i, b in enumerate(Bt)
+    )
+    text = TEXT.replace("CONTROLLERS", "\n".join(lines))
+    text = text.replace("LOW", k[0]).replace("HIGH", k[1])
+    nominal = (("GAIN", "4.8417e-4", "rad/s/rpm"), ("TAU", "0.0351", "s"))
+    for key, value, unit in nominal:
+        low, high = (Decimal(value) * (1 + s * Decimal(tolerance)) for s in (-1, 1))
+        ranged = f"{{nominal: {value} {unit}, range: [{low} {unit}, {high} {unit}]}}"
+        text = text.replace(key, ranged if Decimal(tolerance) else f"{value} {unit}")
+    text += "".join(f"{name}: {section}\n" for name, section in sections.items())
+    designed = run_design(LoadedSpec("soft", "", text, parse_spec(text)))
+    assert designed is not None
+    return assemble(designed.spec, designed.plant, designed.design, "deflection")

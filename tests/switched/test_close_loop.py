@@ -143,7 +143,7 @@ class TestAssembly:
     def test_mixed_inertia(self):
         with pytest.raises(AssemblyError, match="different states of their own") as caught:
             assembled(impedance("a", 0), impedance("b", 1))
-        assert "(impedance with none; impedance with vm [rad/s])" in caught.value.message
+        assert "(impedance with no state; impedance with vm [rad/s])" in caught.value.message
         assert "none of them" in caught.value.remedy
 
     def test_states_are_shared_by_name_and_not_by_number(self):

@@ -1,5 +1,6 @@
 """Impedance, position and force controllers in one state."""
 
+from dataclasses import replace
 from fractions import Fraction
 from itertools import product
 
@@ -136,12 +137,34 @@ def test_resets_lead_from_impedance_controllers_to_the_others():
     assert all(reset.map.fractions() == kept for reset in system.switching.resets)
     texts = " ".join(system.assumptions)
     assert "they are set to zero" in texts
+    assert "start from the rest position, with vm = 0." in texts
     assert "All other states are continuous" in texts
 
 
 def test_what_is_held_is_said_to_be():
     texts = " ".join(mixed(held=("decay: 20 1/s", "decay: 0 1/s")).assumptions)
     assert "act on nothing and are held" in texts
+
+
+def test_without_inertia_no_velocity_is_said_to_start_at_zero(tmp_path):
+    text = MIXED.read_text().replace("decay: 20 1/s", "decay: 20 1/s, reset: true")
+    path = tmp_path / "mixed-controllers.nrs.yaml"
+    path.write_text(text.replace("nominal: 0.01 kg*m^2", "nominal: 0 kg*m^2"))
+    designed = run_design(read_spec(path))
+    system = assemble(designed.spec, designed.plant, designed.design, "deflection")
+    texts = " ".join(system.assumptions)
+    assert "impedance controllers start from the rest position." in texts
+    assert "vm" not in texts
+
+
+def test_only_controllers_of_the_spec_are_named():
+    spec = parse_spec(MIXED.read_text())
+    design = run_design(read_spec(MIXED)).design
+    without = replace(design, controllers=design.controllers[:2])
+    texts = " ".join(assemble(spec, build_plant(spec), without, "deflection").assumptions)
+    assert "Impedance controllers integrate" in texts
+    assert "While a position controller is active" in texts
+    assert "force controller" not in texts
 
 
 def test_decay_is_the_single_precision_number_that_the_robot_holds():

@@ -152,4 +152,4 @@ def sources(files: Iterable[Source]) -> list[dict[str, Any]]:
 
 def interval(estimate: Estimate) -> str:
     """Write an estimate with its interval."""
-    return f"{estimate.value:.5g} [{estimate.low:.5g}, {estimate.high:.5g}]"
+    return str(estimate)

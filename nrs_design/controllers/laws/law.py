@@ -88,8 +88,13 @@ class AbstractCompliantLaw(AbstractLaw, Generic[S]):
         return None
 
     def find_fault(self, given: S) -> str | None:
-        """Say which gain is not one that the spec allows, beyond bounds and ranges; or None."""
-        return None
+        """Say which gain is not one that the spec allows, beyond bounds and ranges; or None.
+
+        By default, a gain that the spec neither bounds nor ranges is not allowed: a law with gains
+        that the spec gives in another way says here which ones those are.
+        """
+        free = next((gain for gain in self.gains if gain not in given.gains()), None)
+        return None if free is None else f"gain {free} has no bounds in the spec"
 
     @classmethod
     @abstractmethod

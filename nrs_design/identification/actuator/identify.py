@@ -157,7 +157,7 @@ def _from_records(
 ) -> ActuatorIdentification:
     phasors, fits = _from_phasors(records)
     progress("time domain")
-    found = fit_in_time(records, scan_motor(records))
+    found = _first_order(records)
     fits.append(fit_of("output in the time domain", found))
     reason = "The fit to the output uses every sample."
     if found.uncertainty.whiteness < WHITE:
@@ -208,6 +208,25 @@ def _has_failed(records: Sequence[ActuatorRecord], found: TimeFit) -> bool:
     spread = sum(float(np.sum((r.output - r.output.mean()) ** 2)) for r in records)
     missed = float(np.sqrt(found.errors @ found.errors / spread))
     return found.uncertainty.whiteness < WHITE and missed > _MISSED
+
+
+def _first_order(records: Sequence[ActuatorRecord]) -> TimeFit:
+    """Return a motor of first order, with friction only where that is better.
+
+    The scan may need friction that is none, as its times are coarse.
+    """
+    start = scan_motor(records)
+    if start.friction is None:
+        return fit_in_time(records, start)
+    without = replace(start, friction=None)
+    try:
+        found = fit_in_time(records, start)
+    except DataError:
+        return fit_in_time(records, without)
+    try:
+        return min(found, fit_in_time(records, without), key=lambda fit: fit.bic)
+    except DataError:
+        return found
 
 
 def _second_order(records: Sequence[ActuatorRecord], first: TimeFit) -> TimeFit | None:

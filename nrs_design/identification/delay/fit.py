@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from nrs_design.identification.datasets import SignalRecord
 from nrs_design.identification.delay.models import AbstractFollower
 from nrs_design.identification.statistics import Uncertainty, uncertainty
+from nrs_design.identification.steps import shortened
 
 Array = NDArray[np.float64]
 
@@ -91,7 +92,7 @@ def fit_delay(
     error = _errors(record, follower, x, rows)
     for _ in range(_STEPS):
         J = _sensitivities(record, follower, x, rows)
-        step = np.clip(np.linalg.lstsq(J, error, rcond=None)[0], -limit, limit)
+        step = shortened(np.linalg.lstsq(J, error, rcond=None)[0], limit)
         for halving in range(_HALVINGS):
             tried = x + step / 2**halving
             found = _errors(record, follower, tried, rows)

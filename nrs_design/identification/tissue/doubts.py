@@ -22,6 +22,9 @@ _NEAR = 1e-3
 # Part of the power of the velocity that may be rounding of the deflection.
 _ROUNDING = 0.1
 _LOADED = 0.1
+# Deflections of soft tissue, in m and rad, and a step that shows no motion of a hand, in s.
+_TRAVELS = (1e-5, 0.5), (1e-4, np.pi)
+_SLOWEST = 1.0
 
 
 def doubts(
@@ -50,12 +53,25 @@ def doubts(
         Derivatives of the force by p parameters and m offsets.
     """
     return (
+        *_units(trial),
         *doubt_residuals(trial, residuals, sensitivities, len(law.values)),
         *_bounds(law, bounds),
         *_errors(law, found),
         *_times(law, trial),
         *_motion(law, trial),
     )
+
+
+def _units(trial: Trial) -> Iterator[str]:
+    """Doubt a record of a size that no probe of a robot moves: its units are likely others."""
+    rotational = trial.record.rotational
+    (least, most), unit = _TRAVELS[rotational], "rad" if rotational else "m"
+    travel = float(np.ptp(trial.motion.deflection))
+    if not least < travel < most:
+        yield f"the deflection spans {travel:.3g} {unit}: is that its unit? (--map names another)"
+    step = float(np.median(trial.motion.steps))
+    if step >= _SLOWEST:
+        yield f"the steps of time are {step:.3g} s: is that their unit? (--map names another)"
 
 
 def _bounds(law: AbstractContactLaw, bounds: tuple[Array, Array]) -> Iterator[str]:

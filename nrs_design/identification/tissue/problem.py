@@ -87,12 +87,15 @@ class Problem:
 
         The force of a relaxing element at the beginning is not known; it fades exponentially.
         """
+        return self._all_states(point)[self.trial.used]
+
+    def _all_states(self, point: Array) -> Array:
         tau = self.law(point).relaxation_time
         columns = np.zeros((len(self.trial.force), len(self._begins)))
         time = self.trial.motion.time
         for column, rows in zip(columns.T, self._begins, strict=True):
             column[rows] = np.exp(-(time[rows] - time[rows.start]) / tau) if tau else 0.0
-        return columns[self.trial.used]
+        return columns
 
     def constants(self, point: Array) -> Array:
         """Return all that adds to the force in proportion: offsets, then states."""
@@ -173,6 +176,8 @@ class Problem:
     def simulate_all(self, point: Array, constants: Array) -> Array:
         """Return the force in all samples, used or not, with its tare."""
         whole = Problem(self.kind, self.trial.everything())
-        force = whole.simulate(point) + whole.constants(point) @ constants
+        # Stretches without a used sample have no state of their own.
+        columns = np.column_stack([whole.offsets, self._all_states(point)])
+        force = whole.simulate(point) + columns @ constants
         tare = self.trial.preparation.tare
         return force if tare is None else force + self.trial.side * tare

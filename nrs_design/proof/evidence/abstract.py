@@ -32,6 +32,14 @@ class Shows(StrEnum):
     BOUND = "a bound on an output"
 
 
+# That no common quadratic function exists is said of matrices, whatever happens to contact.
+_IN_CONTACT: Mapping[Shows, tuple[str, ...]] = {
+    Shows.STABILITY: (WHILE_KEPT,),
+    Shows.BOUND: (WHILE_KEPT,),
+    Shows.INSTABILITY: (GROWN_IN_CONTACT,),
+}
+
+
 class AbstractEvidence(ABC):
     """Numbers that prove a statement about a switched system.
 
@@ -89,8 +97,7 @@ class AbstractEvidence(ABC):
         if system.sample_time is not None and rate is not None:
             said.append(_in_seconds(rate, system.sample_time))
         if system.contact is not None and not self.covers_lost_contact:
-            unstable = self.shows is Shows.INSTABILITY
-            said.append(GROWN_IN_CONTACT if unstable else WHILE_KEPT)
+            said += _IN_CONTACT.get(self.shows, ())
         return " ".join(said)
 
     @abstractmethod

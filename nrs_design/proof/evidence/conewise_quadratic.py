@@ -30,6 +30,7 @@ from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.system import Contact, Mode, SwitchedSystem, Time
 
 Forms = Iterator[tuple[str, IntegerMatrix]]
+NO_CONTACT = "the system does not say how contact is lost"
 
 
 @dataclass(frozen=True, slots=True)
@@ -91,7 +92,7 @@ class ConewiseQuadratic(AbstractFunction):
     def find_misfit(self, system: SwitchedSystem) -> str | None:
         """Check that contact can be lost, shapes, and the signs of rate and multipliers."""
         if system.contact is None:
-            return "the system does not say how contact is lost"
+            return NO_CONTACT
         if not is_square(self.Q, system.order):
             return f"Q is not a {system.order} x {system.order} matrix"
         if system.time is Time.DISCRETE and system.contact.pulls:
@@ -173,7 +174,9 @@ class ConewiseQuadratic(AbstractFunction):
 
     @classmethod
     def from_fields(cls, fields: Mapping[str, Any], system: SwitchedSystem) -> Self:
-        """Read Q, the rate and the multipliers."""
+        """Read Q, the rate and the multipliers; they say nothing where no contact can be lost."""
+        if system.contact is None:
+            raise ValueError(NO_CONTACT)
         Q, denominator_log2 = read_dyadic(fields["Q"])
         multipliers = tuple(read_integer(entry) for entry in fields["multipliers"])
         return cls(Q, denominator_log2, read_ratio(fields["rate"]), multipliers)

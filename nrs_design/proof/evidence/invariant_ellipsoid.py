@@ -90,10 +90,8 @@ class InvariantEllipsoid(AbstractEvidence):
     def find_misfit(self, system: SwitchedSystem) -> str | None:
         """Check names, shapes, and the signs of share, level and multipliers."""
         contact = system.contact
-        if self.channel not in {channel.name for channel in system.channels}:
-            return "the system has no disturbance of that name"
-        if self.output not in {output.name for output in system.outputs}:
-            return "the system has no output of that name"
+        if (unknown := self._find_unknown(system)) is not None:
+            return unknown
         if not is_square(self.Q, system.order):
             return f"Q is not a {system.order} x {system.order} matrix"
         if not 0 <= self.denominator_log2 <= MAX_INTEGER_BITS:
@@ -108,6 +106,13 @@ class InvariantEllipsoid(AbstractEvidence):
         if self.share <= 0 or (system.time is Time.DISCRETE and self.share >= 1):
             return "the share is not one of a set that is not left"
         return None if self.level > 0 else "the level is not positive"
+
+    def _find_unknown(self, system: SwitchedSystem) -> str | None:
+        if self.channel not in {channel.name for channel in system.channels}:
+            return "the system has no disturbance of that name"
+        if self.output not in {output.name for output in system.outputs}:
+            return "the system has no output of that name"
+        return None
 
     def forms(self, system: SwitchedSystem) -> Forms:
         """Yield Q, the condition of every motion, and that of every row of the output."""
@@ -164,9 +169,9 @@ class InvariantEllipsoid(AbstractEvidence):
 
     @classmethod
     def from_fields(cls, fields: Mapping[str, Any], system: SwitchedSystem) -> Self:
-        """Read the names, Q, share, level and multipliers."""
+        """Read the names, which must be those of the system, and the numbers."""
         Q, denominator_log2 = read_dyadic(fields["Q"])
-        return cls(
+        evidence = cls(
             read_text(fields["channel"]),
             read_text(fields["output"]),
             Q,
@@ -175,6 +180,9 @@ class InvariantEllipsoid(AbstractEvidence):
             read_ratio(fields["level"]),
             tuple(read_integer(entry) for entry in fields["multipliers"]),
         )
+        if (unknown := evidence._find_unknown(system)) is not None:
+            raise ValueError(unknown)
+        return evidence
 
 
 @dataclass(frozen=True, slots=True)

@@ -27,6 +27,8 @@ class NoCommonQuadratic(AbstractEvidence):
     """
 
     kind: ClassVar[str] = "no-common-quadratic"
+    # It is a statement about matrices: no motion, with contact or without, is spoken of.
+    covers_lost_contact: ClassVar[bool] = True
 
     factors: tuple[tuple[str, Matrix], ...]
 

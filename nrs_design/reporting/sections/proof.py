@@ -17,15 +17,17 @@ if TYPE_CHECKING:
     from nrs_design.pipeline import Result
     from nrs_design.search.certification import Certification
 
+_CONTINUOUS = "Sampling, delay and quantization of the controller: the proof is in continuous time."
+_SAMPLED = "Jitter of the samples, and what the processor rounds."
+_KEPT = "Loss of contact: no mode describes a compliant controller in free motion."
+_UNBOUNDED = "The size of velocities and torques: the states decay, but no limit on them is proved."
+_BOUNDED = "Sizes of velocities and torques other than those bounded above."
 _NOT_COVERED_BY_A_DESIGN: tuple[str, ...] = (
-    "Sampling, delay and quantization of the controller: the proof is in continuous time.",
     "Friction, backlash, and saturation of motor or driver.",
-    "Loss of contact: no mode describes a compliant controller in free motion.",
     "Tissue that does not follow the linear law of the spec, such as a creep of another kind or a "
     "stiffness that depends on depth.",
     "Parameter values outside the declared ranges, and motor constants other than those given.",
     "Coupling between the axes of the robot.",
-    "The size of velocities and torques: the states decay, but no limit on them is proved.",
     "Cost, margins, pole positions and tracking quality: design values in floating point.",
 )
 _ILLUSTRATIONS = (
@@ -58,7 +60,8 @@ def _proved(result: Result, evidence: AbstractEvidence) -> tuple[Block, ...]:
             "The gains in the proof are the single-precision numbers listed below, not their "
             "rounded display; where a range of a gain is declared, all values in it."
         )
-    common = _NOT_COVERED_BY_A_DESIGN if design else _not_covered(system, evidence)
+    proved += _bounds(result.certification)
+    common = _not_covered_by_design(result) if design else _not_covered(system, evidence)
     blocks: list[Block] = [
         Bullets("Proved", tuple(proved)),
         Bullets("Not proved", (*page.limits(), *_memory(system), *common)),
@@ -70,6 +73,28 @@ def _proved(result: Result, evidence: AbstractEvidence) -> tuple[Block, ...]:
             )
         )
     return (*blocks, Paragraph(_ILLUSTRATIONS))
+
+
+def _bounds(certification: Certification) -> list[str]:
+    """State the bounds on outputs, beside the claim that decides."""
+    return [
+        item.claim(certification.system)
+        for item in certification.statements
+        if item.shows is Shows.BOUND
+    ]
+
+
+def _not_covered_by_design(result: Result) -> tuple[str, ...]:
+    """Say what a proof about an interaction design leaves open."""
+    certification = result.certification
+    system, evidence = certification.system, certification.evidence
+    covers = evidence is not None and evidence.covers_lost_contact
+    return (
+        _CONTINUOUS if system.time is Time.CONTINUOUS else _SAMPLED,
+        *(() if covers else (_KEPT,)),
+        *_NOT_COVERED_BY_A_DESIGN,
+        _BOUNDED if _bounds(certification) else _UNBOUNDED,
+    )
 
 
 def _memory(system: SwitchedSystem) -> tuple[str, ...]:

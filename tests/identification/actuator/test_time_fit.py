@@ -9,8 +9,9 @@ from nrs_design.identification.actuator import identify_actuator
 from nrs_design.identification.actuator.motor import Motor
 from nrs_design.identification.actuator.scan import scan_motor
 from nrs_design.identification.actuator.time_fit import fit_in_time
+from nrs_design.identification.datasets import ActuatorRecord
 from tests.identification import motors
-from tests.identification.support import MOTOR
+from tests.identification.support import MOTOR, source
 
 KINDS = ("stair", "chirp", "PRBS", "multisine", "closed loop")
 TRUE = Motor(motors.GAIN, motors.TIME_CONSTANT, motors.FRICTION, motors.DELAY)
@@ -56,6 +57,23 @@ def test_a_motor_without_friction_or_dead_time():
     assert fit.friction is None
     assert fit.dead_time.low == 0.0
     assert fit.dead_time.high < 2e-4
+
+
+@pytest.mark.parametrize("is_angle", [True, False])
+def test_a_square_wave_without_friction(is_angle):
+    # A coarse scan sees friction here: with it, the search ended far from the least errors.
+    time = np.arange(5000) / motors.RATE
+    command = np.where(time % 2 < 1, 1000.0, -1000.0)
+    command[0] = 0.0
+    record = ActuatorRecord(source("square"), "", time, command, time, is_angle)
+    true = replace(TRUE, time_constant=0.05, friction=None, delay=0.01)
+    output = true.forced(record, *true.hold(record))
+    noise = 5e-4 * np.ptp(output) * np.random.default_rng(1).normal(size=len(output))
+    result = found(replace(record, output=output + noise))
+    assert result.chosen.friction is None
+    assert result.chosen.time_constant.value == pytest.approx(0.05, rel=3e-3)
+    assert result.chosen.dead_time.value == pytest.approx(0.01, abs=1e-4)
+    assert result.doubts == ()
 
 
 def test_other_units_of_the_command():

@@ -51,6 +51,21 @@ def test_dynamics_are_no_delay(options, name):
         assert found.peak[0] > 2 * motors.DELAY
 
 
+def test_a_square_wave_turned_into_an_angle():
+    # Delay and lag lie in a narrow valley: cut one by one, the steps of the search left it.
+    delay, tau, step = 5, 0.05, 1 / signals.RATE
+    sent = np.where(np.arange(signals.COUNT) % 500 < 250, 1.0, -1.0)
+    acts = np.concatenate([np.full(delay + 1, sent[0]), sent[: -delay - 1]])
+    velocity = np.zeros(signals.COUNT)
+    for i in range(1, signals.COUNT):
+        velocity[i] = acts[i] + (velocity[i - 1] - acts[i]) * np.exp(-step / tau)
+    angle = np.cumsum(acts * step) - tau * velocity
+    noise = 3e-4 * np.random.default_rng(1).normal(size=signals.COUNT)
+    found = identify_delay(signals.pair(sent, angle + noise))
+    assert found.samples.covers(delay)
+    assert found.samples.high - found.samples.low < 1
+
+
 def test_a_delay_that_varies_is_said():
     delay = np.where(np.arange(signals.COUNT) < 1000, 1.0, 4.0)
     found = identify_delay(signals.copy(2, delay=delay))

@@ -32,6 +32,21 @@ def test_elastic_data_do_not_determine_a_damper():
     assert "relative standard error" in said
 
 
+def test_millimetres_that_pass_for_metres():
+    motion = quick()
+    wide = Motion(motion.time, 1e3 * motion.deflection)
+    assert "spans 6.91 m: is that its unit?" in doubts(Elastic, Elastic(0.75), wide)
+    thin = Motion(motion.time, 1e-3 * motion.deflection)
+    assert "e-06 m: is that its unit?" in doubts(Elastic, Elastic(7.5e5), thin)
+
+
+def test_milliseconds_that_pass_for_seconds():
+    motion = quick()
+    late = Motion(1e3 * motion.time, motion.deflection)
+    said = doubts(Elastic, Elastic(750.0), late)
+    assert "the steps of time are 10 s: is that their unit?" in said
+
+
 def test_coarse_encoder():
     said = doubts(KelvinVoigt, KelvinVoigt(750.0, 30.0), quick(), 0.1, synthetic.COUNT)
     assert "is rounding of the deflection" in said

@@ -6,9 +6,18 @@ import pytest
 from nrs_design.identification.tissue import fit_record, output_error
 from nrs_design.identification.tissue.output_error import rmse
 from nrs_design.identification.tissue.trial import Preparation, prepare
-from nrs_design.models.contact import LAWS, Elastic, HuntCrossley, KelvinVoigt, Maxwell
+from nrs_design.models.contact import (
+    LAWS,
+    Elastic,
+    HuntCrossley,
+    KelvinBoltzmann,
+    KelvinVoigt,
+    Maxwell,
+    Motion,
+)
 from tests.identification import synthetic
 from tests.identification.support import quick, record, slow
+from tests.identification.unilateral import robot_record
 
 # Thesis 6.1, and tables 2.4 and 2.5 (a Maxwell law that relaxes within the record).
 KNOWN = [
@@ -71,3 +80,16 @@ def test_long_records_are_searched_thinned_and_fitted_whole(monkeypatch):
 def test_several_starts_agree():
     fit = fit_record(type(synthetic.CONCHA), record(synthetic.CONCHA, slow(), 0.01))
     assert fit.starts == fit.agreeing == 3
+
+
+def test_a_touch_that_only_grazes_the_tissue():
+    # All its samples are at the edge of contact, so that none of them is used.
+    time = np.arange(0, 16, 0.01)
+    depth = np.choose((time // 4).astype(int), [1.0, 0.8, 0.296, 0.9])
+    motion = Motion(time, 0.01 * depth * np.sin(np.pi * time / 4) ** 2)
+    trial = prepare(robot_record(KelvinVoigt(300.0, 3.0), motion, 0.002, 1))
+    assert len(trial.unrested) < len(trial.everything().unrested)
+    fit = fit_record(KelvinBoltzmann, trial)
+    assert fit.fitted.shape == trial.force.shape
+    error = (trial.force - fit.fitted)[trial.used]
+    assert float(np.sqrt(np.mean(error**2))) == pytest.approx(fit.rmse)

@@ -158,7 +158,7 @@ FACTS = {
     "allows_unequal_modes": RULED | {"unstable-mode"},
     "attains_rate": FREE | RULED,
     "bounds_at_once": FREE,
-    "covers_lost_contact": {"conewise-quadratic", "invariant-ellipsoid"},
+    "covers_lost_contact": {"conewise-quadratic", "invariant-ellipsoid", "no-common-quadratic"},
     "covers_mixtures": SETS | {"common-polynomial", "block-triangular"},
     "is_common_quadratic": {"common-quadratic", "conewise-quadratic"},
     # The blocks of the example have polynomials.

@@ -7,7 +7,7 @@ import pytest
 from nrs_design.certificates.certificate import CommonQuadraticStatus
 from nrs_design.proof.evidence import NoCommonQuadratic
 from nrs_design.proof.matrix import RationalMatrix
-from nrs_design.proof.system import Mode, Switching
+from nrs_design.proof.system import Contact, Mode, Switching
 from nrs_design.search.certification import Limits
 from nrs_design.search.certify import certify
 from tests.proof.systems import (
@@ -93,3 +93,11 @@ def test_denominators_without_a_common_one_are_refused():
     evidence = NoCommonQuadratic((("m0", ((1,),)), ("m1", ((1,),))))
     assert evidence.find_fault(system) == "the numbers of the modes are too large to check"
     assert replace(evidence, factors=evidence.factors[:1]).find_fault(system) is None
+
+
+def test_a_statement_about_matrices_takes_no_contact_for_granted():
+    system, evidence = genuine("no-common-quadratic")
+    free = RationalMatrix.from_rows([[-1, 0], [1, 0]])
+    losable = replace(system, contact=Contact((Mode("f", free),)))
+    assert evidence.find_fault(losable) is None
+    assert evidence.claim(losable) == evidence.claim(system)

@@ -1,0 +1,173 @@
+"""Bounds on the force for the robot of the thesis: known answers, and runs that attack them."""
+
+from dataclasses import replace
+from fractions import Fraction
+from math import pi
+
+import numpy as np
+import pytest
+
+from nrs_design.proof.evidence import InvariantEllipsoid
+from nrs_design.proof.system import Channel, Contact, Mode, Output, SwitchedSystem
+from nrs_design.search.allowance import Allowance
+from nrs_design.search.certify import Limits, certify, first_accepted
+from nrs_design.search.family import floats_in_silence
+from nrs_design.search.invariant_ellipsoid import search_ellipsoid
+from nrs_design.simulation.disturbed import DisturbedMotions, follow, worst_disturbed
+from tests.proof.systems import (
+    bouncing,
+    bouncing_in_steps,
+    dayawansa_martin,
+    family,
+    matrix,
+    pushed,
+)
+from tests.search.support import thesis_robot
+
+SOFT, BOTH, INSERTION = ("41.5", "44.2"), ("2.15", "1.04"), ("2.15",)
+slow = pytest.mark.slow
+ENCODER = f"{{encoder_step: {360 / 8192 / 5:.10f} deg}}"
+
+
+def bounded(system: SwitchedSystem) -> InvariantEllipsoid:
+    """Return the first bound that the exact check accepts."""
+    (channel,), (output,) = system.channels, system.outputs
+    with floats_in_silence():
+        search = search_ellipsoid(system, channel, output, Allowance())
+        evidence, outcome = first_accepted(search, system)
+    assert isinstance(evidence, InvariantEllipsoid), outcome
+    return evidence
+
+
+def in_continuous_time(k: tuple[str, ...], Bt: tuple[str, ...]) -> SwitchedSystem:
+    """Return the loop in physical coordinates e, omega, vm, delta; Mt = 0.01, contact losable."""
+    Km, tau, Kd, z = map(Fraction, ("4.8417e-4", "0.0351", "2060", "56.9706"))
+    p, g = 1 / tau, Km / tau * Kd
+
+    def motion(k: Fraction, b: Fraction) -> list[list[Fraction | int]]:
+        inner = [100 * -b, 100 * k]
+        return [[0, -1, -1, 0], [g * z, -p - g, -g, 0], [0, 0, *inner], [0, 1, 0, 0]]
+
+    stiffnesses, dampings = map(Fraction, k), tuple(map(Fraction, Bt))
+    system = family(*(motion(stiffness, b) for stiffness in stiffnesses for b in dampings))
+    free = tuple(Mode(f"f{i}", matrix(motion(Fraction(0), b))) for i, b in enumerate(dampings))
+    columns = (matrix([[1], [g], [0], [0]]),) * (len(system.modes) + len(free))
+    speed = Fraction(8 * pi / 180)
+    rows = tuple(matrix([[0, 0, 0, stiffness]]) for stiffness in k)
+    return replace(
+        system,
+        contact=Contact(free),
+        channels=(Channel("velocity command", "rad/s", speed, columns),),
+        outputs=(Output("force", "N*m", rows),),
+    )
+
+
+@pytest.mark.parametrize(("k", "Bt", "level"), [(("43",), INSERTION, 0.449), (SOFT, BOTH, 1.13)])
+def test_bounds_in_continuous_time(k, Bt, level):
+    """Found by an independent program; the bound is the least of its kind, to two percent."""
+    evidence = bounded(in_continuous_time(k, Bt))
+    assert 0.95 * level < float(evidence.level) < 1.02 * level
+
+
+@pytest.mark.parametrize(
+    ("Bt", "disturbances", "level"),
+    [
+        (INSERTION, "{command: 8 deg/s}", 0.565),
+        pytest.param(BOTH, ENCODER, 0.063, marks=slow),
+        pytest.param(BOTH, "{friction: 55.3 rpm}", 0.319, marks=slow),
+        pytest.param(BOTH, "{command: 8 deg/s}", 3.17, marks=slow),
+    ],
+)
+def test_bounds_of_the_sampled_loop(Bt, disturbances, level):
+    system = thesis_robot(
+        SOFT,
+        Bt,
+        "0.01",
+        sampling="{period: 2 ms, delay: 1}",
+        contact="kept",
+        disturbances=disturbances,
+    )
+    assert 0.95 * level < float(bounded(system).level) < 1.02 * level
+
+
+@pytest.mark.parametrize(
+    "system",
+    [bouncing(), bouncing(1), replace(bouncing(), contact=None), bouncing_in_steps()],
+    ids=["bouncing", "lagging", "kept", "in steps"],
+)
+def test_a_bound_is_a_statement_beside_the_verdict(system):
+    found = certify(pushed(system), limits=Limits(optimize_rate=False))
+    assert str(found.verdict) == "proved"
+    kinds = [item.kind for item in found.statements]
+    assert kinds[1:] == ["invariant-ellipsoid"]
+    assert found.evidence is found.statements[0]
+    assert found.attempts[-1].step == "bound on force under push"
+
+
+def test_equal_modes_may_be_disturbed_unequally():
+    """Two modes with one matrix are merged for stability; the bound sees both columns."""
+    system = family([[-1]], [[-1]])
+    columns = (matrix([[1]]), matrix([[3]]))
+    outputs = (Output("z", "", (matrix([[1]]),)),)
+    system = replace(system, channels=(Channel("d", "", Fraction(1), columns),), outputs=outputs)
+    found = certify(system, limits=Limits(optimize_rate=False))
+    assert float(found.statements[-1].level) > 3
+
+
+def test_nothing_is_found_where_no_quadratic_function_exists():
+    """Stable, but by a polynomial only."""
+    system = pushed(dayawansa_martin(6))
+    with floats_in_silence():
+        search = search_ellipsoid(system, system.channels[0], system.outputs[0], Allowance())
+        evidence, why = first_accepted(search, system)
+    assert evidence is None
+    assert why
+
+
+RUNS, LENGTH = 10_000, 400
+
+
+@slow
+@pytest.mark.parametrize(
+    ("contact", "Bt", "near"), [("kept", INSERTION, 0.75), ("losable", INSERTION, 0.55)]
+)
+def test_ten_thousand_runs_do_not_leave_the_bound(contact, Bt, near):
+    """Random modes and signs, and the adversary's best run with a share of its choices changed."""
+    system = thesis_robot(
+        SOFT,
+        Bt,
+        "0.01",
+        sampling="{period: 2 ms, delay: 1}",
+        contact=contact,
+        disturbances="{command: 8 deg/s}",
+    )
+    evidence = bounded(system)
+    motions = DisturbedMotions.of(system, system.channels[0], system.outputs[0], 1.0)
+    rng = np.random.default_rng(13)
+    count = len(motions.maps)
+    bad = worst_disturbed(motions, 1.0, LENGTH)
+    held = rng.integers(1, 60, (RUNS, 1))
+    blocks = np.arange(LENGTH) // held
+    modes = np.take_along_axis(rng.integers(0, count, (RUNS, LENGTH)), blocks, axis=1)
+    signs = np.take_along_axis(rng.choice([-1.0, 1.0], (RUNS, LENGTH)), blocks, axis=1)
+    half = RUNS // 2
+    kept = rng.random((half, LENGTH)) < rng.random((half, 1))
+    modes[:half] = np.where(kept, bad.mode, modes[:half])
+    # How the adversary pushed follows from where the state went.
+    pushes = _signs(motions, bad.state, bad.mode)
+    signs[:half] = np.where(kept, pushes, signs[:half])
+    signs[0], modes[0] = pushes, bad.mode
+    largest = 0.0
+    for part in range(0, RUNS, 1000):
+        states, _ = follow(motions, modes[part : part + 1000], signs[part : part + 1000])
+        largest = max(largest, float(np.abs(motions.outputs(states)).max()))
+    level = float(evidence.level)
+    assert near * level < largest < level
+
+
+def _signs(motions: DisturbedMotions, states: np.ndarray, modes: np.ndarray) -> np.ndarray:
+    found = []
+    for x, after, mode in zip(states, states[1:], modes, strict=False):
+        moved, push = motions.maps[mode, :, :-1] @ x, motions.maps[mode, :, -1]
+        found.append(np.sign((after - moved) @ push))
+    return np.array(found)

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from tests.identification import runs, signals
-from tests.support import ROOT, SOFT_TISSUE, run
+from tests.support import ROBOT, ROOT, SOFT_TISSUE, run
 
 LIMIT = ("--command-limit", "3000")
 
@@ -105,6 +105,21 @@ def test_delay(tmp_path):
     text = run(*arguments, cwd=tmp_path).stdout
     assert "used is most like raw" in text
     assert "samples of 0.002 s [95 %]" in text
+
+
+def test_delay_into_a_spec(tmp_path):
+    spec = tmp_path / "mine.nrs.yaml"
+    shutil.copy(ROBOT / "soft-tissue-sampled.nrs.yaml", spec)
+    record = signals.copy(1)
+    rows = np.column_stack([record.time, record.sent, record.seen])
+    np.savetxt(tmp_path / "loop.csv", rows, "%.6f", ",", header="time_s,raw,used", comments="")
+    arguments = ("identify", "delay", "loop.csv", "--write", spec)
+    unnamed = run(*arguments, cwd=tmp_path)
+    assert unnamed.returncode == 2
+    assert "as the law used it" in " ".join(unnamed.stderr.replace("│", " ").split())
+    done = run(*arguments, "--command", "raw", "--measured", "used", cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    assert "delay: [1, 4]" in spec.read_text()
 
 
 @pytest.mark.parametrize(

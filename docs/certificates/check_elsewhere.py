@@ -28,8 +28,7 @@ def transposed(A):
 
 
 def times(A, B):
-    columns = transposed(B)
-    return [[sum(a * b for a, b in zip(r, c, strict=True)) for c in columns] for r in A]
+    return [[sum(a * b for a, b in zip(r, c, strict=True)) for c in transposed(B)] for r in A]
 
 
 def plus(A, B, weight=1):
@@ -111,6 +110,7 @@ for mode in certificate["modes"]:
         sys.exit("two modes have one name, or one is not square")
     modes[mode["name"]] = [[F(entry, q) for entry in row] for row in rows], q
 free, discrete = certificate["switching"] == "arbitrary", certificate["time"] == "discrete"
+free = free and not certificate.get("contact", {}).get("required")  # kept contact is less
 results, verdict = [], "inconclusive"
 for statement in certificate["statements"]:
     results.append(holds(statement, modes, free, discrete))

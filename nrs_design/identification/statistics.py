@@ -160,6 +160,22 @@ def ljung_box(residuals: Array, lags: int = _LAGS) -> float:
     return float(chdtrc(lags, statistic))
 
 
+def independent(residuals: Array) -> float:
+    """Return how many independent errors tell as much about a mean as these.
+
+    Neighbours that are alike, as in an autoregression of first order, count less.
+
+    Parameters
+    ----------
+    residuals : ndarray, shape (n,)
+        In their order in time.
+    """
+    power = float(residuals @ residuals)
+    alike = float(residuals[1:] @ residuals[:-1]) / power if power else 0.0
+    alike = max(alike, 0.0)
+    return len(residuals) * (1 - alike) / (1 + alike)
+
+
 def fisher_tail(above: int, below: int, ratio: float) -> float:
     """Return the p-value of an F-test.
 
@@ -173,6 +189,11 @@ def fisher_tail(above: int, below: int, ratio: float) -> float:
     from scipy.special import fdtrc
 
     return float(fdtrc(above, below, ratio))
+
+
+def joint_level(count: int) -> float:
+    """Return the level of each of so many intervals that hold together with 95 %."""
+    return 1 - (1 - CONFIDENCE) / count
 
 
 def student_quantile(degrees: int, confidence: float = CONFIDENCE) -> float:

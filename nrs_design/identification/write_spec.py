@@ -12,12 +12,14 @@ from typing import Any
 from nrs_design.errors import DataError, SpecError
 from nrs_design.identification.actuator import ActuatorIdentification
 from nrs_design.identification.datasets import Source
+from nrs_design.identification.delay import DelayIdentification
 from nrs_design.identification.statistics import Estimate
 from nrs_design.identification.tissue import TissueIdentification
 from nrs_design.models.contact import LINEAR_LAWS, AbstractLinearLaw
 from nrs_design.spec import InteractionDesignSpec, LoadedSpec, parse_spec
 from nrs_design.spec.fields import MAX_TITLE
 from nrs_design.spec.provenance import MAX_DOUBTS
+from nrs_design.spec.sampling import LONGEST_DELAY
 
 _DIGITS = 6
 # A longer text is a sentence, and no quantity.
@@ -118,6 +120,9 @@ def _one_line(text: str) -> str:
 def merge_actuator(loaded: LoadedSpec, found: ActuatorIdentification) -> str:
     """Return the text of a spec with the identified actuator and its intervals.
 
+    Where the proof covers ranges of the actuator, which is so in the sampled loop, these are
+    written; else the intervals stand beside the nominal values, for the record.
+
     Raises
     ------
     SpecError
@@ -125,7 +130,7 @@ def merge_actuator(loaded: LoadedSpec, found: ActuatorIdentification) -> str:
     DataError
         If an interval is unlimited, or a spec has no place for such a motor or command.
     """
-    _interaction(loaded)
+    spec = _interaction(loaded)
     if found.unit != "rpm" or found.chosen.order != 1:
         what = f"commands in {found.unit}" if found.unit != "rpm" else "a motor of second order"
         raise DataError(
@@ -134,16 +139,62 @@ def merge_actuator(loaded: LoadedSpec, found: ActuatorIdentification) -> str:
         )
     document = _Document(loaded)
     node = document.root["actuator"]
+    covered = spec.sampling is not None and spec.motion_loop.transfer_function is None
     intervals = {}
-    for name, estimate, unit in (
-        ("gain", found.chosen.gain, "rad/s/rpm"),
-        ("time_constant", found.chosen.time_constant, "s"),
+    for name, estimate, unit in zip(
+        ("gain", "time_constant"), found.chosen.ranges, ("rad/s/rpm", "s"), strict=True
     ):
         written = _ranged(estimate, unit, name)
-        document.put(node, name, written["nominal"])
-        intervals[name] = written["range"]
-    document.put(node, "intervals", intervals)
+        if covered:
+            _put_range(document, node, name, written)
+        else:
+            document.put(node, name, written["nominal"])
+            intervals[name] = written["range"]
+    if covered:
+        document.drop(node, "intervals")
+    else:
+        document.put(node, "intervals", intervals)
     document.put(node, "provenance", [_provenance(source) for source in found.sources])
+    _put_doubts(document, node, found.caveats)
+    return document.text()
+
+
+def merge_delay(loaded: LoadedSpec, found: DelayIdentification) -> str:
+    """Return the text of a spec with the age of its force sample.
+
+    Raises
+    ------
+    SpecError
+        If the spec is no interaction design, or not about a sampled loop.
+    DataError
+        If the record shows dynamics and no mere delay, or a delay that no spec takes.
+    """
+    spec = _interaction(loaded)
+    if spec.sampling is None:
+        raise SpecError(
+            "the spec has no sampling, and a delay counts in its periods",
+            path=loaded.path,
+            remedy="add `sampling: {period: 2 ms, delay: 0}`, with the period of your processor",
+        )
+    if found.is_lag:
+        sent, seen = found.record.names
+        raise DataError(
+            f"{seen} follows {sent} by {found.chosen.follower.name}: that is more than the age of "
+            "a sample",
+            remedy="name the force as measured by --command and the force that the law used by "
+            "--measured; dynamics between them belong into the model",
+        )
+    low, high = found.in_periods(spec.sampling.period.exact)
+    if high > LONGEST_DELAY:
+        raise DataError(
+            f"the force is up to {high} periods old, a spec takes {LONGEST_DELAY} at most",
+            remedy="record longer or livelier forces, or sample with a longer period",
+        )
+    document = _Document(loaded)
+    node = document.root["sampling"]
+    document.put(node, "delay", low if low == high else [low, high])
+    document.put(node, "provenance", [_provenance(found.record.source)])
+    _put_doubts(document, node, found.caveats)
     return document.text()
 
 
@@ -283,7 +334,7 @@ def _flow(value: object) -> object:
         return mapping
     if isinstance(value, list):
         sequence = CommentedSeq(_flow(item) for item in value)
-        if not any(isinstance(item, dict) or len(item) > _SENTENCE for item in value):
+        if not any(isinstance(item, dict) or len(str(item)) > _SENTENCE for item in value):
             sequence.fa.set_flow_style()
         return sequence
     return value

@@ -33,6 +33,8 @@ LARGEST_MULTIPLIER = 64.0
 # The start lies below the margin of its Q by at least this.
 START_FLOOR = 1e-3
 FEWEST_STEPS = 4
+# Rounding takes about as much as a smaller margin gives.
+SMALLEST_MARGIN = 1e-10
 
 
 @dataclass(frozen=True)
@@ -207,7 +209,7 @@ def find_conewise_quadratic(
     start = np.concatenate([pack(np.eye(n) / 2), np.ones(len(separations)), [0.0]])
     here = cones.at(start)[:counted]
     start[-1] = np.linalg.eigvalsh(here).min() - max(0.1 * np.abs(here).max(), START_FLOOR)
-    y = maximize_last(cones, start, lambda: allowance.goes_on(step.seconds))
+    y = maximize_last(cones, start, lambda: allowance.goes_on(step.seconds), SMALLEST_MARGIN)
     if not y[-1] > 0:
         return None
     Q = np.asarray(np.tensordot(y[: len(basis)], basis, axes=1))

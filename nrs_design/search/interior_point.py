@@ -79,7 +79,12 @@ def step_cost(variables: int, cones: int, order: int) -> Cost:
     return Cost(PER_STEP + PER_PRODUCT * products, PER_ENTRY * entries)
 
 
-def maximize_last(cones: Cones, start: Array, goes_on: Callable[[], bool] = lambda: True) -> Array:
+def maximize_last(
+    cones: Cones,
+    start: Array,
+    goes_on: Callable[[], bool] = lambda: True,
+    floor: float = GAP_FLOOR,
+) -> Array:
     """Maximize the last variable, until it is positive and within a factor of the largest one.
 
     Parameters
@@ -90,6 +95,8 @@ def maximize_last(cones: Cones, start: Array, goes_on: Callable[[], bool] = lamb
         Strictly feasible; the matrices that the last variable enters grow as it falls.
     goes_on : callable
         Asked before every step; No ends the search with the last iterate.
+    floor : float
+        The optimum counts as found when X and Z are this close to complementary.
 
     Returns
     -------
@@ -112,7 +119,7 @@ def maximize_last(cones: Cones, start: Array, goes_on: Callable[[], bool] = lamb
             break
         y, X, Z = y + dy, trial, Z + dZ
         gap = float((X * Z).sum())
-        if gap <= max(GAP_FLOOR, (GOOD_FACTOR - 1) * y[-1]):
+        if gap <= max(floor, (GOOD_FACTOR - 1) * y[-1]):
             break
     return y
 

@@ -128,6 +128,7 @@ def _interaction(spec: InteractionDesignSpec) -> Iterator[Line]:
         delay = str(least) if least == most else f"[{least}, {most}]"
         yield Line("sampling.delay", delay, "", "samples")
         yield Line("sampling.admittance", spec.sampling.admittance, "", "")
+        yield from _provenance("sampling", spec.sampling)
     if spec.disturbances is not None:
         yield from describe_model(spec.disturbances, "disturbances")
     yield Line("contact", spec.contact or "losable where proved", "", "")

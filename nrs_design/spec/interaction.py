@@ -137,6 +137,8 @@ class InteractionDesignSpec(SpecModel):
         """What may have been identified from records, by the keys that lead to it."""
         parts: dict[tuple[str, ...], IdentifiedSpec] = {("actuator",): self.actuator}
         parts.update((("environments", name), item) for name, item in self.environments.items())
+        if self.sampling is not None:
+            parts["sampling",] = self.sampling
         return parts
 
     @property

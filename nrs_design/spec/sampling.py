@@ -11,6 +11,7 @@ from nrs_design.spec.faults import fault
 from nrs_design.spec.fields import read_exact
 from nrs_design.spec.model import SpecModel
 from nrs_design.spec.motion import ActuatorSpec
+from nrs_design.spec.provenance import IdentifiedSpec
 from nrs_design.spec.quantity_fields import Angle, AngularVelocity, Command, Duration, Torque
 
 # Every sample of delay is a state more.
@@ -41,7 +42,7 @@ Delay = Annotated[
 ]
 
 
-class SamplingSpec(SpecModel):
+class SamplingSpec(IdentifiedSpec):
     """The law as a processor runs it: once a period, with float32 coefficients.
 
     The derivative of the motion controller is a backward difference, the command is held between

@@ -96,20 +96,27 @@ class Box:
 
         That it is, follows from the formulas of the loop. It is computed again because a proof for
         the whole box rests on it: on all points of the grid of low end, middle and high end of
-        every axis, the matrix must be the mean of the corners around it. For entries of a degree
-        of at most two in each coordinate this decides it.
+        every axis, the matrix must be the mean of its two neighbors along one axis on which it is
+        in the middle; so it is the mean of the corners around it. For entries of a degree of at
+        most two in each coordinate this decides it.
         """
-        for around in product(*map(_neighbors, self.ranges.values())):
-            point = {
-                symbol: values[0] if len(values) == 1 else self.middle(symbol)
-                for symbol, values in zip(self.ranges, around, strict=True)
-            }
-            ends = [corners[key] for key in product(*around)]
-            if len(ends) == 1:
+        symbols, known = tuple(self.ranges), dict(corners)
+        around = product(*map(_neighbors, self.ranges.values()))
+        # Neighbors are in the middle on one axis less, so they come first.
+        for ends in sorted(around, key=lambda values: sum(len(value) - 1 for value in values)):
+            middles = [i for i, values in enumerate(ends) if len(values) > 1]
+            if not middles:
                 continue
-            found = rows_at(point)
-            entries = [(i, j) for i, row in enumerate(found) for j in range(len(row))]
-            if any(found[i][j] * len(ends) != sum(e[i][j] for e in ends) for i, j in entries):
+            pairs = zip(symbols, ends, strict=True)
+            at = [self.middle(s) if len(values) > 1 else values[0] for s, values in pairs]
+            axis = middles[0]
+            low, high = (known[*at[:axis], end, *at[axis + 1 :]] for end in ends[axis])
+            found = known[tuple(at)] = rows_at(dict(zip(symbols, at, strict=True)))
+            if any(
+                2 * entry != a + b
+                for row, below, above in zip(found, low, high, strict=True)
+                for entry, a, b in zip(row, below, above, strict=True)
+            ):
                 raise InternalError(f"the matrix of mode {name} is not affine in each parameter")
 
 

@@ -76,6 +76,13 @@ def test_what_is_altered_is_noticed(tmp_path, name):
         assert "altered" in done.stderr
 
 
+def test_a_function_for_kept_contact_is_not_enough_where_its_loss_must_be_covered(judge):
+    document = shipped(QUADRATIC)
+    for required, code in ((True, 3), (False, 0)):
+        contact = {"free": [], "pulls": [], "required": required}
+        assert judge({**document, "contact": contact}).returncode == code
+
+
 def first(document):
     return document["statements"][0]
 

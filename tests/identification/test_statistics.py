@@ -4,9 +4,11 @@ import math
 
 import numpy as np
 import pytest
+from scipy.signal import lfilter
 
 from nrs_design.identification.statistics import (
     Estimate,
+    independent,
     ljung_box,
     student_quantile,
     uncertainty,
@@ -80,6 +82,14 @@ def test_whiteness_is_uniform_for_white_noise():
 def test_whiteness_sees_a_drift():
     assert ljung_box(np.linspace(-1, 1, 100)) < 1e-6
     assert ljung_box(np.zeros(100)) == 1.0
+
+
+def test_errors_that_are_alike_count_less():
+    """Of n samples with correlation r from one to the next, n (1 - r)/(1 + r) tell about a mean."""
+    white = np.random.default_rng(5).normal(size=20000)
+    assert independent(white) == pytest.approx(20000, rel=0.03)
+    assert independent(lfilter([1.0], [1.0, -0.8], white)) == pytest.approx(20000 / 9, rel=0.05)
+    assert independent(np.zeros(10)) == 10
 
 
 def test_hidden_scatter_adds():

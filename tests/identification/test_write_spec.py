@@ -3,18 +3,22 @@
 from dataclasses import replace
 from fractions import Fraction
 
+import numpy as np
 import pytest
 
 from nrs_design.errors import DataError, SpecError
 from nrs_design.identification.actuator import identify_actuator
+from nrs_design.identification.delay import identify_delay
 from nrs_design.identification.tissue import identify_tissue
-from nrs_design.identification.write_spec import merge_actuator, merge_tissue
+from nrs_design.identification.write_spec import merge_actuator, merge_delay, merge_tissue
 from nrs_design.models.contact import Elastic, KelvinVoigt, Maxwell
 from nrs_design.spec import parse_spec, read_spec
 from nrs_design.spec.environment import KelvinBoltzmannSpec, MaxwellSpec
-from tests.identification import motors, synthetic
+from tests.identification import motors, signals, synthetic
 from tests.identification.support import MOTOR, quick, record, sinusoids, slow
 from tests.support import COMMUTING, FORCE_LIMIT, ROBOT, SOFT_TISSUE
+
+SAMPLED = ROBOT / "soft-tissue-sampled.nrs.yaml"
 
 
 @pytest.fixture(scope="module")
@@ -132,6 +136,85 @@ def test_actuator(motor):
     assert high.si >= motor.chosen.time_constant.high
     assert spec.controllers == loaded.spec.controllers
     assert len(spec.actuator.provenance) == 5
+
+
+def test_ranges_of_the_actuator_where_the_proof_covers_them(tmp_path, motor):
+    """Both ranges hold together with 95 %, so that each is wider than its own interval."""
+    text = merge_actuator(read_spec(SAMPLED), motor)
+    spec = parse_spec(text)
+    assert spec.actuator.intervals is None
+    for written, own in (
+        (spec.actuator.gain, motor.chosen.gain),
+        (spec.actuator.time_constant, motor.chosen.time_constant),
+    ):
+        low, high = (end.exact for end in written.range)
+        assert low < Fraction(own.low) < Fraction(own.high) < high
+    assert merge_actuator(merged(tmp_path, text), motor) == text
+
+
+def test_intervals_give_way_to_ranges(tmp_path, motor):
+    text = merge_actuator(read_spec(SOFT_TISSUE), motor)
+    assert "intervals" in text
+    sampled = merged(tmp_path, text + "\nsampling: {period: 2 ms, delay: 1}\n")
+    assert "intervals" not in merge_actuator(sampled, motor)
+
+
+@pytest.mark.parametrize("spec", [SOFT_TISSUE, SAMPLED])
+def test_a_dead_time_is_a_doubt_and_no_age_of_the_force(spec):
+    """It acts in the motion loop, which no proof here delays."""
+    found = identify_actuator([motors.record("PRBS", 1)], MOTOR)
+    loaded = read_spec(spec)
+    written = parse_spec(merge_actuator(loaded, found))
+    assert found.doubts == ()
+    (doubt,) = written.actuator.doubts
+    assert "dead time of 0.007" in doubt
+    assert written.sampling == loaded.spec.sampling
+
+
+def test_doubts_about_the_actuator_are_noted():
+    made = motors.record("multisine", 1, limit=1800.0)
+    found = identify_actuator([made], MOTOR)
+    spec = parse_spec(merge_actuator(read_spec(SOFT_TISSUE), found))
+    assert found.doubts
+    assert spec.actuator.doubts == found.caveats
+    assert any("saturation" in doubt for doubt in spec.actuator.doubts)
+
+
+def test_delay_in_periods_of_the_processor():
+    """2.3 samples of 2 ms are 4.6 periods of 1 ms: between 4 and 5."""
+    found = identify_delay(signals.copy(1))
+    loaded = read_spec(SAMPLED)
+    assert parse_spec(merge_delay(loaded, found)).sampling.delay == (2, 3)
+    faster = parse_spec(loaded.text.replace("period: 2 ms", "period: 1 ms"))
+    written = parse_spec(merge_delay(replace(loaded, spec=faster), found)).sampling
+    assert (written.delay, written.doubts) == ((4, 5), ())
+    assert [source.file for source in written.provenance] == ["pair.csv"]
+
+
+def test_a_varying_delay_is_noted_as_a_doubt():
+    late = np.where(np.arange(signals.COUNT) < 1000, 1.0, 4.0)
+    found = identify_delay(signals.copy(2, delay=late))
+    spec = parse_spec(merge_delay(read_spec(SAMPLED), found))
+    low, high = spec.sampling.delay
+    assert low <= 1 < 4 <= high
+    assert spec.sampling.doubts == found.caveats
+    assert any("the delay varies" in doubt for doubt in found.caveats)
+    assert spec.identified["sampling",] is spec.sampling
+
+
+@pytest.mark.parametrize(
+    ("spec", "pair", "error", "message"),
+    [
+        (SOFT_TISSUE, signals.copy(1), SpecError, "has no sampling"),
+        (COMMUTING, signals.copy(1), SpecError, "no place"),
+        (SAMPLED, signals.lag(1), DataError, "by a first-order lag"),
+        (SAMPLED, signals.copy(1, delay=30.0), DataError, "31 periods"),
+    ],
+)
+def test_what_is_no_age_of_the_force(spec, pair, error, message):
+    with pytest.raises(error, match=message) as caught:
+        merge_delay(read_spec(spec), identify_delay(pair))
+    assert caught.value.remedy
 
 
 def test_what_is_chosen_for_the_nose(tmp_path, silicone):

@@ -1,12 +1,12 @@
-from dataclasses import FrozenInstanceError
+from dataclasses import FrozenInstanceError, replace
 from fractions import Fraction
 
 import numpy as np
 import pytest
 
 from nrs_design.proof.matrix import RationalMatrix
-from nrs_design.proof.system import Reset, Stay, Switching, Time
-from tests.proof.systems import family
+from nrs_design.proof.system import Contact, Mode, Reset, Stay, Switching, Time
+from tests.proof.systems import bouncing_in_steps, family, matrix
 
 
 def test_order_is_the_number_of_states():
@@ -53,3 +53,18 @@ def test_rules_that_make_no_sense(rules, reason):
 def test_rules_that_make_sense():
     rules = Switching(Fraction(1), (("m0", "m1"),), fixed_ends=(("m0", "m1"),))
     assert family([[-1]], [[-1]], switching=rules).find_contradiction() is None
+
+
+def test_a_time_of_a_step_needs_steps():
+    system = bouncing_in_steps()
+    assert system.find_contradiction() is None
+    for odd in (replace(system, sample_time=Fraction(0)), replace(family([[1]]), sample_time=1)):
+        assert "the time of a step is not positive" in odd.find_contradiction()
+
+
+def test_contact_needs_a_state_beside_the_deflection():
+    contact = Contact((Mode("free", matrix([[0]])),))
+    system = replace(family([[-1]]), contact=contact)
+    assert "do not share a deflection" in system.find_contradiction()
+    unequal = replace(family([[-1]], [[-1, 0], [0, -1]]), contact=contact)
+    assert "do not share a deflection" in unequal.find_contradiction()

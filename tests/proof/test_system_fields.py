@@ -9,7 +9,7 @@ import pytest
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.system import FixedParameter, Mode, Reset, Stay, Switching
 from nrs_design.proof.system_fields import read_system, system_fields
-from tests.proof.systems import SYSTEMS, family, genuine
+from tests.proof.systems import SYSTEMS, bouncing, family, genuine
 
 RESET = Reset("m0", "m1", RationalMatrix(((1, -2), (0, 3)), 4))
 RULES = Switching(
@@ -82,3 +82,12 @@ def test_modes_that_would_take_hours():
     }
     with pytest.raises(ValueError, match="too large to check"):
         read_system("x", fields)
+
+
+@pytest.mark.parametrize("value", [1, None, "true"])
+def test_whether_contact_may_be_lost_is_a_truth_value(value):
+    fields = stored(bouncing())
+    assert fields["contact"]["required"] is False
+    fields["contact"]["required"] = value
+    with pytest.raises(TypeError, match="not true or false"):
+        read_system("bouncing", fields)

@@ -73,7 +73,7 @@ def actuator(
     if write is not None and merged is not None:
         write_spec(write, merged, quiet=quiet)
         # A proof will rest on these values: no option silences this.
-        for doubt in found.doubts:
+        for doubt in found.caveats:
             note(f"warning: {doubt}")
     if as_json:
         print_json("identify-actuator", _summary(found))

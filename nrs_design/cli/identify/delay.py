@@ -11,12 +11,14 @@ from nrs_design.cli.identify.common import (
     SYNTHETIC,
     ColumnMap,
     ReportTo,
+    WriteTo,
     check_report,
     interval,
     numbers,
     read_all,
     sources,
     write_report,
+    write_spec,
 )
 from nrs_design.cli.options import Date, Json, Quiet
 from nrs_design.cli.printing import note, print_json, progress, say
@@ -38,6 +40,7 @@ def delay(
         typer.Option(metavar="COLUMN", help="What follows; default: angle, velocity or force."),
     ] = None,
     columns: ColumnMap = None,
+    write: WriteTo = None,
     report: ReportTo = None,
     date: Date = None,
     as_json: Json = False,
@@ -47,27 +50,43 @@ def delay(
 
     Cross-correlation first, then a fit of the delay beside what it must not be mistaken for: a
     copy, a lag of first or second order, a lag with an integrator; the least BIC decides. The
-    interval is at 95 %; parts of the record show whether the delay varies.
+    interval is at 95 %; parts of the record show whether the delay varies. --write is for two
+    forces, the one that the sensor measured and the one that the law used: its age is the delay of
+    sampling.
 
     Example: nrs-design identify delay run.csv --command force_raw --measured force_used
     """
     from nrs_design.identification.datasets import read_signals
     from nrs_design.identification.delay import identify_delay
+    from nrs_design.identification.write_spec import merge_delay
+    from nrs_design.spec import read_spec
 
     if (command is None) != (measured is None):
         raise typer.BadParameter("name both columns or none", param_hint="--command, --measured")
+    if write is not None and command is None:
+        raise typer.BadParameter(
+            "name the force as measured by --command, and as the law used it by --measured",
+            param_hint="--write",
+        )
     check_report(report)
+    loaded = read_spec(write) if write is not None else None
     entries = list(columns or [])
     if command is not None:
         entries += [f"{INPUT}={command}", f"{OUTPUT}={measured}"]
     (record,) = read_all([log], read_signals, entries, quiet=quiet)
     with progress("fitting", quiet=quiet) as step:
         found = identify_delay(record)
+        merged = merge_delay(loaded, found) if loaded else None
         if report is not None:
             from nrs_design.reporting.delay import delay_report
 
             step("figures")
             write_report(report, delay_report(found), date)
+    if write is not None and merged is not None:
+        write_spec(write, merged, quiet=quiet)
+        # A proof will rest on this delay: no option silences this.
+        for doubt in found.caveats:
+            note(f"warning: {doubt}")
     if as_json:
         print_json("identify-delay", _summary(found))
     elif not quiet:

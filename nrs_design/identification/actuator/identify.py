@@ -75,6 +75,19 @@ class ActuatorIdentification:
     step: float | None = None
 
     @property
+    def caveats(self) -> tuple[str, ...]:
+        """What whoever uses the motor in a proof must know: doubts, and a dead time."""
+        late = self.chosen.dead_time
+        if late is None or late.low == 0.0:
+            return self.doubts
+        return (
+            *self.doubts,
+            f"the motor has a dead time of {late.low:.3g} s to {late.high:.3g} s, which the proof "
+            "leaves out: it acts on the motion loop, so that it is no part of sampling.delay (the "
+            "age of the force sample)",
+        )
+
+    @property
     def synthetic(self) -> bool:
         """Whether any of the data are synthetic."""
         return any(source.synthetic for source in self.sources)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 
 import numpy as np
@@ -10,7 +10,12 @@ from numpy.typing import NDArray
 
 from nrs_design.identification.actuator.motor import Motor
 from nrs_design.identification.actuator.time_fit import TimeFit
-from nrs_design.identification.statistics import Estimate, Uncertainty, student_quantile
+from nrs_design.identification.statistics import (
+    Estimate,
+    Uncertainty,
+    joint_level,
+    student_quantile,
+)
 from nrs_design.models.actuator import (
     Actuator,
     MotorConstants,
@@ -72,6 +77,14 @@ class ActuatorFit:
     def order(self) -> int:
         """1, or 2 for a motor with two time constants."""
         return 1 if self.motor is None or self.motor.damping is None else 2
+
+    @property
+    def ranges(self) -> tuple[Estimate, Estimate]:
+        """Gain and time constant between ends that hold with 95 % for both together."""
+        logarithms = np.log([self.gain.value, self.time_constant.value])
+        known = replace(self.uncertainty, covariance=self.uncertainty.covariance[:2, :2])
+        gain, time_constant = known.estimates(logarithms, joint_level(2))
+        return gain, time_constant
 
     def response(self, frequency: Array) -> Complex:
         """Return velocity over command without friction, in rad/s per unit, at rad/s."""

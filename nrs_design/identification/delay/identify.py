@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from fractions import Fraction
 from itertools import pairwise
 
 import numpy as np
@@ -62,9 +63,9 @@ class DelayIdentification:
     parts : tuple of (float, Estimate)
         The delay in samples in parts of the record, by their middle in s, at 95 % for all of them
         together.
-    whole_samples : tuple of int
-        From and to: they hold the interval and every part of the record. Where errors are not
-        noise, they hold those of a copy, too: then a lag may stand for a part of the delay.
+    held : tuple of float
+        From and to, in samples: they hold the interval and every part of the record. Where errors
+        are not noise, they hold those of a copy, too: then a lag may stand for a part of the delay.
     doubts : tuple of str
         What speaks against it.
     """
@@ -76,8 +77,37 @@ class DelayIdentification:
     samples: Estimate
     peak: tuple[float, float]
     parts: tuple[tuple[float, Estimate], ...]
-    whole_samples: tuple[int, int]
+    held: tuple[float, float]
     doubts: tuple[str, ...]
+
+    @property
+    def whole_samples(self) -> tuple[int, int]:
+        """What is held, in whole samples of the record."""
+        low, high = self.held
+        return math.floor(low), math.ceil(high)
+
+    @property
+    def is_lag(self) -> bool:
+        """Whether dynamics lie between the columns: they leave nothing but noise."""
+        return not self._is_copy and self.chosen.uncertainty.whiteness >= WHITE
+
+    @property
+    def _is_copy(self) -> bool:
+        return isinstance(self.chosen.follower, Copy)
+
+    @property
+    def caveats(self) -> tuple[str, ...]:
+        """What whoever takes it for the age of a sample must know: doubts, and dynamics."""
+        if self._is_copy:
+            return self.doubts
+        sent, seen = self.record.names
+        name = self.chosen.follower.name
+        return (*self.doubts, f"{name} fits better between {sent} and {seen} than a mere delay")
+
+    def in_periods(self, period: Fraction) -> tuple[int, int]:
+        """Return what is held, in whole periods of another length in s, rounded outward."""
+        low, high = (Fraction(end) * Fraction(self.record.step) / period for end in self.held)
+        return math.floor(low), math.ceil(high)
 
 
 def identify_delay(record: SignalRecord) -> DelayIdentification:
@@ -109,10 +139,9 @@ def identify_delay(record: SignalRecord) -> DelayIdentification:
     if chosen.uncertainty.whiteness < WHITE:
         copy = fits[0]
         held += [part for _, part in _parts(record, copy, copy.delay / step)]
-    whole = math.floor(min(e.low for e in held)), math.ceil(max(e.high for e in held))
+    ends = max(min(e.low for e in held), 0.0), max(*(e.high for e in held), 0.0)
     return DelayIdentification(
-        record, fits, chosen, samples.scaled(step), samples, peak, parts,
-        (max(whole[0], 0), max(whole[1], 0)),
+        record, fits, chosen, samples.scaled(step), samples, peak, parts, ends,
         tuple(_doubts(record, chosen, value, half, parts)),
     )  # fmt: skip
 

@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from nrs_design.identification.datasets import TissueRecord
+from nrs_design.identification.statistics import independent
 from nrs_design.identification.tissue.cycles import find_cycles
 
 Array = NDArray[np.float64]
@@ -29,7 +30,8 @@ _LEAST_AIR = 0.01
 _FEWEST = 10
 # Stiffness of air over that of the contact: what is stiffer is tissue.
 _FLAT = 0.3
-# A corner must lower n log(SSE) by this against a smooth curve without one, and explain so much.
+# A corner must lower n log(SSE) by this against a smooth curve without one, with n independent
+# samples, and explain so much.
 _BETTER = 20.0
 _EXPLAINED = 0.1
 # A smoothed force beyond so many of its standard deviations from the air is one of contact.
@@ -143,7 +145,8 @@ def _corner(u: Array, velocity: Array, force: Array) -> tuple[float, float] | No
     if min(air.sum(), (~air).sum()) < _FEWEST or best < _LEAST_AIR:
         return None
     smooth = float(_errors(v[None], velocity, centered)[0])
-    if smooth < error * np.exp(_BETTER / len(u)):
+    left = _left(np.maximum(v - best, 0.0), velocity, centered)
+    if smooth < error * np.exp(_BETTER / independent(left)):
         return None
     if error > (1 - _EXPLAINED) * float(centered @ centered):
         return None
@@ -162,13 +165,18 @@ def _errors(w: Array, velocity: Array, force: Array) -> Array:
     velocity, force : ndarray, shape (n,)
         In any unit.
     """
-    X = np.stack([np.ones_like(w), w, w**2, velocity * (w > 0)], axis=2)
-    size = np.maximum(np.sqrt(np.einsum("mni,mni->mi", X, X)), np.finfo(float).tiny)
-    X /= size[:, None, :]
-    gram = np.einsum("mni,mnj->mij", X, X) + _RIDGE * np.eye(4)
-    found = np.linalg.solve(gram, np.einsum("mni,n->mi", X, force)[:, :, None])
-    rest = force - np.einsum("mni,mi->mn", X, found[:, :, 0])
-    return np.asarray(np.einsum("mn,mn->m", rest, rest))
+    rest = _left(w, velocity, force)
+    return np.asarray(np.einsum("...n,...n->...", rest, rest))
+
+
+def _left(w: Array, velocity: Array, force: Array) -> Array:
+    """Return what such curves leave of the force, of the shape of w."""
+    X = np.stack([np.ones_like(w), w, w**2, velocity * (w > 0)], axis=-1)
+    size = np.maximum(np.sqrt(np.einsum("...ni,...ni->...i", X, X)), np.finfo(float).tiny)
+    X /= size[..., None, :]
+    gram = np.einsum("...ni,...nj->...ij", X, X) + _RIDGE * np.eye(4)
+    found = np.linalg.solve(gram, np.einsum("...ni,n->...i", X, force)[..., None])
+    return np.asarray(force - np.einsum("...ni,...i->...n", X, found[..., 0]))
 
 
 def _is_flat(u: Array, force: Array, corner: float) -> bool:

@@ -10,12 +10,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from nrs_design.identification.datasets import TissueRecord
-from nrs_design.identification.statistics import CONFIDENCE, Estimate, student_quantile
+from nrs_design.identification.statistics import (
+    CONFIDENCE,
+    Estimate,
+    joint_level,
+    student_quantile,
+)
 from nrs_design.identification.tissue.output_error import RecordFit, fit_record, rmse
 from nrs_design.identification.tissue.ranges import (
     box_remark,
     hull,
-    joint_level,
     spread_ranges,
 )
 from nrs_design.identification.tissue.trial import Trial, prepare

@@ -18,8 +18,8 @@ from numpy.typing import NDArray
 
 from nrs_design.errors import DataError
 from nrs_design.identification.statistics import (
-    CONFIDENCE,
     Estimate,
+    joint_level,
     student_quantile,
     tolerance_factor,
 )
@@ -30,11 +30,6 @@ Array = NDArray[np.float64]
 _FEWEST = 2
 # Weaker correlations leave an ellipse that all but fills its box.
 _CORRELATED = 0.3
-
-
-def joint_level(count: int) -> float:
-    """Return the level of each of so many intervals that hold together with 95 %."""
-    return 1 - (1 - CONFIDENCE) / count
 
 
 def spread_ranges(

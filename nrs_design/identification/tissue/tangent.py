@@ -9,10 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from nrs_design.errors import DataError
-from nrs_design.identification.statistics import Estimate, Uncertainty
+from nrs_design.identification.statistics import Estimate, Uncertainty, joint_level
 from nrs_design.identification.tissue.output_error import RecordFit
 from nrs_design.identification.tissue.pool import ModelFit
-from nrs_design.identification.tissue.ranges import hull, joint_level, spread_ranges
+from nrs_design.identification.tissue.ranges import hull, spread_ranges
 from nrs_design.models.contact import AbstractNonlinearLaw, KelvinVoigt
 
 Array = NDArray[np.float64]

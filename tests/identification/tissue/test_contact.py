@@ -1,7 +1,10 @@
 """Air, touches and loss of contact."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
+from scipy.signal import lfilter
 
 from nrs_design.identification.tissue.contact import find_contact
 from nrs_design.models.contact import Elastic, HuntCrossley, KelvinVoigt, Maxwell
@@ -28,6 +31,18 @@ def test_contact_is_found_on_either_side(law, side):
 def test_without_air_nothing_is_found(law):
     motion, noise = (quick, 0.05) if law in STIFF else (slow, 0.015)
     assert not any(find_contact(record(law, motion(seed), noise, seed)) for seed in range(10))
+
+
+@pytest.mark.parametrize(
+    ("law", "noise"), [(synthetic.NOSE, 0.0165), (Maxwell(1.129, 20.0), 0.0135)]
+)
+def test_noise_with_a_memory_is_no_air(law, noise):
+    def colored(seed):
+        data = record(law, slow(seed))
+        error = np.random.default_rng(seed).standard_normal(len(data.force))
+        return replace(data, force=data.force + noise * lfilter([0.436], [1, -0.9], error))
+
+    assert sum(find_contact(colored(seed)) is not None for seed in range(40)) <= 1
 
 
 def test_a_tissue_that_relaxes_is_lost_early_and_met_late():

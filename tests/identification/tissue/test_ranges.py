@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from nrs_design.errors import DataError
-from nrs_design.identification.statistics import Estimate, tolerance_factor
+from nrs_design.identification.statistics import Estimate, joint_level, tolerance_factor
 from nrs_design.identification.tissue import identify_tissue
-from nrs_design.identification.tissue.ranges import box_remark, joint_level, spread_ranges
+from nrs_design.identification.tissue.ranges import box_remark, spread_ranges
 from nrs_design.models.contact import Elastic
 from tests.identification.support import quick, record
 

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from nrs_design.proof.evidence import CommonQuadratic, ConewiseQuadratic, Shows
 from nrs_design.proof.second_opinion import agrees
 from nrs_design.proof.system import Contact, Mode, Reset, SwitchedSystem, Switching, Time
-from tests.proof.systems import Entry, bouncing, bouncing_in_steps, family, matrix
+from tests.proof.systems import Entry, bouncing, bouncing_in_steps, family, genuine, matrix
 from tests.proof.truth import holds
 from tests.support import is_definite_by_ldl
 
@@ -62,6 +62,23 @@ def test_a_function_for_contact_alone_says_that_contact_is_kept():
     assert common.claim(bouncing()).endswith("the environment pulling as it pushes.")
     kept = replace(bouncing(), contact=None)
     assert "contact is kept" not in common.claim(kept)
+
+
+def test_kept_contact_is_not_enough_where_its_loss_must_be_covered():
+    common = CommonQuadratic(BOUNCE.Q, 0, BOUNCE.rate)
+    system = bouncing()
+    required = replace(system, contact=replace(system.contact, required=True))
+    assert "does not cover the loss of contact" in common.find_fault(required)
+    assert BOUNCE.find_fault(required) is None
+
+
+def test_that_no_common_function_exists_is_said_of_matrices():
+    """Whatever happens to contact."""
+    free = Contact((Mode("free", matrix([[-1, 0], [0, 0]])),), required=True)
+    system, evidence = genuine("no-common-quadratic")
+    lost = replace(system, contact=free)
+    assert evidence.find_fault(lost) is None
+    assert "contact" not in evidence.claim(lost)
 
 
 # Discrete families that grow, with functions that keep all conditions but one. Found by a random

@@ -61,6 +61,24 @@ def check_advance(table: Table, time: Array) -> None:
         )
 
 
+def check_turns(table: Table, angle: Array) -> None:
+    """Check that an angle does not jump by a whole turn, as one that begins anew at 360 deg does.
+
+    Raises
+    ------
+    DataError
+        With the row of the first jump.
+    """
+    steps = np.abs(np.diff(angle))
+    jumps = np.flatnonzero(np.abs(steps - 2 * np.pi) < np.pi / 4)
+    if len(jumps) and float(np.median(steps)) < np.pi / 4:
+        table.fail(
+            "the angle jumps by a whole turn: it begins anew after each",
+            int(jumps[0]) + 1,
+            "count the turns, so that the angle goes on (np.unwrap)",
+        )
+
+
 def check_saturation(table: Table, name: str, values: Array, moving: Array) -> None:
     """Check that a sensor does not rest at its extreme reading while its input moves on.
 

@@ -222,11 +222,12 @@ def _missing(
     nearest = min(layouts, key=lambda layout: len(set(layout) - present))
     missing = [standard_name(quantity) for quantity in nearest if quantity not in present]
     expected = " or ".join(", ".join(map(standard_name, layout)) for layout in layouts)
+    example = missing[0] if missing else "force_N"
     return DataError(
         f"the columns {', '.join(missing) or 'of one group'} are missing: it has {_listed(header)}",
         path=path,
         line=line,
-        remedy=f"expected {expected}; name foreign columns with --map force_N=NAME",
+        remedy=f"expected {expected}; name foreign columns with --map {example}=NAME",
     )
 
 

@@ -164,7 +164,7 @@ def _separator_of(text: str) -> str | None:
     """Return what separates numbers in a line; empty if they are none."""
     for separator in (";", "\t", ",", None):
         cells = _cells(text, separator)
-        comma = separator != ","
+        comma = separator != "," or '"' in text
         if len(cells) > 1 and all(
             is_number(cell) or (comma and _DECIMAL_COMMA.match(cell)) for cell in cells if cell
         ):

@@ -12,6 +12,7 @@ from nrs_design.errors import DataError
 from nrs_design.identification.datasets.checks import (
     check_saturation,
     check_time,
+    check_turns,
     check_varies,
 )
 from nrs_design.identification.datasets.table import Array, Progress, Source, Table, read_table
@@ -224,6 +225,8 @@ def read_signals(
     time, sent, seen = (columns[quantity] for quantity in table.layout)
     check_time(table, time)
     names = found[table.layout[1]].name, found[table.layout[2]].name
+    if table.layout[2] == "angle":
+        check_turns(table, seen)
     for name, values in zip(names, (sent, seen), strict=True):
         check_varies(table, name, values)
     return SignalRecord(table.source, time - time[0], sent, seen, names)
@@ -246,6 +249,8 @@ def _actuator(table: Table, group: str) -> ActuatorRecord:
     check_varies(table, table.layout[2], output)
     unit = table.columns[group]["command"].unit
     is_angle = table.layout == ANGLE
+    if is_angle:
+        check_turns(table, output)
     return ActuatorRecord(table.source, group, time - time[0], command, output, is_angle, unit)
 
 

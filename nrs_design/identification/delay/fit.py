@@ -92,7 +92,7 @@ def fit_delay(
     error = _errors(record, follower, x, rows)
     for _ in range(_STEPS):
         J = _sensitivities(record, follower, x, rows)
-        step = shortened(np.linalg.lstsq(J, error, rcond=None)[0], limit)
+        step = shortened(np.linalg.lstsq(J, error, rcond=None)[0].astype(float), limit)
         for halving in range(_HALVINGS):
             tried = x + step / 2**halving
             found = _errors(record, follower, tried, rows)

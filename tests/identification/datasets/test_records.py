@@ -7,6 +7,7 @@ from nrs_design.errors import DataError
 from nrs_design.identification.datasets import (
     FrequencyResponse,
     read_actuator,
+    read_signals,
     read_tissue,
 )
 
@@ -144,3 +145,13 @@ def test_bad_response(tmp_path, frequency, message, line):
     with pytest.raises(DataError, match=message) as caught:
         read_actuator(path)
     assert caught.value.line == line
+
+
+def test_an_angle_that_begins_anew_after_each_turn(tmp_path):
+    command, angle = 100 + 50 * np.sin(6 * TIME), 400 * TIME
+    path = write(tmp_path, "time_s,command_rpm,angle_deg", TIME, command, angle % 360)
+    for read in (read_actuator, read_signals):
+        with pytest.raises(DataError, match="jumps by a whole turn") as caught:
+            read(path)
+        assert caught.value.line == 92
+    read_actuator(write(tmp_path, "time_s,command_rpm,angle_deg", TIME, command, angle))

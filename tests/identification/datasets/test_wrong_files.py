@@ -185,3 +185,11 @@ def test_an_actuator_needs_its_columns(tmp_path):
     with pytest.raises(DataError, match="missing") as caught:
         read_actuator(path)
     assert "command" in caught.value.remedy
+
+
+def test_decimal_commas_in_quotes_beside_commas(tmp_path):
+    rows = "\n".join('"0,1","0,2","0,3"' for _ in range(60))
+    content = f'Area,"100,1",mm^2\n\nTime,Extension,Load\n(s),(mm),(N)\n{rows}\n'
+    with pytest.raises(DataError, match="the row has 6 values, the header 3") as caught:
+        read_tissue(write(tmp_path, "a.csv", content.encode()))
+    assert "separate them by semicolons" in caught.value.remedy

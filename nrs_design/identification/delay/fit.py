@@ -92,7 +92,8 @@ def fit_delay(
     error = _errors(record, follower, x, rows)
     for _ in range(_STEPS):
         J = _sensitivities(record, follower, x, rows)
-        step = shortened(np.linalg.lstsq(J, error, rcond=None)[0].astype(float), limit)
+        newton = np.asarray(np.linalg.lstsq(J, error, rcond=None)[0], dtype=np.float64)
+        step = shortened(newton, limit)
         for halving in range(_HALVINGS):
             tried = x + step / 2**halving
             found = _errors(record, follower, tried, rows)

@@ -104,7 +104,7 @@ def _contact_texts(loop: Assumed) -> Iterator[str]:
     for controller in loop.design.controllers:
         if controller.contacts:
             contacts = " or ".join(controller.contacts)
-            yield f"{controller.name} is active only in contact with {contacts}."
+            yield f"While {controller.name} is active, nothing but {contacts} is touched."
     yield _CONTACT
     integrated = any(c.law.commands == "velocity" for c in loop.design.controllers)
     if integrated and all(e.law.has_rest for e in loop.touched):

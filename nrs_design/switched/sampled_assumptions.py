@@ -75,7 +75,7 @@ def assume_sampled(
         _beside(spec, _INPUTS),
         "The axes of the robot do not act on each other.",
         *(
-            f"{c.name} is active only in contact with {' or '.join(c.contacts)}."
+            f"While {c.name} is active, nothing but {' or '.join(c.contacts)} is touched."
             for c in design.controllers
         ),
         "In contact, the environment follows its linear model; its parameters stay in the declared "

@@ -116,7 +116,7 @@ class TestAssembly:
     def test_assumptions_name_what_they_depend_on(self):
         deflection = " ".join(assembled(impedance("in", 0)).assumptions)
         force = " ".join(assembled(impedance("in", 0), coordinates="force").assumptions)
-        assert "in is active only in contact with soft." in deflection
+        assert "While in is active, nothing but soft is touched." in deflection
         assert "the force may jump" in deflection
         assert "not physical in lasting contact" in force
         kept = " ".join(assembled(impedance("in", 0), contact="kept").assumptions)

@@ -72,11 +72,16 @@ def audit(
     outputs = Outputs.checked(None, report, date, as_json=as_json, quiet=quiet)
     loaded = read_spec(spec)
     bounds = bounds_of(loaded)
-    reason = _unproved(certificate, loaded)
+    reason, losable = _proof_of(certificate, loaded)
     (run,) = read_all([log], read_run, columns or [], quiet=quiet)
     with progress("judging", quiet=quiet):
         found = judge_run(
-            run, bounds, proved=not reason, window=window, command_limit=command_limit
+            run,
+            bounds,
+            proved=not reason,
+            losable=losable,
+            window=window,
+            command_limit=command_limit,
         )
     outputs.deliver(
         "audit",
@@ -93,8 +98,10 @@ def _page(found: RunJudgement, name: str, reason: str) -> Report:
     return run_report(found, name, reason)
 
 
-def _unproved(certificate: Path | None, loaded: LoadedSpec) -> str:
-    """Say why the spec is not proved; empty if a certificate proves it.
+def _proof_of(certificate: Path | None, loaded: LoadedSpec) -> tuple[str, bool]:
+    """Say why the spec is not proved, and whether a proof holds while contact is lost.
+
+    The reason is empty if a certificate proves it.
 
     Raises
     ------
@@ -102,9 +109,10 @@ def _unproved(certificate: Path | None, loaded: LoadedSpec) -> str:
         If the certificate is rejected.
     """
     from nrs_design.certificates.verify import verify
+    from nrs_design.proof.evidence import Shows
 
     if certificate is None:
-        return "no certificate is named"
+        return "no certificate is named", False
     outcome = verify(certificate, loaded)
     if outcome.certificate is None or outcome.fault is not None:
         raise CertificateError(
@@ -112,8 +120,10 @@ def _unproved(certificate: Path | None, loaded: LoadedSpec) -> str:
             path=certificate,
             remedy="make it anew with certify-switching --out, or name the spec that it is for",
         )
-    verdict = outcome.certificate.verdict
-    return "" if verdict == "proved" else f"its certificate says {verdict}"
+    verdict, statements = outcome.certificate.verdict, outcome.certificate.statements
+    if verdict != "proved":
+        return f"its certificate says {verdict}", False
+    return "", any(s.shows is Shows.STABILITY and s.covers_lost_contact for s in statements)
 
 
 def _print(found: RunJudgement, name: str, reason: str) -> None:

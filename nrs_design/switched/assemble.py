@@ -138,23 +138,21 @@ def assemble(
     _check_scale(scale)
     if spec.sampling is not None:
         system = _assemble_sampled(spec, spec.sampling, plant, design, coordinates, scale)
-        return replace(system, assumptions=(*system.assumptions, *scale_texts(scale)))
-    if coordinates not in ("deflection", "force"):
+    elif coordinates in ("deflection", "force"):
+        plant = plant.scaled(scale, spec.touched)
+        system = close_loop(
+            spec.name,
+            plant,
+            plant.motion_loop(design.motion.Kp, design.motion.Kd),
+            design,
+            coordinates,
+            spec.switching,
+            gain_boxes(spec, design, scale),
+            spec.idle_states,
+            spec.contact,
+        )
+    else:
         raise AssemblyError(f"unknown coordinates {coordinates!r}: deflection or force")
-    plant = plant.scaled(scale, spec.touched)
-    loop = plant.motion_loop(design.motion.Kp, design.motion.Kd)
-    boxes = gain_boxes(spec, design, scale)
-    system = close_loop(
-        spec.name,
-        plant,
-        loop,
-        design,
-        coordinates,
-        spec.switching,
-        boxes,
-        spec.idle_states,
-        spec.contact,
-    )
     texts = (*system.assumptions, *identified_texts(spec), *scale_texts(scale))
     return replace(system, assumptions=texts)
 

@@ -18,6 +18,12 @@ LOST_CONTACT = (
     "Contact is lost where the deflection is not positive, or where the environment would have to "
     "pull; its surface is then back in its place at once."
 )
+# What follows for inputs of zero, by whether contact may be lost: the axis may rest anywhere in the
+# air.
+REST = {
+    False: "all modes then rest at one point, the state zero.",
+    True: "all modes in contact then rest at one point, the state zero.",
+}
 CONTINUOUS = "continuous at a switch (identity resets)"
 _STAYS = {
     "dwell_time": "stays active for at least",

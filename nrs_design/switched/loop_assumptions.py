@@ -13,7 +13,7 @@ from nrs_design.controllers.laws import LAWS, CompliantLaw
 from nrs_design.models.contact.environment import Environment
 from nrs_design.spec import IdleStatesSpec, SwitchingSpec
 from nrs_design.spec.controllers import Command
-from nrs_design.switched.assumptions import CONTINUOUS, LOST_CONTACT, rule_texts
+from nrs_design.switched.assumptions import CONTINUOUS, LOST_CONTACT, REST, rule_texts
 from nrs_design.switched.gain_box import GainBox
 
 _GIVEN_LOOP = (
@@ -24,12 +24,13 @@ _DESIGNED_LOOP = (
     "The motion loop is the linear actuator model of the spec, at its nominal values, under the "
     "motion gains listed here."
 )
-_INPUTS = (
-    "All inputs are zero (velocity command, reference force, motion of the environment); all modes "
-    "then rest at one point, the state zero.",
+_INPUTS = "All inputs are zero (velocity command, reference force, motion of the environment); "
+# In free motion, a command moves the axis ever further from the surface.
+_COMMANDED = (
     "Under a constant command the modes may rest at different points. Where stability is proved, "
-    "bounded inputs keep the state bounded; how far it goes, and that it settles, is not claimed.",
+    "bounded inputs keep the state bounded{}; how far it goes, and that it settles, is not claimed."
 )
+_IN_THE_AIR = ", but not how far the axis moves away while contact is lost"
 _CONTACT = (
     "In contact, the environment follows its linear model; its parameters stay in the declared "
     "ranges and may change arbitrarily fast."
@@ -85,7 +86,8 @@ def assume_loop(loop: Assumed) -> tuple[str, ...]:
     """Say what holds for an interaction design."""
     return (
         _GIVEN_LOOP if loop.given else _DESIGNED_LOOP,
-        *_INPUTS,
+        _INPUTS + REST[loop.losable],
+        _COMMANDED.format(_IN_THE_AIR if loop.losable else ""),
         "The axes of the robot do not act on each other.",
         *_contact_texts(loop),
         *chain.from_iterable(

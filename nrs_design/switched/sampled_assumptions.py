@@ -12,13 +12,10 @@ from nrs_design.proof.text import exact_text
 from nrs_design.spec import InteractionDesignSpec
 from nrs_design.spec.interval import Interval
 from nrs_design.spec.sampling import SamplingSpec
-from nrs_design.switched.assumptions import CONTINUOUS, LOST_CONTACT, rule_texts
+from nrs_design.switched.assumptions import CONTINUOUS, LOST_CONTACT, REST, rule_texts
 
 _KEPT = "Contact is not lost: free motion is not one of the modes."
-_INPUTS = (
-    "All inputs are zero (velocity command, motion of the environment); all modes then rest at "
-    "one point, the state zero."
-)
+_INPUTS = "All inputs are zero (velocity command, motion of the environment); "
 _NOT_MODELLED = (
     "What the arithmetic of the processor rounds, the quantization of encoder and force sensor, "
     "friction and saturation are not modelled."
@@ -72,7 +69,7 @@ def assume_sampled(
         f"The motor follows the linear actuator model of the spec; {_actuator_text(ranges)}.",
         "The tissue does not load the motor: it acts through the force sensor alone.",
         *(_DISTURBED if spec.disturbances is not None else ()),
-        _beside(spec, _INPUTS),
+        _beside(spec, _INPUTS + REST[springs and spec.contact != "kept"]),
         "The axes of the robot do not act on each other.",
         *(
             f"While {c.name} is active, nothing but {' or '.join(c.contacts)} is touched."

@@ -336,6 +336,10 @@ def _not_modelled(
     if plant.given_loop is not None:
         what = "the spec states the closed motion loop in continuous time"
         yield ("motion_loop", "transfer_function"), what, "leave transfer_function or sampling out"
+    for environment in plant.among(design.contacts):
+        if spec.contact == "losable" and not _is_zero(damping_of(environment)):
+            what = f"loss of contact with {environment.name}, which has damping"
+            yield ("contact",), what, "use `contact: kept`, or leave sampling out"
     if next(iter(spec.switching.dwell_times()), None) is not None:
         what = "the rules of switching have dwell times in s"
         yield ("switching",), what, "leave them out, or sampling"

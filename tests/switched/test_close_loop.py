@@ -108,6 +108,15 @@ class TestAssembly:
             assert "rest at different points" in texts
             assert "bounded inputs keep the state bounded" in texts
 
+    def test_a_command_in_free_motion_moves_the_axis_ever_further(self):
+        """Bounded inputs keep motion, force and penetration bounded, but not the deflection."""
+        losable = " ".join(assembled(impedance("in", 0)).assumptions)
+        assert "bounded, but not how far the axis moves away while contact is lost" in losable
+        assert "all modes in contact then rest at one point" in losable
+        kept = " ".join(assembled(impedance("in", 0), contact="kept").assumptions)
+        assert "bounded inputs keep the state bounded;" in kept
+        assert "all modes then rest at one point" in kept
+
     def test_loss_of_contact_is_named_for_force_control_too(self):
         law = ProportionalForce(F("0.02"))
         texts = " ".join(assembled(Controller("f", law, "soft", ("soft",))).assumptions)

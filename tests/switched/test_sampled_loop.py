@@ -222,3 +222,29 @@ def test_a_damped_environment_is_kept(tmp_path):
     system = system_of(tmp_path, "{period: 2 ms, delay: 0}", damped)
     assert system.contact is None
     assert "lags behind is not modelled" in " ".join(system.assumptions)
+
+
+def test_loss_of_contact_with_damping_is_refused_where_the_spec_asks_for_it(tmp_path):
+    damped = ("model: elastic", "model: kelvin-voigt\n    damping: 1 N*s/m")
+    with pytest.raises(AssemblyError, match="loss of contact with soft, which has damp") as caught:
+        system_of(tmp_path, "{period: 2 ms, delay: 0}\ncontact: losable", damped)
+    assert "contact: kept" in caught.value.remedy
+    assert caught.value.at == ("contact",)
+
+
+def test_where_free_motion_rests_is_not_said(tmp_path):
+    losable = system_of(tmp_path, "{period: 2 ms, delay: 0}")
+    assert "all modes in contact then rest at one point" in " ".join(losable.assumptions)
+    kept = system_of(tmp_path, "{period: 2 ms, delay: 0}\ncontact: kept")
+    assert "all modes then rest at one point" in " ".join(kept.assumptions)
+
+
+def test_doubts_about_identified_values_are_said(tmp_path):
+    doubtful = (
+        "time_constant: 0.0351 s",
+        'time_constant: 0.0351 s\n  doubts: ["dead time"]\n  accept_doubt: it is short',
+    )
+    about = ("    model: elastic", "    model: elastic\n    linearized_about: 2 mm")
+    texts = system_of(tmp_path, "{period: 2 ms, delay: 0}", doubtful, about).assumptions
+    assert any("actuator is in doubt: dead time; accepted because: it is short" in t for t in texts)
+    assert any("soft is the linearization about 2 mm" in text for text in texts)

@@ -177,7 +177,10 @@ class Trial:
             count = len(self.found.touches)
             yield f"{count} {'touch' if count == 1 else 'touches'}; {part:.0f} % of it is air"
         elif self.preparation.contact == "auto":
-            yield "no air shows: all of it is taken as in contact"
+            yield (
+                "no air shows: all of it is taken as in contact, and a tare that moves with time "
+                "would pass for relaxation"
+            )
         if self.drift:
             yield "the tare is fitted as moving in proportion to time"
         yield from map(str, self.cuts)

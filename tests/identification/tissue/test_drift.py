@@ -1,12 +1,15 @@
 """A tare that moves."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from nrs_design.identification.datasets import TissueRecord
 from nrs_design.identification.tissue import Preparation, fit_record, prepare
-from nrs_design.models.contact import Elastic, Motion
-from tests.identification.support import quick, source
+from nrs_design.models.contact import Elastic, KelvinBoltzmann, Motion
+from tests.identification import synthetic
+from tests.identification.support import quick, record, slow, source
 from tests.identification.unilateral import robot_record
 
 
@@ -39,3 +42,14 @@ def test_a_soft_start_of_one_touch_is_none():
     force = 0.02 * time + 4000 * np.maximum(x - 0.008, 0.0)
     force += 0.02 * np.random.default_rng(1).standard_normal(300)
     assert not prepare(TissueRecord(source("soft"), Motion(time, x), force, False)).drift
+
+
+def test_without_air_a_bent_drift_passes_for_relaxation_and_that_is_said():
+    """A known limit, told in the docs: the stiffness at rest comes out three times as large."""
+    still = record(synthetic.NOSE, slow(1), 0.0165, 1)
+    time = still.motion.time
+    bent = 0.1 * np.ptp(still.force) * np.sqrt((time - time[0]) / (time[-1] - time[0]))
+    fit = fit_record(KelvinBoltzmann, replace(still, force=still.force + bent))
+    assert fit.law.k1 > 2.5 * synthetic.NOSE.k1
+    assert fit.doubts == ()
+    assert any("would pass for relaxation" in remark for remark in fit.trial.remarks)

@@ -11,19 +11,19 @@ from nrs_design.cli import exit_codes
 from nrs_design.cli.identify.common import (
     SYNTHETIC,
     ColumnMap,
+    Outputs,
     ReportTo,
-    check_report,
     read_all,
     sources,
-    write_report,
 )
 from nrs_design.cli.options import Date, Json, Quiet
-from nrs_design.cli.printing import note, print_json, progress, say
+from nrs_design.cli.printing import progress, say
 from nrs_design.cli.tables import print_table
 from nrs_design.errors import CertificateError
 
 if TYPE_CHECKING:
     from nrs_design.identification.running import Check, RunJudgement
+    from nrs_design.reporting import Report
     from nrs_design.spec import LoadedSpec
 
 _EXIT = {
@@ -69,31 +69,39 @@ def audit(
     from nrs_design.identification.running import bounds_of, judge_run, read_run
     from nrs_design.spec import read_spec
 
-    check_report(report)
+    outputs = Outputs.checked(None, report, date, as_json=as_json, quiet=quiet)
     loaded = read_spec(spec)
     bounds = bounds_of(loaded)
-    reason = _unproved(certificate, loaded)
+    reason, losable = _proof_of(certificate, loaded)
     (run,) = read_all([log], read_run, columns or [], quiet=quiet)
-    with progress("judging", quiet=quiet) as step:
+    with progress("judging", quiet=quiet):
         found = judge_run(
-            run, bounds, proved=not reason, window=window, command_limit=command_limit
+            run,
+            bounds,
+            proved=not reason,
+            losable=losable,
+            window=window,
+            command_limit=command_limit,
         )
-        if report is not None:
-            from nrs_design.reporting.running import run_report
-
-            step("figures")
-            write_report(report, run_report(found, loaded.spec.name, reason), date)
-    if as_json:
-        print_json("audit", _summary(found, loaded, certificate, reason))
-    elif not quiet:
-        _print(found, loaded.spec.name, reason)
-    if report is not None:
-        note(f"page written to {report}", quiet=quiet)
+    outputs.deliver(
+        "audit",
+        summary=lambda: _summary(found, loaded, certificate, reason),
+        show=lambda: _print(found, loaded.spec.name, reason),
+        page=lambda: _page(found, loaded.spec.name, reason),
+    )
     raise typer.Exit(_EXIT[found.verdict])
 
 
-def _unproved(certificate: Path | None, loaded: LoadedSpec) -> str:
-    """Say why the spec is not proved; empty if a certificate proves it.
+def _page(found: RunJudgement, name: str, reason: str) -> Report:
+    from nrs_design.reporting.running import run_report
+
+    return run_report(found, name, reason)
+
+
+def _proof_of(certificate: Path | None, loaded: LoadedSpec) -> tuple[str, bool]:
+    """Say why the spec is not proved, and whether a proof holds while contact is lost.
+
+    The reason is empty if a certificate proves it.
 
     Raises
     ------
@@ -101,9 +109,10 @@ def _unproved(certificate: Path | None, loaded: LoadedSpec) -> str:
         If the certificate is rejected.
     """
     from nrs_design.certificates.verify import verify
+    from nrs_design.proof.evidence import Shows
 
     if certificate is None:
-        return "no certificate is named"
+        return "no certificate is named", False
     outcome = verify(certificate, loaded)
     if outcome.certificate is None or outcome.fault is not None:
         raise CertificateError(
@@ -111,8 +120,10 @@ def _unproved(certificate: Path | None, loaded: LoadedSpec) -> str:
             path=certificate,
             remedy="make it anew with certify-switching --out, or name the spec that it is for",
         )
-    verdict = outcome.certificate.verdict
-    return "" if verdict == "proved" else f"its certificate says {verdict}"
+    verdict, statements = outcome.certificate.verdict, outcome.certificate.statements
+    if verdict != "proved":
+        return f"its certificate says {verdict}", False
+    return "", any(s.shows is Shows.STABILITY and s.covers_lost_contact for s in statements)
 
 
 def _print(found: RunJudgement, name: str, reason: str) -> None:

@@ -20,8 +20,8 @@ from nrs_design.cli.gradient_options import (
 )
 from nrs_design.cli.options import (
     Budget,
-    CoordinatesOption,
     Json,
+    LoopCoordinates,
     MaxDegree,
     Memory,
     Quiet,
@@ -40,31 +40,32 @@ if TYPE_CHECKING:
     from nrs_design.search.margin import BoxMargin, DwellMargin
 
 
+LargestBox = Annotated[
+    bool,
+    typer.Option(
+        "--margin", help="Find the largest box of ranges with a proof, the smallest refuted."
+    ),
+]
+ShortestDwell = Annotated[
+    bool, typer.Option("--shortest-dwell", help="Find the shortest dwell time with a proof.")
+]
+
+
 def certify_switching(
     spec: SpecFile,
     out: Annotated[
         Path | None, typer.Option(help="Certificate file; default reports/NAME.cert.json.")
     ] = None,
     method: Annotated[Method, typer.Option(help="One rung of the ladder, or all.")] = Method.AUTO,
-    coordinates: Annotated[
-        CoordinatesOption | None,
-        typer.Option(help="Override the spec: deflection (physical) or force (the thesis's)."),
-    ] = None,
+    coordinates: LoopCoordinates = None,
     optimize_rate: Annotated[
         bool, typer.Option(help="Look for the largest provable decay rate.")
     ] = True,
     max_degree: MaxDegree = None,
     budget: Budget = None,
     memory: Memory = None,
-    margin: Annotated[
-        bool,
-        typer.Option(
-            "--margin", help="Find the largest box of ranges with a proof, the smallest refuted."
-        ),
-    ] = False,
-    shortest_dwell: Annotated[
-        bool, typer.Option("--shortest-dwell", help="Find the shortest dwell time with a proof.")
-    ] = False,
+    margin: LargestBox = False,
+    shortest_dwell: ShortestDwell = False,
     relaxation: Relaxation = 1.0,
     radius: Radius = 1.0,
     start_mode: StartMode = None,
@@ -117,9 +118,8 @@ def certify_switching(
         write_output(path, dump(result.certificate, origin_of(spec, path)), replaces=CERTIFICATE)
     written = None if result.certificate is None else path
     if as_json:
-        content = summary(result, written) | margins_summary(box, dwell)
-        if history:
-            content["gradient_history"] = history
+        told = {"gradient_history": history} if history else {}
+        content = summary(result, written) | margins_summary(box, dwell) | told
         print_json("certify-switching", content)
     elif not quiet:
         _print(result, written, verbose=verbose)

@@ -10,7 +10,7 @@ import typer
 
 from nrs_design.cli import exit_codes
 from nrs_design.cli.gradient_options import MaxUpdates, Radius, Relaxation, Seed, StartMode
-from nrs_design.cli.options import Budget, CoordinatesOption, Json, Memory, Quiet, SpecFile
+from nrs_design.cli.options import Budget, Json, LoopCoordinates, Memory, Quiet, SpecFile
 from nrs_design.cli.printing import note, print_json, progress, say
 from nrs_design.cli.tables import print_table
 from nrs_design.search.gradient_settings import Gradient
@@ -23,10 +23,7 @@ if TYPE_CHECKING:
 
 def compare_methods(
     spec: SpecFile,
-    coordinates: Annotated[
-        CoordinatesOption | None,
-        typer.Option(help="Override the spec: deflection (physical) or force (the thesis's)."),
-    ] = None,
+    coordinates: LoopCoordinates = None,
     optimize_rate: Annotated[
         bool, typer.Option(help="Let every method look for the largest decay rate, too.")
     ] = False,

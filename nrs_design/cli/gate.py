@@ -86,14 +86,34 @@ def gate(
 
     Example: nrs-design gate --locked --format github specs
     """
-    from nrs_design.gating.find_specs import SUFFIXES
-    from nrs_design.gating.formats import FORMATS
-    from nrs_design.output import GATE, check_replaceable, write_output
+    chosen = _format(format_, as_json=as_json)
+    _check_options(out, locked=locked, prune=prune)
+    search = (max_degree, budget, memory)
+    start = perf_counter()
+    outcome = (
+        _re_check(paths, lock, quiet=quiet)
+        if locked
+        else _certify(paths, lock, reports, search, html=not no_reports, prune=prune, quiet=quiet)
+    )
+    _deliver(outcome, chosen, out, quiet=quiet)
+    _note(outcome, quiet=quiet)
+    note(f"{perf_counter() - start:.1f} s", quiet=quiet)
+    raise typer.Exit(OF_SEVERITY[outcome.severity])
 
+
+def _format(format_: GateFormat, *, as_json: bool) -> GateFormat:
     if as_json and format_ not in (GateFormat.TEXT, GateFormat.JSON):
         raise NrsDesignError(
             f"--json and --format {format_} exclude each other", remedy="keep one of them"
         )
+    return GateFormat.JSON if as_json else format_
+
+
+def _check_options(out: Path | None, *, locked: bool, prune: bool) -> None:
+    """Refuse what excludes each other, and what must not be overwritten, before the work."""
+    from nrs_design.gating.find_specs import SUFFIXES
+    from nrs_design.output import GATE, check_replaceable
+
     if prune and locked:
         raise NrsDesignError(
             "--prune and --locked exclude each other: --locked writes nothing",
@@ -103,14 +123,13 @@ def gate(
         raise OutputError("is the name of a spec", path=out, remedy="choose another --out")
     if out is not None:
         check_replaceable(out, GATE)
-    chosen = GateFormat.JSON if as_json else format_
-    search = (max_degree, budget, memory)
-    start = perf_counter()
-    outcome = (
-        _re_check(paths, lock, quiet=quiet)
-        if locked
-        else _certify(paths, lock, reports, search, html=not no_reports, prune=prune, quiet=quiet)
-    )
+
+
+def _deliver(outcome: GateOutcome, chosen: GateFormat, out: Path | None, *, quiet: bool) -> None:
+    """Write the document to where it is wanted; people see a text, too."""
+    from nrs_design.gating.formats import FORMATS
+    from nrs_design.output import GATE, write_output
+
     document = FORMATS[chosen](outcome)
     if out is not None:
         write_output(out, document, replaces=GATE)
@@ -121,12 +140,14 @@ def gate(
     if out is not None or chosen is not GateFormat.TEXT:
         for line in FORMATS["text"](outcome).split("\n"):
             note(line, quiet=quiet)
+
+
+def _note(outcome: GateOutcome, *, quiet: bool) -> None:
+    """Say what is doubtful, and what a person should know beside it."""
     for item in (caution for spec in outcome.specs for caution in spec.cautions):
         note(f"warning: {item.path}:{item.line}:{item.column}: {item.message}", quiet=quiet)
     for text in outcome.notes:
         note(f"note: {text}", quiet=quiet)
-    note(f"{perf_counter() - start:.1f} s", quiet=quiet)
-    raise typer.Exit(OF_SEVERITY[outcome.severity])
 
 
 def _show(outcome: GateOutcome, document: str, *, quiet: bool) -> None:

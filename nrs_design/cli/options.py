@@ -50,3 +50,9 @@ class CoordinatesOption(StrEnum):
 
     DEFLECTION = "deflection"
     FORCE = "force"
+
+
+LoopCoordinates = Annotated[
+    CoordinatesOption | None,
+    typer.Option(help="Override the spec: deflection (physical) or force (the thesis's)."),
+]

@@ -92,12 +92,7 @@ def close_loop(
     """
     rules = rules or SwitchingSpec()
     boxes = {c.name: GainBox.point(c.law) for c in design.controllers} | {**(boxes or {})}
-    touched = plant.among(design.contacts)
-    _check_coordinates(coordinates, touched)
-    if idle is not None:
-        check_mixture(coordinates, touched)
-    shared = _shared_law(design, mixed=idle is not None)
-    state = _State(realize(loop), coordinates, touched, shared, idle)
+    state = _shared_state(plant, loop, design, coordinates, idle)
     losable = None if contact == "kept" else _lost_contact(state, design, boxes, contact)
     parts = {
         controller.name: tuple(_controller_modes(controller, plant, state, boxes[controller.name]))
@@ -114,12 +109,12 @@ def close_loop(
         assume_loop(
             Assumed(
                 design,
-                touched,
+                state.touched,
                 boxes,
                 coordinates,
                 rules,
                 idle,
-                shared,
+                state.law,
                 given=loop.given,
                 losable=losable is not None,
             )
@@ -127,6 +122,21 @@ def close_loop(
         assemble_switching(rules, groups, resets),
         losable,
     )
+
+
+def _shared_state(
+    plant: Plant,
+    loop: MotionLoop,
+    design: ControllerDesign,
+    coordinates: str,
+    idle: IdleStatesSpec | None,
+) -> _State:
+    touched = plant.among(design.contacts)
+    _check_coordinates(coordinates, touched)
+    if idle is not None:
+        check_mixture(coordinates, touched)
+    shared = _shared_law(design, mixed=idle is not None)
+    return _State(realize(loop), coordinates, touched, shared, idle)
 
 
 def _check_coordinates(coordinates: str, touched: tuple[Environment, ...]) -> None:
@@ -257,8 +267,8 @@ def _controller_modes(
     for environment in map(plant.environment, controller.contacts):
         name = f"{controller.name}/{environment.name}"
         box = state.contact_box(environment).beside(gains.box)
-        for label, rows in box.corners(partial(state.rows, law, environment), name):
-            yield Mode(f"{name}/{label}" if label else name, RationalMatrix.from_rows(rows))
+        for corner, rows in box.corners(partial(state.rows, law, environment), name):
+            yield Mode(corner, RationalMatrix.from_rows(rows))
 
 
 # What is touched where nothing is.
@@ -298,11 +308,9 @@ def _lost_contact(
     free = []
     for controller in design.controllers:
         name = f"{controller.name}/free"
-        for label, rows in boxes[controller.name].box.corners(
-            partial(_free_rows, state, controller.law), name
-        ):
-            A = RationalMatrix.from_rows(rows)
-            free.append(Mode(f"{name}/{label}" if label else name, A))
+        box, rows_at = boxes[controller.name].box, partial(_free_rows, state, controller.law)
+        for corner, rows in box.corners(rows_at, name):
+            free.append(Mode(corner, RationalMatrix.from_rows(rows)))
     pulls = (_force_row(state, law) for environment in damped for law in environment.corners)
     return Contact(tuple(free), tuple(pulls), required=contact == "losable")
 

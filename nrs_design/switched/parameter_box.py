@@ -68,26 +68,27 @@ class Box:
         rows_at : callable
             Gives the matrix for the values of the parameters by their symbols.
         name : str
-            Of the mode, for errors.
+            Of the mode whose corners they are.
 
         Yields
         ------
         tuple of str and rows
-            The label, such as ``k-min/Mt-max`` (empty for a point), and the matrix.
+            The name, such as ``a/soft/k-min/Mt-max`` (that of the mode for a point), and the
+            matrix.
 
         Raises
         ------
         InternalError
             If the matrix is not affine along each axis.
         """
-        labels, corners = [], {}
+        names, corners = [], {}
         for ends in product(*(interval.ends for interval in self.ranges.values())):
             at = tuple(value for _, value in ends)
             pairs = zip(self.ranges, ends, strict=True)
-            labels.append("/".join(f"{symbol}-{end}" for symbol, (end, _) in pairs if end))
+            names.append("/".join([name, *(f"{s}-{end}" for s, (end, _) in pairs if end)]))
             corners[at] = rows_at(dict(zip(self.ranges, at, strict=True)))
         self._check_corners_suffice(rows_at, corners, name)
-        yield from zip(labels, corners.values(), strict=True)
+        yield from zip(names, corners.values(), strict=True)
 
     def _check_corners_suffice(
         self, rows_at: RowsAt, corners: Mapping[tuple[Fraction, ...], Rows], name: str

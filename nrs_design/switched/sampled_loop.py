@@ -9,7 +9,7 @@ without inertia), the force samples on their way, and the deflection.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import partial
@@ -162,21 +162,15 @@ def close_sampled_loop(
     ranges = plant.actuator_ranges or ActuatorRanges(
         Interval.point(plant.actuator.gain), Interval.point(plant.actuator.time_constant)
     )
+    has_inertia = _have_inertia(laws.values())
     tau = ranges.time_constant
     frame = Frame(
         period,
         SampledMotion.of(design.motion, period),
-        any(law.a is not None for law in laws.values()),
+        has_inertia,
         sampling.delay[1],
         tau.nominal if tau.low == tau.high else None,
     )
-    if frame.has_inertia and any(law.a is None for law in laws.values()):
-        raise AssemblyError(
-            "some impedance controllers have a virtual inertia and some have none, so they share "
-            "no state",
-            remedy="give all impedance controllers a virtual inertia Mt > 0, or none of them",
-            at=("controllers",),
-        )
     motor = motor_box(ranges, period)
     parts = {
         controller.name: tuple(
@@ -191,6 +185,8 @@ def close_sampled_loop(
         free = tuple(_free_motions(frame, laws, sampling.delay, motor))
     groups = {key: tuple(Corner(item.mode.name) for item in part) for key, part in parts.items()}
     motions = tuple(chain.from_iterable(parts.values()))
+    flying = tuple(item.mode for item in free)
+    losable = Contact(flying, required=spec.contact == "losable") if free else None
     channels = tuple(_channels(spec, (*motions, *free)))
     return SwitchedSystem(
         spec.name,
@@ -199,15 +195,24 @@ def close_sampled_loop(
         tuple(item.mode for item in motions),
         assume_sampled(spec, sampling, ranges, frame.motion, laws, design, springs=springs),
         assemble_switching(spec.switching, groups, ()),
-        (
-            Contact(tuple(item.mode for item in free), required=spec.contact == "losable")
-            if free
-            else None
-        ),
+        losable,
         period,
         channels,
         (_force_output(frame, touched, spec.limits.torque.exact),) if channels else (),
     )
+
+
+def _have_inertia(laws: Iterable[SampledAdmittance]) -> bool:
+    """Tell whether the admittances have a velocity of their own: all of them, or none."""
+    found = {law.a is not None for law in laws}
+    if len(found) > 1:
+        raise AssemblyError(
+            "some impedance controllers have a virtual inertia and some have none, so they share "
+            "no state",
+            remedy="give all impedance controllers a virtual inertia Mt > 0, or none of them",
+            at=("controllers",),
+        )
+    return True in found
 
 
 def _channels(spec: InteractionDesignSpec, motions: Sequence[_Motion]) -> Iterator[Channel]:
@@ -265,10 +270,7 @@ def _motions(
 ) -> Iterator[_Motion]:
     for environment in map(plant.environment, controller.contacts):
         own = Box({"k": environment.stiffness, "b": damping_of(environment)}).beside(motor)
-        for delay in range(delays[0], delays[1] + 1):
-            name = _name(controller.name, environment.name, delay, delays)
-            for label, rows in own.corners(partial(frame.rows, law, delay), name):
-                yield _Motion.of(f"{name}/{label}" if label else name, rows)
+        yield from _corners(frame, law, delays, own, f"{controller.name}/{environment.name}")
 
 
 def _free_motions(
@@ -278,15 +280,17 @@ def _free_motions(
     motor: Box,
 ) -> Iterator[_Motion]:
     for controller, law in laws.items():
-        for delay in range(delays[0], delays[1] + 1):
-            name = _name(controller, "free", delay, delays)
-            for label, rows in motor.corners(partial(frame.rows, law, delay), name):
-                yield _Motion.of(f"{name}/{label}" if label else name, rows)
+        yield from _corners(frame, law, delays, motor, f"{controller}/free")
 
 
-def _name(controller: str, contact: str, delay: int, delays: tuple[int, int]) -> str:
-    late = f"/delay-{delay}" if delays[0] < delays[1] else ""
-    return f"{controller}/{contact}{late}"
+def _corners(
+    frame: Frame, law: SampledAdmittance, delays: tuple[int, int], box: Box, name: str
+) -> Iterator[_Motion]:
+    """Yield the motions of one controller and contact, at every delay."""
+    for delay in range(delays[0], delays[1] + 1):
+        late = f"{name}/delay-{delay}" if delays[0] < delays[1] else name
+        for corner, rows in box.corners(partial(frame.rows, law, delay), late):
+            yield _Motion.of(corner, rows)
 
 
 def damping_of(environment: Environment) -> Interval:

@@ -64,6 +64,16 @@ def test_outside(tmp_path, proof):
     assert all(w["low_Nm_rad"] < 60.0 < w["high_Nm_rad"] for w in document["stiffness"])
 
 
+def test_lost_contact_is_inside_a_proof_that_covers_it(tmp_path, proof):
+    spec, certificate = proof
+    done = run("audit", write(tmp_path, free=2.0), spec, "--certificate", certificate, *LIMIT,
+               "--json", cwd=tmp_path)  # fmt: skip
+    document = json.loads(done.stdout)
+    (contact,) = (c for c in document["checks"] if c["name"] == "contact")
+    assert (contact["status"], contact["basis"]) == ("inside", "covered by the proof")
+    assert document["verdict"] != "outside"
+
+
 def test_an_unproved_spec_is_said_loudly(tmp_path):
     done = run("audit", write(tmp_path), SOFT_TISSUE, cwd=tmp_path)
     assert done.returncode == 3

@@ -25,39 +25,13 @@ from nrs_design.models.actuator import Actuator
 from nrs_design.models.contact import Elastic, KelvinBoltzmann, KelvinVoigt, Maxwell
 from nrs_design.models.contact.environment import Environment
 from nrs_design.models.linear_form import combine
-from nrs_design.models.motion_loop import MotionLoop, realize
 from nrs_design.models.plant import Plant
-from nrs_design.proof.exact import characteristic_polynomial, is_hurwitz
-from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.spec.interval import Interval
 from nrs_design.switched.close_loop import close_loop
 from nrs_design.switched.modes import velocity_mode
+from tests.switched.support import LOOP, MOTION, objects, polynomial, positive, stable
 
 F = Fraction
-# Thesis 6.3.2.2: Ap = [[0, 1], [-1618.80, -56.89]], Cp = [1618.80, 28.416].
-LOOP = MotionLoop((F("28.416"), F("1618.80")), (F(1), F("56.89"), F("1618.80")))
-MOTION = realize(LOOP)
-# 752.69 N/m at 0.24 m, the stiffness in the printed matrices (43.355 N m/rad).
-PRINTED = KelvinVoigt(F("752.69") * F("0.24") ** 2, F(0))
-SOFT = KelvinVoigt(F("43.0356"), F(0))
-NO_DAMPING = F(0)
-positive = st.fractions("1/100", 100, max_denominator=1000)
-
-
-def polynomial(rows):
-    A = RationalMatrix.from_rows(rows)
-    n = len(rows)
-    return [F(c, A.denominator**k) for k, c in enumerate(characteristic_polynomial(A.numerators))][
-        : n + 1
-    ]
-
-
-def objects(*entries):
-    return np.array(entries, dtype=object)
-
-
-def stable(rows):
-    return is_hurwitz(RationalMatrix.from_rows(rows).numerators)
 
 
 def impedance(name, Mt, contacts=("soft",)):

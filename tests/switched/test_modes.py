@@ -20,9 +20,6 @@ from nrs_design.design.transfer import TransferFunction
 from nrs_design.errors import AssemblyError
 from nrs_design.models.contact import Elastic, KelvinVoigt
 from nrs_design.models.linear_form import combine
-from nrs_design.models.motion_loop import MotionLoop, realize
-from nrs_design.proof.exact import characteristic_polynomial, is_hurwitz
-from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.switched.modes import (
     position_mode,
     to_force_coordinates,
@@ -30,32 +27,12 @@ from nrs_design.switched.modes import (
     with_idle,
     with_memories,
 )
+from tests.switched.support import LOOP, MOTION, objects, polynomial, positive, stable
 
 F = Fraction
-# Thesis 6.3.2.2: Ap = [[0, 1], [-1618.80, -56.89]], Cp = [1618.80, 28.416].
-LOOP = MotionLoop((F("28.416"), F("1618.80")), (F(1), F("56.89"), F("1618.80")))
-MOTION = realize(LOOP)
 # 752.69 N/m at 0.24 m, the stiffness in the printed matrices (43.355 N m/rad).
 PRINTED = KelvinVoigt(F("752.69") * F("0.24") ** 2, F(0))
 SOFT = KelvinVoigt(F("43.0356"), F(0))
-NO_DAMPING = F(0)
-positive = st.fractions("1/100", 100, max_denominator=1000)
-
-
-def polynomial(rows):
-    A = RationalMatrix.from_rows(rows)
-    n = len(rows)
-    return [F(c, A.denominator**k) for k, c in enumerate(characteristic_polynomial(A.numerators))][
-        : n + 1
-    ]
-
-
-def objects(*entries):
-    return np.array(entries, dtype=object)
-
-
-def stable(rows):
-    return is_hurwitz(RationalMatrix.from_rows(rows).numerators)
 
 
 class TestPublished:

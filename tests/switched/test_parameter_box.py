@@ -23,20 +23,20 @@ def corners(box, entry):
     return list(box.corners(lambda values: [[F(entry(**values))]], "m"))
 
 
-def test_labels_and_order():
+def test_names_and_order():
     found = corners(BOTH, lambda x, y: 10 * x + y)
-    assert [label for label, _ in found] == [
-        "x-min/y-min",
-        "x-min/y-max",
-        "x-max/y-min",
-        "x-max/y-max",
+    assert [name for name, _ in found] == [
+        "m/x-min/y-min",
+        "m/x-min/y-max",
+        "m/x-max/y-min",
+        "m/x-max/y-max",
     ]
     assert [rows[0][0] for _, rows in found] == [9, 14, 29, 34]
 
 
-def test_a_point_has_one_corner_without_a_label():
+def test_a_point_has_one_corner_by_the_name_of_the_mode():
     point = Box({"x": Interval.point(F(2))})
-    assert corners(point, lambda x: x**5) == [("", [[32]])]
+    assert corners(point, lambda x: x**5) == [("m", [[32]])]
 
 
 def test_middle_of_an_inverse_axis():

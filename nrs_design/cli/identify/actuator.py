@@ -10,22 +10,20 @@ from nrs_design.cli.identify.common import (
     SYNTHETIC,
     ColumnMap,
     DataFiles,
+    Outputs,
     ReportTo,
     WriteTo,
-    check_report,
-    interval,
     numbers,
     read_all,
     sources,
-    write_report,
-    write_spec,
 )
 from nrs_design.cli.options import Date, Json, Quiet
-from nrs_design.cli.printing import note, print_json, progress, say
+from nrs_design.cli.printing import progress, say
 from nrs_design.cli.tables import print_table
 
 if TYPE_CHECKING:
     from nrs_design.identification.actuator import ActuatorFit, ActuatorIdentification
+    from nrs_design.reporting import Report
 
 
 def actuator(
@@ -55,32 +53,27 @@ def actuator(
     from nrs_design.identification.actuator import MotorConstants, identify_actuator
     from nrs_design.identification.datasets import FrequencyResponse, read_actuator
     from nrs_design.identification.write_spec import merge_actuator
-    from nrs_design.spec import read_spec
 
-    check_report(report)
-    loaded = read_spec(write) if write is not None else None
+    outputs = Outputs.checked(write, report, date, as_json=as_json, quiet=quiet)
     motor = MotorConstants(torque_constant, back_emf_constant, inertia, reduction)
     items = read_all(data, read_actuator, columns or [], quiet=quiet)
     series = [(item,) if isinstance(item, FrequencyResponse) else item for item in items]
     with progress("fitting", quiet=quiet) as step:
         found = identify_actuator([item for group in series for item in group], motor, step)
-        merged = merge_actuator(loaded, found) if loaded else None
-        if report is not None:
-            from nrs_design.reporting.identification import actuator_report
+    outputs.deliver(
+        "identify-actuator",
+        summary=lambda: _summary(found),
+        show=lambda: _print(found),
+        page=lambda: _page(found),
+        merge=lambda spec: merge_actuator(spec, found),
+        caveats=found.caveats,
+    )
 
-            step("figures")
-            write_report(report, actuator_report(found), date)
-    if write is not None and merged is not None:
-        write_spec(write, merged, quiet=quiet)
-        # A proof will rest on these values: no option silences this.
-        for doubt in found.caveats:
-            note(f"warning: {doubt}")
-    if as_json:
-        print_json("identify-actuator", _summary(found))
-    elif not quiet:
-        _print(found)
-    if report is not None:
-        note(f"page written to {report}", quiet=quiet)
+
+def _page(found: ActuatorIdentification) -> Report:
+    from nrs_design.reporting.identification import actuator_report
+
+    return actuator_report(found)
 
 
 def _print(found: ActuatorIdentification) -> None:
@@ -90,10 +83,10 @@ def _print(found: ActuatorIdentification) -> None:
     rows = [
         [
             fit.method,
-            interval(fit.gain),
-            interval(fit.time_constant),
-            interval(fit.friction) if fit.friction else "",
-            interval(fit.dead_time) if fit.dead_time else "",
+            str(fit.gain),
+            str(fit.time_constant),
+            str(fit.friction) if fit.friction else "",
+            str(fit.dead_time) if fit.dead_time else "",
         ]
         for fit in found.fits
     ]
@@ -102,13 +95,13 @@ def _print(found: ActuatorIdentification) -> None:
     say(f"chosen: {found.chosen.method}. {found.reason}")
     if found.chosen.dead_time and found.step:
         samples = found.chosen.dead_time.scaled(1 / found.step)
-        say(f"dead time = {interval(samples)} samples of {found.step:.4g} s")
+        say(f"dead time = {samples} samples of {found.step:.4g} s")
     motor = found.chosen.motor
     if motor is not None and motor.damping is not None:
         say(f"second order: damping ratio {motor.damping:.4g}; time constants add up")
     if found.figures is not None:
-        say(f"R = {interval(found.figures.resistance)} ohm")
-        say(f"speed over torque = {interval(found.figures.gradient)} rpm/(N m)")
+        say(f"R = {found.figures.resistance} ohm")
+        say(f"speed over torque = {found.figures.gradient} rpm/(N m)")
     for doubt in found.doubts:
         say(f"doubt: {doubt}")
 

@@ -6,13 +6,13 @@ import math
 import sys
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, TypeVar
+from typing import TYPE_CHECKING, Annotated, Any, Self, TypeVar
 
 import typer
 
-from nrs_design.cli.printing import note
+from nrs_design.cli.printing import note, print_json, progress
 from nrs_design.errors import OutputError
 from nrs_design.printable import printable
 
@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from nrs_design.identification.datasets import Source
     from nrs_design.identification.statistics import Estimate
     from nrs_design.reporting import Report
+    from nrs_design.spec import LoadedSpec
 
 DataFiles = Annotated[list[Path], typer.Argument(metavar="DATA...", help="Files of data.")]
 ColumnMap = Annotated[
@@ -86,28 +87,107 @@ def _bar(*, quiet: bool) -> Iterator[Callable[[str], Callable[[float], None]]]:
         yield begin
 
 
-def check_report(path: Path | None) -> None:
-    """Refuse a file type that cannot be written, before the work is done."""
-    if path is not None and path.suffix.lower() not in (".html", ".pdf"):
-        raise OutputError(
-            f"{path.suffix or 'no ending'} is not a type of report",
-            path=path,
-            remedy="name a file that ends in .html or .pdf",
-        )
-
-
-def write_report(path: Path, report: Report, date: datetime | None) -> None:
-    """Write a report in the format that the name of the file says.
+@dataclass(frozen=True, slots=True)
+class Outputs:
+    """Where a result goes: into a spec, onto a page, to stdout.
 
     Parameters
     ----------
-    path : Path
-        Ends in .html or .pdf.
-    report : Report
-        What is written.
+    spec : LoadedSpec or None
+        What it is merged into.
+    report : Path or None
+        The page: ends in .html or .pdf.
     date : datetime or None
-        What the user wants to read as its date.
+        What the user wants to read as the date of the page.
+    as_json, quiet : bool
+        Print JSON instead of text; print no text.
     """
+
+    spec: LoadedSpec | None
+    report: Path | None
+    date: datetime | None
+    as_json: bool
+    quiet: bool
+
+    @classmethod
+    def checked(
+        cls,
+        write: Path | None,
+        report: Path | None,
+        date: datetime | None,
+        *,
+        as_json: bool,
+        quiet: bool,
+    ) -> Self:
+        """Refuse what cannot be written, before the work is done.
+
+        Parameters
+        ----------
+        write : Path or None
+            A spec.
+        report, date, as_json, quiet
+            As for the class.
+
+        Raises
+        ------
+        OutputError
+            If the page is of no type that can be written.
+        SpecError
+            If there is something wrong with the spec.
+        """
+        from nrs_design.spec import read_spec
+
+        if report is not None and report.suffix.lower() not in (".html", ".pdf"):
+            raise OutputError(
+                f"{report.suffix or 'no ending'} is not a type of report",
+                path=report,
+                remedy="name a file that ends in .html or .pdf",
+            )
+        return cls(None if write is None else read_spec(write), report, date, as_json, quiet)
+
+    def deliver(
+        self,
+        command: str,
+        *,
+        summary: Callable[[], dict[str, Any]],
+        show: Callable[[], None],
+        page: Callable[[], Report],
+        merge: Callable[[LoadedSpec], str] | None = None,
+        caveats: Iterable[str] = (),
+    ) -> None:
+        """Write a result to where it is wanted, and print it.
+
+        Parameters
+        ----------
+        command : str
+            As the envelope of JSON names it.
+        summary, show : callable
+            Returns the content of JSON; prints the text.
+        page : callable
+            Returns the page.
+        merge : callable, optional
+            Returns the spec with the result in it.
+        caveats : iterable of str
+            What is doubtful about values that are merged.
+        """
+        merged = merge(self.spec) if merge and self.spec else None
+        if self.report is not None:
+            with progress("figures", quiet=self.quiet):
+                _write_page(self.report, page(), self.date)
+        if self.spec is not None and merged is not None:
+            _write_spec(self.spec.path, merged, quiet=self.quiet)
+            # A proof will rest on these values: no option silences this.
+            for caveat in caveats:
+                note(f"warning: {caveat}")
+        if self.as_json:
+            print_json(command, summary())
+        elif not self.quiet:
+            show()
+        if self.report is not None:
+            note(f"page written to {self.report}", quiet=self.quiet)
+
+
+def _write_page(path: Path, report: Report, date: datetime | None) -> None:
     from nrs_design.output import PAGE, PDF, write_output
     from nrs_design.reporting import render_html, render_pdf
 
@@ -118,18 +198,7 @@ def write_report(path: Path, report: Report, date: datetime | None) -> None:
         write_output(path, render_html(report), replaces=PAGE)
 
 
-def write_spec(path: Path, text: str, *, quiet: bool) -> None:
-    """Write a spec that has been merged.
-
-    Parameters
-    ----------
-    path : Path
-        The spec, which is replaced.
-    text : str
-        Its new text.
-    quiet : bool
-        Do not say so.
-    """
+def _write_spec(path: Path, text: str, *, quiet: bool) -> None:
     from nrs_design.output import write_output
 
     write_output(path, text)
@@ -148,8 +217,3 @@ def sources(files: Iterable[Source]) -> list[dict[str, Any]]:
         {"file": str(file.path), "sha256": file.sha256, "synthetic": file.synthetic}
         for file in files
     ]
-
-
-def interval(estimate: Estimate) -> str:
-    """Write an estimate with its interval."""
-    return str(estimate)

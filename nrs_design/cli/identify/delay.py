@@ -10,22 +10,20 @@ import typer
 from nrs_design.cli.identify.common import (
     SYNTHETIC,
     ColumnMap,
+    Outputs,
     ReportTo,
     WriteTo,
-    check_report,
-    interval,
     numbers,
     read_all,
     sources,
-    write_report,
-    write_spec,
 )
 from nrs_design.cli.options import Date, Json, Quiet
-from nrs_design.cli.printing import note, print_json, progress, say
+from nrs_design.cli.printing import progress, say
 from nrs_design.cli.tables import print_table
 
 if TYPE_CHECKING:
     from nrs_design.identification.delay import DelayIdentification
+    from nrs_design.reporting import Report
 
 INPUT, OUTPUT = "input_any", "output_any"
 
@@ -59,7 +57,6 @@ def delay(
     from nrs_design.identification.datasets import read_signals
     from nrs_design.identification.delay import identify_delay
     from nrs_design.identification.write_spec import merge_delay
-    from nrs_design.spec import read_spec
 
     if (command is None) != (measured is None):
         raise typer.BadParameter("name both columns or none", param_hint="--command, --measured")
@@ -68,31 +65,27 @@ def delay(
             "name the force as measured by --command, and as the law used it by --measured",
             param_hint="--write",
         )
-    check_report(report)
-    loaded = read_spec(write) if write is not None else None
+    outputs = Outputs.checked(write, report, date, as_json=as_json, quiet=quiet)
     entries = list(columns or [])
     if command is not None:
         entries += [f"{INPUT}={command}", f"{OUTPUT}={measured}"]
     (record,) = read_all([log], read_signals, entries, quiet=quiet)
-    with progress("fitting", quiet=quiet) as step:
+    with progress("fitting", quiet=quiet):
         found = identify_delay(record)
-        merged = merge_delay(loaded, found) if loaded else None
-        if report is not None:
-            from nrs_design.reporting.delay import delay_report
+    outputs.deliver(
+        "identify-delay",
+        summary=lambda: _summary(found),
+        show=lambda: _print(found),
+        page=lambda: _page(found),
+        merge=lambda spec: merge_delay(spec, found),
+        caveats=found.caveats,
+    )
 
-            step("figures")
-            write_report(report, delay_report(found), date)
-    if write is not None and merged is not None:
-        write_spec(write, merged, quiet=quiet)
-        # A proof will rest on this delay: no option silences this.
-        for doubt in found.caveats:
-            note(f"warning: {doubt}")
-    if as_json:
-        print_json("identify-delay", _summary(found))
-    elif not quiet:
-        _print(found)
-    if report is not None:
-        note(f"page written to {report}", quiet=quiet)
+
+def _page(found: DelayIdentification) -> Report:
+    from nrs_design.reporting.delay import delay_report
+
+    return delay_report(found)
 
 
 def _print(found: DelayIdentification) -> None:
@@ -108,8 +101,8 @@ def _print(found: DelayIdentification) -> None:
         for fit in found.fits
     ]
     print_table("", ["beside", "delay in samples", "BIC - least"], rows)
-    say(f"delay = {interval(found.samples)} samples of {record.step:.4g} s [95 %]")
-    say(f"delay = {interval(found.delay)} s, beside {found.chosen.follower.name}")
+    say(f"delay = {found.samples} samples of {record.step:.4g} s [95 %]")
+    say(f"delay = {found.delay} s, beside {found.chosen.follower.name}")
     low, high = found.whole_samples
     say(f"whole samples that hold it, and every part of the record: {low} to {high}")
     for doubt in found.doubts:

@@ -2,119 +2,68 @@
 
 from __future__ import annotations
 
-from enum import StrEnum
-from typing import TYPE_CHECKING, Annotated, Any
-
-import typer
+from typing import TYPE_CHECKING, Any
 
 from nrs_design.cli.identify.common import (
     SYNTHETIC,
     ColumnMap,
     DataFiles,
+    Outputs,
     ReportTo,
     WriteTo,
-    check_report,
-    interval,
     numbers,
     read_all,
     sources,
-    write_report,
-    write_spec,
+)
+from nrs_design.cli.identify.tissue_options import (
+    Contact,
+    ContactOption,
+    Covers,
+    CoversOption,
+    Drift,
+    DriftOption,
+    End,
+    EnvironmentName,
+    LeverArm,
+    Model,
+    ModelOption,
+    NegateForce,
+    Preload,
+    Prony,
+    SkipCycles,
+    Start,
+    Tare,
+    Zero,
 )
 from nrs_design.cli.options import Date, Json, Quiet
-from nrs_design.cli.printing import note, print_json, progress, say
+from nrs_design.cli.printing import progress, say
 from nrs_design.cli.tables import print_table
 
 if TYPE_CHECKING:
     from nrs_design.identification.tissue import ModelFit, RecordFit, TissueIdentification
     from nrs_design.identification.tissue.prony import Series
     from nrs_design.identification.tissue.tangent import Tangent
-
-
-class ModelOption(StrEnum):
-    """Laws by name."""
-
-    AUTO = "auto"
-    ELASTIC = "elastic"
-    KELVIN_VOIGT = "kelvin-voigt"
-    MAXWELL = "maxwell"
-    KELVIN_BOLTZMANN = "kelvin-boltzmann"
-    HUNT_CROSSLEY = "hunt-crossley"
-
-
-class ContactOption(StrEnum):
-    """Whether air is looked for."""
-
-    AUTO = "auto"
-    GIVEN = "given"
-
-
-class DriftOption(StrEnum):
-    """Whether the tare of the force moves."""
-
-    AUTO = "auto"
-    FIT = "fit"
-    NONE = "none"
-
-
-class CoversOption(StrEnum):
-    """What the range in a spec holds."""
-
-    CONFIDENCE = "confidence"
-    TOLERANCE = "tolerance"
-    PREDICTION = "prediction"
+    from nrs_design.reporting import Report
 
 
 def tissue(
     data: DataFiles,
-    model: Annotated[
-        ModelOption, typer.Option(help="Law to choose; auto compares them all.")
-    ] = ModelOption.AUTO,
+    model: Model = ModelOption.AUTO,
     columns: ColumnMap = None,
-    start: Annotated[
-        float | None, typer.Option("--from", metavar="S", help="First second that is used.")
-    ] = None,
-    end: Annotated[
-        float | None, typer.Option("--to", metavar="S", help="Last second that is used.")
-    ] = None,
-    contact: Annotated[
-        ContactOption,
-        typer.Option(help="Find air and touches, or take the whole record as in contact."),
-    ] = ContactOption.AUTO,
-    zero: Annotated[
-        str, typer.Option(metavar="POSITION", help="Position of contact, as in '0.1 m'.")
-    ] = "fit",
-    tare: Annotated[
-        str, typer.Option(metavar="FORCE", help="Force in air, as in '-1.3 N' (or N*m).")
-    ] = "fit",
-    drift: Annotated[
-        DriftOption, typer.Option(help="Let the tare move with time; auto asks the air.")
-    ] = DriftOption.AUTO,
-    skip_cycles: Annotated[
-        int, typer.Option(min=0, metavar="N", help="First loading cycles to set apart.")
-    ] = 0,
-    negate_force: Annotated[
-        bool, typer.Option("--negate-force", help="Change the sign of the force.")
-    ] = False,
-    covers: Annotated[
-        CoversOption,
-        typer.Option(help="What the range holds: the mean, 95 % of specimens, or the next one."),
-    ] = CoversOption.CONFIDENCE,
-    preload: Annotated[
-        str | None,
-        typer.Option(metavar="LOW..HIGH", help="Linearize about deflections, as in '1 mm..3 mm'."),
-    ] = None,
-    prony: Annotated[
-        bool, typer.Option("--prony", help="Fit a Prony series, too: is one relaxation enough?")
-    ] = False,
-    lever_arm: Annotated[
-        str | None,
-        typer.Option(metavar="LENGTH", help="Distance from pivot to contact, as in '0.24 m'."),
-    ] = None,
+    start: Start = None,
+    end: End = None,
+    contact: Contact = ContactOption.AUTO,
+    zero: Zero = "fit",
+    tare: Tare = "fit",
+    drift: Drift = DriftOption.AUTO,
+    skip_cycles: SkipCycles = 0,
+    negate_force: NegateForce = False,
+    covers: Covers = CoversOption.CONFIDENCE,
+    preload: Preload = None,
+    prony: Prony = False,
+    lever_arm: LeverArm = None,
     write: WriteTo = None,
-    environment: Annotated[
-        str | None, typer.Option(metavar="NAME", help="Environment of the spec to write to.")
-    ] = None,
+    environment: EnvironmentName = None,
     report: ReportTo = None,
     date: Date = None,
     as_json: Json = False,
@@ -135,10 +84,8 @@ def tissue(
     from nrs_design.identification.lever import parse_arm, parse_offset, parse_preload
     from nrs_design.identification.tissue import Preparation, identify_tissue
     from nrs_design.identification.write_spec import merge_tissue
-    from nrs_design.spec import read_spec
 
-    check_report(report)
-    loaded = read_spec(write) if write is not None else None
+    outputs = Outputs.checked(write, report, date, as_json=as_json, quiet=quiet)
     records = read_all(data, read_tissue, columns or [], quiet=quiet)
     rotational = any(record.rotational for record in records)
     arm = parse_arm(lever_arm, rotational=rotational)
@@ -161,30 +108,24 @@ def tissue(
             parse_preload(preload, rotational=rotational),
             progress=step,
         )
-        series = _series(found) if prony else []
-        merged = merge_tissue(loaded, found, environment, lever_arm) if loaded else None
-        if report is not None:
-            from nrs_design.reporting.identification import tissue_report
-
-            step("figures")
-            write_report(report, tissue_report(found, arm), date)
-    if write is not None and merged is not None:
-        write_spec(write, merged, quiet=quiet)
-        # A proof will rest on these values: no option silences this.
-        for caveat in found.caveats:
-            note(f"warning: {caveat}")
-    if as_json:
-        listed = {"prony": [_series_summary(item) for item in series]} if prony else {}
-        print_json("identify-tissue", _summary(found, arm) | listed)
-    elif not quiet:
-        _print(found, arm)
-        for item in series:
-            say(_series_text(item, found.rotational))
-    if report is not None:
-        note(f"page written to {report}", quiet=quiet)
+        series = _series(found) if prony else None
+    outputs.deliver(
+        "identify-tissue",
+        summary=lambda: _summary(found, arm, series),
+        show=lambda: _print(found, arm, series or []),
+        page=lambda: _page(found, arm),
+        merge=lambda spec: merge_tissue(spec, found, environment, lever_arm),
+        caveats=found.caveats,
+    )
 
 
-def _print(found: TissueIdentification, arm: float | None) -> None:
+def _page(found: TissueIdentification, arm: float | None) -> Report:
+    from nrs_design.reporting.identification import tissue_report
+
+    return tissue_report(found, arm)
+
+
+def _print(found: TissueIdentification, arm: float | None, series: list[Series]) -> None:
     from nrs_design.identification.lever import units_of
 
     if found.synthetic:
@@ -208,7 +149,7 @@ def _print(found: TissueIdentification, arm: float | None) -> None:
     units = units_of(law, found.rotational)
     ranges = zip(law.parameters(), found.chosen.ranges, units, strict=True)
     for name, estimate, unit in ranges:
-        say(f"{name} = {interval(estimate)} {unit} holds {found.covers}")
+        say(f"{name} = {estimate} {unit} holds {found.covers}")
     if found.tangent is not None:
         _print_tangent(found.tangent, found.rotational)
     if found.chosen.box:
@@ -220,6 +161,8 @@ def _print(found: TissueIdentification, arm: float | None) -> None:
         turned = law.at_pivot(arm)
         values = zip(law.parameters(), turned.values, units_of(law, True), strict=True)
         say(f"at the pivot: {', '.join(f'{n} = {v:.6g} {u}' for n, v, u in values)}")
+    for item in series:
+        say(_series_text(item, found.rotational))
 
 
 def _series(found: TissueIdentification) -> list[Series]:
@@ -262,7 +205,7 @@ def _print_tangent(about: Tangent, rotational: bool) -> None:
     from nrs_design.identification.lever import units_of
 
     parts = zip(about.law.parameters(), about.ranges, units_of(about.law, rotational), strict=True)
-    values = ", ".join(f"{name} = {interval(estimate)} {unit}" for name, estimate, unit in parts)
+    values = ", ".join(f"{name} = {estimate} {unit}" for name, estimate, unit in parts)
     length = "rad" if rotational else "m"
     say(f"small motions about {about.low:.5g} to {about.high:.5g} {length}: {values}")
 
@@ -272,7 +215,7 @@ def _offsets(fit: RecordFit, rotational: bool) -> list[str]:
 
     texts = []
     for offset in fit.offsets:
-        value = interval(offset.estimate) if offset.fitted else f"{offset.estimate.value:.5g}"
+        value = str(offset.estimate) if offset.fitted else f"{offset.estimate.value:.5g}"
         rest = f" ({offset.provided})" if offset.provided else "" if offset.fitted else " (given)"
         unit = OFFSET_UNITS[offset.name][rotational]
         texts.append(f"{OFFSET_WORDS[offset.name]} {value} {unit}{rest}")
@@ -281,13 +224,16 @@ def _offsets(fit: RecordFit, rotational: bool) -> list[str]:
 
 def _parameters(model: ModelFit, units: tuple[str, ...]) -> list[str]:
     parts = zip(model.law.parameters(), model.estimates, units, strict=True)
-    return [f"{name} {interval(estimate)} {unit}" for name, estimate, unit in parts]
+    return [f"{name} {estimate} {unit}" for name, estimate, unit in parts]
 
 
-def _summary(found: TissueIdentification, arm: float | None) -> dict[str, Any]:
+def _summary(
+    found: TissueIdentification, arm: float | None, series: list[Series] | None
+) -> dict[str, Any]:
     from nrs_design.identification.lever import units_of
 
     law = found.chosen.law
+    listed = {} if series is None else {"prony": [_series_summary(item) for item in series]}
     return {
         "synthetic": found.synthetic,
         "records": sources(record.source for record in found.records),
@@ -321,6 +267,7 @@ def _summary(found: TissueIdentification, arm: float | None) -> dict[str, Any]:
         if arm is None
         else dict(zip(law.parameters(), law.at_pivot(arm).values, strict=True)),
         "models": [_model(model, found.rotational) for model in found.models],
+        **listed,
     }
 
 

@@ -45,6 +45,10 @@ class RunBounds:
     lever_arm : float or None
         That turns linear columns into rotational ones, in m; None where environments have none or
         several.
+    period : float or None
+        Of the processor that the proof is about, in s; None for a proof in continuous time.
+    losable : bool
+        Whether the spec asks for a proof that holds while contact is lost.
     """
 
     stiffness: Mapping[str, Stiffness | None]
@@ -53,6 +57,8 @@ class RunBounds:
     torque: float
     delay: float | None
     lever_arm: float | None
+    period: float | None
+    losable: bool
 
     def stiffness_in(self, mode: str | None) -> Stiffness | None:
         """Return what a controller may meet; for None, what any of them may."""
@@ -91,6 +97,8 @@ def bounds_of(loaded: LoadedSpec) -> RunBounds:
         torque=spec.limits.torque.si,
         delay=None if margin is None else margin.si,
         lever_arm=arms.pop() if len(arms) == 1 else None,
+        period=None if spec.sampling is None else spec.sampling.period.si,
+        losable=spec.contact == "losable",
     )
 
 

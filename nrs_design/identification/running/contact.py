@@ -29,7 +29,7 @@ class _Judged:
 
 
 def judge_contact(
-    log: RunLog, bounds: RunBounds, length: float, *, proved: bool
+    log: RunLog, bounds: RunBounds, length: float, *, proved: bool, losable: bool
 ) -> tuple[Check, Check, list[Window]]:
     """Judge stiffness and contact; a violation is claimed only where a whole interval is outside.
 
@@ -43,6 +43,8 @@ def judge_contact(
         Of a window, in s.
     proved : bool
         Whether that is proved.
+    losable : bool
+        Whether contact may be lost.
     """
     basis = "proved range" if proved else "range of the spec, not proved"
     reason = _missing(log, bounds)
@@ -63,7 +65,8 @@ def judge_contact(
     if told and sum(w.high < 0 for w in told) > _OPPOSED * len(told):
         reason = "force and deflection have opposite signs; turn one with another column"
         return _not_judged("stiffness", reason), _not_judged("contact", reason), windows
-    return _stiffness(log, judged, basis), _contact(log, judged, windows), windows
+    contact = _losable(judged, proved=proved) if losable else _contact(log, judged, windows)
+    return _stiffness(log, judged, basis), contact, windows
 
 
 def _missing(log: RunLog, bounds: RunBounds) -> str:
@@ -133,6 +136,13 @@ def _stiffness(log: RunLog, judged: list[_Judged], basis: str) -> Check:
         return Check("stiffness", Status.OUTSIDE, measured, allowed, basis, first)
     status = Status.UNDECIDED if open_ends else Status.INSIDE
     return Check("stiffness", status, measured, allowed, basis)
+
+
+def _losable(judged: list[_Judged], *, proved: bool) -> Check:
+    free = sum(item.free for item in judged)
+    measured = f"{free} of {len(judged)} windows without contact"
+    basis = "covered by the proof" if proved else "asked for by the spec, not proved"
+    return Check("contact", Status.INSIDE, measured, "lost and made again at any time", basis)
 
 
 def _contact(log: RunLog, judged: list[_Judged], windows: list[Window]) -> Check:

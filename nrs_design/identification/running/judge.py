@@ -66,6 +66,7 @@ def judge_run(
     bounds: RunBounds,
     *,
     proved: bool,
+    losable: bool = False,
     window: float = WINDOW,
     command_limit: float | None = None,
 ) -> RunJudgement:
@@ -79,18 +80,22 @@ def judge_run(
         What the spec promises.
     proved : bool
         Whether a valid certificate proves it.
+    losable : bool
+        Whether what it proves holds while contact is lost and made again.
     window : float
         Length of the windows of stiffness in s.
     command_limit : float, optional
         Where the driver saturates, in units of the command.
     """
-    stiffness, contact, windows = judge_contact(log, bounds, window, proved=proved)
+    stiffness, contact, windows = judge_contact(
+        log, bounds, window, proved=proved, losable=losable if proved else bounds.losable
+    )
     checks = (
         stiffness,
         contact,
         judge_stays(log, bounds),
         judge_delay(log, bounds),
-        judge_jitter(log),
+        judge_jitter(log, bounds),
         judge_saturation(log, command_limit),
         judge_force(log, bounds),
     )

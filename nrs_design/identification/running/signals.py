@@ -13,7 +13,6 @@ from nrs_design.identification.running.log import RunLog
 from nrs_design.identification.running.stiffness import noise_variance
 from nrs_design.identification.statistics import CONFIDENCE, student_quantile
 
-_CONTINUOUS = "none: the proof is in continuous time"
 _ASSUMED = "taken for granted by the proof"
 
 
@@ -41,7 +40,7 @@ def judge_delay(log: RunLog, bounds: RunBounds) -> Check:
     if found.doubts:
         return Check("delay", Status.NOT_JUDGED, f"{words}, in doubt: {found.doubts[0]}", "", "")
     if bounds.delay is None:
-        return Check("delay", Status.NOT_MODELLED, words, _CONTINUOUS, _ASSUMED)
+        return Check("delay", Status.NOT_MODELLED, words, _time_of(bounds), _ASSUMED)
     status = Status.UNDECIDED if high >= bounds.delay else Status.INSIDE
     first = None
     if low > bounds.delay:
@@ -50,17 +49,28 @@ def judge_delay(log: RunLog, bounds: RunBounds) -> Check:
     return Check("delay", status, words, allowed, "delay margin of the design", first)
 
 
-def judge_jitter(log: RunLog) -> Check:
+def judge_jitter(log: RunLog, bounds: RunBounds) -> Check:
     """Judge how even the steps of time are.
 
     Parameters
     ----------
     log : RunLog
         The data.
+    bounds : RunBounds
+        What the spec promises.
     """
     steps = np.diff(log.time)
     words = f"steps from {steps.min():.4g} to {steps.max():.4g} s, usually {log.step:.4g} s"
-    return Check("jitter", Status.NOT_MODELLED, words, _CONTINUOUS, _ASSUMED)
+    return Check("jitter", Status.NOT_MODELLED, words, _time_of(bounds), _ASSUMED)
+
+
+def _time_of(bounds: RunBounds) -> str:
+    """Say what time the proof knows; there is no dead time of the motion in either."""
+    if bounds.period is None:
+        return "none: the proof is in continuous time"
+    return (
+        f"none: the proof is about a motion that follows at once, sampled every {bounds.period:g} s"
+    )
 
 
 def judge_saturation(log: RunLog, limit: float | None) -> Check:
@@ -99,7 +109,7 @@ def judge_force(log: RunLog, bounds: RunBounds) -> Check:
     bounds : RunBounds
         What the spec promises.
     """
-    allowed, basis = f"up to {bounds.torque:g} N m", "limit of the spec; no proof bounds it"
+    allowed, basis = f"up to {bounds.torque:g} N m", "limit of the spec, not of the proof"
     torque = log.columns.get("torque")
     if torque is None and "force" in log.columns and bounds.lever_arm is not None:
         torque = log.columns["force"] * bounds.lever_arm

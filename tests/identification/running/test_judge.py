@@ -14,6 +14,7 @@ from tests.identification import runs
 from tests.support import COMMUTING, ROBOT, SOFT_TISSUE
 
 SOFT = bounds_of(read_spec(SOFT_TISSUE))
+SAMPLED = bounds_of(read_spec(ROBOT / "soft-tissue-sampled.nrs.yaml"))
 
 
 def log(tmp_path, data=None, text=None, entries=()):
@@ -82,6 +83,24 @@ def test_lost_contact(tmp_path):
     assert str(contact.status) == "outside"
     assert contact.first.time == 0.0
     assert str(check(found, "stiffness").status) != "outside"
+
+
+def test_lost_contact_that_the_proof_covers(tmp_path):
+    found = judged(log(tmp_path, runs.run(free=2.0)), losable=True)
+    contact = check(found, "contact")
+    assert (str(contact.status), contact.basis) == ("inside", "covered by the proof")
+    assert contact.measured == "4 of 20 windows without contact"
+    assert found.verdict != "outside"
+    asked = judge_run(log(tmp_path, runs.run(free=2.0)), SAMPLED, proved=False)
+    assert check(asked, "contact").basis == "asked for by the spec, not proved"
+    kept = judge_run(log(tmp_path, runs.run(free=2.0)), SAMPLED, proved=True)
+    assert str(check(kept, "contact").status) == "outside"
+
+
+def test_a_sampled_proof_is_not_called_continuous(tmp_path):
+    found = judged(log(tmp_path), SAMPLED)
+    assert "sampled every 0.002 s" in check(found, "jitter").allowed
+    assert "continuous" in check(judged(log(tmp_path)), "jitter").allowed
 
 
 def test_opposite_signs_are_named(tmp_path):

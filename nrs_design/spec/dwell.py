@@ -36,11 +36,24 @@ def find_changing_parameter(parameters: Mapping[str, ParameterSpec]) -> DwellObs
 
 
 def find_changing_contact(
-    controllers: Mapping[str, ControllerSpec], environments: Mapping[str, EnvironmentSpec]
+    controllers: Mapping[str, ControllerSpec],
+    environments: Mapping[str, EnvironmentSpec],
+    *,
+    by_contact: bool = False,
 ) -> DwellObstacle | None:
-    """Find what changes while one controller is active: the environment obeys no rule of ours."""
+    """Find what changes while one controller is active: the environment obeys no rule of ours.
+
+    Parameters
+    ----------
+    controllers : mapping of str to ControllerSpec
+        All of them.
+    environments : mapping of str to EnvironmentSpec
+        That they touch.
+    by_contact : bool
+        The rules of switching are about the environment that is touched, too.
+    """
     for name, controller in controllers.items():
-        if len(controller.contacts) > 1:
+        if len(controller.contacts) > 1 and not by_contact:
             return DwellObstacle(
                 f"a dwell time and several contacts of {name!r} exclude each other: the contact "
                 "may change at any time, whatever the controller",

@@ -57,6 +57,7 @@ TORQUE = QuantityKind(
         "N": "that is a force: multiply it by its lever arm and write N*m",
     },
 )
+TORQUE_RATE = QuantityKind("a rate of torque", ("N*m/s",), "6 N*m/s")
 BANDWIDTH = QuantityKind(
     "a bandwidth",
     ("rad/s", "Hz"),

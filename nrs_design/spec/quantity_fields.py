@@ -260,7 +260,12 @@ Zero = Annotated[Quantity, _quantity(kinds.ZERO), _schema(kinds.ZERO)]
 AngularVelocity = Annotated[
     Quantity, _quantity(kinds.ANGULAR_VELOCITY), _schema(kinds.ANGULAR_VELOCITY)
 ]
+SignedAngularVelocity = Annotated[
+    Quantity, _quantity(kinds.ANGULAR_VELOCITY, signed=True), _schema(kinds.ANGULAR_VELOCITY)
+]
 Torque = Annotated[Quantity, _quantity(kinds.TORQUE), _schema(kinds.TORQUE)]
+SignedTorque = Annotated[Quantity, _quantity(kinds.TORQUE, signed=True), _schema(kinds.TORQUE)]
+TorqueRate = Annotated[Quantity, _quantity(kinds.TORQUE_RATE), _schema(kinds.TORQUE_RATE)]
 Bandwidth = Annotated[Quantity, _quantity(kinds.BANDWIDTH), _schema(kinds.BANDWIDTH)]
 LeverArm = Annotated[Quantity, _quantity(kinds.LEVER_ARM), _schema(kinds.LEVER_ARM)]
 Impedance = Annotated[Quantity, _quantity(kinds.IMPEDANCE), _schema(kinds.IMPEDANCE)]

@@ -17,6 +17,7 @@ from nrs_design.switched.assumptions import (
     scale_texts,
 )
 from nrs_design.switched.constraints import assemble_switching
+from nrs_design.switched.logic_assumptions import logic_texts
 from nrs_design.switched.parameters import corner_modes, fixed_parameter, read_parameters
 
 if TYPE_CHECKING:
@@ -153,7 +154,12 @@ def assemble(
         )
     else:
         raise AssemblyError(f"unknown coordinates {coordinates!r}: deflection or force")
-    texts = (*system.assumptions, *identified_texts(spec), *scale_texts(scale))
+    texts = (
+        *system.assumptions,
+        *logic_texts(spec),
+        *identified_texts(spec),
+        *scale_texts(scale),
+    )
     return replace(system, assumptions=texts)
 
 

@@ -98,6 +98,8 @@ def close_loop(
         controller.name: tuple(_controller_modes(controller, plant, state, boxes[controller.name]))
         for controller in design.controllers
     }
+    if rules.names_contacts:
+        parts = {mode.name: (mode,) for mode in chain.from_iterable(parts.values())}
     groups = {key: tuple(Corner(mode.name) for mode in part) for key, part in parts.items()}
     reset = idle is not None and idle.reset
     resets = resets_of(design, state.motion.order, state.idle_count) if reset else ()

@@ -15,6 +15,7 @@ if TYPE_CHECKING:
         ForceControllerSpec,
         IdleStatesSpec,
         ImpedanceControllerSpec,
+        ParallelControllerSpec,
         PositionControllerSpec,
     )
     from nrs_design.spec.doubts import Doubt, doubt_spec
@@ -79,6 +80,7 @@ __all__ = [
     "LoadedSpec",
     "ModeSpec",
     "MotionLoopSpec",
+    "ParallelControllerSpec",
     "ParameterSpec",
     "PositionControllerSpec",
     "ProvenanceSpec",
@@ -103,7 +105,8 @@ _HOMES = {
     for module, names in {
         "affine": "Affine",
         "controllers": "ControllerSpec CostWeights ForceControllerSpec "
-        "IdleStatesSpec ImpedanceControllerSpec PositionControllerSpec",
+        "IdleStatesSpec ImpedanceControllerSpec ParallelControllerSpec "
+        "PositionControllerSpec",
         "doubts": "Doubt doubt_spec",
         "environment": "ElasticSpec EnvironmentSpec KelvinVoigtSpec",
         "exact": "parse_exact",

@@ -81,7 +81,8 @@ def check_applicable(goals: GoalsSpec | None, types: set[str], *at: str) -> None
         return
     if not types:
         raise fault(
-            "there is no controller that a goal applies to: position control has no contact",
+            "there is no controller that a goal applies to: they are for impedance and force "
+            "control",
             "remove goals",
             *at,
         )

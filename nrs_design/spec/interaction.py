@@ -151,7 +151,9 @@ class InteractionDesignSpec(SpecModel):
             ),
             partial(_check_memories, self.controllers, self.environments, self.coordinates),
             lambda: check_applicable(
-                self.goals, {c.type for c in self.controllers.values() if c.contacts}, "goals"
+                self.goals,
+                {c.type for c in self.controllers.values() if "goals" in type(c).model_fields},
+                "goals",
             ),
             lambda: check_names(
                 self.switching,

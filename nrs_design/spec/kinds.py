@@ -107,6 +107,12 @@ FORCE_GAIN = QuantityKind(
         "1/(N*m)": "the gain gives an angle: write '{value} rad/(N*m)'",
     },
 )
+INTEGRAL_FORCE_GAIN = QuantityKind(
+    "an integral force gain",
+    ("rad/(N*m*s)",),
+    "0.5 rad/(N*m*s)",
+    {"rad/(N*m)": "that is a proportional gain: write '{value} rad/(N*m*s)'"},
+)
 
 LINEAR_STIFFNESS = QuantityKind("a linear stiffness", ("N/m",), "747.1461 N/m")
 LINEAR_DAMPING = QuantityKind("a linear damping", ("N*s/m",), "5 N*s/m")

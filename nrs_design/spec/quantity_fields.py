@@ -269,6 +269,9 @@ TorqueRate = Annotated[Quantity, _quantity(kinds.TORQUE_RATE), _schema(kinds.TOR
 Bandwidth = Annotated[Quantity, _quantity(kinds.BANDWIDTH), _schema(kinds.BANDWIDTH)]
 LeverArm = Annotated[Quantity, _quantity(kinds.LEVER_ARM), _schema(kinds.LEVER_ARM)]
 Impedance = Annotated[Quantity, _quantity(kinds.IMPEDANCE), _schema(kinds.IMPEDANCE)]
+IntegralForceGain = Annotated[
+    Quantity, _quantity(kinds.INTEGRAL_FORCE_GAIN), _schema(kinds.INTEGRAL_FORCE_GAIN)
+]
 ForceGain = Annotated[Quantity, _quantity(kinds.FORCE_GAIN), _schema(kinds.FORCE_GAIN)]
 Stiffness = Annotated[
     RangedQuantity, _ranged(kinds.STIFFNESS, positive=True), _ranged_schema(kinds.STIFFNESS)

@@ -181,7 +181,8 @@ def _shared_law(design: ControllerDesign, *, mixed: bool) -> CompliantLaw:
         raise AssemblyError(
             f"the controllers keep different states of their own ({found}), so their modes share "
             "no state",
-            remedy="give all impedance controllers a virtual inertia Mt > 0, or none of them",
+            remedy="give all impedance controllers a virtual inertia Mt > 0, or none of them; mix "
+            "no parallel controllers with others",
             at=("controllers",),
         )
     return leading[0]

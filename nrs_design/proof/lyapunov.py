@@ -7,6 +7,7 @@ it: the test is a proof in either direction, and no eigenvalue is computed.
 
 from __future__ import annotations
 
+from bisect import bisect_left
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
@@ -130,8 +131,7 @@ def check_quadratic(
 def _work(modes: Sequence[Mode], P: RationalMatrix, time: Time, rate: Fraction) -> int:
     """Predict what one decision about P and all modes takes; see `MAX_WORK`."""
     longest = max(
-        (max(bit_length(mode.A.numerators), mode.A.denominator.bit_length()) for mode in modes),
-        default=0,
+        max(bit_length(mode.A.numerators), mode.A.denominator.bit_length()) for mode in modes
     )
     long = max(rate.numerator.bit_length(), rate.denominator.bit_length())
     n = len(P.numerators)
@@ -174,7 +174,7 @@ def _best_rate(modes: Sequence[Mode], P: RationalMatrix, time: Time) -> Fraction
 
     first = _decay_bound(modes, P) if time is Time.CONTINUOUS else Fraction(1, 2)
     low = first / 2 ** _least(lambda k: is_proved(first / 2**k))
-    high = 2 * low if time is Time.CONTINUOUS or low < Fraction(1, 2) else Fraction(1)
+    high = 2 * low
     for _ in range(RATE_BITS):
         middle = (low + high) / 2
         low, high = (middle, high) if is_proved(middle) else (low, middle)
@@ -183,13 +183,10 @@ def _best_rate(modes: Sequence[Mode], P: RationalMatrix, time: Time) -> Fraction
 
 def _least(holds: Callable[[int], bool]) -> int:
     """Return the least natural number with a property that all greater ones have, too."""
-    fails, found = -1, 0
-    while not holds(found):
-        fails, found = found, 2 * found + 1
-    while found - fails > 1:
-        middle = (fails + found) // 2
-        fails, found = (fails, middle) if holds(middle) else (middle, found)
-    return found
+    limit = 1
+    while not holds(limit):
+        limit *= 2
+    return bisect_left(range(limit), True, key=holds)
 
 
 def _decay_bound(modes: Sequence[Mode], P: RationalMatrix) -> Fraction:

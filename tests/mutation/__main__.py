@@ -24,7 +24,7 @@ EQUIVALENT = Path(__file__).with_name("equivalent.toml")
 # Files of evidence that are no kind, so that no example is tampered with.
 SHARED = {"abstract", "fields", "flow", "function", "__init__"}
 # A mutant may loop for ever, or count to the end of memory: for each test, and for the process.
-SECONDS, BYTES = 30, 4 << 30
+SECONDS, BYTES = 10, 4 << 30
 # The same few examples each time, none remembered, and none made smaller.
 hypothesis.settings.register_profile(
     "mutation",

@@ -107,6 +107,14 @@ def test_stays_by_mode():
     assert in_steps == {"m0": Stay(Fraction(1)), **dict(own), "m2": Stay(Fraction(1), Fraction(9))}
 
 
+def test_what_nothing_is_said_of():
+    assert Stay() == Stay(Fraction(0), None)
+    assert not Contact(()).required
+    one_and_a_half = Switching(Fraction(3, 2))
+    in_steps = family([["1/2"]], time=Time.DISCRETE, switching=one_and_a_half)
+    assert in_steps.stays() == {"m0": Stay(Fraction(3, 2))}
+
+
 def test_modes_that_need_never_be_left():
     rules = Switching(stays=(("m0", Stay(HALF)), ("m1", Stay(HALF, HALF))))
     modes = family([[1]], [[2]], [[3]], switching=rules).lasting_modes()
@@ -175,6 +183,7 @@ def free(*matrices, names=("f0", "f1", "f2")):
     return Contact(tuple(Mode(name, matrix(A)) for name, A in zip(names, matrices, strict=False)))
 
 
+THREE = family([[0, 0, 0], [0, 0, 0], [0, 0, 0]])
 MOVING, AT_REST = [[-2, 0], [1, 0]], [[-1, 0], [0, 0]]
 STEP = [["4/5", 0], ["1/10", 1]]
 
@@ -214,11 +223,18 @@ def test_free_modes_that_make_no_sense(contact, reason):
         (bouncing(), free(MOVING)),
         (bouncing(), free(MOVING, AT_REST)),
         (bouncing_in_steps(), free(STEP)),
-        (family([[0, 0, 0], [0, 0, 0], [0, 0, 0]]), free([[-2, 1, 0], [0, -2, 0], [0, 1, 0]])),
+        (THREE, free([[-2, 1, 0], [0, -2, 0], [0, 1, 0]])),
     ],
 )
 def test_free_modes_that_make_sense(system, contact):
     assert replace(system, contact=contact).find_contradiction() is None
+
+
+@pytest.mark.parametrize("push", [[1, 0], [0, 1]])
+def test_no_state_is_pushed_in_free_motion(push):
+    rows = [[-2, 1, push[0]], [0, -2, push[1]], [0, 1, 0]]
+    system = replace(THREE, contact=free(rows))
+    assert "acts on the other states" in system.find_contradiction()
 
 
 @pytest.mark.parametrize("last", ["9/10", 0, 2])

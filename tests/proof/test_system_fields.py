@@ -82,6 +82,11 @@ def test_malformed_systems(field, value, reason):
         read_system("x", {**stored(RULED), field: value})
 
 
+def test_a_system_without_modes_and_states():
+    with pytest.raises(ValueError, match="largest mode"):
+        read_system("x", {**stored(RULED), "modes": [], "states": []})
+
+
 def test_two_modes_of_one_name():
     fields = stored(RULED)
     fields["modes"][1]["name"] = "m0"

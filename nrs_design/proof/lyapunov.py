@@ -11,6 +11,7 @@ from bisect import bisect_left
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
+from operator import mul
 
 from nrs_design.proof.exact import (
     MAX_WORK,
@@ -190,11 +191,14 @@ def _least(holds: Callable[[int], bool]) -> int:
 
 
 def _decay_bound(modes: Sequence[Mode], P: RationalMatrix) -> Fraction:
-    """Return a power of two above every provable alpha: above ``-x'PAx / x'Px`` at one x."""
+    """Return a power of two above half of every provable alpha.
+
+    All are below ``-x'PAx / x'Px`` at one x, here the first unit vector.
+    """
     Q, A = P.numerators, modes[0].A
     first = sum(Q[0][k] * A.numerators[k][0] for k in range(len(Q)))
-    bound = -Fraction(first, Q[0][0] * A.denominator)
-    return Fraction(2) ** (bound.numerator.bit_length() - bound.denominator.bit_length() + 1)
+    bound = Fraction(first, Q[0][0] * A.denominator)
+    return Fraction(2) ** (bound.numerator.bit_length() - bound.denominator.bit_length())
 
 
 def _counterexample(
@@ -204,8 +208,7 @@ def _counterexample(
     rows = P.fractions()
     if mode is None:
         return Counterexample(None, vector, _value(rows, vector, vector))
-    A = mode.A.fractions()
-    Ax = [sum((a * x for a, x in zip(row, vector, strict=True)), Fraction(0)) for row in A]
+    Ax = _times(mode.A.fractions(), vector)
     if time is Time.CONTINUOUS:
         value = 2 * _value(rows, vector, Ax) + 2 * rate * _value(rows, vector, vector)
     else:
@@ -228,14 +231,11 @@ def _value(
     rows: Sequence[Sequence[Fraction | int]], left: Sequence[Fraction], right: Sequence[Fraction]
 ) -> Fraction:
     """Return ``left' M right``."""
-    return sum(
-        (
-            u * m * v
-            for u, row in zip(left, rows, strict=True)
-            for m, v in zip(row, right, strict=True)
-        ),
-        Fraction(0),
-    )
+    return sum(map(mul, left, _times(rows, right)), Fraction(0))
+
+
+def _times(rows: Sequence[Sequence[Fraction | int]], x: Sequence[Fraction]) -> list[Fraction]:
+    return [sum(map(mul, row, x), Fraction(0)) for row in rows]
 
 
 def indefinite_vector(M: IntegerMatrix) -> tuple[Fraction, ...]:

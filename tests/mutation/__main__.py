@@ -8,6 +8,7 @@ import resource
 import signal
 import sys
 import tomllib
+from collections import Counter
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 
@@ -55,7 +56,7 @@ class Examination:
     def pytest_runtestloop(self, session: pytest.Session) -> bool:
         """Take the place of the one run of the tests."""
         if os.waitpid(self.start(session, None), 0)[1]:
-            sys.exit(f"{self.name}: its tests fail without any change")
+            raise session.Failed(f"{self.name}: its tests fail without any change")
         for mutant in self.candidates:
             if len(self.running) == len(os.sched_getaffinity(0)):
                 self.wait()
@@ -105,7 +106,9 @@ def main(names: list[str]) -> int:
     """Examine some modules of `proof`, or all; return how many mutants nobody noticed."""
     os.environ["OPENBLAS_NUM_THREADS"] = "1"
     os.chdir(ROOT)
-    return sum(examine(path, listed()) for path in chosen(names))
+    total = sum((examine(path, listed()) for path in chosen(names)), Counter())
+    print(in_words(total))
+    return total["unnoticed"]
 
 
 def chosen(names: list[str]) -> Iterator[Path]:
@@ -121,17 +124,31 @@ def listed() -> dict[str, dict[str, str]]:
     return tomllib.loads(EQUIVALENT.read_text(encoding="utf-8"))
 
 
-def examine(path: Path, reasons: dict[str, dict[str, str]]) -> int:
+def examine(path: Path, reasons: dict[str, dict[str, str]]) -> Counter[str]:
     """Run every mutant of a module that is not listed, and print those that no test noticed."""
     module = path.relative_to(PROOF).with_suffix("").as_posix()
     known = reasons.get(module, {})
     every = mutants(path.read_text(encoding="utf-8"))
-    print(f"{module}: {len(every)} mutants, {len(known)} equivalent", flush=True)
+    candidates = [mutant for mutant in every if mutant.name not in known]
     name = f"nrs_design.proof.{module.replace('/', '.')}".removesuffix(".__init__")
-    examination = Examination(name, path, (m for m in every if m.name not in known))
-    pytest.main([*OPTIONS, *QUIET, *own_tests(path)], plugins=[examination])
-    print(f"{module}: {len(examination.unnoticed)} unnoticed", flush=True)
-    return len(examination.unnoticed)
+    examination = Examination(name, path, candidates)
+    if pytest.main([*OPTIONS, *QUIET, *own_tests(path)], plugins=[examination]):
+        sys.exit(f"{module}: its tests fail without any change")
+    unnoticed = len(examination.unnoticed)
+    count = Counter(
+        mutants=len(every),
+        killed=len(candidates) - unnoticed,
+        equivalent=len(known),
+        unnoticed=unnoticed,
+    )
+    print(f"{module}: {in_words(count)}", flush=True)
+    return count
+
+
+def in_words(count: Counter[str]) -> str:
+    """Say how many mutants there are, and what became of them."""
+    words = ("mutants", "killed", "equivalent", "unnoticed")
+    return ", ".join(f"{count[word]} {word}" for word in words)
 
 
 def own_tests(path: Path) -> list[str]:

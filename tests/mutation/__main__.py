@@ -9,8 +9,10 @@ import signal
 import sys
 import tomllib
 from collections import Counter
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
+from multiprocessing.sharedctypes import RawArray
 from pathlib import Path
+from time import process_time
 
 import hypothesis
 import pytest
@@ -24,8 +26,9 @@ TESTS = ROOT / "tests" / "proof"
 EQUIVALENT = Path(__file__).with_name("equivalent.toml")
 # Files of evidence that are no kind, so that no example is tampered with.
 SHARED = {"abstract", "fields", "flow", "function", "__init__"}
-# A mutant may loop for ever, or count to the end of memory: for each test, and for the process.
-SECONDS, BYTES = 10, 4 << 30
+# A mutant may loop for ever, or count to the end of memory. A test gets so many times what it
+# takes without a change, and so many seconds more.
+TIMES, SECONDS, BYTES = 5, 5, 4 << 30
 # The same few examples each time, none remembered, and none made smaller.
 hypothesis.settings.register_profile(
     "mutation",
@@ -49,14 +52,23 @@ class Examination:
 
     def __init__(self, name: str, path: Path, candidates: Iterable[Mutant]) -> None:
         self.name, self.path, self.candidates = name, path, candidates
+        self.items: list[pytest.Item] = []
+        self.took: Sequence[float] = ()
         self.unnoticed: list[str] = []
         self.running: dict[int, str] = {}
 
     @pytest.hookimpl(tryfirst=True)
     def pytest_runtestloop(self, session: pytest.Session) -> bool:
         """Take the place of the one run of the tests."""
+        self.items = session.items
+        # In memory that the processes share.
+        self.took = RawArray("d", [60.0] * len(self.items))
         if os.waitpid(self.start(session, None), 0)[1]:
             raise session.Failed(f"{self.name}: its tests fail without any change")
+        # The quickest first.
+        order = sorted(range(len(self.items)), key=self.took.__getitem__)
+        self.items = [self.items[k] for k in order]
+        self.took = RawArray("d", [self.took[k] for k in order])
         for mutant in self.candidates:
             if len(self.running) == len(os.sched_getaffinity(0)):
                 self.wait()
@@ -92,13 +104,14 @@ class Examination:
         signal.setitimer(signal.ITIMER_PROF, SECONDS)
         if mutant:
             graft(importlib.import_module(self.name), mutant.compile(self.path))
-        # Known answers take the least time and fail the most.
-        items = sorted(session.items, key=lambda item: hasattr(item.obj, "hypothesis"))
-        for item, following in zip(items, [*items[1:], None], strict=True):
-            signal.setitimer(signal.ITIMER_PROF, SECONDS)
-            item.config.hook.pytest_runtest_protocol(item=item, nextitem=following)
+        for k, item in enumerate(self.items):
+            signal.setitimer(signal.ITIMER_PROF, SECONDS + TIMES * self.took[k])
+            begin, following = process_time(), self.items[k + 1 : k + 2]
+            item.config.hook.pytest_runtest_protocol(item=item, nextitem=(*following, None)[0])
             if session.testsfailed:
                 return 1
+            if not mutant:
+                self.took[k] = process_time() - begin
         return 0
 
 

@@ -165,11 +165,12 @@ def in_words(count: Counter[str]) -> str:
 
 
 def own_tests(path: Path) -> list[str]:
-    """Return what mirrors a module, and for a kind of evidence the tampering with its examples."""
+    """Return what mirrors a module, and for a kind of evidence the tests of all kinds, too."""
     mirror = TESTS / path.relative_to(PROOF).with_name(f"test_{path.name}")
     tests = [str(mirror if mirror.exists() else TESTS)]
     if path.parent != PROOF and path.stem not in SHARED:
         kind = path.stem.replace("_", "-")
+        tests.append(f"{TESTS}/evidence/test_abstract.py::test_facts_of_the_kinds")
         tests += [str(TESTS / "evidence/test_tampering.py"), "-k", f"not tampering or {kind}"]
     return tests
 

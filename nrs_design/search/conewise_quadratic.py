@@ -59,13 +59,14 @@ class Motions:
     pulls: Array
 
     @classmethod
-    def of(cls, family: Family, contact: Contact) -> Motions:
+    def of(cls, family: Family) -> Motions:
         """Convert the motions of a system to the coordinates of a family."""
-        d = family.exponents
-        free = np.ldexp(to_floats([mode.A for mode in contact.free]), d[None, :] - d[:, None])
+        contact, d = family.system.contact or Contact(()), family.exponents
+        free = to_floats([mode.A for mode in contact.free]).reshape(-1, len(d), len(d))
         rows = [to_floats([q])[0, 0] for q in contact.pulls]
         pulls = np.ldexp(np.array(rows).reshape(-1, len(d)), d[None, :])
-        return cls(family.system.time, family.matrices, free, pulls)
+        scaled = np.ldexp(free, d[None, :] - d[:, None])
+        return cls(family.system.time, family.matrices, scaled, pulls)
 
     def transformed(self, T: Array) -> Motions:
         """Return the same in coordinates ``x = T z``."""
@@ -86,10 +87,9 @@ class Solution:
 def search_conewise(family: Family) -> Candidates[ConewiseQuadratic]:
     """Search for a function for contact and free motion; then, if asked to, raise the rate."""
     system = family.system
-    assert system.contact is not None  # the ladder
     if not np.isfinite(family.limit):
         return OUT_OF_RANGE
-    motions = Motions.of(family, system.contact)
+    motions = Motions.of(family)
     T = separating_coordinates(motions)
     own = motions.transformed(T)
     if not all(np.isfinite(part).all() for part in (T, own.contact, own.free, own.pulls)):
@@ -139,9 +139,14 @@ def _roundings(
     shift = -times * int(family.exponents[-1])
     for bits in digits():
         rows, log2 = unscale(np.ldexp(Q, -exponent), family.exponents, bits)
-        whole = Fraction(2) ** (log2 + shift)
-        multipliers = tuple(round(max(Fraction(float(m)), Fraction(0)) * whole) for m in scaled)
+        multipliers = numerators(scaled, log2 + shift)
         yield ConewiseQuadratic(rows, max(log2, 0), claim, multipliers)
+
+
+def numerators(multipliers: Array, log2: int) -> tuple[int, ...]:
+    """Round multipliers to integers over two to a power; none becomes negative."""
+    whole = Fraction(2) ** log2
+    return tuple(round(max(Fraction(float(entry)), Fraction(0)) * whole) for entry in multipliers)
 
 
 def separating_coordinates(motions: Motions) -> Array:

@@ -19,7 +19,7 @@ from nrs_design.proof.evidence import InvariantEllipsoid
 from nrs_design.proof.system import Channel, Output, SwitchedSystem, Time
 from nrs_design.search.allowance import Allowance
 from nrs_design.search.candidates import NO_MARGIN, OUT_OF_RANGE, Candidate, Candidates
-from nrs_design.search.conewise_quadratic import separating_coordinates
+from nrs_design.search.conewise_quadratic import Motions, numerators, separating_coordinates
 from nrs_design.search.family import Family, to_floats
 from nrs_design.search.rounding import unscale
 from nrs_design.search.sdp import maximize_margin, pack, program_cost, symmetric_basis
@@ -149,8 +149,10 @@ def search_ellipsoid(
         If time or memory do not suffice.
     """
     family = Family.of(system)
-    raw = _problem(family, channel, output)
-    T, size, level = _coordinates(raw, family)
+    motions = Motions.of(family)
+    raw = _problem(family, motions, channel, output)
+    T = separating_coordinates(motions)
+    size, level = _reach(raw, T)
     if not (np.isfinite(T).all() and isfinite(size) and isfinite(level) and size * level > 0):
         return OUT_OF_RANGE
     own = _transformed(raw, T, size, level)
@@ -190,37 +192,27 @@ def _roundings(
         log2 -= exponent
         if log2 < 0:
             rows, log2 = tuple(tuple(v << -log2 for v in row) for row in rows), 0
-        whole = Fraction(2) ** (log2 - times * int(family.exponents[-1]))
-        integers = (round(max(Fraction(float(m)), Fraction(0)) * whole) for m in multipliers)
-        yield replace(empty, Q=rows, denominator_log2=log2, multipliers=tuple(integers))
+        integers = numerators(multipliers, log2 - times * int(family.exponents[-1]))
+        yield replace(empty, Q=rows, denominator_log2=log2, multipliers=integers)
 
 
-def _problem(family: Family, channel: Channel, output: Output) -> Problem:
-    """Convert a system to floats, in the coordinates of a family, with a disturbance up to one."""
+def _problem(family: Family, motions: Motions, channel: Channel, output: Output) -> Problem:
+    """Join disturbance and output, in the coordinates of the family, with a disturbance up to one.
+
+    The columns of the disturbance are those of the modes in contact, then of the free ones.
+    """
     system, d = family.system, family.exponents
-    contact = system.contact
     columns = np.ldexp(to_floats(channel.columns)[:, :, 0] * float(channel.bound), -d[None, :])
-    free_modes = () if contact is None else contact.free
-    free = np.zeros((0, len(d), len(d)))
-    if free_modes:
-        free = np.ldexp(to_floats([mode.A for mode in free_modes]), d[None, :] - d[:, None])
-    maps = np.concatenate([np.concatenate([family.matrices, free]), columns[:, :, None]], axis=2)
-    pulls = np.zeros((0, len(d)))
-    if contact is not None and contact.pulls:
-        pulls = np.ldexp(np.array([to_floats([q])[0, 0] for q in contact.pulls]), d[None, :])
+    maps = np.concatenate([motions.contact, motions.free])
+    maps = np.concatenate([maps, columns[:, :, None]], axis=2)
     rows = np.ldexp(np.array([to_floats([q])[0, 0] for q in output.rows]), d[None, :])
-    count = len(system.modes)
-    return Problem(system.time, maps[:count], maps[count:], pulls, rows, contact is not None)
+    count, losable = len(system.modes), system.contact is not None
+    return Problem(system.time, maps[:count], maps[count:], motions.pulls, rows, losable)
 
 
-def _coordinates(problem: Problem, family: Family) -> tuple[Array, float, float]:
-    """Return coordinates, and how far state and output go in them under one mode alone."""
-    from nrs_design.search.conewise_quadratic import Motions
-
+def _reach(problem: Problem, T: Array) -> tuple[float, float]:
+    """Return how far state and output go under one mode alone, in coordinates ``x = T z``."""
     n = problem.order
-    T = separating_coordinates(
-        Motions(problem.time, family.matrices, problem.free[:, :, :n], problem.pulls)
-    )
     inverse = np.linalg.inv(T)
     size = level = 0.0
     for mode in problem.contact:
@@ -238,7 +230,7 @@ def _coordinates(problem: Problem, family: Family) -> tuple[Array, float, float]
             total += float(np.abs(rows @ x).max()) * dt
             x = A @ x
         size, level = max(size, reach), max(level, total)
-    return T, size, level
+    return size, level
 
 
 def _transformed(problem: Problem, T: Array, size: float, level: float) -> Problem:

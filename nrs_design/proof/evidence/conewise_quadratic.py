@@ -19,14 +19,15 @@ from nrs_design.proof.evidence.fields import (
 from nrs_design.proof.evidence.function import AbstractFunction, is_square
 from nrs_design.proof.exact import (
     IntegerMatrix,
-    add,
     congruence,
     lyapunov_decrease,
     lyapunov_factor,
+    scaled,
     stein_decrease,
     stein_factor,
+    step_decrease,
 )
-from nrs_design.proof.matrix import RationalMatrix
+from nrs_design.proof.matrix import RationalMatrix, leading, with_crossing
 from nrs_design.proof.system import Contact, Mode, SwitchedSystem, Time
 
 Forms = Iterator[tuple[str, IntegerMatrix]]
@@ -116,16 +117,16 @@ class ConewiseQuadratic(AbstractFunction):
         for mode in modes:
             yield _failure(f"in mode {mode.name}"), self._decrease(mode.A)
         for mode in contact.free:
-            free, Q = _block(mode.A), _leading(self.Q)
+            free, Q = _block(mode.A), leading(self.Q)
             form = lyapunov_decrease(free.numerators, free.denominator, Q, self.rate)
             yield _failure(f"in free motion, mode {mode.name}"), form
         pairs = product(contact.free, contact.pulls)
         for (mode, q), multiplier in zip(pairs, self.multipliers, strict=True):
-            factor = lyapunov_factor(mode.A.denominator, self.rate)
-            form = add(
-                _scaled(self._decrease(mode.A), q.denominator),
-                _with_last(q.numerators[0]),
-                multiplier * factor,
+            factor = multiplier * lyapunov_factor(mode.A.denominator, self.rate)
+            form = with_crossing(
+                scaled(self._decrease(mode.A), q.denominator),
+                len(self.Q) - 1,
+                [factor * entry for entry in q.numerators[0]],
             )
             yield _failure(f"while the environment lags, mode {mode.name}"), form
 
@@ -133,21 +134,22 @@ class ConewiseQuadratic(AbstractFunction):
         return lyapunov_decrease(A.numerators, A.denominator, self.Q, self.rate)
 
     def _in_discrete_time(self, modes: tuple[Mode, ...], contact: Contact) -> Forms:
-        (multiplier,), rate, inner = self.multipliers, self.rate, _leading(self.Q)
+        (multiplier,), rate, inner = self.multipliers, self.rate, leading(self.Q)
         for mode in modes:
             N, d = mode.A.numerators, mode.A.denominator
             yield _failure(f"in mode {mode.name}"), stein_decrease(N, d, self.Q, rate)
             *others, last = N
-            lost = _step_decrease(self.Q, others, d, inner, rate)
+            lost = step_decrease(self.Q, congruence(others, inner), d, rate)
             # The factor of this form over the denominator of its last row is an integer.
-            lost = add(lost, _with_last(last), multiplier * stein_factor(d, rate) // d)
+            factor = multiplier * stein_factor(d, rate) // d
+            lost = with_crossing(lost, len(last) - 1, [factor * entry for entry in last])
             yield _failure(f"where contact is lost in mode {mode.name}"), lost
         for mode in contact.free:
             rows = [row[:-1] for row in mode.A.numerators]
             d = mode.A.denominator
-            kept = _step_decrease(inner, rows[:-1], d, inner, rate)
+            kept = step_decrease(inner, congruence(rows[:-1], inner), d, rate)
             yield _failure(f"in free motion, mode {mode.name}"), kept
-            made = _step_decrease(inner, rows, d, self.Q, rate)
+            made = step_decrease(inner, congruence(rows, self.Q), d, rate)
             yield _failure(f"where contact is made, mode {mode.name}"), made
 
     def claim_in_scope(self, system: SwitchedSystem) -> str:
@@ -197,30 +199,4 @@ def _count(number: int, noun: str) -> str:
 
 def _block(A: RationalMatrix) -> RationalMatrix:
     """Return the rows and columns of all states but the last."""
-    return RationalMatrix(tuple(_leading(A.numerators)), A.denominator)
-
-
-def _leading(M: IntegerMatrix) -> list[tuple[int, ...]]:
-    return [tuple(row[:-1]) for row in M[:-1]]
-
-
-def _with_last(row: tuple[int, ...]) -> list[list[int]]:
-    """Return ``e q + q' e'`` for a row q and the last unit vector e."""
-    n = len(row)
-    form = [[0] * n for _ in row]
-    for j, entry in enumerate(row):
-        form[n - 1][j] += entry
-        form[j][n - 1] += entry
-    return form
-
-
-def _scaled(M: IntegerMatrix, factor: int) -> list[list[int]]:
-    return [[factor * entry for entry in row] for row in M]
-
-
-def _step_decrease(
-    before: IntegerMatrix, N: IntegerMatrix, denominator: int, after: IntegerMatrix, rate: Fraction
-) -> list[list[int]]:
-    """Form ``rho^2 before - A' after A`` for ``A = N / denominator``, times `stein_factor`."""
-    p, q = (rate.numerator * denominator) ** 2, rate.denominator**2
-    return add(_scaled(before, p), congruence(N, after), -q)
+    return RationalMatrix(tuple(leading(A.numerators)), A.denominator)

@@ -22,7 +22,7 @@ from nrs_design.proof.evidence.fields import (
 )
 from nrs_design.proof.evidence.function import is_square
 from nrs_design.proof.exact import IntegerMatrix
-from nrs_design.proof.matrix import RationalMatrix
+from nrs_design.proof.matrix import RationalMatrix, leading, multiply, with_crossing
 from nrs_design.proof.system import Channel, Mode, Output, SwitchedSystem, Time
 
 Forms = Iterator[tuple[str, IntegerMatrix]]
@@ -125,8 +125,7 @@ class InvariantEllipsoid(AbstractEvidence):
             yield f"the ellipsoid can be left {where}", RationalMatrix.from_rows(form).numerators
         for q in output.rows:
             row = q.fractions()[0]
-            rows = [[*q_row, entry] for q_row, entry in zip(Q, row, strict=True)]
-            form = [*rows, [*row, self.level**2]]
+            form = _bordered(Q, row, self.level**2)
             failure = f"{self.output} can be beyond the level"
             yield failure, RationalMatrix.from_rows(form).numerators
 
@@ -210,9 +209,9 @@ class _Motions:
     def _in_continuous_time(self, touching: Moves, flying: Moves) -> Iterator[tuple[str, Rows]]:
         for mode, b in touching:
             yield f"in mode {mode.name}", self._flow(mode.A.fractions(), b, self.Q)
-        inner = _leading(self.Q)
+        inner = leading(self.Q)
         for mode, b in flying:
-            block = _leading(mode.A.fractions())
+            block = leading(mode.A.fractions())
             yield f"in free motion, mode {mode.name}", self._flow(block, b[:-1], inner)
         pulls = self.system.contact.pulls if self.system.contact is not None else ()
         pairs = product(flying, pulls)
@@ -220,10 +219,10 @@ class _Motions:
             form = self._flow(mode.A.fractions(), b, self.Q)
             crossing = [multiplier * entry for entry in (*q.fractions()[0], Fraction(0))]
             where = f"while the environment lags, mode {mode.name}"
-            yield where, _with_crossing(form, len(self.Q) - 1, crossing)
+            yield where, with_crossing(form, len(self.Q) - 1, crossing)
 
     def _in_discrete_time(self, touching: Moves, flying: Moves) -> Iterator[tuple[str, Rows]]:
-        inner, last = _leading(self.Q), len(self.Q) - 1
+        inner, last = leading(self.Q), len(self.Q) - 1
         for mode, b in touching:
             A = mode.A.fractions()
             yield f"in mode {mode.name}", self._step(self.Q, A, b, self.Q)
@@ -232,7 +231,7 @@ class _Motions:
             form = self._step(self.Q, A[:-1], b[:-1], inner)
             crossing = [self.multipliers[0] * entry for entry in (*A[-1], b[-1])]
             where = f"where contact is lost in mode {mode.name}"
-            yield where, _with_crossing(form, last, crossing)
+            yield where, with_crossing(form, last, crossing)
         for mode, b in flying:
             A = [row[:-1] for row in mode.A.fractions()]
             kept = self._step(inner, A[:-1], b[:-1], inner)
@@ -242,7 +241,7 @@ class _Motions:
 
     def _flow(self, A: Rows, b: Sequence[Fraction], Q: Rows) -> Rows:
         """Return ``[[-(A'Q + QA + a Q), -QB], [., a/bound^2]]``."""
-        moved = _times(Q, [[*row, entry] for row, entry in zip(A, b, strict=True)])
+        moved = multiply(Q, [[*row, entry] for row, entry in zip(A, b, strict=True)])
         n = len(Q)
         form = [
             [-moved[i][j] - moved[j][i] - self.share * Q[i][j] for j in range(n)] for i in range(n)
@@ -256,7 +255,7 @@ class _Motions:
         kept = [[(1 - self.share) * entry for entry in row] for row in before]
         zeros = [Fraction(0)] * len(before)
         whole = _bordered(kept, zeros, self.share / self.channel.bound**2)
-        image = _times([list(column) for column in zip(*rows, strict=True)], _times(after, rows))
+        image = multiply(list(zip(*rows, strict=True)), multiply(after, rows))
         return [
             [a - b for a, b in zip(left, right, strict=True)]
             for left, right in zip(whole, image, strict=True)
@@ -265,24 +264,3 @@ class _Motions:
 
 def _bordered(M: Rows, border: Sequence[Fraction], corner: Fraction) -> Rows:
     return [*([*row, entry] for row, entry in zip(M, border, strict=True)), [*border, corner]]
-
-
-def _with_crossing(form: Rows, last: int, row: Sequence[Fraction]) -> Rows:
-    """Add ``e r + r' e'`` for a row r and the unit vector e of the deflection."""
-    rows = [list(entries) for entries in form]
-    for j, entry in enumerate(row):
-        rows[last][j] += entry
-        rows[j][last] += entry
-    return rows
-
-
-def _leading(M: Rows) -> Rows:
-    return [list(row[:-1]) for row in M[:-1]]
-
-
-def _times(left: Rows, right: Rows) -> Rows:
-    columns = list(zip(*right, strict=True))
-    return [
-        [sum((a * b for a, b in zip(row, column, strict=True)), Fraction(0)) for column in columns]
-        for row in left
-    ]

@@ -81,6 +81,12 @@ class DisturbancesSpec(SpecModel):
         description="resolution of the measured torque in N*m: an error of half a step",
     )
 
+    largest_angle: Angle | None = Field(
+        default=None,
+        description="largest joint angle and reference in rad that the law holds as "
+        "single-precision numbers: their absolute rounding acts as a disturbance",
+    )
+
     def bounds(self) -> dict[str, tuple[Fraction, str]]:
         """Return the bounds by the names of what disturbs, with their units; none too small."""
         half = Fraction(1, 2)
@@ -107,7 +113,7 @@ def check_disturbances(disturbances: DisturbancesSpec | None, sampling: object) 
             "add `sampling: {period: 2 ms, delay: 1}`, or remove disturbances",
             "disturbances",
         )
-    if not disturbances.bounds():
+    if not disturbances.bounds() and disturbances.largest_angle is None:
         raise fault("no disturbance is named", "name one, or remove disturbances", "disturbances")
 
 

@@ -248,7 +248,7 @@ def close_sampled_loop(
         losable,
         period,
         channels,
-        (_force_output(frame, touched, spec.limits.torque.exact),) if channels else (),
+        _outputs(frame, touched, spec.limits.torque.exact) if channels else (),
         tuple(_roundings(frame, channels, every)),
     )
 
@@ -298,8 +298,8 @@ def _roundings(
         yield Rounding(name, tuple(columns), tuple(map(RationalMatrix.from_rows, rows)))
 
 
-def _force_output(frame: Frame, touched: Sequence[Environment], limit: Fraction) -> Output:
-    """Return the force in contact, at the corners of its ranges, and what it is meant to keep."""
+def _outputs(frame: Frame, touched: Sequence[Environment], limit: Fraction) -> tuple[Output, ...]:
+    """Return the force at the corners of its ranges, with what it is meant to keep, and omega."""
     size, rows = len(frame.states), []
     for environment in touched:
         box = Box({"k": environment.stiffness, "b": damping_of(environment)})
@@ -307,7 +307,9 @@ def _force_output(frame: Frame, touched: Sequence[Environment], limit: Fraction)
             row = zero(size)
             row[1], row[-1] = values["b"], values["k"]
             rows.append(RationalMatrix.from_rows([row]))
-    return Output("force", "N*m", tuple(rows), limit)
+    omega = RationalMatrix.from_rows(coordinates(size)[1:2])
+    force = Output("force", "N*m", tuple(rows), limit)
+    return force, Output("velocity", "rad/s", (omega,))
 
 
 def motor_box(ranges: ActuatorRanges, period: Fraction) -> Box:

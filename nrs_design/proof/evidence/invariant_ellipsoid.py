@@ -178,23 +178,33 @@ class InvariantEllipsoid(AbstractEvidence):
         """State how far the output goes, from rest and in the long run."""
         output = next(item for item in system.outputs if item.name == self.output)
         lost = "" if system.contact is None else ", contact lost and made again at any time"
-        sizes = [f"|{c.name}| <= {rounded_down(c.bound, c.unit)}" for c in self.acting(system)]
+        named = self.acting(system)
+        sizes = [f"|{c.name}| <= {rounded_down(c.bound, c.unit)}" for c in named]
         steps = " at a step" if system.time is Time.DISCRETE else ""
         return (
             f"While {', '.join(sizes)} and nothing else disturbs, switching arbitrarily"
             f"{lost}: from rest, |{output.name}|{steps} never exceeds "
             f"{rounded_up(self.level, output.unit)}; from any state, it comes below every larger "
-            f"value and stays there.{self._beside_limit(output)}"
+            f"value and stays there.{self._beside_limit(output, named)}"
         )
 
-    def _beside_limit(self, output: Output) -> str:
-        """Say whether the level keeps the limit of the output, if it has one."""
+    def _beside_limit(self, output: Output, channels: Sequence[Channel]) -> str:
+        """Say whether the level keeps the limit of the output, or how much smaller a push does.
+
+        All conditions are homogeneous: with disturbances of a share of their bounds, the level is
+        the same share of itself.
+        """
         if output.limit is None:
             return ""
         limit = rounded_down(output.limit, output.unit)
         if self.level <= output.limit:
             return f" The limit of {limit} is kept."
-        return f" That the limit of {limit} is kept is not shown."
+        share = output.limit / self.level
+        smaller = (f"|{c.name}| <= {rounded_down(share * c.bound, c.unit)}" for c in channels)
+        return (
+            f" That the limit of {limit} is kept is not shown; it is, in proportion, for "
+            f"{', '.join(smaller)}."
+        )
 
     def to_fields(self) -> dict[str, Any]:
         """Return the names, Q, shares, level and multipliers."""

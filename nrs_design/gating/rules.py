@@ -154,6 +154,16 @@ GOAL = Rule(
     "Let `nrs-design optimize` choose gains that are given, widen their bounds, narrow the ranges, "
     "or relax the goal.",
 )
+CERTIFIED_GOAL = Rule(
+    "NRS108",
+    "The certificate shows the goal",
+    "The goals `peak_torque` and `decay_rate` are held against what is proved: the bound on the "
+    "force in contact under all disturbances of the spec at once, and the decay rate. Decided in "
+    "exact arithmetic. A bound that is above the goal does not say that the goal is missed: the "
+    "largest value that occurs may be smaller, above all where contact may be lost.",
+    "Lower the disturbance (the claim says down to which one the limit is kept), choose gains with "
+    "more damping, raise --budget, or relax the goal.",
+)
 NOT_DOUBTED = Rule(
     "NRS107",
     "Identified values are not in doubt",
@@ -229,6 +239,7 @@ RULES: Mapping[str, Rule] = MappingProxyType(
             CERTIFICATE_HOLDS,
             LOCKED,
             GOAL,
+            CERTIFIED_GOAL,
             NOT_DOUBTED,
             ROS_PARAMETERS,
             ROS_AXIS,

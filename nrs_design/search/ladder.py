@@ -89,6 +89,11 @@ class Facts:
         return self.system.contact is not None
 
     @property
+    def rounds(self) -> bool:
+        """Whether the system says what its arithmetic rounds."""
+        return bool(self.system.roundings)
+
+    @property
     def has_rules(self) -> bool:
         """Whether there are rules for switching, and no parameter is constant."""
         return not (self.is_arbitrary or self.has_constant)
@@ -199,6 +204,12 @@ LADDER: tuple[Rung, ...] = (
         "conewise quadratic",
         Method.CONEWISE_QUADRATIC,
         lambda f: f.may_lose_contact and f.may_share_an_ellipsoid,
+        search_conewise,
+    ),
+    Rung(
+        "quadratic, with roundings",
+        Method.LMI,
+        lambda f: f.rounds and not f.may_lose_contact and f.may_share_an_ellipsoid,
         search_conewise,
     ),
     Rung("lmi", Method.LMI, lambda f: f.may_share_an_ellipsoid, search_by_lmi),

@@ -21,6 +21,7 @@ from nrs_design.search.common_quadratic import (
     search_preconditioned,
     search_raw,
 )
+from nrs_design.search.conewise_polynomial import conewise_cost, search_conewise_polynomial
 from nrs_design.search.conewise_quadratic import search_conewise
 from nrs_design.search.family import Family
 from nrs_design.search.method import Method
@@ -87,6 +88,13 @@ class Facts:
     def may_lose_contact(self) -> bool:
         """Whether the system says how contact is lost."""
         return self.system.contact is not None
+
+    @property
+    def may_bounce(self) -> bool:
+        """Whether one function could be for lost contact with springs, in continuous time."""
+        contact = self.system.contact
+        springs = contact is not None and not contact.pulls
+        return self.may_share_an_ellipsoid and self.is_continuous and springs
 
     @property
     def has_rules(self) -> bool:
@@ -201,8 +209,23 @@ LADDER: tuple[Rung, ...] = (
         lambda f: f.may_lose_contact and f.may_share_an_ellipsoid,
         search_conewise,
     ),
+    # Before what takes for granted that contact is kept; that no quadratic function exists is said
+    # of the matrices all the same.
+    Rung("obstruction", Method.OBSTRUCTION, lambda f: f.may_bounce, search_obstruction),
+    Rung(
+        "conewise polynomial",
+        Method.CONEWISE_POLYNOMIAL,
+        lambda f: f.may_bounce,
+        search_conewise_polynomial,
+        cost=conewise_cost,
+    ),
     Rung("lmi", Method.LMI, lambda f: f.may_share_an_ellipsoid, search_by_lmi),
-    Rung("obstruction", Method.OBSTRUCTION, lambda f: f.may_share_a_function, search_obstruction),
+    Rung(
+        "obstruction",
+        Method.OBSTRUCTION,
+        lambda f: f.may_share_a_function and not f.may_bounce,
+        search_obstruction,
+    ),
     # The solver may have stalled: other coordinates, before giving up on quadratics.
     Rung(
         "lmi, raw",

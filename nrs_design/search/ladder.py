@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import partial
 from itertools import islice, zip_longest
+from math import inf
 
 from nrs_design.proof.evidence import AbstractEvidence
 from nrs_design.proof.evidence.common_polynomial import MAX_DEGREE, MAX_MONOMIALS
@@ -36,6 +37,8 @@ from nrs_design.search.unstable_value import search_switching_at_values, search_
 
 # Degrees that are tried before the rungs below, which are quicker than higher ones.
 FIRST_DEGREES = 2
+# Seconds of a degree of what is tried before the cheaper rungs.
+QUICK = 0.5
 HELD = f"a certificate holds at most {MAX_MONOMIALS} monomials and degree {MAX_DEGREE}"
 
 Step = tuple[str, Search]
@@ -137,6 +140,8 @@ class Rung:
         Tells whether it is worth trying where it was not asked for alone.
     only_quadratic : bool
         Left out once it is known that there is no common quadratic function.
+    first : float
+        A degree that is predicted to take more seconds is tried with the higher ones, at last.
     """
 
     name: str
@@ -146,6 +151,20 @@ class Rung:
     cost: Callable[[SwitchedSystem, int], tuple[Cost, str]] | None = None
     in_auto: Callable[[Facts], bool] = _always
     only_quadratic: bool = False
+    first: float = inf
+
+    def count_first(self, system: SwitchedSystem) -> int:
+        """Return how many steps are made before the rungs below: of the first degrees, the quick.
+
+        Parameters
+        ----------
+        system : SwitchedSystem
+            The modes.
+        """
+        if self.cost is None or self.first == inf:
+            return FIRST_DEGREES
+        degrees = range(2, 2 + FIRST_DEGREES)
+        return sum(self.cost(system, d)[0].seconds <= self.first for d in degrees)
 
     def is_wanted(self, facts: Facts, method: Method) -> bool:
         """Tell whether to try it, given what was asked for."""
@@ -218,6 +237,7 @@ LADDER: tuple[Rung, ...] = (
         lambda f: f.may_bounce,
         search_conewise_polynomial,
         cost=conewise_cost,
+        first=QUICK,
     ),
     Rung("lmi", Method.LMI, lambda f: f.may_share_an_ellipsoid, search_by_lmi),
     Rung(
@@ -323,7 +343,7 @@ def steps(
         if not rung.is_wanted(facts, method) or (rung.only_quadratic and has_no_quadratic()):
             continue
         own = rung.steps(system, limits, allowance)
-        yield from islice(own, FIRST_DEGREES)
+        yield from islice(own, rung.count_first(system))
         rising.append(own)
     for higher in zip_longest(*rising):
         yield from (step for step in higher if step is not None)

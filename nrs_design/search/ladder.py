@@ -230,7 +230,12 @@ LADDER: tuple[Rung, ...] = (
     ),
     # Before what takes for granted that contact is kept; that no quadratic function exists is said
     # of the matrices all the same.
-    Rung("obstruction", Method.OBSTRUCTION, lambda f: f.may_bounce, search_obstruction),
+    Rung(
+        "obstruction in contact",
+        Method.OBSTRUCTION,
+        lambda f: f.may_bounce,
+        search_obstruction,
+    ),
     Rung(
         "conewise polynomial",
         Method.CONEWISE_POLYNOMIAL,

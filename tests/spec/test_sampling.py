@@ -57,7 +57,9 @@ RANGED = TEXT.replace(
 )
 
 
-LOADED = TEXT.replace("time_constant: 0.0351 s", "time_constant: 0.0351 s\n  load_inertia: 1 kg*m^2")
+LOADED = TEXT.replace(
+    "time_constant: 0.0351 s", "time_constant: 0.0351 s\n  load_inertia: 1 kg*m^2"
+)
 POSITION = "  held: {type: position}\n"
 
 

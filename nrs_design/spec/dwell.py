@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from nrs_design.spec.controllers import ControllerSpec
     from nrs_design.spec.environment import EnvironmentSpec
+    from nrs_design.spec.motion import ActuatorSpec
     from nrs_design.spec.parameters import ParameterSpec
 
 
@@ -36,6 +37,7 @@ def find_changing_parameter(parameters: Mapping[str, ParameterSpec]) -> DwellObs
 
 
 def find_changing_contact(
+    actuator: ActuatorSpec,
     controllers: Mapping[str, ControllerSpec],
     environments: Mapping[str, EnvironmentSpec],
     *,
@@ -45,13 +47,19 @@ def find_changing_contact(
 
     Parameters
     ----------
-    controllers : mapping of str to ControllerSpec
-        All of them.
-    environments : mapping of str to EnvironmentSpec
-        That they touch.
+    actuator : ActuatorSpec
+        The motor.
+    controllers, environments : mapping
+        By name.
     by_contact : bool
         The rules of switching are about the environment that is touched, too.
     """
+    if not (actuator.gain.fixed and actuator.time_constant.fixed):
+        return DwellObstacle(
+            "a dwell time and a range of the actuator exclude each other: the motor may change "
+            "during the dwell time, and the proof would not hold",
+            "give the actuator its nominal values only",
+        )
     for name, controller in controllers.items():
         if len(controller.contacts) > 1 and not by_contact:
             return DwellObstacle(

@@ -5,7 +5,7 @@ While another environment is touched, the memory of an environment decays as it 
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import partial
@@ -101,7 +101,7 @@ def close_loop(
         for controller in design.controllers
     }
     if rules.names_contacts:
-        parts = {mode.name: (mode,) for mode in chain.from_iterable(parts.values())}
+        parts = _by_contact(chain.from_iterable(parts.values()))
     groups = {key: tuple(Corner(mode.name) for mode in part) for key, part in parts.items()}
     reset = idle is not None and idle.reset
     resets = resets_of(design, state.motion.order, state.idle_count) if reset else ()
@@ -127,6 +127,15 @@ def close_loop(
         assemble_switching(rules, groups, resets),
         losable,
     )
+
+
+def _by_contact(modes: Iterable[Mode]) -> dict[str, tuple[Mode, ...]]:
+    """Return the modes by controller and contact, such as ``tissue/soft``, with all corners."""
+    found: dict[str, tuple[Mode, ...]] = {}
+    for mode in modes:
+        name = "/".join(mode.name.split("/")[:2])
+        found[name] = (*found.get(name, ()), mode)
+    return found
 
 
 def _shared_state(

@@ -59,3 +59,22 @@ def test_the_report_shows_it(tmp_path):
     page = (tmp_path / "page.html").read_text()
     assert "Switches, in the order in which they are tried" in page
     assert "The dwell times are kept by the timer of the mode logic" in page
+
+
+def test_rules_about_contacts_by_hand_with_ranges(tmp_path):
+    """The corners of a range belong to its contact: the rules let them follow each other."""
+    text = UNKNOWN.read_text().replace("104.7 N*m/rad", "50 N*m/rad")
+    text = text.replace("43.0356 N*m/rad", "{nominal: 43 N*m/rad, range: [42 N*m/rad, 44 N*m/rad]}")
+    logic = text[text.index("# The tool at") : text.index("design:")]
+    rules = "switching: {transitions: [[agile/tissue, agile/tool], [agile/tool, careful/tool]]}"
+    text = text.replace(logic, "").replace("switching: mode-logic", rules)
+    (tmp_path / "given.nrs.yaml").write_text(text)
+    result = run(
+        "certify-switching", "given.nrs.yaml", "--out", "ours.cert.json", "--json", cwd=tmp_path
+    )
+    document = json.loads((tmp_path / "ours.cert.json").read_text())
+    assert result.returncode == 0
+    allowed = document["switching"]["transitions"]
+    assert ["agile/tissue/k-min", "agile/tissue/k-max"] in allowed
+    assert ["agile/tissue/k-max", "agile/tool"] in allowed
+    assert ["careful/tool", "agile/tool"] not in allowed

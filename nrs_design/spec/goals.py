@@ -13,10 +13,15 @@ from nrs_design.spec.faults import fault
 from nrs_design.spec.fields import AboveOne, BelowTwo, UnitFraction
 from nrs_design.spec.model import SpecModel
 from nrs_design.spec.quantity import Quantity
-from nrs_design.spec.quantity_fields import Angle, DecayRate, Duration, Torque
+from nrs_design.spec.quantity_fields import Angle, DecayRate, Duration, Impedance, Torque
 
 # What only one type of controller has.
-ONLY_FOR = {"max_impedance_error": "impedance", "max_force_error": "force"}
+ONLY_FOR = {
+    "max_impedance_error": "impedance",
+    "min_transparency": "impedance",
+    "max_hand_effort": "impedance",
+    "max_force_error": "force",
+}
 # What a certificate must show, for all controllers together.
 OF_THE_CERTIFICATE = frozenset({"peak_torque", "decay_rate"})
 
@@ -49,6 +54,17 @@ class GoalsSpec(SpecModel):
         default=None,
         description="largest factor between displayed and desired impedance up to the bandwidth, "
         "above 1, no unit; impedance controllers only",
+    )
+    min_transparency: UnitFraction | None = Field(
+        default=None,
+        description="smallest share of the motion that the hand intends and the robot makes, "
+        "|L/(1 + L)| up to the bandwidth, between 0 and 1, no unit; impedance controllers whose "
+        "environment is the hand",
+    )
+    max_hand_effort: Impedance | None = Field(
+        default=None,
+        description="largest torque of the hand over the velocity that it intends, |Ze/(1 + L)| "
+        "up to the bandwidth in N*m*s/rad; impedance controllers whose environment is the hand",
     )
     max_force_error: UnitFraction | None = Field(
         default=None,

@@ -29,7 +29,7 @@ from nrs_design.design.laws.law import (
     naming,
 )
 from nrs_design.design.margins import LoopMargins, loop_margins, stiffness_limit
-from nrs_design.design.measures import IMPEDANCE_MEASURES
+from nrs_design.design.measures import HAND_MEASURES, IMPEDANCE_MEASURES
 from nrs_design.errors import DesignError
 from nrs_design.spec import Doubt, GainSpec, ImpedanceControllerSpec, InteractionDesignSpec
 
@@ -120,9 +120,12 @@ def analyze(
         stiffness_limit(problem.loop, float(mass), float(damping))
         for (_, mass), (_, damping) in product(*(interval.ends for interval in ranges))
     )
+    requirement = _requirement(task, given)
+    asked = dict(requirement.goals)
+    measures = (*IMPEDANCE_MEASURES, *(item for item in HAND_MEASURES if item in asked))
     return ImpedanceAnalysis(
         name=controller.name,
-        achieved=achieve_impedance(_requirement(task, given), IMPEDANCE_MEASURES, Mt, Bt),
+        achieved=achieve_impedance(requirement, measures, Mt, Bt),
         given=given,
         problem=problem,
         # Gains that the spec gives are their own optimum.
@@ -176,7 +179,7 @@ def _requirement(task: Task, given: ImpedanceControllerSpec) -> Requirement:
     return Requirement(
         motion=task.motion,
         corners=corners_of(contacts, given.environment, gains),
-        goals=goals_of(task.spec, given, IMPEDANCE_MEASURES),
+        goals=goals_of(task.spec, given, (*IMPEDANCE_MEASURES, *HAND_MEASURES)),
         desired=desired_impedance(task.spec, given),
         bandwidth=task.spec.limits.bandwidth.si,
     )

@@ -77,6 +77,7 @@ def _summary(item: ImpedanceAnalysis) -> dict[str, Any]:
         "stiffness": item.problem.loop.contact.stiffness,
         "Mt": item.Mt,
         "Bt": item.Bt,
+        "Kt": item.problem.loop.Kt,
         "cost": item.cost,
         "optimum": {"Mt": item.optimum.Mt, "Bt": item.optimum.Bt, "cost": item.optimum.cost},
         "sensitivity_peak": finite(margins.sensitivity_peak),
@@ -89,6 +90,7 @@ def _summary(item: ImpedanceAnalysis) -> dict[str, Any]:
         "units": {
             "Mt": "kg*m^2",
             "Bt": "N*m*s/rad",
+            "Kt": "N*m/rad",
             "impedance": "N*m*s/rad",
             "stiffness": "N*m/rad",
         },

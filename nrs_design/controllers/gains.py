@@ -65,7 +65,7 @@ def _controller(
     name: str, spec: ControllerSpec, gains: Mapping[str, Mapping[str, str]]
 ) -> Controller:
     law_type = LAWS[spec.type]
-    values = _numbers(gains, name, tuple(law_type.units))
+    values = _numbers(gains, name, law_type.gains_in(spec))
     for gain, bounds in spec.gains().items():
         low, high = to_float32(bounds.min.exact), to_float32(bounds.max.exact)
         if not low <= values[gain] <= high:

@@ -41,6 +41,8 @@ class SampledMotion:
 class SampledAdmittance:
     """``v+ = a v + b F``, and the reference moves on by ``-T v``; without inertia ``v = b F``.
 
+    With a spring F is the force sample plus Kt times the offset that the reference has by then.
+
     Parameters
     ----------
     a : Fraction or None
@@ -49,13 +51,18 @@ class SampledAdmittance:
         In rad/(s N m).
     T : Fraction
         The period as the processor holds it, in s.
+    Kt : Fraction
+        In N m/rad; zero is no spring.
     """
 
     a: Fraction | None
     b: Fraction
     T: Fraction
+    Kt: Fraction = Fraction(0)
 
     @property
     def coefficients(self) -> dict[str, Fraction]:
         """The coefficients by name."""
-        return ({} if self.a is None else {"a": self.a}) | {"b": self.b, "T": self.T}
+        first = {} if self.a is None else {"a": self.a}
+        last = {"Kt": self.Kt} if self.Kt else {}
+        return {**first, "b": self.b, "T": self.T, **last}

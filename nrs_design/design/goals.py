@@ -74,6 +74,8 @@ class ContactCorner:
         gains.
     Mt, Bt : float or None
         End of a declared range of the gain; None is the designed gain.
+    Kt : float
+        Spring of the admittance, N m/rad; zero is none.
     """
 
     label: str
@@ -81,6 +83,7 @@ class ContactCorner:
     home: bool
     Mt: float | None = None
     Bt: float | None = None
+    Kt: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -142,6 +145,8 @@ class Requirement:
         loops = _impedance_loops(self.motion, corner, Mt, Bt)
         if measure is not IMPEDANCE_ERROR:
             return _margin(loops, measure)
+        if corner.Kt:  # Towards rest the robot displays the spring, and no damping.
+            return np.full(len(Mt), np.inf)
         displayed = multiply(loops.numerator, np.stack([Mt, Bt], axis=1))
         low, high = extremes(displayed, loops.closed, self.bandwidth)
         error = np.maximum(high / self.desired, self.desired / low)
@@ -203,6 +208,7 @@ def corners_of(
     environments: tuple[Environment, ...],
     home: str,
     gains: Mapping[str, tuple[float, ...]],
+    spring: float = 0.0,
 ) -> tuple[ContactCorner, ...]:
     """List where a controller is measured.
 
@@ -213,38 +219,47 @@ def corners_of(
     home : str
         The one that it is designed for.
     gains : mapping
-        Ends of the declared ranges of ``Mt`` and ``Bt``, empty for a gain without a range.
+        Ends of the declared ranges of ``Mt``, ``Bt`` and ``Kt``, empty for a gain without a range.
+    spring : float
+        The designed Kt, N m/rad.
     """
     return tuple(
-        corner for environment in environments for corner in _corners(environment, home, gains)
+        corner
+        for environment in environments
+        for corner in _corners(environment, home, gains, spring)
     )
 
 
 def _corners(
-    environment: Environment, home: str, gains: Mapping[str, tuple[float, ...]]
+    environment: Environment, home: str, gains: Mapping[str, tuple[float, ...]], spring: float
 ) -> Iterator[ContactCorner]:
     points = list(environment.corners)
     if environment.nominal not in points:
         points.insert(0, environment.nominal)
-    retuned = [*product(gains.get("Mt") or (None,), gains.get("Bt") or (None,))]
-    for contact, (Mt, Bt) in product(points, dict.fromkeys([(None, None), *retuned])):
+    designed = (None, None, None)
+    retuned = [*product(*(gains.get(name) or (None,) for name in ("Mt", "Bt", "Kt")))]
+    for contact, (Mt, Bt, Kt) in product(points, dict.fromkeys([designed, *retuned])):
         at = [*contact.texts()]
         at += [f"Mt = {Mt:.6g} kg*m^2"] if Mt is not None else []
         at += [f"Bt = {Bt:.6g} N*m*s/rad"] if Bt is not None else []
-        designed = environment.name == home and Mt is None and Bt is None
-        yield ContactCorner(f"{environment.name}, {', '.join(at)}", contact, designed, Mt, Bt)
+        at += [f"Kt = {Kt:.6g} N*m/rad"] if Kt is not None else []
+        is_home = environment.name == home and (Mt, Bt, Kt) == designed
+        label = f"{environment.name}, {', '.join(at)}"
+        yield ContactCorner(label, contact, is_home, Mt, Bt, spring if Kt is None else Kt)
 
 
 def _impedance_loops(
     motion: TransferFunction, corner: ContactCorner, Mt: FloatArray, Bt: FloatArray
 ) -> Loops:
     """Return ``G Ze Y`` of many admittances (thesis fig. 6.13)."""
-    contact, free = ImpedanceLoop(motion, corner.contact).forward
+    loop = ImpedanceLoop(motion, corner.contact, corner.Kt)
+    contact, free = loop.forward
     numerator = np.zeros((len(Mt), len(free) + 1))
     numerator[:, len(free) + 1 - len(contact) :] = contact
     denominator = np.zeros_like(numerator)
     denominator[:, :-1] += np.outer(Mt, free)
     denominator[:, 1:] += np.outer(Bt, free)
+    denominator[:, len(free) + 1 - len(loop.drawn) :] += loop.drawn
     return Loops(numerator, denominator)
 
 

@@ -2,7 +2,8 @@
 
 The admittance ``Y = 1/(Mt s + Bt)`` turns the measured torque into a velocity that is taken off
 the commanded one; the motion loop G follows the difference, and the environment
-``Ze = k/s + b`` answers: open loop ``G Ze Y``.
+``Ze = k/s + b`` answers: open loop ``G Ze Y``. A spring Kt, which is given and not chosen, makes it
+``Y = 1/(Mt s + Bt + Kt/s)``.
 """
 
 from __future__ import annotations
@@ -52,15 +53,18 @@ class ImpedanceLoop:
         Closed motion loop G, from commanded to actual velocity.
     contact : AbstractLinearLaw
         The environment as a rotation about the pivot, N m/rad and N m s/rad.
+    Kt : float
+        Spring of the admittance in N m/rad; zero is none.
 
     Raises
     ------
     DesignError
-        If a parameter is outside its domain.
+        If a parameter is outside its domain, or there is a spring and no rest position.
     """
 
     motion: TransferFunction
     contact: AbstractLinearLaw
+    Kt: float = 0.0
 
     def __post_init__(self) -> None:
         """Check the environment."""
@@ -69,6 +73,15 @@ class ImpedanceLoop:
             if not law.admits(index, value):
                 must = "not be negative" if law.admits(index, 0) else "be positive"
                 raise DesignError(f"the {kind} must {must}: {value}")
+        if not (math.isfinite(self.Kt) and self.Kt >= 0):
+            raise DesignError(f"Kt must not be negative: {self.Kt}", at=("Kt",))
+        if self.Kt and not law.has_rest:
+            raise DesignError(
+                f"an admittance with a spring Kt is not modelled in contact that is {law.name}, "
+                "which has no rest position",
+                remedy="leave Kt out",
+                at=("Kt",),
+            )
 
     @property
     def forward(self) -> tuple[FloatArray, FloatArray]:
@@ -78,6 +91,23 @@ class ImpedanceLoop:
             np.convolve(self.motion.numerator, trim(numerator)),
             np.convolve(self.motion.denominator, denominator),
         )
+
+    def free(self, Mt: float, Bt: float) -> FloatArray:
+        """Return the denominator of ``G Ze Y``; an s that it has in common is left out.
+
+        Parameters
+        ----------
+        Mt : float
+            Virtual mass, kg m^2.
+        Bt : float
+            Virtual damping, N m s/rad.
+        """
+        return np.asarray(np.polyadd(np.convolve(self.forward[1], trim((Mt, Bt))), self.drawn))
+
+    @property
+    def drawn(self) -> FloatArray:
+        """What the spring adds to that denominator: Kt times the denominator of ``G Ze / s``."""
+        return np.asarray(self.Kt * self.forward[1][:-1]) if self.Kt else np.zeros(1)
 
 
 @dataclass(frozen=True)
@@ -137,9 +167,8 @@ def open_loop(loop: ImpedanceLoop, Mt: float, Bt: float) -> TransferFunction:
         Virtual damping, N m s/rad.
     """
     _check_admittance(Mt, Bt)
-    numerator, denominator = loop.forward
-    denominator = np.convolve(denominator, trim((Mt, Bt)))
-    return TransferFunction(tuple(numerator.tolist()), tuple(denominator.tolist()))
+    numerator, _ = loop.forward
+    return TransferFunction(tuple(numerator.tolist()), tuple(loop.free(Mt, Bt).tolist()))
 
 
 def displayed_impedance(
@@ -154,7 +183,7 @@ def displayed_impedance(
     Mt, Bt : float
         Admittance, kg m^2 and N m s/rad.
     omega : array_like
-        Frequencies, rad/s; zero is allowed.
+        Frequencies, rad/s; zero is allowed where there is no spring.
 
     Returns
     -------
@@ -162,7 +191,11 @@ def displayed_impedance(
         Impedance, N m s/rad, in the shape of `omega`.
     """
     forward, _ = loop.forward
-    return _over_characteristic(loop, Mt, Bt, np.convolve(forward, trim((Mt, Bt))), omega)
+    if not loop.Kt:
+        return _over_characteristic(loop, Mt, Bt, np.convolve(forward, trim((Mt, Bt))), omega)
+    numerator = np.convolve(forward, trim((Mt, Bt, loop.Kt)))
+    omega = np.asarray(omega, np.float64)
+    return np.asarray(_over_characteristic(loop, Mt, Bt, numerator, omega) / (1j * omega))
 
 
 def sensitivity(loop: ImpedanceLoop, Mt: float, Bt: float, omega: ArrayLike) -> ComplexArray:
@@ -173,8 +206,7 @@ def sensitivity(loop: ImpedanceLoop, Mt: float, Bt: float, omega: ArrayLike) -> 
     loop, Mt, Bt, omega
         As for `displayed_impedance`.
     """
-    numerator = np.convolve(loop.forward[1], trim((Mt, Bt)))
-    return _over_characteristic(loop, Mt, Bt, numerator, omega)
+    return _over_characteristic(loop, Mt, Bt, loop.free(Mt, Bt), omega)
 
 
 def characteristic_polynomial(loop: ImpedanceLoop, Mt: float, Bt: float) -> FloatArray:
@@ -291,6 +323,7 @@ class _Samples:
     real: FloatArray
     imag: FloatArray
     target: FloatArray
+    drawn: FloatArray
     weights: tuple[float, float]
 
     def cost(self, Mt: FloatArray, Bt: FloatArray) -> FloatArray:
@@ -300,7 +333,7 @@ class _Samples:
         return np.concatenate(parts) if parts else np.empty(0)
 
     def _block(self, Mt: FloatArray, Bt: FloatArray) -> FloatArray:
-        reactance = Mt * self.omega
+        reactance = Mt * self.omega - self.drawn
         below = (reactance + self.imag) ** 2 + (Bt + self.real) ** 2
         squared = (reactance**2 + Bt**2) / below  # |L|^2, and |Zdisp| = |G Ze| |L|
         displayed = np.abs(self.target - 0.5 * np.log10(squared)).mean(axis=1)
@@ -317,6 +350,7 @@ def _sample(problem: ImpedanceProblem, nodes: int) -> _Samples:
         real=forward.real,
         imag=forward.imag,
         target=np.log10(problem.desired / np.abs(forward)),
+        drawn=problem.loop.Kt / omega,
         weights=(problem.weight_displayed, problem.weight_sensitivity),
     )
 
@@ -328,6 +362,7 @@ def _basis(loop: ImpedanceLoop) -> FloatArray:
     basis[0, :-1] = den
     basis[1, 1:] = den
     basis[2, len(den) + 1 - len(contact) :] = contact
+    basis[2, len(den) + 1 - len(loop.drawn) :] += loop.drawn
     return basis
 
 

@@ -38,6 +38,9 @@ def velocity_mode(motion: Realization, law: CompliantLaw, contact: AbstractLinea
     own = motion.order + len(law.states)
     state = coordinates(own + len(contact.states))
     force, reaction = contact.react(motion.output(len(state)), state[own:])
+    if law.spring:
+        # What the command adds up to moves the robot against the contact: no state of its own.
+        force = combine((Fraction(1), force), (law.spring, motion.integral(state[own])))
     command, rates = law.respond(force, state[motion.order : own])
     return [*motion.rates(command), *rates, *reaction]
 
@@ -133,6 +136,8 @@ def position_mode(
         )
     if contact is not None:
         force = [*contact.react(velocity, [position])[0]]
+    if law.spring:
+        force = combine((Fraction(1), force), (law.spring, state[-1]))
     command, rates = law.respond(force, state[motion.order : own])
     if integrates:
         return [*motion.rates(state[-1]), *rates, command]

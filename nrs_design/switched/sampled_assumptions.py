@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
+from types import MappingProxyType
+from typing import Literal
 
 from nrs_design.controllers.controller_design import ControllerDesign
 from nrs_design.controllers.float32 import exact_decimal
@@ -12,9 +14,15 @@ from nrs_design.proof.text import exact_text
 from nrs_design.spec import InteractionDesignSpec
 from nrs_design.spec.interval import Interval
 from nrs_design.spec.sampling import SamplingSpec
-from nrs_design.switched.assumptions import CONTINUOUS, LOST_CONTACT, REST, rule_texts
+from nrs_design.switched.assumptions import (
+    CONTINUOUS,
+    LOST_ANYWHERE,
+    LOST_CONTACT,
+    REST,
+    SPRING,
+    rule_texts,
+)
 
-_KEPT = "Contact is not lost: free motion is not one of the modes."
 _INPUTS = "All inputs are zero (velocity command, motion of the environment); "
 _NOT_MODELLED = (
     "What the arithmetic of the processor rounds, the quantization of encoder and force sensor, "
@@ -25,9 +33,16 @@ _DISTURBED = (
     "the next; that friction changes its sign within a period is not covered.",
     "A bound on the force holds at the samples; what happens in between is not claimed.",
 )
-_NOT_COVERED = (
-    "Contact is not lost: that an environment with damping lags behind is not modelled in the "
-    "sampled loop."
+# Where contact is lost: only where the spring of the tissue ends, or whatever the deflection.
+Loss = Literal["never", "not modelled", "anywhere", "on the surface"]
+_LOST: Mapping[Loss, str] = MappingProxyType(
+    {
+        "never": "Contact is not lost: free motion is not one of the modes.",
+        "not modelled": "Contact is not lost: that an environment with damping lags behind is not "
+        "modelled in the sampled loop.",
+        "anywhere": LOST_ANYWHERE,
+        "on the surface": LOST_CONTACT,
+    }
 )
 
 
@@ -38,8 +53,7 @@ def assume_sampled(
     motion: SampledMotion,
     laws: Mapping[str, SampledAdmittance],
     design: ControllerDesign,
-    *,
-    springs: bool,
+    loss: Loss,
 ) -> tuple[str, ...]:
     """Say what holds for the sampled loop of an interaction design.
 
@@ -57,8 +71,8 @@ def assume_sampled(
         The admittances by the names of their controllers.
     design : ControllerDesign
         With the contacts.
-    springs : bool
-        Whether all that is touched are springs.
+    loss : {"never", "not modelled", "anywhere", "on the surface"}
+        Where contact is lost.
     """
     rules = spec.switching
     switched = f"States are {CONTINUOUS}; a switch happens at a sample."
@@ -69,7 +83,8 @@ def assume_sampled(
         f"The motor follows the linear actuator model of the spec; {_actuator_text(ranges)}.",
         "The tissue does not load the motor: it acts through the force sensor alone.",
         *(_DISTURBED if spec.disturbances is not None else ()),
-        _beside(spec, _INPUTS + REST[springs and spec.contact != "kept"]),
+        _beside(spec, _INPUTS + REST[loss == "on the surface"]),
+        *((SPRING,) if any(law.Kt for law in laws.values()) else ()),
         "The axes of the robot do not act on each other.",
         *(
             f"While {c.name} is active, nothing but {' or '.join(c.contacts)} is touched."
@@ -77,7 +92,7 @@ def assume_sampled(
         ),
         "In contact, the environment follows its linear model; its parameters stay in the declared "
         "ranges and may change arbitrarily fast.",
-        *_contact_texts(spec, springs=springs),
+        _LOST[loss],
         switched,
         *rule_texts(rules, "controller"),
         f"The coefficients are these single-precision numbers: {_coefficients(motion, laws)}.",
@@ -123,15 +138,6 @@ def _interval_text(interval: Interval) -> str:
     if interval.low == interval.high:
         return f"is {exact_text(interval.low)}"
     return f"stays in [{exact_text(interval.low)}, {exact_text(interval.high)}]"
-
-
-def _contact_texts(spec: InteractionDesignSpec, *, springs: bool) -> Iterator[str]:
-    if spec.contact == "kept":
-        yield _KEPT
-    elif not springs:
-        yield _NOT_COVERED
-    else:
-        yield LOST_CONTACT
 
 
 def _coefficients(motion: SampledMotion, laws: Mapping[str, SampledAdmittance]) -> str:

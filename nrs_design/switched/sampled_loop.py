@@ -31,7 +31,7 @@ from nrs_design.spec.sampling import SamplingSpec
 from nrs_design.switched.constraints import assemble_switching
 from nrs_design.switched.parameter_box import Box
 from nrs_design.switched.parameters import Corner
-from nrs_design.switched.sampled_assumptions import assume_sampled
+from nrs_design.switched.sampled_assumptions import Loss, assume_sampled
 
 ONE = Fraction(1)
 # What acts on a frame from outside, in this order.
@@ -98,11 +98,13 @@ class Frame:
         drive = combine((Kp + D, seen), (-D, before), (ONE, friction))
         moved = combine((s, omega), (Km * (self.period - s), drive))
         ages = [combine((k, delta), (b, omega), (ONE, sensor)), *samples]
+        # The reference, e + theta, is by how much the admittance has moved it.
+        force = combine((ONE, ages[delay]), (admittance.Kt, error), (admittance.Kt, delta))
         if admittance.a is None:
-            velocity, kept = combine((admittance.b, ages[delay])), []
+            velocity, kept = combine((admittance.b, force)), []
         else:
             velocity = unit[3]
-            kept = [combine((admittance.a, velocity), (admittance.b, ages[delay]))]
+            kept = [combine((admittance.a, velocity), (admittance.b, force))]
         T = admittance.T
         return [
             combine((ONE, error), (T, command), (-T, velocity), (-ONE, moved)),
@@ -179,10 +181,13 @@ def close_sampled_loop(
         for controller in design.controllers
     }
     touched = plant.among(design.contacts)
-    springs = all(_is_zero(damping_of(environment)) for environment in touched)
-    free: tuple[_Motion, ...] = ()
-    if spec.contact != "kept" and springs:
-        free = tuple(_free_motions(frame, laws, sampling.delay, motor))
+    loss = _loss_of_contact(spec, touched, laws.values())
+    air = {
+        name: _free_motions(frame, name, law, sampling.delay, motor) for name, law in laws.items()
+    }
+    if loss == "anywhere":
+        parts = {name: (*part, *air[name]) for name, part in parts.items()}
+    free = tuple(chain.from_iterable(air.values())) if loss == "on the surface" else ()
     groups = {key: tuple(Corner(item.mode.name) for item in part) for key, part in parts.items()}
     motions = tuple(chain.from_iterable(parts.values()))
     flying = tuple(item.mode for item in free)
@@ -193,7 +198,7 @@ def close_sampled_loop(
         Time.DISCRETE,
         frame.states,
         tuple(item.mode for item in motions),
-        assume_sampled(spec, sampling, ranges, frame.motion, laws, design, springs=springs),
+        assume_sampled(spec, sampling, ranges, frame.motion, laws, design, loss),
         assemble_switching(spec.switching, groups, ()),
         losable,
         period,
@@ -274,13 +279,23 @@ def _motions(
 
 
 def _free_motions(
-    frame: Frame,
-    laws: Mapping[str, SampledAdmittance],
-    delays: tuple[int, int],
-    motor: Box,
+    frame: Frame, controller: str, law: SampledAdmittance, delays: tuple[int, int], motor: Box
 ) -> Iterator[_Motion]:
-    for controller, law in laws.items():
-        yield from _corners(frame, law, delays, motor, f"{controller}/free")
+    return _corners(frame, law, delays, motor, f"{controller}/free")
+
+
+def _loss_of_contact(
+    spec: InteractionDesignSpec,
+    touched: Iterable[Environment],
+    laws: Iterable[SampledAdmittance],
+) -> Loss:
+    """Tell how contact is lost; with springs everywhere, free motion is a mode like others."""
+    sprung = {law.Kt != 0 for law in laws}
+    if spec.contact == "kept" or (True in sprung and spec.contact is None):
+        return "never"
+    if not all(_is_zero(damping_of(environment)) for environment in touched):
+        return "not modelled"
+    return "anywhere" if sprung == {True} else "on the surface"
 
 
 def _corners(
@@ -340,6 +355,14 @@ def _not_modelled(
         if spec.contact == "losable" and not _is_zero(damping_of(environment)):
             what = f"loss of contact with {environment.name}, which has damping"
             yield ("contact",), what, "use `contact: kept`, or leave sampling out"
+    sprung = {law.Kt != 0 for law in laws.values() if law is not None}
+    if spec.contact == "losable" and len(sprung) > 1:
+        what = "loss of contact where some controllers have a spring Kt and some have none"
+        yield ("contact",), what, "use `contact: kept`, or give all of them a spring"
+    commanded = spec.disturbances is not None and spec.disturbances.command is not None
+    if commanded and True in sprung:
+        what = "a velocity command moves the position that the spring Kt draws the robot to"
+        yield ("disturbances", "command"), what, "leave command out, or Kt"
     if next(iter(spec.switching.dwell_times()), None) is not None:
         what = "the rules of switching have dwell times in s"
         yield ("switching",), what, "leave them out, or sampling"

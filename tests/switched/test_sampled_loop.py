@@ -134,7 +134,10 @@ def test_agrees_with_a_simulation_step_by_step():
         longest = int(rng.integers(0, 4))
         delay = int(rng.integers(0, longest + 1))
         inertia = bool(rng.integers(0, 2))
-        law = SampledAdmittance(Fraction(a) if inertia else None, Fraction(gain), Fraction(T))
+        Kt = float(rng.integers(0, 2) * rng.uniform(0, 10))
+        law = SampledAdmittance(
+            Fraction(a) if inertia else None, Fraction(gain), Fraction(T), Fraction(Kt)
+        )
         frame = Frame(
             Fraction(T), SampledMotion(Fraction(Kp), Fraction(D)), inertia, longest, Fraction(tau)
         )
@@ -143,17 +146,37 @@ def test_agrees_with_a_simulation_step_by_step():
         x = rng.normal(size=len(frame.states))
         e, omega, before, theta = x[0], x[1], x[2], x[-1]
         forces = [k * theta + b * omega, *x[3 + inertia : -1]]
-        v = x[3] if inertia else gain * forces[delay]
+        felt = forces[delay] + Kt * (e + theta)
+        v = x[3] if inertia else gain * felt
         u = Kp * e + D * (e - before)
         held = np.zeros((3, 3))
         held[:2] = [[0, 1, 0], [0, -1 / tau, Km / tau]]
         moved = (expm(held * T) @ [theta, omega, u])[:2]
         reference = e + theta - T * v
         expected = [reference - moved[0], moved[1], e]
-        expected += [a * v + gain * forces[delay]] if inertia else []
+        expected += [a * v + gain * felt] if inertia else []
         expected += [*forces[:longest], moved[0]]
         got = np.array(rows, dtype=float)[:, : len(x)] @ x
         assert got == pytest.approx(np.array(expected), rel=1e-9, abs=1e-9)
+
+
+def test_a_spring_does_not_go_with_a_command_that_moves_on(tmp_path):
+    """The state tells the displacement only while the reference stays where it is."""
+    sprung = (BT, "Kt: 0.5 N*m/rad\n    " + BT)
+    sampling = "{period: 2 ms, delay: 0}\ndisturbances: {command: 8 deg/s}"
+    with pytest.raises(AssemblyError, match="the spring Kt draws") as caught:
+        system_of(tmp_path, sampling, sprung)
+    assert caught.value.at == ("disturbances", "command")
+
+
+def test_with_a_spring_free_motion_is_a_mode_like_others(tmp_path):
+    sprung = (BT, "Kt: 0.5 N*m/rad\n    " + BT)
+    system = system_of(tmp_path, "{period: 2 ms, delay: 0}\ncontact: losable", sprung)
+    assert system.contact is None
+    assert sum("/free/" in mode.name for mode in system.modes) == 4
+    assert "at any moment" in " ".join(system.assumptions)
+    kept = system_of(tmp_path, "{period: 2 ms, delay: 0}", sprung)
+    assert not any("free" in mode.name for mode in kept.modes)
 
 
 def test_bounds_of_the_motor_hold_what_lies_between():

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from itertools import product
 
@@ -49,7 +49,7 @@ class ImpedanceAnalysis(AbstractControllerAnalysis):
     optimum : ImpedanceOptimum
         Before rounding.
     Mt, Bt : float
-        As shipped, in kg m^2 and N m s/rad.
+        As shipped, in kg m^2 and N m s/rad; a spring is that of the loop in the problem.
     cost : float
         Of the shipped gains.
     margins : LoopMargins
@@ -82,7 +82,8 @@ def choose(task: Task, given: ImpedanceControllerSpec) -> Choice:
     optimum = None
     if given.Mt.fixed and given.Bt.fixed:
         # Nothing to choose; whether these gains are stable is for the certificate to say.
-        law = Admittance(to_float32(given.Mt.min.exact), to_float32(given.Bt.min.exact))
+        Mt, Bt = (to_float32(gain.min.exact) for gain in (given.Mt, given.Bt))
+        law = Admittance(Mt, Bt, _spring(given))
     else:
         law, optimum = _optimize(task, given)
     for gain, outside in faults_of_ranges(given, law.gains):
@@ -115,10 +116,10 @@ def analyze(
     Mt, Bt = float(shipped["Mt"]), float(shipped["Bt"])
     with naming(controller.name):
         margins = loop_margins(problem.loop, Mt, Bt)
-    ranges = (gain_interval(given.Mt, shipped["Mt"]), gain_interval(given.Bt, shipped["Bt"]))
+    ends = (gain_interval(gain, shipped[name]).ends for name, gain in given.gains().items())
     limits = (
-        stiffness_limit(problem.loop, float(mass), float(damping))
-        for (_, mass), (_, damping) in product(*(interval.ends for interval in ranges))
+        stiffness_limit(replace(problem.loop, Kt=sum(springs)), Mt_end, Bt_end)
+        for Mt_end, Bt_end, *springs in product(*([float(v) for _, v in pair] for pair in ends))
     )
     return ImpedanceAnalysis(
         name=controller.name,
@@ -150,7 +151,11 @@ def impedance_problem(task: Task, given: ImpedanceControllerSpec) -> ImpedancePr
         With bounds and weights.
     """
     return ImpedanceProblem(
-        loop=ImpedanceLoop(task.motion, task.plant.environment(given.environment).nominal),
+        loop=ImpedanceLoop(
+            task.motion,
+            task.plant.environment(given.environment).nominal,
+            float(_spring(given)),
+        ),
         desired=desired_impedance(task.spec, given),
         bandwidth=task.spec.limits.bandwidth.si,
         mass_bounds=(given.Mt.min.si, given.Mt.max.si),
@@ -175,7 +180,7 @@ def _requirement(task: Task, given: ImpedanceControllerSpec) -> Requirement:
     gains = {name: _ends(gain) for name, gain in given.gains().items()}
     return Requirement(
         motion=task.motion,
-        corners=corners_of(contacts, given.environment, gains),
+        corners=corners_of(contacts, given.environment, gains, float(_spring(given))),
         goals=goals_of(task.spec, given, IMPEDANCE_MEASURES),
         desired=desired_impedance(task.spec, given),
         bandwidth=task.spec.limits.bandwidth.si,
@@ -197,6 +202,7 @@ def _optimize(task: Task, given: ImpedanceControllerSpec) -> tuple[Admittance, I
     law = Admittance(
         Mt=_shipped(optimum.Mt, given.Mt, task.digits),
         Bt=_shipped(optimum.Bt, given.Bt, task.digits),
+        Kt=_spring(given),
     )
     if not meets(requirement, float(law.Mt), float(law.Bt)):
         law = _rounded_within(problem, requirement, optimum, given, task.digits)
@@ -222,7 +228,12 @@ def _rounded_within(
             f"Bt = {optimum.Bt:.6g} N m s/rad meet the goals",
             remedy="raise design.significant_digits (at most 7), or relax a goal",
         )
-    return Admittance(*map(Fraction, pair))
+    return Admittance(Fraction(pair[0]), Fraction(pair[1]), _spring(controller))
+
+
+def _spring(given: ImpedanceControllerSpec) -> Fraction:
+    """Return Kt as the robot holds it; zero where the spec gives none."""
+    return Fraction(0) if given.Kt is None else to_float32(given.Kt.min.exact)
 
 
 def _shipped(value: float, bounds: GainSpec, digits: int) -> Fraction:

@@ -9,6 +9,7 @@ from nrs_design.controllers.controller_design import Controller, ControllerDesig
 from nrs_design.controllers.float32 import exact_decimal, is_float32, to_float32
 from nrs_design.controllers.gain_range import faults_of_ranges
 from nrs_design.controllers.laws import LAWS, ProportionalDerivative
+from nrs_design.controllers.sensor import build_sensor
 from nrs_design.errors import CertificateError
 from nrs_design.spec import ControllerSpec, IdleStatesSpec, InteractionDesignSpec, parse_exact
 
@@ -45,7 +46,7 @@ def design_from_gains(
     controllers = tuple(
         _controller(name, controller, gains) for name, controller in spec.controllers.items()
     )
-    return ControllerDesign(motion, controllers)
+    return ControllerDesign(motion, controllers, build_sensor(spec.sensor))
 
 
 def idle_decay(idle: IdleStatesSpec) -> Fraction:

@@ -11,6 +11,7 @@ from fractions import Fraction
 from typing import TYPE_CHECKING
 
 from nrs_design.controllers.float32 import to_float32
+from nrs_design.errors import DesignError
 
 if TYPE_CHECKING:
     from nrs_design.controllers.laws import ProportionalDerivative
@@ -59,6 +60,24 @@ class SampledAdmittance:
     b: Fraction
     T: Fraction
     Kt: Fraction = Fraction(0)
+
+    @property
+    def lasting_gain(self) -> Fraction:
+        """Velocity over a lasting force without a spring, rad/(s N m): 1/Bt, but for rounding.
+
+        Raises
+        ------
+        DesignError
+            If the step forgets nothing, so that the velocity grows as long as the force lasts.
+        """
+        if self.a is None:
+            return self.b
+        if self.a == 1:
+            raise DesignError(
+                "the damping is lost in single precision: a step keeps all of the velocity",
+                remedy="raise Bt, lower Mt, or sample with a longer period",
+            )
+        return self.b / (1 - self.a)
 
     @property
     def coefficients(self) -> dict[str, Fraction]:

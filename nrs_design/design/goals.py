@@ -18,6 +18,8 @@ import numpy as np
 from nrs_design.design.impedance import ImpedanceLoop
 from nrs_design.design.loops import Loops, extremes, multiply
 from nrs_design.design.measures import (
+    CREEP,
+    CREEP_ANGLE,
     DELAY_MARGIN,
     DISK_MARGIN,
     FORCE_ERROR,
@@ -102,6 +104,10 @@ class Requirement:
         Desired impedance, N m s/rad; impedance controllers only.
     bandwidth : float
         Highest frequency of the command, rad/s; impedance controllers only.
+    lags : tuple of float
+        Denominator of the filter of the force, whose numerator is 1.
+    force_error : float
+        Bound on the lasting error of the force signal, N m.
     """
 
     motion: TransferFunction
@@ -109,6 +115,8 @@ class Requirement:
     goals: tuple[tuple[Measure, float], ...] = ()
     desired: float = 0.0
     bandwidth: float = 0.0
+    lags: tuple[float, ...] = (1.0,)
+    force_error: float = 0.0
 
     def violation(self, Mt: FloatArray, Bt: FloatArray) -> FloatArray:
         """Return by which part the worst goal is missed; not positive where all are met."""
@@ -135,19 +143,25 @@ class Requirement:
         table = np.array([self._at(corner, measure, Mt, Bt) for corner in corners])
         worst = table.argmax(axis=0) if measure.upper else table.argmin(axis=0)
         values = np.take_along_axis(table, worst[None, :], axis=0)[0]
-        return values, [corners[index].label for index in worst]
+        in_the_air = measure in (CREEP, CREEP_ANGLE)
+        return values, ["free motion" if in_the_air else corners[i].label for i in worst]
 
     def _at(
         self, corner: ContactCorner, measure: Measure, Mt: FloatArray, Bt: FloatArray
     ) -> FloatArray:
         Mt = Mt if corner.Mt is None else np.full_like(Mt, corner.Mt)
         Bt = Bt if corner.Bt is None else np.full_like(Bt, corner.Bt)
-        loops = _impedance_loops(self.motion, corner, Mt, Bt)
+        if measure is CREEP:
+            return np.zeros_like(Bt) if corner.Kt else self.force_error / Bt
+        if measure is CREEP_ANGLE:
+            return np.full_like(Bt, self.force_error / corner.Kt if corner.Kt else np.inf)
+        loops = _impedance_loops(self, corner, Mt, Bt)
         if measure is not IMPEDANCE_ERROR:
             return _margin(loops, measure)
         if corner.Kt:  # Towards rest the robot displays the spring, and no damping.
             return np.full(len(Mt), np.inf)
-        displayed = multiply(loops.numerator, np.stack([Mt, Bt], axis=1))
+        forward = multiply(loops.numerator, np.tile(self.lags, (len(Mt), 1)))
+        displayed = multiply(forward, np.stack([Mt, Bt], axis=1))
         low, high = extremes(displayed, loops.closed, self.bandwidth)
         error = np.maximum(high / self.desired, self.desired / low)
         return np.where(loops.stable, error, np.inf)
@@ -249,10 +263,10 @@ def _corners(
 
 
 def _impedance_loops(
-    motion: TransferFunction, corner: ContactCorner, Mt: FloatArray, Bt: FloatArray
+    requirement: Requirement, corner: ContactCorner, Mt: FloatArray, Bt: FloatArray
 ) -> Loops:
-    """Return ``G Ze Y`` of many admittances (thesis fig. 6.13)."""
-    loop = ImpedanceLoop(motion, corner.contact, corner.Kt)
+    """Return ``G Ze H Y`` of many admittances (thesis fig. 6.13)."""
+    loop = ImpedanceLoop(requirement.motion, corner.contact, corner.Kt, requirement.lags)
     contact, free = loop.forward
     numerator = np.zeros((len(Mt), len(free) + 1))
     numerator[:, len(free) + 1 - len(contact) :] = contact

@@ -55,6 +55,8 @@ class ImpedanceLoop:
         The environment as a rotation about the pivot, N m/rad and N m s/rad.
     Kt : float
         Spring of the admittance in N m/rad; zero is none.
+    lags : tuple of float
+        Denominator of the filter H of the force, whose numerator is 1: highest power of s first.
 
     Raises
     ------
@@ -65,6 +67,7 @@ class ImpedanceLoop:
     motion: TransferFunction
     contact: AbstractLinearLaw
     Kt: float = 0.0
+    lags: tuple[float, ...] = (1.0,)
 
     def __post_init__(self) -> None:
         """Check the environment."""
@@ -85,15 +88,15 @@ class ImpedanceLoop:
 
     @property
     def forward(self) -> tuple[FloatArray, FloatArray]:
-        """Numerator and denominator of ``G Ze``, highest power of s first."""
+        """Numerator and denominator of ``G Ze H``, highest power of s first."""
         numerator, denominator = self.contact.impedance
         return (
             np.convolve(self.motion.numerator, trim(numerator)),
-            np.convolve(self.motion.denominator, denominator),
+            np.convolve(np.convolve(self.motion.denominator, denominator), self.lags),
         )
 
     def free(self, Mt: float, Bt: float) -> FloatArray:
-        """Return the denominator of ``G Ze Y``; an s that it has in common is left out.
+        """Return the denominator of ``G Ze H Y``; an s that it has in common is left out.
 
         Parameters
         ----------
@@ -106,7 +109,7 @@ class ImpedanceLoop:
 
     @property
     def drawn(self) -> FloatArray:
-        """What the spring adds to that denominator: Kt times the denominator of ``G Ze / s``."""
+        """What the spring adds to that denominator: Kt times that of ``G Ze H``, over s."""
         return np.asarray(self.Kt * self.forward[1][:-1]) if self.Kt else np.zeros(1)
 
 
@@ -155,7 +158,7 @@ class ImpedanceProblem:
 
 
 def open_loop(loop: ImpedanceLoop, Mt: float, Bt: float) -> TransferFunction:
-    """Return ``G Ze Y`` (thesis fig. 6.13) of an admittance with mass Mt and damping Bt.
+    """Return ``G Ze H Y`` (thesis fig. 6.13, with the filter H) for mass Mt and damping Bt.
 
     Parameters
     ----------
@@ -174,7 +177,7 @@ def open_loop(loop: ImpedanceLoop, Mt: float, Bt: float) -> TransferFunction:
 def displayed_impedance(
     loop: ImpedanceLoop, Mt: float, Bt: float, omega: ArrayLike
 ) -> ComplexArray:
-    """Evaluate ``Zdisp = G Ze / (1 + G Ze Y)`` (thesis 6.3).
+    """Evaluate ``Zdisp = G Ze / (1 + G Ze H Y)`` (thesis 6.3).
 
     Parameters
     ----------
@@ -190,7 +193,7 @@ def displayed_impedance(
     ndarray of complex
         Impedance, N m s/rad, in the shape of `omega`.
     """
-    forward, _ = loop.forward
+    forward = np.convolve(loop.forward[0], loop.lags)
     if not loop.Kt:
         return _over_characteristic(loop, Mt, Bt, np.convolve(forward, trim((Mt, Bt))), omega)
     numerator = np.convolve(forward, trim((Mt, Bt, loop.Kt)))
@@ -199,7 +202,7 @@ def displayed_impedance(
 
 
 def sensitivity(loop: ImpedanceLoop, Mt: float, Bt: float, omega: ArrayLike) -> ComplexArray:
-    """Evaluate ``L = 1 / (1 + G Ze Y)`` (thesis 6.5); parameters as `displayed_impedance`.
+    """Evaluate ``L = 1 / (1 + G Ze H Y)`` (thesis 6.5); parameters as `displayed_impedance`.
 
     Parameters
     ----------
@@ -345,10 +348,11 @@ def _sample(problem: ImpedanceProblem, nodes: int) -> _Samples:
     omega: FloatArray = (np.arange(nodes, dtype=np.float64) + 0.5) * (problem.bandwidth / nodes)
     Ze = TransferFunction(*problem.loop.contact.impedance)
     forward = frequency_response(problem.loop.motion, omega) * frequency_response(Ze, omega)
+    filtered = forward / np.polyval(problem.loop.lags, 1j * omega)
     return _Samples(
         omega=omega,
-        real=forward.real,
-        imag=forward.imag,
+        real=filtered.real,
+        imag=filtered.imag,
         target=np.log10(problem.desired / np.abs(forward)),
         drawn=problem.loop.Kt / omega,
         weights=(problem.weight_displayed, problem.weight_sensitivity),

@@ -120,7 +120,7 @@ def _gain(kind: QuantityKind, *, positive: bool) -> BeforeValidator:
 _AT_ZERO = {
     kinds.INERTIA.name: "without inertia the loop has one state less, so no state is shared",
     kinds.IMPEDANCE.name: "without damping the admittance does not follow from the force",
-    kinds.STIFFNESS.name: "without a spring nothing draws the admittance back",
+    kinds.SPRING.name: "without a spring nothing draws the admittance back",
 }
 
 
@@ -166,5 +166,5 @@ def _schema(kind: QuantityKind, *, designed: bool = True) -> WithJsonSchema:
 InertiaGain = Annotated[GainSpec, _gain(kinds.INERTIA, positive=False), _schema(kinds.INERTIA)]
 DampingGain = Annotated[GainSpec, _gain(kinds.IMPEDANCE, positive=True), _schema(kinds.IMPEDANCE)]
 SpringGain = Annotated[
-    GainSpec, _gain(kinds.STIFFNESS, positive=True), _schema(kinds.STIFFNESS, designed=False)
+    GainSpec, _gain(kinds.SPRING, positive=True), _schema(kinds.SPRING, designed=False)
 ]

@@ -134,6 +134,7 @@ def assemble(
     """
     from nrs_design.switched.close_loop import close_loop
     from nrs_design.switched.gain_box import gain_boxes
+    from nrs_design.switched.sensor_assumptions import sensor_texts
 
     _check_scale(scale)
     if spec.sampling is not None:
@@ -153,7 +154,9 @@ def assemble(
         )
     else:
         raise AssemblyError(f"unknown coordinates {coordinates!r}: deflection or force")
-    texts = (*system.assumptions, *identified_texts(spec), *scale_texts(scale))
+    period = None if spec.sampling is None else spec.sampling.period.exact
+    sensed = sensor_texts(design.sensor, period, disturbed=spec.disturbances is not None)
+    texts = (*system.assumptions, *sensed, *identified_texts(spec), *scale_texts(scale))
     return replace(system, assumptions=texts)
 
 

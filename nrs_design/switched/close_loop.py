@@ -14,6 +14,7 @@ from itertools import chain
 from nrs_design.controllers.controller_design import Controller, ControllerDesign
 from nrs_design.controllers.gains import idle_decay
 from nrs_design.controllers.laws import CompliantLaw
+from nrs_design.controllers.sensor import LowPass
 from nrs_design.errors import AssemblyError
 from nrs_design.models.contact.environment import Environment
 from nrs_design.models.contact.kelvin_voigt import KelvinVoigt
@@ -143,7 +144,7 @@ def _shared_state(
     if idle is not None:
         check_mixture(coordinates, touched)
     shared = _shared_law(design, mixed=idle is not None)
-    return _State(realize(loop), coordinates, touched, shared, idle)
+    return _State(realize(loop), coordinates, touched, shared, idle, design.sensor.filter)
 
 
 def _check_coordinates(coordinates: str, touched: tuple[Environment, ...]) -> None:
@@ -226,6 +227,7 @@ class _State:
     touched: tuple[Environment, ...]
     law: CompliantLaw
     idle: IdleStatesSpec | None
+    low_pass: LowPass | None
 
     @property
     def memories(self) -> tuple[Environment, ...]:
@@ -248,7 +250,8 @@ class _State:
             return loop
         contact = "F [N*m]" if self.coordinates == "force" else self.touched[0].law.states[0]
         memories = (f"{e.name}: {name}" for e in self.touched for name in e.law.states[1:])
-        return (*loop, contact, *memories)
+        sensed = () if self.low_pass is None else self.low_pass.states
+        return (*loop, *sensed, contact, *memories)
 
     def contact_box(self, environment: Environment) -> Box:
         """Return the parameters of a contact, and the rates of the memories that it leaves alone.
@@ -269,7 +272,7 @@ class _State:
         held, contact = law.of(values), environment.at(values)
         if self.idle is not None or law.commands == "position":
             return self.padded(position_mode(self.motion, held, contact, environment.name), law)
-        rows = velocity_mode(self.motion, held, contact)
+        rows = velocity_mode(self.motion, held, contact, self.low_pass)
         if self.coordinates == "force":
             return to_force_coordinates(rows, self.motion, contact)
         creeps = {
@@ -374,11 +377,11 @@ def _free_modes(controller: Controller, state: _State, gains: GainBox) -> Iterat
 
 
 def _free_rows(state: _State, law: CompliantLaw, values: Mapping[str, Fraction]) -> Rows:
-    return velocity_mode(state.motion, law.of(values), NOTHING)
+    return velocity_mode(state.motion, law.of(values), NOTHING, state.low_pass)
 
 
 def _force_row(state: _State, law: AbstractLinearLaw) -> RationalMatrix:
     """Return the force of a damped spring as a row on the states."""
-    own = coordinates(state.motion.order + len(state.law.states) + 1)
+    own = coordinates(len(state.names))
     force, _ = law.react(state.motion.output(len(own)), own[-1:])
     return RationalMatrix.from_rows([force])

@@ -1,9 +1,10 @@
 """State matrices of one controller in one contact, exactly: loop, law and contact put together.
 
 Where all controllers give the motion loop a velocity, the state is ``[xp, own, contact]``: the
-motion loop from velocity to velocity, the states of the law and those of the contact. Otherwise
-it is ``[xi, own, r]``, the motion loop from position to position; r is the position reference that
-the robot integrates from a velocity, and only controllers that command one have it.
+motion loop from velocity to velocity, the states of the law (after them those of a filter of the
+force) and those of the contact. Otherwise it is ``[xi, own, r]``, the motion loop from position to
+position; r is the position reference that the robot integrates from a velocity, and only
+controllers that command one have it.
 """
 
 from __future__ import annotations
@@ -12,6 +13,7 @@ from collections.abc import Mapping, Sequence
 from fractions import Fraction
 
 from nrs_design.controllers.laws import CompliantLaw
+from nrs_design.controllers.sensor import LowPass
 from nrs_design.errors import AssemblyError
 from nrs_design.models.contact.law import AbstractLinearLaw
 from nrs_design.models.linear_form import LinearForm, combine, coordinates, zero
@@ -21,7 +23,12 @@ from nrs_design.proof.matrix import multiply
 Rows = list[LinearForm]
 
 
-def velocity_mode(motion: Realization, law: CompliantLaw, contact: AbstractLinearLaw) -> Rows:
+def velocity_mode(
+    motion: Realization,
+    law: CompliantLaw,
+    contact: AbstractLinearLaw,
+    low_pass: LowPass | None = None,
+) -> Rows:
     """Return A in deflection coordinates: for impedance control, thesis 6.28.
 
     ``xp' = Ap xp + Bp u``, ``v = Cp xp``, the contact from v to F, and the law from F to u.
@@ -34,15 +41,21 @@ def velocity_mode(motion: Realization, law: CompliantLaw, contact: AbstractLinea
         With its gains; it commands a velocity.
     contact : AbstractLinearLaw
         Of the environment, at fixed parameters.
+    low_pass : LowPass, optional
+        Through which the law gets the force; its states stand between those of law and contact.
     """
     own = motion.order + len(law.states)
-    state = coordinates(own + len(contact.states))
-    force, reaction = contact.react(motion.output(len(state)), state[own:])
+    touch = own + (0 if low_pass is None else low_pass.order)
+    state = coordinates(touch + len(contact.states))
+    force, reaction = contact.react(motion.output(len(state)), state[touch:])
+    sensed: list[LinearForm] = []
+    if low_pass is not None:
+        force, sensed = low_pass.respond(force, state[own:touch])
     if law.spring:
         # What the command adds up to moves the robot against the contact: no state of its own.
-        force = combine((Fraction(1), force), (law.spring, motion.integral(state[own])))
+        force = combine((Fraction(1), force), (law.spring, motion.integral(state[touch])))
     command, rates = law.respond(force, state[motion.order : own])
-    return [*motion.rates(command), *rates, *reaction]
+    return [*motion.rates(command), *rates, *sensed, *reaction]
 
 
 def to_force_coordinates(

@@ -28,6 +28,11 @@ _NOT_MODELLED = (
     "What the arithmetic of the processor rounds, the quantization of encoder and force sensor, "
     "friction and saturation are not modelled."
 )
+# What is said of a sensor stands in lines of its own.
+_SENSED = (
+    "What the arithmetic of the processor rounds, the quantization of the encoder, friction and "
+    "saturation are not modelled."
+)
 _DISTURBED = (
     "A disturbance acts where a statement names it, alone, and keeps its value from one sample to "
     "the next; that friction changes its sign within a period is not covered.",
@@ -96,7 +101,7 @@ def assume_sampled(
         switched,
         *rule_texts(rules, "controller"),
         f"The coefficients are these single-precision numbers: {_coefficients(motion, laws)}.",
-        _beside(spec, _NOT_MODELLED),
+        _beside(spec, _NOT_MODELLED if spec.sensor is None else _SENSED),
     )
 
 

@@ -4,7 +4,7 @@ The actuator holds the command between samples and is not loaded by the tissue, 
 enters through the force sample alone: every entry is affine in it, and a stiffness that moves at
 will is covered by its ends. State: ``[e, omega, e_before, vm, F_1, ..., F_d, delta]`` with the
 error e of the motion loop, its value a period ago, the velocity vm of the admittance (absent
-without inertia), the force samples on their way, and the deflection.
+without inertia), the lags of a filter, the force samples on their way, and the deflection.
 """
 
 from __future__ import annotations
@@ -17,6 +17,7 @@ from itertools import chain
 
 from nrs_design.controllers.controller_design import Controller, ControllerDesign
 from nrs_design.controllers.sampled import SampledAdmittance, SampledMotion
+from nrs_design.controllers.sensor import SampledLowPass
 from nrs_design.errors import AssemblyError
 from nrs_design.models.actuator import ActuatorRanges
 from nrs_design.models.contact.environment import Environment
@@ -54,6 +55,8 @@ class Frame:
         Force samples on their way.
     time_constant : Fraction or None
         The tau of the motor in s, if it is known.
+    low_pass : SampledLowPass or None
+        Through which the law gets the force samples.
     """
 
     period: Fraction
@@ -61,6 +64,7 @@ class Frame:
     has_inertia: bool
     longest_delay: int
     time_constant: Fraction | None
+    low_pass: SampledLowPass | None = None
 
     @property
     def states(self) -> tuple[str, ...]:
@@ -68,7 +72,8 @@ class Frame:
         ages = (f"F {j} before [N*m]" for j in range(1, self.longest_delay + 1))
         inner = ("vm [rad/s]",) if self.has_inertia else ()
         first = ("e [rad]", "omega [rad/s]", "e before [rad]")
-        return (*first, *inner, *ages, "delta [rad]")
+        sensed = () if self.low_pass is None else self.low_pass.states
+        return (*first, *inner, *sensed, *ages, "delta [rad]")
 
     def rows(
         self, admittance: SampledAdmittance, delay: int, values: Mapping[str, Fraction]
@@ -98,8 +103,13 @@ class Frame:
         drive = combine((Kp + D, seen), (-D, before), (ONE, friction))
         moved = combine((s, omega), (Km * (self.period - s), drive))
         ages = [combine((k, delta), (b, omega), (ONE, sensor)), *samples]
+        force, sensed = ages[delay], list[LinearForm]()
+        if self.low_pass is not None:
+            first = 3 + self.has_inertia
+            sensed = self.low_pass.step(force, unit[first : first + self.low_pass.order])
+            force = [*sensed[-1]]
         # The reference, e + theta, is by how much the admittance has moved it.
-        force = combine((ONE, ages[delay]), (admittance.Kt, error), (admittance.Kt, delta))
+        force = combine((ONE, force), (admittance.Kt, error), (admittance.Kt, delta))
         if admittance.a is None:
             velocity, kept = combine((admittance.b, force)), []
         else:
@@ -111,6 +121,7 @@ class Frame:
             combine((E, omega), (Km * (1 - E), drive)),
             seen,
             *kept,
+            *sensed,
             *ages[: self.longest_delay],
             combine((ONE, delta), (ONE, moved)),
         ]
@@ -165,6 +176,7 @@ def close_sampled_loop(
         Interval.point(plant.actuator.gain), Interval.point(plant.actuator.time_constant)
     )
     has_inertia = _have_inertia(laws.values())
+    low_pass = design.sensor.filter
     tau = ranges.time_constant
     frame = Frame(
         period,
@@ -172,6 +184,7 @@ def close_sampled_loop(
         has_inertia,
         sampling.delay[1],
         tau.nominal if tau.low == tau.high else None,
+        None if low_pass is None else low_pass.sampled(period),
     )
     motor = motor_box(ranges, period)
     parts = {
@@ -192,7 +205,7 @@ def close_sampled_loop(
     motions = tuple(chain.from_iterable(parts.values()))
     flying = tuple(item.mode for item in free)
     losable = Contact(flying, required=spec.contact == "losable") if free else None
-    channels = tuple(_channels(spec, (*motions, *free)))
+    channels = tuple(_channels(spec, design.sensor.lasting, (*motions, *free)))
     return SwitchedSystem(
         spec.name,
         Time.DISCRETE,
@@ -220,11 +233,15 @@ def _have_inertia(laws: Iterable[SampledAdmittance]) -> bool:
     return True in found
 
 
-def _channels(spec: InteractionDesignSpec, motions: Sequence[_Motion]) -> Iterator[Channel]:
-    """Yield the disturbances that the spec declares, with their columns."""
+def _channels(
+    spec: InteractionDesignSpec, off: Fraction, motions: Sequence[_Motion]
+) -> Iterator[Channel]:
+    """Yield the disturbances of the spec, and the errors of its sensor, with their columns."""
     if spec.disturbances is None:
         return
     bounds = spec.disturbances.bounds()
+    if off:
+        bounds["force error"] = (off, "N*m")
     for i, name in enumerate(INPUTS):
         if name in bounds:
             bound, unit = bounds[name]

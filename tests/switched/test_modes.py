@@ -4,6 +4,7 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from types import MappingProxyType
 
+import control
 import numpy as np
 import pytest
 from hypothesis import given
@@ -14,6 +15,7 @@ from nrs_design.controllers.laws import (
     Admittance,
     ProportionalForce,
 )
+from nrs_design.controllers.sensor import LowPass
 from nrs_design.design.impedance import ImpedanceLoop
 from nrs_design.design.margins import stiffness_limit
 from nrs_design.design.transfer import TransferFunction
@@ -210,6 +212,32 @@ class TestSpring:
         motion = realize(MotionLoop((F(1), F(0)), (F(1), F(2), F(3))))
         with pytest.raises(AssemblyError, match="gain at zero is zero"):
             velocity_mode(motion, Admittance(F(1), F(1), F(1)), SOFT)
+
+
+class TestFilter:
+    @pytest.mark.parametrize("order", [1, 2, 3])
+    def test_eigenvalues_are_the_poles_that_python_control_closes(self, order):
+        """``G Ze H Y`` under unit feedback, H so many lags of 30 Hz in a row."""
+        low_pass = LowPass(order, F(188))
+        rows = velocity_mode(
+            MOTION, Admittance(F("0.01"), F(2)), KelvinVoigt(F(43), F(1)), low_pass
+        )
+        s = control.tf("s")
+        G = control.tf(*([*map(float, part)] for part in (LOOP.numerator, LOOP.denominator)))
+        Ze, H, Y = (43 + s) / s, 1 / (s / 188 + 1) ** order, 1 / (0.01 * s + 2)
+        wanted = np.sort_complex(control.feedback(G * Ze * H * Y, 1).poles())
+        found = np.sort_complex(np.linalg.eigvals(np.array(rows, dtype=float)))
+        assert found == pytest.approx(wanted, rel=1e-4)
+
+    def test_a_spring_and_a_filter(self):
+        """The characteristic polynomial ``denH den (Mt s^2 + Bt s + Kt) + num (b s + k)``."""
+        low_pass, law = LowPass(2, F(100)), Admittance(F("0.01"), F(2), F("0.5"))
+        rows = velocity_mode(MOTION, law, KelvinVoigt(F(43), F(1)), low_pass)
+        num, den = (objects(*part) for part in (LOOP.numerator, LOOP.denominator))
+        lags = objects(F(1, 10_000), F(1, 50), F(1))
+        free = np.polymul(np.polymul(den, lags), objects(law.Mt, law.Bt, law.Kt))
+        total = np.polyadd(free, np.polymul(num, objects(F(1), F(43))))
+        assert polynomial(rows) == [c / total[0] for c in total]
 
 
 class TestForce:

@@ -8,6 +8,7 @@ import pytest
 from scipy.linalg import expm
 
 from nrs_design.controllers.sampled import SampledAdmittance, SampledMotion
+from nrs_design.controllers.sensor import SampledLowPass
 from nrs_design.errors import AssemblyError
 from nrs_design.models.actuator import ActuatorRanges
 from nrs_design.pipeline import run_design
@@ -138,15 +139,20 @@ def test_agrees_with_a_simulation_step_by_step():
         law = SampledAdmittance(
             Fraction(a) if inertia else None, Fraction(gain), Fraction(T), Fraction(Kt)
         )
-        frame = Frame(
-            Fraction(T), SampledMotion(Fraction(Kp), Fraction(D)), inertia, longest, Fraction(tau)
-        )
+        order, p, q = int(rng.integers(0, 3)), rng.uniform(), rng.uniform()
+        low_pass = SampledLowPass(order, Fraction(p), Fraction(q)) if order else None
+        motion = SampledMotion(Fraction(Kp), Fraction(D))
+        frame = Frame(Fraction(T), motion, inertia, longest, Fraction(tau), low_pass)
         values = {"Km": Km, "E": float(np.exp(-T / tau)), "k": k, "b": b}
         rows = frame.rows(law, delay, {key: Fraction(value) for key, value in values.items()})
         x = rng.normal(size=len(frame.states))
         e, omega, before, theta = x[0], x[1], x[2], x[-1]
-        forces = [k * theta + b * omega, *x[3 + inertia : -1]]
-        felt = forces[delay] + Kt * (e + theta)
+        forces = [k * theta + b * omega, *x[3 + inertia + order : -1]]
+        filtered, felt = [], forces[delay]
+        for lag in x[3 + inertia : 3 + inertia + order]:
+            felt = p * lag + q * felt
+            filtered.append(felt)
+        felt += Kt * (e + theta)
         v = x[3] if inertia else gain * felt
         u = Kp * e + D * (e - before)
         held = np.zeros((3, 3))
@@ -155,7 +161,7 @@ def test_agrees_with_a_simulation_step_by_step():
         reference = e + theta - T * v
         expected = [reference - moved[0], moved[1], e]
         expected += [a * v + gain * felt] if inertia else []
-        expected += [*forces[:longest], moved[0]]
+        expected += [*filtered, *forces[:longest], moved[0]]
         got = np.array(rows, dtype=float)[:, : len(x)] @ x
         assert got == pytest.approx(np.array(expected), rel=1e-9, abs=1e-9)
 

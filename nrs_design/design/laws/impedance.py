@@ -12,6 +12,7 @@ from nrs_design.controllers.float32 import neighbors, round_significant, to_floa
 from nrs_design.controllers.gain_range import faults_of_ranges, gain_interval
 from nrs_design.controllers.laws import Admittance
 from nrs_design.design.constrained import best_rounding, meets, optimize_with_goals
+from nrs_design.design.creep import Creep, creep_of, float_above, with_creep
 from nrs_design.design.doubts import doubt_bounds
 from nrs_design.design.goals import Requirement, achieve_impedance, corners_of
 from nrs_design.design.impedance import (
@@ -29,7 +30,7 @@ from nrs_design.design.laws.law import (
     naming,
 )
 from nrs_design.design.margins import LoopMargins, loop_margins, stiffness_limit
-from nrs_design.design.measures import IMPEDANCE_MEASURES
+from nrs_design.design.measures import CREEP_MEASURES, IMPEDANCE_MEASURES, Measure
 from nrs_design.errors import DesignError
 from nrs_design.spec import Doubt, GainSpec, ImpedanceControllerSpec, InteractionDesignSpec
 
@@ -59,6 +60,8 @@ class ImpedanceAnalysis(AbstractControllerAnalysis):
     lowest_limit : float
         Smallest stiffness limit in N m/rad, of the shipped gains and of the corners of their
         declared ranges.
+    creep : Creep or None
+        By the errors of the force signal, where the spec says how large they are.
     """
 
     given: ImpedanceControllerSpec
@@ -70,6 +73,7 @@ class ImpedanceAnalysis(AbstractControllerAnalysis):
     margins: LoopMargins
     highest_stiffness: float
     lowest_limit: float
+    creep: Creep | None = None
 
     def doubts(self) -> Iterator[Doubt]:
         """Yield what is doubtful about the gains, and which of them the bounds have chosen."""
@@ -121,9 +125,11 @@ def analyze(
         stiffness_limit(replace(problem.loop, Kt=sum(springs)), Mt_end, Bt_end)
         for Mt_end, Bt_end, *springs in product(*([float(v) for _, v in pair] for pair in ends))
     )
+    achieved = achieve_impedance(_requirement(task, given), _measures(task), Mt, Bt)
+    creep = creep_of(task.spec, task.loop, given, controller) if task.sensor.errors else None
     return ImpedanceAnalysis(
         name=controller.name,
-        achieved=achieve_impedance(_requirement(task, given), IMPEDANCE_MEASURES, Mt, Bt),
+        achieved=achieved if creep is None else with_creep(achieved, creep),
         given=given,
         problem=problem,
         # Gains that the spec gives are their own optimum.
@@ -134,6 +140,7 @@ def analyze(
         margins=margins,
         highest_stiffness=float(task.plant.environment(given.environment).stiffness.high),
         lowest_limit=min(margins.stiffness_limit, *limits),
+        creep=creep,
     )
 
 
@@ -155,6 +162,7 @@ def impedance_problem(task: Task, given: ImpedanceControllerSpec) -> ImpedancePr
             task.motion,
             task.plant.environment(given.environment).nominal,
             float(_spring(given)),
+            _lags(task),
         ),
         desired=desired_impedance(task.spec, given),
         bandwidth=task.spec.limits.bandwidth.si,
@@ -181,10 +189,22 @@ def _requirement(task: Task, given: ImpedanceControllerSpec) -> Requirement:
     return Requirement(
         motion=task.motion,
         corners=corners_of(contacts, given.environment, gains, float(_spring(given))),
-        goals=goals_of(task.spec, given, IMPEDANCE_MEASURES),
+        goals=goals_of(task.spec, given, _measures(task)),
         desired=desired_impedance(task.spec, given),
         bandwidth=task.spec.limits.bandwidth.si,
+        lags=_lags(task),
+        force_error=float_above(task.sensor.lasting),
     )
+
+
+def _measures(task: Task) -> tuple[Measure, ...]:
+    """Return what an impedance controller is measured by: creep where its cause is known."""
+    return (*IMPEDANCE_MEASURES, *(CREEP_MEASURES if task.sensor.errors else ()))
+
+
+def _lags(task: Task) -> tuple[float, ...]:
+    low_pass = task.sensor.filter
+    return (1.0,) if low_pass is None else low_pass.denominator
 
 
 def _ends(gain: GainSpec) -> tuple[float, ...]:

@@ -13,6 +13,7 @@ from nrs_design.reporting.document import Block, Illustration, Paragraph, Sectio
 from nrs_design.reporting.figures.complex_plane import draw_root_locus
 from nrs_design.reporting.figures.impedance import draw_displayed_impedance, draw_sensitivity
 from nrs_design.reporting.formatting import number, polynomial, root, roots
+from nrs_design.reporting.sections.creep import creep_section
 from nrs_design.reporting.sections.goals import goals_section
 from nrs_design.spec import InteractionDesignSpec
 
@@ -80,6 +81,8 @@ def design_sections(designed: Designed, analysis: DesignAnalysis | None) -> tupl
     parts = [gains, _motion_section(designed, analysis)]
     if analysis.impedance:
         parts.append(_impedance_section(analysis.impedance))
+    if sensor := creep_section(designed, analysis):
+        parts.append(sensor)
     if analysis.force:
         parts.append(_force_section(analysis))
     if analysis.measured:

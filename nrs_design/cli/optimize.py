@@ -102,26 +102,26 @@ def _summary(item: ImpedanceAnalysis) -> dict[str, Any]:
 
 def _sensor(designed: Designed) -> dict[str, Any]:
     """Return what may last of the errors of the force signal, N m, rounded up."""
-    from nrs_design.design.creep import float_above
+    from nrs_design.proof.bounds import upper_float
 
     sensor = designed.design.sensor
     return {
-        "lasting_error": float_above(sensor.lasting),
-        "parts": {name: float_above(error) for name, error in sensor.errors.items()},
+        "lasting_error": upper_float(sensor.lasting),
+        "parts": {name: upper_float(error) for name, error in sensor.errors.items()},
         "unit": "N*m",
     }
 
 
 def _creep(item: ImpedanceAnalysis) -> dict[str, Any] | None:
     """Return the bounds on the creep, rounded up; None without a sensor whose errors are known."""
-    from nrs_design.design.creep import float_above
+    from nrs_design.proof.bounds import upper_float
 
     if item.creep is None:
         return None
     angle = item.creep.angle
     return {
-        "velocity_rad_s": float_above(item.creep.velocity),
-        "angle_rad": None if angle is None else float_above(angle),
+        "velocity_rad_s": upper_float(item.creep.velocity),
+        "angle_rad": None if angle is None else upper_float(angle),
         "noise_rms_rad_s": item.creep.noise,
     }
 

@@ -8,6 +8,7 @@ after what has been moved by others has settled.
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from fractions import Fraction
 
@@ -15,13 +16,14 @@ import numpy as np
 
 from nrs_design.controllers.controller_design import Controller
 from nrs_design.controllers.gain_range import gain_interval
-from nrs_design.controllers.laws import Admittance
 from nrs_design.controllers.sensor import Sensor, build_sensor
 from nrs_design.design.goals import Achieved
 from nrs_design.design.measures import CREEP, CREEP_ANGLE
 from nrs_design.design.transfer import trim, white_noise_power
 from nrs_design.models.motion_loop import MotionLoop
-from nrs_design.spec import ImpedanceControllerSpec, InteractionDesignSpec
+from nrs_design.proof.bounds import upper_float
+from nrs_design.spec import InteractionDesignSpec
+from nrs_design.spec.controllers import AbstractControllerSpec
 
 ONE = Fraction(1)
 
@@ -49,7 +51,7 @@ class Creep:
 def creep_of(
     spec: InteractionDesignSpec,
     loop: MotionLoop,
-    given: ImpedanceControllerSpec,
+    given: AbstractControllerSpec,
     controller: Controller,
 ) -> Creep:
     """Bound the creep of one controller, at the worst gains of its ranges.
@@ -60,7 +62,7 @@ def creep_of(
         With the sensor and the processor.
     loop : MotionLoop
         The motion loop in use.
-    given : ImpedanceControllerSpec
+    given : AbstractControllerSpec
         With the ranges of its gains.
     controller : Controller
         With the gains that ship.
@@ -68,7 +70,7 @@ def creep_of(
     gains, sensor = controller.law.gains, build_sensor(spec.sensor)
     lowest = {name: gain_interval(gain, gains[name]).low for name, gain in given.gains().items()}
     followed = abs(loop.numerator[-1] / loop.denominator[-1])
-    error, noise = sensor.lasting * followed, _noise(sensor, controller.law)
+    error, noise = sensor.lasting * followed, _noise(sensor, gains)
     sampling = spec.sampling
     gain = 1 / lowest["Bt"]
     if sampling is not None:
@@ -94,25 +96,19 @@ def with_creep(achieved: tuple[Achieved, ...], creep: Creep) -> tuple[Achieved, 
     creep : Creep
         Its bounds.
     """
-    angle = math.inf if creep.angle is None else float_above(creep.angle)
-    exact = {CREEP: float_above(creep.velocity), CREEP_ANGLE: angle}
+    angle = math.inf if creep.angle is None else upper_float(creep.angle)
+    exact = {CREEP: upper_float(creep.velocity), CREEP_ANGLE: angle}
     return tuple(
         replace(item, value=exact[item.measure]) if item.measure in exact else item
         for item in achieved
     )
 
 
-def float_above(number: Fraction) -> float:
-    """Return the smallest float that is not below."""
-    near = float(number)
-    return near if Fraction(near) >= number else math.nextafter(near, math.inf)
-
-
-def _noise(sensor: Sensor, law: object) -> float | None:
+def _noise(sensor: Sensor, gains: Mapping[str, Fraction]) -> float | None:
     """Return the standard deviation of the velocity that an admittance makes of white noise."""
-    if sensor.noise is None or not isinstance(law, Admittance):
+    if sensor.noise is None:
         return None
-    Mt, Bt, Kt = map(float, (law.Mt, law.Bt, law.Kt))
+    Mt, Bt, Kt = (float(gains.get(name, 0)) for name in ("Mt", "Bt", "Kt"))
     above, below = ((1.0, 0.0), (Mt, Bt, Kt)) if Kt else ((1.0,), (Mt, Bt))
     lags = (1.0,) if sensor.filter is None else sensor.filter.denominator
     power = white_noise_power(above, np.convolve(trim(below), lags).tolist())

@@ -7,7 +7,6 @@ import pytest
 from scipy.integrate import quad
 
 from nrs_design.controllers.sampled import SampledMotion
-from nrs_design.design.creep import float_above
 from nrs_design.design.measures import CREEP, CREEP_ANGLE
 from nrs_design.design.transfer import white_noise_power
 from nrs_design.errors import DesignError
@@ -139,9 +138,3 @@ def test_noise_of_the_velocity(tmp_path):
     wanted = quad(power, 0, 5, limit=200)[0] + quad(power, 5, 5000, limit=500)[0]
     assert white_noise_power(above, below.tolist()) == pytest.approx(wanted, rel=1e-6)
     assert white_noise_power((1.0,), (2.0,)) is None
-
-
-def test_floats_are_not_below():
-    for number in (Fraction(1, 3), Fraction(1, 2), Fraction(10**17 + 1)):
-        assert Fraction(float_above(number)) >= number
-    assert float_above(Fraction(1, 2)) == 0.5

@@ -12,7 +12,7 @@ from nrs_design.controllers.float32 import neighbors, round_significant, to_floa
 from nrs_design.controllers.gain_range import faults_of_ranges, gain_interval
 from nrs_design.controllers.laws import Admittance
 from nrs_design.design.constrained import best_rounding, meets, optimize_with_goals
-from nrs_design.design.creep import Creep, creep_of, float_above, with_creep
+from nrs_design.design.creep import Creep, creep_of, with_creep
 from nrs_design.design.doubts import doubt_bounds
 from nrs_design.design.goals import Requirement, achieve_impedance, corners_of
 from nrs_design.design.impedance import (
@@ -32,6 +32,7 @@ from nrs_design.design.laws.law import (
 from nrs_design.design.margins import LoopMargins, loop_margins, stiffness_limit
 from nrs_design.design.measures import CREEP_MEASURES, IMPEDANCE_MEASURES, Measure
 from nrs_design.errors import DesignError
+from nrs_design.proof.bounds import upper_float
 from nrs_design.spec import Doubt, GainSpec, ImpedanceControllerSpec, InteractionDesignSpec
 
 
@@ -193,7 +194,7 @@ def _requirement(task: Task, given: ImpedanceControllerSpec) -> Requirement:
         desired=desired_impedance(task.spec, given),
         bandwidth=task.spec.limits.bandwidth.si,
         lags=_lags(task),
-        force_error=float_above(task.sensor.lasting),
+        force_error=upper_float(task.sensor.lasting),
     )
 
 

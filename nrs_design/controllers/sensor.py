@@ -15,6 +15,7 @@ from itertools import product
 from math import comb, isqrt
 
 from nrs_design.controllers.float32 import to_float32
+from nrs_design.controllers.sampled import Term
 from nrs_design.models.linear_form import LinearForm, combine
 from nrs_design.proof.taylor import exponential_between
 from nrs_design.spec.quantity_fields import RangedQuantity
@@ -105,21 +106,27 @@ class SampledLowPass:
         """Output over input in the long run: one, but for what the coefficients round."""
         return (self.q / (1 - self.p)) ** self.order
 
-    def step(self, force: LinearForm, states: Sequence[LinearForm]) -> list[LinearForm]:
-        """Return the next states; the last is the filtered force.
+    def stages(
+        self, sample: tuple[Term, ...], states: Sequence[LinearForm]
+    ) -> list[tuple[Term, ...]]:
+        """Return the terms that each lag is the sum of; the last is the filtered force.
+
+        All are terms of what was there before the sample, and of the sample itself.
 
         Parameters
         ----------
-        force : LinearForm
-            The sample that is taken now.
+        sample : tuple of Term
+            The force sample that is taken now.
         states : sequence of LinearForm
             Those named in `states`.
         """
-        following: list[LinearForm] = []
-        for own in states:
-            force = combine((self.p, own), (self.q, force))
-            following.append(force)
-        return following
+        found: list[tuple[Term, ...]] = []
+        for i, own in enumerate(states, 1):
+            # A product and a sum.
+            before = (term.times(self.q, "q ", 2) for term in sample)
+            sample = (Term(f"p x{i}", combine((self.p, own)), 2), *before)
+            found.append(sample)
+        return found
 
 
 @dataclass(frozen=True, slots=True)

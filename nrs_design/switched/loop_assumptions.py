@@ -22,14 +22,15 @@ from nrs_design.switched.assumptions import (
     rule_texts,
 )
 from nrs_design.switched.gain_box import GainBox
+from nrs_design.switched.joint import Joint
 
 _GIVEN_LOOP = (
     "The motion loop is the transfer function G(s) that the spec states, whatever the motion gains "
     "listed here."
 )
 _DESIGNED_LOOP = (
-    "The motion loop is the linear actuator model of the spec, at its nominal values, under the "
-    "motion gains listed here."
+    "The motion loop is the linear actuator model of the spec, at its nominal values and not "
+    "loaded by what is touched, under the motion gains listed here."
 )
 _INPUTS = "All inputs are zero (velocity command, reference force, motion of the environment); "
 # In free motion, a command moves the axis ever further from the surface.
@@ -79,6 +80,8 @@ class Assumed:
         Whether the system says how contact is lost; then a statement says whether it is kept.
     free : bool
         Whether free motion is one of the modes.
+    joint : Joint or None
+        The motor, where it has ranges or is loaded by the environment.
     """
 
     design: ControllerDesign
@@ -91,12 +94,13 @@ class Assumed:
     given: bool
     losable: bool = False
     free: bool = False
+    joint: Joint | None = None
 
 
 def assume_loop(loop: Assumed) -> tuple[str, ...]:
     """Say what holds for an interaction design."""
     return (
-        _GIVEN_LOOP if loop.given else _DESIGNED_LOOP,
+        *_loop_texts(loop),
         _INPUTS + REST[loop.losable],
         *_command_texts(loop),
         "The axes of the robot do not act on each other.",
@@ -111,6 +115,12 @@ def assume_loop(loop: Assumed) -> tuple[str, ...]:
         _NOT_MODELLED,
         *_gain_texts(loop.boxes),
     )
+
+
+def _loop_texts(loop: Assumed) -> Iterator[str]:
+    if loop.joint is not None:
+        return loop.joint.texts()
+    return iter((_GIVEN_LOOP if loop.given else _DESIGNED_LOOP,))
 
 
 def _command_texts(loop: Assumed) -> Iterator[str]:

@@ -17,14 +17,14 @@ from nrs_design.controllers.sensor import LowPass
 from nrs_design.errors import AssemblyError
 from nrs_design.models.contact.law import AbstractLinearLaw
 from nrs_design.models.linear_form import LinearForm, combine, coordinates, zero
-from nrs_design.models.motion_loop import Realization
+from nrs_design.models.motion_loop import JointMotion, Realization
 from nrs_design.proof.matrix import multiply
 
 Rows = list[LinearForm]
 
 
 def velocity_mode(
-    motion: Realization,
+    motion: Realization | JointMotion,
     law: CompliantLaw,
     contact: AbstractLinearLaw,
     low_pass: LowPass | None = None,
@@ -35,8 +35,8 @@ def velocity_mode(
 
     Parameters
     ----------
-    motion : Realization
-        Of the motion loop.
+    motion : Realization or JointMotion
+        The motion loop.
     law : CompliantLaw
         With its gains; it commands a velocity.
     contact : AbstractLinearLaw
@@ -48,18 +48,18 @@ def velocity_mode(
     touch = own + (0 if low_pass is None else low_pass.order)
     state = coordinates(touch + len(contact.states))
     force, reaction = contact.react(motion.output(len(state)), state[touch:])
-    sensed: list[LinearForm] = []
+    felt, sensed = force, list[LinearForm]()
     if low_pass is not None:
-        force, sensed = low_pass.respond(force, state[own:touch])
+        felt, sensed = low_pass.respond(force, state[own:touch])
     if law.spring:
         # What the command adds up to moves the robot against the contact: no state of its own.
-        force = combine((Fraction(1), force), (law.spring, motion.integral(state[touch])))
-    command, rates = law.respond(force, state[motion.order : own])
-    return [*motion.rates(command), *rates, *sensed, *reaction]
+        felt = combine((Fraction(1), felt), (law.spring, motion.integral(state[touch])))
+    command, rates = law.respond(felt, state[motion.order : own])
+    return [*motion.rates(command, force), *rates, *sensed, *reaction]
 
 
 def to_force_coordinates(
-    rows: Sequence[LinearForm], motion: Realization, contact: AbstractLinearLaw
+    rows: Sequence[LinearForm], motion: Realization | JointMotion, contact: AbstractLinearLaw
 ) -> Rows:
     """Replace the last state delta by the force ``F = k delta + b Cp xp`` (similarity T A T^-1).
 
@@ -67,8 +67,8 @@ def to_force_coordinates(
     ----------
     rows : sequence of LinearForm
         A in deflection coordinates.
-    motion : Realization
-        Of the motion loop.
+    motion : Realization or JointMotion
+        The motion loop.
     contact : AbstractLinearLaw
         Of the environment, at fixed parameters.
     """

@@ -16,7 +16,14 @@ from functools import partial
 from itertools import chain
 
 from nrs_design.controllers.controller_design import Controller, ControllerDesign
-from nrs_design.controllers.sampled import SampledAdmittance, SampledMotion
+from nrs_design.controllers.sampled import (
+    ROUNDINGS,
+    ROUNDINGS_WITHOUT_INERTIA,
+    SampledAdmittance,
+    SampledMotion,
+    Term,
+    rounding_share,
+)
 from nrs_design.controllers.sensor import SampledLowPass
 from nrs_design.errors import AssemblyError
 from nrs_design.models.actuator import ActuatorRanges
@@ -24,19 +31,35 @@ from nrs_design.models.contact.environment import Environment
 from nrs_design.models.linear_form import LinearForm, combine, coordinates, zero
 from nrs_design.models.plant import Plant
 from nrs_design.proof.matrix import RationalMatrix
-from nrs_design.proof.system import Channel, Contact, Mode, Output, SwitchedSystem, Time
+from nrs_design.proof.system import (
+    Channel,
+    Contact,
+    Mode,
+    Output,
+    Rounding,
+    SwitchedSystem,
+    Time,
+)
 from nrs_design.proof.taylor import exponential_between
 from nrs_design.spec import InteractionDesignSpec
 from nrs_design.spec.interval import Interval
-from nrs_design.spec.sampling import SamplingSpec
+from nrs_design.spec.sampling import DisturbancesSpec, SamplingSpec
 from nrs_design.switched.constraints import assemble_switching
 from nrs_design.switched.parameter_box import Box
 from nrs_design.switched.parameters import Corner
 from nrs_design.switched.sampled_assumptions import Loss, assume_sampled
 
 ONE = Fraction(1)
+KP, KD, FORCE, STEP = "Kp e", "D (e - e before)", "b F", "T (v - vm)"
 # What acts on a frame from outside, in this order.
-INPUTS = ("velocity command", "friction", "encoder error", "force error")
+INPUTS = (
+    "velocity command",
+    "friction",
+    "encoder error",
+    "force error",
+    "rounding of the reference",
+    "rounding of the angle",
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,6 +80,8 @@ class Frame:
         The tau of the motor in s, if it is known.
     low_pass : SampledLowPass or None
         Through which the law gets the force samples.
+    sprung : bool
+        Whether an admittance has a spring.
     """
 
     period: Fraction
@@ -65,6 +90,42 @@ class Frame:
     longest_delay: int
     time_constant: Fraction | None
     low_pass: SampledLowPass | None = None
+    sprung: bool = False
+
+    @property
+    def roundings(self) -> dict[str, Fraction]:
+        """What the arithmetic changes of every term of the law at most, over its size."""
+        return {name: rounding_share(count) for name, count in self.counts.items()}
+
+    @property
+    def counts(self) -> dict[str, int]:
+        """How often each term of the law is rounded."""
+        plain = ROUNDINGS if self.has_inertia else ROUNDINGS_WITHOUT_INERTIA
+        stages, pushes = self._force_terms(ONE, [], [[]] * self._order, [])
+        forces = {term.name: term.roundings for term in chain(*stages, pushes)}
+        counts: dict[str, int] = {}
+        for name, count in plain.items():
+            counts |= forces if name == FORCE else {name: count}
+        return counts
+
+    @property
+    def _order(self) -> int:
+        return 0 if self.low_pass is None else self.low_pass.order
+
+    def _force_terms(
+        self, b: Fraction, sample: LinearForm, lags: Sequence[LinearForm], pull: LinearForm
+    ) -> tuple[list[tuple[Term, ...]], tuple[Term, ...]]:
+        """Return the terms of each lag, and those of what the force adds to the velocity."""
+        # The sample is rounded when it is read; the pull is a difference of references times Kt.
+        felt: tuple[Term, ...] = (Term("F", sample, 1),)
+        stages: list[tuple[Term, ...]] = []
+        if self.low_pass is not None:
+            stages = self.low_pass.stages(felt, lags)
+            felt = stages[-1]
+        if self.sprung:
+            felt = (*(term.times(ONE, "", 1) for term in felt), Term("Kt r", pull, 3))
+        more = 1 + self.has_inertia
+        return stages, tuple(term.times(b, "b ", more) for term in felt)
 
     @property
     def states(self) -> tuple[str, ...]:
@@ -78,7 +139,10 @@ class Frame:
     def rows(
         self, admittance: SampledAdmittance, delay: int, values: Mapping[str, Fraction]
     ) -> list[LinearForm]:
-        """Return the map of one period, from the states and the `INPUTS` to the next states.
+        """Return the map of one period, and below it how large each rounding is at most.
+
+        The first rows lead from the states, the `INPUTS` and the `roundings` to the next states;
+        of a rounding, the size is at most that of its row below.
 
         Parameters
         ----------
@@ -93,53 +157,76 @@ class Frame:
         Km, E, tau = values["Km"], values["E"], self.time_constant
         s = values["s"] if tau is None else tau * (1 - E)
         k, b = values.get("k", Fraction(0)), values.get("b", Fraction(0))
-        size = len(self.states)
-        unit = coordinates(size + len(INPUTS))
+        size, shares = len(self.states), self.roundings
+        unit = coordinates(size + len(INPUTS) + len(shares))
         error, omega, before, delta = unit[0], unit[1], unit[2], unit[size - 1]
-        command, friction, encoder, sensor = unit[size:]
+        command, friction, encoder, sensor, reference, angle = unit[size : size + len(INPUTS)]
+        rounded = dict(zip(shares, unit[size + len(INPUTS) :], strict=True))
         samples = unit[size - 1 - self.longest_delay : size - 1]
-        seen = combine((ONE, error), (-ONE, encoder))
-        Kp, D = self.motion.Kp, self.motion.D
+        read = combine((ONE, error), (-ONE, encoder), (-ONE, angle))
+        seen = combine((ONE, read), (ONE, rounded["e"]))
+        Kp, D, T = self.motion.Kp, self.motion.D, admittance.T
         drive = combine((Kp + D, seen), (-D, before), (ONE, friction))
+        drive = combine((ONE, drive), (ONE, rounded[KP]), (ONE, rounded[KD]))
         moved = combine((s, omega), (Km * (self.period - s), drive))
         ages = [combine((k, delta), (b, omega), (ONE, sensor)), *samples]
-        force, sensed = ages[delay], list[LinearForm]()
-        if self.low_pass is not None:
-            first = 3 + self.has_inertia
-            sensed = self.low_pass.step(force, unit[first : first + self.low_pass.order])
-            force = [*sensed[-1]]
+        lags = unit[3 + self.has_inertia : 3 + self.has_inertia + self._order]
         # The reference, e + theta, is by how much the admittance has moved it.
-        force = combine((ONE, force), (admittance.Kt, error), (admittance.Kt, delta))
+        pull = combine((admittance.Kt, error), (admittance.Kt, delta))
+        stages, pushes = self._force_terms(admittance.b, ages[delay], lags, pull)
+        sensed = [_sum_of(stage, rounded) for stage in stages]
+        pushed, kept = combine(*((ONE, term.form) for term in pushes)), list[LinearForm]()
+        velocity = exact = _sum_of(pushes, rounded)
         if admittance.a is None:
-            velocity, kept = combine((admittance.b, force)), []
+            exact = pushed
         else:
-            velocity = unit[3]
-            kept = [combine((admittance.a, velocity), (admittance.b, force))]
-        T = admittance.T
+            velocity, inner = unit[3], combine((admittance.a, unit[3]))
+            kept = [combine((ONE, inner), (ONE, exact), (ONE, rounded["a vm"]))]
+            exact = velocity
+        moving = combine((T, command), (-T, exact))
+        first = combine((ONE, error), (T, command), (-T, velocity), (ONE, rounded[STEP]))
+        # Of a sum of two sizes, the part that is of second order counts with another term.
+        beyond = ONE if kept else 1 + shares[STEP]
+        sizes = {
+            "e": combine((shares["e"], read)),
+            KP: combine((shares[KP] * Kp * (1 + shares["e"]) + shares[KD] * D * shares["e"], read)),
+            KD: combine((shares[KD] * D, read), (-shares[KD] * D, before)),
+            "a vm": combine((shares.get("a vm", ONE) * (admittance.a or 0), unit[3])),
+            **{t.name: combine((shares[t.name], t.form)) for t in chain(*stages)},
+            **{t.name: combine((shares[t.name] * beyond, t.form)) for t in pushes},
+            STEP: combine((shares[STEP], moving)),
+        }
         return [
-            combine((ONE, error), (T, command), (-T, velocity), (-ONE, moved)),
+            combine((ONE, first), (ONE, reference), (-ONE, moved)),
             combine((E, omega), (Km * (1 - E), drive)),
             seen,
             *kept,
             *sensed,
             *ages[: self.longest_delay],
             combine((ONE, delta), (ONE, moved)),
+            *(sizes[name] for name in shares),
         ]
+
+
+def _sum_of(terms: Iterable[Term], rounded: Mapping[str, LinearForm]) -> LinearForm:
+    """Return the sum of terms, each with what it is rounded by."""
+    return combine(*((ONE, form) for t in terms for form in (t.form, rounded[t.name])))
 
 
 @dataclass(frozen=True, slots=True)
 class _Motion:
-    """One mode, and the columns of the `INPUTS`."""
+    """One mode, the columns of inputs and roundings, and the rows that bound the roundings."""
 
     mode: Mode
     columns: tuple[RationalMatrix, ...]
+    sizes: tuple[LinearForm, ...]
 
     @classmethod
-    def of(cls, name: str, rows: Sequence[LinearForm]) -> _Motion:
-        n = len(rows)
-        columns = ([[row[n + i]] for row in rows] for i in range(len(INPUTS)))
-        mode = Mode(name, RationalMatrix.from_rows([row[:n] for row in rows]))
-        return cls(mode, tuple(map(RationalMatrix.from_rows, columns)))
+    def of(cls, name: str, rows: Sequence[LinearForm], n: int) -> _Motion:
+        moves, width = rows[:n], len(rows[0])
+        columns = ([[row[i]] for row in moves] for i in range(n, width))
+        mode = Mode(name, RationalMatrix.from_rows([row[:n] for row in moves]))
+        return cls(mode, tuple(map(RationalMatrix.from_rows, columns)), tuple(rows[n:]))
 
 
 def close_sampled_loop(
@@ -185,6 +272,7 @@ def close_sampled_loop(
         sampling.delay[1],
         tau.nominal if tau.low == tau.high else None,
         None if low_pass is None else low_pass.sampled(period),
+        any(law.Kt for law in laws.values()),
     )
     motor = motor_box(ranges, period)
     parts = {
@@ -205,18 +293,20 @@ def close_sampled_loop(
     motions = tuple(chain.from_iterable(parts.values()))
     flying = tuple(item.mode for item in free)
     losable = Contact(flying, required=spec.contact == "losable") if free else None
-    channels = tuple(_channels(spec, design.sensor.lasting, (*motions, *free)))
+    every = (*motions, *free)
+    channels = tuple(_channels(spec, design.sensor.lasting, every))
     return SwitchedSystem(
         spec.name,
         Time.DISCRETE,
         frame.states,
         tuple(item.mode for item in motions),
-        assume_sampled(spec, sampling, ranges, frame.motion, laws, design, loss),
+        assume_sampled(spec, sampling, ranges, frame.motion, laws, design, loss, frame.counts),
         assemble_switching(spec.switching, groups, ()),
         losable,
         period,
         channels,
-        (_force_output(frame, touched, spec.limits.torque.exact),) if channels else (),
+        _outputs(frame, touched, spec.limits.torque.exact) if channels else (),
+        tuple(_roundings(frame, channels, every)),
     )
 
 
@@ -239,7 +329,7 @@ def _channels(
     """Yield the disturbances of the spec, and the errors of its sensor, with their columns."""
     if spec.disturbances is None:
         return
-    bounds = spec.disturbances.bounds()
+    bounds = spec.disturbances.bounds() | _angle_bounds(spec.disturbances)
     if off:
         bounds["force error"] = (off, "N*m")
     for i, name in enumerate(INPUTS):
@@ -248,8 +338,29 @@ def _channels(
             yield Channel(name, unit, bound, tuple(motion.columns[i] for motion in motions))
 
 
-def _force_output(frame: Frame, touched: Sequence[Environment], limit: Fraction) -> Output:
-    """Return the force in contact, at the corners of its ranges, and what it is meant to keep."""
+def _angle_bounds(disturbances: DisturbancesSpec) -> dict[str, tuple[Fraction, str]]:
+    """Return how far angles of the law are off; one is read from a count, times a coefficient."""
+    if disturbances.largest_angle is None:
+        return {}
+    largest = disturbances.largest_angle.not_below
+    counts = {"rounding of the reference": 1, "rounding of the angle": 3}
+    return {name: (rounding_share(n) * largest, "rad") for name, n in counts.items()}
+
+
+def _roundings(
+    frame: Frame, channels: Sequence[Channel], motions: Sequence[_Motion]
+) -> Iterator[Rounding]:
+    """Yield what the arithmetic adds, with rows over the states and the declared disturbances."""
+    n, named = len(frame.states), [channel.name for channel in channels]
+    kept = [*range(n), *(n + i for i, name in enumerate(INPUTS) if name in named)]
+    for j, name in enumerate(frame.roundings):
+        rows = ([[motion.sizes[j][i] for i in kept]] for motion in motions)
+        columns = (motion.columns[len(INPUTS) + j] for motion in motions)
+        yield Rounding(name, tuple(columns), tuple(map(RationalMatrix.from_rows, rows)))
+
+
+def _outputs(frame: Frame, touched: Sequence[Environment], limit: Fraction) -> tuple[Output, ...]:
+    """Return the force at the corners of its ranges, with what it is meant to keep, and omega."""
     size, rows = len(frame.states), []
     for environment in touched:
         box = Box({"k": environment.stiffness, "b": damping_of(environment)})
@@ -257,7 +368,9 @@ def _force_output(frame: Frame, touched: Sequence[Environment], limit: Fraction)
             row = zero(size)
             row[1], row[-1] = values["b"], values["k"]
             rows.append(RationalMatrix.from_rows([row]))
-    return Output("force", "N*m", tuple(rows), limit)
+    omega = RationalMatrix.from_rows(coordinates(size)[1:2])
+    force = Output("force", "N*m", tuple(rows), limit)
+    return force, Output("velocity", "rad/s", (omega,))
 
 
 def motor_box(ranges: ActuatorRanges, period: Fraction) -> Box:
@@ -322,7 +435,7 @@ def _corners(
     for delay in range(delays[0], delays[1] + 1):
         late = f"{name}/delay-{delay}" if delays[0] < delays[1] else name
         for corner, rows in box.corners(partial(frame.rows, law, delay), late):
-            yield _Motion.of(corner, rows)
+            yield _Motion.of(corner, rows, len(frame.states))
 
 
 def damping_of(environment: Environment) -> Interval:

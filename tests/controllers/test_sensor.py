@@ -10,6 +10,7 @@ from scipy.signal import lfilter
 from scipy.spatial.transform import Rotation
 
 from nrs_design.controllers.float32 import is_float32
+from nrs_design.controllers.sampled import Term
 from nrs_design.controllers.sensor import (
     LowPass,
     Sensor,
@@ -137,7 +138,10 @@ def test_lags_as_a_processor_runs_them(order):
     for _ in range(order):
         wanted = lfilter([q], [1, -p], wanted)
     forms = coordinates(order + 1)
-    rows = np.array(step.step(forms[-1], forms[:-1]), dtype=float)
+    stages = step.stages((Term("F", forms[-1], 1),), forms[:-1])
+    rows = np.array(
+        [np.sum([term.form for term in stage], axis=0) for stage in stages], dtype=float
+    )
     x, found = np.zeros(order), []
     for sample in force:
         x = rows @ [*x, sample]

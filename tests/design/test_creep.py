@@ -12,7 +12,7 @@ from nrs_design.design.transfer import white_noise_power
 from nrs_design.errors import DesignError
 from nrs_design.pipeline import run_analysis, run_design
 from nrs_design.spec import read_spec
-from nrs_design.switched.sampled_loop import Frame
+from nrs_design.switched.sampled_loop import INPUTS, Frame
 from tests.support import SOFT_TISSUE
 
 TEXT = SOFT_TISSUE.read_text(encoding="utf-8")
@@ -95,13 +95,14 @@ def test_simulated_and_bounded(tmp_path, spring):
     period, law = Fraction(1, 500), found.design.controllers[1].law
     low_pass = found.design.sensor.filter.sampled(period)
     motion = SampledMotion.of(found.design.motion, period)
-    frame = Frame(period, motion, True, 1, Fraction("0.0351"), low_pass)
+    frame = Frame(period, motion, True, 1, Fraction("0.0351"), low_pass, spring is not None)
     E = Fraction(float(np.exp(-0.002 / 0.0351)))
     rows = frame.rows(law.sampled(period, "exact"), 1, {"Km": Fraction("4.8417e-4"), "E": E})
-    M = np.array(rows, dtype=float)
-    n = len(M)
+    n = len(frame.states)
     assert n == 8
-    A, b = M[:, :n], M[:, -1] * float(found.design.sensor.lasting)
+    M = np.array(rows[:n], dtype=float)
+    force_error = n + INPUTS.index("force error")
+    A, b = M[:, :n], M[:, force_error] * float(found.design.sensor.lasting)
     x, before = np.zeros(n), 0.0
     for _ in range(20_000):
         before, x = x[-1], A @ x + b

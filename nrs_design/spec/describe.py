@@ -31,7 +31,14 @@ MAX_LISTED = 20
 # Keys of a controller that are listed in a way of their own, and the kinds of gains.
 _TARGETS = frozenset({"desired_impedance", "desired_impedance_ratio"})
 _LISTED = _TARGETS | {"type", "environment", "contacts", "goals"}
-_SHOWN = (kinds.INERTIA, kinds.IMPEDANCE, kinds.FORCE_GAIN, kinds.TORQUE, kinds.TORQUE_RATE)
+_SHOWN = (
+    kinds.INERTIA,
+    kinds.IMPEDANCE,
+    kinds.SPRING,
+    kinds.FORCE_GAIN,
+    kinds.TORQUE,
+    kinds.TORQUE_RATE,
+)
 
 
 class Line(NamedTuple):
@@ -135,6 +142,7 @@ def _interaction(spec: InteractionDesignSpec) -> Iterator[Line]:
         yield from describe_model(spec.disturbances, "disturbances")
     if spec.mode_logic is not None:
         yield from describe_model(spec.mode_logic, "mode_logic")
+    yield from describe_model(spec.sensor, "sensor")
     yield Line("contact", spec.contact or "losable where proved", "", "")
     yield Line("coordinates", spec.coordinates, "", "")
     yield from _switching(spec.switching)

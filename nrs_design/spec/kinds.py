@@ -57,7 +57,9 @@ TORQUE = QuantityKind(
         "N": "that is a force: multiply it by its lever arm and write N*m",
     },
 )
-TORQUE_RATE = QuantityKind("a rate of torque", ("N*m/s",), "6 N*m/s")
+TORQUE_RATE = QuantityKind(
+    "a rate of torque", ("N*m/s",), "6 N*m/s", {"N*m": "a rate is per second: write N*m/s"}
+)
 BANDWIDTH = QuantityKind(
     "a bandwidth",
     ("rad/s", "Hz"),
@@ -114,6 +116,22 @@ INTEGRAL_FORCE_GAIN = QuantityKind(
     {"rad/(N*m)": "that is a proportional gain: write '{value} rad/(N*m*s)'"},
 )
 
+SPRING = QuantityKind(
+    "a rotational stiffness",
+    ("N*m/rad",),
+    "0.5 N*m/rad",
+    {
+        "N*m": _STIFFNESS,
+        "N/m": "that is a linear stiffness: multiply it by the square of its lever arm and write "
+        "N*m/rad",
+    },
+)
+NOISE_DENSITY = QuantityKind(
+    "a density of noise",
+    ("N^2*m^2*s",),
+    "1e-8 N^2*m^2*s",
+    {"N*m": "that is an rms: square it, and divide by the bandwidth in Hz"},
+)
 LINEAR_STIFFNESS = QuantityKind("a linear stiffness", ("N/m",), "747.1461 N/m")
 LINEAR_DAMPING = QuantityKind("a linear damping", ("N*s/m",), "5 N*s/m")
 

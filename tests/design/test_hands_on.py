@@ -110,3 +110,20 @@ def test_only_for_impedance_control(tmp_path):
     result = run("check", "force.nrs.yaml", cwd=tmp_path)
     assert result.returncode == 2
     assert "min_transparency is for impedance controllers" in result.stderr
+
+
+def test_a_spring_in_the_admittance(tmp_path):
+    """Kt of 5 N m/rad beside a hand of 25: at rest it gives way by 25/30; the proof takes it up."""
+    text = HANDS_ON.read_text().replace("{min: 0.1 kg*m^2, max: 3 kg*m^2}", "0.1 kg*m^2")
+    text = text.replace("{min: 1 kg*m^2/s, max: 20 kg*m^2/s}", "4.6 kg*m^2/s\n    Kt: 5 N*m/rad")
+    text = text.replace("contact: losable", "contact: kept")
+    (tmp_path / "spring.nrs.yaml").write_text(text)
+    result = run("optimize", "spring.nrs.yaml", "--json", cwd=tmp_path)
+    assert result.returncode == 1
+    (light,) = json.loads(result.stdout)["controllers"]
+    goals = {item["goal"]: item for item in light["goals"]}
+    assert goals["max_hand_effort"]["worst"] is None
+    assert goals["min_transparency"]["worst"] < 24.9984 / 29.9984
+    assert (
+        run("certify-switching", "spring.nrs.yaml", "--out", "o.json", cwd=tmp_path).returncode == 0
+    )

@@ -86,8 +86,10 @@ class InteractionDesignSpec(SpecModel):
         description="when controllers change: arbitrary, or rules with dwell_time and transitions "
         "between controllers"
     )
+    # The default is made without validation, for which a validator of its own would be built.
     certification: CertificationSpec = Field(
-        default_factory=CertificationSpec, description="how far the search for a proof goes"
+        default_factory=CertificationSpec.model_construct,
+        description="how far the search for a proof goes",
     )
 
     @model_validator(mode="after")

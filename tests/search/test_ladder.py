@@ -190,6 +190,15 @@ def test_every_method_is_on_the_ladder():
     assert len({rung.name for rung in LADDER}) == len(LADDER)
 
 
+@pytest.mark.parametrize("rung", LADDER, ids=lambda rung: rung.name)
+def test_every_rung_names_a_search_that_there_is(rung):
+    """A search is loaded when its rung is reached; a wrong name would be seen only then."""
+    with pytest.raises(TypeError, match=f"{rung.search.__name__}\\(\\)"):
+        rung.search()
+    if rung.cost is not None:
+        assert rung.cost(dayawansa_martin(6), 2)[0].seconds > 0
+
+
 def test_degrees_rise_while_they_fit_into_what_is_left():
     allowance = Allowance(0.5, clock=lambda: 0.0)
     found = names(dayawansa_martin(6), Method.POLYNOMIAL, allowance=allowance)

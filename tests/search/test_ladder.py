@@ -193,10 +193,9 @@ def test_every_method_is_on_the_ladder():
 @pytest.mark.parametrize("rung", LADDER, ids=lambda rung: rung.name)
 def test_every_rung_names_a_search_that_there_is(rung):
     """A search is loaded when its rung is reached; a wrong name would be seen only then."""
-    with pytest.raises(TypeError, match=f"{rung.search.__name__}\\(\\)"):
-        rung.search()
-    if rung.cost is not None:
-        assert rung.cost(dayawansa_martin(6), 2)[0].seconds > 0
+    for named in filter(None, (rung.search, rung.cost)):
+        with pytest.raises(TypeError, match=rf"{named.__name__}\(\) missing"):
+            named()
 
 
 def test_degrees_rise_while_they_fit_into_what_is_left():

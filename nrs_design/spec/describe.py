@@ -31,7 +31,7 @@ MAX_LISTED = 20
 # Keys of a controller that are listed in a way of their own, and the kinds of gains.
 _TARGETS = frozenset({"desired_impedance", "desired_impedance_ratio"})
 _LISTED = _TARGETS | {"type", "environment", "contacts", "goals"}
-_GAINS = (kinds.INERTIA, kinds.IMPEDANCE, kinds.FORCE_GAIN)
+_GAINS = (kinds.INERTIA, kinds.IMPEDANCE, kinds.SPRING, kinds.FORCE_GAIN)
 
 
 class Line(NamedTuple):
@@ -133,6 +133,7 @@ def _interaction(spec: InteractionDesignSpec) -> Iterator[Line]:
         yield from _provenance("sampling", spec.sampling)
     if spec.disturbances is not None:
         yield from describe_model(spec.disturbances, "disturbances")
+    yield from describe_model(spec.sensor, "sensor")
     yield Line("contact", spec.contact or "losable where proved", "", "")
     yield Line("coordinates", spec.coordinates, "", "")
     yield from _switching(spec.switching)

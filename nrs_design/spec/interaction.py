@@ -25,6 +25,7 @@ from nrs_design.spec.sampling import (
     check_motor,
     check_peak,
 )
+from nrs_design.spec.sensor import SensorSpec
 from nrs_design.spec.switching import DwellTime, SwitchingRule, check_names
 
 MAX_ENTRIES = 64
@@ -73,6 +74,11 @@ class InteractionDesignSpec(SpecModel):
         description="what acts on the loop from outside; its effect on force and velocity is "
         "bounded",
     )
+    sensor: SensorSpec | None = Field(
+        default=None,
+        description="the force signal: its filter is a part of the loop, its errors bound the "
+        "creep; without it the force is taken for exact",
+    )
     contact: Literal["losable", "kept"] | None = Field(
         default=None,
         description="whether a proof must hold while contact is lost and made again (losable), or "
@@ -117,6 +123,7 @@ class InteractionDesignSpec(SpecModel):
                 for item in self.controllers.items()
             ),
             partial(check_disturbances, self.disturbances, self.sampling),
+            partial(_check_sensor, self),
             partial(check_peak, self.goals, self.disturbances),
             partial(
                 check_motor,
@@ -144,6 +151,8 @@ class InteractionDesignSpec(SpecModel):
         parts.update((("environments", name), item) for name, item in self.environments.items())
         if self.sampling is not None:
             parts["sampling",] = self.sampling
+        if self.sensor is not None and self.sensor.tool is not None:
+            parts["sensor", "tool"] = self.sensor.tool
         return parts
 
     @property
@@ -249,6 +258,40 @@ def _check_references(
             "controllers",
             name,
             "contacts",
+        )
+
+
+def _check_sensor(spec: InteractionDesignSpec) -> None:
+    """Refuse a filter that is not modelled, errors that are there twice, and goals without any."""
+    sensor = spec.sensor
+    goals = (
+        ("goals", spec.goals),
+        *((f"controllers.{n}", c.goals) for n, c in spec.controllers.items()),
+    )
+    for at, given in goals:
+        if sensor is None and given is not None and given.wants_creep:
+            raise fault(
+                "a goal for the creep without a sensor, whose errors the robot creeps by",
+                "add `sensor: {bias: 5e-3 N*m}`, or remove the goal",
+                *at.split("."),
+            )
+    if sensor is None:
+        return
+    if sensor.filter is not None and any(
+        c.commands != "velocity" for c in spec.controllers.values()
+    ):
+        raise fault(
+            "a filter of the force is modelled for impedance controllers only",
+            "leave filter out, or position and force controllers",
+            "sensor",
+            "filter",
+        )
+    if spec.disturbances is not None and spec.disturbances.force_step is not None:
+        raise fault(
+            "the sensor says how far its signal is off, and force_step does, too",
+            "move it to `sensor: {resolution: ...}`",
+            "disturbances",
+            "force_step",
         )
 
 

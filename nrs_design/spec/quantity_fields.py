@@ -162,17 +162,17 @@ def _bounds(kind: QuantityKind, *, positive: bool) -> BeforeValidator:
     return BeforeValidator(read)
 
 
-def _ranged(kind: QuantityKind, *, positive: bool) -> BeforeValidator:
+def _ranged(kind: QuantityKind, *, positive: bool, signed: bool = False) -> BeforeValidator:
     def read(value: object) -> object:
         if isinstance(value, str | Quantity):
-            return {"nominal": read_quantity(value, kind, positive=positive)}
+            return {"nominal": reader(value)}
         entries = read_entries(value, ("nominal",), reader)
         if isinstance(entries, dict) and "range" in entries:
             entries["range"] = read_range(entries["range"], reader)
         return entries
 
     def reader(value: object) -> Quantity:
-        return read_quantity(value, kind, positive=positive)
+        return read_quantity(value, kind, positive=positive, signed=signed)
 
     return BeforeValidator(read)
 
@@ -274,6 +274,15 @@ PositiveDamping = Annotated[
     RangedQuantity, _ranged(kinds.DAMPING, positive=True), _ranged_schema(kinds.DAMPING)
 ]
 Mass = Annotated[Quantity, _quantity(kinds.MASS, positive=False), _schema(kinds.MASS)]
+RangedMass = Annotated[
+    RangedQuantity, _ranged(kinds.MASS, positive=True), _ranged_schema(kinds.MASS)
+]
+RangedCoordinate = Annotated[
+    RangedQuantity, _ranged(kinds.LENGTH, positive=False, signed=True), _ranged_schema(kinds.LENGTH)
+]
+TorqueRate = Annotated[Quantity, _quantity(kinds.TORQUE_RATE), _schema(kinds.TORQUE_RATE)]
+NoiseDensity = Annotated[Quantity, _quantity(kinds.NOISE_DENSITY), _schema(kinds.NOISE_DENSITY)]
+Force = Annotated[Quantity, _quantity(kinds.FORCE), _schema(kinds.FORCE)]
 Length = Annotated[Quantity, _quantity(kinds.LENGTH), _schema(kinds.LENGTH)]
 Coordinate = Annotated[Quantity, _quantity(kinds.LENGTH, signed=True), _schema(kinds.LENGTH)]
 Angle = Annotated[Quantity, _quantity(kinds.ANGLE), _schema(kinds.ANGLE)]

@@ -136,6 +136,7 @@ def assemble(
     from nrs_design.switched.commanded import with_command
     from nrs_design.switched.gain_box import gain_boxes
     from nrs_design.switched.joint import Joint
+    from nrs_design.switched.sensor_assumptions import sensor_texts
 
     _check_scale(scale)
     if spec.sampling is not None:
@@ -165,7 +166,11 @@ def assemble(
             system = with_command(system, spec, spec.disturbances, loop, joint, touched)
     else:
         raise AssemblyError(f"unknown coordinates {coordinates!r}: deflection or force")
-    texts = (*system.assumptions, *identified_texts(spec), *scale_texts(scale))
+    period = None if spec.sampling is None else spec.sampling.period.exact
+    sensed = sensor_texts(
+        design.sensor, period, disturbed=bool(system.channels) and period is not None
+    )
+    texts = (*system.assumptions, *sensed, *identified_texts(spec), *scale_texts(scale))
     return replace(system, assumptions=texts)
 
 

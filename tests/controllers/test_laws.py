@@ -30,3 +30,10 @@ def test_every_law_has_a_name_of_its_own_and_a_unit_for_every_gain():
     # A torque over an angular velocity.
     assert parse_unit(Admittance.units["Bt"]).dimension == parse_unit("N*m/(rad/s)").dimension
     assert Admittance(Fraction(1), Fraction(2)).gains == {"Mt": 1, "Bt": 2}
+
+
+def test_a_spring_is_a_gain_only_where_there_is_one():
+    sprung = Admittance(Fraction(1), Fraction(2), Fraction(3))
+    assert sprung.gains == {"Mt": 1, "Bt": 2, "Kt": 3}
+    for law in (sprung, Admittance(Fraction(1), Fraction(2))):
+        assert Admittance.of(law.gains) == law

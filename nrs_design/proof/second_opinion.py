@@ -141,9 +141,8 @@ def has_positive_spectrum(M: Any) -> bool:
 
     All roots are real, so by Descartes' rule they are all positive iff it does.
     """
-    coefficients = M.charpoly().coeffs()
-    n = len(coefficients) - 1
-    return all((c > 0) == ((n - k) % 2 == 0) and c != 0 for k, c in enumerate(coefficients))
+    falling = enumerate(reversed(M.charpoly().coeffs()))
+    return all(c > 0 if k % 2 == 0 else c < 0 for k, c in falling)
 
 
 def _is_surely_stable(A: RationalMatrix, time: Time) -> bool:

@@ -122,9 +122,9 @@ def _check_modes(modes: Sequence[Mode], states: int) -> None:
     sizes = [len(mode.A.numerators) for mode in modes]
     if len({mode.name for mode in modes}) < len(modes):
         raise ValueError("two modes have the same name")
-    if any(mode.A.shape != (size, size) for mode, size in zip(modes, sizes, strict=True)):
+    if any(mode.A.shape[0] != mode.A.shape[1] for mode in modes):
         raise ValueError("a mode is not square")
-    if max(sizes, default=0) != states:
+    if not sizes or max(sizes) != states:
         raise ValueError("the largest mode does not have the states that are named")
     _check_work(modes)
 

@@ -283,6 +283,7 @@ SignedAngle = Annotated[Quantity, _quantity(kinds.ANGLE, signed=True), _schema(k
 MomentOfInertia = Annotated[
     Quantity, _quantity(kinds.INERTIA, positive=False), _schema(kinds.INERTIA)
 ]
+RotorInertia = Annotated[Quantity, _quantity(kinds.INERTIA), _schema(kinds.INERTIA)]
 ProductOfInertia = Annotated[
     Quantity, _quantity(kinds.INERTIA, signed=True), _schema(kinds.INERTIA)
 ]

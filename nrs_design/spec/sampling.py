@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from fractions import Fraction
 from typing import Annotated, Literal
 
 from pydantic import Field, PlainValidator, WithJsonSchema
 
+from nrs_design.spec.controllers import ControllerSpec
 from nrs_design.spec.faults import fault
 from nrs_design.spec.fields import read_exact
 from nrs_design.spec.goals import GoalsSpec
@@ -132,10 +134,14 @@ def check_peak(goals: GoalsSpec | None, disturbances: DisturbancesSpec | None) -
         )
 
 
-def check_actuator_ranges(
-    actuator: ActuatorSpec, sampling: SamplingSpec | None, *, given_loop: bool
+def check_motor(
+    actuator: ActuatorSpec,
+    sampling: SamplingSpec | None,
+    controllers: Mapping[str, ControllerSpec],
+    *,
+    given_loop: bool,
 ) -> None:
-    """Refuse ranges of the actuator where the modes do not take them up.
+    """Refuse ranges and a load of the actuator where the modes do not take them up.
 
     Parameters
     ----------
@@ -143,23 +149,36 @@ def check_actuator_ranges(
         With or without ranges.
     sampling : SamplingSpec or None
         The processor, where there is one.
+    controllers : mapping
+        By name.
     given_loop : bool
         Whether the spec states the closed motion loop itself.
     """
-    for name in ("gain", "time_constant"):
-        if getattr(actuator, name).fixed:
-            continue
+    ranged = [n for n in ("gain", "time_constant") if not getattr(actuator, n).fixed]
+    loaded = ["load_inertia"] if actuator.load_inertia is not None else []
+    others = [n for n, c in controllers.items() if c.commands != "velocity"]
+    for name in (*ranged, *loaded):
+        what = f"the {name} has a range" if name in ranged else "there is a load_inertia"
+        drop = "give its nominal value only" if name in ranged else "remove it"
         if given_loop:
             raise fault(
-                f"the {name} has a range, but the spec states the closed motion loop itself",
-                "give its nominal value only, or leave transfer_function out",
+                f"{what}, but the spec states the closed motion loop itself",
+                f"{drop}, or leave transfer_function out",
                 "actuator",
                 name,
             )
-        if sampling is None:
+        if sampling is None and others:
             raise fault(
-                f"a range of the {name} is covered for the sampled loop only",
-                "add `sampling: {period: 2 ms, delay: 1}`, or give its nominal value only",
+                f"{what}, which is modelled for impedance controllers alone, and {others[0]!r} is "
+                "none",
+                f"{drop}, or use impedance controllers",
+                "actuator",
+                name,
+            )
+        if sampling is not None and name in loaded:
+            raise fault(
+                "the load of the motor is not modelled in the sampled loop",
+                "leave load_inertia or sampling out",
                 "actuator",
                 name,
             )

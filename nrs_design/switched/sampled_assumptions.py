@@ -16,9 +16,9 @@ from nrs_design.models.actuator import ActuatorRanges
 from nrs_design.proof.bounds import rounded_down
 from nrs_design.proof.text import exact_text
 from nrs_design.spec import InteractionDesignSpec
-from nrs_design.spec.interval import Interval
 from nrs_design.spec.sampling import SamplingSpec
 from nrs_design.switched.assumptions import CONTINUOUS, LOST_CONTACT, REST, rule_texts
+from nrs_design.switched.joint import motor_text
 
 _KEPT = "Contact is not lost: free motion is not one of the modes."
 _INPUTS = "All inputs are zero (velocity command, motion of the environment); "
@@ -137,21 +137,7 @@ def _samples(count: int) -> str:
 
 
 def _actuator_text(ranges: ActuatorRanges) -> str:
-    texts = (
-        f"its {name} {_interval_text(interval)} {unit}"
-        for name, interval, unit in (
-            ("gain", ranges.gain, "rad/s/rpm"),
-            ("time constant", ranges.time_constant, "s"),
-        )
-    )
-    moving = "" if ranges.fixed else ", and may change at every sample"
-    return " and ".join(texts) + moving
-
-
-def _interval_text(interval: Interval) -> str:
-    if interval.low == interval.high:
-        return f"is {exact_text(interval.low)}"
-    return f"stays in [{exact_text(interval.low)}, {exact_text(interval.high)}]"
+    return motor_text(ranges) + ("" if ranges.fixed else ", and may change at every sample")
 
 
 def _contact_texts(spec: InteractionDesignSpec, *, springs: bool) -> Iterator[str]:

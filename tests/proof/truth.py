@@ -17,6 +17,7 @@ from nrs_design.proof.evidence import (
     BlockTriangular,
     CommonPolynomial,
     CommonQuadratic,
+    ConewisePolynomial,
     ConewiseQuadratic,
     InvariantEllipsoid,
     ModePolynomial,
@@ -343,6 +344,26 @@ def _common_polynomial(system: SwitchedSystem, item: CommonPolynomial) -> bool:
     return True
 
 
+def _conewise_polynomial(system: SwitchedSystem, item: ConewisePolynomial) -> bool:
+    """In contact a common polynomial; free, its terms without the deflection are another one."""
+    contact, V, n = system.contact, item.in_contact, system.order
+    if contact is None or contact.pulls or system.time is Time.DISCRETE:
+        return False
+    if not _common_polynomial(replace(system, contact=None), V):
+        return False
+    basis = sorted(a for a in product(range(V.degree + 1), repeat=n) if sum(a) == V.degree)[::-1]
+    kept = [i for i, monomial in enumerate(basis) if not monomial[-1]]
+    Q = tuple(tuple(V.Q[i][j] for j in kept) for i in kept)
+    modes = tuple(
+        Mode(m.name, RationalMatrix.from_rows([row[:-1] for row in m.A.fractions()[:-1]]))
+        for m in contact.free
+    )
+    flight = replace(system, states=system.states[:-1], modes=modes, contact=None)
+    if len(item.vanishing_free) != len(modes):
+        return False
+    return _common_polynomial(flight, replace(V, Q=Q, vanishing=item.vanishing_free))
+
+
 def _gram(mode, item, N, basis, V, time) -> Rows:
     """Return a Gram matrix of the decrease with N added, as the definition of the kind has it."""
     A = mode.fractions()
@@ -646,6 +667,7 @@ def restrict(system: SwitchedSystem, block: tuple[int, ...]) -> SwitchedSystem:
 
 _ORACLES = {
     CommonQuadratic: _common_quadratic,
+    ConewisePolynomial: _conewise_polynomial,
     ConewiseQuadratic: _conewise_quadratic,
     InvariantEllipsoid: _invariant_ellipsoid,
     CommonPolynomial: _common_polynomial,

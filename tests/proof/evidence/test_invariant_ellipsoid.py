@@ -20,7 +20,7 @@ from nrs_design.proof.system import (
     Time,
 )
 from tests.proof.systems import Entry, Rows, bouncing, bouncing_in_steps, family, matrix, pushed
-from tests.proof.truth import holds
+from tests.proof.truth import combine, decrease, holds, is_positive_multiple, times, transpose
 from tests.support import is_definite_by_ldl
 
 # By hand, for pushes of 1/4: V = 13 v^2 + 10 v delta + 14 delta^2, about.
@@ -331,3 +331,183 @@ def test_against_the_definition(contact, free, columns, Q, multiplier, share, le
         "push", "force", ((p, q), (q, r)), 1, share, level, (multiplier,)
     )
     assert (candidate.find_fault(system) is None) == holds(system, candidate)
+
+
+# Of three states, with denominators that differ, and nothing symmetric but Q.
+Q3 = ((9, 2, -1), (2, 7, 3), (-1, 3, 8))
+CONTACT3 = [["-1/2", "1/3", "2/3"], [1, "-1/5", "-3/7"], ["1/4", "2/3", "-1/9"]]
+FREE3 = [["-1/3", "1/2", 0], ["1/7", "-2/5", 0], ["3/4", "-1/6", 0]]
+OTHER3 = [["-1/11", "2/3", 0], ["-1/5", "-2", 0], ["5/4", "1/6", 0]]
+B3 = [[["1/2"], ["-1/3"], ["2/5"]], [["3/2"], ["1/7"], [2]], [["1/9"], [3], ["-1/4"]]]
+B3 += [[[-1], ["1/2"], ["1/5"]]]
+SHARE, BOUND, LEVEL = Fraction(2, 7), Fraction(3, 5), Fraction(4, 9)
+EVIDENCE3 = InvariantEllipsoid("push", "force", Q3, 2, SHARE, LEVEL, ())
+ROWS3 = (["1/2", -1, "2/3"], [3, "1/4", 1])
+
+
+def three_states(time: Time, free: tuple[Rows, ...], pulls: tuple[Rows, ...]) -> SwitchedSystem:
+    motions = tuple(Mode(f"f{k}", matrix(rows)) for k, rows in enumerate(free))
+    columns = tuple(matrix(b) for b in B3[: 2 + len(free)])
+    return replace(
+        family(CONTACT3, OTHER3, time=time),
+        contact=Contact(motions, tuple(matrix([q]) for q in pulls)) if free else None,
+        channels=(Channel("push", "N", BOUND, columns),),
+        outputs=(Output("force", "N", tuple(matrix([q]) for q in ROWS3)),),
+    )
+
+
+def bordered(M, b, corner):
+    return [*([*row, x] for row, x in zip(M, b, strict=True)), [*b, corner]]
+
+
+def flowing(A, b, Q):
+    """``[[-(A'Q + QA + a Q), -QB], [-B'Q, a/bound^2]]``."""
+    Qb = [-row[0] for row in times(Q, [[x] for x in b])]
+    return bordered(decrease(A, Q, SHARE / 2, Time.CONTINUOUS), Qb, SHARE / BOUND**2)
+
+
+def stepping(before, A, b, after):
+    """``[[(1 - a) before, 0], [0, a/bound^2]] - [A, B]' after [A, B]``."""
+    moved = [[*row, x] for row, x in zip(A, b, strict=True)]
+    kept = bordered(combine((1 - SHARE, before)), [Fraction(0)] * len(before), SHARE / BOUND**2)
+    return combine((1, kept), (-1, times(transpose(moved), times(after, moved))))
+
+
+def crossing(row, weight):
+    """``weight (e q + q' e')`` with e the unit vector of the deflection, next to last."""
+    e = [Fraction(int(k == len(row) - 2)) for k in range(len(row))]
+    return [
+        [weight * (e[i] * row[j] + row[i] * e[j]) for j in range(len(row))] for i in range(len(row))
+    ]
+
+
+def all_forms(system: SwitchedSystem, evidence: InvariantEllipsoid, motions: list) -> None:
+    """Compare all forms to those of the motions and of the rows of the output."""
+    assert evidence.find_misfit(system) is None
+    first, *forms = (form for _, form in evidence.forms(system))
+    assert first == Q3
+    reach = [bordered(QUARTERS, [Fraction(x) for x in q], LEVEL**2) for q in ROWS3]
+    for form, wanted in zip(forms, [*motions, *reach], strict=True):
+        assert is_positive_multiple(form, wanted)
+
+
+QUARTERS = [[Fraction(entry, 4) for entry in row] for row in Q3]
+INNER = [row[:2] for row in QUARTERS[:2]]
+
+
+def exact_of(*matrices: Rows):
+    """Return every matrix with its column."""
+    return [
+        (matrix(A).fractions(), [row[0] for row in matrix(b).fractions()])
+        for A, b in zip(matrices, B3, strict=False)
+    ]
+
+
+def test_forms_in_kept_contact_by_hand():
+    moves = exact_of(CONTACT3, OTHER3)
+    flows = [flowing(A, b, QUARTERS) for A, b in moves]
+    all_forms(three_states(Time.CONTINUOUS, (), ()), EVIDENCE3, flows)
+    steps = [stepping(QUARTERS, A, b, QUARTERS) for A, b in moves]
+    all_forms(three_states(Time.DISCRETE, (), ()), EVIDENCE3, steps)
+
+
+def test_forms_while_contact_comes_and_goes_by_hand():
+    pulls, weights = (["1/2", "-1/3", 2], ["1/5", 4, "3/2"]), (3, 5, 7, 11)
+    system = three_states(Time.CONTINUOUS, (FREE3, OTHER3), pulls)
+    moves = exact_of(CONTACT3, OTHER3, FREE3, OTHER3)
+    motions = [flowing(A, b, QUARTERS) for A, b in moves[:2]]
+    motions += [flowing([row[:2] for row in A[:2]], b[:2], INNER) for A, b in moves[2:]]
+    pairs = [(move, q) for move in moves[2:] for q in pulls]
+    motions += [
+        combine(
+            (1, flowing(A, b, QUARTERS)),
+            (1, crossing([*(Fraction(x) for x in q), Fraction(0)], Fraction(weight, 4))),
+        )
+        for ((A, b), q), weight in zip(pairs, weights, strict=True)
+    ]
+    all_forms(system, replace(EVIDENCE3, multipliers=weights), motions)
+
+
+def test_forms_while_contact_comes_and_goes_in_steps_by_hand():
+    landing = [[*row[:2], int(k == 2)] for k, row in enumerate(FREE3)]
+    system = three_states(Time.DISCRETE, (landing,), ())
+    *touching, (F, b) = exact_of(CONTACT3, OTHER3, landing)
+    motions = []
+    for A, c in touching:
+        lost = stepping(QUARTERS, A[:2], c[:2], INNER)
+        motions.append(stepping(QUARTERS, A, c, QUARTERS))
+        motions.append(combine((1, lost), (1, crossing([*A[2], c[2]], Fraction(5, 4)))))
+    rows = [row[:2] for row in F]
+    motions += [stepping(INNER, rows[:2], b[:2], INNER), stepping(INNER, rows, b, QUARTERS)]
+    all_forms(system, replace(EVIDENCE3, multipliers=(5,)), motions)
+
+
+@pytest.mark.parametrize(
+    ("changes", "fault"),
+    [
+        ({"denominator_log2": 0}, None),
+        ({"denominator_log2": -1}, "the denominator of Q is not two to a power up to 14000"),
+        ({"denominator_log2": 14_000}, None),
+        ({"denominator_log2": 14_001}, "the denominator of Q is not two to a power up to 14000"),
+        ({"share": Fraction(0)}, "the share is not one of a set that is not left"),
+        ({"share": Fraction(1, 9)}, None),
+        ({"share": Fraction(8, 9)}, None),
+        ({"share": Fraction(1)}, "the share is not one of a set that is not left"),
+        ({"level": Fraction(0)}, "the level is not positive"),
+        ({"level": Fraction(1, 9)}, None),
+        ({"multipliers": (0,)}, None),
+        ({"multipliers": (-1,)}, "a multiplier is negative"),
+        ({"multipliers": ()}, "there is not one multiplier for each condition that needs it"),
+        ({"multipliers": (1, 1)}, "there is not one multiplier for each condition that needs it"),
+        ({"channel": "pull"}, "the system has no disturbance of that name"),
+        ({"output": "push"}, "the system has no output of that name"),
+    ],
+)
+def test_the_limits_of_every_number_in_steps(changes, fault):
+    assert replace(STEPS, **changes).find_misfit(pushed(bouncing_in_steps())) == fault
+
+
+@pytest.mark.parametrize(("share", "is_odd"), [(0, True), ("1/9", False), (1, False), (2, False)])
+def test_a_share_by_the_second(share, is_odd):
+    misfit = replace(BOUNCE, share=Fraction(share)).find_misfit(pushed(bouncing()))
+    assert (misfit == "the share is not one of a set that is not left") is is_odd
+    assert (misfit is None) is not is_odd
+
+
+def test_no_multiplier_where_contact_is_kept():
+    for multipliers, fits in (((), True), ((1,), False)):
+        kept = pushed(replace(bouncing_in_steps(), contact=None))
+        misfit = replace(STEPS, multipliers=multipliers).find_misfit(kept)
+        assert (misfit is None) is fits
+
+
+@pytest.mark.parametrize(
+    ("limit", "words"),
+    [
+        (None, "stays there."),
+        (Fraction(3, 5), "The limit of 0.6 N is kept."),
+        (Fraction(1), "The limit of 1 N is kept."),
+        (Fraction(1, 2), "That the limit of 0.5 N is kept is not shown."),
+    ],
+)
+def test_a_limit_beside_the_level(limit, words):
+    system = pushed(bouncing())
+    output = replace(system.outputs[0], limit=limit)
+    assert BOUNCE.claim(replace(system, outputs=(output,))).endswith(words)
+
+
+def test_the_disturbance_and_the_output_are_those_of_the_name():
+    """Whatever else the system has, before them or after."""
+    system = pushed(bouncing())
+    channel, output = system.channels[0], system.outputs[0]
+    gust, torque = replace(channel, name="gust", bound=Fraction(9)), replace(output, name="torque")
+    for channels in ((gust, channel), (channel, gust)):
+        for outputs in ((torque, output), (output, torque)):
+            both = replace(system, channels=channels, outputs=outputs)
+            assert BOUNCE.find_fault(both) is None
+            assert BOUNCE.claim(both) == BOUNCE.claim(system)
+            assert list(BOUNCE.forms(both)) == list(BOUNCE.forms(system))
+            fields = BOUNCE.to_fields()
+            assert InvariantEllipsoid.from_fields(fields, both) == BOUNCE
+            with pytest.raises(ValueError, match="no disturbance of that name"):
+                InvariantEllipsoid.from_fields({**fields, "channel": "wind"}, both)

@@ -23,8 +23,9 @@ from tests.mutation.mutants import Mutant, mutants
 ROOT = Path(__file__).parents[2]
 PROOF = ROOT / "nrs_design" / "proof"
 TESTS = ROOT / "tests" / "proof"
+KINDS = TESTS / "evidence"
 EQUIVALENT = Path(__file__).with_name("equivalent.toml")
-# Files of evidence that are no kind, so that no example is tampered with.
+# Files of evidence that are no kind, or all: what tampers with examples is the mirror of the last.
 SHARED = {"abstract", "fields", "flow", "function", "__init__"}
 # A mutant may loop for ever, or count to the end of memory. A test gets so many times what it
 # takes without a change, and so many seconds more.
@@ -167,12 +168,11 @@ def in_words(count: Counter[str]) -> str:
 def own_tests(path: Path) -> list[str]:
     """Return what mirrors a module, and for a kind of evidence the tests of all kinds, too."""
     mirror = TESTS / path.relative_to(PROOF).with_name(f"test_{path.name}")
-    tests = [str(mirror if mirror.exists() else TESTS)]
-    if path.parent != PROOF and path.stem not in SHARED:
-        kind = path.stem.replace("_", "-")
-        tests.append(f"{TESTS}/evidence/test_abstract.py::test_facts_of_the_kinds")
-        tests += [str(TESTS / "evidence/test_tampering.py"), "-k", f"not tampering or {kind}"]
-    return tests
+    if path.parent == PROOF or path.stem in SHARED:
+        return [str(mirror if mirror.exists() else KINDS / "test_tampering.py")]
+    facts = f"{KINDS}/test_abstract.py::test_facts_of_the_kinds"
+    kind = path.stem.replace("_", "-")
+    return [str(mirror), facts, f"{KINDS}/test_tampering.py", "-k", f"not tampering or {kind}"]
 
 
 if __name__ == "__main__":

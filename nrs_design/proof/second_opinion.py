@@ -104,7 +104,9 @@ def _is_met(A: RationalMatrix, time: Fraction) -> bool:
 
 
 def _decreases_everywhere(system: SwitchedSystem, evidence: CommonQuadratic) -> bool:
-    """Form Q and the decrease in every mode anew, in flint's arithmetic."""
+    """Form Q and the decrease in every mode anew, in flint's arithmetic; not where it rounds."""
+    if evidence.roundings:
+        return _has_positive_forms(system, evidence)
     Q, p, q = _matrix(evidence.Q), evidence.rate.numerator, evidence.rate.denominator
 
     def decrease(A: RationalMatrix) -> Any:

@@ -50,6 +50,34 @@ def test_rounded_balls_stay_below_every_matrix_in_them(entries, radius, exponent
         assert smallest < 4 * radius + 1e-12
 
 
+@given(
+    st.lists(st.floats(-1, 1), min_size=3, max_size=3),
+    st.floats(0, 1e-3),
+    st.integers(-60, 60),
+)
+def test_states_in_other_units_cost_nothing(entries, radius, log2):
+    """What is below a form is below it in other units, and is found there as well."""
+    a, b, c = entries
+    mids = [[1 + abs(a), b], [b, 1 + abs(c)]]
+    unit = [arb(1), arb(2) ** log2]
+    corners = [
+        [
+            [mids[0][0] - radius, mids[0][1] + s * radius],
+            [mids[1][0] + s * radius, mids[1][1] - radius],
+        ]
+        for s in (-1, 1)
+    ]
+    smallest = min(np.linalg.eigvalsh(np.array(corner)).min() for corner in corners)
+    enclosed = [
+        [arb(m, radius) * u * v for m, v in zip(row, unit, strict=True)]
+        for row, u in zip(mids, unit, strict=True)
+    ]
+    if is_positive_definite(lower(enclosed)):
+        assert smallest > -1e-12
+    else:
+        assert smallest < 8 * radius + 1e-12
+
+
 @pytest.mark.parametrize(
     ("rows", "integers"),
     [

@@ -26,9 +26,11 @@ from nrs_design.proof.exact import (
     lyapunov_decrease,
     lyapunov_factor,
     multiply,
+    scaled,
     spectrum_work,
     stein_decrease,
     stein_factor,
+    step_decrease,
 )
 from tests.support import exact, is_definite_by_ldl, is_stable_by_lyapunov, matrix
 
@@ -568,3 +570,10 @@ def test_large_matrices(n):
 def test_semidefinite_needs_a_symmetric_matrix(M):
     with pytest.raises(ValueError, match=r"symmetric|zip"):
         is_positive_semidefinite(M)
+
+
+def test_a_step_from_one_function_to_another():
+    """``rho^2 5 - 3 (7/2)^2`` for rho = 2/3, times ``(2 * 3)^2``."""
+    image = congruence([[7]], [[3]])
+    assert step_decrease([[5]], image, 2, Fraction(2, 3)) == [[5 * 4 * 4 - 3 * 49 * 9]]
+    assert scaled([[1, -2]], 3) == [[3, -6]]

@@ -11,11 +11,13 @@ from hypothesis import strategies as st
 from nrs_design.proof.evidence import InvariantEllipsoid, Shows
 from nrs_design.proof.evidence.fields import MAX_INTEGER_BITS
 from nrs_design.proof.second_opinion import agrees
+from nrs_design.proof.steps import Steps
 from nrs_design.proof.system import (
     Channel,
     Contact,
     Mode,
     Output,
+    Rounding,
     SwitchedSystem,
     Time,
 )
@@ -346,44 +348,52 @@ Q3 = ((9, 2, -1), (2, 7, 3), (-1, 3, 8))
 CONTACT3 = [["-1/2", "1/3", "2/3"], [1, "-1/5", "-3/7"], ["1/4", "2/3", "-1/9"]]
 FREE3 = [["-1/3", "1/2", 0], ["1/7", "-2/5", 0], ["3/4", "-1/6", 0]]
 OTHER3 = [["-1/11", "2/3", 0], ["-1/5", "-2", 0], ["5/4", "1/6", 0]]
-B3 = [[["1/2"], ["-1/3"], ["2/5"]], [["3/2"], ["1/7"], [2]], [["1/9"], [3], ["-1/4"]]]
-B3 += [[[-1], ["1/2"], ["1/5"]]]
-SHARE, BOUND, LEVEL = Fraction(2, 7), Fraction(3, 5), Fraction(4, 9)
-EVIDENCE3 = InvariantEllipsoid("push", "force", Q3, 2, SHARE, LEVEL, ())
+# For every mode, and after them for the free ones, the columns of both disturbances.
+PUSH3 = [[["1/2"], ["-1/3"], ["2/5"]], [["3/2"], ["1/7"], [2]], [["1/9"], [3], ["-1/4"]]]
+PUSH3 += [[[-1], ["1/2"], ["1/5"]]]
+GUST3 = [[[2], ["1/4"], [-1]], [["1/3"], [-2], ["1/5"]], [["2/3"], ["-1/8"], [1]]]
+GUST3 += [[["1/6"], [5], ["-3/4"]]]
+SHARES3, BOUNDS3, LEVEL = (
+    (Fraction(2, 7), Fraction(1, 5)),
+    (Fraction(3, 5), Fraction(7, 4)),
+    Fraction(4, 9),
+)
+WEIGHTS3 = [share / bound**2 for share, bound in zip(SHARES3, BOUNDS3, strict=True)]
+EVIDENCE3 = InvariantEllipsoid(("push", "gust"), "force", Q3, 2, SHARES3, LEVEL, ())
 ROWS3 = (["1/2", -1, "2/3"], [3, "1/4", 1])
 
 
 def three_states(time: Time, free: tuple[Rows, ...], pulls: tuple[Rows, ...]) -> SwitchedSystem:
     motions = tuple(Mode(f"f{k}", matrix(rows)) for k, rows in enumerate(free))
-    columns = tuple(matrix(b) for b in B3[: 2 + len(free)])
+    count = 2 + len(free)
+    push, gust = (tuple(matrix(b) for b in columns[:count]) for columns in (PUSH3, GUST3))
     return replace(
         family(CONTACT3, OTHER3, time=time),
         contact=Contact(motions, tuple(matrix([q]) for q in pulls)) if free else None,
-        channels=(Channel("push", "N", BOUND, columns),),
+        # In another order than the evidence has them, and one that it does not name.
+        channels=(
+            Channel("idle", "N", Fraction(1), push),
+            Channel("gust", "N", BOUNDS3[1], gust),
+            Channel("push", "N", BOUNDS3[0], push),
+        ),
         outputs=(Output("force", "N", tuple(matrix([q]) for q in ROWS3)),),
     )
 
 
-def bordered(M, b, corner):
-    return [*([*row, x] for row, x in zip(M, b, strict=True)), [*b, corner]]
-
-
-def flowing(A, b, Q):
-    """``[[-(A'Q + QA + a Q), -QB], [-B'Q, a/bound^2]]``."""
-    Qb = [-row[0] for row in times(Q, [[x] for x in b])]
-    return bordered(decrease(A, Q, SHARE / 2, Time.CONTINUOUS), Qb, SHARE / BOUND**2)
-
-
-def stepping(before, A, b, after):
-    """``[[(1 - a) before, 0], [0, a/bound^2]] - [A, B]' after [A, B]``."""
-    moved = [[*row, x] for row, x in zip(A, b, strict=True)]
-    kept = bordered(combine((1 - SHARE, before)), [Fraction(0)] * len(before), SHARE / BOUND**2)
-    return combine((1, kept), (-1, times(transpose(moved), times(after, moved))))
+def flowing(A, B, Q):
+    """``[[-(A'Q + QA + a Q), -QB], [-B'Q, diag(a_i/bound_i^2)]]``."""
+    top = decrease(A, Q, sum(SHARES3) / 2, Time.CONTINUOUS)
+    QB = [[-entry for entry in row] for row in times(Q, B)]
+    corner = [[w * (i == j) for j in range(2)] for i, w in enumerate(WEIGHTS3)]
+    return [
+        *([*row, *beside] for row, beside in zip(top, QB, strict=True)),
+        *([*row, *below] for row, below in zip(transpose(QB), corner, strict=True)),
+    ]
 
 
 def crossing(row, weight):
-    """``weight (e q + q' e')`` with e the unit vector of the deflection, next to last."""
-    e = [Fraction(int(k == len(row) - 2)) for k in range(len(row))]
+    """``weight (e q + q' e')`` with e the unit vector of the deflection, before both pushes."""
+    e = [Fraction(int(k == len(row) - 3)) for k in range(len(row))]
     return [
         [weight * (e[i] * row[j] + row[i] * e[j]) for j in range(len(row))] for i in range(len(row))
     ]
@@ -394,7 +404,11 @@ def all_forms(system: SwitchedSystem, evidence: InvariantEllipsoid, motions: lis
     assert evidence.find_misfit(system) is None
     first, *forms = (form for _, form in evidence.forms(system))
     assert first == Q3
-    reach = [bordered(QUARTERS, [Fraction(x) for x in q], LEVEL**2) for q in ROWS3]
+    reach = []
+    for q in ROWS3:
+        row = [Fraction(x) for x in q]
+        rows = [[*above, x] for above, x in zip(QUARTERS, row, strict=True)]
+        reach.append([*rows, [*row, LEVEL**2]])
     for form, wanted in zip(forms, [*motions, *reach], strict=True):
         assert is_positive_multiple(form, wanted)
 
@@ -404,50 +418,65 @@ INNER = [row[:2] for row in QUARTERS[:2]]
 
 
 def exact_of(*matrices: Rows):
-    """Return every matrix with its column."""
+    """Return every matrix with its columns of both disturbances."""
     return [
-        (matrix(A).fractions(), [row[0] for row in matrix(b).fractions()])
-        for A, b in zip(matrices, B3, strict=False)
+        (
+            matrix(A).fractions(),
+            [[*p, *g] for p, g in zip(*(matrix(b).fractions() for b in both), strict=True)],
+        )
+        for A, *both in zip(matrices, PUSH3, GUST3, strict=False)
     ]
 
 
 def test_forms_in_kept_contact_by_hand():
-    moves = exact_of(CONTACT3, OTHER3)
-    flows = [flowing(A, b, QUARTERS) for A, b in moves]
+    flows = [flowing(A, B, QUARTERS) for A, B in exact_of(CONTACT3, OTHER3)]
     all_forms(three_states(Time.CONTINUOUS, (), ()), EVIDENCE3, flows)
-    steps = [stepping(QUARTERS, A, b, QUARTERS) for A, b in moves]
-    all_forms(three_states(Time.DISCRETE, (), ()), EVIDENCE3, steps)
 
 
 def test_forms_while_contact_comes_and_goes_by_hand():
     pulls, weights = (["1/2", "-1/3", 2], ["1/5", 4, "3/2"]), (3, 5, 7, 11)
     system = three_states(Time.CONTINUOUS, (FREE3, OTHER3), pulls)
     moves = exact_of(CONTACT3, OTHER3, FREE3, OTHER3)
-    motions = [flowing(A, b, QUARTERS) for A, b in moves[:2]]
-    motions += [flowing([row[:2] for row in A[:2]], b[:2], INNER) for A, b in moves[2:]]
+    motions = [flowing(A, B, QUARTERS) for A, B in moves[:2]]
+    motions += [flowing([row[:2] for row in A[:2]], B[:2], INNER) for A, B in moves[2:]]
     pairs = [(move, q) for move in moves[2:] for q in pulls]
     motions += [
         combine(
-            (1, flowing(A, b, QUARTERS)),
-            (1, crossing([*(Fraction(x) for x in q), Fraction(0)], Fraction(weight, 4))),
+            (1, flowing(A, B, QUARTERS)),
+            (
+                1,
+                crossing(
+                    [*(Fraction(x) for x in q), Fraction(0), Fraction(0)], Fraction(weight, 4)
+                ),
+            ),
         )
-        for ((A, b), q), weight in zip(pairs, weights, strict=True)
+        for ((A, B), q), weight in zip(pairs, weights, strict=True)
     ]
     all_forms(system, replace(EVIDENCE3, multipliers=weights), motions)
 
 
-def test_forms_while_contact_comes_and_goes_in_steps_by_hand():
+@pytest.mark.parametrize(
+    ("multipliers", "roundings"), [((), ()), ((), (4, 9)), ((5,), ()), ((5,), (4, 9))]
+)
+def test_forms_in_steps_are_those_of_its_numbers(multipliers, roundings):
     landing = [[*row[:2], int(k == 2)] for k, row in enumerate(FREE3)]
-    system = three_states(Time.DISCRETE, (landing,), ())
-    *touching, (F, b) = exact_of(CONTACT3, OTHER3, landing)
-    motions = []
-    for A, c in touching:
-        lost = stepping(QUARTERS, A[:2], c[:2], INNER)
-        motions.append(stepping(QUARTERS, A, c, QUARTERS))
-        motions.append(combine((1, lost), (1, crossing([*A[2], c[2]], Fraction(5, 4)))))
-    rows = [row[:2] for row in F]
-    motions += [stepping(INNER, rows[:2], b[:2], INNER), stepping(INNER, rows, b, QUARTERS)]
-    all_forms(system, replace(EVIDENCE3, multipliers=(5,)), motions)
+    system = three_states(Time.DISCRETE, (landing,) if multipliers else (), ())
+    count = len(system.channels[0].columns)
+    errors = (
+        Rounding(name, (matrix(column),) * count, (matrix([[1, "1/2", 0, 1, 2, 3]]),) * count)
+        for name, column in zip("ab", PUSH3, strict=False)
+    )
+    system = replace(system, roundings=tuple(errors))
+    evidence = replace(EVIDENCE3, multipliers=multipliers, roundings=roundings)
+    assert evidence.find_misfit(system) is None
+    assert system.find_contradiction() is None
+    steps = Steps(
+        Q3, 2, 1 - sum(SHARES3), sum(multipliers), roundings, (2, 1), tuple(WEIGHTS3)
+    ).forms(system)
+    wanted = [(f"the ellipsoid can be left {where}", form) for where, form in steps]
+    _, *forms = evidence.forms(system)
+    assert forms[: len(wanted)] == wanted
+    assert len(forms) == len(wanted) + len(ROWS3)
 
 
 @pytest.mark.parametrize(
@@ -457,17 +486,23 @@ def test_forms_while_contact_comes_and_goes_in_steps_by_hand():
         ({"denominator_log2": -1}, "the denominator of Q is not two to a power up to 14000"),
         ({"denominator_log2": 14_000}, None),
         ({"denominator_log2": 14_001}, "the denominator of Q is not two to a power up to 14000"),
-        ({"share": Fraction(0)}, "the share is not one of a set that is not left"),
-        ({"share": Fraction(1, 9)}, None),
-        ({"share": Fraction(8, 9)}, None),
-        ({"share": Fraction(1)}, "the share is not one of a set that is not left"),
+        ({"shares": (Fraction(0),)}, "the shares are not those of a set that is not left"),
+        ({"shares": (Fraction(1, 9),)}, None),
+        ({"shares": (Fraction(8, 9),)}, None),
+        ({"shares": (Fraction(1),)}, "the shares are not those of a set that is not left"),
+        ({"shares": ()}, "there is not one share for each disturbance"),
+        ({"shares": (Fraction(1, 9),) * 2}, "there is not one share for each disturbance"),
+        ({"roundings": (1,)}, "there is not one multiplier for each rounding"),
         ({"level": Fraction(0)}, "the level is not positive"),
         ({"level": Fraction(1, 9)}, None),
         ({"multipliers": (0,)}, None),
         ({"multipliers": (-1,)}, "a multiplier is negative"),
         ({"multipliers": ()}, "there is not one multiplier for each condition that needs it"),
         ({"multipliers": (1, 1)}, "there is not one multiplier for each condition that needs it"),
-        ({"channel": "pull"}, "the system has no disturbance of that name"),
+        ({"channels": ("pull",)}, "the system has no disturbance of that name"),
+        ({"channels": ("push", "pull")}, "the system has no disturbance of that name"),
+        ({"channels": ("push", "push")}, "it names no disturbance, or one of them twice"),
+        ({"channels": ()}, "it names no disturbance, or one of them twice"),
         ({"output": "push"}, "the system has no output of that name"),
     ],
 )
@@ -477,9 +512,25 @@ def test_the_limits_of_every_number_in_steps(changes, fault):
 
 @pytest.mark.parametrize(("share", "is_odd"), [(0, True), ("1/9", False), (1, False), (2, False)])
 def test_a_share_by_the_second(share, is_odd):
-    misfit = replace(BOUNCE, share=Fraction(share)).find_misfit(pushed(bouncing()))
-    assert (misfit == "the share is not one of a set that is not left") is is_odd
+    misfit = replace(BOUNCE, shares=(Fraction(share),)).find_misfit(pushed(bouncing()))
+    assert (misfit == "the shares are not those of a set that is not left") is is_odd
     assert (misfit is None) is not is_odd
+
+
+@pytest.mark.parametrize(
+    ("shares", "time", "fits"),
+    [
+        (("1/2", "1/3"), Time.DISCRETE, True),
+        (("1/2", "1/2"), Time.DISCRETE, False),
+        (("3/4", "1/3"), Time.DISCRETE, False),
+        (("3/4", "1/3"), Time.CONTINUOUS, True),
+        (("0", "1/3"), Time.CONTINUOUS, False),
+        (("1/3", "-1/9"), Time.CONTINUOUS, False),
+    ],
+)
+def test_shares_of_two_disturbances(shares, time, fits):
+    both = replace(EVIDENCE3, shares=tuple(Fraction(share) for share in shares))
+    assert (both.find_misfit(three_states(time, (), ())) is None) is fits
 
 
 def test_no_multiplier_where_contact_is_kept():
@@ -495,7 +546,11 @@ def test_no_multiplier_where_contact_is_kept():
         (None, "stays there."),
         (Fraction(3, 5), "The limit of 0.6 N is kept."),
         (Fraction(1), "The limit of 1 N is kept."),
-        (Fraction(1, 2), "That the limit of 0.5 N is kept is not shown."),
+        (
+            Fraction(1, 2),
+            "That the limit of 0.5 N is kept is not shown; it is, in proportion, for "
+            "|push| <= 0.208333 N (rounded down).",
+        ),
     ],
 )
 def test_a_limit_beside_the_level(limit, words):
@@ -518,4 +573,4 @@ def test_the_disturbance_and_the_output_are_those_of_the_name():
             fields = BOUNCE.to_fields()
             assert InvariantEllipsoid.from_fields(fields, both) == BOUNCE
             with pytest.raises(ValueError, match="no disturbance of that name"):
-                InvariantEllipsoid.from_fields({**fields, "channel": "wind"}, both)
+                InvariantEllipsoid.from_fields({**fields, "channels": ["wind"]}, both)

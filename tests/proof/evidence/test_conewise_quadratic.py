@@ -326,3 +326,10 @@ def test_nothing_is_read_where_no_contact_can_be_lost():
     assert ConewiseQuadratic.from_fields(STEPS.to_fields(), bouncing_in_steps()) == STEPS
     with pytest.raises(ValueError, match="how contact is lost"):
         ConewiseQuadratic.from_fields(STEPS.to_fields(), replace(bouncing_in_steps(), contact=None))
+
+
+def test_rounding_is_covered_where_there_are_multipliers_for_it():
+    assert not STEPS.covers_rounding
+    assert replace(STEPS, roundings=(1,)).covers_rounding
+    covered = replace(STEPS, roundings=(1,))
+    assert type(covered).from_fields(covered.to_fields(), bouncing_in_steps()) == covered

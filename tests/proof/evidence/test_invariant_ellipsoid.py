@@ -574,3 +574,10 @@ def test_the_disturbance_and_the_output_are_those_of_the_name():
             assert InvariantEllipsoid.from_fields(fields, both) == BOUNCE
             with pytest.raises(ValueError, match="no disturbance of that name"):
                 InvariantEllipsoid.from_fields({**fields, "channels": ["wind"]}, both)
+
+
+def test_rounding_is_covered_where_there_are_multipliers_for_it():
+    assert not STEPS.covers_rounding
+    assert replace(STEPS, roundings=(1,)).covers_rounding
+    covered = replace(STEPS, roundings=(1,))
+    assert type(covered).from_fields(covered.to_fields(), pushed(bouncing_in_steps())) == covered

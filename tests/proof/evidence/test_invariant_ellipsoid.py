@@ -533,6 +533,12 @@ def test_shares_of_two_disturbances(shares, time, fits):
     assert (both.find_misfit(three_states(time, (), ())) is None) is fits
 
 
+@pytest.mark.parametrize("multipliers", [(80, -1), (-1, 80)])
+def test_no_multiplier_is_negative(multipliers):
+    misfit = replace(PULLED, multipliers=multipliers).find_misfit(pushed(bouncing(1)))
+    assert misfit == "a multiplier is negative"
+
+
 def test_no_multiplier_where_contact_is_kept():
     for multipliers, fits in (((), True), ((1,), False)):
         kept = pushed(replace(bouncing_in_steps(), contact=None))

@@ -195,30 +195,44 @@ MAPS3 = (
     [["-1/2", "1/3", "2/3"], [1, "-1/5", "-3/7"], ["1/4", "2/3", "-1/9"]],
     [["-1/11", "2/3", "1/8"], ["-1/5", -2, 1], ["5/4", "1/6", "1/3"]],
     [["-1/3", "1/2", 0], ["1/7", "-2/5", 0], ["3/4", "-1/6", 1]],
+    [["1/8", "-1/2", 0], ["2/7", "1/5", 0], ["-1/4", "5/6", 1]],
 )
-PUSHES3 = (
-    ([["1/2"], ["-1/3"], ["2/5"]], [["3/2"], ["1/7"], [2]], [["1/9"], [3], ["-1/4"]]),
-    ([[2], ["1/4"], [-1]], [["1/3"], [-2], ["1/5"]], [["2/3"], ["-1/8"], [1]]),
-    ([[-1], ["1/2"], ["1/5"]], [["1/6"], [5], ["-3/4"]], [["3/8"], [-1], ["7/4"]]),
+PUSHES3 = tuple(
+    [[[row[k]] for row in rows] for k in range(4)]
+    for rows in (
+        (["1/2", "3/2", "1/9", 2], ["-1/3", "1/7", 3, 1], ["2/5", 2, "-1/4", "1/6"]),
+        ([2, "1/3", "2/3", "-1/5"], ["1/4", -2, "-1/8", 1], [-1, "1/5", 1, "1/2"]),
+        ([-1, "1/6", "3/8", 1], ["1/2", 5, -1, "1/3"], ["1/5", "-3/4", "7/4", -2]),
+    )
 )
-ERRORS3 = (
-    ([[1], [0], ["1/2"]], [["1/5"], [2], [0]], [["-1/7"], ["1/2"], [1]]),
-    ([["1/3"], [1], [-1]], [[1], ["-3/4"], ["1/6"]], [[0], ["2/9"], ["5/2"]]),
+ERRORS3 = tuple(
+    [[[row[k]] for row in rows] for k in range(4)]
+    for rows in (
+        ([1, "1/5", "-1/7", 3], [0, 2, "1/2", "1/4"], ["1/2", 0, 1, -1]),
+        (["1/3", 1, 0, "2/7"], [1, "-3/4", "2/9", 1], [-1, "1/6", "5/2", "1/2"]),
+    )
 )
 SIZES3 = (
-    (
+    [
         [["1/2", 1, "1/5", 3, "-1/4", "1/3"]],
         [[2, "-1/3", 1, "1/7", 2, -1]],
         [[1, "1/6", 0, 5, 1, "2/3"]],
-    ),
-    ([["-1/9", 2, 1, "1/2", 1, 4]], [["1/8", 1, -2, 1, "3/5", 2]], [["3/2", -1, 0, "1/3", -2, 1]]),
+        [["1/4", 2, 0, "1/5", -1, 1]],
+    ],
+    [
+        [["-1/9", 2, 1, "1/2", 1, 4]],
+        [["1/8", 1, -2, 1, "3/5", 2]],
+        [["3/2", -1, 0, "1/3", -2, 1]],
+        [[1, "1/7", 0, 2, "1/2", "-1/3"]],
+    ],
 )
 KEEPS, WEIGHTS = Fraction(5, 7), (Fraction(2, 3), Fraction(3, 5))
 
 
 def three_states(*, contact: bool) -> SwitchedSystem:
-    count, names = 3 if contact else 2, "abc"
-    landing = Contact((Mode("f", matrix(MAPS3[2])),)) if contact else None
+    count, names = 4 if contact else 2, "abc"
+    free = (Mode("f", matrix(MAPS3[2])), Mode("g", matrix(MAPS3[3])))
+    landing = Contact(free) if contact else None
     return replace(
         family(*MAPS3[:2], time=Time.DISCRETE),
         contact=landing,
@@ -284,9 +298,12 @@ def test_every_form_by_hand(acting, roundings):
             "where contact is lost in mode m1",
             by_hand(1, QUARTERS, INNER, **numbers, crossing=5, lands=False),
         ),
-        ("in free motion, mode f", by_hand(2, INNER, INNER, **numbers, lands=False, flies=True)),
-        ("where contact is made, mode f", by_hand(2, INNER, QUARTERS, **numbers, flies=True)),
     ]
+    for k, name in ((2, "f"), (3, "g")):
+        flight = by_hand(k, INNER, INNER, **numbers, lands=False, flies=True)
+        landing = by_hand(k, INNER, QUARTERS, **numbers, flies=True)
+        wanted += [(f"in free motion, mode {name}", flight)]
+        wanted += [(f"where contact is made, mode {name}", landing)]
     system = three_states(contact=True)
     assert system.find_contradiction() is None
     kept = [form for form in wanted if form[0].startswith("in mode")]

@@ -9,11 +9,7 @@ import pytest
 from nrs_design.proof.evidence import (
     KINDS,
     AbstractEvidence,
-    BlockTriangular,
-    CommonPolynomial,
-    CommonQuadratic,
     Shows,
-    UnstableMode,
 )
 from nrs_design.proof.exact import MAX_WORK
 from nrs_design.proof.matrix import RationalMatrix
@@ -311,14 +307,3 @@ def test_facts_of_the_kinds(fact):
 @pytest.mark.parametrize("fact", FACTS)
 def test_a_kind_that_says_nothing_of_itself_claims_nothing(fact):
     assert getattr(Claimed(), fact) is False
-
-
-def test_blocks_say_of_themselves_what_their_parts_do():
-    one, slow = CommonQuadratic(((1,),), 0, Fraction(1)), UnstableMode("m0", "0")
-    form = CommonPolynomial(1, ((1,),), 0, (), Fraction(1))
-    quadratic = BlockTriangular(((0,), (1,)), ((0, one), (1, one)))
-    mixed = BlockTriangular(((0,), (1,)), ((0, one), (1, form)))
-    unstable = BlockTriangular(((0,), (1,)), ((1, slow),))
-    assert [b.is_common_quadratic for b in (quadratic, mixed, unstable)] == [True, False, False]
-    assert [b.keeps_bound_in_mixtures for b in (quadratic, mixed)] == [True, False]
-    assert [b.names_unstable_mode for b in (quadratic, mixed, unstable)] == [False, False, True]

@@ -177,6 +177,7 @@ def test_an_environment_that_lags_needs_its_own_condition():
         ({"multipliers": ()}, "multiplier"),
         ({"multipliers": (1, 1)}, "multiplier"),
         ({"multipliers": (-1,)}, "negative"),
+        ({"roundings": (1,)}, "one multiplier for each rounding"),
     ],
 )
 def test_misfits_in_steps(changes, fault):

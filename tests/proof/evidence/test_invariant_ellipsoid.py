@@ -359,7 +359,7 @@ SHARES3, BOUNDS3, LEVEL = (
     Fraction(4, 9),
 )
 WEIGHTS3 = [share / bound**2 for share, bound in zip(SHARES3, BOUNDS3, strict=True)]
-EVIDENCE3 = InvariantEllipsoid(("push", "gust"), "force", Q3, 2, SHARES3, LEVEL, ())
+EVIDENCE3 = InvariantEllipsoid(("push", "gust"), "force", Q3, 3, SHARES3, LEVEL, ())
 ROWS3 = (["1/2", -1, "2/3"], [3, "1/4", 1])
 
 
@@ -407,14 +407,14 @@ def all_forms(system: SwitchedSystem, evidence: InvariantEllipsoid, motions: lis
     reach = []
     for q in ROWS3:
         row = [Fraction(x) for x in q]
-        rows = [[*above, x] for above, x in zip(QUARTERS, row, strict=True)]
+        rows = [[*above, x] for above, x in zip(EIGHTHS, row, strict=True)]
         reach.append([*rows, [*row, LEVEL**2]])
     for form, wanted in zip(forms, [*motions, *reach], strict=True):
         assert is_positive_multiple(form, wanted)
 
 
-QUARTERS = [[Fraction(entry, 4) for entry in row] for row in Q3]
-INNER = [row[:2] for row in QUARTERS[:2]]
+EIGHTHS = [[Fraction(entry, 8) for entry in row] for row in Q3]
+INNER = [row[:2] for row in EIGHTHS[:2]]
 
 
 def exact_of(*matrices: Rows):
@@ -429,7 +429,7 @@ def exact_of(*matrices: Rows):
 
 
 def test_forms_in_kept_contact_by_hand():
-    flows = [flowing(A, B, QUARTERS) for A, B in exact_of(CONTACT3, OTHER3)]
+    flows = [flowing(A, B, EIGHTHS) for A, B in exact_of(CONTACT3, OTHER3)]
     all_forms(three_states(Time.CONTINUOUS, (), ()), EVIDENCE3, flows)
 
 
@@ -437,16 +437,16 @@ def test_forms_while_contact_comes_and_goes_by_hand():
     pulls, weights = (["1/2", "-1/3", 2], ["1/5", 4, "3/2"]), (3, 5, 7, 11)
     system = three_states(Time.CONTINUOUS, (FREE3, OTHER3), pulls)
     moves = exact_of(CONTACT3, OTHER3, FREE3, OTHER3)
-    motions = [flowing(A, B, QUARTERS) for A, B in moves[:2]]
+    motions = [flowing(A, B, EIGHTHS) for A, B in moves[:2]]
     motions += [flowing([row[:2] for row in A[:2]], B[:2], INNER) for A, B in moves[2:]]
     pairs = [(move, q) for move in moves[2:] for q in pulls]
     motions += [
         combine(
-            (1, flowing(A, B, QUARTERS)),
+            (1, flowing(A, B, EIGHTHS)),
             (
                 1,
                 crossing(
-                    [*(Fraction(x) for x in q), Fraction(0), Fraction(0)], Fraction(weight, 4)
+                    [*(Fraction(x) for x in q), Fraction(0), Fraction(0)], Fraction(weight, 8)
                 ),
             ),
         )
@@ -471,7 +471,7 @@ def test_forms_in_steps_are_those_of_its_numbers(multipliers, roundings):
     assert evidence.find_misfit(system) is None
     assert system.find_contradiction() is None
     steps = Steps(
-        Q3, 2, 1 - sum(SHARES3), sum(multipliers), roundings, (2, 1), tuple(WEIGHTS3)
+        Q3, 3, 1 - sum(SHARES3), sum(multipliers), roundings, (2, 1), tuple(WEIGHTS3)
     ).forms(system)
     wanted = [(f"the ellipsoid can be left {where}", form) for where, form in steps]
     _, *forms = evidence.forms(system)

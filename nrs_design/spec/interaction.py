@@ -21,8 +21,9 @@ from nrs_design.spec.provenance import IdentifiedSpec
 from nrs_design.spec.sampling import (
     DisturbancesSpec,
     SamplingSpec,
-    check_actuator_ranges,
     check_disturbances,
+    check_motor,
+    check_peak,
 )
 from nrs_design.spec.switching import DwellTime, SwitchingRule, check_names
 
@@ -69,7 +70,7 @@ class InteractionDesignSpec(SpecModel):
     )
     disturbances: DisturbancesSpec | None = Field(
         default=None,
-        description="what acts on the sampled loop from outside; its effect on the force is "
+        description="what acts on the loop from outside; its effect on force and velocity is "
         "bounded",
     )
     contact: Literal["losable", "kept"] | None = Field(
@@ -114,10 +115,12 @@ class InteractionDesignSpec(SpecModel):
                 for item in self.controllers.items()
             ),
             partial(check_disturbances, self.disturbances, self.sampling),
+            partial(check_peak, self.goals, self.disturbances),
             partial(
-                check_actuator_ranges,
+                check_motor,
                 self.actuator,
                 self.sampling,
+                self.controllers,
                 given_loop=self.motion_loop.transfer_function is not None,
             ),
             partial(_check_memories, self.controllers, self.environments, self.coordinates),
@@ -157,7 +160,7 @@ class InteractionDesignSpec(SpecModel):
 
     def find_dwell_obstacle(self) -> DwellObstacle | None:
         """Say why no dwell time can be claimed for this spec, or None."""
-        return find_changing_contact(self.controllers, self.environments)
+        return find_changing_contact(self.actuator, self.controllers, self.environments)
 
 
 def _check_mixture(

@@ -15,14 +15,15 @@ from nrs_design.spec import IdleStatesSpec, SwitchingSpec
 from nrs_design.spec.controllers import Command
 from nrs_design.switched.assumptions import CONTINUOUS, LOST_CONTACT, REST, rule_texts
 from nrs_design.switched.gain_box import GainBox
+from nrs_design.switched.joint import Joint
 
 _GIVEN_LOOP = (
     "The motion loop is the transfer function G(s) that the spec states, whatever the motion gains "
     "listed here."
 )
 _DESIGNED_LOOP = (
-    "The motion loop is the linear actuator model of the spec, at its nominal values, under the "
-    "motion gains listed here."
+    "The motion loop is the linear actuator model of the spec, at its nominal values and not "
+    "loaded by what is touched, under the motion gains listed here."
 )
 _INPUTS = "All inputs are zero (velocity command, reference force, motion of the environment); "
 # In free motion, a command moves the axis ever further from the surface.
@@ -69,6 +70,8 @@ class Assumed:
         Whether the spec states the motion loop itself.
     losable : bool
         Whether the system says how contact is lost; then a statement says whether it is kept.
+    joint : Joint or None
+        The motor, where it has ranges or is loaded by the environment.
     """
 
     design: ControllerDesign
@@ -80,12 +83,13 @@ class Assumed:
     law: CompliantLaw
     given: bool
     losable: bool = False
+    joint: Joint | None = None
 
 
 def assume_loop(loop: Assumed) -> tuple[str, ...]:
     """Say what holds for an interaction design."""
     return (
-        _GIVEN_LOOP if loop.given else _DESIGNED_LOOP,
+        *_loop_texts(loop),
         _INPUTS + REST[loop.losable],
         _COMMANDED.format(_IN_THE_AIR if loop.losable else ""),
         "The axes of the robot do not act on each other.",
@@ -100,6 +104,12 @@ def assume_loop(loop: Assumed) -> tuple[str, ...]:
         _NOT_MODELLED,
         *_gain_texts(loop.boxes),
     )
+
+
+def _loop_texts(loop: Assumed) -> Iterator[str]:
+    if loop.joint is not None:
+        return loop.joint.texts()
+    return iter((_GIVEN_LOOP if loop.given else _DESIGNED_LOOP,))
 
 
 def _contact_texts(loop: Assumed) -> Iterator[str]:

@@ -126,7 +126,8 @@ def check_applicable(goals: GoalsSpec | None, types: set[str], *at: str) -> None
         )
     if not types and given - OF_THE_CERTIFICATE:
         raise fault(
-            "there is no controller that a goal applies to: position control has no contact",
+            "there is no controller that a goal applies to: they are for impedance and force "
+            "control",
             "remove goals",
             *at,
         )

@@ -52,7 +52,6 @@ def search_period(family: Family) -> Candidates[UnstablePeriod]:
         for word, radius in growing_words(family.matrices, allowance):
             steps = tuple((system.modes[i].name, Fraction(1)) for i in word)
             yield from _powers(system, UnstablePeriod(steps, 0), radius)
-        return NOTHING_GROWS
     # The scaled modes of a search do not fit resets.
     floats = [mode.A.floats() for mode in system.modes]
     graph = Graph.of(system, np.array(floats) if system.switching.resets else family.matrices)
@@ -79,10 +78,10 @@ def _signals(system: SwitchedSystem, graph: Graph, allowance: Allowance) -> Iter
 
 def _longer_signals(system: SwitchedSystem, graph: Graph, allowance: Allowance) -> Iterator[Signal]:
     """Yield signals that may come back to a mode; in continuous time few, for refining is slow."""
-    if system.switching.is_arbitrary:
-        yield from _greedy_signals(graph)
-    elif system.time is Time.DISCRETE:
+    if system.time is Time.DISCRETE:
         yield from growing_walks(graph, allowance)
+    elif system.switching.is_arbitrary:
+        yield from _greedy_signals(graph)
     else:
         walks = growing_walks(graph, allowance)
         yield from sorted(walks, key=lambda walk: -float(graph.growth(*walk)))[:WALKS]

@@ -93,6 +93,11 @@ class Facts:
         return self.system.contact is not None
 
     @property
+    def rounds(self) -> bool:
+        """Whether the system says what its arithmetic rounds."""
+        return bool(self.system.roundings)
+
+    @property
     def may_bounce(self) -> bool:
         """Whether one function could be for lost contact with springs, in continuous time."""
         contact = self.system.contact
@@ -226,6 +231,12 @@ LADDER: tuple[Rung, ...] = (
         "conewise quadratic",
         Method.CONEWISE_QUADRATIC,
         lambda f: f.may_lose_contact and f.may_share_an_ellipsoid,
+        search_conewise,
+    ),
+    Rung(
+        "quadratic, with roundings",
+        Method.LMI,
+        lambda f: f.rounds and not f.may_lose_contact and f.may_share_an_ellipsoid,
         search_conewise,
     ),
     # Before what takes for granted that contact is kept; that no quadratic function exists is said

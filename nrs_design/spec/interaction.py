@@ -23,6 +23,7 @@ from nrs_design.spec.sampling import (
     SamplingSpec,
     check_disturbances,
     check_motor,
+    check_peak,
 )
 from nrs_design.spec.switching import DwellTime, SwitchingRule, check_names
 
@@ -69,7 +70,7 @@ class InteractionDesignSpec(SpecModel):
     )
     disturbances: DisturbancesSpec | None = Field(
         default=None,
-        description="what acts on the sampled loop from outside; its effect on the force is "
+        description="what acts on the loop from outside; its effect on force and velocity is "
         "bounded",
     )
     contact: Literal["losable", "kept"] | None = Field(
@@ -114,6 +115,7 @@ class InteractionDesignSpec(SpecModel):
                 for item in self.controllers.items()
             ),
             partial(check_disturbances, self.disturbances, self.sampling),
+            partial(check_peak, self.goals, self.disturbances),
             partial(
                 check_motor,
                 self.actuator,

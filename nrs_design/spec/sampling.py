@@ -11,6 +11,7 @@ from pydantic import Field, PlainValidator, WithJsonSchema
 from nrs_design.spec.controllers import ControllerSpec
 from nrs_design.spec.faults import fault
 from nrs_design.spec.fields import read_exact
+from nrs_design.spec.goals import GoalsSpec
 from nrs_design.spec.model import SpecModel
 from nrs_design.spec.motion import ActuatorSpec
 from nrs_design.spec.provenance import IdentifiedSpec
@@ -64,7 +65,7 @@ class SamplingSpec(IdentifiedSpec):
 
 
 class DisturbancesSpec(SpecModel):
-    """Bounds on what acts on the sampled loop from outside; what is left out is zero."""
+    """Bounds on what acts on the loop from outside; what is left out is zero."""
 
     command: AngularVelocity | None = Field(
         default=None, description="largest velocity command in rad/s, however it changes"
@@ -81,6 +82,12 @@ class DisturbancesSpec(SpecModel):
     force_step: Torque | None = Field(
         default=None,
         description="resolution of the measured torque in N*m: an error of half a step",
+    )
+
+    largest_angle: Angle | None = Field(
+        default=None,
+        description="largest joint angle and reference in rad that the law holds as "
+        "single-precision numbers: their absolute rounding acts as a disturbance",
     )
 
     def bounds(self) -> dict[str, tuple[Fraction, str]]:
@@ -100,17 +107,31 @@ class DisturbancesSpec(SpecModel):
 
 
 def check_disturbances(disturbances: DisturbancesSpec | None, sampling: object) -> None:
-    """Refuse disturbances without a sampled loop, or without any."""
+    """Refuse disturbances that need a sampled loop without one, and none at all."""
     if disturbances is None:
         return
     if sampling is None:
-        raise fault(
-            "disturbances are bounded in the sampled loop only",
-            "add `sampling: {period: 2 ms, delay: 1}`, or remove disturbances",
-            "disturbances",
-        )
-    if not disturbances.bounds():
+        for key, value in disturbances:
+            if key != "command" and value is not None:
+                raise fault(
+                    f"without sampling, {key} is not modelled",
+                    "add `sampling: {period: 2 ms, delay: 1}`, or name the command alone",
+                    "disturbances",
+                    key,
+                )
+    if not disturbances.bounds() and disturbances.largest_angle is None:
         raise fault("no disturbance is named", "name one, or remove disturbances", "disturbances")
+
+
+def check_peak(goals: GoalsSpec | None, disturbances: DisturbancesSpec | None) -> None:
+    """Refuse a goal for the torque where nothing is said to cause one."""
+    if goals is not None and goals.peak_torque is not None and disturbances is None:
+        raise fault(
+            "peak_torque is wanted, but nothing is said to disturb the loop",
+            "add `disturbances: {command: 8 deg/s}`",
+            "goals",
+            "peak_torque",
+        )
 
 
 def check_motor(

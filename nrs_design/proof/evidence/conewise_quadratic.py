@@ -15,19 +15,18 @@ from nrs_design.proof.evidence.fields import (
     read_dyadic,
     read_integer,
     read_ratio,
+    read_roundings,
+    rounding_fields,
 )
 from nrs_design.proof.evidence.function import AbstractFunction, is_square
 from nrs_design.proof.exact import (
     IntegerMatrix,
-    congruence,
     lyapunov_decrease,
     lyapunov_factor,
     scaled,
-    stein_decrease,
-    stein_factor,
-    step_decrease,
 )
 from nrs_design.proof.matrix import RationalMatrix, leading, with_crossing
+from nrs_design.proof.steps import Steps, find_odd_roundings
 from nrs_design.proof.system import Contact, Mode, SwitchedSystem, Time
 
 Forms = Iterator[tuple[str, IntegerMatrix]]
@@ -68,6 +67,9 @@ class ConewiseQuadratic(AbstractFunction):
     multipliers : tuple of int
         The lambdas, over the denominator of Q: in continuous time one for each free mode and each
         force in turn, in discrete time a single one.
+    roundings : tuple of int
+        Over the denominator of Q: the multipliers of `nrs_design.proof.steps.Steps`, if what the
+        arithmetic rounds is covered.
     """
 
     kind: ClassVar[str] = "conewise-quadratic"
@@ -79,6 +81,12 @@ class ConewiseQuadratic(AbstractFunction):
     denominator_log2: int
     rate: Fraction
     multipliers: tuple[int, ...]
+    roundings: tuple[int, ...] = ()
+
+    @property
+    def covers_rounding(self) -> bool:
+        """Whether it has the multipliers for it."""
+        return bool(self.roundings)
 
     @property
     def is_common_quadratic(self) -> bool:
@@ -102,6 +110,8 @@ class ConewiseQuadratic(AbstractFunction):
             return "there is not one multiplier for each condition that needs it"
         if min(self.multipliers, default=0) < 0:
             return "a multiplier is negative"
+        if (odd := find_odd_roundings(self.roundings, system)) is not None:
+            return odd
         return self.find_rate_misfit(system.time)
 
     def forms(self, system: SwitchedSystem) -> Forms:
@@ -110,8 +120,12 @@ class ConewiseQuadratic(AbstractFunction):
         yield "Q is not symmetric and positive definite", self.Q
         if system.time is Time.CONTINUOUS:
             yield from self._in_continuous_time(system.modes, system.contact)
-        else:
-            yield from self._in_discrete_time(system.modes, system.contact)
+            return
+        steps = Steps(
+            self.Q, self.denominator_log2, self.rate**2, self.multipliers[0], self.roundings
+        )
+        for where, form in steps.forms(system):
+            yield _failure(where), form
 
     def _in_continuous_time(self, modes: tuple[Mode, ...], contact: Contact) -> Forms:
         for mode in modes:
@@ -133,25 +147,6 @@ class ConewiseQuadratic(AbstractFunction):
     def _decrease(self, A: RationalMatrix) -> list[list[int]]:
         return lyapunov_decrease(A.numerators, A.denominator, self.Q, self.rate)
 
-    def _in_discrete_time(self, modes: tuple[Mode, ...], contact: Contact) -> Forms:
-        (multiplier,), rate, inner = self.multipliers, self.rate, leading(self.Q)
-        for mode in modes:
-            N, d = mode.A.numerators, mode.A.denominator
-            yield _failure(f"in mode {mode.name}"), stein_decrease(N, d, self.Q, rate)
-            *others, last = N
-            lost = step_decrease(self.Q, congruence(others, inner), d, rate)
-            # The factor of this form over the denominator of its last row is an integer.
-            factor = multiplier * stein_factor(d, rate) // d
-            lost = with_crossing(lost, len(last) - 1, [factor * entry for entry in last])
-            yield _failure(f"where contact is lost in mode {mode.name}"), lost
-        for mode in contact.free:
-            rows = [row[:-1] for row in mode.A.numerators]
-            d = mode.A.denominator
-            kept = step_decrease(inner, congruence(rows[:-1], inner), d, rate)
-            yield _failure(f"in free motion, mode {mode.name}"), kept
-            made = step_decrease(inner, congruence(rows, self.Q), d, rate)
-            yield _failure(f"where contact is made, mode {mode.name}"), made
-
     def claim_in_scope(self, system: SwitchedSystem) -> str:
         """State the bound on every solution, with contact or without."""
         assert system.contact is not None  # find_misfit
@@ -172,6 +167,7 @@ class ConewiseQuadratic(AbstractFunction):
             "Q": matrix_fields(self.Q, self.denominator_log2),
             "rate": str(self.rate),
             "multipliers": list(self.multipliers),
+            **rounding_fields(self.roundings),
         }
 
     @classmethod
@@ -181,7 +177,8 @@ class ConewiseQuadratic(AbstractFunction):
             raise ValueError(NO_CONTACT)
         Q, denominator_log2 = read_dyadic(fields["Q"])
         multipliers = tuple(read_integer(entry) for entry in fields["multipliers"])
-        return cls(Q, denominator_log2, read_ratio(fields["rate"]), multipliers)
+        rate = read_ratio(fields["rate"])
+        return cls(Q, denominator_log2, rate, multipliers, read_roundings(fields))
 
 
 def multiplier_count(contact: Contact, time: Time) -> int:

@@ -1,0 +1,86 @@
+"""What a bounded velocity command does to the loop of an impedance design in continuous time."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from fractions import Fraction
+
+from nrs_design.errors import AssemblyError
+from nrs_design.models.contact.environment import Environment
+from nrs_design.models.linear_form import coordinates
+from nrs_design.models.motion_loop import MotionLoop, Realization, realize
+from nrs_design.proof.matrix import RationalMatrix
+from nrs_design.proof.system import Channel, Output, SwitchedSystem
+from nrs_design.spec import InteractionDesignSpec
+from nrs_design.spec.sampling import DisturbancesSpec
+
+_ASSUMED = (
+    "A velocity command acts where a statement names it; it may change arbitrarily fast within its "
+    "bound."
+)
+
+
+def with_command(
+    system: SwitchedSystem,
+    spec: InteractionDesignSpec,
+    disturbances: DisturbancesSpec,
+    loop: MotionLoop,
+    touched: Sequence[Environment],
+) -> SwitchedSystem:
+    """Let the largest velocity command act on a loop, with force and velocity as its outputs.
+
+    The command goes where the velocity of the admittance is subtracted, into the motion loop, in
+    contact and free alike.
+
+    Parameters
+    ----------
+    system : SwitchedSystem
+        The loop without inputs, in deflection coordinates.
+    spec : InteractionDesignSpec
+        With the limit of the torque.
+    disturbances : DisturbancesSpec
+        Of the spec.
+    loop : MotionLoop
+        Closed motion loop G.
+    touched : sequence of Environment
+        All contacts.
+
+    Raises
+    ------
+    AssemblyError
+        If it is not modelled for these controllers, environments or coordinates.
+    """
+    plain = all(controller.type == "impedance" for controller in spec.controllers.values())
+    remember = any(environment.law.remembers for environment in touched)
+    if not plain or remember or spec.coordinates != "deflection" or not touched:
+        raise AssemblyError(
+            "a velocity command is modelled for impedance controllers on elastic and damped "
+            "environments in deflection coordinates",
+            remedy="leave disturbances out",
+            at=("disturbances",),
+        )
+    motion, n = realize(loop), system.order
+    column = [row[-1:] for row in motion.rates(coordinates(n + 1)[-1])]
+    B = RationalMatrix.from_rows([*column, *([Fraction(0)] for _ in range(n - motion.order))])
+    count = len(system.modes) + (0 if system.contact is None else len(system.contact.free))
+    ((name, (bound, unit)),) = disturbances.bounds().items()
+    return replace(
+        system,
+        assumptions=(*system.assumptions, _ASSUMED),
+        channels=(Channel(name, unit, bound, (B,) * count),),
+        outputs=(
+            Output("force", "N*m", tuple(_forces(motion, n, touched)), spec.limits.torque.exact),
+            Output("velocity", "rad/s", (RationalMatrix.from_rows([motion.output(n)]),)),
+        ),
+    )
+
+
+def _forces(
+    motion: Realization, n: int, touched: Sequence[Environment]
+) -> Iterator[RationalMatrix]:
+    deflection = coordinates(n)[-1:]
+    for environment in touched:
+        for law in environment.corners:
+            force, _ = law.react(motion.output(n), deflection)
+            yield RationalMatrix.from_rows([force])

@@ -4,8 +4,9 @@ Every name here is imported from its module when it is first asked for: a comman
 kind of spec that it reads. `Spec`, any of them, is for annotations only.
 """
 
-from importlib import import_module
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
+
+from nrs_design.proof.late import late_names
 
 if TYPE_CHECKING:
     from nrs_design.spec.affine import Affine
@@ -127,8 +128,4 @@ _HOMES = {
     for name in names.split()
 }
 
-
-def __getattr__(name: str) -> Any:
-    if name not in _HOMES:
-        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    return getattr(import_module(f"nrs_design.spec.{_HOMES[name]}"), name)
+__getattr__ = late_names(__name__, _HOMES)

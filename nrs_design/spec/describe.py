@@ -140,9 +140,9 @@ def _interaction(spec: InteractionDesignSpec) -> Iterator[Line]:
         yield from _provenance("sampling", spec.sampling)
     if spec.disturbances is not None:
         yield from describe_model(spec.disturbances, "disturbances")
+    yield from describe_model(spec.sensor, "sensor")
     if spec.mode_logic is not None:
         yield from describe_model(spec.mode_logic, "mode_logic")
-    yield from describe_model(spec.sensor, "sensor")
     yield Line("contact", spec.contact or "losable where proved", "", "")
     yield Line("coordinates", spec.coordinates, "", "")
     yield from _switching(spec.switching)

@@ -92,8 +92,8 @@ class GoalsSpec(SpecModel):
     )
     peak_torque: Torque | None = Field(
         default=None,
-        description="what the proved bound on the torque under all disturbances of the spec must "
-        "not exceed; for the whole spec, not for one controller",
+        description="largest torque in N*m that the proved bound under all disturbances of the "
+        "spec may have; for the whole spec, not for one controller",
     )
     decay_rate: DecayRate | None = Field(
         default=None,

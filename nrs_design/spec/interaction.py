@@ -101,8 +101,10 @@ class InteractionDesignSpec(SpecModel):
         "with dwell_time and transitions between controllers, or between controllers in one "
         "contact each, such as tissue/soft"
     )
+    # The default is made without validation, for which a validator of its own would be built.
     certification: CertificationSpec = Field(
-        default_factory=CertificationSpec, description="how far the search for a proof goes"
+        default_factory=CertificationSpec.model_construct,
+        description="how far the search for a proof goes",
     )
 
     @field_validator("switching", mode="before")

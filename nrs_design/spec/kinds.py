@@ -57,9 +57,6 @@ TORQUE = QuantityKind(
         "N": "that is a force: multiply it by its lever arm and write N*m",
     },
 )
-TORQUE_RATE = QuantityKind(
-    "a rate of torque", ("N*m/s",), "6 N*m/s", {"N*m": "a rate is per second: write N*m/s"}
-)
 BANDWIDTH = QuantityKind(
     "a bandwidth",
     ("rad/s", "Hz"),
@@ -125,6 +122,9 @@ SPRING = QuantityKind(
         "N/m": "that is a linear stiffness: multiply it by the square of its lever arm and write "
         "N*m/rad",
     },
+)
+TORQUE_RATE = QuantityKind(
+    "a rate of torque", ("N*m/s",), "1e-5 N*m/s", {"N*m": "a rate is per second: write N*m/s"}
 )
 NOISE_DENSITY = QuantityKind(
     "a density of noise",

@@ -5,14 +5,14 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Annotated, Any
 
-from pydantic import BeforeValidator, Field, PlainValidator, WithJsonSchema, model_validator
+from pydantic import BeforeValidator, Field, WithJsonSchema, model_validator
 from pydantic_core import PydanticCustomError
 
 from nrs_design.errors import SpecError
 from nrs_design.proof.text import quoted
 from nrs_design.spec import kinds
 from nrs_design.spec.faults import as_text, fault, reported
-from nrs_design.spec.model import SpecModel
+from nrs_design.spec.model import ReadBy, SpecModel
 from nrs_design.spec.quantity import (
     QUANTITY_PATTERN,
     Quantity,
@@ -65,10 +65,8 @@ def quantity_schema(kind: QuantityKind) -> dict[str, Any]:
     return {"type": "string", "pattern": QUANTITY_PATTERN, "examples": [kind.example]}
 
 
-def _quantity(kind: QuantityKind, *, positive: bool = True, signed: bool = False) -> PlainValidator:
-    return PlainValidator(
-        lambda value: read_quantity(value, kind, positive=positive, signed=signed)
-    )
+def _quantity(kind: QuantityKind, *, positive: bool = True, signed: bool = False) -> ReadBy:
+    return ReadBy(lambda value: read_quantity(value, kind, positive=positive, signed=signed))
 
 
 def _schema(kind: QuantityKind) -> WithJsonSchema:
@@ -86,7 +84,7 @@ def _as_is(value: object) -> Quantity:
 # Inside bounds and ranges: the field around them knows the kind and reads the text.
 AnyQuantity = Annotated[
     Quantity,
-    PlainValidator(_as_is),
+    ReadBy(_as_is),
     WithJsonSchema({"type": "string", "pattern": QUANTITY_PATTERN}),
 ]
 

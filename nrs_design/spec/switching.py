@@ -9,7 +9,7 @@ from functools import partial
 from math import lcm
 from typing import Annotated, Any
 
-from pydantic import BeforeValidator, Field, PlainValidator, WithJsonSchema, model_validator
+from pydantic import BeforeValidator, Field, WithJsonSchema, model_validator
 
 from nrs_design.errors import SpecError
 from nrs_design.proof.text import quoted
@@ -17,7 +17,7 @@ from nrs_design.spec import kinds
 from nrs_design.spec.exact import parse_exact
 from nrs_design.spec.faults import all_of, as_text, did_you_mean, fault, reported
 from nrs_design.spec.fields import Exact, Label
-from nrs_design.spec.model import SpecModel
+from nrs_design.spec.model import ReadBy, SpecModel
 from nrs_design.spec.quantity import QUANTITY_PATTERN, parse_quantity
 
 MAX_TRANSITIONS = 20_000
@@ -150,21 +150,21 @@ class SwitchingSpec(SpecModel):
     """Rules for the switching signal; without any, it is arbitrary."""
 
     dwell_time: Annotated[
-        DwellTimes | None, PlainValidator(read_dwell_times), WithJsonSchema(DWELL_SCHEMA)
+        DwellTimes | None, ReadBy(read_dwell_times), WithJsonSchema(DWELL_SCHEMA)
     ] = Field(default=None, description=_DWELL_TIME)
     longest_dwell_time: Annotated[
-        DwellTimes | None, PlainValidator(read_dwell_times), WithJsonSchema(DWELL_SCHEMA)
+        DwellTimes | None, ReadBy(read_dwell_times), WithJsonSchema(DWELL_SCHEMA)
     ] = Field(default=None, description=_LONGEST_DWELL_TIME)
     transitions: Annotated[
         tuple[Transition, ...] | None,
-        PlainValidator(_read_transitions),
+        ReadBy(_read_transitions),
         WithJsonSchema(_TRANSITIONS_SCHEMA),
     ] = Field(default=None, description=_TRANSITIONS)
 
     @property
     def is_arbitrary(self) -> bool:
         """Whether there are no rules."""
-        return self == SwitchingSpec()
+        return self == ANY_SIGNAL
 
     def dwell_times(self) -> Iterator[tuple[tuple[str, ...], DwellTime]]:
         """Yield every time in a mode that is written, and where it is: field, and mode if any."""
@@ -198,6 +198,10 @@ class SwitchingSpec(SpecModel):
         return ", ".join(rules) or ARBITRARY
 
 
+# Without rules. Made without validation, for which a validator would be built.
+ANY_SIGNAL = SwitchingSpec.model_construct()
+
+
 def _of(written: DwellTimes | None, name: str) -> DwellTime | None:
     return written.get(name) if isinstance(written, dict) else written
 
@@ -206,7 +210,7 @@ def _read_switching(value: object) -> object:
     if isinstance(value, str):
         if value != ARBITRARY:
             raise fault(f"{quoted(value)} is not known", _FORM)
-        return SwitchingSpec()
+        return ANY_SIGNAL
     if isinstance(value, dict) and not value:
         raise fault("no rule is given", _FORM)
     return value

@@ -13,13 +13,13 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import Annotated, Literal
 
-from pydantic import Field, PlainValidator, WithJsonSchema, model_validator
+from pydantic import Field, WithJsonSchema, model_validator
 
 from nrs_design.proof.bounds import lower, lower_float, upper_float
 from nrs_design.proof.text import exact_text
 from nrs_design.spec.faults import did_you_mean, fault
 from nrs_design.spec.fields import Label
-from nrs_design.spec.model import SpecModel
+from nrs_design.spec.model import ReadBy, SpecModel
 from nrs_design.spec.quantity import Quantity
 from nrs_design.spec.quantity_fields import (
     AngularAcceleration,
@@ -175,12 +175,12 @@ class ThresholdLogicSpec(SpecModel):
     switches: Annotated[
         tuple[LogicSwitchSpec, ...], Field(min_length=1, max_length=MAX_SWITCHES)
     ] = Field(description="switches from one controller to another; the first that may be made is")
-    hold: Annotated[
-        DwellTimes | None, PlainValidator(read_dwell_times), WithJsonSchema(DWELL_SCHEMA)
-    ] = Field(
-        default=None,
-        description="shortest time in s for which a controller is held whatever the signals say; "
-        "one for all, or by name. Default: what thresholds, noise and age give anyway",
+    hold: Annotated[DwellTimes | None, ReadBy(read_dwell_times), WithJsonSchema(DWELL_SCHEMA)] = (
+        Field(
+            default=None,
+            description="shortest time in s for which a controller is held whatever the signals "
+            "say; one for all, or by name. Default: what thresholds, noise and age give anyway",
+        )
     )
 
     @model_validator(mode="after")

@@ -173,8 +173,8 @@ def assemble(
     )
     texts = (
         *system.assumptions,
-        *logic_texts(spec),
         *sensed,
+        *logic_texts(spec),
         *identified_texts(spec),
         *scale_texts(scale),
     )

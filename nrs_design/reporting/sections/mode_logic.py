@@ -21,7 +21,7 @@ _CHATTER_FREE = (
     "No chatter: between two switches a signal that is known up to a noise N, as old as an age D "
     "and no faster than a rate R has to cross a band between two thresholds, which takes at least "
     "(band - 2 N)/R - D. The timer holds every controller that long (rounded down), or as long as "
-    "`hold` says, whatever the signals do.",
+    "the hold in the spec says, whatever the signals do.",
     "A switch is made when all of its conditions hold. The true signal has then gone no further "
     "than listed, if its own condition is the last one to come true.",
 )
@@ -71,8 +71,9 @@ def _switches(logic: ThresholdLogicSpec) -> Table:
             else f"{name} below {_text(c.below)}"
             for name, c in conditions
         )
-        rows.append((str(number), switch.source, switch.target, when, _reach_text(logic, switch)))
-    columns = ("Switch", "From", "To", "When", "True signal then, at worst")
+        ends = f"{number}: {switch.source} to {switch.target}"
+        rows.append((ends, when, _reach_text(logic, switch)))
+    columns = ("Switch", "When", "True signal then, at worst")
     return Table("Switches, in the order in which they are tried", columns, tuple(rows))
 
 
@@ -110,10 +111,10 @@ def _stays(logic: ThresholdLogicSpec) -> Table:
         )
     columns = (
         "Controller",
-        "Held for at least",
-        "Of which by thresholds",
-        "Signal that has to move",
-        "Timer holds a switch back, at most",
+        "Held for",
+        "By thresholds",
+        "Has to move",
+        "Switch held back, at most",
     )
     return Table("How long every controller stays active", columns, tuple(rows))
 

@@ -272,6 +272,7 @@ def test_adding_is_cheap():
         ("Admittance", "impedance", {"spec/describe.py", "design/doubts.py"}),
         ("ProportionalForce", "force", set()),
         ("PositionControl", "position", set()),
+        ("ParallelForce", "parallel", set()),
     ],
 )
 def test_a_control_law_is_known_to_the_files_of_the_table(law, file, also):

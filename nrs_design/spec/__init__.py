@@ -16,6 +16,7 @@ if TYPE_CHECKING:
         ForceControllerSpec,
         IdleStatesSpec,
         ImpedanceControllerSpec,
+        ParallelControllerSpec,
         PositionControllerSpec,
     )
     from nrs_design.spec.doubts import Doubt, doubt_spec
@@ -80,6 +81,7 @@ __all__ = [
     "LoadedSpec",
     "ModeSpec",
     "MotionLoopSpec",
+    "ParallelControllerSpec",
     "ParameterSpec",
     "PositionControllerSpec",
     "ProvenanceSpec",
@@ -104,7 +106,8 @@ _HOMES = {
     for module, names in {
         "affine": "Affine",
         "controllers": "ControllerSpec CostWeights ForceControllerSpec "
-        "IdleStatesSpec ImpedanceControllerSpec PositionControllerSpec",
+        "IdleStatesSpec ImpedanceControllerSpec ParallelControllerSpec "
+        "PositionControllerSpec",
         "doubts": "Doubt doubt_spec",
         "environment": "ElasticSpec EnvironmentSpec KelvinVoigtSpec",
         "exact": "parse_exact",

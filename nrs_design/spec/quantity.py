@@ -89,6 +89,12 @@ class Quantity:
         return self.rational_part * pi**self.pi_power
 
     @property
+    def not_above(self) -> Fraction:
+        """A fraction not above the SI value, and below it only where the unit holds a pi."""
+        pi = PI_BETWEEN[(self.pi_power > 0) != (self.value >= 0)]
+        return self.rational_part * pi**self.pi_power
+
+    @property
     def si(self) -> float:
         """SI value as a float."""
         return float(self.rational_part) * math.pi**self.pi_power

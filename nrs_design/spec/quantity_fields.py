@@ -162,17 +162,17 @@ def _bounds(kind: QuantityKind, *, positive: bool) -> BeforeValidator:
     return BeforeValidator(read)
 
 
-def _ranged(kind: QuantityKind, *, positive: bool) -> BeforeValidator:
+def _ranged(kind: QuantityKind, *, positive: bool, signed: bool = False) -> BeforeValidator:
     def read(value: object) -> object:
         if isinstance(value, str | Quantity):
-            return {"nominal": read_quantity(value, kind, positive=positive)}
+            return {"nominal": reader(value)}
         entries = read_entries(value, ("nominal",), reader)
         if isinstance(entries, dict) and "range" in entries:
             entries["range"] = read_range(entries["range"], reader)
         return entries
 
     def reader(value: object) -> Quantity:
-        return read_quantity(value, kind, positive=positive)
+        return read_quantity(value, kind, positive=positive, signed=signed)
 
     return BeforeValidator(read)
 
@@ -259,10 +259,18 @@ Zero = Annotated[Quantity, _quantity(kinds.ZERO), _schema(kinds.ZERO)]
 AngularVelocity = Annotated[
     Quantity, _quantity(kinds.ANGULAR_VELOCITY), _schema(kinds.ANGULAR_VELOCITY)
 ]
+SignedAngularVelocity = Annotated[
+    Quantity, _quantity(kinds.ANGULAR_VELOCITY, signed=True), _schema(kinds.ANGULAR_VELOCITY)
+]
 Torque = Annotated[Quantity, _quantity(kinds.TORQUE), _schema(kinds.TORQUE)]
+SignedTorque = Annotated[Quantity, _quantity(kinds.TORQUE, signed=True), _schema(kinds.TORQUE)]
+TorqueRate = Annotated[Quantity, _quantity(kinds.TORQUE_RATE), _schema(kinds.TORQUE_RATE)]
 Bandwidth = Annotated[Quantity, _quantity(kinds.BANDWIDTH), _schema(kinds.BANDWIDTH)]
 LeverArm = Annotated[Quantity, _quantity(kinds.LEVER_ARM), _schema(kinds.LEVER_ARM)]
 Impedance = Annotated[Quantity, _quantity(kinds.IMPEDANCE), _schema(kinds.IMPEDANCE)]
+IntegralForceGain = Annotated[
+    Quantity, _quantity(kinds.INTEGRAL_FORCE_GAIN), _schema(kinds.INTEGRAL_FORCE_GAIN)
+]
 ForceGain = Annotated[Quantity, _quantity(kinds.FORCE_GAIN), _schema(kinds.FORCE_GAIN)]
 Stiffness = Annotated[
     RangedQuantity, _ranged(kinds.STIFFNESS, positive=True), _ranged_schema(kinds.STIFFNESS)
@@ -274,6 +282,14 @@ PositiveDamping = Annotated[
     RangedQuantity, _ranged(kinds.DAMPING, positive=True), _ranged_schema(kinds.DAMPING)
 ]
 Mass = Annotated[Quantity, _quantity(kinds.MASS, positive=False), _schema(kinds.MASS)]
+RangedMass = Annotated[
+    RangedQuantity, _ranged(kinds.MASS, positive=True), _ranged_schema(kinds.MASS)
+]
+RangedCoordinate = Annotated[
+    RangedQuantity, _ranged(kinds.LENGTH, positive=False, signed=True), _ranged_schema(kinds.LENGTH)
+]
+NoiseDensity = Annotated[Quantity, _quantity(kinds.NOISE_DENSITY), _schema(kinds.NOISE_DENSITY)]
+Force = Annotated[Quantity, _quantity(kinds.FORCE), _schema(kinds.FORCE)]
 Length = Annotated[Quantity, _quantity(kinds.LENGTH), _schema(kinds.LENGTH)]
 Coordinate = Annotated[Quantity, _quantity(kinds.LENGTH, signed=True), _schema(kinds.LENGTH)]
 Angle = Annotated[Quantity, _quantity(kinds.ANGLE), _schema(kinds.ANGLE)]

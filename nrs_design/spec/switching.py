@@ -28,6 +28,8 @@ MAX_DENOMINATOR_BITS = 1024
 LONGEST_DWELL = 4096
 
 ARBITRARY = "arbitrary"
+# The rules are those that the mode logic of the spec keeps.
+MODE_LOGIC = "mode-logic"
 _FORM = "write 'arbitrary', or {dwell_time: ..., transitions: [[from, to], ...]}"
 _DWELL_TIME = (
     "shortest time in a mode before the next switch, in s; a number of steps in discrete time; one "
@@ -89,7 +91,8 @@ def parse_dwell_time(text: str) -> DwellTime:
     return dwell
 
 
-def _read_dwell_times(value: object) -> DwellTimes:
+def read_dwell_times(value: object) -> DwellTimes:
+    """Read one time for all modes, or times by the names of modes."""
     if isinstance(value, DwellTime):
         return value
     if not isinstance(value, Mapping):
@@ -126,7 +129,7 @@ def _read_transitions(value: object) -> tuple[Transition, ...]:
 
 
 _ONE_DWELL: dict[str, Any] = {"type": "string", "pattern": QUANTITY_PATTERN}
-_DWELL_SCHEMA: dict[str, Any] = {
+DWELL_SCHEMA: dict[str, Any] = {
     "anyOf": [
         _ONE_DWELL,
         {"type": "object", "additionalProperties": _ONE_DWELL, "minProperties": 1},
@@ -147,10 +150,10 @@ class SwitchingSpec(SpecModel):
     """Rules for the switching signal; without any, it is arbitrary."""
 
     dwell_time: Annotated[
-        DwellTimes | None, ReadBy(_read_dwell_times), WithJsonSchema(_DWELL_SCHEMA)
+        DwellTimes | None, ReadBy(read_dwell_times), WithJsonSchema(DWELL_SCHEMA)
     ] = Field(default=None, description=_DWELL_TIME)
     longest_dwell_time: Annotated[
-        DwellTimes | None, ReadBy(_read_dwell_times), WithJsonSchema(_DWELL_SCHEMA)
+        DwellTimes | None, ReadBy(read_dwell_times), WithJsonSchema(DWELL_SCHEMA)
     ] = Field(default=None, description=_LONGEST_DWELL_TIME)
     transitions: Annotated[
         tuple[Transition, ...] | None,
@@ -175,6 +178,13 @@ class SwitchingSpec(SpecModel):
     def stay(self, name: str) -> tuple[DwellTime | None, DwellTime | None]:
         """Return the shortest and the longest time in a mode."""
         return _of(self.dwell_time, name), _of(self.longest_dwell_time, name)
+
+    @property
+    def names_contacts(self) -> bool:
+        """Whether rules are about controllers in one contact each, such as ``tissue/soft``."""
+        named = (name for at, _ in self.dwell_times() for name in at[1:])
+        ends = (name for transition in self.transitions or () for name in transition)
+        return any("/" in name for name in (*named, *ends))
 
     def __str__(self) -> str:
         """Say the rules in a few words."""
@@ -206,18 +216,16 @@ def _read_switching(value: object) -> object:
     return value
 
 
-SwitchingRule = Annotated[
-    SwitchingSpec,
-    BeforeValidator(_read_switching),
-    WithJsonSchema(
+def _rule_schema(*words: str) -> WithJsonSchema:
+    return WithJsonSchema(
         {
             "anyOf": [
-                {"enum": [ARBITRARY]},
+                {"enum": list(words)},
                 {
                     "type": "object",
                     "properties": {
-                        "dwell_time": _DWELL_SCHEMA | {"description": _DWELL_TIME},
-                        "longest_dwell_time": _DWELL_SCHEMA | {"description": _LONGEST_DWELL_TIME},
+                        "dwell_time": DWELL_SCHEMA | {"description": _DWELL_TIME},
+                        "longest_dwell_time": DWELL_SCHEMA | {"description": _LONGEST_DWELL_TIME},
                         "transitions": _TRANSITIONS_SCHEMA | {"description": _TRANSITIONS},
                     },
                     "minProperties": 1,
@@ -225,7 +233,13 @@ SwitchingRule = Annotated[
                 },
             ]
         }
-    ),
+    )
+
+
+SwitchingRule = Annotated[SwitchingSpec, BeforeValidator(_read_switching), _rule_schema(ARBITRARY)]
+# Of a spec that may have a mode logic, which its own validator turns into rules first.
+LogicalRule = Annotated[
+    SwitchingSpec, BeforeValidator(_read_switching), _rule_schema(ARBITRARY, MODE_LOGIC)
 ]
 
 

@@ -11,6 +11,7 @@ from typing import Any
 
 from nrs_design.controllers.controller_design import Controller, ImpedanceOptimum
 from nrs_design.controllers.laws import CompliantLaw
+from nrs_design.controllers.sensor import Sensor, build_sensor
 from nrs_design.design.doubts import doubt_values
 from nrs_design.design.goals import Achieved
 from nrs_design.design.measures import Measure
@@ -43,6 +44,11 @@ class Task:
     def motion(self) -> TransferFunction:
         """The motion loop in floating point."""
         return to_transfer_function(self.loop)
+
+    @property
+    def sensor(self) -> Sensor:
+        """The sensor of the force that the controllers act on."""
+        return build_sensor(self.spec.sensor)
 
     @property
     def digits(self) -> int:

@@ -32,6 +32,13 @@ def test_every_kind_has_an_example():
     assert {name.split(",")[0] for name in SYSTEMS} == set(KINDS)
 
 
+@pytest.mark.parametrize("kind", ["common-quadratics", "", None, 0])
+def test_a_kind_that_does_not_exist_shows_nothing(kind):
+    system, evidence = genuine("common-quadratic")
+    with pytest.raises(ValueError, match="unknown kind of evidence"):
+        read_evidence({**stored(evidence), "kind": kind}, system)
+
+
 @pytest.mark.parametrize("example", SYSTEMS)
 def test_genuine_evidence_is_accepted_and_true(example):
     system, evidence = genuine(example)

@@ -352,6 +352,18 @@ def test_the_most_work(monkeypatch):
 
 
 @pytest.mark.parametrize(
+    ("count", "fault"),
+    [
+        (5, "the signal uses modes that do not exist"),
+        (6, "the signal is too long for so many states"),
+    ],
+)
+def test_the_most_steps_of_a_hundred_states(count, fault):
+    system = family([[int(i == j) for j in range(100)] for i in range(100)], time=STEPS)
+    assert signal(*[(9, 1)] * count).find_misfit(system) == fault
+
+
+@pytest.mark.parametrize(
     ("dwell", "time", "fault"),
     [
         ("4096", SECONDS, None),

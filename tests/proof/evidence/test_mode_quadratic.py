@@ -424,6 +424,31 @@ def test_the_most_pieces(monkeypatch):
     assert evidence.find_misfit(system) == "the stays are enclosed in too few or too many pieces"
 
 
+@pytest.mark.parametrize(("others", "is_refused"), [(64, False), (65, True)])
+def test_more_pieces_than_can_be_enclosed(others, is_refused):
+    """Of 4096 pieces, those of 64 switches are looked at."""
+    ways = tuple(("m0", f"m{k + 1}") for k in range(others))
+    rules = replace(left_within((1, 2)), transitions=ways)
+    system = family(*[[[-1]]] * (others + 1), switching=rules)
+    evidence = scalars(*[1] * (others + 1), rate=HALF, leaving=("m0",), pieces=4096)
+    fault = "the stays are enclosed in too few or too many pieces"
+    assert evidence.find_misfit(system) == (fault if is_refused else None)
+
+
+@pytest.mark.parametrize(("bits", "is_refused"), [(10**6, False), (10**6 + 1, True)])
+def test_longer_powers_than_can_be_formed(bits, is_refused):
+    system = family([[2 ** (bits - 1)]], [[1]], time=Time.DISCRETE)
+    fault = "the dwell time is too long for such large numbers" if is_refused else None
+    assert scalars(1, 1, rate=HALF).find_misfit(system) == fault
+
+
+@pytest.mark.parametrize(("count", "is_refused"), [(2**20, False), (2**20 + 1, True)])
+def test_more_ways_than_can_be_checked(count, is_refused):
+    system = family([[-1]], [[-1]], switching=Switching(transitions=(("m0", "m1"),) * count))
+    fault = "there are too many switches to check" if is_refused else None
+    assert find_odd_switch(system) == fault
+
+
 @pytest.mark.parametrize(
     ("system", "limit", "value"),
     [

@@ -640,3 +640,23 @@ def test_a_file_without_pieces_has_one():
         read_evidence(fields, system)
     with pytest.raises(ValueError, match="do not share one denominator"):
         read_evidence({**fields, "functions": []}, system)
+
+
+@pytest.mark.parametrize(
+    ("rate", "time", "decays"),
+    [
+        ("1/9", Time.CONTINUOUS, True),
+        ("0", Time.CONTINUOUS, False),
+        ("-1/9", Time.CONTINUOUS, False),
+        ("8/9", Time.DISCRETE, True),
+        ("1", Time.DISCRETE, False),
+        ("10/9", Time.DISCRETE, False),
+        ("-8/9", Time.DISCRETE, False),
+    ],
+)
+def test_the_rate_is_one_of_decay(rate, time, decays):
+    system = family([["-1/2"]], [["-1/2"]], time=time)
+    evidence = scalars(1, 1, rate=Fraction(rate))
+    assert evidence.pieces == 1
+    fault = None if decays else "the claimed rate is not one of exponential decay"
+    assert evidence.find_misfit(system) == fault

@@ -660,3 +660,18 @@ def test_the_rate_is_one_of_decay(rate, time, decays):
     assert evidence.pieces == 1
     fault = None if decays else "the claimed rate is not one of exponential decay"
     assert evidence.find_misfit(system) == fault
+
+
+def test_a_switch_at_once_is_seen_after_one_that_comes_later():
+    rules = Switching(stays=(("m0", Stay(HALF)),))
+    system = family([[-1]], [[-1]], switching=rules)
+    raising = scalars(2, 1, rate=Fraction(1, 100))
+    assert raising.find_misfit(system) == "the switch from m1 to m0 raises the function"
+    other = replace(rules, stays=(("m1", Stay(HALF)),))
+    assert raising.find_misfit(replace(system, switching=other)) is None
+
+
+def test_no_power_is_formed_in_continuous_time(monkeypatch):
+    monkeypatch.setattr(f"{MODULE}.MAX_POWER_BITS", 0)
+    system = family([[-1]], [[-1]], switching=Switching(Fraction(4)))
+    assert scalars(1, 1, rate=HALF).find_misfit(system) is None

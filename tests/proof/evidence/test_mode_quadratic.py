@@ -440,6 +440,9 @@ def test_longer_powers_than_can_be_formed(bits, is_refused):
     system = family([[2 ** (bits - 1)]], [[1]], time=Time.DISCRETE)
     fault = "the dwell time is too long for such large numbers" if is_refused else None
     assert scalars(1, 1, rate=HALF).find_misfit(system) == fault
+    # One mode that is never left has no power.
+    alone = replace(system, modes=system.modes[:1])
+    assert scalars(1, rate=HALF).find_misfit(alone) is None
 
 
 @pytest.mark.parametrize(("count", "is_refused"), [(2**20, False), (2**20 + 1, True)])
@@ -675,3 +678,12 @@ def test_no_power_is_formed_in_continuous_time(monkeypatch):
     monkeypatch.setattr(f"{MODULE}.MAX_POWER_BITS", 0)
     system = family([[-1]], [[-1]], switching=Switching(Fraction(4)))
     assert scalars(1, 1, rate=HALF).find_misfit(system) is None
+
+
+@pytest.mark.parametrize(("gain", "raises"), [("4/3", False), ("-4/3", False), ("1.34", True)])
+def test_a_reset_counts_with_its_denominator(gain, raises):
+    """``16 - (4/3)^2 9`` is zero."""
+    rules = Switching(transitions=(("m0", "m1"),), resets=resets_between(("m0", "m1", [[gain]])))
+    system = family([[-1]], [[-1]], switching=rules)
+    fault = "the switch from m0 to m1 raises the function" if raises else None
+    assert scalars(16, 9, rate=HALF).find_misfit(system) == fault

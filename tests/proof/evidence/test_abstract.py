@@ -300,7 +300,7 @@ FACTS = {
 @pytest.mark.parametrize("fact", FACTS)
 def test_facts_of_the_kinds(fact):
     pairs = [genuine(example) for example in SYSTEMS]
-    assert {item.kind for _, item in pairs} == {kind.kind for kind in KINDS}
+    assert {item.kind for _, item in pairs} == set(KINDS)
     assert {item.kind for _, item in pairs if getattr(item, fact)} == FACTS[fact]
 
 

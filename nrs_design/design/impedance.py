@@ -220,12 +220,8 @@ def characteristic_polynomial(loop: ImpedanceLoop, Mt: float, Bt: float) -> Floa
 
     Parameters
     ----------
-    loop : ImpedanceLoop
-        Motion loop and environment.
-    Mt : float
-        Virtual mass, kg m^2.
-    Bt : float
-        Virtual damping, N m s/rad.
+    loop, Mt, Bt
+        As for `open_loop`.
 
     Raises
     ------

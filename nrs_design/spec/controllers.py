@@ -13,7 +13,7 @@ from nrs_design.spec.gain_fields import DampingGain, GainSpec, InertiaGain, Spri
 from nrs_design.spec.goals import GoalsSpec
 from nrs_design.spec.model import SpecModel
 from nrs_design.spec.parameters import Switch
-from nrs_design.spec.quantity_fields import Decay, ForceGain, Impedance
+from nrs_design.spec.quantity_fields import Decay, ForceGain, Impedance, IntegralForceGain
 
 _ENVIRONMENT = "name of the environment that the gains are designed for"
 _CONTACTS = "names of all environments touched while this controller is active; default: its own"
@@ -181,6 +181,27 @@ class ForceControllerSpec(AbstractControllerSpec):
         return self
 
 
+class ParallelControllerSpec(AbstractControllerSpec):
+    """Position command and a PI of the force error in parallel (thesis 2.2.6.4)."""
+
+    commands: ClassVar[Command] = "position"
+    goals: ClassVar[GoalsSpec | None] = None
+
+    type: Literal["parallel"] = Field(
+        description="parallel: u = Xc + Kp (Fd - F) + the integral of Ki (Fd - F)"
+    )
+    environment: Label = Field(description=_ENVIRONMENT)
+    contacts: tuple[Label, ...] = Field(
+        default_factory=lambda data: (data.get("environment", ""),),
+        min_length=1,
+        description=_CONTACTS,
+    )
+    proportional_gain: ForceGain = Field(description="Kp in rad/(N*m)")
+    integral_gain: IntegralForceGain = Field(description="Ki in rad/(N*m*s)")
+
+    _contacts = field_validator("contacts")(_distinct)
+
+
 class PositionControllerSpec(AbstractControllerSpec):
     """Position mode of the hybrid scheme: the closed motion loop alone (thesis 6.3.3)."""
 
@@ -206,5 +227,6 @@ class IdleStatesSpec(SpecModel):
 
 
 ControllerSpec = Annotated[
-    ImpedanceControllerSpec | ForceControllerSpec | PositionControllerSpec, Discriminator("type")
+    ImpedanceControllerSpec | ForceControllerSpec | ParallelControllerSpec | PositionControllerSpec,
+    Discriminator("type"),
 ]

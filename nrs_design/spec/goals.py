@@ -78,8 +78,8 @@ class GoalsSpec(SpecModel):
     )
     peak_torque: Torque | None = Field(
         default=None,
-        description="what the proved bound on the torque under all disturbances of the spec must "
-        "not exceed; for the whole spec, not for one controller",
+        description="largest torque in N*m that the proved bound under all disturbances of the "
+        "spec may have; for the whole spec, not for one controller",
     )
     decay_rate: DecayRate | None = Field(
         default=None,
@@ -126,7 +126,8 @@ def check_applicable(goals: GoalsSpec | None, types: set[str], *at: str) -> None
         )
     if not types and given - OF_THE_CERTIFICATE:
         raise fault(
-            "there is no controller that a goal applies to: position control has no contact",
+            "there is no controller that a goal applies to: they are for impedance and force "
+            "control",
             "remove goals",
             *at,
         )

@@ -6,7 +6,8 @@ from collections.abc import Callable
 from functools import partial
 from typing import Annotated, Literal
 
-from pydantic import Field, model_validator
+from pydantic import Field, ValidationInfo, field_validator, model_validator
+from pydantic_core import PydanticCustomError
 
 from nrs_design.spec.certification import CertificationSpec
 from nrs_design.spec.controllers import ControllerSpec, IdleStatesSpec
@@ -15,6 +16,7 @@ from nrs_design.spec.environment import EnvironmentSpec
 from nrs_design.spec.faults import all_of, did_you_mean, fault
 from nrs_design.spec.fields import Digits, Label, Name, Title
 from nrs_design.spec.goals import GoalsSpec, check_applicable
+from nrs_design.spec.mode_logic import ModeLogicSpec, check_kept, rules_of
 from nrs_design.spec.model import SpecModel
 from nrs_design.spec.motion import ActuatorSpec, LimitsSpec, MotionLoopSpec
 from nrs_design.spec.provenance import IdentifiedSpec
@@ -26,7 +28,7 @@ from nrs_design.spec.sampling import (
     check_peak,
 )
 from nrs_design.spec.sensor import SensorSpec
-from nrs_design.spec.switching import DwellTime, SwitchingRule, check_names
+from nrs_design.spec.switching import MODE_LOGIC, DwellTime, LogicalRule, check_names
 
 MAX_ENTRIES = 64
 
@@ -89,13 +91,42 @@ class InteractionDesignSpec(SpecModel):
         description="state of the contact: deflection stays continuous when the stiffness "
         "switches; force is what the thesis uses",
     )
-    switching: SwitchingRule = Field(
-        description="when controllers change: arbitrary, or rules with dwell_time and transitions "
-        "between controllers"
+    mode_logic: ModeLogicSpec | None = Field(
+        default=None,
+        description="what decides which controller is active; `switching: mode-logic` lets the "
+        "proof be about the switching signals that it can give",
     )
+    switching: LogicalRule = Field(
+        description="when controllers change: arbitrary, mode-logic (as mode_logic says), or rules "
+        "with dwell_time and transitions between controllers, or between controllers in one "
+        "contact each, such as tissue/soft"
+    )
+    # The default is made without validation, for which a validator of its own would be built.
     certification: CertificationSpec = Field(
-        default_factory=CertificationSpec, description="how far the search for a proof goes"
+        default_factory=CertificationSpec.model_construct,
+        description="how far the search for a proof goes",
     )
+
+    @field_validator("switching", mode="before")
+    @classmethod
+    def _follow_logic(cls, value: object, info: ValidationInfo) -> object:
+        """Put the rules of the mode logic in the place of its name."""
+        if value != MODE_LOGIC or not {"controllers", "environments", "mode_logic"} <= set(
+            info.data
+        ):
+            # Where one of them is faulty, that is reported instead.
+            return "arbitrary" if value == MODE_LOGIC else value
+        if info.data["mode_logic"] is None:
+            raise fault(
+                "there is no mode_logic to take the rules of switching from",
+                "add mode_logic, or write `switching: arbitrary`",
+            )
+        given = (info.data[name] for name in ("mode_logic", "controllers", "environments"))
+        try:
+            return rules_of(*given)
+        except PydanticCustomError:
+            # It does not fit: `check_kept` says so at its place.
+            return "arbitrary"
 
     @model_validator(mode="after")
     def _check_controllers(self) -> InteractionDesignSpec:
@@ -132,9 +163,19 @@ class InteractionDesignSpec(SpecModel):
             ),
             partial(_check_memories, self.controllers, self.environments, self.coordinates),
             lambda: check_applicable(
-                self.goals, {c.type for c in self.controllers.values() if c.contacts}, "goals"
+                self.goals,
+                {c.type for c in self.controllers.values() if "goals" in type(c).model_fields},
+                "goals",
             ),
-            lambda: check_names(self.switching, self.controllers, "controller"),
+            lambda: check_names(
+                self.switching,
+                self.contact_names if self.switching.names_contacts else self.controllers,
+                "controller",
+            ),
+            partial(_check_contact_names, self),
+            partial(
+                check_kept, self.mode_logic, self.switching, self.controllers, self.environments
+            ),
             *(
                 partial(_check_dwell_time, dwell, self.find_dwell_obstacle, ("switching", *at))
                 for at, dwell in dwell_times
@@ -154,6 +195,15 @@ class InteractionDesignSpec(SpecModel):
         return parts
 
     @property
+    def contact_names(self) -> tuple[str, ...]:
+        """Every controller in every contact, such as ``tissue/soft``; without one, the former."""
+        return tuple(
+            name if contact is None else f"{name}/{contact}"
+            for name, controller in self.controllers.items()
+            for contact in controller.contacts or (None,)
+        )
+
+    @property
     def touched(self) -> frozenset[str]:
         """Names of the environments that some controller touches."""
         return frozenset(name for c in self.controllers.values() for name in c.contacts)
@@ -169,7 +219,12 @@ class InteractionDesignSpec(SpecModel):
 
     def find_dwell_obstacle(self) -> DwellObstacle | None:
         """Say why no dwell time can be claimed for this spec, or None."""
-        return find_changing_contact(self.actuator, self.controllers, self.environments)
+        return find_changing_contact(
+            self.actuator,
+            self.controllers,
+            self.environments,
+            by_contact=self.switching.names_contacts,
+        )
 
 
 def _check_mixture(
@@ -218,6 +273,20 @@ def _check_mixture(
                 "environments",
                 contact,
                 "model",
+            )
+
+
+def _check_contact_names(spec: InteractionDesignSpec) -> None:
+    """Refuse rules about single contacts where modes are not made one by one."""
+    if not spec.switching.names_contacts:
+        return
+    for at, what in (("idle_states", spec.idle_states), ("sampling", spec.sampling)):
+        if what is not None:
+            raise fault(
+                f"rules of switching about controllers in one contact each, beside {at}, are not "
+                "modelled",
+                f"name controllers alone in the rules, or leave {at} out",
+                "switching",
             )
 
 

@@ -106,6 +106,12 @@ FORCE_GAIN = QuantityKind(
         "1/(N*m)": "the gain gives an angle: write '{value} rad/(N*m)'",
     },
 )
+INTEGRAL_FORCE_GAIN = QuantityKind(
+    "an integral force gain",
+    ("rad/(N*m*s)",),
+    "0.5 rad/(N*m*s)",
+    {"rad/(N*m)": "that is a proportional gain: write '{value} rad/(N*m*s)'"},
+)
 
 SPRING = QuantityKind(
     "a rotational stiffness",

@@ -5,11 +5,11 @@ from __future__ import annotations
 from fractions import Fraction
 from typing import Annotated
 
-from pydantic import Field, PlainValidator, WithJsonSchema, model_validator
+from pydantic import Field, WithJsonSchema, model_validator
 
 from nrs_design.spec.faults import fault
 from nrs_design.spec.fields import read_exact
-from nrs_design.spec.model import SpecModel
+from nrs_design.spec.model import ReadBy, SpecModel
 from nrs_design.spec.provenance import IdentifiedSpec
 from nrs_design.spec.quantity import Quantity
 from nrs_design.spec.quantity_fields import (
@@ -40,7 +40,7 @@ def _read_order(value: object) -> int:
 
 Order = Annotated[
     int,
-    PlainValidator(_read_order),
+    ReadBy(_read_order),
     WithJsonSchema({"type": "integer", "minimum": 1, "maximum": HIGHEST_ORDER}),
 ]
 

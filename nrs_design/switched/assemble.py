@@ -17,6 +17,7 @@ from nrs_design.switched.assumptions import (
     scale_texts,
 )
 from nrs_design.switched.constraints import assemble_switching
+from nrs_design.switched.logic_assumptions import logic_texts
 from nrs_design.switched.parameters import corner_modes, fixed_parameter, read_parameters
 
 if TYPE_CHECKING:
@@ -170,7 +171,13 @@ def assemble(
     sensed = sensor_texts(
         design.sensor, period, disturbed=bool(system.channels) and period is not None
     )
-    texts = (*system.assumptions, *sensed, *identified_texts(spec), *scale_texts(scale))
+    texts = (
+        *system.assumptions,
+        *sensed,
+        *logic_texts(spec),
+        *identified_texts(spec),
+        *scale_texts(scale),
+    )
     return replace(system, assumptions=texts)
 
 

@@ -5,7 +5,7 @@ While another environment is touched, the memory of an environment decays as it 
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import partial
@@ -106,6 +106,8 @@ def close_loop(
         )
         for controller in design.controllers
     }
+    if rules.names_contacts:
+        parts = _by_contact(chain.from_iterable(parts.values()))
     groups = {key: tuple(Corner(mode.name) for mode in part) for key, part in parts.items()}
     reset = idle is not None and idle.reset
     resets = resets_of(design, state.motion.order, state.idle_count) if reset else ()
@@ -132,6 +134,15 @@ def close_loop(
         assemble_switching(rules, groups, resets),
         losable,
     )
+
+
+def _by_contact(modes: Iterable[Mode]) -> dict[str, tuple[Mode, ...]]:
+    """Return the modes by controller and contact, such as ``tissue/soft``, with all corners."""
+    found: dict[str, tuple[Mode, ...]] = {}
+    for mode in modes:
+        name = "/".join(mode.name.split("/")[:2])
+        found[name] = (*found.get(name, ()), mode)
+    return found
 
 
 def _shared_state(
@@ -223,7 +234,8 @@ def _shared_law(design: ControllerDesign, *, mixed: bool) -> CompliantLaw:
         raise AssemblyError(
             f"the controllers keep different states of their own ({found}), so their modes share "
             "no state",
-            remedy="give all impedance controllers a virtual inertia Mt > 0, or none of them",
+            remedy="give all impedance controllers a virtual inertia Mt > 0, or none of them; mix "
+            "no parallel controllers with others",
             at=("controllers",),
         )
     return leading[0]

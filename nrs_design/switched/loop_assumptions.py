@@ -196,6 +196,8 @@ def _switch_texts(rules: SwitchingSpec, *, reset: bool) -> tuple[str, ...]:
         "While a controller is active, the environment that it touches may change among its "
         "contacts at any time."
     )
+    if rules.names_contacts:
+        return (f"{states} {CONTINUOUS}.", *rule_texts(rules, "mode"))
     contacts = () if rules.dwell_time is not None else (environment,)
     return (f"{states} {CONTINUOUS}.", *rule_texts(rules, "controller"), *contacts)
 

@@ -104,12 +104,8 @@ def analyze(
 
     Parameters
     ----------
-    task : Task
-        What the gains were chosen for.
-    given : ImpedanceControllerSpec
-        What the spec says of the controller.
-    controller : Controller
-        With the gains that ship.
+    task, given, controller
+        As for `LawDesign`.
 
     Raises
     ------

@@ -89,8 +89,9 @@ class LawDesign:
     choose : callable
         Gives the law for a task and the spec of a controller.
     analyze : callable or None
-        gives the analysis for a task, the spec of a controller and the controller; None where
-        nothing is measured.
+        Gives the analysis for what the gains were chosen for (`task`), what the spec says of the
+        controller (`given`), and the controller with the gains that ship; None where nothing is
+        measured.
     """
 
     choose: Callable[[Task, Any], Choice]

@@ -15,6 +15,7 @@ from nrs_design.reporting.figures.impedance import draw_displayed_impedance, dra
 from nrs_design.reporting.formatting import number, polynomial, root, roots
 from nrs_design.reporting.sections.creep import creep_section
 from nrs_design.reporting.sections.goals import goals_section
+from nrs_design.reporting.sections.parallel import parallel_section
 from nrs_design.spec import InteractionDesignSpec
 
 if TYPE_CHECKING:
@@ -85,7 +86,9 @@ def design_sections(designed: Designed, analysis: DesignAnalysis | None) -> tupl
         parts.append(sensor)
     if analysis.force:
         parts.append(_force_section(analysis))
-    if analysis.measured:
+    if analysis.parallel:
+        parts.append(parallel_section(analysis))
+    if any(item.achieved for item in analysis.measured):
         parts.append(goals_section(spec, analysis))
     return tuple(parts)
 

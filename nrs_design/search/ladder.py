@@ -22,6 +22,7 @@ from nrs_design.search.common_quadratic import (
     search_preconditioned,
     search_raw,
 )
+from nrs_design.search.conewise_mode_quadratic import search_conewise_modes
 from nrs_design.search.conewise_polynomial import conewise_cost, search_conewise_polynomial
 from nrs_design.search.conewise_quadratic import search_conewise
 from nrs_design.search.family import Family
@@ -99,10 +100,10 @@ class Facts:
 
     @property
     def may_bounce(self) -> bool:
-        """Whether one function could be for lost contact with springs, in continuous time."""
+        """Whether functions could be for lost contact with springs."""
         contact = self.system.contact
         springs = contact is not None and not contact.pulls
-        return self.may_share_an_ellipsoid and self.is_continuous and springs
+        return self.may_share_an_ellipsoid and springs
 
     @property
     def has_rules(self) -> bool:
@@ -248,9 +249,15 @@ LADDER: tuple[Rung, ...] = (
         search_obstruction,
     ),
     Rung(
+        "conewise mode quadratic",
+        Method.CONEWISE_MODE_QUADRATIC,
+        lambda f: f.may_bounce and not f.is_continuous,
+        search_conewise_modes,
+    ),
+    Rung(
         "conewise polynomial",
         Method.CONEWISE_POLYNOMIAL,
-        lambda f: f.may_bounce,
+        lambda f: f.may_bounce and f.is_continuous,
         search_conewise_polynomial,
         cost=conewise_cost,
         first=QUICK,

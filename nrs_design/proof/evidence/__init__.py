@@ -9,6 +9,7 @@ from nrs_design.proof.evidence.abstract import AbstractEvidence, Shows
 from nrs_design.proof.evidence.block_triangular import BlockTriangular
 from nrs_design.proof.evidence.common_polynomial import CommonPolynomial
 from nrs_design.proof.evidence.common_quadratic import CommonQuadratic
+from nrs_design.proof.evidence.conewise_mode_quadratic import ConewiseModeQuadratic
 from nrs_design.proof.evidence.conewise_polynomial import ConewisePolynomial
 from nrs_design.proof.evidence.conewise_quadratic import ConewiseQuadratic
 from nrs_design.proof.evidence.invariant_ellipsoid import InvariantEllipsoid
@@ -27,6 +28,7 @@ KINDS: tuple[type[AbstractEvidence], ...] = (
     CommonPolynomial,
     ConewiseQuadratic,
     ConewisePolynomial,
+    ConewiseModeQuadratic,
     InvariantEllipsoid,
     ModeQuadratic,
     ModePolynomial,
@@ -60,6 +62,7 @@ __all__ = [
     "BlockTriangular",
     "CommonPolynomial",
     "CommonQuadratic",
+    "ConewiseModeQuadratic",
     "ConewisePolynomial",
     "ConewiseQuadratic",
     "InvariantEllipsoid",

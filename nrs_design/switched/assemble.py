@@ -135,6 +135,7 @@ def assemble(
     from nrs_design.switched.close_loop import close_loop
     from nrs_design.switched.commanded import with_command
     from nrs_design.switched.gain_box import gain_boxes
+    from nrs_design.switched.joint import Joint
 
     _check_scale(scale)
     if spec.sampling is not None:
@@ -160,7 +161,8 @@ def assemble(
                     "bounds on what disturbs do not apply to force coordinates",
                     remedy="use coordinates: deflection",
                 )
-            system = with_command(system, spec, spec.disturbances, loop, touched)
+            joint = Joint.of(plant, design.motion)
+            system = with_command(system, spec, spec.disturbances, loop, joint, touched)
     else:
         raise AssemblyError(f"unknown coordinates {coordinates!r}: deflection or force")
     texts = (*system.assumptions, *identified_texts(spec), *scale_texts(scale))

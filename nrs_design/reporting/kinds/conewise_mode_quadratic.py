@@ -92,7 +92,7 @@ class ConewiseModeQuadraticPage(AbstractKindPage[ConewiseModeQuadratic]):
             norm,
             sampled_direction(hardest, norm, fine_step(hardest)),
             float(self.evidence.rate),
-            "by the largest function",
+            "(largest norm)",
         )
 
     def _matrices(self) -> tuple[list[Array], list[Array]]:

@@ -5,6 +5,7 @@ import pytest
 
 from nrs_design.certificates.certificate import Verdict
 from nrs_design.proof.evidence import ConewiseModeQuadratic
+from nrs_design.reporting.kinds.conewise_mode_quadratic import largest_norm
 from nrs_design.search import conewise_mode_quadratic
 from nrs_design.search.allowance import Allowance, NotAffordableError
 from nrs_design.search.certify import Limits, certify
@@ -82,3 +83,31 @@ def test_a_program_that_does_not_fit_is_not_built(monkeypatch):
     monkeypatch.setattr(conewise_mode_quadratic, "symmetric_basis", lambda n: pytest.fail("built"))
     with pytest.raises(NotAffordableError, match=r"blocks.*--budget"):
         program.solve(1.0, Allowance(1e-4))
+
+
+def test_runs_through_contact_and_flight_never_leave_the_bound():
+    """1,000 runs of 300 samples; the stiffness is anywhere in its range at every sample."""
+    system = thesis_robot(("20", "42.5"), BOTH, "0.01", sampling="{period: 2 ms, delay: 2}")
+    evidence = found(search_conewise_modes, system, optimize_rate=False)
+    norm = largest_norm(*(_floats(part) for part in (evidence.touching, evidence.flying)))
+    maps = {mode.name: np.array(mode.A.floats()) for mode in system.modes}
+    free = [np.array(mode.A.floats()) for mode in system.contact.free if "E-min" in mode.name]
+    ends = [[maps[f"{c}/soft/k-{end}/E-min"] for end in ("min", "max")] for c in ("c0", "c1")]
+    rng = np.random.default_rng(0)
+    x = rng.standard_normal((1000, system.order)) / norm(np.eye(system.order))
+    bounced = np.zeros(len(x), dtype=int)
+    for _ in range(300):
+        chosen, share = rng.integers(2, size=len(x)), rng.uniform(size=(len(x), 1, 1))
+        low, high = (np.array([pair[k] for pair in ends])[chosen] for k in (0, 1))
+        touching = x[:, -1:, None] > 0
+        A = np.where(touching, (1 - share) * low + share * high, np.array(free)[chosen])
+        after = (A @ x[:, :, None])[:, :, 0]
+        assert (norm(after) < float(evidence.rate) * norm(x)).all()
+        bounced += (after[:, -1] > 0) != touching[:, 0, 0]
+        # Moved along the ray, as a run goes on for ever.
+        x = after / norm(after)[:, None]
+    assert np.median(bounced) >= 1
+
+
+def _floats(functions):
+    return [np.array(Q, dtype=float) for _, Q in functions]

@@ -14,6 +14,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from functools import partial
 from itertools import chain
+from math import ceil, floor
 
 from nrs_design.controllers.controller_design import Controller, ControllerDesign
 from nrs_design.controllers.sampled import (
@@ -48,6 +49,8 @@ from nrs_design.switched.parameters import Corner
 from nrs_design.switched.sampled_assumptions import assume_sampled
 
 ONE = Fraction(1)
+# Binary digits of how large roundings are, and of the enclosures of exponentials.
+SIZE_BITS, EXPONENTIAL_BITS = 8, 56
 KP, KD, FORCE, STEP = "Kp e", "D (e - e before)", "b F", "T (v - vm)"
 # What acts on a frame from outside, in this order.
 INPUTS = (
@@ -133,23 +136,24 @@ class Frame:
         moved = combine((s, omega), (Km * (self.period - s), drive))
         ages = [combine((k, delta), (b, omega), (ONE, sensor)), *samples]
         pushed, kept = combine((admittance.b, ages[delay])), []
-        velocity = exact = combine((ONE, pushed), (ONE, rounded[FORCE]))
+        velocity = combine((ONE, pushed), (ONE, rounded[FORCE]))
         if admittance.a is None:
             exact = pushed
         else:
-            velocity, inner = unit[3], combine((admittance.a, unit[3]))
-            kept = [combine((ONE, inner), (ONE, exact), (ONE, rounded["a vm"]))]
-            exact = velocity
-        moving = combine((T, command), (-T, exact))
+            inner = combine((admittance.a, unit[3]))
+            kept = [combine((ONE, inner), (ONE, velocity), (ONE, rounded["a vm"]))]
+            velocity = exact = unit[3]
         first = combine((ONE, error), (T, command), (-T, velocity), (ONE, rounded[STEP]))
         # Of a sum of two sizes, the part that is of second order counts with another term.
+        second = shares[KP] * Kp * (1 + shares["e"]) + shares[KD] * D * shares["e"]
+        static = ONE if kept else 1 + shares[STEP]
         sizes = {
-            "e": combine((shares["e"], read)),
-            KP: combine((shares[KP] * Kp * (1 + shares["e"]) + shares[KD] * D * shares["e"], read)),
-            KD: combine((shares[KD] * D, read), (-shares[KD] * D, before)),
-            "a vm": combine((shares.get("a vm", ONE) * (admittance.a or 0), unit[3])),
-            FORCE: combine((shares[FORCE] * (1 if kept else 1 + shares[STEP]), pushed)),
-            STEP: combine((shares[STEP], moving)),
+            "e": (shares["e"], read),
+            KP: (second, read),
+            KD: (shares[KD] * D, combine((ONE, read), (-ONE, before))),
+            "a vm": (shares.get("a vm", ONE) * (admittance.a or 0), unit[3]),
+            FORCE: (shares[FORCE] * static * admittance.b, ages[delay]),
+            STEP: (shares[STEP] * T, combine((ONE, command), (-ONE, exact))),
         }
         return [
             combine((ONE, first), (ONE, reference), (-ONE, moved)),
@@ -158,8 +162,14 @@ class Frame:
             *kept,
             *ages[: self.longest_delay],
             combine((ONE, delta), (ONE, moved)),
-            *(sizes[name] for name in shares),
+            *(combine((_short(factor), form)) for factor, form in (sizes[name] for name in shares)),
         ]
+
+
+def _short(size: Fraction) -> Fraction:
+    """Round a size up to a few binary digits, so that the numbers of a certificate stay short."""
+    unit = Fraction(2) ** (size.numerator.bit_length() - size.denominator.bit_length() - SIZE_BITS)
+    return ceil(size / unit) * unit
 
 
 @dataclass(frozen=True, slots=True)
@@ -326,12 +336,19 @@ def motor_box(ranges: ActuatorRanges, period: Fraction) -> Box:
         In s.
     """
     tau = ranges.time_constant
-    below, above = exponential_between(-period / tau.low), exponential_between(-period / tau.high)
+    below, above = _between(-period / tau.low), _between(-period / tau.high)
     box = Box({"Km": ranges.gain, "E": Interval(below[0], below[0], above[1])})
     if tau.low == tau.high:
         return box
     lowest, highest = tau.low * (1 - below[1]), tau.high * (1 - above[0])
     return box.beside(Box({"s": Interval(lowest, lowest, highest)}))
+
+
+def _between(exponent: Fraction) -> tuple[Fraction, Fraction]:
+    """Enclose an exponential between short numbers."""
+    low, high = exponential_between(exponent)
+    unit = Fraction(1, 2**EXPONENTIAL_BITS)
+    return floor(low / unit) * unit, ceil(high / unit) * unit
 
 
 def _motions(

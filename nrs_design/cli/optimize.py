@@ -69,7 +69,9 @@ def motion_summary(analysis: DesignAnalysis) -> dict[str, Any]:
 
 
 def _summary(item: ImpedanceAnalysis) -> dict[str, Any]:
-    margins = item.margins
+    from nrs_design.proof.bounds import lower_float, upper_float
+
+    margins, band = item.margins, item.band
     return {
         "name": item.name,
         "desired_impedance": item.problem.desired,
@@ -85,6 +87,8 @@ def _summary(item: ImpedanceAnalysis) -> dict[str, Any]:
         "delay_margin_s": finite(margins.delay_margin),
         "disk_margin": finite(margins.disk_margin),
         "stiffness_limit": finite(margins.stiffness_limit),
+        "passive_up_to_rad_s": None if band.passive is None else lower_float(band.passive),
+        "not_passive_at_rad_s": None if band.broken is None else upper_float(band.broken),
         "goals": goals_summary(item),
         "units": {
             "Mt": "kg*m^2",

@@ -30,6 +30,7 @@ from nrs_design.design.laws.law import (
 )
 from nrs_design.design.margins import LoopMargins, loop_margins, stiffness_limit
 from nrs_design.design.measures import IMPEDANCE_MEASURES
+from nrs_design.design.passivity import PassiveBand, passive_band
 from nrs_design.errors import DesignError
 from nrs_design.spec import Doubt, GainSpec, ImpedanceControllerSpec, InteractionDesignSpec
 
@@ -59,6 +60,8 @@ class ImpedanceAnalysis(AbstractControllerAnalysis):
     lowest_limit : float
         Smallest stiffness limit in N m/rad, of the shipped gains and of the corners of their
         declared ranges.
+    band : PassiveBand
+        Where the displayed admittance is passive, exactly.
     """
 
     given: ImpedanceControllerSpec
@@ -70,6 +73,7 @@ class ImpedanceAnalysis(AbstractControllerAnalysis):
     margins: LoopMargins
     highest_stiffness: float
     lowest_limit: float
+    band: PassiveBand
 
     def doubts(self) -> Iterator[Doubt]:
         """Yield what is doubtful about the gains, and which of them the bounds have chosen."""
@@ -133,6 +137,7 @@ def analyze(
         margins=margins,
         highest_stiffness=float(task.plant.environment(given.environment).stiffness.high),
         lowest_limit=min(margins.stiffness_limit, *limits),
+        band=passive_band(task.loop, shipped["Mt"], shipped["Bt"]),
     )
 
 

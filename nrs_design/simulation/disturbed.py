@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from nrs_design.proof.evidence.abstract import Bound
 from nrs_design.proof.system import Channel, Output, SwitchedSystem, Time
+from nrs_design.simulation.contact import deflected
 from nrs_design.simulation.norms import Array
 from nrs_design.simulation.switched import TimeResponse, fine_step, times
 
@@ -88,10 +89,7 @@ class DisturbedMotions:
 
     def outputs(self, states: Array) -> Array:
         """Return the output at states, shape (..., n), for every row; shape (..., r)."""
-        w = states
-        if len(self.flying):
-            w = states.copy()
-            w[..., -1] = np.maximum(w[..., -1], 0.0)
+        w = deflected(states) if len(self.flying) else states
         return np.asarray(w @ self.rows.T)
 
 

@@ -486,7 +486,7 @@ def _command_margin(result: Result) -> CommandMargin | None:
 
     system = result.certification.system
     found = bound_on(system, result.certification.statements, "force") if system.channels else None
-    return None if found is None else command_margin(system, found, worst_output(system, found))
+    return None if found is None else command_margin(found, worst_output(system, found))
 
 
 def run_shortest_dwell(

@@ -6,7 +6,8 @@ from collections.abc import Iterable
 from typing import Any
 
 from nrs_design.proof.bounds import lower_float, upper_float
-from nrs_design.proof.evidence import AbstractEvidence, InvariantEllipsoid
+from nrs_design.proof.evidence import AbstractEvidence
+from nrs_design.proof.evidence.abstract import Bound
 from nrs_design.proof.system import SwitchedSystem
 
 
@@ -22,28 +23,27 @@ def bounds_summary(
     statements : iterable of AbstractEvidence
         Checked; those that are no bounds are passed over.
     """
-    outputs = {output.name: output for output in system.outputs}
     return [
         {
-            "output": item.output,
-            "unit": outputs[item.output].unit,
+            "output": bound.output.name,
+            "unit": bound.output.unit,
             # Not below what is proved, and disturbances not above.
-            "level": upper_float(item.level),
-            "limit": None if (limit := outputs[item.output].limit) is None else float(limit),
+            "level": upper_float(bound.level),
+            "limit": None if bound.output.limit is None else float(bound.output.limit),
             "under": [
                 {"name": c.name, "unit": c.unit, "bound": lower_float(c.bound)}
-                for c in item.acting(system)
+                for c in bound.channels
             ],
             "rounding_included": item.covers_rounding,
         }
         for item in statements
-        if isinstance(item, InvariantEllipsoid)
+        if (bound := item.bound(system)) is not None
     ]
 
 
 def bound_on(
     system: SwitchedSystem, statements: Iterable[AbstractEvidence], output: str
-) -> InvariantEllipsoid | None:
+) -> Bound | None:
     """Return the bound on an output under all disturbances of a system at once, if it is stated.
 
     Parameters
@@ -55,14 +55,7 @@ def bound_on(
     output : str
         Its name.
     """
-    every = {channel.name for channel in system.channels}
-    return next(
-        (
-            item
-            for item in statements
-            if isinstance(item, InvariantEllipsoid)
-            and item.output == output
-            and set(item.channels) == every
-        ),
-        None,
-    )
+    bounds = (item.bound(system) for item in statements)
+    every = set(system.channels)
+    found = (b for b in bounds if b is not None and b.output.name == output)
+    return next((b for b in found if set(b.channels) == every), None)

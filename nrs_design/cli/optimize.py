@@ -71,7 +71,10 @@ def motion_summary(analysis: DesignAnalysis) -> dict[str, Any]:
 
 
 def _summary(item: ImpedanceAnalysis) -> dict[str, Any]:
-    margins = item.margins
+    from nrs_design.proof.bounds import lower_float, upper_float
+
+    margins, band = item.margins, item.band
+    passive, broken = (None, None) if band is None else (band.passive, band.broken)
     return {
         "name": item.name,
         "desired_impedance": item.problem.desired,
@@ -88,6 +91,8 @@ def _summary(item: ImpedanceAnalysis) -> dict[str, Any]:
         "delay_margin_s": finite(margins.delay_margin),
         "disk_margin": finite(margins.disk_margin),
         "stiffness_limit": finite(margins.stiffness_limit),
+        "passive_up_to_rad_s": passive and lower_float(passive),
+        "not_passive_at_rad_s": broken and upper_float(broken),
         "creep": _creep(item),
         "goals": goals_summary(item),
         "units": {

@@ -2,8 +2,12 @@
 
 from __future__ import annotations
 
+import math
+from fractions import Fraction
+
 from nrs_design.design.impedance import ImpedanceLoop
 from nrs_design.design.margins import stiffness_limit
+from nrs_design.design.passivity import passive_band
 from nrs_design.design.root_locus import motion_loop_response
 from nrs_design.models.contact import Elastic
 from nrs_design.reproduction import thesis
@@ -16,11 +20,13 @@ PRINTED = "Mt 1, 2, 3, 1, 2, 3; Bt 4, 4, 4, 8, 8, 8"
 LOOP = ImpedanceLoop(thesis.EXACT_LOOP, Elastic(float(thesis.SOFT)))
 
 
-def rows() -> tuple[Comparison, Comparison]:
-    """Compute the poles of G Y and the stiffness of a hand that destabilizes the robot."""
+def rows() -> tuple[Comparison, Comparison, Comparison]:
+    """Compute the poles of G Y, the hand that destabilizes the robot, and where it is passive."""
     poles = tuple(-Bt / Mt for Mt, Bt in ADMITTANCES)
     motion = motion_loop_response(thesis.EXACT_LOOP).poles
     limits = tuple(stiffness_limit(LOOP, Mt, Bt) for Mt, Bt in ADMITTANCES)
+    bands = [passive_band(thesis.CLOSED_LOOP, Fraction(Mt), Fraction(Bt)) for Mt, Bt in ADMITTANCES]
+    passive = tuple(float(band.passive or 0) / (2 * math.pi) for band in bands)
     return (
         derived(
             "pole of the admittance, each experiment",
@@ -44,5 +50,17 @@ def rows() -> tuple[Comparison, Comparison]:
             tolerance=Tolerance(1e-3),
             note="A hand that holds on is an environment. The thesis's own figures for surgeons' "
             "hands are 25.0 to 90.4 N m/rad.",
+        ),
+        derived(
+            "frequency up to which the displayed admittance is passive, each experiment",
+            "table 7.1",
+            passive,
+            "Hz",
+            printed=PRINTED,
+            right=("2.2625", "1.6435", "1.3553", "3.0617", "2.2625", "1.8799"),
+            tolerance=Tolerance(1e-3),
+            holds=all(band.broken is not None for band in bands),
+            note="Decided exactly by Sturm's theorem. A little above, it is not passive: G Y has "
+            "relative degree two, so with an inertia it never is at all frequencies.",
         ),
     )

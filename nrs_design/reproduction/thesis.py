@@ -32,9 +32,9 @@ STIFF = Fraction("1070.5") * Fraction("0.24") ** 2
 
 # Thesis 6.1 as printed, and with all digits of the loop that 4.29 and 4.30 give.
 PRINTED_LOOP = TransferFunction((0.99, 56.82), (0.0351, 1.99, 56.82))
-_CLOSED = close_motion_loop(ACTUATOR, Kp=DERIVATIVE_GAIN * ZERO, Kd=DERIVATIVE_GAIN)
+CLOSED_LOOP = close_motion_loop(ACTUATOR, Kp=DERIVATIVE_GAIN * ZERO, Kd=DERIVATIVE_GAIN)
 EXACT_LOOP = TransferFunction(
-    tuple(map(float, _CLOSED.numerator)), tuple(map(float, _CLOSED.denominator))
+    tuple(map(float, CLOSED_LOOP.numerator)), tuple(map(float, CLOSED_LOOP.denominator))
 )
 
 # Thesis 6.13 and 6.14: the realization with the digits of the print.

@@ -10,8 +10,7 @@ from typing import TYPE_CHECKING
 from nrs_design.certificates.certificate import Verdict
 
 if TYPE_CHECKING:
-    from nrs_design.proof.evidence import InvariantEllipsoid
-    from nrs_design.proof.system import SwitchedSystem
+    from nrs_design.proof.evidence.abstract import Bound
 
 # A period is multiplied or divided by two so often, and then bisected.
 DOUBLINGS, STEPS = 4, 4
@@ -159,25 +158,20 @@ def _bisect(
     return best
 
 
-def command_margin(
-    system: SwitchedSystem, found: InvariantEllipsoid, reached: float
-) -> CommandMargin | None:
+def command_margin(found: Bound, reached: float) -> CommandMargin | None:
     """Return what the disturbances may be for the limit of an output, by proportion.
 
     Parameters
     ----------
-    system : SwitchedSystem
-        What the bound is about.
-    found : InvariantEllipsoid
+    found : Bound
         Checked: under all disturbances at once.
     reached : float
         The output that a simulated run reaches under them.
     """
-    output = next(item for item in system.outputs if item.name == found.output)
-    if output.limit is None or not reached > 0:
+    limit = found.output.limit
+    if limit is None or not reached > 0:
         return None
-    kept, broken = output.limit / found.level, output.limit / Fraction(reached)
+    kept, broken = limit / found.level, limit / Fraction(reached)
     return CommandMargin(
-        output.limit,
-        {c.name: (kept * c.bound, broken * c.bound, c.unit) for c in found.acting(system)},
+        limit, {c.name: (kept * c.bound, broken * c.bound, c.unit) for c in found.channels}
     )

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from nrs_design.proof.evidence import InvariantEllipsoid
+from nrs_design.proof.evidence.abstract import Bound
 from nrs_design.proof.system import Channel, Output, SwitchedSystem, Time
 from nrs_design.simulation.contact import deflected
 from nrs_design.simulation.norms import Array
@@ -93,35 +93,32 @@ class DisturbedMotions:
         return np.asarray(w @ self.rows.T)
 
 
-def worst_run(
-    system: SwitchedSystem, evidence: InvariantEllipsoid
-) -> tuple[TimeResponse, DisturbedMotions]:
+def worst_run(system: SwitchedSystem, bound: Bound) -> tuple[TimeResponse, DisturbedMotions]:
     """Simulate an adversary against a bound, for about as long as its set takes to fill.
 
     Parameters
     ----------
     system : SwitchedSystem
         That the bound is about.
-    evidence : InvariantEllipsoid
+    bound : Bound
         Whose disturbances act, and whose output is to become large.
     """
-    share, step = float(sum(evidence.shares)), fine_step(system)
+    share, step = float(bound.share), fine_step(system)
     rate = -np.log1p(-share) if system.time is Time.DISCRETE else share
     steps = int(np.clip(_FILLED / (rate * step), _FEWEST, _MOST))
-    output = next(item for item in system.outputs if item.name == evidence.output)
-    motions = DisturbedMotions.of(system, evidence.acting(system), output, step)
+    motions = DisturbedMotions.of(system, bound.channels, bound.output, step)
     return worst_disturbed(motions, step, steps), motions
 
 
-def worst_output(system: SwitchedSystem, evidence: InvariantEllipsoid) -> float:
+def worst_output(system: SwitchedSystem, bound: Bound) -> float:
     """Return how large the output of a bound becomes in `worst_run`.
 
     Parameters
     ----------
-    system, evidence
+    system, bound
         As for `worst_run`.
     """
-    response, motions = worst_run(system, evidence)
+    response, motions = worst_run(system, bound)
     return float(np.abs(motions.outputs(response.state)).max())
 
 

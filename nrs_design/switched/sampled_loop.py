@@ -14,6 +14,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from functools import partial
 from itertools import chain
+from math import ceil, floor
 
 from nrs_design.controllers.controller_design import Controller, ControllerDesign
 from nrs_design.controllers.sampled import (
@@ -50,6 +51,8 @@ from nrs_design.switched.parameters import Corner
 from nrs_design.switched.sampled_assumptions import Loss, assume_sampled
 
 ONE = Fraction(1)
+# Binary digits of how large roundings are, and of the enclosures of exponentials.
+SIZE_BITS, EXPONENTIAL_BITS = 8, 56
 KP, KD, FORCE, STEP = "Kp e", "D (e - e before)", "b F", "T (v - vm)"
 # What acts on a frame from outside, in this order.
 INPUTS = (
@@ -95,7 +98,7 @@ class Frame:
     @property
     def roundings(self) -> dict[str, Fraction]:
         """What the arithmetic changes of every term of the law at most, over its size."""
-        return {name: rounding_share(count) for name, count in self.counts.items()}
+        return {name: _short(rounding_share(count)) for name, count in self.counts.items()}
 
     @property
     def counts(self) -> dict[str, int]:
@@ -183,18 +186,18 @@ class Frame:
             velocity, inner = unit[3], combine((admittance.a, unit[3]))
             kept = [combine((ONE, inner), (ONE, exact), (ONE, rounded["a vm"]))]
             exact = velocity
-        moving = combine((T, command), (-T, exact))
         first = combine((ONE, error), (T, command), (-T, velocity), (ONE, rounded[STEP]))
         # Of a sum of two sizes, the part that is of second order counts with another term.
+        second = shares[KP] * Kp * (1 + shares["e"]) + shares[KD] * D * shares["e"]
         beyond = ONE if kept else 1 + shares[STEP]
         sizes = {
             "e": combine((shares["e"], read)),
-            KP: combine((shares[KP] * Kp * (1 + shares["e"]) + shares[KD] * D * shares["e"], read)),
-            KD: combine((shares[KD] * D, read), (-shares[KD] * D, before)),
-            "a vm": combine((shares.get("a vm", ONE) * (admittance.a or 0), unit[3])),
+            KP: combine((_short(second), read)),
+            KD: combine((_short(shares[KD] * D), combine((ONE, read), (-ONE, before)))),
+            "a vm": combine((_short(shares.get("a vm", ONE) * (admittance.a or 1)), unit[3])),
             **{t.name: combine((shares[t.name], t.form)) for t in chain(*stages)},
             **{t.name: combine((shares[t.name] * beyond, t.form)) for t in pushes},
-            STEP: combine((shares[STEP], moving)),
+            STEP: combine((_short(shares[STEP] * T), combine((ONE, command), (-ONE, exact)))),
         }
         return [
             combine((ONE, first), (ONE, reference), (-ONE, moved)),
@@ -206,6 +209,13 @@ class Frame:
             combine((ONE, delta), (ONE, moved)),
             *(sizes[name] for name in shares),
         ]
+
+
+def _short(size: Fraction) -> Fraction:
+    """Round a size up to a few binary digits, so that the numbers of a certificate stay short."""
+    bits = size.numerator.bit_length() - size.denominator.bit_length()
+    unit = Fraction(2) ** (bits - SIZE_BITS)
+    return ceil(size / unit) * unit
 
 
 def _sum_of(terms: Iterable[Term], rounded: Mapping[str, LinearForm]) -> LinearForm:
@@ -387,12 +397,19 @@ def motor_box(ranges: ActuatorRanges, period: Fraction) -> Box:
         In s.
     """
     tau = ranges.time_constant
-    below, above = exponential_between(-period / tau.low), exponential_between(-period / tau.high)
+    below, above = _between(-period / tau.low), _between(-period / tau.high)
     box = Box({"Km": ranges.gain, "E": Interval(below[0], below[0], above[1])})
     if tau.low == tau.high:
         return box
     lowest, highest = tau.low * (1 - below[1]), tau.high * (1 - above[0])
     return box.beside(Box({"s": Interval(lowest, lowest, highest)}))
+
+
+def _between(exponent: Fraction) -> tuple[Fraction, Fraction]:
+    """Enclose an exponential between short numbers."""
+    low, high = exponential_between(exponent)
+    unit = Fraction(1, 2**EXPONENTIAL_BITS)
+    return floor(low / unit) * unit, ceil(high / unit) * unit
 
 
 def _motions(

@@ -2,6 +2,7 @@
 
 import json
 import os
+import re
 import subprocess
 import sys
 from fractions import Fraction
@@ -582,3 +583,37 @@ class TestGradientOptions:
         done = run("certify-switching", spec, "--method", "gradient", cwd=tmp_path)
         assert done.returncode == 0, done.stderr
         assert "PROVED" in done.stdout
+
+
+def test_bounds_in_json_and_what_keeps_the_limit(tmp_path):
+    """In continuous time, with a command: force and velocity; the limit is 0.3 N*m."""
+    path = tmp_path / "commanded.nrs.yaml"
+    text = SOFT_TISSUE.read_text(encoding="utf-8")
+    path.write_text(f"{text}\ndisturbances: {{command: 8 deg/s}}\n")
+    result = run("certify-switching", path.name, "--json", "--margin", cwd=tmp_path)
+    assert result.returncode == 0, result.stderr
+    printed = json.loads(result.stdout)
+    force, velocity = printed["bounds"]
+    assert (force["output"], force["unit"], force["limit"]) == ("force", "N*m", 0.3)
+    assert 1.0 < force["level"] < 1.2
+    (command,) = force["under"]
+    assert command["bound"] == pytest.approx(0.1396263)
+    assert velocity["output"] == "velocity"
+    assert velocity["limit"] is None
+    (kept,) = printed["loop_margins"]["force_limit"]["disturbances"]
+    assert kept["kept_up_to"] == pytest.approx(0.1396263 * 0.3 / force["level"])
+    assert kept["broken_in_simulation_at"] > kept["kept_up_to"]
+    assert "delay" not in printed["loop_margins"]
+
+
+@pytest.mark.slow
+def test_margins_of_a_sampled_loop(tmp_path):
+    """One controller, for speed; delays of one and two samples are proved as well."""
+    path = tmp_path / "late.nrs.yaml"
+    text = SOFT_TISSUE.read_text(encoding="utf-8")
+    head, _, _ = text.partition("  withdrawal:")
+    path.write_text(f"{head}switching: arbitrary\nsampling: {{period: 10 ms, delay: 0}}\n")
+    result = run("certify-switching", path.name, "--margin", cwd=tmp_path)
+    assert result.returncode == 0, result.stderr
+    assert re.search(r"longest delay of the force sample: \d+ samples is proved", result.stdout)
+    assert re.search(r"period: \S+ s is proved, \S+ s is refuted \(each for", result.stdout)

@@ -69,8 +69,8 @@ def test_periods_that_make_no_system_are_not_verdicts():
 def test_disturbances_that_keep_the_limit():
     """The limit is 1 N, the level 3/5 N, and a run reaches 1/2 N: by proportion."""
     system = pushed(bouncing())
-    found = command_margin(system, BOUNCE, 0.5)
+    found = command_margin(BOUNCE.bound(system), 0.5)
     assert found.limit == 1
     kept, broken, unit = found.bounds["push"]
     assert (kept, broken, unit) == (Fraction(1, 4) * Fraction(5, 3), Fraction(1, 2), "N")
-    assert command_margin(system, BOUNCE, 0.0) is None
+    assert command_margin(BOUNCE.bound(system), 0.0) is None

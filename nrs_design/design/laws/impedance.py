@@ -36,6 +36,7 @@ from nrs_design.design.measures import (
     IMPEDANCE_MEASURES,
     Measure,
 )
+from nrs_design.design.passivity import PassiveBand, passive_band
 from nrs_design.errors import DesignError
 from nrs_design.proof.bounds import upper_float
 from nrs_design.spec import Doubt, GainSpec, ImpedanceControllerSpec, InteractionDesignSpec
@@ -68,6 +69,8 @@ class ImpedanceAnalysis(AbstractControllerAnalysis):
         declared ranges.
     creep : Creep or None
         By the errors of the force signal, where the spec says how large they are.
+    band : PassiveBand or None
+        Where the displayed admittance is passive, exactly; None with a spring or a filter.
     """
 
     given: ImpedanceControllerSpec
@@ -80,6 +83,7 @@ class ImpedanceAnalysis(AbstractControllerAnalysis):
     highest_stiffness: float
     lowest_limit: float
     creep: Creep | None = None
+    band: PassiveBand | None = None
 
     def doubts(self) -> Iterator[Doubt]:
         """Yield what is doubtful about the gains, and which of them the bounds have chosen."""
@@ -146,7 +150,16 @@ def analyze(
         highest_stiffness=float(task.plant.environment(given.environment).stiffness.high),
         lowest_limit=min(margins.stiffness_limit, *limits),
         creep=creep,
+        band=_band(task, given, controller),
     )
+
+
+def _band(task: Task, given: ImpedanceControllerSpec, controller: Controller) -> PassiveBand | None:
+    """Return where ``G Y`` is passive; a spring or a filter make another admittance."""
+    if task.sensor.filter is not None or _spring(given):
+        return None
+    gains = controller.law.gains
+    return passive_band(task.loop, gains["Mt"], gains["Bt"])
 
 
 DESIGN = LawDesign(choose, analyze)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass
 from enum import StrEnum
 from fractions import Fraction
 from typing import Any, ClassVar, Self
@@ -16,7 +17,7 @@ from nrs_design.proof.exact import (
     is_symmetric,
     is_too_large,
 )
-from nrs_design.proof.system import SwitchedSystem, Switching
+from nrs_design.proof.system import Channel, Output, SwitchedSystem, Switching
 from nrs_design.proof.text import exact_text
 
 WHILE_KEPT = "This holds as long as contact is kept, the environment pulling as it pushes."
@@ -46,6 +47,28 @@ _EXACT: Mapping[Shows, tuple[str, ...]] = {
     Shows.BOUND: (NOT_ROUNDED,),
     Shows.INSTABILITY: (GROWN_WITHOUT_ROUNDING,),
 }
+
+
+@dataclass(frozen=True, slots=True)
+class Bound:
+    """What evidence of a bound says, in numbers.
+
+    Parameters
+    ----------
+    output : Output
+        What is bounded.
+    level : Fraction
+        Its size is never above this, from rest.
+    channels : tuple of Channel
+        The disturbances that act at once; no other does.
+    share : Fraction
+        How fast what is left of an earlier state goes: in 1/s, or per step.
+    """
+
+    output: Output
+    level: Fraction
+    channels: tuple[Channel, ...]
+    share: Fraction
 
 
 class AbstractEvidence(ABC):
@@ -94,6 +117,10 @@ class AbstractEvidence(ABC):
 
     def proved_rate(self, system: SwitchedSystem) -> Fraction | None:
         """Return the rate of decay (alpha in 1/s, or rho per step), if it shows one."""
+        return None
+
+    def bound(self, system: SwitchedSystem) -> Bound | None:
+        """Return the bound on an output, if it shows one."""
         return None
 
     @abstractmethod

@@ -9,7 +9,7 @@ from itertools import product
 from typing import Any, ClassVar, Self
 
 from nrs_design.proof.bounds import rounded_down, rounded_up
-from nrs_design.proof.evidence.abstract import AbstractEvidence, Shows
+from nrs_design.proof.evidence.abstract import AbstractEvidence, Bound, Shows
 from nrs_design.proof.evidence.conewise_quadratic import multiplier_count
 from nrs_design.proof.evidence.fields import (
     MAX_INTEGER_BITS,
@@ -168,6 +168,11 @@ class InvariantEllipsoid(AbstractEvidence):
             channels=tuple(system.channels.index(channel) for channel in named),
             weights=weights,
         ).forms(system)
+
+    def bound(self, system: SwitchedSystem) -> Bound:
+        """Return the level with what it holds for."""
+        output = next(item for item in system.outputs if item.name == self.output)
+        return Bound(output, self.level, self.acting(system), sum(self.shares, Fraction(0)))
 
     def acting(self, system: SwitchedSystem) -> tuple[Channel, ...]:
         """Return the disturbances that it is about, in its own order."""

@@ -77,7 +77,7 @@ class InvariantEllipsoidPage(AbstractKindPage[InvariantEllipsoid]):
     def sections(self, *, first: bool = True) -> tuple[Section, ...]:
         """Show the level beside the run that an adversary finds."""
         evidence, output = self.evidence, self._output
-        response, motions = worst_run(self.system, self.evidence)
+        response, motions = worst_run(self.system, self.evidence.bound(self.system))
         values = motions.outputs(response.state)
         found = nearly(Fraction(float(np.abs(values).max())), output.unit)
         rows = [
@@ -109,7 +109,7 @@ class InvariantEllipsoidPage(AbstractKindPage[InvariantEllipsoid]):
 
     def run(self) -> Section:
         """Draw the adversary's run between the bounds."""
-        response, motions = worst_run(self.system, self.evidence)
+        response, motions = worst_run(self.system, self.evidence.bound(self.system))
         return simulated(self._illustration(response, motions.outputs(response.state)))
 
     @property

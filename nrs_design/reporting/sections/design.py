@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
+from fractions import Fraction
 from typing import TYPE_CHECKING
 
 from nrs_design.controllers.controller_design import ControllerDesign
 from nrs_design.controllers.float32 import exact_decimal
 from nrs_design.design.transfer import TransferFunction, poles
+from nrs_design.proof.bounds import lower
 from nrs_design.reporting.document import Block, Illustration, Paragraph, Section, Table
 from nrs_design.reporting.figures.complex_plane import draw_root_locus
 from nrs_design.reporting.figures.impedance import draw_displayed_impedance, draw_sensitivity
@@ -20,6 +22,7 @@ from nrs_design.spec import InteractionDesignSpec
 
 if TYPE_CHECKING:
     from nrs_design.design.analysis import DesignAnalysis, ForceAnalysis, ImpedanceAnalysis
+    from nrs_design.design.passivity import PassiveBand
     from nrs_design.pipeline import Designed
 
 # More controllers than these make a table too wide for a page, or a figure too full.
@@ -58,6 +61,7 @@ _IMPEDANCE_ROWS: tuple[tuple[str, Callable[[ImpedanceAnalysis], str]], ...] = (
     ("Delay margin [ms]", lambda item: number(1e3 * item.margins.delay_margin)),
     ("Disk margin [1]", lambda item: number(item.margins.disk_margin)),
     ("Stiffness limit [N·m/rad]", lambda item: number(item.margins.stiffness_limit)),
+    ("Displayed admittance passive up to [Hz], exact", lambda item: _passive(item.band)),
 )
 _FORCE_ROWS: tuple[tuple[str, Callable[[ForceAnalysis], str]], ...] = (
     ("Kp [rad/(N·m)]", lambda item: number(item.loop.gain, 6)),
@@ -224,6 +228,14 @@ def _impedance_section(items: tuple[ImpedanceAnalysis, ...]) -> Section:
     if any(item.problem.loop.contact.remembers for item in items):
         paragraphs.append(Paragraph(_SUDDEN))
     return Section("Impedance control", (*paragraphs, *tables, displayed, sensitivity))
+
+
+def _passive(band: PassiveBand | None) -> str:
+    if band is None:
+        return ""
+    if band.passive is None:
+        return "every frequency"
+    return lower(band.passive * Fraction(1000, 6284), 4)
 
 
 def _given(item: ImpedanceAnalysis, key: str, default: str = "") -> str:

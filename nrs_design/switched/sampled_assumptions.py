@@ -28,10 +28,7 @@ _INPUTS = "All inputs are zero (velocity command, motion of the environment); "
 _NOT_MODELLED = (
     "The quantization of encoder and force sensor, friction and saturation are not modelled."
 )
-_AT_SAMPLE = (
-    "At a sample the spring takes the q of before the reference moves on, with the force of that "
-    "sample."
-)
+_AT_SAMPLE = "At a sample the spring takes the q of before the reference moves on."
 _ARITHMETIC = (
     "The arithmetic is that of single precision, rounded to nearest, without overflow and "
     "underflow; no term of the law is rounded more often than this: {}."

@@ -4,10 +4,12 @@ Every coefficient is a single-precision number, and so is every result of these 
 
     e = xref - theta
     u = Kp e + D (e - e_before)
-    xref = xref + T (v - vm)
     x1 = p x1 + q F              (where the force is filtered; then x2 = p x2 + q x1, ...)
-    F = x1 + Kt (xref - xref_0)  (x1 is the last lag, or the force sample; with a spring)
+    F = x1 + Kt (xref - xcom)    (with a spring; x1 is the last lag, or the force sample)
+    xref = xref + T (v - vm)
     vm = a vm + b F              (without inertia vm = b F, before it is used)
+
+where xcom is what the command alone makes of the reference.
 
 Rounding to nearest changes a result by at most 2^-24 of its size, so a term that takes part in n
 roundings changes by at most `rounding_share` of n of its own. A fused product and sum rounds once

@@ -67,7 +67,14 @@ def simulate_single_precision(
         Angle of the surface in rad.
     losable : bool
         Whether the environment does not pull.
+
+    Raises
+    ------
+    ValueError
+        If a law has a spring: the command moves what it draws to.
     """
+    if any(law.Kt for law in laws):
+        raise ValueError("an admittance with a spring Kt is not simulated here")
     runs, steps = choices.law.shape
     Kp, D = Single(float(motion.Kp)), Single(float(motion.D))
     T = Single(float(laws[0].T))

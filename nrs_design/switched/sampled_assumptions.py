@@ -28,6 +28,7 @@ _INPUTS = "All inputs are zero (velocity command, motion of the environment); "
 _NOT_MODELLED = (
     "The quantization of encoder and force sensor, friction and saturation are not modelled."
 )
+_AT_SAMPLE = "At a sample the spring takes the q of before the reference moves on."
 _ARITHMETIC = (
     "The arithmetic is that of single precision, rounded to nearest, without overflow and "
     "underflow; no term of the law is rounded more often than this: {}."
@@ -100,7 +101,7 @@ def assume_sampled(
         "The tissue does not load the motor: it acts through the force sensor alone.",
         *(_DISTURBED if spec.disturbances is not None else ()),
         _beside(spec, _INPUTS + REST[loss == "on the surface"]),
-        *((SPRING,) if any(law.Kt for law in laws.values()) else ()),
+        *((SPRING, _AT_SAMPLE) if any(law.Kt for law in laws.values()) else ()),
         "The axes of the robot do not act on each other.",
         *(
             f"While {c.name} is active, nothing but {' or '.join(c.contacts)} is touched."

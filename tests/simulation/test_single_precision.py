@@ -67,6 +67,14 @@ def test_a_lost_surface_does_not_pull():
         assert forces.min() <= least
 
 
+def test_a_spring_is_not_simulated_as_if_there_were_none():
+    law = SampledAdmittance(LAW.a, LAW.b, LAW.T, Fraction(1, 2))
+    one = np.ones((1, 1))
+    choices = Choices(np.zeros((1, 1), int), np.zeros((1, 1), int), one, one, one, one)
+    with pytest.raises(ValueError, match="spring Kt"):
+        simulate_single_precision(MOTION, [law], 0.002, choices, np.zeros(1), losable=False)
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("case", CASES[:2])
 def test_no_run_is_beyond_a_bound(case):

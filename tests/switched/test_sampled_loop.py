@@ -312,6 +312,7 @@ def test_with_a_spring_free_motion_is_a_mode_like_others(tmp_path):
     assert sum("/free/" in mode.name for mode in system.modes) == 4
     assert "at any moment" in " ".join(system.assumptions)
     kept = system_of(tmp_path, "{period: 2 ms, delay: 0}", sprung)
+    assert "before the reference moves on" in " ".join(kept.assumptions)
     assert not any("free" in mode.name for mode in kept.modes)
 
 

@@ -12,7 +12,7 @@ from nrs_design.proof.second_opinion import agrees
 from nrs_design.proof.system import Contact, Mode, SwitchedSystem, Time
 from tests.proof.evidence.test_conewise_quadratic import ESCAPES, growth, losable, over
 from tests.proof.systems import bouncing, bouncing_in_steps, family, genuine, matrix
-from tests.proof.truth import holds
+from tests.proof.truth import combine, holds, is_positive_multiple, times, transpose
 from tests.support import is_definite_by_ldl
 
 Q = ((40, 20), (20, 60))
@@ -204,3 +204,101 @@ def test_combinations_of_modes_keep_the_functions_that_belong_to_them(now, then,
         flown = [free[0][0] * v, max(free[1][0] * v, Fraction(0)) * depth]
         if v:
             assert V(after, flown) < square * V(R, [v])
+
+
+# Of three states, with denominators that differ, and nothing symmetric but the functions.
+MAPS3 = (
+    [["-1/2", "1/3", "2/3"], [1, "-1/5", "-3/7"], ["1/4", "2/3", "-1/9"]],
+    [["-1/11", "2/3", "1/8"], ["-1/5", -2, 1], ["5/4", "1/6", "1/3"]],
+    [["-1/3", "1/2", 0], ["1/7", "-2/5", 0], ["3/4", "-1/6", 1]],
+    [["1/8", "-1/2", 0], ["2/7", "1/5", 0], ["-1/4", "5/6", 1]],
+)
+WHOLE = (("m0", ((9, 2, -1), (2, 7, 3), (-1, 3, 8))), ("m1", ((6, 1, 2), (1, 5, -2), (2, -2, 7))))
+BLOCKS = (("f", ((4, 1), (1, 3))), ("g", ((5, -2), (-2, 6))))
+THREE = ConewiseModeQuadratic(WHOLE, BLOCKS, 0, Fraction(6, 7), (5, 3))
+
+
+def three_states() -> SwitchedSystem:
+    free = (Mode("f", matrix(MAPS3[2])), Mode("g", matrix(MAPS3[3])))
+    return replace(family(*MAPS3[:2], time=Time.DISCRETE), contact=Contact(free))
+
+
+def test_every_form_by_hand():
+    exact, keeps, wanted = [matrix(A).fractions() for A in MAPS3], Fraction(6, 7) ** 2, {}
+
+    def decrease(before, N, after):
+        return combine((keeps, before), (-1, times(transpose(N), times(after, N))))
+
+    for k, (name, own) in enumerate(WHOLE):
+        A = exact[k]
+        for after, other in WHOLE:
+            wanted[f"in mode {name}, then {after}"] = decrease(own, A, other)
+        for (after, block), weight in zip(BLOCKS, (5, 3), strict=True):
+            crossing = [
+                [(i == 2) * A[2][j] + (j == 2) * A[2][i] for j in range(3)] for i in range(3)
+            ]
+            form = combine((1, decrease(own, A[:2], block)), (weight, crossing))
+            wanted[f"where contact is lost in mode {name}, then {after}"] = form
+    for k, (name, own) in enumerate(BLOCKS, 2):
+        A = [row[:2] for row in exact[k]]
+        for after, other in BLOCKS:
+            wanted[f"in free motion, mode {name}, then {after}"] = decrease(own, A[:2], other)
+        for after, other in WHOLE:
+            inner = [row[:2] for row in other[:2]]
+            end = f"mode {name}, then {after}"
+            wanted[f"where contact is made, {end}"] = decrease(own, A, other)
+            wanted[f"where contact is made at the surface, {end}"] = decrease(own, A[:2], inner)
+    assert THREE.find_misfit(three_states()) is None
+    forms = {failure.partition("rate ")[2]: form for failure, form in THREE.forms(three_states())}
+    named = [
+        f"the function of mode {name} is not symmetric and positive definite"
+        for name in ("m0", "m1", "f", "g")
+    ]
+    assert [failure for failure, _ in THREE.forms(three_states())][:4] == named
+    assert forms.pop("") == BLOCKS[1][1]
+    assert forms.keys() == wanted.keys()
+    for where, form in forms.items():
+        assert is_positive_multiple(form, wanted[where]), where
+
+
+@pytest.mark.parametrize(
+    ("changes", "fault"),
+    [
+        ({}, None),
+        ({"multipliers": (0, 0)}, None),
+        ({"multipliers": (5, -1)}, "there is not one multiplier >= 0 for each free mode"),
+        ({"multipliers": (-1, 5)}, "there is not one multiplier >= 0 for each free mode"),
+        ({"multipliers": (5,)}, "there is not one multiplier >= 0 for each free mode"),
+        ({"multipliers": (5, 5, 5)}, "there is not one multiplier >= 0 for each free mode"),
+        ({"touching": (WHOLE[0], ("m1", ((1,),)))}, "a function in contact is not a 3 x 3 matrix"),
+        (
+            {"flying": (BLOCKS[0], ("g", ((1,),)))},
+            "a function of free motion is not a 2 x 2 matrix",
+        ),
+        ({"flying": BLOCKS[::-1]}, "there is not one function for each mode"),
+        ({"rate": Fraction(1)}, "the claimed rate is not one of exponential decay"),
+    ],
+)
+def test_what_fits_three_states(changes, fault):
+    assert replace(THREE, **changes).find_misfit(three_states()) == fault
+
+
+def test_the_most_modes(monkeypatch):
+    limit = "nrs_design.proof.evidence.conewise_mode_quadratic.MAX_WORK"
+    monkeypatch.setattr(limit, 2 * 4**2 * 3**3)
+    assert THREE.find_misfit(three_states()) is None
+    monkeypatch.setattr(limit, 2 * 4**2 * 3**3 - 1)
+    assert THREE.find_misfit(three_states()) == "there are too many modes to check"
+
+
+def test_a_claim_and_a_file_of_three_states():
+    system = three_states()
+    assert "among 2 modes in contact and 2 modes of free motion" in THREE.claim(system)
+    one = replace(THREE, touching=WHOLE[:1], flying=BLOCKS[:1])
+    assert "among 1 mode in contact and 1 mode of free motion" in one.claim(system)
+    assert ConewiseModeQuadratic.from_fields(THREE.to_fields(), system) == THREE
+    for key in ("touching", "flying"):
+        fields = THREE.to_fields()
+        fields[key][1]["Q"]["denominator_log2"] = 1
+        with pytest.raises(ValueError, match="do not share one denominator"):
+            ConewiseModeQuadratic.from_fields(fields, system)

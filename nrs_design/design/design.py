@@ -35,7 +35,7 @@ def design_controllers(spec: InteractionDesignSpec, plant: Plant) -> ControllerD
         with naming(name):
             law, optimum = LAW_DESIGNS[given.type].choose(task, given)
         controllers.append(Controller(name, law, given.environment, given.contacts, optimum))
-    return ControllerDesign(motion, tuple(controllers))
+    return ControllerDesign(motion, tuple(controllers), task.sensor)
 
 
 def root_locus_design(spec: InteractionDesignSpec) -> PdDesign:

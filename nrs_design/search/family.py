@@ -18,6 +18,9 @@ from nrs_design.search.balance import balance, scale
 from nrs_design.search.decay import limit_rate
 from nrs_design.search.gradient_settings import Gradient
 
+# Modes that differ by less, relative to their largest entries, are nearly the same.
+NEARLY = 1e-12
+
 
 @dataclass(frozen=True)
 class Family:
@@ -48,6 +51,17 @@ class Family:
     allowance: Allowance = field(default_factory=Allowance)
     optimize_rate: bool = True
     gradient: Gradient = field(default_factory=Gradient)
+
+    def stand_ins(self) -> dict[str, str]:
+        """Return for each mode the first that is nearly the same; nothing where rules matter.
+
+        The two ends of an enclosed number make modes that differ by its last digits. In discrete
+        time only: without rules, modes of continuous time need no functions of their own.
+        """
+        system, matrices = self.system, self.matrices
+        if not system.switching.is_arbitrary or system.time is Time.CONTINUOUS:
+            return {}
+        return stand_ins([mode.name for mode in system.modes], matrices)
 
     @classmethod
     def of(
@@ -90,6 +104,27 @@ def _limit(system: SwitchedSystem, families: list[NDArray[np.float64]]) -> float
             return float(max(sizes)) if system.time is Time.CONTINUOUS else 0.0
     limits = [limit_rate(matrices, system.time) for matrices in families]
     return min(limits) if system.time is Time.CONTINUOUS else max(limits)
+
+
+def stand_ins(names: Sequence[str], matrices: NDArray[np.float64]) -> dict[str, str]:
+    """Return for each name the first one with nearly the same matrix.
+
+    Parameters
+    ----------
+    names : sequence of str
+        All different.
+    matrices : ndarray, shape (m, n, n)
+        In their order.
+    """
+    kept: list[int] = []
+    found: dict[str, str] = {}
+    for i, A in enumerate(matrices):
+        near = (k for k in kept if np.abs(matrices[k] - A).max() <= NEARLY * np.abs(A).max())
+        k = next(near, i)
+        if k == i:
+            kept.append(i)
+        found[names[i]] = names[k]
+    return found
 
 
 def to_floats(matrices: Sequence[RationalMatrix]) -> NDArray[np.float64]:

@@ -17,6 +17,7 @@ from nrs_design.switched.assumptions import (
     scale_texts,
 )
 from nrs_design.switched.constraints import assemble_switching
+from nrs_design.switched.logic_assumptions import logic_texts
 from nrs_design.switched.parameters import corner_modes, fixed_parameter, read_parameters
 
 if TYPE_CHECKING:
@@ -135,6 +136,8 @@ def assemble(
     from nrs_design.switched.close_loop import close_loop
     from nrs_design.switched.commanded import with_command
     from nrs_design.switched.gain_box import gain_boxes
+    from nrs_design.switched.joint import Joint
+    from nrs_design.switched.sensor_assumptions import sensor_texts
 
     _check_scale(scale)
     if spec.sampling is not None:
@@ -160,10 +163,21 @@ def assemble(
                     "bounds on what disturbs do not apply to force coordinates",
                     remedy="use coordinates: deflection",
                 )
-            system = with_command(system, spec, spec.disturbances, loop, touched)
+            joint = Joint.of(plant, design.motion)
+            system = with_command(system, spec, spec.disturbances, loop, joint, touched)
     else:
         raise AssemblyError(f"unknown coordinates {coordinates!r}: deflection or force")
-    texts = (*system.assumptions, *identified_texts(spec), *scale_texts(scale))
+    period = None if spec.sampling is None else spec.sampling.period.exact
+    sensed = sensor_texts(
+        design.sensor, period, disturbed=bool(system.channels) and period is not None
+    )
+    texts = (
+        *system.assumptions,
+        *sensed,
+        *logic_texts(spec),
+        *identified_texts(spec),
+        *scale_texts(scale),
+    )
     return replace(system, assumptions=texts)
 
 

@@ -9,11 +9,12 @@ from fractions import Fraction
 from nrs_design.errors import AssemblyError
 from nrs_design.models.contact.environment import Environment
 from nrs_design.models.linear_form import coordinates
-from nrs_design.models.motion_loop import MotionLoop, Realization, realize
+from nrs_design.models.motion_loop import JointMotion, MotionLoop, Realization, realize
 from nrs_design.proof.matrix import RationalMatrix
-from nrs_design.proof.system import Channel, Output, SwitchedSystem
+from nrs_design.proof.system import Channel, Mode, Output, SwitchedSystem
 from nrs_design.spec import InteractionDesignSpec
 from nrs_design.spec.sampling import DisturbancesSpec
+from nrs_design.switched.joint import Joint
 
 _ASSUMED = (
     "A velocity command acts where a statement names it; it may change arbitrarily fast within its "
@@ -26,6 +27,7 @@ def with_command(
     spec: InteractionDesignSpec,
     disturbances: DisturbancesSpec,
     loop: MotionLoop,
+    joint: Joint | None,
     touched: Sequence[Environment],
 ) -> SwitchedSystem:
     """Let the largest velocity command act on a loop, with force and velocity as its outputs.
@@ -43,6 +45,8 @@ def with_command(
         Of the spec.
     loop : MotionLoop
         Closed motion loop G.
+    joint : Joint or None
+        The motor in its physical state, where it has ranges or a load.
     touched : sequence of Environment
         All contacts.
 
@@ -60,15 +64,22 @@ def with_command(
             remedy="leave disturbances out",
             at=("disturbances",),
         )
-    motion, n = realize(loop), system.order
-    column = [row[-1:] for row in motion.rates(coordinates(n + 1)[-1])]
-    B = RationalMatrix.from_rows([*column, *([Fraction(0)] for _ in range(n - motion.order))])
-    count = len(system.modes) + (0 if system.contact is None else len(system.contact.free))
+    sprung = next((name for name, c in spec.controllers.items() if "Kt" in c.gains()), None)
+    if sprung is not None:
+        raise AssemblyError(
+            "a velocity command moves the position that the spring Kt draws the robot to",
+            remedy="leave command out, or Kt",
+            at=("controllers", sprung, "Kt"),
+        )
+    n = system.order
+    motion = realize(loop) if joint is None else joint.nominal
+    free = () if system.contact is None else system.contact.free
+    columns = tuple(_column(mode, motion) for mode in (*system.modes, *free))
     ((name, (bound, unit)),) = disturbances.bounds().items()
     return replace(
         system,
         assumptions=(*system.assumptions, _ASSUMED),
-        channels=(Channel(name, unit, bound, (B,) * count),),
+        channels=(Channel(name, unit, bound, columns),),
         outputs=(
             Output("force", "N*m", tuple(_forces(motion, n, touched)), spec.limits.torque.exact),
             Output("velocity", "rad/s", (RationalMatrix.from_rows([motion.output(n)]),)),
@@ -76,8 +87,20 @@ def with_command(
     )
 
 
+def _column(mode: Mode, motion: Realization | JointMotion) -> RationalMatrix:
+    """Return what a commanded velocity does to a mode; the motor is the one of its corner."""
+    n = len(mode.A.numerators)
+    if isinstance(motion, JointMotion):
+        # The error drives the motor by Km Kp/tau, a command by Km Kd/tau.
+        drive = Fraction(mode.A.numerators[1][0], mode.A.denominator) / motion.Kp
+        column = [[Fraction(1)], [drive * motion.Kd]]
+    else:
+        column = [[row[-1]] for row in motion.rates(coordinates(n + 1)[-1])]
+    return RationalMatrix.from_rows([*column, *([Fraction(0)] for _ in range(n - motion.order))])
+
+
 def _forces(
-    motion: Realization, n: int, touched: Sequence[Environment]
+    motion: Realization | JointMotion, n: int, touched: Sequence[Environment]
 ) -> Iterator[RationalMatrix]:
     deflection = coordinates(n)[-1:]
     for environment in touched:

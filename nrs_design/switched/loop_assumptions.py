@@ -13,7 +13,15 @@ from nrs_design.controllers.laws import LAWS, CompliantLaw
 from nrs_design.models.contact.environment import Environment
 from nrs_design.spec import IdleStatesSpec, SwitchingSpec
 from nrs_design.spec.controllers import Command
-from nrs_design.switched.assumptions import CONTINUOUS, LOST_CONTACT, REST, rule_texts
+from nrs_design.switched.assumptions import (
+    CONTINUOUS,
+    LOST_ANYWHERE,
+    LOST_CONTACT,
+    REST,
+    SPRING,
+    SPRING_BESIDE,
+    rule_texts,
+)
 from nrs_design.switched.gain_box import GainBox
 from nrs_design.switched.joint import Joint
 
@@ -29,7 +37,8 @@ _INPUTS = "All inputs are zero (velocity command, reference force, motion of the
 # In free motion, a command moves the axis ever further from the surface.
 _COMMANDED = (
     "Under a constant command the modes may rest at different points. Where stability is proved, "
-    "bounded inputs keep the state bounded{}; how far it goes, and that it settles, is not claimed."
+    "bounded inputs{} keep the state bounded{}; how far it goes, and that it settles, is not "
+    "claimed."
 )
 _IN_THE_AIR = ", but not how far the axis moves away while contact is lost"
 _CONTACT = (
@@ -70,6 +79,8 @@ class Assumed:
         Whether the spec states the motion loop itself.
     losable : bool
         Whether the system says how contact is lost; then a statement says whether it is kept.
+    free : bool
+        Whether free motion is one of the modes.
     joint : Joint or None
         The motor, where it has ranges or is loaded by the environment.
     """
@@ -83,6 +94,7 @@ class Assumed:
     law: CompliantLaw
     given: bool
     losable: bool = False
+    free: bool = False
     joint: Joint | None = None
 
 
@@ -91,7 +103,7 @@ def assume_loop(loop: Assumed) -> tuple[str, ...]:
     return (
         *_loop_texts(loop),
         _INPUTS + REST[loop.losable],
-        _COMMANDED.format(_IN_THE_AIR if loop.losable else ""),
+        *_command_texts(loop),
         "The axes of the robot do not act on each other.",
         *_contact_texts(loop),
         *chain.from_iterable(
@@ -110,6 +122,14 @@ def _loop_texts(loop: Assumed) -> Iterator[str]:
     if loop.joint is not None:
         return loop.joint.texts()
     return iter((_GIVEN_LOOP if loop.given else _DESIGNED_LOOP,))
+
+
+def _command_texts(loop: Assumed) -> Iterator[str]:
+    sprung = any(c.law.spring for c in loop.design.controllers)
+    integral = ", if the integral of the velocity command is bounded too," if sprung else ""
+    yield _COMMANDED.format(integral, _IN_THE_AIR if loop.losable else "")
+    if sprung:
+        yield SPRING if loop.idle is None else SPRING_BESIDE
 
 
 def _contact_texts(loop: Assumed) -> Iterator[str]:
@@ -161,6 +181,8 @@ def _names(design: ControllerDesign, command: Command) -> dict[str, None]:
 def _kept_texts(loop: Assumed) -> Iterator[str]:
     if loop.losable:
         return iter((LOST_CONTACT,))
+    if loop.free:
+        return iter((LOST_ANYWHERE,))
     used = {controller.law.name for controller in loop.design.controllers}
     texts = (law.contact_text(alone=loop.idle is None) for law in LAWS.values() if law.name in used)
     return (text for text in texts if text is not None)
@@ -174,6 +196,8 @@ def _switch_texts(rules: SwitchingSpec, *, reset: bool) -> tuple[str, ...]:
         "While a controller is active, the environment that it touches may change among its "
         "contacts at any time."
     )
+    if rules.names_contacts:
+        return (f"{states} {CONTINUOUS}.", *rule_texts(rules, "mode"))
     contacts = () if rules.dwell_time is not None else (environment,)
     return (f"{states} {CONTINUOUS}.", *rule_texts(rules, "controller"), *contacts)
 

@@ -339,9 +339,10 @@ def _check_sensor(spec: InteractionDesignSpec) -> None:
         *((f"controllers.{n}", c.goals) for n, c in spec.controllers.items()),
     )
     for at, given in goals:
-        if sensor is None and given is not None and given.wants_creep:
+        errors = sensor is not None and sensor.has_errors
+        if not errors and given is not None and given.wants_creep:
             raise fault(
-                "a goal for the creep without a sensor, whose errors the robot creeps by",
+                "a goal for the creep, and no errors of a sensor that the robot creeps by",
                 "add `sensor: {bias: 5e-3 N*m}`, or remove the goal",
                 *at.split("."),
             )

@@ -6,7 +6,8 @@ from collections.abc import Iterable
 from typing import Any
 
 from nrs_design.proof.bounds import lower_float, upper_float
-from nrs_design.proof.evidence import AbstractEvidence, InvariantEllipsoid
+from nrs_design.proof.evidence.abstract import AbstractEvidence
+from nrs_design.proof.evidence.bound import AbstractBound
 from nrs_design.proof.system import SwitchedSystem
 
 
@@ -37,13 +38,13 @@ def bounds_summary(
             "rounding_included": item.covers_rounding,
         }
         for item in statements
-        if isinstance(item, InvariantEllipsoid)
+        if isinstance(item, AbstractBound)
     ]
 
 
 def bound_on(
     system: SwitchedSystem, statements: Iterable[AbstractEvidence], output: str
-) -> InvariantEllipsoid | None:
+) -> AbstractBound | None:
     """Return the bound on an output under all disturbances of a system at once, if it is stated.
 
     Parameters
@@ -60,7 +61,7 @@ def bound_on(
         (
             item
             for item in statements
-            if isinstance(item, InvariantEllipsoid)
+            if isinstance(item, AbstractBound)
             and item.output == output
             and set(item.channels) == every
         ),

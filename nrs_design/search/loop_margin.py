@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from nrs_design.certificates.certificate import Verdict
 
 if TYPE_CHECKING:
-    from nrs_design.proof.evidence import InvariantEllipsoid
+    from nrs_design.proof.evidence.bound import AbstractBound
     from nrs_design.proof.system import SwitchedSystem
 
 # A period is multiplied or divided by two so often, and then bisected.
@@ -160,7 +160,7 @@ def _bisect(
 
 
 def command_margin(
-    system: SwitchedSystem, found: InvariantEllipsoid, reached: float
+    system: SwitchedSystem, found: AbstractBound, reached: float
 ) -> CommandMargin | None:
     """Return what the disturbances may be for the limit of an output, by proportion.
 
@@ -168,7 +168,7 @@ def command_margin(
     ----------
     system : SwitchedSystem
         What the bound is about.
-    found : InvariantEllipsoid
+    found : AbstractBound
         Checked: under all disturbances at once.
     reached : float
         The output that a simulated run reaches under them.

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from nrs_design.proof.evidence import InvariantEllipsoid
+from nrs_design.proof.evidence.bound import AbstractBound
 from nrs_design.proof.system import Channel, Output, SwitchedSystem, Time
 from nrs_design.simulation.contact import deflected
 from nrs_design.simulation.norms import Array
@@ -94,7 +94,7 @@ class DisturbedMotions:
 
 
 def worst_run(
-    system: SwitchedSystem, evidence: InvariantEllipsoid
+    system: SwitchedSystem, evidence: AbstractBound
 ) -> tuple[TimeResponse, DisturbedMotions]:
     """Simulate an adversary against a bound, for about as long as its set takes to fill.
 
@@ -102,7 +102,7 @@ def worst_run(
     ----------
     system : SwitchedSystem
         That the bound is about.
-    evidence : InvariantEllipsoid
+    evidence : AbstractBound
         Whose disturbances act, and whose output is to become large.
     """
     share, step = float(sum(evidence.shares)), fine_step(system)
@@ -113,7 +113,7 @@ def worst_run(
     return worst_disturbed(motions, step, steps), motions
 
 
-def worst_output(system: SwitchedSystem, evidence: InvariantEllipsoid) -> float:
+def worst_output(system: SwitchedSystem, evidence: AbstractBound) -> float:
     """Return how large the output of a bound becomes in `worst_run`.
 
     Parameters

@@ -9,7 +9,7 @@ from itertools import product
 from typing import Any, ClassVar, Self
 
 from nrs_design.proof.bounds import rounded_down, rounded_up
-from nrs_design.proof.evidence.abstract import AbstractEvidence, Shows
+from nrs_design.proof.evidence.bound import AbstractBound
 from nrs_design.proof.evidence.conewise_quadratic import multiplier_count
 from nrs_design.proof.evidence.fields import (
     MAX_INTEGER_BITS,
@@ -33,7 +33,7 @@ Rows = Sequence[Sequence[Fraction]]
 
 
 @dataclass(frozen=True, slots=True)
-class InvariantEllipsoid(AbstractEvidence):
+class InvariantEllipsoid(AbstractBound):
     """``V = w' Q w <= 1`` is never left while ``|d_i| <= bound_i``, and there ``|z| <= level``.
 
     The state moves by ``x' = A x + B d`` (``x+ = A x + B d``), and z is one of the rows q of an
@@ -85,11 +85,6 @@ class InvariantEllipsoid(AbstractEvidence):
     level: Fraction
     multipliers: tuple[int, ...] = ()
     roundings: tuple[int, ...] = ()
-
-    @property
-    def shows(self) -> Shows:
-        """A bound."""
-        return Shows.BOUND
 
     @property
     def covers_rounding(self) -> bool:
@@ -168,11 +163,6 @@ class InvariantEllipsoid(AbstractEvidence):
             channels=tuple(system.channels.index(channel) for channel in named),
             weights=weights,
         ).forms(system)
-
-    def acting(self, system: SwitchedSystem) -> tuple[Channel, ...]:
-        """Return the disturbances that it is about, in its own order."""
-        by_name = {channel.name: channel for channel in system.channels}
-        return tuple(by_name[name] for name in self.channels)
 
     def claim_in_scope(self, system: SwitchedSystem) -> str:
         """State how far the output goes, from rest and in the long run."""

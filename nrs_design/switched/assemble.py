@@ -17,7 +17,6 @@ from nrs_design.switched.assumptions import (
     scale_texts,
 )
 from nrs_design.switched.constraints import assemble_switching
-from nrs_design.switched.logic_assumptions import logic_texts
 from nrs_design.switched.parameters import corner_modes, fixed_parameter, read_parameters
 
 if TYPE_CHECKING:
@@ -137,6 +136,7 @@ def assemble(
     from nrs_design.switched.commanded import with_command
     from nrs_design.switched.gain_box import gain_boxes
     from nrs_design.switched.joint import Joint
+    from nrs_design.switched.logic_assumptions import logic_texts
     from nrs_design.switched.sensor_assumptions import sensor_texts
 
     _check_scale(scale)

@@ -9,11 +9,11 @@ LinearForm = Sequence[Fraction]
 
 
 def combine(*terms: tuple[Fraction, LinearForm]) -> list[Fraction]:
-    """Return the sum of forms, each times its factor."""
+    """Return the sum of forms, each times its factor; most coefficients are zero."""
     (factor, form), *others = terms
-    total = [factor * c for c in form]
+    total = [factor * c if c else Fraction(0) for c in form]
     for factor, form in others:
-        total = [entry + factor * c for entry, c in zip(total, form, strict=True)]
+        total = [entry + factor * c if c else entry for entry, c in zip(total, form, strict=True)]
     return total
 
 

@@ -28,6 +28,8 @@ _GAIN_RANGE = (
 
 # What the motion loop gets from a controller.
 Command = Literal["velocity", "position"]
+# Where the offset X_i of thesis 6.41 is taken from, at every switch.
+Offset = Literal["none", "reference", "measured"]
 
 
 def _distinct(contacts: tuple[str, ...]) -> tuple[str, ...]:
@@ -125,7 +127,7 @@ class ForceControllerSpec(AbstractControllerSpec):
     )
     commands: ClassVar[Command] = "position"
 
-    type: Literal["force"] = Field(description="force: u = Kp (Fd - F)")
+    type: Literal["force"] = Field(description="force: u = Kp (Fd - F) + X_i, see offset")
     environment: Label = Field(description=_ENVIRONMENT)
     contacts: tuple[Label, ...] = Field(
         default_factory=lambda data: (data.get("environment", ""),),
@@ -139,6 +141,12 @@ class ForceControllerSpec(AbstractControllerSpec):
     damping_ratio: UnitFraction | None = Field(
         default=None,
         description="wanted damping ratio of the dominant poles, in (0, 1), no unit; chooses Kp",
+    )
+    offset: Offset = Field(
+        default="none",
+        description="offset X_i that is added to the command (thesis 6.41), taken at every switch "
+        "of controllers and held until the next: the reference of the motion loop at the switch, "
+        "or the measured position; none: u = Kp (Fd - F) alone",
     )
     goals: GoalsSpec | None = Field(default=None, description=_GOALS)
 

@@ -9,7 +9,7 @@ from typing import Annotated, Literal
 from pydantic import Field, model_validator
 
 from nrs_design.spec.certification import CertificationSpec
-from nrs_design.spec.controllers import ControllerSpec, IdleStatesSpec
+from nrs_design.spec.controllers import ControllerSpec, IdleStatesSpec, Offset
 from nrs_design.spec.dwell import DwellObstacle, find_changing_contact
 from nrs_design.spec.environment import EnvironmentSpec
 from nrs_design.spec.faults import all_of, did_you_mean, fault
@@ -121,6 +121,7 @@ class InteractionDesignSpec(SpecModel):
                 given_loop=self.motion_loop.transfer_function is not None,
             ),
             partial(_check_memories, self.controllers, self.environments, self.coordinates),
+            partial(_check_offsets, self.controllers, self.idle_states),
             lambda: check_applicable(
                 self.goals, {c.type for c in self.controllers.values() if c.contacts}, "goals"
             ),
@@ -145,6 +146,12 @@ class InteractionDesignSpec(SpecModel):
     def touched(self) -> frozenset[str]:
         """Names of the environments that some controller touches."""
         return frozenset(name for c in self.controllers.values() for name in c.contacts)
+
+    @property
+    def offset(self) -> Offset:
+        """Where the offset of the force controllers is taken from; they have one in common."""
+        offsets = (c.offset for c in self.controllers.values() if c.type == "force")
+        return next(offsets, "none")
 
     @property
     def has_ranges(self) -> bool:
@@ -206,6 +213,30 @@ def _check_mixture(
                 "environments",
                 contact,
                 "model",
+            )
+
+
+def _check_offsets(controllers: dict[str, ControllerSpec], idle: IdleStatesSpec | None) -> None:
+    """Refuse offsets that differ, and offsets where impedance controllers integrate a reference."""
+    first: tuple[str, Offset] | None = None
+    for name, controller in controllers.items():
+        if controller.type != "force":
+            continue
+        at = ("controllers", name, "offset")
+        if idle is not None and controller.offset != "none":
+            raise fault(
+                f"an offset is not modelled for force controllers beside impedance controllers "
+                f"({name!r} has offset {controller.offset})",
+                "leave offset out, or write a spec without impedance controllers",
+                *at,
+            )
+        first = first or (name, controller.offset)
+        if controller.offset != first[1]:
+            raise fault(
+                f"{name!r} has offset {controller.offset}, {first[0]!r} has {first[1]}: one state "
+                "cannot hold both",
+                f"give all force controllers `offset: {first[1]}`",
+                *at,
             )
 
 

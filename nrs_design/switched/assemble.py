@@ -150,6 +150,7 @@ def assemble(
             gain_boxes(spec, design, scale),
             spec.idle_states,
             spec.contact,
+            spec.offset,
         )
     else:
         raise AssemblyError(f"unknown coordinates {coordinates!r}: deflection or force")

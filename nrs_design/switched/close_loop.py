@@ -24,6 +24,7 @@ from nrs_design.models.plant import Plant
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.system import Contact, Mode, SwitchedSystem, Time
 from nrs_design.spec import IdleStatesSpec, SwitchingSpec
+from nrs_design.spec.controllers import Offset
 from nrs_design.spec.interval import Interval
 from nrs_design.switched.constraints import assemble_switching
 from nrs_design.switched.gain_box import GainBox
@@ -37,6 +38,7 @@ from nrs_design.switched.modes import (
     with_idle,
     with_memories,
 )
+from nrs_design.switched.offset import names_of, retaken, to_motion
 from nrs_design.switched.parameter_box import Box
 from nrs_design.switched.parameters import Corner
 
@@ -51,6 +53,7 @@ def close_loop(
     boxes: Mapping[str, GainBox] | None = None,
     idle: IdleStatesSpec | None = None,
     contact: str | None = None,
+    offset: Offset = "none",
 ) -> SwitchedSystem:
     """Assemble every mode of an interaction design.
 
@@ -84,6 +87,8 @@ def close_loop(
     contact : {"losable", "kept"}, optional
         Whether contact may be lost; by default it is where that is modelled, and a statement says
         whether it covers it.
+    offset : {"none", "reference", "measured"}
+        Where force controllers take their offset from; only where none commands a velocity.
 
     Raises
     ------
@@ -92,15 +97,17 @@ def close_loop(
     """
     rules = rules or SwitchingSpec()
     boxes = {c.name: GainBox.point(c.law) for c in design.controllers} | {**(boxes or {})}
-    state = _shared_state(plant, loop, design, coordinates, idle)
+    state = _shared_state(plant, loop, design, coordinates, idle, offset)
     losable = None if contact == "kept" else _lost_contact(state, design, boxes, contact)
     parts = {
         controller.name: tuple(_controller_modes(controller, plant, state, boxes[controller.name]))
         for controller in design.controllers
     }
     groups = {key: tuple(Corner(mode.name) for mode in part) for key, part in parts.items()}
-    reset = idle is not None and idle.reset
-    resets = resets_of(design, state.motion.order, state.idle_count) if reset else ()
+    if idle is not None and idle.reset:
+        resets = resets_of(design, state.motion.order, state.idle_count)
+    else:
+        resets = retaken(design, offset, state.motion.order)
     return SwitchedSystem(
         name,
         Time.CONTINUOUS,
@@ -117,6 +124,7 @@ def close_loop(
                 state.law,
                 given=loop.given,
                 losable=losable is not None,
+                offset=offset,
             )
         ),
         assemble_switching(rules, groups, resets),
@@ -130,13 +138,14 @@ def _shared_state(
     design: ControllerDesign,
     coordinates: str,
     idle: IdleStatesSpec | None,
+    offset: Offset,
 ) -> _State:
     touched = plant.among(design.contacts)
     _check_coordinates(coordinates, touched)
     if idle is not None:
         check_mixture(coordinates, touched)
     shared = _shared_law(design, mixed=idle is not None)
-    return _State(realize(loop), coordinates, touched, shared, idle)
+    return _State(realize(loop), coordinates, touched, shared, idle, offset)
 
 
 def _check_coordinates(coordinates: str, touched: tuple[Environment, ...]) -> None:
@@ -194,6 +203,7 @@ class _State:
     touched: tuple[Environment, ...]
     law: CompliantLaw
     idle: IdleStatesSpec | None
+    offset: Offset
 
     @property
     def memories(self) -> tuple[Environment, ...]:
@@ -208,6 +218,8 @@ class _State:
     @property
     def names(self) -> tuple[str, ...]:
         """Names of the states, with units where there are any."""
+        if self.offset != "none":
+            return names_of(self.motion.order)
         letter = "xp" if self.idle is None else "xi"
         loop = (*(f"{letter}{i + 1}" for i in range(self.motion.order)), *self.law.states)
         if self.idle is not None:
@@ -247,7 +259,9 @@ class _State:
         return with_memories(rows, touched, creeps)
 
     def padded(self, rows: Rows, law: CompliantLaw) -> Rows:
-        """Return a mode with the idle states that it leaves alone, if there are any."""
+        """Return a mode with the idle states that it leaves alone, or in coordinates of motion."""
+        if self.offset != "none":
+            return to_motion(rows, self.motion)
         if self.idle is None or law.commands == "velocity":
             return rows
         return with_idle(rows, self.idle_count, idle_decay(self.idle))

@@ -96,6 +96,28 @@ def test_position_and_force() -> None:
     assert force.contacts == ("soft",)
 
 
+def test_offset_of_force_controllers() -> None:
+    """Thesis 6.41: by default there is none, and all force controllers have the same."""
+    assert interaction(FORCE).offset == "none"
+    gain = "    proportional_gain: 0.02 rad/(N*m)\n"
+    measured = spoiled(FORCE, gain, gain + "    offset: measured\n")
+    assert interaction(measured).offset == "measured"
+    other = f"  gentle:\n    type: force\n    environment: soft\n{gain}"
+    error = refusal(spoiled(measured, "switching:", other + "switching:"))
+    assert "'gentle' has offset none, 'force' has measured" in error.message
+    error = refusal(spoiled(FORCE, gain, gain + "    offset: position\n"))
+    assert "offset" in str(error)
+
+
+def test_offset_beside_impedance_controllers_is_refused() -> None:
+    force = FORCE.partition("controllers:\n")[2].replace("switching: arbitrary\n", "")
+    mixed = spoiled(IMPEDANCE, "switching:", force + "idle_states: {decay: 20 1/s}\nswitching:")
+    assert interaction(mixed).offset == "none"
+    gain = "    proportional_gain: 0.02 rad/(N*m)\n"
+    error = refusal(spoiled(mixed, gain, gain + "    offset: measured\n"))
+    assert "beside impedance controllers" in error.message
+
+
 def test_environments_may_be_missing_without_contact() -> None:
     head, _, rest = FORCE.partition("environments:\n")
     tail = "controllers:\n  free: {type: position}\nswitching: arbitrary\n"

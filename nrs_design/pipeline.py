@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from nrs_design import __version__
-from nrs_design.certificates.certificate import Certificate, Gains
+from nrs_design.certificates.certificate import Certificate, Gains, Verdict
 from nrs_design.errors import AssemblyError, DesignError, NrsDesignError
 from nrs_design.proof.bounds import nearly
 from nrs_design.proof.system import SwitchedSystem, Time
@@ -183,6 +183,16 @@ def run_analysis(designed: Designed) -> DesignAnalysis:
 
     with placed(designed.loaded):
         return analyze_design(designed.spec, designed.plant, designed.design)
+
+
+def find_relief(result: Result) -> tuple[str, ...]:
+    """Return what would hold of a refuted design whose contacts are too stiff for its gains."""
+    designed = result.designed
+    if designed is None or result.certification.verdict is not Verdict.REFUTED:
+        return ()
+    from nrs_design.design.analysis import too_stiff
+
+    return tuple(map(str, too_stiff(designed.spec, designed.plant, designed.design)))
 
 
 @dataclass(frozen=True, slots=True)

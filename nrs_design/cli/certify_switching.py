@@ -86,6 +86,7 @@ def certify_switching(
     from nrs_design.ownership import check_certificate, origin_of
     from nrs_design.pipeline import (
         Overrides,
+        find_relief,
         limits_of,
         run_certification,
         run_margin,
@@ -118,11 +119,14 @@ def certify_switching(
         write_output(path, dump(result.certificate, origin_of(spec, path)), replaces=CERTIFICATE)
     written = None if result.certificate is None else path
     if as_json:
-        told = {"gradient_history": history} if history else {}
+        told: dict[str, Any] = {"gradient_history": history} if history else {}
+        told["relief"] = list(find_relief(result))
         content = summary(result, written) | margins_summary(box, dwell) | told
         print_json("certify-switching", content)
     elif not quiet:
         _print(result, written, verbose=verbose)
+        for relief in find_relief(result):
+            say(f"  {relief}")
         _print_margin(box)
         _print_dwell(dwell)
     raise typer.Exit(exit_codes.OF_VERDICT[str(result.certification.verdict)])

@@ -8,7 +8,11 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from nrs_design.proof.text import exact_text
 from nrs_design.spec import kinds
-from nrs_design.spec.controllers import ControllerSpec, ImpedanceControllerSpec
+from nrs_design.spec.controllers import (
+    ControllerSpec,
+    ImpedanceControllerSpec,
+    contact_names,
+)
 from nrs_design.spec.environment import EnvironmentSpec, unit_at_pivot
 from nrs_design.spec.gain_fields import GainSpec
 from nrs_design.spec.goals import GoalsSpec
@@ -188,7 +192,7 @@ def _controller(name: str, controller: ControllerSpec, limits: LimitsSpec) -> It
     if controller.environment is None:
         return
     yield Line(f"{name}.environment", controller.environment, "", "")
-    yield Line(f"{name}.contacts", ", ".join(controller.contacts), "", "")
+    yield Line(f"{name}.contacts", ", ".join(contact_names(controller.contacts)), "", "")
     if controller.type == "impedance":
         yield _desired_impedance(f"{name}.desired_impedance", controller, limits)
     for key in type(controller).model_fields:

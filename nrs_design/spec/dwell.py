@@ -9,6 +9,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from nrs_design.spec.controllers import touched_in
+
 if TYPE_CHECKING:
     from nrs_design.spec.controllers import ControllerSpec
     from nrs_design.spec.environment import EnvironmentSpec
@@ -46,6 +48,13 @@ def find_changing_contact(
                 "may change at any time, whatever the controller",
                 "write a spec for each environment",
             )
+        for contact in controller.contacts:
+            if not isinstance(contact, str):
+                return DwellObstacle(
+                    f"a dwell time and several things that {name!r} touches at once exclude each "
+                    "other: one of them may be lost at any time",
+                    "write a spec for each environment",
+                )
         for gain, declared in controller.gains().items():
             if declared.ranged:
                 return DwellObstacle(
@@ -53,10 +62,10 @@ def find_changing_contact(
                     "the gain may move during the dwell time, and the proof would not hold",
                     "give the gain one value only",
                 )
-        for contact in controller.contacts:
-            if not environments[contact].fixed:
+        for touched in touched_in(controller.contacts):
+            if not environments[touched].fixed:
                 return DwellObstacle(
-                    f"a dwell time and the range of environment {contact!r} exclude each other: "
+                    f"a dwell time and the range of environment {touched!r} exclude each other: "
                     "its parameters may move during the dwell time, and the proof would not hold",
                     "give the environment its nominal values only",
                 )

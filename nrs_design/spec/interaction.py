@@ -9,7 +9,14 @@ from typing import Annotated, Literal
 from pydantic import Field, model_validator
 
 from nrs_design.spec.certification import CertificationSpec
-from nrs_design.spec.controllers import ControllerSpec, IdleStatesSpec, Offset
+from nrs_design.spec.controllers import (
+    ControllerSpec,
+    IdleStatesSpec,
+    Offset,
+    contact_name,
+    names_in,
+    touched_in,
+)
 from nrs_design.spec.dwell import DwellObstacle, find_changing_contact
 from nrs_design.spec.environment import EnvironmentSpec
 from nrs_design.spec.faults import all_of, did_you_mean, fault
@@ -122,6 +129,10 @@ class InteractionDesignSpec(SpecModel):
             ),
             partial(_check_memories, self.controllers, self.environments, self.coordinates),
             partial(_check_offsets, self.controllers, self.idle_states),
+            *(
+                partial(_check_at_once, *item, self.environments, self.contact)
+                for item in self.controllers.items()
+            ),
             lambda: check_applicable(
                 self.goals, {c.type for c in self.controllers.values() if c.contacts}, "goals"
             ),
@@ -145,7 +156,7 @@ class InteractionDesignSpec(SpecModel):
     @property
     def touched(self) -> frozenset[str]:
         """Names of the environments that some controller touches."""
-        return frozenset(name for c in self.controllers.values() for name in c.contacts)
+        return frozenset(name for c in self.controllers.values() for name in touched_in(c.contacts))
 
     @property
     def offset(self) -> Offset:
@@ -262,12 +273,13 @@ def _check_references(
         partial(check, controller.environment, "environment"),
         # By default the contact is the environment itself.
         *(
-            partial(check, contact, "contacts", index)
+            partial(check, name, "contacts", index)
             for index, contact in enumerate(controller.contacts)
+            for name in names_in(contact)
             if "contacts" in controller.model_fields_set
         ),
     )
-    if controller.environment not in controller.contacts:
+    if controller.environment not in touched_in(controller.contacts):
         raise fault(
             f"{name!r} is designed for {controller.environment!r}, but that is not among its "
             "contacts: nothing would be proved about it there",
@@ -284,7 +296,7 @@ def _check_springs(
     """Refuse force control of what is no spring: its force is not that of the position alone."""
     if controller.commands == "velocity":
         return
-    for contact in controller.contacts:
+    for contact in touched_in(controller.contacts):
         environment = environments.get(contact)
         if environment is None or environment.is_spring:
             continue
@@ -299,6 +311,35 @@ def _check_springs(
         )
 
 
+def _check_at_once(
+    name: str,
+    controller: ControllerSpec,
+    environments: dict[str, EnvironmentSpec],
+    losable: Literal["losable", "kept"] | None,
+) -> None:
+    """Refuse what is not modelled about several things that are touched at once."""
+    for index, contact in enumerate(controller.contacts):
+        known = [(key, environments[key]) for key in names_in(contact) if key in environments]
+        if len(names_in(contact)) == 1:
+            continue
+        at = ("controllers", name, "contacts", index)
+        for key, environment in known:
+            if environment.remembers:
+                raise fault(
+                    f"{key!r}, which is {environment.model}, remembers: touching it at once with "
+                    "others is not modelled",
+                    "use elastic or kelvin-voigt environments there",
+                    *at,
+                )
+            if losable == "losable" and not environment.is_spring:
+                raise fault(
+                    f"losing {key!r} on its own is not modelled while {contact_name(contact)} are "
+                    "touched at once: it has damping",
+                    "use `contact: kept`, or elastic environments",
+                    *at,
+                )
+
+
 def _check_memories(
     controllers: dict[str, ControllerSpec],
     environments: dict[str, EnvironmentSpec],
@@ -308,7 +349,7 @@ def _check_memories(
     touched = {
         contact: environments[contact]
         for controller in controllers.values()
-        for contact in controller.contacts
+        for contact in touched_in(controller.contacts)
         if contact in environments
     }
     for name, environment in touched.items():

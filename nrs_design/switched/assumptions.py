@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
@@ -11,6 +11,7 @@ from nrs_design.spec import DwellTime, SwitchedSystemSpec, SwitchingSpec
 from nrs_design.switched.parameters import Parameter
 
 if TYPE_CHECKING:
+    from nrs_design.models.contact.environment import Environment
     from nrs_design.spec import InteractionDesignSpec
 
 MAX_LISTED = 20
@@ -74,6 +75,24 @@ def _switch_texts(spec: SwitchedSystemSpec) -> tuple[str, ...]:
                 "and always one of them does."
             )
     return jump, *rule_texts(spec.switching, "mode")
+
+
+def at_once_texts(touched: Iterable[Environment]) -> Iterator[str]:
+    """Say what is taken for granted where several environments are touched at once."""
+    for environment in touched:
+        names = " and ".join(part.name for part in environment.parts)
+        if environment.each_losable:
+            yield (
+                f"{environment.name}: {names} are touched from one side, each from where its own "
+                "surface is, and each may be lost on its own. The deflection counts from the "
+                "surface that is met first; the stiffness is at least that of one alone, and at "
+                "most the sum."
+            )
+        elif environment.parts:
+            yield (
+                f"{environment.name}: {names} are touched at once, at all times; their forces add "
+                "up, and none of them is lost on its own."
+            )
 
 
 def rule_texts(rules: SwitchingSpec, noun: str) -> tuple[str, ...]:

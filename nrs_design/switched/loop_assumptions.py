@@ -13,7 +13,13 @@ from nrs_design.controllers.laws import LAWS, CompliantLaw
 from nrs_design.models.contact.environment import Environment
 from nrs_design.spec import IdleStatesSpec, SwitchingSpec
 from nrs_design.spec.controllers import Command, Offset
-from nrs_design.switched.assumptions import CONTINUOUS, LOST_CONTACT, REST, rule_texts
+from nrs_design.switched.assumptions import (
+    CONTINUOUS,
+    LOST_CONTACT,
+    REST,
+    at_once_texts,
+    rule_texts,
+)
 from nrs_design.switched.gain_box import GainBox
 
 _GIVEN_LOOP = (
@@ -151,6 +157,7 @@ def _contact_texts(loop: Assumed) -> Iterator[str]:
         if controller.contacts:
             contacts = " or ".join(controller.contacts)
             yield f"While {controller.name} is active, nothing but {contacts} is touched."
+    yield from at_once_texts(loop.touched)
     yield _CONTACT if loop.offset == "none" else _SAME_STIFFNESS
     integrated = any(c.law.commands == "velocity" for c in loop.design.controllers)
     if integrated and all(e.law.has_rest for e in loop.touched):

@@ -28,6 +28,7 @@ from nrs_design.proof.taylor import exponential_between
 from nrs_design.spec import InteractionDesignSpec
 from nrs_design.spec.interval import Interval
 from nrs_design.spec.sampling import SamplingSpec
+from nrs_design.switched.assumptions import at_once_texts
 from nrs_design.switched.constraints import assemble_switching
 from nrs_design.switched.parameter_box import Box
 from nrs_design.switched.parameters import Corner
@@ -193,7 +194,10 @@ def close_sampled_loop(
         Time.DISCRETE,
         frame.states,
         tuple(item.mode for item in motions),
-        assume_sampled(spec, sampling, ranges, frame.motion, laws, design, springs=springs),
+        (
+            *assume_sampled(spec, sampling, ranges, frame.motion, laws, design, springs=springs),
+            *at_once_texts(touched),
+        ),
         assemble_switching(spec.switching, groups, ()),
         losable,
         period,

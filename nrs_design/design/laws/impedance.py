@@ -30,8 +30,11 @@ from nrs_design.design.laws.law import (
 )
 from nrs_design.design.margins import LoopMargins, loop_margins, stiffness_limit
 from nrs_design.design.measures import IMPEDANCE_MEASURES
+from nrs_design.design.relief import doubt_stiffness
 from nrs_design.errors import DesignError
+from nrs_design.models.contact.environment import Environment
 from nrs_design.spec import Doubt, GainSpec, ImpedanceControllerSpec, InteractionDesignSpec
+from nrs_design.spec.controllers import contact_names, names_in
 
 
 @dataclass(frozen=True)
@@ -59,6 +62,8 @@ class ImpedanceAnalysis(AbstractControllerAnalysis):
     lowest_limit : float
         Smallest stiffness limit in N m/rad, of the shipped gains and of the corners of their
         declared ranges.
+    stiff : tuple of Doubt
+        Contacts that are too stiff for the shipped gains.
     """
 
     given: ImpedanceControllerSpec
@@ -70,10 +75,12 @@ class ImpedanceAnalysis(AbstractControllerAnalysis):
     margins: LoopMargins
     highest_stiffness: float
     lowest_limit: float
+    stiff: tuple[Doubt, ...]
 
     def doubts(self) -> Iterator[Doubt]:
         """Yield what is doubtful about the gains, and which of them the bounds have chosen."""
         yield from super().doubts()
+        yield from self.stiff
         yield from doubt_bounds(self.name, self.given, self.optimum)
 
 
@@ -131,12 +138,31 @@ def analyze(
         Bt=Bt,
         cost=float(impedance_cost(problem, Mt, Bt)),
         margins=margins,
-        highest_stiffness=float(task.plant.environment(given.environment).stiffness.high),
+        highest_stiffness=float(_highest_stiffness(task, given)),
+        stiff=tuple(too_stiff(task, given, controller)),
         lowest_limit=min(margins.stiffness_limit, *limits),
     )
 
 
-DESIGN = LawDesign(choose, analyze)
+def too_stiff(
+    task: Task, given: ImpedanceControllerSpec, controller: Controller
+) -> Iterator[Doubt]:
+    """Yield the contacts that are too stiff for the gains, and what would hold.
+
+    Parameters
+    ----------
+    task : Task
+        What the gains were chosen for.
+    given : ImpedanceControllerSpec
+        What the spec says of the controller.
+    controller : Controller
+        With the gains that ship.
+    """
+    Mt, Bt = (float(controller.law.gains[gain]) for gain in ("Mt", "Bt"))
+    yield from doubt_stiffness(controller.name, task.motion, _measured_in(task, given), Mt, Bt)
+
+
+DESIGN = LawDesign(choose, analyze, too_stiff)
 
 
 def impedance_problem(task: Task, given: ImpedanceControllerSpec) -> ImpedanceProblem:
@@ -171,7 +197,7 @@ def desired_impedance(spec: InteractionDesignSpec, controller: ImpedanceControll
 
 
 def _requirement(task: Task, given: ImpedanceControllerSpec) -> Requirement:
-    contacts = tuple(map(task.plant.environment, given.contacts))
+    contacts = _measured_in(task, given)
     gains = {name: _ends(gain) for name, gain in given.gains().items()}
     return Requirement(
         motion=task.motion,
@@ -180,6 +206,19 @@ def _requirement(task: Task, given: ImpedanceControllerSpec) -> Requirement:
         desired=desired_impedance(task.spec, given),
         bandwidth=task.spec.limits.bandwidth.si,
     )
+
+
+def _measured_in(task: Task, given: ImpedanceControllerSpec) -> tuple[Environment, ...]:
+    """Return all contacts, and what the gains are designed for if it is none by itself."""
+    names = dict.fromkeys((*contact_names(given.contacts), given.environment))
+    return tuple(map(task.plant.environment, names))
+
+
+def _highest_stiffness(task: Task, given: ImpedanceControllerSpec) -> Fraction:
+    """Return that of the environment that the gains are designed for, and of what it is part of."""
+    at_once = (c for c in given.contacts if given.environment in names_in(c))
+    names = (given.environment, *contact_names(tuple(at_once)))
+    return max(task.plant.environment(name).stiffness.high for name in names)
 
 
 def _ends(gain: GainSpec) -> tuple[float, ...]:

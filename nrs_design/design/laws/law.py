@@ -85,10 +85,14 @@ class LawDesign:
     analyze : callable or None
         gives the analysis for a task, the spec of a controller and the controller; None where
         nothing is measured.
+    too_stiff : callable or None
+        Gives the contacts that are too stiff for the gains, and what would hold, for the same; None
+        where that is not known.
     """
 
     choose: Callable[[Task, Any], Choice]
     analyze: Callable[[Task, Any, Controller], AbstractControllerAnalysis] | None = None
+    too_stiff: Callable[[Task, Any, Controller], Iterator[Doubt]] | None = None
 
 
 @contextmanager

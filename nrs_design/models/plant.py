@@ -92,7 +92,7 @@ def build_environments(spec: InteractionDesignSpec) -> Iterator[Environment]:
         if not isinstance(contact, str):
             parts = tuple(known[name] for name in contact)
             losable = spec.contact != "kept" and all(
-                spec.environments[n].is_spring for n in contact
+                spec.environments[n].is_losable for n in contact
             )
             yield touch_at_once(parts, losable=losable)
 
@@ -102,5 +102,6 @@ def _interval(written: RangedQuantity) -> Interval:
 
 
 def _environment(name: str, spec: EnvironmentSpec) -> Environment:
-    law, turned = LINEAR_LAWS[spec.model], spec.exact_at_pivot()
-    return Environment(name, law, tuple(turned[key] for key in law.keys))
+    law, turned = LINEAR_LAWS[spec.linear_model], spec.linear_at_pivot()
+    ranges = tuple(turned[key] for key in law.keys)
+    return Environment(name, law, ranges, preloaded=spec.preloaded)

@@ -9,8 +9,6 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from nrs_design.spec.controllers import touched_in
-
 if TYPE_CHECKING:
     from nrs_design.spec.controllers import ControllerSpec
     from nrs_design.spec.environment import EnvironmentSpec
@@ -41,6 +39,9 @@ def find_changing_contact(
     controllers: Mapping[str, ControllerSpec], environments: Mapping[str, EnvironmentSpec]
 ) -> DwellObstacle | None:
     """Find what changes while one controller is active: the environment obeys no rule of ours."""
+    # A spec of given matrices has no controllers, and does not pay for their models.
+    from nrs_design.spec.controllers import touched_in
+
     for name, controller in controllers.items():
         if len(controller.contacts) > 1:
             return DwellObstacle(

@@ -129,6 +129,9 @@ class InteractionDesignSpec(SpecModel):
             ),
             partial(_check_memories, self.controllers, self.environments, self.coordinates),
             partial(_check_offsets, self.controllers, self.idle_states),
+            partial(
+                _check_preloads, self.touched, self.environments, self.contact, self.coordinates
+            ),
             *(
                 partial(_check_at_once, *item, self.environments, self.contact)
                 for item in self.controllers.items()
@@ -331,13 +334,36 @@ def _check_at_once(
                     "use elastic or kelvin-voigt environments there",
                     *at,
                 )
-            if losable == "losable" and not environment.is_spring:
+            if losable == "losable" and not environment.is_losable:
                 raise fault(
                     f"losing {key!r} on its own is not modelled while {contact_name(contact)} are "
-                    "touched at once: it has damping",
+                    "touched at once: it has damping or a preload",
                     "use `contact: kept`, or elastic environments",
                     *at,
                 )
+
+
+def _check_preloads(
+    touched: frozenset[str],
+    environments: dict[str, EnvironmentSpec],
+    contact: Literal["losable", "kept"] | None,
+    coordinates: str,
+) -> None:
+    """Refuse what is not modelled about environments that are known within a preload."""
+    for name in (n for n, e in environments.items() if e.preloaded and n in touched):
+        if contact == "losable":
+            raise fault(
+                f"loss of contact with {name!r} is not modelled: its law is known within its "
+                "preload only",
+                "use `contact: kept`",
+                "contact",
+            )
+        if coordinates == "force":
+            raise fault(
+                f"force coordinates do not apply to {name!r}: its deflection does not jump",
+                "use `coordinates: deflection`",
+                "coordinates",
+            )
 
 
 def _check_memories(

@@ -274,6 +274,7 @@ Damping = Annotated[
 PositiveDamping = Annotated[
     RangedQuantity, _ranged(kinds.DAMPING, positive=True), _ranged_schema(kinds.DAMPING)
 ]
+Deflection = Annotated[Quantity, _quantity(kinds.DEFLECTION), _schema(kinds.DEFLECTION)]
 Mass = Annotated[Quantity, _quantity(kinds.MASS, positive=False), _schema(kinds.MASS)]
 Length = Annotated[Quantity, _quantity(kinds.LENGTH), _schema(kinds.LENGTH)]
 Coordinate = Annotated[Quantity, _quantity(kinds.LENGTH, signed=True), _schema(kinds.LENGTH)]

@@ -14,6 +14,7 @@ from nrs_design.switched.assumptions import (
     GIVEN_MATRICES,
     assume_matrices,
     identified_texts,
+    preload_texts,
     scale_texts,
 )
 from nrs_design.switched.constraints import assemble_switching
@@ -154,7 +155,12 @@ def assemble(
         )
     else:
         raise AssemblyError(f"unknown coordinates {coordinates!r}: deflection or force")
-    texts = (*system.assumptions, *identified_texts(spec), *scale_texts(scale))
+    texts = (
+        *system.assumptions,
+        *identified_texts(spec),
+        *preload_texts(spec, scale),
+        *scale_texts(scale),
+    )
     return replace(system, assumptions=texts)
 
 

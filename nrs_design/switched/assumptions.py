@@ -144,6 +144,37 @@ def identified_texts(spec: InteractionDesignSpec) -> Iterator[str]:
             yield f"The identification of {at[-1]} is in doubt: {'; '.join(item.doubts)}; {end}."
 
 
+def preload_texts(spec: InteractionDesignSpec, scale: Fraction) -> Iterator[str]:
+    """Say what linear ranges cover of power laws that are known within a preload.
+
+    Parameters
+    ----------
+    spec : InteractionDesignSpec
+        With the environments.
+    scale : Fraction
+        By how much their ranges are stretched: less than declared do not cover the law.
+    """
+    for name, environment in spec.environments.items():
+        if environment.model != "hunt-crossley" or name not in spec.touched:
+            continue
+        low, high = (end.text for end in environment.preload)
+        if scale < 1:
+            yield (
+                f"{name} is a Hunt-Crossley law, and with ranges scaled below 1 that law is not "
+                "covered: it is taken for a linear one."
+            )
+            continue
+        yield (
+            f"{name} is a Hunt-Crossley law whose deflection stays between {low} and {high}. About "
+            f"a rest anywhere from its surface to {high}, its force is then k times the deflection "
+            "from that rest and b times the velocity, exactly, with k and b moving in the ranges "
+            "of the modes: motions need not be small or slow. Nothing is said once the deflection "
+            "has left this preload, nor of the difference of two motions of which neither is at "
+            "rest. The law moves k and b together, so what is refuted with any such k and b may "
+            "hold with it."
+        )
+
+
 def _parameter_text(parameter: Parameter) -> str:
     interval = parameter.interval
     if interval.low == interval.high:

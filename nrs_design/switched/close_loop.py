@@ -307,7 +307,8 @@ def _lost_contact(
         state.idle is None
         and state.law.commands == "velocity"
         and state.coordinates == "deflection"
-        and not any(e.law.remembers or (e.parts and not e.each_losable) for e in state.touched)
+        and not any(e.law.remembers or e.preloaded for e in state.touched)
+        and not any(e.parts and not e.each_losable for e in state.touched)
         and bool(state.touched)
     )
     if not modelled:

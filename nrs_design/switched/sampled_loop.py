@@ -180,7 +180,7 @@ def close_sampled_loop(
         for controller in design.controllers
     }
     touched = plant.among(design.contacts)
-    springs = all(_is_zero(damping_of(environment)) for environment in touched)
+    springs = all(_is_zero(damping_of(e)) and not e.preloaded for e in touched)
     free: tuple[_Motion, ...] = ()
     if spec.contact != "kept" and springs:
         free = tuple(_free_motions(frame, laws, sampling.delay, motor))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from itertools import product
 
@@ -30,6 +30,8 @@ class Environment:
         What it consists of, where several environments are touched at once.
     each_losable : bool
         Whether each of these parts may be lost on its own.
+    preloaded : bool
+        Whether the ranges hold for deflections off the surface only, so that contact is kept.
     """
 
     name: str
@@ -37,6 +39,7 @@ class Environment:
     ranges: tuple[Interval, ...]
     parts: tuple[Environment, ...] = ()
     each_losable: bool = False
+    preloaded: bool = False
 
     @property
     def parameters(self) -> dict[str, Interval]:
@@ -89,7 +92,7 @@ class Environment:
                 f"{self.law.kinds[index]} that no elastic or damped material has",
                 remedy="scale the ranges by less",
             )
-        return Environment(self.name, self.law, ranges)
+        return replace(self, ranges=ranges)
 
 
 def touch_at_once(parts: tuple[Environment, ...], *, losable: bool) -> Environment:
@@ -113,9 +116,9 @@ def touch_at_once(parts: tuple[Environment, ...], *, losable: bool) -> Environme
         total = Interval(total.nominal, min(k.low for k in stiffness), total.high)
     damping = [part.parameters["b"] for part in parts if "b" in part.parameters]
     name = "+".join(part.name for part in parts)
-    if not damping:
-        return Environment(name, Elastic, (total,), parts, losable)
-    return Environment(name, KelvinVoigt, (total, _sum(damping)), parts, losable)
+    law, ranges = (KelvinVoigt, (total, _sum(damping))) if damping else (Elastic, (total,))
+    preloaded = any(part.preloaded for part in parts)
+    return Environment(name, law, ranges, parts, losable, preloaded)
 
 
 def _sum(intervals: Sequence[Interval]) -> Interval:

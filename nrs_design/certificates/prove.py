@@ -147,7 +147,7 @@ def _statements(
     document: Mapping[str, Any], system: SwitchedSystem
 ) -> tuple[AbstractEvidence, ...]:
     # Each may take seconds: a verdict and a remark on every block, said twice, are enough.
-    bounds = len(system.channels) * len(system.outputs)
+    bounds = (1 + len(system.channels)) * len(system.outputs)
     if len(document["statements"]) > 2 * (1 + system.order) + bounds:
         raise ValueError("it makes too many statements")
     statements = tuple(read_evidence(fields, system) for fields in document["statements"])

@@ -38,6 +38,7 @@ COMMANDS = (
     "gate",
     "explain",
     "robot",
+    "ros2",
 )
 
 # Settings of libraries that count from the moment they are loaded; the user's own come first.

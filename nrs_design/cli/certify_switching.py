@@ -134,6 +134,8 @@ def certify_switching(
 
 def summary(result: Result, path: Path | None) -> dict[str, Any]:
     """Return what ``--json`` prints."""
+    from nrs_design.certificates.bounds import bounds_summary
+
     certification = result.certification
     evidence = certification.evidence
     return {
@@ -146,6 +148,7 @@ def summary(result: Result, path: Path | None) -> dict[str, Any]:
             {"kind": statement.kind, "claim": statement.claim(certification.system)}
             for statement in certification.statements
         ],
+        "bounds": bounds_summary(certification.system, certification.statements),
         "method": certification.method,
         **rate_summary(certification),
         "time": str(certification.system.time),

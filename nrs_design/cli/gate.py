@@ -86,7 +86,7 @@ def gate(
 
     Example: nrs-design gate --locked --format github specs
     """
-    chosen = _format(format_, as_json=as_json)
+    chosen = format_of(format_, as_json=as_json)
     _check_options(out, locked=locked, prune=prune)
     search = (max_degree, budget, memory)
     start = perf_counter()
@@ -101,7 +101,14 @@ def gate(
     raise typer.Exit(OF_SEVERITY[outcome.severity])
 
 
-def _format(format_: GateFormat, *, as_json: bool) -> GateFormat:
+def format_of(format_: GateFormat, *, as_json: bool) -> GateFormat:
+    """Return the format that is asked for; --json is short for one of them.
+
+    Raises
+    ------
+    NrsDesignError
+        If both ask for different things.
+    """
     if as_json and format_ not in (GateFormat.TEXT, GateFormat.JSON):
         raise NrsDesignError(
             f"--json and --format {format_} exclude each other", remedy="keep one of them"

@@ -1,7 +1,15 @@
 """The laws as a processor computes them once a period, with the coefficients that ship.
 
-Every coefficient is a single-precision number; what the arithmetic rounds besides is another
-matter. The position is taken at the sample, the force sample may be older.
+Every coefficient is a single-precision number, and so is every result of these operations:
+
+    e = xref - theta
+    u = Kp e + D (e - e_before)
+    xref = xref + T (v - vm)
+    vm = a vm + b F              (without inertia vm = b F, before it is used)
+
+Rounding to nearest changes a result by at most 2^-24 of its size, so a term that takes part in n
+roundings changes by at most `rounding_share` of n of its own. A fused product and sum rounds once
+less. The position is taken at the sample, the force sample may be older.
 """
 
 from __future__ import annotations
@@ -10,10 +18,38 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
-from nrs_design.controllers.float32 import to_float32
+from nrs_design.controllers.float32 import PRECISION, to_float32
 
 if TYPE_CHECKING:
     from nrs_design.controllers.laws import ProportionalDerivative
+
+# Half a unit in the last place, over the number.
+UNIT = Fraction(1, 2**PRECISION)
+# How many roundings a term takes part in, in the order of the operations above. The force sample
+# is rounded once, when it is read; the difference of two errors once, before its product.
+ROUNDINGS = {"e": 1, "Kp e": 2, "D (e - e before)": 3, "a vm": 2, "b F": 3, "T (v - vm)": 2}
+ROUNDINGS_WITHOUT_INERTIA = {"e": 1, "Kp e": 2, "D (e - e before)": 3, "b F": 2, "T (v - vm)": 2}
+
+
+def rounding_share(count: int) -> Fraction:
+    """Return how much so many roundings change a term at most, over its size.
+
+    That is ``n u / (1 - n u)`` with ``u = 2^-24``, and ``n u (1 + 2^-20)`` is not less for n up to
+    15: a dyadic number.
+
+    Parameters
+    ----------
+    count : int
+        The n, from 1 to 15.
+
+    Raises
+    ------
+    ValueError
+        If there are more.
+    """
+    if not 1 <= count <= 15:
+        raise ValueError(f"{count} roundings are not counted")
+    return count * UNIT * (1 + Fraction(1, 2**20))
 
 
 @dataclass(frozen=True, slots=True)

@@ -4,15 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from fractions import Fraction
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from nrs_design.certificates.bounds import bound_on
 from nrs_design.certificates.certificate import Certificate
 from nrs_design.errors import DesignError
 from nrs_design.gating.obligations import Caution, Obligation, SpecOutcome, Status
 from nrs_design.gating.places import Places
 from nrs_design.gating.rules import (
     CERTIFICATE_HOLDS,
+    CERTIFIED_GOAL,
     GOAL,
     MODE_STABLE,
     NOT_DOUBTED,
@@ -21,6 +24,7 @@ from nrs_design.gating.rules import (
     SWITCHING_STABLE,
     Rule,
 )
+from nrs_design.proof.bounds import rounded_down, rounded_up
 from nrs_design.proof.evidence import AbstractEvidence, Shows
 from nrs_design.proof.evidence.fields import rate_text
 from nrs_design.proof.evidence.unstable_mode import (
@@ -193,6 +197,37 @@ class Examiner:
                 place = self.places.goal(item.name, measure.goal)
                 yield self.obligation(GOAL, f"{item.name}: {measure.goal}", status, message, place)
 
+    def certified_goals(self, certificate: Certificate | None) -> Iterator[Obligation]:
+        """Yield NRS108 for the torque and the rate that the spec wants to be proved."""
+        spec = self.loaded.spec
+        goals = spec.goals if spec.kind == "interaction-design" else None
+        if goals is None:
+            return
+        if goals.peak_torque is not None:
+            wanted = goals.peak_torque
+            level = None
+            if certificate is not None:
+                found = bound_on(certificate.system, certificate.statements, "force")
+                level = None if found is None else found.level
+            said = "no bound on the force was proved"
+            if level is not None:
+                said = f"the force is proved to stay below {rounded_up(level, 'N*m')}"
+            met = level is not None and level <= wanted.exact
+            yield self._certified("peak_torque", f"{said}; {wanted.text} is wanted", met=met)
+        if goals.decay_rate is not None:
+            wanted, rate = goals.decay_rate, _decay(certificate)
+            said = "no decay rate in 1/s was proved"
+            if rate is not None:
+                said = f"the proved decay rate is {rounded_down(rate, '1/s')}"
+            met = rate is not None and rate >= wanted.exact
+            yield self._certified("decay_rate", f"{said}; {wanted.text} is wanted", met=met)
+
+    def _certified(self, key: str, message: str, *, met: bool) -> Obligation:
+        status = Status.PROVED if met else Status.INCONCLUSIVE
+        return self.obligation(
+            CERTIFIED_GOAL, f"system: {key}", status, message, self.places.at("goals", key)
+        )
+
     def identified(self) -> Iterator[Obligation]:
         """Yield NRS107 for everything whose identification is in doubt."""
         spec = self.loaded.spec
@@ -214,6 +249,17 @@ class Examiner:
         for doubt in (*doubt_spec(self.loaded.spec), *(analysis.warnings if analysis else ())):
             place = self.places.at(*doubt.at)
             yield Caution(self.loaded.path, str(doubt), place.line, place.column)
+
+
+def _decay(certificate: Certificate | None) -> Fraction | None:
+    """Return the proved rate in 1/s; of a contraction rho per step, ``1 - rho`` is not above it."""
+    evidence = None if certificate is None else certificate.evidence
+    if certificate is None or evidence is None:
+        return None
+    rate, system = evidence.proved_rate(certificate.system), certificate.system
+    if rate is None or system.time is Time.CONTINUOUS:
+        return rate
+    return None if system.sample_time is None else (1 - rate) / system.sample_time
 
 
 def certified_rate(certificate: Certificate | None) -> tuple[str | None, str | None]:

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from nrs_design import __version__
+from nrs_design.certificates.bounds import bounds_summary
 from nrs_design.certificates.certificate import Certificate
 from nrs_design.certificates.verify import verify
 from nrs_design.gating.examine import Examiner, certified_rate
@@ -132,6 +133,7 @@ def _confirmed(
         obligations=(
             *examiner.stability(certificate.system, certificate.evidence, ""),
             examiner.certificate(place, None),
+            *examiner.certified_goals(certificate),
             *_goals(examiner, entry),
             *examiner.identified(),
             _agrees(examiner, file),
@@ -145,6 +147,7 @@ def _confirmed(
         certificate=place,
         certificate_id=certificate.id,
         gains=certificate.gains,
+        bounds=bounds_summary(certificate.system, certificate.statements),
         cautions=tuple(examiner.cautions(None)),
     )
 
@@ -187,6 +190,7 @@ def _inconclusive(examiner: Examiner, entry: LockedSpec, file: Path) -> SpecOutc
         path=examiner.loaded.path,
         obligations=(
             obligation,
+            *examiner.certified_goals(None),
             *_goals(examiner, entry),
             *examiner.identified(),
             _agrees(examiner, file),

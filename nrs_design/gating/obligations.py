@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from enum import StrEnum
 from pathlib import Path
+from typing import Any
 
 from nrs_design.errors import NrsDesignError
 from nrs_design.gating.rules import INTERNAL, RULES, Rule
@@ -129,6 +130,8 @@ class SpecOutcome:
         is no verdict, and nothing to lock.
     cautions : tuple of Caution
         What is doubtful, and breaks no obligation.
+    bounds : sequence of mapping
+        As `nrs_design.certificates.bounds.bounds_summary` gives them.
     """
 
     path: Path
@@ -144,6 +147,7 @@ class SpecOutcome:
     gains: Mapping[str, Mapping[str, str]] = field(default_factory=dict)
     certifiable: bool = True
     cautions: tuple[Caution, ...] = ()
+    bounds: Sequence[Mapping[str, Any]] = ()
 
 
 @dataclass(frozen=True, slots=True)

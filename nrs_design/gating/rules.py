@@ -154,6 +154,16 @@ GOAL = Rule(
     "Let `nrs-design optimize` choose gains that are given, widen their bounds, narrow the ranges, "
     "or relax the goal.",
 )
+CERTIFIED_GOAL = Rule(
+    "NRS108",
+    "The certificate shows the goal",
+    "The goals `peak_torque` and `decay_rate` are held against what is proved: the bound on the "
+    "force in contact under all disturbances of the spec at once, and the decay rate. Decided in "
+    "exact arithmetic. A bound that is above the goal does not say that the goal is missed: the "
+    "largest value that occurs may be smaller, above all where contact may be lost.",
+    "Lower the disturbance (the claim says down to which one the limit is kept), choose gains with "
+    "more damping, raise --budget, or relax the goal.",
+)
 NOT_DOUBTED = Rule(
     "NRS107",
     "Identified values are not in doubt",
@@ -183,6 +193,26 @@ LOCKED = Rule(
     "Run `nrs-design gate` without --locked, look at what changed, and commit the new lock file "
     "together with its certificates; with --prune for specs that were removed.",
 )
+ROS_PARAMETERS = Rule(
+    "NRS201",
+    "The parameters of a ROS 2 controller are read as they are meant",
+    "`nrs-design ros2 check` reads a parameter file as rcl_yaml_param_parser and the parameters "
+    "that admittance_controller declares do: an integer is no floating-point number, lists have "
+    "their length, numbers their bounds. What breaks this keeps the controller from starting.",
+    "Correct the place that is named by line and column.",
+)
+ROS_AXIS = Rule(
+    "NRS202",
+    "Each axis of a ROS 2 admittance controller is stable with what it touches",
+    "The law of ros2_controllers (an exponential filter of the force, symplectic Euler of mass, "
+    "damping and stiffness, joint damping) is written as an exact difference equation with the "
+    "rate of the file, the range of stiffness and the ages of the measurement that the command "
+    "names; every age and every end of a range is a mode, in any order. Proved and refuted as "
+    "NRS102. Axes are taken one by one, and the robot for one that follows its command.",
+    "Lower the stiffness that is touched, the age of the measurement or the period; raise the "
+    "mass or the damping (with stiffness 0 only joint_damping damps); raise filter_coefficient "
+    "towards 1. The message says up to which stiffness there is a proof.",
+)
 INTERNAL = Rule(
     "NRS900",
     "The program works as intended",
@@ -209,7 +239,10 @@ RULES: Mapping[str, Rule] = MappingProxyType(
             CERTIFICATE_HOLDS,
             LOCKED,
             GOAL,
+            CERTIFIED_GOAL,
             NOT_DOUBTED,
+            ROS_PARAMETERS,
+            ROS_AXIS,
             INTERNAL,
         )
     }

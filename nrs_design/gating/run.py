@@ -9,6 +9,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from nrs_design.certificates.bounds import bounds_summary
 from nrs_design.certificates.certificate import dump
 from nrs_design.controllers.gains import gains_of
 from nrs_design.errors import DesignError, OutputError, SpecError
@@ -186,7 +187,12 @@ def _examine(
     rate, rate_name = certified_rate(certificate)
     return SpecOutcome(
         path=loaded.path,
-        obligations=(*obligations, *goals, *examiner.identified()),
+        obligations=(
+            *obligations,
+            *examiner.certified_goals(certificate),
+            *goals,
+            *examiner.identified(),
+        ),
         sha256=loaded.sha256,
         verdict=str(certification.verdict),
         common_quadratic=str(certification.common_quadratic),
@@ -196,6 +202,7 @@ def _examine(
         certificate=file,
         certificate_id=None if certificate is None else certificate.id,
         gains=gains_of(result.design) if result.design else {},
+        bounds=bounds_summary(certification.system, certification.statements),
         cautions=cautions,
     )
 

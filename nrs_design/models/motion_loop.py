@@ -7,7 +7,7 @@ from fractions import Fraction
 
 from nrs_design.errors import AssemblyError
 from nrs_design.models.actuator import Actuator
-from nrs_design.models.linear_form import LinearForm, combine, zero
+from nrs_design.models.linear_form import LinearForm, combine, coordinates, zero
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,14 +39,88 @@ class Realization:
         """Number of states."""
         return len(self.C)
 
+    @property
+    def states(self) -> tuple[str, ...]:
+        """Names of the states; they have no unit of their own."""
+        return tuple(f"xp{i + 1}" for i in range(self.order))
+
     def output(self, size: int) -> LinearForm:
         """Return y as a linear form of a state of that size, in which xp stands first."""
         return [*self.C, *zero(size - self.order)]
 
-    def rates(self, command: LinearForm) -> list[LinearForm]:
-        """Return xp' under the command u, as linear forms of the state that u is one of."""
+    def rates(self, command: LinearForm, load: LinearForm | None = None) -> list[LinearForm]:
+        """Return xp' under the command u, as linear forms of the state that u is one of.
+
+        Parameters
+        ----------
+        command : linear form
+            The u.
+        load : linear form, optional
+            The torque of the environment; it does not act on this loop.
+        """
         rows = [[*row, *zero(len(command) - self.order)] for row in self.A]
         return [*rows[:-1], combine((Fraction(1), rows[-1]), (Fraction(1), command))]
+
+
+@dataclass(frozen=True, slots=True)
+class JointMotion:
+    """PD loop around the actuator in its physical state: the error e and the velocity omega.
+
+    ``e' = u - omega`` and ``tau omega' = Km (Kp e + Kd (u - omega)) - omega - tau F/J``, u the
+    commanded velocity and F the torque of the environment. Error and velocity are continuous
+    whatever gain and time constant do, which the canonical form is not true of; and the rates are
+    affine in Km, 1/tau and 1/J, each for itself.
+
+    Parameters
+    ----------
+    Kp, Kd : Fraction
+        PD gains in rpm/rad and rpm s/rad.
+    Km : Fraction
+        Gain of the actuator in (rad/s)/rpm.
+    tau : Fraction
+        Its time constant in s.
+    J : Fraction or None
+        Inertia at the joint in kg m^2 that the environment works against; None leaves its torque
+        out.
+    """
+
+    Kp: Fraction
+    Kd: Fraction
+    Km: Fraction
+    tau: Fraction
+    J: Fraction | None
+
+    @property
+    def order(self) -> int:
+        """Number of states."""
+        return len(self.states)
+
+    @property
+    def states(self) -> tuple[str, ...]:
+        """Names and units of the states."""
+        return "e [rad]", "omega [rad/s]"
+
+    def output(self, size: int) -> LinearForm:
+        """Return omega as a linear form of a state of that size."""
+        return coordinates(size)[1]
+
+    def rates(self, command: LinearForm, load: LinearForm | None = None) -> list[LinearForm]:
+        """Return e' and omega' under the commanded velocity u, as linear forms of the state.
+
+        Parameters
+        ----------
+        command : linear form
+            The u.
+        load : linear form, optional
+            The torque of the environment.
+        """
+        error, omega = coordinates(len(command))[:2]
+        slip = combine((Fraction(1), command), (Fraction(-1), omega))
+        drive = self.Km / self.tau
+        turn = combine((drive * self.Kp, error), (drive * self.Kd, slip), (-1 / self.tau, omega))
+        if load is not None and self.J is not None:
+            turn = combine((Fraction(1), turn), (-1 / self.J, load))
+        return [slip, turn]
 
 
 def realize(loop: MotionLoop) -> Realization:

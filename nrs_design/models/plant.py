@@ -28,12 +28,16 @@ class Plant:
         The closed motion loop, if the spec states it.
     actuator_ranges : ActuatorRanges or None
         Where the actuator may be, if that is more than a point.
+    load_inertia : Fraction or None
+        Inertia at the joint in kg m^2 against which the torque of an environment works; None where
+        that torque is left out.
     """
 
     actuator: Actuator
     environments: tuple[Environment, ...]
     given_loop: MotionLoop | None = None
     actuator_ranges: ActuatorRanges | None = None
+    load_inertia: Fraction | None = None
 
     def motion_loop(self, Kp: Fraction, Kd: Fraction) -> MotionLoop:
         """Return G: the one that the spec states, else the one that the PD gains make.
@@ -79,8 +83,14 @@ def build_plant(spec: InteractionDesignSpec) -> Plant:
     loop = None
     if stated is not None:
         loop = MotionLoop(stated.numerator, stated.denominator, given=True)
-    environments = tuple(build_environments(spec))
-    return Plant(ranges.nominal, environments, loop, None if ranges.fixed else ranges)
+    load = spec.actuator.load_inertia
+    return Plant(
+        ranges.nominal,
+        tuple(build_environments(spec)),
+        loop,
+        None if ranges.fixed else ranges,
+        None if load is None else load.exact,
+    )
 
 
 def build_environments(spec: InteractionDesignSpec) -> Iterator[Environment]:

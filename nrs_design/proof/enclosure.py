@@ -96,24 +96,41 @@ def eigenvalues(A: RationalMatrix) -> list[Any]:
 def lower_integers(form: Any) -> IntegerMatrix:
     """Return integers that are below a symmetric matrix of balls times a number > 0.
 
-    If every entry is within r of a rational midpoint, then the smallest eigenvalue is at least that
-    of the midpoint minus n r, so that much is subtracted from the diagonal.
+    If every entry is within r_ij of a rational midpoint, ``|x_i x_j| <= (x_i^2 w_i/w_j + x_j^2
+    w_j/w_i)/2`` for any weights w > 0, so the form is at least that of the midpoints minus
+    ``sum_j r_ij w_i/w_j`` on the diagonal. With roots of the diagonal as weights, states in
+    different units cost nothing.
     """
     n = form.nrows()
     rows = [[form[i, j] for j in range(n)] for i in range(n)]
     if any(not ball.abs_upper() < 2**RANGE_LOG2 for row in rows for ball in row):
         return [[0] * n for _ in range(n)]
     mids = [[_fraction(ball.mid()) for ball in row] for row in rows]
-    radius = max(_fraction(ball.rad()) for row in rows for ball in row)
     # Both a midpoint and a radius may have been taken for zero.
-    radius += 2 * Fraction(1, 2**RANGE_LOG2)
-    # Both triangles enclose the same number: take the upper one, and let the radius cover it.
+    least = 2 * Fraction(1, 2**RANGE_LOG2)
+    radii = [[_fraction(ball.rad()) + least for ball in row] for row in rows]
     scale = 2**MIDPOINT_BITS
     largest = max(abs(v) for row in mids for v in row) or Fraction(1)
     unit = Fraction(scale) / largest
-    slack = n * (radius * unit + 1)
-    rounded = [[round(mids[min(i, j)][max(i, j)] * unit) for j in range(n)] for i in range(n)]
-    return [[rounded[i][j] - (int(slack) + 1 if i == j else 0) for j in range(n)] for i in range(n)]
+    # Both triangles enclose the same number: take the upper one, whatever the lower one is.
+    upper = [[(min(i, j), max(i, j)) for j in range(n)] for i in range(n)]
+    lower = [[round(mids[i][j] * unit) for i, j in row] for row in upper]
+    weights = [_near_root(mids[i][i]) for i in range(n)]
+    for k, row in enumerate(upper):
+        slacks = (
+            (radii[i][j] * unit + 1) * weights[k] / w
+            for (i, j), w in zip(row, weights, strict=True)
+        )
+        lower[k][k] -= int(sum(slacks)) + 1
+    return lower
+
+
+def _near_root(number: Fraction) -> Fraction:
+    """Return a power of two near the square root of a number, or 1 if it is not positive."""
+    if number <= 0:
+        return Fraction(1)
+    log2 = number.numerator.bit_length() - number.denominator.bit_length()
+    return Fraction(2) ** (log2 // 2)
 
 
 def _fraction(ball: Any) -> Fraction:

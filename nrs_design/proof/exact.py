@@ -89,6 +89,11 @@ def add(left: IntegerMatrix, right: IntegerMatrix, weight: int = 1) -> list[list
     ]
 
 
+def scaled(M: IntegerMatrix, factor: int) -> list[list[int]]:
+    """Return ``factor M``."""
+    return [[factor * entry for entry in row] for row in M]
+
+
 def is_positive_definite(M: IntegerMatrix) -> bool:
     """Decide whether a symmetric integer matrix is positive definite.
 
@@ -239,11 +244,29 @@ def stein_decrease(
     multiply : callable
         How matrices are multiplied; only a search has reason to ask for another way.
     """
-    p = factor.numerator**2 * denominator**2
-    q = factor.denominator**2
+    return step_decrease(Q, congruence(N, Q, multiply), denominator, factor)
+
+
+def step_decrease(
+    before: IntegerMatrix, image: IntegerMatrix, denominator: int, factor: Fraction
+) -> list[list[int]]:
+    """Form ``factor^2 before - A' after A`` for ``A = N / denominator``, times `stein_factor`.
+
+    Parameters
+    ----------
+    before : integer matrix, shape (n, n)
+        Of the function before the step.
+    image : integer matrix, shape (n, n)
+        The ``N' after N``.
+    denominator : int
+        Positive.
+    factor : Fraction
+        The claimed contraction over the step.
+    """
+    p, q = (factor.numerator * denominator) ** 2, factor.denominator**2
     return [
-        [p * before - q * after for before, after in zip(*rows, strict=True)]
-        for rows in zip(Q, congruence(N, Q, multiply), strict=True)
+        [p * entry - q * moved for entry, moved in zip(*rows, strict=True)]
+        for rows in zip(before, image, strict=True)
     ]
 
 

@@ -7,9 +7,11 @@ it: the test is a proof in either direction, and no eigenvalue is computed.
 
 from __future__ import annotations
 
+from bisect import bisect_left
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
+from operator import mul
 
 from nrs_design.proof.exact import (
     MAX_WORK,
@@ -130,8 +132,7 @@ def check_quadratic(
 def _work(modes: Sequence[Mode], P: RationalMatrix, time: Time, rate: Fraction) -> int:
     """Predict what one decision about P and all modes takes; see `MAX_WORK`."""
     longest = max(
-        (max(bit_length(mode.A.numerators), mode.A.denominator.bit_length()) for mode in modes),
-        default=0,
+        max(bit_length(mode.A.numerators), mode.A.denominator.bit_length()) for mode in modes
     )
     long = max(rate.numerator.bit_length(), rate.denominator.bit_length())
     n = len(P.numerators)
@@ -174,7 +175,7 @@ def _best_rate(modes: Sequence[Mode], P: RationalMatrix, time: Time) -> Fraction
 
     first = _decay_bound(modes, P) if time is Time.CONTINUOUS else Fraction(1, 2)
     low = first / 2 ** _least(lambda k: is_proved(first / 2**k))
-    high = 2 * low if time is Time.CONTINUOUS or low < Fraction(1, 2) else Fraction(1)
+    high = 2 * low
     for _ in range(RATE_BITS):
         middle = (low + high) / 2
         low, high = (middle, high) if is_proved(middle) else (low, middle)
@@ -183,21 +184,21 @@ def _best_rate(modes: Sequence[Mode], P: RationalMatrix, time: Time) -> Fraction
 
 def _least(holds: Callable[[int], bool]) -> int:
     """Return the least natural number with a property that all greater ones have, too."""
-    fails, found = -1, 0
-    while not holds(found):
-        fails, found = found, 2 * found + 1
-    while found - fails > 1:
-        middle = (fails + found) // 2
-        fails, found = (fails, middle) if holds(middle) else (middle, found)
-    return found
+    limit = 1
+    while not holds(limit):
+        limit *= 2
+    return bisect_left(range(limit), True, key=holds)
 
 
 def _decay_bound(modes: Sequence[Mode], P: RationalMatrix) -> Fraction:
-    """Return a power of two above every provable alpha: above ``-x'PAx / x'Px`` at one x."""
+    """Return a power of two above half of every provable alpha.
+
+    All are below ``-x'PAx / x'Px`` at one x, here the first unit vector.
+    """
     Q, A = P.numerators, modes[0].A
     first = sum(Q[0][k] * A.numerators[k][0] for k in range(len(Q)))
-    bound = -Fraction(first, Q[0][0] * A.denominator)
-    return Fraction(2) ** (bound.numerator.bit_length() - bound.denominator.bit_length() + 1)
+    bound = Fraction(first, Q[0][0] * A.denominator)
+    return Fraction(2) ** (bound.numerator.bit_length() - bound.denominator.bit_length())
 
 
 def _counterexample(
@@ -207,8 +208,7 @@ def _counterexample(
     rows = P.fractions()
     if mode is None:
         return Counterexample(None, vector, _value(rows, vector, vector))
-    A = mode.A.fractions()
-    Ax = [sum((a * x for a, x in zip(row, vector, strict=True)), Fraction(0)) for row in A]
+    Ax = _times(mode.A.fractions(), vector)
     if time is Time.CONTINUOUS:
         value = 2 * _value(rows, vector, Ax) + 2 * rate * _value(rows, vector, vector)
     else:
@@ -231,14 +231,11 @@ def _value(
     rows: Sequence[Sequence[Fraction | int]], left: Sequence[Fraction], right: Sequence[Fraction]
 ) -> Fraction:
     """Return ``left' M right``."""
-    return sum(
-        (
-            u * m * v
-            for u, row in zip(left, rows, strict=True)
-            for m, v in zip(row, right, strict=True)
-        ),
-        Fraction(0),
-    )
+    return sum(map(mul, left, _times(rows, right)), Fraction(0))
+
+
+def _times(rows: Sequence[Sequence[Fraction | int]], x: Sequence[Fraction]) -> list[Fraction]:
+    return [sum(map(mul, row, x), Fraction(0)) for row in rows]
 
 
 def indefinite_vector(M: IntegerMatrix) -> tuple[Fraction, ...]:

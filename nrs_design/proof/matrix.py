@@ -7,8 +7,10 @@ from dataclasses import dataclass
 from fractions import Fraction
 from math import inf, lcm
 from operator import index
+from typing import TypeVar
 
 Rows = Sequence[Sequence[Fraction | int]]
+Entry = TypeVar("Entry", int, Fraction)
 
 
 @dataclass(frozen=True, slots=True)
@@ -93,6 +95,30 @@ def multiply(left: Rows, right: Rows) -> list[list[Fraction]]:
     """Return the exact matrix product ``left @ right``."""
     columns = list(zip(*right, strict=True))
     return [[_dot(row, column) for column in columns] for row in left]
+
+
+def leading(M: Sequence[Sequence[Entry]]) -> list[tuple[Entry, ...]]:
+    """Return all rows and columns but the last."""
+    return [tuple(row[:-1]) for row in M[:-1]]
+
+
+def with_crossing(M: Sequence[Sequence[Entry]], k: int, row: Sequence[Entry]) -> list[list[Entry]]:
+    """Return ``M + e r + r' e'`` for the k-th unit vector e.
+
+    Parameters
+    ----------
+    M : matrix, shape (n, n)
+        Integers or fractions.
+    k : int
+        Index of the one in e.
+    row : sequence of number, shape (n,)
+        The r.
+    """
+    rows = [list(entries) for entries in M]
+    for j, entry in enumerate(row):
+        rows[k][j] += entry
+        rows[j][k] += entry
+    return rows
 
 
 def _to_float(numerator: int, denominator: int) -> float:

@@ -104,7 +104,9 @@ def _is_met(A: RationalMatrix, time: Fraction) -> bool:
 
 
 def _decreases_everywhere(system: SwitchedSystem, evidence: CommonQuadratic) -> bool:
-    """Form Q and the decrease in every mode anew, in flint's arithmetic."""
+    """Form Q and the decrease in every mode anew, in flint's arithmetic; not where it rounds."""
+    if evidence.roundings:
+        return _has_positive_forms(system, evidence)
     Q, p, q = _matrix(evidence.Q), evidence.rate.numerator, evidence.rate.denominator
 
     def decrease(A: RationalMatrix) -> Any:
@@ -139,9 +141,8 @@ def has_positive_spectrum(M: Any) -> bool:
 
     All roots are real, so by Descartes' rule they are all positive iff it does.
     """
-    coefficients = M.charpoly().coeffs()
-    n = len(coefficients) - 1
-    return all((c > 0) == ((n - k) % 2 == 0) and c != 0 for k, c in enumerate(coefficients))
+    falling = enumerate(reversed(M.charpoly().coeffs()))
+    return all(c > 0 if k % 2 == 0 else c < 0 for k, c in falling)
 
 
 def _is_surely_stable(A: RationalMatrix, time: Time) -> bool:

@@ -190,6 +190,26 @@ class Channel:
 
 
 @dataclass(frozen=True, slots=True)
+class Rounding:
+    """An error r of one operation of the law: ``x+ = A x + B d + C r`` with ``|r| <= |q (x, d)|``.
+
+    Parameters
+    ----------
+    name : str
+        What is rounded, such as ``Kp e``.
+    columns : tuple of RationalMatrix, each of shape (n, 1)
+        The C of every mode, and after them those of the free modes.
+    rows : tuple of RationalMatrix, each of shape (1, n + number of channels)
+        The q of every mode, and after them those of the free modes, over the state and all
+        disturbances of the system; in free motion nothing in them stands for the deflection.
+    """
+
+    name: str
+    columns: tuple[RationalMatrix, ...]
+    rows: tuple[RationalMatrix, ...]
+
+
+@dataclass(frozen=True, slots=True)
 class Output:
     """A quantity that is one of some rows times the state, and within a range any mixture of them.
 
@@ -232,9 +252,11 @@ class SwitchedSystem:
     sample_time : Fraction or None
         Time from one step to the next in s, in discrete time, if there is such a time.
     channels : tuple of Channel
-        Disturbances, each acting alone; statements about stability are about none of them.
+        Disturbances; statements about stability are about none of them.
     outputs : tuple of Output
         What bounds can be stated for.
+    roundings : tuple of Rounding
+        Errors of the arithmetic, in discrete time; a statement says whether it covers them.
     """
 
     name: str
@@ -247,11 +269,12 @@ class SwitchedSystem:
     sample_time: Fraction | None = None
     channels: tuple[Channel, ...] = ()
     outputs: tuple[Output, ...] = ()
+    roundings: tuple[Rounding, ...] = ()
 
     def with_modes(
         self, modes: tuple[Mode, ...], states: tuple[str, ...], switching: Switching
     ) -> SwitchedSystem:
-        """Return other modes for the same signals; contact, channels and outputs are left behind.
+        """Return other modes for the same signals; what acts on these ones is left behind.
 
         Parameters
         ----------
@@ -315,6 +338,7 @@ class SwitchedSystem:
             or self._find_odd_contact(names)
             or self._find_odd_sample_time()
             or self._find_odd_channel()
+            or self._find_odd_rounding()
         )
 
     def _find_odd_stay(self, names: set[str]) -> str | None:
@@ -383,6 +407,24 @@ class SwitchedSystem:
             return "the limit of an output is not positive"
         names = [*(c.name for c in self.channels), *(o.name for o in self.outputs)]
         return "two disturbances or outputs have one name" if len(set(names)) < len(names) else None
+
+    def _find_odd_rounding(self) -> str | None:
+        n, free = self.order, () if self.contact is None else self.contact.free
+        if self.roundings and self.time is Time.CONTINUOUS:
+            return "the arithmetic rounds, but there are no steps"
+        if self.roundings and not self.is_uniform:
+            return "the arithmetic rounds, but the modes are not of one size"
+        count, width = len(self.modes) + len(free), n + len(self.channels)
+        for item in self.roundings:
+            sized = [*((M, (n, 1)) for M in item.columns), *((M, (1, width)) for M in item.rows)]
+            if not all(M.is_well_formed and M.shape == shape for M, shape in sized):
+                return f"the rounding of {item.name} does not have the size of the state"
+            if not len(item.columns) == len(item.rows) == count:
+                return f"the rounding of {item.name} has not one column and row for every mode"
+            if any(row.numerators[0][n - 1] for row in item.rows[len(self.modes) :]):
+                return f"the rounding of {item.name} depends on the deflection in free motion"
+        names = [item.name for item in self.roundings]
+        return "two roundings have one name" if len(set(names)) < len(names) else None
 
 
 def _is_motion(A: RationalMatrix, order: int, time: Time) -> bool:

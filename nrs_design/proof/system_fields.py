@@ -22,6 +22,7 @@ from nrs_design.proof.system import (
     Mode,
     Output,
     Reset,
+    Rounding,
     Stay,
     SwitchedSystem,
     Switching,
@@ -106,6 +107,14 @@ def read_system(name: str, fields: Mapping[str, Any]) -> SwitchedSystem:
             for item in _read_list(fields.get("outputs", []))
         ),
         sample_time=read_ratio(fields["sample_time"]) if "sample_time" in fields else None,
+        roundings=tuple(
+            Rounding(
+                read_text(item["name"]),
+                tuple(_read_matrix(column) for column in _read_list(item["columns"])),
+                tuple(_read_matrix(row) for row in _read_list(item["rows"])),
+            )
+            for item in _read_list(fields.get("roundings", []))
+        ),
     )
 
 
@@ -113,9 +122,9 @@ def _check_modes(modes: Sequence[Mode], states: int) -> None:
     sizes = [len(mode.A.numerators) for mode in modes]
     if len({mode.name for mode in modes}) < len(modes):
         raise ValueError("two modes have the same name")
-    if any(mode.A.shape != (size, size) for mode, size in zip(modes, sizes, strict=True)):
+    if any(mode.A.shape[0] != mode.A.shape[1] for mode in modes):
         raise ValueError("a mode is not square")
-    if max(sizes, default=0) != states:
+    if not sizes or max(sizes) != states:
         raise ValueError("the largest mode does not have the states that are named")
     _check_work(modes)
 
@@ -135,7 +144,7 @@ def _read_modes(value: object) -> tuple[Mode, ...]:
 
 
 def _channel_fields(system: SwitchedSystem) -> Fields:
-    """Return disturbances and outputs, if there are any."""
+    """Return disturbances, outputs and roundings, if there are any."""
     channels = [
         {
             "name": channel.name,
@@ -154,7 +163,16 @@ def _channel_fields(system: SwitchedSystem) -> Fields:
         }
         for item in system.outputs
     ]
-    return ({"channels": channels} if channels else {}) | ({"outputs": outputs} if outputs else {})
+    roundings = [
+        {
+            "name": item.name,
+            "columns": [_matrix_fields(column) for column in item.columns],
+            "rows": [_matrix_fields(row) for row in item.rows],
+        }
+        for item in system.roundings
+    ]
+    every = {"channels": channels, "outputs": outputs, "roundings": roundings}
+    return {key: value for key, value in every.items() if value}
 
 
 def _contact_fields(contact: Contact) -> Fields:

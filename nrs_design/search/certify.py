@@ -89,8 +89,8 @@ def certify(
     simple = system.switching.is_arbitrary and system.is_uniform
     merged = merge_equal_modes(system) if simple else system
     limits = _limits_for(merged, system, limits)
-    # A contact that is lost is a matter of the whole state.
-    simple = simple and system.contact is None
+    # A contact that is lost, and what the arithmetic rounds, are matters of the whole state.
+    simple = simple and system.contact is None and not system.roundings
     blocks = triangular_blocks(merged) if simple else (tuple(range(system.order)),)
     if len(blocks) == 1:
         result = _climb(merged, method, limits, allowance, progress)
@@ -118,15 +118,19 @@ def certify(
 def _bounds(
     system: SwitchedSystem, allowance: Allowance, progress: Progress
 ) -> tuple[tuple[AbstractEvidence, ...], tuple[Attempt, ...]]:
-    """Bound every output under every disturbance that the system declares, each alone."""
+    """Bound every output under all disturbances at once, and the first one under each alone."""
     found: list[AbstractEvidence] = []
     attempts: list[Attempt] = []
-    pairs = [(channel, output) for channel in system.channels for output in system.outputs]
-    for count, (channel, output) in enumerate(pairs):
-        name, start = f"bound on {output.name} under {channel.name}", perf_counter()
+    alone = [(channel,) for channel in system.channels]
+    pairs = [(system.channels, output) for output in system.outputs if alone]
+    if len(alone) > 1:
+        pairs += [(channels, output) for channels in alone for output in system.outputs[:1]]
+    for count, (channels, output) in enumerate(pairs):
+        under = " and ".join(channel.name for channel in channels)
+        name, start = f"bound on {output.name} under {under}", perf_counter()
         progress(name)
         own = allowance.part(1 / (len(pairs) - count))
-        search = partial(search_ellipsoid, system, channel, output, own)
+        search = partial(search_ellipsoid, system, channels, output, own)
         evidence, outcome = _take(search, system)
         attempts.append(Attempt(name, outcome, perf_counter() - start))
         if evidence is not None:

@@ -14,7 +14,7 @@ from fractions import Fraction
 import numpy as np
 from numpy.typing import NDArray
 
-from nrs_design.proof.evidence import ConewiseQuadratic
+from nrs_design.proof.evidence import CommonQuadratic, ConewiseQuadratic
 from nrs_design.proof.system import Contact, Time
 from nrs_design.search.allowance import Allowance, Cost, NotAffordableError
 from nrs_design.search.balance import mean_norm_coordinates
@@ -23,7 +23,7 @@ from nrs_design.search.decay import fastest_first
 from nrs_design.search.family import Family, to_floats
 from nrs_design.search.interior_point import Cones, maximize_last, step_cost
 from nrs_design.search.lmi import time_unit
-from nrs_design.search.rounding import claims, digits, rate_at, unscale
+from nrs_design.search.rounding import claims, digits, rate_at, round_rate, unscale
 from nrs_design.search.sdp import pack, symmetric_basis
 
 Array = NDArray[np.float64]
@@ -35,6 +35,12 @@ START_FLOOR = 1e-3
 FEWEST_STEPS = 4
 # Rounding takes about as much as a smaller margin gives.
 SMALLEST_MARGIN = 1e-10
+# What the arithmetic rounds takes a little more than in the first order.
+LOST = 1.25
+# Few roundings: more digits at once, as every check takes longer.
+WITH_ERRORS = (24, 32, 40, 50, 60)
+
+Quadratic = ConewiseQuadratic | CommonQuadratic
 
 
 @dataclass(frozen=True)
@@ -59,13 +65,14 @@ class Motions:
     pulls: Array
 
     @classmethod
-    def of(cls, family: Family, contact: Contact) -> Motions:
+    def of(cls, family: Family) -> Motions:
         """Convert the motions of a system to the coordinates of a family."""
-        d = family.exponents
-        free = np.ldexp(to_floats([mode.A for mode in contact.free]), d[None, :] - d[:, None])
+        contact, d = family.system.contact or Contact(()), family.exponents
+        free = to_floats([mode.A for mode in contact.free]).reshape(-1, len(d), len(d))
         rows = [to_floats([q])[0, 0] for q in contact.pulls]
         pulls = np.ldexp(np.array(rows).reshape(-1, len(d)), d[None, :])
-        return cls(family.system.time, family.matrices, free, pulls)
+        scaled = np.ldexp(free, d[None, :] - d[:, None])
+        return cls(family.system.time, family.matrices, scaled, pulls)
 
     def transformed(self, T: Array) -> Motions:
         """Return the same in coordinates ``x = T z``."""
@@ -76,6 +83,52 @@ class Motions:
 
 
 @dataclass(frozen=True)
+class Errors:
+    """What the arithmetic rounds, in floating point.
+
+    Parameters
+    ----------
+    columns : ndarray, shape (k, r, n)
+        Where each rounding acts, for every mode and free mode, in the coordinates of a family.
+    rows : ndarray, shape (k, r, n)
+        How large it is at most, over the state.
+    """
+
+    columns: Array
+    rows: Array
+
+    @classmethod
+    def of(cls, family: Family) -> Errors:
+        """Convert the roundings of a system to the coordinates of a family."""
+        d, n = family.exponents, len(family.exponents)
+        items = family.system.roundings
+        columns = np.stack([to_floats(item.columns)[:, :, 0] for item in items], axis=1)
+        rows = np.stack([to_floats(item.rows)[:, 0, :n] for item in items], axis=1)
+        return cls(np.ldexp(columns, -d), np.ldexp(rows, d))
+
+    def allow_for(self, Q: Array, claim: Fraction) -> tuple[Array, Fraction]:
+        """Return multipliers, and what is left of a rate if the function loses what they take.
+
+        In the norm of Q, an error of size ``s`` times that of the state, where a step keeps at
+        most that size, takes ``2 s`` of V; with the multiplier ``|C| / |q|`` half of it is taken by
+        either term.
+
+        Parameters
+        ----------
+        Q : ndarray, shape (n, n)
+            In the coordinates of the family.
+        claim : Fraction
+            The contraction rho that holds without errors.
+        """
+        L = np.linalg.cholesky(Q)
+        pushed = np.linalg.norm(self.columns @ L, axis=-1).max(axis=0)
+        sizes = np.linalg.norm(self.rows @ np.linalg.inv(L).T, axis=-1).max(axis=0)
+        loss = LOST * float((2 * pushed * sizes).sum())
+        taus = np.divide(pushed, sizes, out=np.ones_like(pushed), where=sizes > 0)
+        return taus, round_rate(float(np.sqrt(float(claim) ** 2 + loss)), Time.DISCRETE)
+
+
+@dataclass(frozen=True)
 class Solution:
     """A quadratic function and its multipliers, in floating point."""
 
@@ -83,13 +136,23 @@ class Solution:
     multipliers: Array
 
 
-def search_conewise(family: Family) -> Candidates[ConewiseQuadratic]:
-    """Search for a function for contact and free motion; then, if asked to, raise the rate."""
+def search_conewise(family: Family) -> Candidates[Quadratic]:
+    """Search for a function for contact and free motion; then, if asked to, raise the rate.
+
+    Where the arithmetic rounds, functions that cover that are tried before others.
+    """
+    if family.system.roundings:
+        yield from _search(family, Errors.of(family))
+    if family.system.contact is None:
+        return NO_MARGIN
+    return (yield from _search(family, None))
+
+
+def _search(family: Family, errors: Errors | None) -> Candidates[Quadratic]:
     system = family.system
-    assert system.contact is not None  # the ladder
     if not np.isfinite(family.limit):
         return OUT_OF_RANGE
-    motions = Motions.of(family, system.contact)
+    motions = Motions.of(family)
     T = separating_coordinates(motions)
     own = motions.transformed(T)
     if not all(np.isfinite(part).all() for part in (T, own.contact, own.free, own.pulls)):
@@ -100,14 +163,16 @@ def search_conewise(family: Family) -> Candidates[ConewiseQuadratic]:
     if solution is None:
         return NO_MARGIN
     if family.optimize_rate:
-        yield from _fastest(family, own, T)
+        yield from _fastest(family, own, T, errors)
     for claim in claims(1.0, best_rate(own, solution), system.time):
-        for evidence in _roundings(family, solution, T, claim):
+        for evidence in _roundings(family, solution, T, claim, errors):
             yield Candidate(evidence)
     return None
 
 
-def _fastest(family: Family, own: Motions, T: Array) -> Iterator[Candidate[ConewiseQuadratic]]:
+def _fastest(
+    family: Family, own: Motions, T: Array, errors: Errors | None
+) -> Iterator[Candidate[Quadratic]]:
     """Yield functions for the largest rates that fit into the time."""
 
     def solve(rate: float, allowance: Allowance) -> Solution | None:
@@ -117,15 +182,15 @@ def _fastest(family: Family, own: Motions, T: Array) -> Iterator[Candidate[Conew
         for solution, claim in fastest_first(
             solve, family.limit, family.system.time, family.allowance
         ):
-            for evidence in _roundings(family, solution, T, claim):
+            for evidence in _roundings(family, solution, T, claim, errors):
                 yield Candidate(evidence, "found with the largest decay rate")
     except NotAffordableError:
         return
 
 
 def _roundings(
-    family: Family, solution: Solution, T: Array, claim: Fraction
-) -> Iterator[ConewiseQuadratic]:
+    family: Family, solution: Solution, T: Array, claim: Fraction, errors: Errors | None
+) -> Iterator[Quadratic]:
     """Yield roundings of a solution in coordinates ``x = T z`` of the family.
 
     A multiplier belongs to the product of the deflection and a force (in continuous time), or of
@@ -136,12 +201,25 @@ def _roundings(
     exponent = int(np.frexp(np.abs(Q).max())[1])
     times = 1 if family.system.time is Time.CONTINUOUS else 2
     scaled = np.ldexp(solution.multipliers / T[-1, -1] ** times, -exponent)
-    shift = -times * int(family.exponents[-1])
-    for bits in digits():
+    shift, taus = -times * int(family.exponents[-1]), np.zeros(0)
+    if errors is not None:
+        taus, claim = errors.allow_for(np.ldexp(Q, -exponent), claim)
+    if claim >= 1 and errors is not None:
+        return
+    for bits in digits() if errors is None else WITH_ERRORS:
         rows, log2 = unscale(np.ldexp(Q, -exponent), family.exponents, bits)
-        whole = Fraction(2) ** (log2 + shift)
-        multipliers = tuple(round(max(Fraction(float(m)), Fraction(0)) * whole) for m in scaled)
-        yield ConewiseQuadratic(rows, max(log2, 0), claim, multipliers)
+        multipliers, roundings = numerators(scaled, log2 + shift), numerators(taus, log2)
+        log2 = max(log2, 0)
+        if family.system.contact is None:
+            yield CommonQuadratic(rows, log2, claim, roundings)
+        else:
+            yield ConewiseQuadratic(rows, log2, claim, multipliers, roundings)
+
+
+def numerators(multipliers: Array, log2: int) -> tuple[int, ...]:
+    """Round multipliers to integers over two to a power; none becomes negative."""
+    whole = Fraction(2) ** log2
+    return tuple(round(max(Fraction(float(entry)), Fraction(0)) * whole) for entry in multipliers)
 
 
 def separating_coordinates(motions: Motions) -> Array:
@@ -250,6 +328,8 @@ def _decreases(motions: Motions, Q: Array, rate: float) -> Array:
         lagging = np.repeat(_lyapunov(Q, F, rate), len(motions.pulls), axis=1)
         moves = [_lyapunov(Q, A, rate), _inner(_lyapunov(inner, _inner(F), rate)), lagging]
         return np.concatenate(moves, axis=1)
+    if not len(F):
+        return _stein(Q, A, Q, rate)
     others, moved = A.copy(), F.copy()
     others[:, -1] = 0.0
     moved[..., -1] = 0.0
@@ -284,7 +364,7 @@ def _filling(motions: Motions) -> Array:
     counts = (
         (contact, free, free * pulls)
         if motions.time is Time.CONTINUOUS
-        else (2 * contact, 2 * free, 0)
+        else (2 * contact if free else contact, 2 * free, 0)
     )
     filling = np.zeros((sum(counts), n, n))
     filling[counts[0] : counts[0] + counts[1], -1, -1] = 1.0
@@ -297,7 +377,7 @@ def _separations(motions: Motions) -> list[tuple[NDArray[np.int64], Array]]:
     if motions.time is Time.CONTINUOUS:
         forms = _with_last(np.tile(motions.pulls, (f, 1)))
         return [(np.array([m + f + k]), form[None]) for k, form in enumerate(forms)] if p else []
-    return [(np.arange(m, 2 * m), _with_last(motions.contact[:, -1]))]
+    return [(np.arange(m, 2 * m), _with_last(motions.contact[:, -1]))] if f else []
 
 
 def _with_last(rows: Array) -> Array:

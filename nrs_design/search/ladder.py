@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import partial
 from itertools import islice, zip_longest
+from math import inf
 
 from nrs_design.proof.evidence import AbstractEvidence
 from nrs_design.proof.evidence.common_polynomial import MAX_DEGREE, MAX_MONOMIALS
@@ -21,6 +22,7 @@ from nrs_design.search.common_quadratic import (
     search_preconditioned,
     search_raw,
 )
+from nrs_design.search.conewise_polynomial import conewise_cost, search_conewise_polynomial
 from nrs_design.search.conewise_quadratic import search_conewise
 from nrs_design.search.family import Family
 from nrs_design.search.method import Method
@@ -35,6 +37,8 @@ from nrs_design.search.unstable_value import search_switching_at_values, search_
 
 # Degrees that are tried before the rungs below, which are quicker than higher ones.
 FIRST_DEGREES = 2
+# Seconds of a degree of what is tried before the cheaper rungs.
+QUICK = 0.5
 HELD = f"a certificate holds at most {MAX_MONOMIALS} monomials and degree {MAX_DEGREE}"
 
 Step = tuple[str, Search]
@@ -89,6 +93,18 @@ class Facts:
         return self.system.contact is not None
 
     @property
+    def rounds(self) -> bool:
+        """Whether the system says what its arithmetic rounds."""
+        return bool(self.system.roundings)
+
+    @property
+    def may_bounce(self) -> bool:
+        """Whether one function could be for lost contact with springs, in continuous time."""
+        contact = self.system.contact
+        springs = contact is not None and not contact.pulls
+        return self.may_share_an_ellipsoid and self.is_continuous and springs
+
+    @property
     def has_rules(self) -> bool:
         """Whether there are rules for switching, and no parameter is constant."""
         return not (self.is_arbitrary or self.has_constant)
@@ -129,6 +145,8 @@ class Rung:
         Tells whether it is worth trying where it was not asked for alone.
     only_quadratic : bool
         Left out once it is known that there is no common quadratic function.
+    first : float
+        A degree that is predicted to take more seconds is tried with the higher ones, at last.
     """
 
     name: str
@@ -138,6 +156,20 @@ class Rung:
     cost: Callable[[SwitchedSystem, int], tuple[Cost, str]] | None = None
     in_auto: Callable[[Facts], bool] = _always
     only_quadratic: bool = False
+    first: float = inf
+
+    def count_first(self, system: SwitchedSystem) -> int:
+        """Return how many steps are made before the rungs below: of the first degrees, the quick.
+
+        Parameters
+        ----------
+        system : SwitchedSystem
+            The modes.
+        """
+        if self.cost is None or self.first == inf:
+            return FIRST_DEGREES
+        degrees = range(2, 2 + FIRST_DEGREES)
+        return sum(self.cost(system, d)[0].seconds <= self.first for d in degrees)
 
     def is_wanted(self, facts: Facts, method: Method) -> bool:
         """Tell whether to try it, given what was asked for."""
@@ -201,8 +233,35 @@ LADDER: tuple[Rung, ...] = (
         lambda f: f.may_lose_contact and f.may_share_an_ellipsoid,
         search_conewise,
     ),
+    Rung(
+        "quadratic, with roundings",
+        Method.LMI,
+        lambda f: f.rounds and not f.may_lose_contact and f.may_share_an_ellipsoid,
+        search_conewise,
+    ),
+    # Before what takes for granted that contact is kept; that no quadratic function exists is said
+    # of the matrices all the same.
+    Rung(
+        "obstruction in contact",
+        Method.OBSTRUCTION,
+        lambda f: f.may_bounce,
+        search_obstruction,
+    ),
+    Rung(
+        "conewise polynomial",
+        Method.CONEWISE_POLYNOMIAL,
+        lambda f: f.may_bounce,
+        search_conewise_polynomial,
+        cost=conewise_cost,
+        first=QUICK,
+    ),
     Rung("lmi", Method.LMI, lambda f: f.may_share_an_ellipsoid, search_by_lmi),
-    Rung("obstruction", Method.OBSTRUCTION, lambda f: f.may_share_a_function, search_obstruction),
+    Rung(
+        "obstruction",
+        Method.OBSTRUCTION,
+        lambda f: f.may_share_a_function and not f.may_bounce,
+        search_obstruction,
+    ),
     # The solver may have stalled: other coordinates, before giving up on quadratics.
     Rung(
         "lmi, raw",
@@ -300,7 +359,7 @@ def steps(
         if not rung.is_wanted(facts, method) or (rung.only_quadratic and has_no_quadratic()):
             continue
         own = rung.steps(system, limits, allowance)
-        yield from islice(own, FIRST_DEGREES)
+        yield from islice(own, rung.count_first(system))
         rising.append(own)
     for higher in zip_longest(*rising):
         yield from (step for step in higher if step is not None)

@@ -255,41 +255,95 @@ def find_common_polynomial(
     """
     allowance = allowance or Allowance()
     allowance.take(*polynomial_cost(lift.variables, len(lift.matrices), lift.degree))
-    rate = float(np.ldexp(rate, lift.unit))
-    lifted_rate = rate * lift.degree if time is Time.CONTINUOUS else rate**lift.degree
     m, K = lift.matrices.shape[:2]
     basis, identity = symmetric_basis(K), pack(np.eye(K))
     size, forms = len(basis), len(lift.vanishing)
-    directions = pack(orthonormal(lift.vanishing))
-    blocks = [np.zeros((size, size + m * forms + 1)) for _ in range(m + 2)]
-    blocks[0][:, :size] = np.eye(size)
-    blocks[1][:, :size] = -np.eye(size)
-    for k, block in enumerate(blocks[2:]):
-        images = decreases(lift.matrices[k], basis, time, lifted_rate)
-        block[:, :size] = -pack(images).T
-        block[:, size + k * forms : size + (k + 1) * forms] = -directions.T
-        block[:, -1] = identity
+    width = size + m * forms + 1
+    bounds = np.zeros((2 * size, width))
+    bounds[:size, :size], bounds[size:, :size] = np.eye(size), -np.eye(size)
+    blocks = decrease_blocks(lift, basis, time, rate, size, width)
     offset = np.concatenate([identity, np.zeros(size * (m + 1))])
-    x = maximize_margin(np.vstack(blocks), offset, [K] * (m + 2), time_limit=allowance.left)
+    x = maximize_margin(
+        np.vstack([bounds, *blocks]), offset, [K] * (m + 2), time_limit=allowance.left
+    )
     if x is None or x[-1] <= 0:
         return None
-    weights = x[size:-1].reshape(m, forms)
-    Q = np.tensordot(x[:size], basis, axes=1)
-    return Solution(Q, np.tensordot(weights @ directions, basis, axes=1))
+    return Solution(np.tensordot(x[:size], basis, axes=1), vanishing_in(lift, x[size:-1]))
+
+
+def decrease_blocks(
+    lift: Lift, images: Array, time: Time, rate: float, first: int, width: int
+) -> list[Array]:
+    """Return the rows that ask for a decrease in each mode, for `maximize_margin`.
+
+    The unknowns are the coordinates of Q, then, from one column on, those of a vanishing form for
+    each mode, and the margin as the last.
+
+    Parameters
+    ----------
+    lift : Lift
+        The modes.
+    images : ndarray, shape (p, K, K)
+        What a unit of each coordinate of Q is in the monomials of the modes.
+    time : Time
+        Continuous or discrete.
+    rate : float
+        alpha in 1/s, or rho per step.
+    first : int
+        Column of the first vanishing form.
+    width : int
+        Number of unknowns.
+    """
+    rate = float(np.ldexp(rate, lift.unit))
+    lifted_rate = rate * lift.degree if time is Time.CONTINUOUS else rate**lift.degree
+    directions, identity = pack(orthonormal(lift.vanishing)), pack(np.eye(images.shape[-1]))
+    blocks, forms = [], len(directions)
+    for k, A in enumerate(lift.matrices):
+        block = np.zeros((len(identity), width))
+        block[:, : len(images)] = -pack(decreases(A, images, time, lifted_rate)).T
+        block[:, first + k * forms : first + (k + 1) * forms] = -directions.T
+        block[:, -1] = identity
+        blocks.append(block)
+    return blocks
+
+
+def vanishing_in(lift: Lift, coordinates: Array) -> Array:
+    """Return the vanishing form of each mode, shape (m, K, K), from the unknowns of a program.
+
+    Parameters
+    ----------
+    lift : Lift
+        The modes.
+    coordinates : ndarray
+        Of all forms, one mode after the other.
+    """
+    weights = coordinates.reshape(len(lift.matrices), len(lift.vanishing))
+    basis = orthonormal(lift.vanishing)
+    return np.asarray(np.tensordot(weights, basis, axes=1))
 
 
 def _roundings(family: Family, lift: Lift, solution: Solution) -> Iterator[CommonPolynomial]:
     """Yield roundings to integers at rates just below the one that a solution shows itself."""
     system = family.system
-    own = _own_rate(lift, solution, system.time)
+    own = shown_rate(lift, solution, system.time)
     slower = min if system.time is Time.CONTINUOUS else max
     for claim in claims(1.0, slower(own, family.limit), system.time, NEAREST):
         for bits in digits(FEWEST_BITS):
             yield _integers(system, lift, solution, claim, bits)
 
 
-def _own_rate(lift: Lift, solution: Solution, time: Time) -> float:
-    """Return the rate that Q and the vanishing forms show, by generalized eigenvalues."""
+def shown_rate(lift: Lift, solution: Solution, time: Time) -> float:
+    """Return the rate that Q and the vanishing forms show, by generalized eigenvalues.
+
+    Parameters
+    ----------
+    lift : Lift
+        The modes.
+    solution : Solution
+        In their coordinates.
+    time : Time
+        Continuous or discrete.
+    """
     forms = decreases(lift.matrices, solution.Q, time, 0.0) + solution.vanishing
     inverse = np.linalg.inv(np.linalg.cholesky(solution.Q))
     smallest = float(np.linalg.eigvalsh(inverse @ forms @ inverse.T).min())
@@ -301,26 +355,46 @@ def _own_rate(lift: Lift, solution: Solution, time: Time) -> float:
 def _integers(
     system: SwitchedSystem, lift: Lift, solution: Solution, rate: Fraction, bits: int
 ) -> CommonPolynomial:
-    exponents = lift.exponents - lift.exponents.min()
-    normalized = int(np.frexp(np.abs(solution.Q).max())[1])
-    Q = round_form(solution.Q, exponents, bits - normalized)
-    groups = products(system.order, lift.degree)
-    vanishing = []
+    lowest, normalized = int(lift.exponents.min()), int(np.frexp(np.abs(solution.Q).max())[1])
+    return CommonPolynomial(
+        degree=lift.degree,
+        Q=round_form(solution.Q, lift.exponents - lowest, bits - normalized),
+        denominator_log2=max(0, bits - 2 * lowest),
+        vanishing=round_vanishing(system, lift, solution, rate, bits - normalized, lowest),
+        rate=rate,
+    )
+
+
+def round_vanishing(
+    system: SwitchedSystem, lift: Lift, solution: Solution, rate: Fraction, bits: int, lowest: int
+) -> tuple[tuple[tuple[int, ...], ...], ...]:
+    """Round the vanishing form of each mode so that it vanishes exactly.
+
+    Parameters
+    ----------
+    system : SwitchedSystem
+        The exact modes.
+    lift : Lift
+        Of them.
+    solution : Solution
+        In its coordinates.
+    rate : Fraction
+        The claim.
+    bits : int
+        After the binary point, in these coordinates.
+    lowest : int
+        The exponent of the unit of the integers; none of the lift is lower.
+    """
+    groups, forms = products(system.order, lift.degree), []
     for mode, N in zip(system.modes, solution.vanishing, strict=True):
         # The integer form of the decrease is this multiple of the floating-point one.
         factor = lifted_factor(mode, lift.degree, rate, system.time)
         rounded = [
             [_shift(factor * entry, -lift.unit) for entry in row]
-            for row in round_form(N, exponents, bits - normalized)
+            for row in round_form(N, lift.exponents - lowest, bits)
         ]
-        vanishing.append(make_vanish(rounded, groups))
-    return CommonPolynomial(
-        degree=lift.degree,
-        Q=Q,
-        denominator_log2=max(0, bits + 2 * int(-lift.exponents.min())),
-        vanishing=tuple(tuple(map(tuple, N)) for N in vanishing),
-        rate=rate,
-    )
+        forms.append(tuple(map(tuple, make_vanish(rounded, groups))))
+    return tuple(forms)
 
 
 def _shift(value: int, exponent: int) -> int:

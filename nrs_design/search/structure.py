@@ -20,8 +20,11 @@ Pattern = NDArray[np.bool_]
 def merge_equal_modes(system: SwitchedSystem) -> SwitchedSystem:
     """Keep the first of every set of equal modes; the same system if there are none.
 
-    Equal modes may differ in what disturbs them, so disturbances and outputs are left behind.
+    Equal modes may differ in what disturbs them, so disturbances and outputs are left behind; with
+    what the arithmetic adds to them, they are not equal.
     """
+    if system.roundings:
+        return system
     first: dict[RationalMatrix, int] = {}
     for index, mode in enumerate(system.modes):
         first.setdefault(mode.A, index)

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from nrs_design.proof.system import SwitchedSystem, Time
-from nrs_design.simulation.norms import Array, Norm, quadratic_norm
+from nrs_design.simulation.norms import Array, Norm
 from nrs_design.simulation.switched import TimeResponse, times, transition_matrices
 
 
@@ -17,22 +17,21 @@ def with_free_modes(system: SwitchedSystem) -> SwitchedSystem:
     return replace(system, modes=(*system.modes, *system.contact.free), contact=None)
 
 
-def contact_norm(Q: Array) -> Norm:
-    """Return ``sqrt(w' Q w)`` with ``w = (y, max(delta, 0))``.
+def clipped(norm: Norm) -> Norm:
+    """Return the norm of ``w = (y, max(delta, 0))``.
 
     Parameters
     ----------
-    Q : ndarray, shape (n, n)
-        Symmetric and positive definite.
+    norm : callable
+        Of states, of which the deflection is the last entry.
     """
-    norm = quadratic_norm(Q)
 
-    def clipped(states: Array) -> Array:
+    def of_clipped(states: Array) -> Array:
         w = states.copy()
         w[..., -1] = np.maximum(w[..., -1], 0.0)
         return norm(w)
 
-    return clipped
+    return of_clipped
 
 
 def worst_contact(
@@ -49,7 +48,7 @@ def worst_contact(
     system : SwitchedSystem
         With its contact.
     norm : callable
-        What to make large, as `contact_norm` gives it.
+        What to make large, as `clipped` gives it.
     initial : ndarray, shape (n,)
         State at time zero.
     step : float

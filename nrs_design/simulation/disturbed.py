@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.system import Channel, Output, SwitchedSystem, Time
 from nrs_design.simulation.norms import Array
 from nrs_design.simulation.switched import TimeResponse, times
@@ -24,8 +24,8 @@ class DisturbedMotions:
 
     Parameters
     ----------
-    touching, flying : ndarray, shapes (m, n, n + 1) and (f, n, n + 1)
-        Maps of the state and of a share of the largest disturbance; no free ones where contact is
+    touching, flying : ndarray, shapes (m, n, n + c) and (f, n, n + c)
+        Maps of the state and of shares of the largest disturbances; no free ones where contact is
         kept.
     rows : ndarray, shape (r, n)
         The output at the corners of its ranges.
@@ -37,7 +37,7 @@ class DisturbedMotions:
 
     @classmethod
     def of(
-        cls, system: SwitchedSystem, channel: Channel, output: Output, step: float
+        cls, system: SwitchedSystem, channels: Sequence[Channel], output: Output, step: float
     ) -> DisturbedMotions:
         """Convert a system to floating point.
 
@@ -45,21 +45,29 @@ class DisturbedMotions:
         ----------
         system : SwitchedSystem
             With its modes, and the free ones where contact may be lost.
-        channel : Channel
-            The disturbance.
+        channels : sequence of Channel
+            The disturbances.
         output : Output
-            What it moves.
+            What they move.
         step : float
-            Time of a step in s, over which the disturbance is held; one in discrete time.
+            Time of a step in s, over which disturbances are held; one in discrete time.
         """
         free = () if system.contact is None else system.contact.free
-        pairs = zip((*system.modes, *free), channel.columns, strict=True)
-        maps = np.array([_with_column(mode.A, B, float(channel.bound)) for mode, B in pairs])
+        parts = [np.array([mode.A.floats() for mode in (*system.modes, *free)])]
+        for channel in channels:
+            columns = np.array([column.floats() for column in channel.columns])
+            parts.append(columns * float(channel.bound))
+        maps = np.concatenate(parts, axis=2)
         if system.time is Time.CONTINUOUS:
             maps = _held(maps, step)
         count = len(system.modes)
         rows = np.array([row.floats()[0] for row in output.rows])
         return cls(maps[:count], maps[count:], rows)
+
+    @property
+    def disturbances(self) -> int:
+        """How many disturbances there are."""
+        return int(self.touching.shape[2] - self.touching.shape[1])
 
     @property
     def maps(self) -> Array:
@@ -106,7 +114,7 @@ def worst_disturbed(motions: DisturbedMotions, step: float, steps: int) -> TimeR
     """
     count = len(motions.touching)
     wanted = np.repeat(np.arange(count), 2)[:, None].repeat(steps, axis=1)
-    signs = np.tile([[1.0], [-1.0]], (count, steps))
+    signs = np.tile([[[1.0]], [[-1.0]]], (count, steps, motions.disturbances))
     best, chosen, largest = np.zeros(0), np.zeros(0, dtype=np.int64), -1.0
     for _ in range(SWEEPS):
         states, modes = follow(motions, wanted, signs)
@@ -127,8 +135,8 @@ def follow(motions: DisturbedMotions, wanted: Indices, signs: Array) -> tuple[Ar
         What can happen.
     wanted : ndarray of int, shape (S, N)
         The mode of every run and step, where it is possible; otherwise one in its place.
-    signs : ndarray, shape (S, N)
-        Shares of the largest disturbance, from -1 to 1.
+    signs : ndarray, shape (S, N, c)
+        Shares of the largest disturbances, from -1 to 1.
 
     Returns
     -------
@@ -144,39 +152,37 @@ def follow(motions: DisturbedMotions, wanted: Indices, signs: Array) -> tuple[Ar
         if others:
             flies = states[k, :, -1] <= 0
             mode = np.where(flies, count + (wanted[:, k] - count) % others, mode)
-        full = np.concatenate([states[k], signs[:, k, None]], axis=1)
+        full = np.concatenate([states[k], signs[:, k]], axis=1)
         states[k + 1] = (maps[mode] @ full[:, :, None])[:, :, 0]
         modes[k] = mode
     return states, modes
 
 
 def _improve(motions: DisturbedMotions, states: Array) -> tuple[Indices, Array]:
-    """Return the best mode and sign at every step, as far as the gradient along a run tells."""
+    """Return the best mode and signs at every step, as far as the gradient along a run tells."""
+    n = states.shape[2]
     maps, runs = motions.maps, np.arange(states.shape[1])
     ends = motions.outputs(states[-1])
     rows = np.abs(ends).argmax(axis=1)
     gradient = motions.rows[rows] * np.where(ends[runs, rows] < 0, -1.0, 1.0)[:, None]
     steps = len(states) - 1
     wanted = np.zeros((len(runs), steps), dtype=np.int64)
-    signs = np.zeros((len(runs), steps))
+    signs = np.zeros((len(runs), steps, motions.disturbances))
     for k in range(steps - 1, -1, -1):
         pulled = np.tensordot(gradient, maps, axes=(1, 1))
-        gain = (pulled[:, :, :-1] @ states[k, :, :, None])[:, :, 0] + np.abs(pulled[:, :, -1])
+        gain = (pulled[:, :, :n] @ states[k, :, :, None])[:, :, 0]
+        gain = gain + np.abs(pulled[:, :, n:]).sum(axis=2)
         best = np.where(motions.possible(states[k]), gain, -np.inf).argmax(axis=1)
         own = pulled[runs, best]
-        wanted[:, k], signs[:, k] = best, np.where(own[:, -1] < 0, -1.0, 1.0)
-        gradient = own[:, :-1]
+        wanted[:, k], signs[:, k] = best, np.where(own[:, n:] < 0, -1.0, 1.0)
+        gradient = own[:, :n]
     return wanted, signs
 
 
-def _with_column(A: RationalMatrix, B: RationalMatrix, bound: float) -> Array:
-    return np.concatenate([np.array(A.floats()), bound * np.array(B.floats())], axis=1)
-
-
 def _held(maps: Array, step: float) -> Array:
-    """Return the maps over a step of continuous time; shape (k, n, n + 1)."""
+    """Return the maps over a step of continuous time; shape (k, n, n + c)."""
     from scipy.linalg import expm
 
-    n = maps.shape[1]
-    square = np.concatenate([maps, np.zeros((len(maps), 1, n + 1))], axis=1)
+    count, n, width = maps.shape
+    square = np.concatenate([maps, np.zeros((count, width - n, width))], axis=1)
     return np.asarray(expm(square * step))[:, :n]

@@ -109,6 +109,8 @@ def _interaction(spec: InteractionDesignSpec) -> Iterator[Line]:
         if not written.fixed:
             low, high = written.range
             yield Line(f"actuator.{name}.range", f"[{low.text}, {high.text}]", "", "")
+    if spec.actuator.load_inertia is not None:
+        yield _row("actuator.load_inertia", spec.actuator.load_inertia, kinds.INERTIA)
     if spec.actuator.intervals is not None:
         for name in ("gain", "time_constant"):
             low, high = getattr(spec.actuator.intervals, name)

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from nrs_design.spec.controllers import ControllerSpec
     from nrs_design.spec.environment import EnvironmentSpec
+    from nrs_design.spec.motion import ActuatorSpec
     from nrs_design.spec.parameters import ParameterSpec
 
 
@@ -36,12 +37,28 @@ def find_changing_parameter(parameters: Mapping[str, ParameterSpec]) -> DwellObs
 
 
 def find_changing_contact(
-    controllers: Mapping[str, ControllerSpec], environments: Mapping[str, EnvironmentSpec]
+    actuator: ActuatorSpec,
+    controllers: Mapping[str, ControllerSpec],
+    environments: Mapping[str, EnvironmentSpec],
 ) -> DwellObstacle | None:
-    """Find what changes while one controller is active: the environment obeys no rule of ours."""
+    """Find what changes while one controller is active: the environment obeys no rule of ours.
+
+    Parameters
+    ----------
+    actuator : ActuatorSpec
+        The motor.
+    controllers, environments : mapping
+        By name.
+    """
     # A spec of given matrices has no controllers, and does not pay for their models.
     from nrs_design.spec.controllers import touched_in
 
+    if not (actuator.gain.fixed and actuator.time_constant.fixed):
+        return DwellObstacle(
+            "a dwell time and a range of the actuator exclude each other: the motor may change "
+            "during the dwell time, and the proof would not hold",
+            "give the actuator its nominal values only",
+        )
     for name, controller in controllers.items():
         if len(controller.contacts) > 1:
             return DwellObstacle(

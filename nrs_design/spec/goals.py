@@ -13,10 +13,12 @@ from nrs_design.spec.faults import fault
 from nrs_design.spec.fields import AboveOne, BelowTwo, UnitFraction
 from nrs_design.spec.model import SpecModel
 from nrs_design.spec.quantity import Quantity
-from nrs_design.spec.quantity_fields import Angle, Duration
+from nrs_design.spec.quantity_fields import Angle, DecayRate, Duration, Torque
 
 # What only one type of controller has.
 ONLY_FOR = {"max_impedance_error": "impedance", "max_force_error": "force"}
+# What a certificate must show, for all controllers together.
+OF_THE_CERTIFICATE = frozenset({"peak_torque", "decay_rate"})
 
 
 def _below_half_turn(angle: Quantity) -> Quantity:
@@ -53,6 +55,15 @@ class GoalsSpec(SpecModel):
         description="largest steady force error over the commanded force, between 0 and 1, no "
         "unit; force controllers only",
     )
+    peak_torque: Torque | None = Field(
+        default=None,
+        description="what the proved bound on the torque under all disturbances of the spec must "
+        "not exceed; for the whole spec, not for one controller",
+    )
+    decay_rate: DecayRate | None = Field(
+        default=None,
+        description="smallest proved decay rate in 1/s; for the whole spec, not for one controller",
+    )
 
     @model_validator(mode="after")
     def _check_any(self) -> GoalsSpec:
@@ -79,12 +90,20 @@ def check_applicable(goals: GoalsSpec | None, types: set[str], *at: str) -> None
     """
     if goals is None:
         return
-    if not types:
+    given = dict(goals.given()).keys()
+    if at[0] != "goals" and (shared := sorted(given & OF_THE_CERTIFICATE)):
+        raise fault(
+            f"{shared[0]} is a goal for all controllers together",
+            "move it to the goals of the spec",
+            *at,
+            shared[0],
+        )
+    if not types and given - OF_THE_CERTIFICATE:
         raise fault(
             "there is no controller that a goal applies to: position control has no contact",
             "remove goals",
             *at,
         )
-    for key, _ in goals.given():
+    for key in given:
         if ONLY_FOR.get(key, "") not in {"", *types}:
             raise fault(f"{key} is for {ONLY_FOR[key]} controllers", "remove it", *at, key)

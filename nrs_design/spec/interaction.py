@@ -28,8 +28,9 @@ from nrs_design.spec.provenance import IdentifiedSpec
 from nrs_design.spec.sampling import (
     DisturbancesSpec,
     SamplingSpec,
-    check_actuator_ranges,
     check_disturbances,
+    check_motor,
+    check_peak,
 )
 from nrs_design.spec.switching import DwellTime, SwitchingRule, check_names
 
@@ -76,7 +77,7 @@ class InteractionDesignSpec(SpecModel):
     )
     disturbances: DisturbancesSpec | None = Field(
         default=None,
-        description="what acts on the sampled loop from outside; its effect on the force is "
+        description="what acts on the loop from outside; its effect on force and velocity is "
         "bounded",
     )
     contact: Literal["losable", "kept"] | None = Field(
@@ -121,16 +122,20 @@ class InteractionDesignSpec(SpecModel):
                 for item in self.controllers.items()
             ),
             partial(check_disturbances, self.disturbances, self.sampling),
+            partial(check_peak, self.goals, self.disturbances),
             partial(
-                check_actuator_ranges,
+                check_motor,
                 self.actuator,
                 self.sampling,
+                self.controllers,
                 given_loop=self.motion_loop.transfer_function is not None,
             ),
             partial(_check_memories, self.controllers, self.environments, self.coordinates),
             partial(_check_offsets, self.controllers, self.idle_states),
-            partial(
-                _check_preloads, self.touched, self.environments, self.contact, self.coordinates
+            *(
+                partial(self._check_preload, name)
+                for name, environment in self.environments.items()
+                if environment.preloaded and name in self.touched
             ),
             *(
                 partial(_check_at_once, *item, self.environments, self.contact)
@@ -176,9 +181,27 @@ class InteractionDesignSpec(SpecModel):
             gain.ranged for c in self.controllers.values() for gain in c.gains().values()
         )
 
+    def _check_preload(self, name: str) -> None:
+        """Refuse what is not modelled about an environment that is known within a preload."""
+        known = f"{name!r} is known within its preload only"
+        if self.contact == "losable":
+            raise fault(
+                f"loss of contact is not modelled: {known}", "use `contact: kept`", "contact"
+            )
+        if self.disturbances is not None:
+            raise fault(
+                f"bounds from rest are not modelled: {known}", "remove disturbances", "disturbances"
+            )
+        if self.coordinates == "force":
+            raise fault(
+                f"force coordinates do not apply to {name!r}: its deflection does not jump",
+                "use `coordinates: deflection`",
+                "coordinates",
+            )
+
     def find_dwell_obstacle(self) -> DwellObstacle | None:
         """Say why no dwell time can be claimed for this spec, or None."""
-        return find_changing_contact(self.controllers, self.environments)
+        return find_changing_contact(self.actuator, self.controllers, self.environments)
 
 
 def _check_mixture(
@@ -341,29 +364,6 @@ def _check_at_once(
                     "use `contact: kept`, or elastic environments",
                     *at,
                 )
-
-
-def _check_preloads(
-    touched: frozenset[str],
-    environments: dict[str, EnvironmentSpec],
-    contact: Literal["losable", "kept"] | None,
-    coordinates: str,
-) -> None:
-    """Refuse what is not modelled about environments that are known within a preload."""
-    for name in (n for n, e in environments.items() if e.preloaded and n in touched):
-        if contact == "losable":
-            raise fault(
-                f"loss of contact with {name!r} is not modelled: its law is known within its "
-                "preload only",
-                "use `contact: kept`",
-                "contact",
-            )
-        if coordinates == "force":
-            raise fault(
-                f"force coordinates do not apply to {name!r}: its deflection does not jump",
-                "use `coordinates: deflection`",
-                "coordinates",
-            )
 
 
 def _check_memories(

@@ -19,6 +19,7 @@ from nrs_design.spec.quantity_fields import (
     Duration,
     RangedActuatorGain,
     RangedDuration,
+    RotorInertia,
     Torque,
     Zero,
 )
@@ -49,6 +50,11 @@ class ActuatorSpec(IdentifiedSpec):
         "Km/(s (tau s + 1))"
     )
     time_constant: RangedDuration = Field(description="tau, mechanical time constant in s")
+    load_inertia: RotorInertia | None = Field(
+        default=None,
+        description="inertia at the joint in kg*m^2 against which the torque of an environment "
+        "works; without it that torque does not slow the motor",
+    )
     intervals: ActuatorIntervals | None = Field(
         default=None,
         description="95 % intervals of gain and time constant, for the record: the proof is for "

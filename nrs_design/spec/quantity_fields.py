@@ -256,6 +256,7 @@ DerivativeGain = Annotated[
     Quantity, _quantity(kinds.DERIVATIVE_GAIN), _schema(kinds.DERIVATIVE_GAIN)
 ]
 Decay = Annotated[Quantity, _quantity(kinds.DECAY, positive=False), _schema(kinds.DECAY)]
+DecayRate = Annotated[Quantity, _quantity(kinds.DECAY), _schema(kinds.DECAY)]
 Zero = Annotated[Quantity, _quantity(kinds.ZERO), _schema(kinds.ZERO)]
 AngularVelocity = Annotated[
     Quantity, _quantity(kinds.ANGULAR_VELOCITY), _schema(kinds.ANGULAR_VELOCITY)
@@ -283,6 +284,7 @@ SignedAngle = Annotated[Quantity, _quantity(kinds.ANGLE, signed=True), _schema(k
 MomentOfInertia = Annotated[
     Quantity, _quantity(kinds.INERTIA, positive=False), _schema(kinds.INERTIA)
 ]
+RotorInertia = Annotated[Quantity, _quantity(kinds.INERTIA), _schema(kinds.INERTIA)]
 ProductOfInertia = Annotated[
     Quantity, _quantity(kinds.INERTIA, signed=True), _schema(kinds.INERTIA)
 ]

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from fractions import Fraction
 from typing import Annotated, Literal
 
 from pydantic import Field, PlainValidator, WithJsonSchema
 
+from nrs_design.spec.controllers import ControllerSpec
 from nrs_design.spec.faults import fault
 from nrs_design.spec.fields import read_exact
+from nrs_design.spec.goals import GoalsSpec
 from nrs_design.spec.model import SpecModel
 from nrs_design.spec.motion import ActuatorSpec
 from nrs_design.spec.provenance import IdentifiedSpec
@@ -62,7 +65,7 @@ class SamplingSpec(IdentifiedSpec):
 
 
 class DisturbancesSpec(SpecModel):
-    """Bounds on what acts on the sampled loop from outside; what is left out is zero."""
+    """Bounds on what acts on the loop from outside; what is left out is zero."""
 
     command: AngularVelocity | None = Field(
         default=None, description="largest velocity command in rad/s, however it changes"
@@ -79,6 +82,12 @@ class DisturbancesSpec(SpecModel):
     force_step: Torque | None = Field(
         default=None,
         description="resolution of the measured torque in N*m: an error of half a step",
+    )
+
+    largest_angle: Angle | None = Field(
+        default=None,
+        description="largest joint angle and reference in rad that the law holds as "
+        "single-precision numbers: their absolute rounding acts as a disturbance",
     )
 
     def bounds(self) -> dict[str, tuple[Fraction, str]]:
@@ -98,23 +107,41 @@ class DisturbancesSpec(SpecModel):
 
 
 def check_disturbances(disturbances: DisturbancesSpec | None, sampling: object) -> None:
-    """Refuse disturbances without a sampled loop, or without any."""
+    """Refuse disturbances that need a sampled loop without one, and none at all."""
     if disturbances is None:
         return
     if sampling is None:
-        raise fault(
-            "disturbances are bounded in the sampled loop only",
-            "add `sampling: {period: 2 ms, delay: 1}`, or remove disturbances",
-            "disturbances",
-        )
-    if not disturbances.bounds():
+        for key, value in disturbances:
+            if key != "command" and value is not None:
+                raise fault(
+                    f"without sampling, {key} is not modelled",
+                    "add `sampling: {period: 2 ms, delay: 1}`, or name the command alone",
+                    "disturbances",
+                    key,
+                )
+    if not disturbances.bounds() and disturbances.largest_angle is None:
         raise fault("no disturbance is named", "name one, or remove disturbances", "disturbances")
 
 
-def check_actuator_ranges(
-    actuator: ActuatorSpec, sampling: SamplingSpec | None, *, given_loop: bool
+def check_peak(goals: GoalsSpec | None, disturbances: DisturbancesSpec | None) -> None:
+    """Refuse a goal for the torque where nothing is said to cause one."""
+    if goals is not None and goals.peak_torque is not None and disturbances is None:
+        raise fault(
+            "peak_torque is wanted, but nothing is said to disturb the loop",
+            "add `disturbances: {command: 8 deg/s}`",
+            "goals",
+            "peak_torque",
+        )
+
+
+def check_motor(
+    actuator: ActuatorSpec,
+    sampling: SamplingSpec | None,
+    controllers: Mapping[str, ControllerSpec],
+    *,
+    given_loop: bool,
 ) -> None:
-    """Refuse ranges of the actuator where the modes do not take them up.
+    """Refuse ranges and a load of the actuator where the modes do not take them up.
 
     Parameters
     ----------
@@ -122,23 +149,36 @@ def check_actuator_ranges(
         With or without ranges.
     sampling : SamplingSpec or None
         The processor, where there is one.
+    controllers : mapping
+        By name.
     given_loop : bool
         Whether the spec states the closed motion loop itself.
     """
-    for name in ("gain", "time_constant"):
-        if getattr(actuator, name).fixed:
-            continue
+    ranged = [n for n in ("gain", "time_constant") if not getattr(actuator, n).fixed]
+    loaded = ["load_inertia"] if actuator.load_inertia is not None else []
+    others = [n for n, c in controllers.items() if c.commands != "velocity"]
+    for name in (*ranged, *loaded):
+        what = f"the {name} has a range" if name in ranged else "there is a load_inertia"
+        drop = "give its nominal value only" if name in ranged else "remove it"
         if given_loop:
             raise fault(
-                f"the {name} has a range, but the spec states the closed motion loop itself",
-                "give its nominal value only, or leave transfer_function out",
+                f"{what}, but the spec states the closed motion loop itself",
+                f"{drop}, or leave transfer_function out",
                 "actuator",
                 name,
             )
-        if sampling is None:
+        if sampling is None and others:
             raise fault(
-                f"a range of the {name} is covered for the sampled loop only",
-                "add `sampling: {period: 2 ms, delay: 1}`, or give its nominal value only",
+                f"{what}, which is modelled for impedance controllers alone, and {others[0]!r} is "
+                "none",
+                f"{drop}, or use impedance controllers",
+                "actuator",
+                name,
+            )
+        if sampling is not None and name in loaded:
+            raise fault(
+                "the load of the motor is not modelled in the sampled loop",
+                "leave load_inertia or sampling out",
                 "actuator",
                 name,
             )

@@ -134,17 +134,20 @@ def assemble(
         rules of switching make too many switches.
     """
     from nrs_design.switched.close_loop import close_loop
+    from nrs_design.switched.commanded import with_command
     from nrs_design.switched.gain_box import gain_boxes
+    from nrs_design.switched.joint import Joint
 
     _check_scale(scale)
     if spec.sampling is not None:
         system = _assemble_sampled(spec, spec.sampling, plant, design, coordinates, scale)
     elif coordinates in ("deflection", "force"):
         plant = plant.scaled(scale, spec.touched)
+        loop = plant.motion_loop(design.motion.Kp, design.motion.Kd)
         system = close_loop(
             spec.name,
             plant,
-            plant.motion_loop(design.motion.Kp, design.motion.Kd),
+            loop,
             design,
             coordinates,
             spec.switching,
@@ -153,6 +156,15 @@ def assemble(
             spec.contact,
             spec.offset,
         )
+        if spec.disturbances is not None:
+            touched = plant.among(design.contacts)
+            if coordinates != "deflection":
+                raise AssemblyError(
+                    "bounds on what disturbs do not apply to force coordinates",
+                    remedy="use coordinates: deflection",
+                )
+            joint = Joint.of(plant, design.motion)
+            system = with_command(system, spec, spec.disturbances, loop, joint, touched)
     else:
         raise AssemblyError(f"unknown coordinates {coordinates!r}: deflection or force")
     texts = (

@@ -19,7 +19,7 @@ from nrs_design.models.contact.environment import Environment
 from nrs_design.models.contact.kelvin_voigt import KelvinVoigt
 from nrs_design.models.contact.law import AbstractLinearLaw
 from nrs_design.models.linear_form import coordinates
-from nrs_design.models.motion_loop import MotionLoop, Realization, realize
+from nrs_design.models.motion_loop import JointMotion, MotionLoop, Realization, realize
 from nrs_design.models.plant import Plant
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.system import Contact, Mode, SwitchedSystem, Time
@@ -28,6 +28,7 @@ from nrs_design.spec.controllers import Offset
 from nrs_design.spec.interval import Interval
 from nrs_design.switched.constraints import assemble_switching
 from nrs_design.switched.gain_box import GainBox
+from nrs_design.switched.joint import Joint
 from nrs_design.switched.loop_assumptions import Assumed, assume_loop
 from nrs_design.switched.mixture import check_mixture, resets_of
 from nrs_design.switched.modes import (
@@ -60,7 +61,8 @@ def close_loop(
     One mode for each controller and each corner of the box of its gains and of the parameters of
     each environment that it may touch. Every entry of A is affine in stiffness, in damping (or in
     one over it, as the law of the environment says) and in the gains (or in one over them, as the
-    law of the controller says), each for itself, so A is a convex combination of the corners in
+    law of the controller says), and where the motor has ranges in its gain and in one over its time
+    constant, each for itself, so A is a convex combination of the corners in
     the whole box, and what decreases in the corners decreases there, however fast the parameters
     move.
 
@@ -105,9 +107,9 @@ def close_loop(
     }
     groups = {key: tuple(Corner(mode.name) for mode in part) for key, part in parts.items()}
     if idle is not None and idle.reset:
-        resets = resets_of(design, state.motion.order, state.idle_count)
+        resets = resets_of(design, state.realization.order, state.idle_count)
     else:
-        resets = retaken(design, offset, state.motion.order)
+        resets = retaken(design, offset, state.realization.order)
     return SwitchedSystem(
         name,
         Time.CONTINUOUS,
@@ -125,6 +127,7 @@ def close_loop(
                 given=loop.given,
                 losable=losable is not None,
                 offset=offset,
+                joint=state.joint,
             )
         ),
         assemble_switching(rules, groups, resets),
@@ -145,7 +148,14 @@ def _shared_state(
     if idle is not None:
         check_mixture(coordinates, touched)
     shared = _shared_law(design, mixed=idle is not None)
-    return _State(realize(loop), coordinates, touched, shared, idle, offset)
+    joint = Joint.of(plant, design.motion)
+    if joint is not None and (idle is not None or shared.commands != "velocity"):
+        raise AssemblyError(
+            "ranges of the motor, or its load, are modelled for impedance controllers alone",
+            remedy="give nominal values of the actuator and no load_inertia",
+            at=("actuator",),
+        )
+    return _State(realize(loop), coordinates, touched, shared, idle, offset, joint)
 
 
 def _check_coordinates(coordinates: str, touched: tuple[Environment, ...]) -> None:
@@ -196,14 +206,32 @@ def _shared_law(design: ControllerDesign, *, mixed: bool) -> CompliantLaw:
 
 @dataclass(frozen=True, slots=True)
 class _State:
-    """What all modes share: motion loop, coordinates, contacts, states of the laws, idle ones."""
+    """What all modes share: motion loop, coordinates, contacts, states of the laws, idle ones.
 
-    motion: Realization
+    The motion loop is the realization, or the joint where its motor has ranges or a load.
+    """
+
+    realization: Realization
     coordinates: str
     touched: tuple[Environment, ...]
     law: CompliantLaw
     idle: IdleStatesSpec | None
     offset: Offset
+    joint: Joint | None
+
+    @property
+    def motion(self) -> Realization | JointMotion:
+        """The motion loop at its nominal values."""
+        return self.realization if self.joint is None else self.joint.nominal
+
+    @property
+    def motor_box(self) -> Box:
+        """Where the motor may be."""
+        return Box({}) if self.joint is None else self.joint.box
+
+    def motion_at(self, values: Mapping[str, Fraction]) -> Realization | JointMotion:
+        """Return the motion loop at the values of the motor."""
+        return self.realization if self.joint is None else self.joint.at(values)
 
     @property
     def memories(self) -> tuple[Environment, ...]:
@@ -219,9 +247,11 @@ class _State:
     def names(self) -> tuple[str, ...]:
         """Names of the states, with units where there are any."""
         if self.offset != "none":
-            return names_of(self.motion.order)
-        letter = "xp" if self.idle is None else "xi"
-        loop = (*(f"{letter}{i + 1}" for i in range(self.motion.order)), *self.law.states)
+            return names_of(self.realization.order)
+        inner = self.motion.states
+        if self.idle is not None:
+            inner = tuple(f"xi{i + 1}" for i in range(len(inner)))
+        loop = (*inner, *self.law.states)
         if self.idle is not None:
             return (*loop, "reference [rad]")
         if self.law.commands == "position":
@@ -248,8 +278,9 @@ class _State:
         """Return A at the given gains of the law and parameters of the contact."""
         held, contact = law.of(values), environment.at(values)
         if self.idle is not None or law.commands == "position":
-            return self.padded(position_mode(self.motion, held, contact, environment.name), law)
-        rows = velocity_mode(self.motion, held, contact)
+            rows = position_mode(self.realization, held, contact, environment.name)
+            return self.padded(rows, law)
+        rows = velocity_mode(self.motion_at(values), held, contact)
         if self.coordinates == "force":
             return to_force_coordinates(rows, self.motion, contact)
         creeps = {
@@ -261,7 +292,7 @@ class _State:
     def padded(self, rows: Rows, law: CompliantLaw) -> Rows:
         """Return a mode with the idle states that it leaves alone, or in coordinates of motion."""
         if self.offset != "none":
-            return to_motion(rows, self.motion)
+            return to_motion(rows, self.realization)
         if self.idle is None or law.commands == "velocity":
             return rows
         return with_idle(rows, self.idle_count, idle_decay(self.idle))
@@ -276,11 +307,11 @@ def _controller_modes(
 ) -> Iterator[Mode]:
     law = controller.law
     if not controller.contacts:
-        alone = state.padded(position_mode(state.motion, law), law)
+        alone = state.padded(position_mode(state.realization, law), law)
         yield Mode(controller.name, RationalMatrix.from_rows(alone))
     for environment in map(plant.environment, controller.contacts):
         name = f"{controller.name}/{environment.name}"
-        box = state.contact_box(environment).beside(gains.box)
+        box = state.contact_box(environment).beside(gains.box).beside(state.motor_box)
         for corner, rows in box.corners(partial(state.rows, law, environment), name):
             yield Mode(corner, RationalMatrix.from_rows(rows))
 
@@ -323,7 +354,8 @@ def _lost_contact(
     free = []
     for controller in design.controllers:
         name = f"{controller.name}/free"
-        box, rows_at = boxes[controller.name].box, partial(_free_rows, state, controller.law)
+        box = boxes[controller.name].box.beside(state.motor_box)
+        rows_at = partial(_free_rows, state, controller.law)
         for corner, rows in box.corners(rows_at, name):
             free.append(Mode(corner, RationalMatrix.from_rows(rows)))
     pulls = (_force_row(state, law) for environment in damped for law in environment.corners)
@@ -331,7 +363,7 @@ def _lost_contact(
 
 
 def _free_rows(state: _State, law: CompliantLaw, values: Mapping[str, Fraction]) -> Rows:
-    return velocity_mode(state.motion, law.of(values), NOTHING)
+    return velocity_mode(state.motion_at(values), law.of(values), NOTHING)
 
 
 def _force_row(state: _State, law: AbstractLinearLaw) -> RationalMatrix:

@@ -21,14 +21,15 @@ from nrs_design.switched.assumptions import (
     rule_texts,
 )
 from nrs_design.switched.gain_box import GainBox
+from nrs_design.switched.joint import Joint
 
 _GIVEN_LOOP = (
     "The motion loop is the transfer function G(s) that the spec states, whatever the motion gains "
     "listed here."
 )
 _DESIGNED_LOOP = (
-    "The motion loop is the linear actuator model of the spec, at its nominal values, under the "
-    "motion gains listed here."
+    "The motion loop is the linear actuator model of the spec, at its nominal values and not "
+    "loaded by what is touched, under the motion gains listed here."
 )
 _INPUTS = "All inputs are zero (velocity command, reference force, motion of the environment); "
 # In free motion, a command moves the axis ever further from the surface.
@@ -102,6 +103,8 @@ class Assumed:
         Whether the system says how contact is lost; then a statement says whether it is kept.
     offset : {"none", "reference", "measured"}
         Where force controllers take their offset from.
+    joint : Joint or None
+        The motor, where it has ranges or is loaded by the environment.
     """
 
     design: ControllerDesign
@@ -114,12 +117,13 @@ class Assumed:
     given: bool
     losable: bool = False
     offset: Offset = "none"
+    joint: Joint | None = None
 
 
 def assume_loop(loop: Assumed) -> tuple[str, ...]:
     """Say what holds for an interaction design."""
     return (
-        _GIVEN_LOOP if loop.given else _DESIGNED_LOOP,
+        *_loop_texts(loop),
         *_input_texts(loop),
         "The axes of the robot do not act on each other.",
         *_contact_texts(loop),
@@ -150,6 +154,12 @@ def _input_texts(loop: Assumed) -> tuple[str, ...]:
     lead = "At a switch of controllers the lead is set to zero."
     measured = (lead, _KICK) if loop.offset == "measured" else ()
     return _MOVING, taken, *measured, _CONSTANT
+
+
+def _loop_texts(loop: Assumed) -> Iterator[str]:
+    if loop.joint is not None:
+        return loop.joint.texts()
+    return iter((_GIVEN_LOOP if loop.given else _DESIGNED_LOOP,))
 
 
 def _contact_texts(loop: Assumed) -> Iterator[str]:

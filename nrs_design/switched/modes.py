@@ -15,21 +15,23 @@ from nrs_design.controllers.laws import CompliantLaw
 from nrs_design.errors import AssemblyError
 from nrs_design.models.contact.law import AbstractLinearLaw
 from nrs_design.models.linear_form import LinearForm, combine, coordinates, zero
-from nrs_design.models.motion_loop import Realization
+from nrs_design.models.motion_loop import JointMotion, Realization
 from nrs_design.proof.matrix import multiply
 
 Rows = list[LinearForm]
 
 
-def velocity_mode(motion: Realization, law: CompliantLaw, contact: AbstractLinearLaw) -> Rows:
+def velocity_mode(
+    motion: Realization | JointMotion, law: CompliantLaw, contact: AbstractLinearLaw
+) -> Rows:
     """Return A in deflection coordinates: for impedance control, thesis 6.28.
 
     ``xp' = Ap xp + Bp u``, ``v = Cp xp``, the contact from v to F, and the law from F to u.
 
     Parameters
     ----------
-    motion : Realization
-        Of the motion loop.
+    motion : Realization or JointMotion
+        The motion loop.
     law : CompliantLaw
         With its gains; it commands a velocity.
     contact : AbstractLinearLaw
@@ -39,11 +41,11 @@ def velocity_mode(motion: Realization, law: CompliantLaw, contact: AbstractLinea
     state = coordinates(own + len(contact.states))
     force, reaction = contact.react(motion.output(len(state)), state[own:])
     command, rates = law.respond(force, state[motion.order : own])
-    return [*motion.rates(command), *rates, *reaction]
+    return [*motion.rates(command, force), *rates, *reaction]
 
 
 def to_force_coordinates(
-    rows: Sequence[LinearForm], motion: Realization, contact: AbstractLinearLaw
+    rows: Sequence[LinearForm], motion: Realization | JointMotion, contact: AbstractLinearLaw
 ) -> Rows:
     """Replace the last state delta by the force ``F = k delta + b Cp xp`` (similarity T A T^-1).
 
@@ -51,8 +53,8 @@ def to_force_coordinates(
     ----------
     rows : sequence of LinearForm
         A in deflection coordinates.
-    motion : Realization
-        Of the motion loop.
+    motion : Realization or JointMotion
+        The motion loop.
     contact : AbstractLinearLaw
         Of the environment, at fixed parameters.
     """

@@ -6,23 +6,39 @@ from collections.abc import Iterator, Mapping
 
 from nrs_design.controllers.controller_design import ControllerDesign
 from nrs_design.controllers.float32 import exact_decimal
-from nrs_design.controllers.sampled import SampledAdmittance, SampledMotion
+from nrs_design.controllers.sampled import (
+    ROUNDINGS,
+    ROUNDINGS_WITHOUT_INERTIA,
+    SampledAdmittance,
+    SampledMotion,
+)
 from nrs_design.models.actuator import ActuatorRanges
+from nrs_design.proof.bounds import rounded_down
 from nrs_design.proof.text import exact_text
 from nrs_design.spec import InteractionDesignSpec
-from nrs_design.spec.interval import Interval
 from nrs_design.spec.sampling import SamplingSpec
 from nrs_design.switched.assumptions import CONTINUOUS, LOST_CONTACT, REST, rule_texts
+from nrs_design.switched.joint import motor_text
 
 _KEPT = "Contact is not lost: free motion is not one of the modes."
 _INPUTS = "All inputs are zero (velocity command, motion of the environment); "
 _NOT_MODELLED = (
-    "What the arithmetic of the processor rounds, the quantization of encoder and force sensor, "
-    "friction and saturation are not modelled."
+    "The quantization of encoder and force sensor, friction and saturation are not modelled."
+)
+_ARITHMETIC = (
+    "The arithmetic is that of single precision, rounded to nearest, without overflow and "
+    "underflow; no term of the law is rounded more often than this: {}."
+)
+_ANGLES = (
+    "That joint angle and reference are single-precision numbers of limited resolution is left out."
+)
+_HELD = (
+    "Joint angle and reference stay within {}, and are rounded like every other number; that "
+    "acts where a statement names it."
 )
 _DISTURBED = (
-    "A disturbance acts where a statement names it, alone, and keeps its value from one sample to "
-    "the next; that friction changes its sign within a period is not covered.",
+    "A disturbance acts where a statement names it, and keeps its value from one sample to the "
+    "next; that friction changes its sign within a period is not covered.",
     "A bound on the force holds at the samples; what happens in between is not claimed.",
 )
 _NOT_COVERED = (
@@ -81,8 +97,21 @@ def assume_sampled(
         switched,
         *rule_texts(rules, "controller"),
         f"The coefficients are these single-precision numbers: {_coefficients(motion, laws)}.",
+        _ARITHMETIC.format(_counted(inertia=any(law.a is not None for law in laws.values()))),
+        _angle_text(spec),
         _beside(spec, _NOT_MODELLED),
     )
+
+
+def _counted(*, inertia: bool) -> str:
+    counts = ROUNDINGS if inertia else ROUNDINGS_WITHOUT_INERTIA
+    return ", ".join(f"{name} {count}" for name, count in counts.items())
+
+
+def _angle_text(spec: InteractionDesignSpec) -> str:
+    if spec.disturbances is None or spec.disturbances.largest_angle is None:
+        return _ANGLES
+    return _HELD.format(rounded_down(spec.disturbances.largest_angle.not_below, "rad"))
 
 
 def _beside(spec: InteractionDesignSpec, text: str) -> str:
@@ -108,21 +137,7 @@ def _samples(count: int) -> str:
 
 
 def _actuator_text(ranges: ActuatorRanges) -> str:
-    texts = (
-        f"its {name} {_interval_text(interval)} {unit}"
-        for name, interval, unit in (
-            ("gain", ranges.gain, "rad/s/rpm"),
-            ("time constant", ranges.time_constant, "s"),
-        )
-    )
-    moving = "" if ranges.fixed else ", and may change at every sample"
-    return " and ".join(texts) + moving
-
-
-def _interval_text(interval: Interval) -> str:
-    if interval.low == interval.high:
-        return f"is {exact_text(interval.low)}"
-    return f"stays in [{exact_text(interval.low)}, {exact_text(interval.high)}]"
+    return motor_text(ranges) + ("" if ranges.fixed else ", and may change at every sample")
 
 
 def _contact_texts(spec: InteractionDesignSpec, *, springs: bool) -> Iterator[str]:

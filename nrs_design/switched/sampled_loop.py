@@ -16,18 +16,32 @@ from functools import partial
 from itertools import chain
 
 from nrs_design.controllers.controller_design import Controller, ControllerDesign
-from nrs_design.controllers.sampled import SampledAdmittance, SampledMotion
+from nrs_design.controllers.sampled import (
+    ROUNDINGS,
+    ROUNDINGS_WITHOUT_INERTIA,
+    SampledAdmittance,
+    SampledMotion,
+    rounding_share,
+)
 from nrs_design.errors import AssemblyError
 from nrs_design.models.actuator import ActuatorRanges
 from nrs_design.models.contact.environment import Environment
 from nrs_design.models.linear_form import LinearForm, combine, coordinates, zero
 from nrs_design.models.plant import Plant
 from nrs_design.proof.matrix import RationalMatrix
-from nrs_design.proof.system import Channel, Contact, Mode, Output, SwitchedSystem, Time
+from nrs_design.proof.system import (
+    Channel,
+    Contact,
+    Mode,
+    Output,
+    Rounding,
+    SwitchedSystem,
+    Time,
+)
 from nrs_design.proof.taylor import exponential_between
 from nrs_design.spec import InteractionDesignSpec
 from nrs_design.spec.interval import Interval
-from nrs_design.spec.sampling import SamplingSpec
+from nrs_design.spec.sampling import DisturbancesSpec, SamplingSpec
 from nrs_design.switched.assumptions import at_once_texts
 from nrs_design.switched.constraints import assemble_switching
 from nrs_design.switched.parameter_box import Box
@@ -35,8 +49,16 @@ from nrs_design.switched.parameters import Corner
 from nrs_design.switched.sampled_assumptions import assume_sampled
 
 ONE = Fraction(1)
+KP, KD, FORCE, STEP = "Kp e", "D (e - e before)", "b F", "T (v - vm)"
 # What acts on a frame from outside, in this order.
-INPUTS = ("velocity command", "friction", "encoder error", "force error")
+INPUTS = (
+    "velocity command",
+    "friction",
+    "encoder error",
+    "force error",
+    "rounding of the reference",
+    "rounding of the angle",
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,6 +86,12 @@ class Frame:
     time_constant: Fraction | None
 
     @property
+    def roundings(self) -> dict[str, Fraction]:
+        """What the arithmetic changes of every term of the law at most, over its size."""
+        counts = ROUNDINGS if self.has_inertia else ROUNDINGS_WITHOUT_INERTIA
+        return {name: rounding_share(count) for name, count in counts.items()}
+
+    @property
     def states(self) -> tuple[str, ...]:
         """Names and units of the states."""
         ages = (f"F {j} before [N*m]" for j in range(1, self.longest_delay + 1))
@@ -74,7 +102,10 @@ class Frame:
     def rows(
         self, admittance: SampledAdmittance, delay: int, values: Mapping[str, Fraction]
     ) -> list[LinearForm]:
-        """Return the map of one period, from the states and the `INPUTS` to the next states.
+        """Return the map of one period, and below it how large each rounding is at most.
+
+        The first rows lead from the states, the `INPUTS` and the `roundings` to the next states;
+        of a rounding, the size is at most that of its row below.
 
         Parameters
         ----------
@@ -89,45 +120,63 @@ class Frame:
         Km, E, tau = values["Km"], values["E"], self.time_constant
         s = values["s"] if tau is None else tau * (1 - E)
         k, b = values.get("k", Fraction(0)), values.get("b", Fraction(0))
-        size = len(self.states)
-        unit = coordinates(size + len(INPUTS))
+        size, shares = len(self.states), self.roundings
+        unit = coordinates(size + len(INPUTS) + len(shares))
         error, omega, before, delta = unit[0], unit[1], unit[2], unit[size - 1]
-        command, friction, encoder, sensor = unit[size:]
+        command, friction, encoder, sensor, reference, angle = unit[size : size + len(INPUTS)]
+        rounded = dict(zip(shares, unit[size + len(INPUTS) :], strict=True))
         samples = unit[size - 1 - self.longest_delay : size - 1]
-        seen = combine((ONE, error), (-ONE, encoder))
-        Kp, D = self.motion.Kp, self.motion.D
+        read = combine((ONE, error), (-ONE, encoder), (-ONE, angle))
+        seen = combine((ONE, read), (ONE, rounded["e"]))
+        Kp, D, T = self.motion.Kp, self.motion.D, admittance.T
         drive = combine((Kp + D, seen), (-D, before), (ONE, friction))
+        drive = combine((ONE, drive), (ONE, rounded[KP]), (ONE, rounded[KD]))
         moved = combine((s, omega), (Km * (self.period - s), drive))
         ages = [combine((k, delta), (b, omega), (ONE, sensor)), *samples]
+        pushed, kept = combine((admittance.b, ages[delay])), []
+        velocity = exact = combine((ONE, pushed), (ONE, rounded[FORCE]))
         if admittance.a is None:
-            velocity, kept = combine((admittance.b, ages[delay])), []
+            exact = pushed
         else:
-            velocity = unit[3]
-            kept = [combine((admittance.a, velocity), (admittance.b, ages[delay]))]
-        T = admittance.T
+            velocity, inner = unit[3], combine((admittance.a, unit[3]))
+            kept = [combine((ONE, inner), (ONE, exact), (ONE, rounded["a vm"]))]
+            exact = velocity
+        moving = combine((T, command), (-T, exact))
+        first = combine((ONE, error), (T, command), (-T, velocity), (ONE, rounded[STEP]))
+        # Of a sum of two sizes, the part that is of second order counts with another term.
+        sizes = {
+            "e": combine((shares["e"], read)),
+            KP: combine((shares[KP] * Kp * (1 + shares["e"]) + shares[KD] * D * shares["e"], read)),
+            KD: combine((shares[KD] * D, read), (-shares[KD] * D, before)),
+            "a vm": combine((shares.get("a vm", ONE) * (admittance.a or 0), unit[3])),
+            FORCE: combine((shares[FORCE] * (1 if kept else 1 + shares[STEP]), pushed)),
+            STEP: combine((shares[STEP], moving)),
+        }
         return [
-            combine((ONE, error), (T, command), (-T, velocity), (-ONE, moved)),
+            combine((ONE, first), (ONE, reference), (-ONE, moved)),
             combine((E, omega), (Km * (1 - E), drive)),
             seen,
             *kept,
             *ages[: self.longest_delay],
             combine((ONE, delta), (ONE, moved)),
+            *(sizes[name] for name in shares),
         ]
 
 
 @dataclass(frozen=True, slots=True)
 class _Motion:
-    """One mode, and the columns of the `INPUTS`."""
+    """One mode, the columns of inputs and roundings, and the rows that bound the roundings."""
 
     mode: Mode
     columns: tuple[RationalMatrix, ...]
+    sizes: tuple[LinearForm, ...]
 
     @classmethod
-    def of(cls, name: str, rows: Sequence[LinearForm]) -> _Motion:
-        n = len(rows)
-        columns = ([[row[n + i]] for row in rows] for i in range(len(INPUTS)))
-        mode = Mode(name, RationalMatrix.from_rows([row[:n] for row in rows]))
-        return cls(mode, tuple(map(RationalMatrix.from_rows, columns)))
+    def of(cls, name: str, rows: Sequence[LinearForm], n: int) -> _Motion:
+        moves, width = rows[:n], len(rows[0])
+        columns = ([[row[i]] for row in moves] for i in range(n, width))
+        mode = Mode(name, RationalMatrix.from_rows([row[:n] for row in moves]))
+        return cls(mode, tuple(map(RationalMatrix.from_rows, columns)), tuple(rows[n:]))
 
 
 def close_sampled_loop(
@@ -188,7 +237,8 @@ def close_sampled_loop(
     motions = tuple(chain.from_iterable(parts.values()))
     flying = tuple(item.mode for item in free)
     losable = Contact(flying, required=spec.contact == "losable") if free else None
-    channels = tuple(_channels(spec, (*motions, *free)))
+    every = (*motions, *free)
+    channels = tuple(_channels(spec, every))
     return SwitchedSystem(
         spec.name,
         Time.DISCRETE,
@@ -202,7 +252,8 @@ def close_sampled_loop(
         losable,
         period,
         channels,
-        (_force_output(frame, touched, spec.limits.torque.exact),) if channels else (),
+        _outputs(frame, touched, spec.limits.torque.exact) if channels else (),
+        tuple(_roundings(frame, channels, every)),
     )
 
 
@@ -223,15 +274,36 @@ def _channels(spec: InteractionDesignSpec, motions: Sequence[_Motion]) -> Iterat
     """Yield the disturbances that the spec declares, with their columns."""
     if spec.disturbances is None:
         return
-    bounds = spec.disturbances.bounds()
+    bounds = spec.disturbances.bounds() | _angle_bounds(spec.disturbances)
     for i, name in enumerate(INPUTS):
         if name in bounds:
             bound, unit = bounds[name]
             yield Channel(name, unit, bound, tuple(motion.columns[i] for motion in motions))
 
 
-def _force_output(frame: Frame, touched: Sequence[Environment], limit: Fraction) -> Output:
-    """Return the force in contact, at the corners of its ranges, and what it is meant to keep."""
+def _angle_bounds(disturbances: DisturbancesSpec) -> dict[str, tuple[Fraction, str]]:
+    """Return how far angles of the law are off; one is read from a count, times a coefficient."""
+    if disturbances.largest_angle is None:
+        return {}
+    largest = disturbances.largest_angle.not_below
+    counts = {"rounding of the reference": 1, "rounding of the angle": 3}
+    return {name: (rounding_share(n) * largest, "rad") for name, n in counts.items()}
+
+
+def _roundings(
+    frame: Frame, channels: Sequence[Channel], motions: Sequence[_Motion]
+) -> Iterator[Rounding]:
+    """Yield what the arithmetic adds, with rows over the states and the declared disturbances."""
+    n, named = len(frame.states), [channel.name for channel in channels]
+    kept = [*range(n), *(n + i for i, name in enumerate(INPUTS) if name in named)]
+    for j, name in enumerate(frame.roundings):
+        rows = ([[motion.sizes[j][i] for i in kept]] for motion in motions)
+        columns = (motion.columns[len(INPUTS) + j] for motion in motions)
+        yield Rounding(name, tuple(columns), tuple(map(RationalMatrix.from_rows, rows)))
+
+
+def _outputs(frame: Frame, touched: Sequence[Environment], limit: Fraction) -> tuple[Output, ...]:
+    """Return the force at the corners of its ranges, with what it is meant to keep, and omega."""
     size, rows = len(frame.states), []
     for environment in touched:
         box = Box({"k": environment.stiffness, "b": damping_of(environment)})
@@ -239,7 +311,9 @@ def _force_output(frame: Frame, touched: Sequence[Environment], limit: Fraction)
             row = zero(size)
             row[1], row[-1] = values["b"], values["k"]
             rows.append(RationalMatrix.from_rows([row]))
-    return Output("force", "N*m", tuple(rows), limit)
+    omega = RationalMatrix.from_rows(coordinates(size)[1:2])
+    force = Output("force", "N*m", tuple(rows), limit)
+    return force, Output("velocity", "rad/s", (omega,))
 
 
 def motor_box(ranges: ActuatorRanges, period: Fraction) -> Box:
@@ -294,7 +368,7 @@ def _corners(
     for delay in range(delays[0], delays[1] + 1):
         late = f"{name}/delay-{delay}" if delays[0] < delays[1] else name
         for corner, rows in box.corners(partial(frame.rows, law, delay), late):
-            yield _Motion.of(corner, rows)
+            yield _Motion.of(corner, rows, len(frame.states))
 
 
 def damping_of(environment: Environment) -> Interval:

@@ -437,10 +437,12 @@ class TestForgery:
         assert "force" in bound["claim"]
         for field, value in (
             ("level", str(Fraction(bound["level"]) * Fraction(9, 10))),
-            ("channel", "friction"),
+            ("channels", ["friction"]),
             ("output", "torque"),
             ("multipliers", []),
-            ("share", "1"),
+            ("shares", ["1"]),
+            ("roundings", [-1] * len(bound["roundings"])),
+            ("roundings", bound["roundings"][1:]),
         ):
             forged = {**document, "statements": [proof, {**bound, field: value}]}
             assert verify_document(resign(forged), spec).fault is not None

@@ -13,6 +13,8 @@ from tests.support import ROOT, run
 PUBLISHED = [
     *(f"NRS00{i}" for i in range(8)),
     *(f"NRS10{i}" for i in range(1, 8)),
+    "NRS201",
+    "NRS202",
     "NRS900",
 ]
 

@@ -8,8 +8,11 @@ import resource
 import signal
 import sys
 import tomllib
-from collections.abc import Iterable, Iterator
+from collections import Counter
+from collections.abc import Iterable, Iterator, Sequence
+from multiprocessing.sharedctypes import RawArray
 from pathlib import Path
+from time import process_time
 
 import hypothesis
 import pytest
@@ -23,8 +26,9 @@ TESTS = ROOT / "tests" / "proof"
 EQUIVALENT = Path(__file__).with_name("equivalent.toml")
 # Files of evidence that are no kind, so that no example is tampered with.
 SHARED = {"abstract", "fields", "flow", "function", "__init__"}
-# A mutant may loop for ever, or count to the end of memory: for each test, and for the process.
-SECONDS, BYTES = 30, 4 << 30
+# A mutant may loop for ever, or count to the end of memory. A test gets so many times what it
+# takes without a change, and so many seconds more.
+TIMES, SECONDS, BYTES = 5, 5, 4 << 30
 # The same few examples each time, none remembered, and none made smaller.
 hypothesis.settings.register_profile(
     "mutation",
@@ -48,14 +52,23 @@ class Examination:
 
     def __init__(self, name: str, path: Path, candidates: Iterable[Mutant]) -> None:
         self.name, self.path, self.candidates = name, path, candidates
+        self.items: list[pytest.Item] = []
+        self.took: Sequence[float] = ()
         self.unnoticed: list[str] = []
         self.running: dict[int, str] = {}
 
     @pytest.hookimpl(tryfirst=True)
     def pytest_runtestloop(self, session: pytest.Session) -> bool:
         """Take the place of the one run of the tests."""
+        self.items = session.items
+        # In memory that the processes share.
+        self.took = RawArray("d", [60.0] * len(self.items))
         if os.waitpid(self.start(session, None), 0)[1]:
-            sys.exit(f"{self.name}: its tests fail without any change")
+            raise session.Failed(f"{self.name}: its tests fail without any change")
+        # The quickest first.
+        order = sorted(range(len(self.items)), key=self.took.__getitem__)
+        self.items = [self.items[k] for k in order]
+        self.took = RawArray("d", [self.took[k] for k in order])
         for mutant in self.candidates:
             if len(self.running) == len(os.sched_getaffinity(0)):
                 self.wait()
@@ -91,12 +104,14 @@ class Examination:
         signal.setitimer(signal.ITIMER_PROF, SECONDS)
         if mutant:
             graft(importlib.import_module(self.name), mutant.compile(self.path))
-        items = session.items
-        for item, following in zip(items, [*items[1:], None], strict=True):
-            signal.setitimer(signal.ITIMER_PROF, SECONDS)
-            item.config.hook.pytest_runtest_protocol(item=item, nextitem=following)
+        for k, item in enumerate(self.items):
+            signal.setitimer(signal.ITIMER_PROF, SECONDS + TIMES * self.took[k])
+            begin, following = process_time(), self.items[k + 1 : k + 2]
+            item.config.hook.pytest_runtest_protocol(item=item, nextitem=(*following, None)[0])
             if session.testsfailed:
                 return 1
+            if not mutant:
+                self.took[k] = process_time() - begin
         return 0
 
 
@@ -104,7 +119,9 @@ def main(names: list[str]) -> int:
     """Examine some modules of `proof`, or all; return how many mutants nobody noticed."""
     os.environ["OPENBLAS_NUM_THREADS"] = "1"
     os.chdir(ROOT)
-    return sum(examine(path, listed()) for path in chosen(names))
+    total = sum((examine(path, listed()) for path in chosen(names)), Counter())
+    print(in_words(total))
+    return total["unnoticed"]
 
 
 def chosen(names: list[str]) -> Iterator[Path]:
@@ -120,25 +137,40 @@ def listed() -> dict[str, dict[str, str]]:
     return tomllib.loads(EQUIVALENT.read_text(encoding="utf-8"))
 
 
-def examine(path: Path, reasons: dict[str, dict[str, str]]) -> int:
+def examine(path: Path, reasons: dict[str, dict[str, str]]) -> Counter[str]:
     """Run every mutant of a module that is not listed, and print those that no test noticed."""
     module = path.relative_to(PROOF).with_suffix("").as_posix()
     known = reasons.get(module, {})
     every = mutants(path.read_text(encoding="utf-8"))
-    print(f"{module}: {len(every)} mutants, {len(known)} equivalent", flush=True)
+    candidates = [mutant for mutant in every if mutant.name not in known]
     name = f"nrs_design.proof.{module.replace('/', '.')}".removesuffix(".__init__")
-    examination = Examination(name, path, (m for m in every if m.name not in known))
-    pytest.main([*OPTIONS, *QUIET, *own_tests(path)], plugins=[examination])
-    print(f"{module}: {len(examination.unnoticed)} unnoticed", flush=True)
-    return len(examination.unnoticed)
+    examination = Examination(name, path, candidates)
+    if pytest.main([*OPTIONS, *QUIET, *own_tests(path)], plugins=[examination]):
+        sys.exit(f"{module}: its tests fail without any change")
+    unnoticed = len(examination.unnoticed)
+    count = Counter(
+        mutants=len(every),
+        killed=len(candidates) - unnoticed,
+        equivalent=len(known),
+        unnoticed=unnoticed,
+    )
+    print(f"{module}: {in_words(count)}", flush=True)
+    return count
+
+
+def in_words(count: Counter[str]) -> str:
+    """Say how many mutants there are, and what became of them."""
+    words = ("mutants", "killed", "equivalent", "unnoticed")
+    return ", ".join(f"{count[word]} {word}" for word in words)
 
 
 def own_tests(path: Path) -> list[str]:
-    """Return what mirrors a module, and for a kind of evidence the tampering with its examples."""
+    """Return what mirrors a module, and for a kind of evidence the tests of all kinds, too."""
     mirror = TESTS / path.relative_to(PROOF).with_name(f"test_{path.name}")
     tests = [str(mirror if mirror.exists() else TESTS)]
     if path.parent != PROOF and path.stem not in SHARED:
         kind = path.stem.replace("_", "-")
+        tests.append(f"{TESTS}/evidence/test_abstract.py::test_facts_of_the_kinds")
         tests += [str(TESTS / "evidence/test_tampering.py"), "-k", f"not tampering or {kind}"]
     return tests
 

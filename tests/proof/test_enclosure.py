@@ -10,7 +10,14 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.linalg import expm
 
-from nrs_design.proof.enclosure import balls, eigenvalues, exponential, lower_integers, precision
+from nrs_design.proof.enclosure import (
+    balls,
+    eigenvalues,
+    exponential,
+    lower_integers,
+    overlap,
+    precision,
+)
 from nrs_design.proof.exact import is_positive_definite
 from nrs_design.proof.matrix import RationalMatrix
 
@@ -43,6 +50,64 @@ def test_rounded_balls_stay_below_every_matrix_in_them(entries, radius, exponent
         assert smallest < 4 * radius + 1e-12
 
 
+@given(
+    st.lists(st.floats(-1, 1), min_size=3, max_size=3),
+    st.floats(0, 1e-3),
+    st.integers(-60, 60),
+)
+def test_states_in_other_units_cost_nothing(entries, radius, log2):
+    """What is below a form is below it in other units, and is found there as well."""
+    a, b, c = entries
+    mids = [[1 + abs(a), b], [b, 1 + abs(c)]]
+    unit = [arb(1), arb(2) ** log2]
+    corners = [
+        [
+            [mids[0][0] - radius, mids[0][1] + s * radius],
+            [mids[1][0] + s * radius, mids[1][1] - radius],
+        ]
+        for s in (-1, 1)
+    ]
+    smallest = min(np.linalg.eigvalsh(np.array(corner)).min() for corner in corners)
+    enclosed = [
+        [arb(m, radius) * u * v for m, v in zip(row, unit, strict=True)]
+        for row, u in zip(mids, unit, strict=True)
+    ]
+    if is_positive_definite(lower(enclosed)):
+        assert smallest > -1e-12
+    else:
+        assert smallest < 8 * radius + 1e-12
+
+
+@pytest.mark.parametrize(
+    ("rows", "integers"),
+    [
+        # An exact n x n matrix of largest entry 1, times 2^160, less n + 1 on the diagonal.
+        ([[1]], [[2**160 - 2]]),
+        ([[1, 0.5], [0.5, 1]], [[2**160 - 3, 2**159], [2**159, 2**160 - 3]]),
+        ([[2, 0], [0, 0]], [[2**160 - 3, 0], [0, -3]]),
+        # What is known to within zero only.
+        ([[0]], [[-2]]),
+        # What flint may take for zero counts on both sides, 2^-32767, in units of the largest.
+        ([[arb(2) ** -32700]], [[2**160 - 2**93 - 2]]),
+        ([[arb(2) ** -32769]], [[2**160 - 2**162 - 2]]),
+        ([[arb(2) ** -32770]], [[-2]]),
+        # What is too large says nothing.
+        ([[arb(2) ** 32767]], [[2**160 - 2]]),
+        ([[arb(2) ** 32768]], [[0]]),
+        ([[arb(2) ** 32768, 0], [0, 1]], [[0, 0], [0, 0]]),
+    ],
+)
+def test_integers_by_hand(rows, integers):
+    assert lower(rows) == integers
+
+
+def test_a_radius_alone_counts_in_full():
+    ball = arb(0, 0.25)
+    mantissa, exponent = ball.rad().man_exp()
+    radius = Fraction(int(mantissa)) * Fraction(2) ** int(exponent)
+    assert lower([[ball]]) == [[-int(radius * 2**160 + 1) - 1]]
+
+
 @pytest.mark.parametrize(
     "ball", [arb("nan"), arb("inf"), arb(1, float("inf")), arb(2) ** (10**15), arb(0, 2)]
 )
@@ -65,6 +130,43 @@ def test_the_enclosure_is_not_a_point():
     with precision(64):
         E = exponential(RationalMatrix(((1, 2), (3, 4))), Fraction(1), Fraction(1))
     assert not E[0, 0].is_exact()
+
+
+@pytest.mark.parametrize(("begin", "end"), [(0, 2), (1, 3)])
+def test_the_enclosure_of_a_range_is_tight(begin, end):
+    """Of ``exp(t)``, within one unit in a million."""
+    with precision():
+        E = exponential(RationalMatrix(((1,),)), Fraction(begin), Fraction(end))[0, 0]
+        first, last = arb(begin).exp(), arb(end).exp()
+        assert E.contains(first)
+        assert E.contains(last)
+        assert E.lower() > first - 1e-6
+        assert E.upper() < last + 1e-6
+
+
+@pytest.mark.parametrize(
+    ("shift", "radius", "met"),
+    [
+        ([[0, 0], [0, 0]], "0", True),
+        ([[0, 0], [0, "1/4"]], "0", False),
+        ([["1/4", 0], [0, "-1/4"]], "1/4", True),
+        ([["1/4", 0], [0, "-1/4"]], "1/8", False),
+        ([[0, "3/8"], [0, 0]], "1/4", False),
+        ([[0, 0], ["-3/8", 0]], "1/4", False),
+    ],
+)
+def test_balls_meet_where_every_entry_does(shift, radius, met):
+    M, S = (
+        RationalMatrix(((1, 2), (3, 4))),
+        RationalMatrix.from_rows([[Fraction(entry) for entry in row] for row in shift]),
+    )
+    moved = RationalMatrix.from_rows(
+        [
+            [a + b for a, b in zip(*rows, strict=True)]
+            for rows in zip(M.fractions(), S.fractions(), strict=True)
+        ]
+    )
+    assert overlap(balls(M), moved, Fraction(radius)) is met
 
 
 def test_the_precision_is_set_back_after_an_error():

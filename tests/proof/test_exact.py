@@ -10,7 +10,10 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from nrs_design.proof.exact import (
+    add,
+    bit_length,
     characteristic_polynomial,
+    common_denominator,
     congruence,
     is_hurwitz,
     is_hurwitz_polynomial,
@@ -18,11 +21,15 @@ from nrs_design.proof.exact import (
     is_positive_semidefinite,
     is_schur,
     is_symmetric,
+    is_too_large,
     lyapunov_decrease,
     lyapunov_factor,
     multiply,
+    scaled,
+    spectrum_work,
     stein_decrease,
     stein_factor,
+    step_decrease,
 )
 from tests.support import exact, is_definite_by_ldl, is_stable_by_lyapunov, matrix
 
@@ -166,6 +173,98 @@ class TestPositiveDefinite:
         M = hilbert(8)
         M[2][5] += 1
         assert not is_symmetric(M)
+
+
+class TestLimits:
+    """What is decided is bounded by work, so that no decision takes minutes."""
+
+    @pytest.mark.parametrize(("n", "bits"), [(10, 10**5), (100, 100)])
+    def test_the_largest_form(self, n, bits):
+        M = [[2 ** (bits - 1) * (i == j == n // 2) for j in range(n)] for i in range(n)]
+        assert not is_too_large(M)
+        M[-1][0] = -(2**bits)
+        assert is_too_large(M)
+
+    def test_the_work_of_a_spectrum(self):
+        """``n^4 b (1 + n b / 3000)``: products of long numbers take more."""
+        assert spectrum_work(10, 300) == 10**4 * 300 * 2
+        assert spectrum_work(2, 750) == 12_000 * 3 // 2
+        assert spectrum_work(5, 6_000) == 5**4 * 6_000 * 11
+        assert spectrum_work(1, 1) == 1
+
+    @pytest.mark.parametrize(
+        ("M", "bits"),
+        [([], 0), ([[]], 0), ([[0]], 0), ([[1]], 1), ([[3, -4], [1, 0]], 3), ([[], [-1, 8]], 4)],
+    )
+    def test_lengths(self, M, bits):
+        assert bit_length(M) == bits
+
+    @pytest.mark.parametrize(("denominators", "common"), [([], 1), ([6], 6), ([4, 6, 1], 12)])
+    def test_denominators_that_are_brought_together(self, denominators, common):
+        assert common_denominator(denominators) == common
+
+    def test_the_longest_common_denominator(self):
+        assert common_denominator([2**99_999]) == 2**99_999
+        assert common_denominator([3, 2**60_000]) == 3 * 2**60_000
+        assert common_denominator([2**100_000]) is None
+        assert common_denominator([2**60_000, 3**30_000, 1]) is None
+
+
+class TestPositiveSemidefinite:
+    @pytest.mark.parametrize(
+        ("M", "semidefinite"),
+        [
+            ([[0]], True),
+            ([[1]], True),
+            ([[-1]], False),
+            ([[0, 0], [0, 0]], True),
+            ([[0, 1], [1, 0]], False),
+            ([[1, 1], [1, 1]], True),
+            ([[1, 2], [2, 1]], False),
+            ([[1, 2], [2, 4]], True),
+            ([[1, 2], [2, 3]], False),
+            ([[-1, 0], [0, 0]], False),
+            ([[2, 0], [0, -1]], False),
+            ([[2, -1, -1], [-1, 2, -1], [-1, -1, 2]], True),  # periodic second difference
+            ([[2, -1, -1], [-1, 2, -1], [-1, -1, 1]], False),
+            ([[1, 0, 0], [0, 0, 1], [0, 1, 0]], False),
+            ([[0, 0, 0], [0, 4, 6], [0, 6, 9]], True),
+        ],
+    )
+    def test_known(self, M, semidefinite):
+        assert is_positive_semidefinite(M) is semidefinite
+
+    @given(squares(SMALL, st.integers(1, 4)))
+    def test_all_principal_minors(self, M):
+        """A symmetric matrix is positive semidefinite iff no principal minor is negative."""
+        S = symmetric(M)
+        picked = ([i for i in range(len(S)) if mask >> i & 1] for mask in range(1, 2 ** len(S)))
+        minors = (fmpz_mat([[S[i][j] for j in rows] for i in rows]).det() for rows in picked)
+        assert is_positive_semidefinite(S) == all(minor >= 0 for minor in minors)
+
+    @given(st.integers(1, 5), st.integers(1, 3), st.data())
+    def test_gram_matrices_of_few_vectors(self, n, k, data):
+        vectors = data.draw(rectangle(k, n))
+        G = times(transposed(vectors), vectors)
+        assert is_positive_semidefinite(G)
+        G[0][0] -= 1 + sum(row[0] ** 2 for row in vectors)
+        assert not is_positive_semidefinite(G)
+
+
+@given(rectangle(2, 3), rectangle(2, 3), SMALL)
+def test_sums(left, right, weight):
+    added = [
+        [a + weight * b for a, b in zip(*rows, strict=True)]
+        for rows in zip(left, right, strict=True)
+    ]
+    assert add(left, right, weight) == added
+    assert add(left, right) == add(left, right, 1)
+
+
+@pytest.mark.parametrize("other", [[[1]], [[1, 2]], [[1], [2]], [[1, 2], [3]]])
+def test_only_matrices_of_one_shape_are_added(other):
+    with pytest.raises(ValueError, match="zip"):
+        add([[1, 2], [3, 4]], other)
 
 
 class TestProducts:
@@ -467,3 +566,10 @@ def test_large_matrices(n):
 def test_semidefinite_needs_a_symmetric_matrix(M):
     with pytest.raises(ValueError, match=r"symmetric|zip"):
         is_positive_semidefinite(M)
+
+
+def test_a_step_from_one_function_to_another():
+    """``rho^2 5 - 3 (7/2)^2`` for rho = 2/3, times ``(2 * 3)^2``."""
+    image = congruence([[7]], [[3]])
+    assert step_decrease([[5]], image, 2, Fraction(2, 3)) == [[5 * 4 * 4 - 3 * 49 * 9]]
+    assert scaled([[1, -2]], 3) == [[3, -6]]

@@ -98,9 +98,100 @@ def test_no_rate_of_growth(rate):
         check_quadratic(PAIR, matrix([[1, 0], [0, 5]]), Time.CONTINUOUS, rate)
 
 
-def test_sizes_must_agree():
-    with pytest.raises(ValueError, match="3 x 3"):
-        check_quadratic(PAIR, matrix([[1, 0, 0], [0, 5, 0], [0, 0, 1]]), Time.CONTINUOUS)
+@pytest.mark.parametrize("rate", [F(0), F(-1, 9), F(10, 9), F(2)])
+def test_no_rate_of_growth_in_steps(rate):
+    with pytest.raises(ValueError, match="rate of decay"):
+        check_quadratic(modes([["1/2"]]), matrix([[1]]), Time.DISCRETE, rate)
+
+
+@pytest.mark.parametrize(
+    ("A", "time", "rate", "holds"),
+    [
+        (-1, Time.CONTINUOUS, F(0), True),
+        (-1, Time.CONTINUOUS, F(1, 9), True),
+        (-1, Time.CONTINUOUS, F(1), False),
+        (-3, Time.CONTINUOUS, F(2), True),
+        (-3, Time.CONTINUOUS, F(3), False),
+        ("1/2", Time.DISCRETE, F(1), True),
+        ("1/2", Time.DISCRETE, F(5, 9), True),
+        ("1/2", Time.DISCRETE, F(1, 2), False),
+        ("1/2", Time.DISCRETE, F(1, 9), False),
+        (1, Time.DISCRETE, F(1), False),
+        (0, Time.DISCRETE, F(1, 9), True),
+    ],
+)
+def test_decided_at_the_rate_that_is_asked_for(A, time, rate, holds):
+    found = check_quadratic(modes([[A]]), matrix([[1]]), time, rate)
+    assert found.holds is holds
+    assert found.weak
+    if holds:
+        assert found.rate == rate
+
+
+@pytest.mark.parametrize(
+    ("A", "time", "rate"),
+    [
+        # Halving ends at 1/2, below the limit of 1, and 20 bisections go up to it.
+        (-1, Time.CONTINUOUS, 1 - F(1, 2**21)),
+        (-3, Time.CONTINUOUS, 3 - F(1, 2**19)),
+        ("-1/3", Time.CONTINUOUS, F(1398101, 2**22)),
+        ("1/2", Time.DISCRETE, F(1, 2) + F(1, 2**22)),
+        ("1/4", Time.DISCRETE, F(1, 4) + F(1, 2**21)),
+        (0, Time.DISCRETE, F(1, 2**21)),
+    ],
+)
+def test_the_best_rate_by_hand(A, time, rate):
+    assert check_quadratic(modes([[A]]), matrix([[1]]), time).rate == rate
+
+
+@pytest.mark.parametrize("P", [[[1, 0], [0, 1]], [[1, "1/9"], ["1/9", 1]], [[4, -1], [-1, 1]]])
+def test_the_best_rate_of_equal_decay(P):
+    """``A = -9 I`` decays at 9 in any norm: from 8 on, 20 bisections up to 16."""
+    found = check_quadratic(modes([[-9, 0], [0, -9]]), matrix(P), Time.CONTINUOUS)
+    assert found.rate == 9 - F(8, 2**20)
+    coupled = check_quadratic(modes([[-9, 0], ["1/100", -9]]), matrix(P), Time.CONTINUOUS)
+    assert 8 < coupled.rate < 9
+
+
+def test_the_best_rate_where_more_was_asked_for():
+    found = check_quadratic(modes([[-1]]), matrix([[1]]), Time.CONTINUOUS, F(4))
+    assert (found.holds, found.rate) == (False, 1 - F(1, 2**21))
+    found = check_quadratic(modes([["1/2"]]), matrix([[1]]), Time.DISCRETE, F(1, 4))
+    assert (found.holds, found.rate) == (False, F(1, 2) + F(1, 2**22))
+
+
+@pytest.mark.parametrize(
+    ("matrices", "P", "weak"),
+    [
+        ([[[0, 0], [0, 0]]], [[1, 2], [2, 1]], False),
+        ([[[0, 0], [0, 0]]], [[1, 1], [1, 1]], False),
+        ([[[0, 1], [-1, 0]], [[1, 0], [0, -1]]], [[1, 0], [0, 1]], False),
+        ([[[1, 0], [0, -1]], [[0, 1], [-1, 0]]], [[1, 0], [0, 1]], False),
+        ([[[0, 1], [-1, 0]], [[0, 0], [0, -1]]], [[1, 0], [0, 1]], True),
+    ],
+)
+def test_weak_is_no_increase_in_any_mode(matrices, P, weak):
+    found = check_quadratic(modes(*matrices), matrix(P), Time.CONTINUOUS)
+    assert (found.holds, found.weak, found.rate) == (False, weak, None)
+
+
+def test_weak_in_steps():
+    found = check_quadratic(modes([[0, 1], [-1, 0]]), matrix([[1, 0], [0, 1]]), Time.DISCRETE)
+    assert (found.holds, found.weak, found.rate) == (False, True, None)
+
+
+@pytest.mark.parametrize(
+    "P", [[[1, 0, 0], [0, 5, 0], [0, 0, 1]], [[1, 0, 0], [0, 1, 0]], [[1], [0]]]
+)
+def test_sizes_must_agree(P):
+    n, columns = len(P), len(P[0])
+    with pytest.raises(ValueError, match=f"P is {n} x {columns}, and not every mode is {n} x {n}"):
+        check_quadratic(PAIR, matrix(P), Time.CONTINUOUS)
+
+
+def test_every_mode_has_the_size_of_p():
+    with pytest.raises(ValueError, match="not every mode is 1 x 1"):
+        check_quadratic([*modes([[-1]]), PAIR[0]], matrix([[1]]), Time.CONTINUOUS)
 
 
 def test_asymmetric_p_is_refused():
@@ -140,6 +231,103 @@ def test_a_null_vector_that_no_decimals_hit_is_given_exactly():
     assert found.counterexample.mode is None
     assert found.counterexample.value == 0
     assert found.counterexample.vector == (Fraction(1, 3), 1)
+
+
+@pytest.mark.parametrize(
+    ("beyond", "third"),
+    [
+        ("2e-3", "0.3"),
+        ("2e-5", "0.33"),
+        ("2e-9", "0.3333"),
+        ("2e-17", "0.33333333"),
+        ("2e-33", "0.3333333333333333"),
+        ("2e-34", "1/3"),
+    ],
+)
+def test_a_vector_has_as_few_digits_as_show_it(beyond, third):
+    """``(x - y/3)^2 - e y^2`` is not positive within sqrt(e) of x = 1/3, y = 1."""
+    P = matrix([[1, F(-1, 3)], [F(-1, 3), F(1, 9) - F(beyond)]])
+    found = check_quadratic(PAIR, P, Time.CONTINUOUS).counterexample
+    assert found.mode is None
+    assert found.vector == (F(third), 1)
+    assert found.value == (F(third) - F(1, 3)) ** 2 - F(beyond)
+
+
+def test_the_largest_entry_of_a_vector_is_one():
+    # (x - 3 y)^2 - y^2 and (x - 2 y)^2.
+    for P, vector in (([[1, -3], [-3, 8]], (1, F(3, 10))), ([[1, -2], [-2, 4]], (1, F(1, 2)))):
+        found = check_quadratic(PAIR, matrix(P), Time.CONTINUOUS).counterexample
+        assert (found.mode, found.vector) == (None, vector)
+
+
+def test_vectors_by_hand():
+    assert indefinite_vector([[1, 0, 0], [0, 1, 1], [0, 1, 1]]) == (0, -1, 1)
+    assert indefinite_vector([[3, 1, 0], [1, 3, 1], [0, 1, 0]]) == (F(1, 8), F(-3, 8), 1)
+    assert indefinite_vector([[0, 1], [1, 5]]) == (1, 0)
+
+
+@pytest.mark.parametrize(
+    ("time", "rate", "value"),
+    [
+        # By hand at x = (1, 0): A x = (-1, 2), P x = (3, 1).
+        (Time.CONTINUOUS, F(1), 2 * (3 * -1 + 1 * 2) + 2 * 3),
+        (Time.CONTINUOUS, F(5), 2 * (3 * -1 + 1 * 2) + 2 * 5 * 3),
+        (Time.DISCRETE, F(1), 3 - 4 + 4 * 2 - 3),
+        (Time.DISCRETE, F(1, 2), 3 - 4 + 4 * 2 - F(3, 4)),
+    ],
+)
+def test_the_value_along_a_mode_by_hand(time, rate, value):
+    given = modes([[-1, 0], [2, 0]])
+    found = check_quadratic(given, matrix([[3, 1], [1, 2]]), time, rate).counterexample
+    assert (found.mode, found.vector, found.value) == ("m0", (1, 0), value)
+
+
+def diagonal(n, longest, denominator=1):
+    """A decay of 1 in all states but the last, which has a number of so many bits."""
+    last = -(2 ** (longest - 1))
+    numerators = [
+        [last * (i == n - 1) - (i < n - 1) if i == j else 0 for j in range(n)] for i in range(n)
+    ]
+    return Mode("m", RationalMatrix(tuple(map(tuple, numerators)), denominator))
+
+
+def unit(n, factor=1):
+    return matrix([[factor * (i == j) for j in range(n)] for i in range(n)])
+
+
+# One decision about one mode of ten states and P takes 2 * 10^3 times the bits: of the mode and
+# the rate, four for the sum of ten numbers, and those of P; in steps all but the last twice.
+def test_the_largest_numbers_that_are_decided():
+    check = check_quadratic([diagonal(10, 24_994)], unit(10), Time.CONTINUOUS)
+    assert (check.holds, check.rate) == (True, None)
+    assert check_quadratic([diagonal(10, 1, 2**24_993)], unit(10), Time.CONTINUOUS).holds
+    for mode, P, rate in (
+        (diagonal(10, 1, 2**24_994), unit(10), None),
+        (diagonal(10, 24_995), unit(10), None),
+        (diagonal(10, 24_994), unit(10, 2), None),
+        (diagonal(10, 24_994), unit(10), F(1, 2)),
+        (diagonal(10, 24_994), unit(10), F(2)),
+    ):
+        with pytest.raises(TooLargeError, match="too large"):
+            check_quadratic([mode], P, Time.CONTINUOUS, rate)
+    for pair in ([diagonal(10, 1), diagonal(10, 24_994)], [diagonal(10, 24_994), diagonal(10, 1)]):
+        with pytest.raises(TooLargeError, match="too large"):
+            check_quadratic(pair, unit(10), Time.CONTINUOUS)
+
+
+def test_the_largest_numbers_that_are_decided_in_steps():
+    assert not check_quadratic([diagonal(10, 12_494)], unit(10, 2), Time.DISCRETE).holds
+    with pytest.raises(TooLargeError, match="too large"):
+        check_quadratic([diagonal(10, 12_495)], unit(10, 2), Time.DISCRETE)
+
+
+def test_the_largest_numbers_for_which_a_rate_is_looked_for():
+    found = check_quadratic([diagonal(10, 4_994)], unit(10), Time.CONTINUOUS)
+    assert (found.holds, found.rate) == (True, 1 - F(1, 2**21))
+    found = check_quadratic([diagonal(10, 4_995)], unit(10), Time.CONTINUOUS)
+    assert (found.holds, found.rate) == (True, None)
+    found = check_quadratic([diagonal(10, 4_995)], unit(10), Time.CONTINUOUS, F(2))
+    assert (found.holds, found.weak, found.rate) == (False, True, None)
 
 
 def test_what_is_too_large_is_not_decided():

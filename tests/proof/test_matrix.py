@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from nrs_design.proof.matrix import RationalMatrix, multiply
+from nrs_design.proof.matrix import RationalMatrix, leading, multiply, with_crossing
 
 ROWS = st.integers(1, 4).flatmap(
     lambda n: st.lists(st.lists(st.fractions(), min_size=n, max_size=n), min_size=n, max_size=n)
@@ -84,6 +84,16 @@ def test_entries_are_finite_numbers(entry):
 def test_known_product():
     half = Fraction(1, 2)
     assert multiply([[1, half]], [[2, 0], [0, 4]]) == [[2, 2]]
+
+
+def test_all_but_the_last():
+    assert leading([[1, 2, 3], [4, 5, 6], [7, 8, 9]]) == [(1, 2), (4, 5)]
+
+
+def test_crossing_with_a_unit_vector():
+    M = [[0, 0, 0], [0, 10, 0], [0, 0, 0]]
+    assert with_crossing(M, 1, [1, 2, 3]) == [[0, 1, 0], [1, 14, 3], [0, 3, 0]]
+    assert M[1] == [0, 10, 0]
 
 
 @pytest.mark.parametrize(

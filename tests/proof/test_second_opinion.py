@@ -1,22 +1,34 @@
 """Flint's veto: it agrees on everything that is right, and stops everything else."""
 
+from dataclasses import replace
+from fractions import Fraction
+
 import flint
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from nrs_design.errors import InternalError
-from nrs_design.proof.evidence import UnstableMode
+from nrs_design.proof.evidence import (
+    BlockTriangular,
+    CommonQuadratic,
+    ModeQuadratic,
+    UnstableMixture,
+    UnstableMode,
+    UnstableValue,
+)
 from nrs_design.proof.exact import is_positive_definite
 from nrs_design.proof.second_opinion import agrees, has_positive_spectrum
-from nrs_design.proof.system import Time
+from nrs_design.proof.system import Stay, Switching, Time
+from nrs_design.proof.taylor import exponential_nearly
 from nrs_design.search.certify import certify
-from tests.proof.systems import genuine
-from tests.support import family
+from tests.proof.systems import PAIR, SYSTEMS, family, genuine
 
 INTS = st.integers(-9, 9)
 STABLE = family([[-1, 1], [-1, -1]], [[-2, 3], [-3, -2]])
 UNSTABLE = family([[-1, 0], [0, -2]], [[0, 1], [-1, 0]])
+CONTINUOUS, DISCRETE = Time
+HALF, TINY = Fraction(1, 2), Fraction(1, 2**60)
 
 
 @settings(deadline=None)
@@ -80,3 +92,155 @@ def test_no_exponential_without_a_taylor_series(monkeypatch, example):
 
     monkeypatch.setattr(flint, "arb_mat", Off)
     assert not agrees(system, evidence)
+
+
+@pytest.mark.parametrize("example", SYSTEMS)
+def test_agreement_on_everything_that_holds(example):
+    assert agrees(*genuine(example))
+
+
+@pytest.mark.parametrize(
+    ("coefficients", "positive"),
+    [
+        # Of products of (s - r), from the constant on: all roots are positive iff signs alternate.
+        ([-1, 1], True),
+        ([0, 1], False),
+        ([1, 1], False),
+        ([2, -3, 1], True),
+        ([0, -1, 1], False),
+        ([-1, 0, 1], False),
+        ([-2, -1, 1], False),
+        ([2, 3, 1], False),
+        ([-6, 11, -6, 1], True),
+        ([6, -5, -2, 1], False),
+    ],
+)
+def test_signs_by_descartes(coefficients, positive):
+    class Known:
+        def charpoly(self):
+            return flint.fmpz_poly(coefficients)
+
+    assert has_positive_spectrum(Known()) is positive
+
+
+I2 = ((1, 0), (0, 1))
+
+
+@pytest.mark.parametrize(
+    ("matrices", "time", "Q", "rate", "holds"),
+    [
+        # Rates that are just proved, and just not.
+        ([[[-1]]], CONTINUOUS, ((1,),), 1 - TINY, True),
+        ([[[-1]]], CONTINUOUS, ((1,),), Fraction(1), False),
+        ([[["-2/3"]]], CONTINUOUS, ((5,),), Fraction(2, 3) - TINY, True),
+        ([[["-2/3"]]], CONTINUOUS, ((5,),), Fraction(2, 3), False),
+        ([[["1/2"]]], DISCRETE, ((1,),), HALF + TINY, True),
+        ([[["1/2"]]], DISCRETE, ((1,),), HALF, False),
+        ([[["-2/3"]]], DISCRETE, ((5,),), Fraction(2, 3) + TINY, True),
+        ([[["-2/3"]]], DISCRETE, ((5,),), Fraction(2, 3), False),
+        # Every mode counts, and Q itself.
+        ([[[-1]], [[-2]]], CONTINUOUS, ((1,),), Fraction(3, 2), False),
+        ([[[-2]], [[-1]]], CONTINUOUS, ((1,),), Fraction(3, 2), False),
+        ([[[0, 0], [0, 0]]], DISCRETE, I2, HALF, True),
+        ([[[1]]], CONTINUOUS, ((-1,),), HALF, False),
+        ([[[2]]], DISCRETE, ((-1,),), HALF, False),
+        # By hand, with A = [[-1, c], [0, -1]] and Q = I: at rate r iff c < 2 (1 - r).
+        ([[[-1, "0.99"], [0, -1]]], CONTINUOUS, I2, HALF, True),
+        ([[[-1, "1"], [0, -1]]], CONTINUOUS, I2, HALF, False),
+        ([[[-1, 0], ["0.99", -1]]], CONTINUOUS, I2, HALF, True),
+        ([[[-1, 0], ["1", -1]]], CONTINUOUS, I2, HALF, False),
+        # With A = [[0, c], [0, 0]]: iff c < rho. Q = diag(1, 4) allows twice as much one way.
+        ([[[0, "0.99"], [0, 0]]], DISCRETE, ((1, 0), (0, 4)), HALF, True),
+        ([[[0, "1"], [0, 0]]], DISCRETE, ((1, 0), (0, 4)), HALF, False),
+        ([[[0, 0], ["0.24", 0]]], DISCRETE, ((1, 0), (0, 4)), HALF, True),
+        ([[[0, 0], ["0.25", 0]]], DISCRETE, ((1, 0), (0, 4)), HALF, False),
+    ],
+)
+def test_opinion_on_a_quadratic_function(matrices, time, Q, rate, holds):
+    evidence = CommonQuadratic(Q, 0, rate)
+    system = family(*matrices, time=time)
+    assert agrees(system, evidence) is holds
+    assert (evidence.find_fault(system) is None) is holds
+
+
+@pytest.mark.parametrize(
+    ("A", "time", "is_vetoed"),
+    [
+        ([[-1, 0], [0, -1]], CONTINUOUS, True),
+        ([[-1, 0], [0, 0]], CONTINUOUS, False),
+        ([[0, 1], [-1, 0]], CONTINUOUS, False),
+        ([[1, 0], [0, -3]], CONTINUOUS, False),
+        ([[0, 0], [0, "1/2"]], DISCRETE, True),
+        ([[0, 1], [-1, 0]], DISCRETE, False),
+        ([["-2", 0], [0, 0]], DISCRETE, False),
+    ],
+)
+def test_veto_on_what_is_surely_stable(A, time, is_vetoed):
+    calm = [["-1/4", 0], [0, "-1/4"]]
+    system = family(calm, A, time=time)
+    assert agrees(system, UnstableMode("m1", "")) is not is_vetoed
+    assert not agrees(system, UnstableMode("m0", ""))
+    # A mixture of the two halves, which is A.
+    whole = [[2 * Fraction(entry) for entry in row] for row in A]
+    halves = family(whole, [[0, 0], [0, 0]], time=time)
+    mixed = UnstableMixture((("m0", HALF), ("m1", HALF)), "")
+    assert agrees(halves, mixed) is not is_vetoed
+    # The parameter's value in the middle of these.
+    ends = replace(halves, switching=PAIR)
+    assert agrees(ends, UnstableValue(HALF, UnstableMode("m0 to m1", ""))) is not is_vetoed
+
+
+def test_every_part_of_a_block_triangular_system_is_asked():
+    system = family([[-1, 5], [0, -2]])
+    one = CommonQuadratic(((1,),), 0, HALF)
+    fast = replace(one, rate=Fraction(3, 2))
+    for first, second, holds in ((one, fast, True), (fast, one, False), (fast, fast, False)):
+        assert agrees(system, BlockTriangular(((0,), (1,)), ((0, first), (1, second)))) is holds
+
+
+def test_every_form_is_asked():
+    """Of the kinds of which nothing is formed anew."""
+    system = family([["-1/2"]], [["1/4"]], time=DISCRETE, switching=Switching(Fraction(2)))
+    for first, second, holds in ((1, 1, True), (1, 20, False), (100, 1, False), (-1, 1, False)):
+        functions = (("m0", ((first,),)), ("m1", ((second,),)))
+        assert agrees(system, ModeQuadratic(functions, 0, Fraction(3, 4))) is holds
+
+
+def recorded(monkeypatch, system, evidence):
+    """Return the times for which a Taylor series was asked, by the first entry of its matrix."""
+    asked = []
+
+    def record(A, time):
+        asked.append((A.fractions()[0][0], time))
+        return exponential_nearly(A, time)
+
+    monkeypatch.setattr("nrs_design.proof.second_opinion.exponential_nearly", record)
+    assert agrees(system, evidence)
+    return sorted(asked)
+
+
+def test_both_ends_of_every_stay_meet_a_series(monkeypatch):
+    stays = (("m0", Stay(HALF, Fraction(1))), ("m1", Stay(Fraction(3), Fraction(4))))
+    system = family([[1]], [[-2]], [[-3]], switching=Switching(stays=stays))
+    functions = tuple((f"m{k}", ((q,),)) for k, q in enumerate((400, 1, 1)))
+    one_way = replace(system.switching, transitions=(("m0", "m1"),))
+    evidence = ModeQuadratic(functions, 0, Fraction(1, 8), ("m0",), 8)
+    asked = recorded(monkeypatch, replace(system, switching=one_way), evidence)
+    # At the rate 1/8; m1 decreases, so that its longest stay is of no interest; m2 has no dwell.
+    assert asked == [
+        (Fraction(-15, 8), Fraction(3)),
+        (Fraction(9, 8), HALF),
+        (Fraction(9, 8), Fraction(1)),
+    ]
+
+
+def test_every_step_of_a_period_meets_a_series(monkeypatch):
+    system, evidence = genuine("unstable-period")
+    modes = {mode.name: mode.A.fractions()[0][0] for mode in system.modes}
+    asked = recorded(monkeypatch, system, evidence)
+    assert asked == sorted((modes[name], time) for name, time in evidence.steps)
+
+
+@pytest.mark.parametrize("example", ["mode-quadratic, left", "unstable-period, discrete"])
+def test_no_series_where_steps_are_counted(monkeypatch, example):
+    assert recorded(monkeypatch, *genuine(example)) == []

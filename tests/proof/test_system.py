@@ -5,8 +5,21 @@ import numpy as np
 import pytest
 
 from nrs_design.proof.matrix import RationalMatrix
-from nrs_design.proof.system import Contact, Mode, Reset, Stay, Switching, Time
-from tests.proof.systems import bouncing_in_steps, family, matrix
+from nrs_design.proof.system import (
+    Channel,
+    Contact,
+    Mode,
+    Output,
+    Reset,
+    Stay,
+    Switching,
+    Time,
+)
+from tests.proof.systems import bouncing, bouncing_in_steps, family, matrix, pushed, resets_between
+
+HALF = Fraction(1, 2)
+PUSHED = pushed(bouncing(1))
+(PUSH,), (FORCE,), ONE = PUSHED.channels, PUSHED.outputs, matrix([[1]])
 
 
 def test_order_is_the_number_of_states():
@@ -35,13 +48,25 @@ def test_dwell_time_of_numpy_becomes_one_of_python():
     ("rules", "reason"),
     [
         ({"dwell_time": Fraction(-1)}, "a dwell time is negative"),
+        ({"dwell_time": -HALF}, "a dwell time is negative"),
         ({"stays": (("m0", Stay(Fraction(-1))),)}, "a dwell time is negative"),
+        ({"stays": (("m0", Stay(Fraction(1))), ("m1", Stay(-HALF)))}, "a dwell time is negative"),
+        ({"stays": (("m9", Stay()),)}, "not those of modes"),
+        ({"stays": (("m0", Stay()), ("m0", Stay()))}, "not those of modes"),
+        ({"stays": (("m1", Stay(Fraction(1), HALF)),)}, "mode m1 must be left before it may be"),
         ({"transitions": (("m0", "m0"),)}, "a transition does not lead"),
         ({"transitions": (("m0", "m9"),)}, "a transition does not lead"),
+        ({"transitions": (("m9", "m0"),)}, "a transition does not lead"),
+        ({"transitions": (("m0", "m1"), ("m8", "m9"))}, "a transition does not lead"),
+        ({"resets": (Reset("m0", "m0", ONE),)}, "a reset does not lead"),
+        ({"resets": (Reset("m0", "m9", ONE),)}, "a reset does not lead"),
+        ({"resets": (Reset("m9", "m0", ONE),)}, "a reset does not lead"),
+        ({"resets": (Reset("m0", "m1", ONE), Reset("m8", "m9", ONE))}, "a reset does not lead"),
         ({"resets": (Reset("m0", "m1", RationalMatrix(((1,),), 0)),)}, "not a matrix over"),
         ({"resets": (Reset("m0", "m1", RationalMatrix(((1,),), -1)),)}, "not a matrix over"),
         ({"resets": (Reset("m0", "m1", RationalMatrix(((1,), (1, 2)))),)}, "not a matrix over"),
         ({"fixed_ends": (("m0", "m0"),)}, "not the ends of one"),
+        ({"fixed_ends": (("m0", "m9"),)}, "not the ends of one"),
         ({"fixed_ends": (("m0", "m1"), ("m0", "m1"))}, "not the ends of one"),
     ],
 )
@@ -50,21 +75,243 @@ def test_rules_that_make_no_sense(rules, reason):
     assert reason in str(found)
 
 
-def test_rules_that_make_sense():
-    rules = Switching(Fraction(1), (("m0", "m1"),), fixed_ends=(("m0", "m1"),))
+@pytest.mark.parametrize(
+    "rules",
+    [
+        Switching(Fraction(1), (("m0", "m1"),), fixed_ends=(("m0", "m1"),)),
+        Switching(transitions=()),
+        Switching(HALF, stays=(("m0", Stay()), ("m1", Stay(HALF, HALF)))),
+        Switching(resets=(Reset("m1", "m0", ONE), Reset("m1", "m0", ONE))),
+    ],
+)
+def test_rules_that_make_sense(rules):
     assert family([[-1]], [[-1]], switching=rules).find_contradiction() is None
+
+
+@pytest.mark.parametrize(("longest", "is_odd"), [(HALF, True), (Fraction(1), False)])
+def test_no_stay_is_shorter_than_a_step(longest, is_odd):
+    rules = Switching(stays=(("m0", Stay(Fraction(0), longest)),))
+    found = family([["1/2"]], time=Time.DISCRETE, switching=rules).find_contradiction()
+    assert (found == "mode m0 must be left before it may be") is is_odd
+
+
+def test_stays_by_mode():
+    own = ("m1", Stay(Fraction(3), Fraction(4))), ("m2", Stay(HALF, Fraction(9)))
+    rules = Switching(Fraction(1, 3), stays=own)
+    modes = [["1/2"]], [["1/2"]], [["1/2"]]
+    system = family(*modes, switching=rules)
+    common = Stay(Fraction(1, 3))
+    assert system.stays() == {"m0": common, **dict(own)}
+    assert [rules.stay(name) for name in ("m0", "m1")] == [common, own[0][1]]
+    in_steps = family(*modes, time=Time.DISCRETE, switching=rules).stays()
+    assert in_steps == {"m0": Stay(Fraction(1)), **dict(own), "m2": Stay(Fraction(1), Fraction(9))}
+
+
+def test_what_nothing_is_said_of():
+    assert Stay() == Stay(Fraction(0), None)
+    assert not Contact(()).required
+    one_and_a_half = Switching(Fraction(3, 2))
+    in_steps = family([["1/2"]], time=Time.DISCRETE, switching=one_and_a_half)
+    assert in_steps.stays() == {"m0": Stay(Fraction(3, 2))}
+
+
+def test_modes_that_need_never_be_left():
+    rules = Switching(stays=(("m0", Stay(HALF)), ("m1", Stay(HALF, HALF))))
+    modes = family([[1]], [[2]], [[3]], switching=rules).lasting_modes()
+    assert [mode.name for mode in modes] == ["m0", "m2"]
+
+
+def test_edges_without_rules_join_all_pairs():
+    edges = family([[1]], [[2]], [[3]]).edges()
+    names = [(edge.source.name, edge.target.name) for edge in edges]
+    assert names == [(f"m{i}", f"m{j}") for i in range(3) for j in range(3) if i != j]
+    assert all(edge.map is None for edge in edges)
+
+
+def test_edges_follow_transitions_and_take_every_reset():
+    resets = resets_between(("m0", "m1", [[2]]), ("m1", "m0", [[5]]), ("m0", "m1", [[3]]))
+    rules = Switching(transitions=(("m0", "m1"), ("m1", "m2")), resets=resets)
+    edges = family([[1]], [[2]], [[3]], switching=rules).edges()
+    assert [(edge.source.name, edge.target.name, edge.map) for edge in edges] == [
+        ("m0", "m1", matrix([[2]])),
+        ("m0", "m1", matrix([[3]])),
+        ("m1", "m2", None),
+    ]
+    assert family([[1]], [[2]], switching=Switching(transitions=())).edges() == []
+
+
+@pytest.mark.parametrize(
+    "rules",
+    [
+        {"dwell_time": HALF},
+        {"transitions": ()},
+        {"resets": (Reset("m0", "m1", ONE),)},
+        {"fixed_ends": (("m0", "m1"),)},
+        {"stays": (("m0", Stay()),)},
+    ],
+)
+def test_any_rule_ends_arbitrary_switching(rules):
+    assert Switching().is_arbitrary
+    assert not Switching(**rules).is_arbitrary
+
+
+def test_other_modes_leave_contact_and_channels_behind():
+    other = family([[-1]], switching=Switching(HALF))
+    changed = replace(pushed(bouncing_in_steps()), assumptions=("rigid",)).with_modes(
+        other.modes, other.states, other.switching
+    )
+    assert changed == replace(other, time=Time.DISCRETE, assumptions=("rigid",))
+
+
+def test_uniform_is_of_the_order():
+    assert family([[1, 0], [0, 1]], [[2, 0], [0, 2]]).is_uniform
+    assert not family([[1, 0], [0, 1]], [[2]]).is_uniform
+    assert not family([[1]], [[2, 0], [0, 2]]).is_uniform
 
 
 def test_a_time_of_a_step_needs_steps():
     system = bouncing_in_steps()
     assert system.find_contradiction() is None
-    for odd in (replace(system, sample_time=Fraction(0)), replace(family([[1]]), sample_time=1)):
+    assert replace(system, sample_time=None).find_contradiction() is None
+    zero, negative = (replace(system, sample_time=time) for time in (Fraction(0), -HALF))
+    for odd in (zero, negative, replace(family([[1]]), sample_time=Fraction(1))):
         assert "the time of a step is not positive" in odd.find_contradiction()
 
 
+def free(*matrices, names=("f0", "f1", "f2")):
+    """Contact that is lost into modes of these names."""
+    return Contact(tuple(Mode(name, matrix(A)) for name, A in zip(names, matrices, strict=False)))
+
+
+THREE = family([[0, 0, 0], [0, 0, 0], [0, 0, 0]])
+MOVING, AT_REST = [[-2, 0], [1, 0]], [[-1, 0], [0, 0]]
+STEP = [["4/5", 0], ["1/10", 1]]
+
+
 def test_contact_needs_a_state_beside_the_deflection():
-    contact = Contact((Mode("free", matrix([[0]])),))
-    system = replace(family([[-1]]), contact=contact)
-    assert "do not share a deflection" in system.find_contradiction()
-    unequal = replace(family([[-1]], [[-1, 0], [0, -1]]), contact=contact)
-    assert "do not share a deflection" in unequal.find_contradiction()
+    for system in (
+        replace(family([[-1]]), contact=free([[0]])),
+        replace(family([[-1]], [[-1, 0], [0, -1]]), contact=free(MOVING)),
+        replace(family([[-1, 0], [0, -1]], [[-1]]), contact=free(MOVING)),
+    ):
+        assert "do not share a deflection" in system.find_contradiction()
+
+
+@pytest.mark.parametrize(
+    ("contact", "reason"),
+    [
+        (free(), "no free mode"),
+        (free(MOVING, names=("m0",)), "two modes have one name"),
+        (free(MOVING, AT_REST, names=("f", "f")), "two modes have one name"),
+        (free(MOVING, AT_REST, names=("f", "m1")), "two modes have one name"),
+        (free([[-2, 1], [1, 0]]), "acts on the other states"),
+        (free(MOVING, [[-2, 1], [1, 0]]), "acts on the other states"),
+        (free([[-2, 0], [1, 1]]), "acts on the other states"),
+        (free([[-2, 0], [1, -1]]), "acts on the other states"),
+        (free([[0]]), "acts on the other states"),
+        (free([[-2, 0, 0], [0, -2, 0], [0, 1, 0]]), "acts on the other states"),
+        (Contact((Mode("f", RationalMatrix(((-2, 0), (1, 0)), 0)),)), "acts on the other states"),
+    ],
+)
+def test_free_modes_that_make_no_sense(contact, reason):
+    assert reason in replace(bouncing(), contact=contact).find_contradiction()
+
+
+@pytest.mark.parametrize(
+    ("system", "contact"),
+    [
+        (bouncing(), free(MOVING)),
+        (bouncing(), free(MOVING, AT_REST)),
+        (bouncing_in_steps(), free(STEP)),
+        (THREE, free([[-2, 1, 0], [0, -2, 0], [0, 1, 0]])),
+    ],
+)
+def test_free_modes_that_make_sense(system, contact):
+    assert replace(system, contact=contact).find_contradiction() is None
+
+
+@pytest.mark.parametrize("push", [[1, 0], [0, 1]])
+def test_no_state_is_pushed_in_free_motion(push):
+    rows = [[-2, 1, push[0]], [0, -2, push[1]], [0, 1, 0]]
+    system = replace(THREE, contact=free(rows))
+    assert "acts on the other states" in system.find_contradiction()
+
+
+@pytest.mark.parametrize("last", ["9/10", 0, 2])
+def test_a_free_deflection_stays_from_step_to_step(last):
+    system = replace(bouncing_in_steps(), contact=free([["4/5", 0], ["1/10", last]]))
+    assert "acts on the other states" in system.find_contradiction()
+
+
+@pytest.mark.parametrize(
+    ("row", "is_odd"),
+    [
+        (RationalMatrix(((0, 1),)), False),
+        (RationalMatrix(((0, 1),), 0), True),
+        (RationalMatrix(((0, 1), (0, 1))), True),
+        (RationalMatrix(((1,),)), True),
+        (RationalMatrix(((0, 0, 1),)), True),
+    ],
+)
+def test_a_pull_is_one_row(row, is_odd):
+    system = bouncing()
+    contact = replace(system.contact, pulls=(RationalMatrix(((1, 1),)), row))
+    found = replace(system, contact=contact).find_contradiction()
+    assert (found == "a force is not one row over a positive denominator") is is_odd
+    assert (found is None) is not is_odd
+
+
+COLUMN, WRONG = PUSH.columns[0], "push does not have the size of the state"
+
+
+@pytest.mark.parametrize(
+    ("changes", "reason"),
+    [
+        ({"columns": (RationalMatrix(((1,), (0,)), 0),) * 3}, WRONG),
+        ({"columns": (COLUMN, COLUMN, ONE)}, WRONG),
+        ({"columns": (matrix([[1, 0]]),) * 3}, WRONG),
+        ({"columns": (matrix([[1], [0], [0]]),) * 3}, WRONG),
+        ({"columns": (COLUMN,) * 2}, "not one column for every mode"),
+        ({"columns": (COLUMN,) * 4}, "not one column for every mode"),
+        ({"bound": Fraction(0)}, "no positive bound"),
+        ({"bound": -HALF}, "no positive bound"),
+        ({"name": "force"}, "two disturbances or outputs have one name"),
+    ],
+)
+def test_disturbances_that_make_no_sense(changes, reason):
+    odd = replace(PUSH, **changes)
+    for channels in ((odd,), (replace(PUSH, name="other"), odd)):
+        assert reason in replace(PUSHED, channels=channels).find_contradiction()
+
+
+ROW = FORCE.rows[0]
+
+
+@pytest.mark.parametrize(
+    ("changes", "reason"),
+    [
+        ({"rows": (ROW, RationalMatrix(((0, 1),), 0))}, "force does not have the size"),
+        ({"rows": (ROW, ONE)}, "force does not have the size"),
+        ({"rows": (matrix([[0], [1]]),)}, "force does not have the size"),
+        ({"rows": ()}, "an output has no rows"),
+        ({"limit": Fraction(0)}, "the limit of an output is not positive"),
+        ({"limit": -HALF}, "the limit of an output is not positive"),
+        ({"name": "other"}, "two disturbances or outputs have one name"),
+    ],
+)
+def test_outputs_that_make_no_sense(changes, reason):
+    outputs = replace(FORCE, name="other"), replace(FORCE, **changes)
+    assert reason in replace(PUSHED, outputs=outputs).find_contradiction()
+
+
+def test_disturbances_and_outputs_that_make_sense():
+    slight = Channel("slight", "N", Fraction(1, 9), PUSH.columns)
+    sum_of_both = Output("sum", "N", (matrix([[1, 1]]),), Fraction(1, 9))
+    system = replace(
+        PUSHED, channels=(PUSH, slight), outputs=(FORCE, replace(sum_of_both, limit=None))
+    )
+    assert system.find_contradiction() is None
+    assert replace(system, outputs=(sum_of_both,)).find_contradiction() is None
+    kept = family([[-1, 0], [0, -1]])
+    one_mode = replace(kept, channels=(replace(PUSH, columns=(COLUMN,)),))
+    assert one_mode.find_contradiction() is None

@@ -23,6 +23,9 @@ RULES = Switching(
 RULED = family([[-1, 0], [0, -1]], [["-1/2", 1], [0, -2]], switching=RULES)
 
 
+NAMELESS = {"numerators": [[1, 0], [0, 1]], "denominator": 1}
+
+
 def stored(system):
     return json.loads(json.dumps(system_fields(system)))
 
@@ -45,16 +48,29 @@ def test_numbers_that_python_would_not_read_back_are_not_written(value):
         system_fields(replace(system, modes=(Mode("m0", RationalMatrix(((1,),), abs(value))),)))
 
 
+def test_the_longest_numbers_that_python_reads_back_are_written():
+    longest = 2**14_000 - 1
+    system = replace(RULED, modes=(Mode("m0", RationalMatrix(((longest, -1),), longest)),))
+    assert system_fields(system)["modes"][0]["denominator"] == longest
+
+
 @pytest.mark.parametrize(
     ("field", "value", "reason"),
     [
         ("modes", [], "largest mode"),
+        ("modes", [{"name": "m0"} | NAMELESS, {"name": "m0"} | NAMELESS], "the same name"),
+        ("modes", [{"name": "m0", "numerators": [], "denominator": 1}], "lengths"),
+        ("modes", [{"name": "m0", "numerators": [[]], "denominator": 1}], "lengths"),
+        ("modes", [{"name": "m0", "numerators": [[1]], "denominator": -1}], "positive denominator"),
+        ("modes", [{"name": "m0", "numerators": [[1], [1]], "denominator": 1}], "not square"),
+        ("modes", [{"name": "m", **NAMELESS}, {"name": "m0"}], "numerators"),
         ("modes", {}, "expected a list"),
         ("modes", [{"name": "m0", "numerators": [[1, 2]], "denominator": 1}], "not square"),
         ("modes", [{"name": "m0", "numerators": [[1], [1, 2]], "denominator": 1}], "lengths"),
         ("modes", [{"name": "m0", "numerators": [[1]], "denominator": 0}], "positive denominator"),
         ("modes", [{"name": 3, "numerators": [[1]], "denominator": 1}], "expected a text"),
         ("states", ["x"], "largest mode"),
+        ("states", ["x", "y", "z"], "largest mode"),
         ("states", [1, 2], "expected a text"),
         ("time", "never", "not a valid Time"),
         ("switching", {**stored(RULED)["switching"], "dwell_time": "-1"}, "not a ratio"),
@@ -62,8 +78,13 @@ def test_numbers_that_python_would_not_read_back_are_not_written(value):
     ],
 )
 def test_malformed_systems(field, value, reason):
-    with pytest.raises((ValueError, TypeError), match=reason):
+    with pytest.raises((KeyError, ValueError, TypeError), match=reason):
         read_system("x", {**stored(RULED), field: value})
+
+
+def test_a_system_without_modes_and_states():
+    with pytest.raises(ValueError, match="largest mode"):
+        read_system("x", {**stored(RULED), "modes": [], "states": []})
 
 
 def test_two_modes_of_one_name():
@@ -82,6 +103,31 @@ def test_modes_that_would_take_hours():
     }
     with pytest.raises(ValueError, match="too large to check"):
         read_system("x", fields)
+
+
+def tens(count):
+    """Modes of ten states, each of which takes a hundredth of the work that is allowed."""
+    rows = [[2 ** (10**5 - 1) * (i + j == 0) for j in range(10)] for i in range(10)]
+    return [{"name": f"m{k}", "numerators": rows, "denominator": 1} for k in range(count)]
+
+
+def test_the_largest_family_that_is_read():
+    states, tiny = [f"x{i}" for i in range(10)], {"numerators": [[1]], "denominator": 1}
+    fields = stored(family([[1]])) | {"states": states, "modes": tens(100)}
+    assert len(read_system("x", fields).modes) == 100
+    fields["modes"].append({"name": "one more", **tiny})
+    with pytest.raises(ValueError, match="too large to check"):
+        read_system("x", fields)
+
+
+def test_the_largest_motions_without_contact_that_are_read():
+    """Each of them is decided once, and once more for each force."""
+    pull = {"numerators": [[1] * 10], "denominator": 1}
+    contact = {"free": tens(50), "pulls": [pull], "required": False}
+    fields = stored(family([[1]])) | {"states": [f"x{i}" for i in range(10)], "modes": tens(1)}
+    assert len(read_system("x", {**fields, "contact": contact}).contact.free) == 50
+    with pytest.raises(ValueError, match="too large to check"):
+        read_system("x", {**fields, "contact": {**contact, "pulls": [pull, pull]}})
 
 
 @pytest.mark.parametrize("value", [1, None, "true"])

@@ -1,7 +1,7 @@
 """Exponentials by a Taylor series: exact cases, an oracle of many digits, and stiff ones."""
 
 from fractions import Fraction
-from math import factorial
+from math import ceil, factorial
 
 import pytest
 from flint import arb, fmpq
@@ -45,7 +45,44 @@ def test_nilpotent_matrices_are_polynomials_of_the_time():
 def test_no_time_leaves_everything_as_it_is():
     M, error = exponential_nearly(RationalMatrix(((5, -3), (2, 9))), Fraction(0))
     assert M.fractions() == [[1, 0], [0, 1]]
-    assert error <= Fraction(9, UNIT)
+    # By hand: 2 n for the rounded exponent, 2 n for the steps, and one for the terms left out.
+    assert error == Fraction(9, 2**256)
+
+
+@pytest.mark.parametrize(("x", "units"), [("1/256", 12), ("1/128", 26), ("1e-30", 12)])
+def test_small_exponents_are_squared_once_or_twice(x, units):
+    """By hand: a square of about one doubles an error of 5 and rounds, to 11 and a bit."""
+    _, error = exponential_nearly(RationalMatrix.from_rows([[Fraction(x)]]), Fraction(1))
+    assert error == Fraction(units, 2**256)
+
+
+def norm(M):
+    return max(sum(map(abs, row)) for row in M)
+
+
+@pytest.mark.parametrize(
+    ("rows", "time"),
+    [(((1,),), 200), (((-1,),), 200), (((0, 1), (0, 0)), 1), (((1, 0), (3, -2)), 16)],
+)
+def test_twice_the_time_is_one_more_square(rows, time):
+    """The same exponent is halved once more: ``2 |E| e + e^2`` and n from rounding."""
+    (once, error), (twice, more) = (
+        exponential_nearly(RationalMatrix(rows), Fraction(t)) for t in (time, 2 * time)
+    )
+    E, n, units = once.fractions(), len(rows), error * UNIT
+    assert more * UNIT == ceil(2 * norm(E) * units + units**2 / UNIT + n)
+    for i, row in enumerate(twice.numerators):
+        for j, entry in enumerate(row):
+            square = sum(once.numerators[i][k] * once.numerators[k][j] for k in range(n))
+            assert entry == square // UNIT
+
+
+@pytest.mark.parametrize("rows", [((0, 0), (0, 10)), ((10, 0), (0, 0))])
+def test_the_largest_row_decides_how_small_the_exponent_is_made(rows):
+    M, error = exponential_nearly(RationalMatrix(rows), Fraction(1))
+    assert error < DIGITS
+    for i, row in enumerate(M.fractions()):
+        assert abs(row[i] - e_to_the(rows[i][i])) <= error + Fraction(1, 10**80)
 
 
 @given(
@@ -97,5 +134,5 @@ def test_the_exponential_of_a_number_lies_between_its_bounds(x):
 
 
 def test_the_exponential_of_zero_is_one():
-    low, high = exponential_between(Fraction(0))
-    assert low <= 1 <= high
+    unit = Fraction(1, 2**80)
+    assert exponential_between(Fraction(0)) == (1 - unit, 1 + unit)

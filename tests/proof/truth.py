@@ -17,6 +17,7 @@ from nrs_design.proof.evidence import (
     BlockTriangular,
     CommonPolynomial,
     CommonQuadratic,
+    ConewisePolynomial,
     ConewiseQuadratic,
     InvariantEllipsoid,
     ModePolynomial,
@@ -29,7 +30,7 @@ from nrs_design.proof.evidence import (
     UnstableValue,
 )
 from nrs_design.proof.matrix import RationalMatrix
-from nrs_design.proof.system import Mode, SwitchedSystem, Time
+from nrs_design.proof.system import Channel, Mode, SwitchedSystem, Time
 
 Rows = list[list[Fraction]]
 Polynomial = dict[tuple[int, ...], Fraction]
@@ -140,6 +141,17 @@ def holds(system: SwitchedSystem, evidence: AbstractEvidence) -> bool:
 
 
 def _common_quadratic(system: SwitchedSystem, item: CommonQuadratic) -> bool:
+    if item.roundings:
+        errors = _errors(replace(system, contact=None), (), item.roundings)
+        if errors is None:
+            return False
+        kept = _padded(combine((item.rate**2, item.Q)), len(item.roundings))
+        grown = (times(transpose(A), times(item.Q, A)) for A in errors[0])
+        forms = [
+            combine((1, kept), (-1, after), (1, slack))
+            for after, slack in zip(grown, errors[1], strict=True)
+        ]
+        return is_rate(item.rate, system.time) and all(map(is_definite, [item.Q, *forms]))
     return is_rate(item.rate, system.time) and all(
         is_definite(form)
         for form in (
@@ -175,51 +187,71 @@ def _conewise_quadratic(system: SwitchedSystem, item: ConewiseQuadratic) -> bool
     if contact.pulls or len(item.multipliers) != 1:
         return False
 
-    def shrinks(before: Rows, A: Rows, after: Rows) -> Rows:
-        return combine((rate**2, before), (-1, times(transpose(A), times(after, A))))
+    errors = _errors(system, (), item.roundings)
+    if errors is None:
+        return False
+    extra = len(item.roundings)
 
-    for mode in system.modes:
-        A = mode.A.fractions()
-        crossing = times(last, [A[-1]])
-        weight = item.multipliers[0]
+    def shrinks(before: Rows, A: Rows, after: Rows, slack: Rows) -> Rows:
+        moved = times(transpose(A), times(after, A))
+        return combine((1, _padded(combine((rate**2, before)), extra)), (-1, moved), (1, slack))
+
+    n, count, forms = len(Q), len(system.modes), [Q]
+    for A, slack in zip(*(part[:count] for part in errors), strict=True):
+        unit = [*last, *([Fraction(0)] for _ in range(extra))]
+        crossing, weight = times(unit, [A[-1]]), item.multipliers[0]
         lost = (weight, crossing), (weight, transpose(crossing))
-        forms.append(combine((1, shrinks(Q, A[:-1], inner)), *lost))
-    for mode in contact.free:
-        A = [row[:-1] for row in mode.A.fractions()]
-        forms += [shrinks(inner, A[:-1], inner), shrinks(inner, A, Q)]
+        forms.append(shrinks(Q, A, Q, slack))
+        forms.append(combine((1, shrinks(Q, A[:-1], inner, slack)), *lost))
+    for wide, slack in zip(*(part[count:] for part in errors), strict=True):
+        A, S = [[*row[: n - 1], *row[n:]] for row in wide], _cut(slack, n - 1)
+        forms += [shrinks(inner, A[:-1], inner, S), shrinks(inner, A, Q, S)]
     return all(is_definite(form) for form in forms)
 
 
+def _padded(M: Rows, extra: int) -> Rows:
+    """Add rows and columns of zeros."""
+    zeros = [Fraction(0)] * extra
+    return [[*row, *zeros] for row in M] + [[Fraction(0)] * (len(M) + extra)] * extra
+
+
 def _invariant_ellipsoid(system: SwitchedSystem, item: InvariantEllipsoid) -> bool:
-    """For the state and a constant one: what raises V only if the disturbance is too large."""
-    channel = next((c for c in system.channels if c.name == item.channel), None)
+    """For the state and a constant one: what raises V only if a disturbance is too large."""
+    named = [c for name in item.channels for c in system.channels if c.name == name]
     output = next((o for o in system.outputs if o.name == item.output), None)
-    discrete = system.time is Time.DISCRETE
-    if channel is None or output is None or len(item.Q) != system.order:
+    discrete, a = system.time is Time.DISCRETE, sum(item.shares)
+    if not named or len(named) < len(item.channels) or output is None:
         return False
-    if item.level <= 0 or item.share <= 0 or (discrete and item.share >= 1):
+    if len(item.Q) != system.order or len(item.shares) != len(named):
+        return False
+    if item.level <= 0 or min(item.shares) <= 0 or (discrete and a >= 1):
         return False
     scale = Fraction(1, 2**item.denominator_log2)
     Q = combine((scale, [list(map(Fraction, row)) for row in item.Q]))
     weights = [scale * entry for entry in item.multipliers]
-    n, a, bound, contact = system.order, item.share, channel.bound, system.contact
-    free = () if contact is None else contact.free
-    wide = [
-        [[*row, *entry] for row, entry in zip(m.A.fractions(), B.fractions(), strict=True)]
-        for m, B in zip((*system.modes, *free), channel.columns, strict=True)
-    ]
-    inner, unit = [row[:-1] for row in Q[:-1]], identity(n + 1)
+    taus = [scale * entry for entry in item.roundings]
+    n, contact = system.order, system.contact
+    errors = _errors(system, named, taus)
+    if errors is None or min(weights, default=0) < 0:
+        return False
+    wide, slacks = errors
+    inner, size = [row[:-1] for row in Q[:-1]], len(wide[0][0])
+    allowed = [share / c.bound**2 for share, c in zip(item.shares, named, strict=True)]
+    allowed += [Fraction(0)] * len(taus)
 
     def ball(M: Rows) -> Rows:
-        """Return the form ``a d^2/bound^2 - a V`` of state and disturbance."""
-        zero = [Fraction(0)] * len(M)
-        kept = [[*(-a * entry for entry in row), Fraction(0)] for row in M]
-        return [*kept, [*zero, a / bound**2]]
+        """Return the form ``sum a_i d_i^2/bound_i^2 - a V`` of state, disturbances and errors."""
+        m = len(M)
+        form = [[Fraction(0)] * (m + len(allowed)) for _ in range(m + len(allowed))]
+        for i, row in enumerate(M):
+            form[i][:m] = [-a * entry for entry in row]
+        for i, entry in enumerate(allowed, m):
+            form[i][i] = entry
+        return form
 
     def rise(M: Rows, A: Rows, after: Rows) -> Rows:
         """Return the form of V' or of ``V+ - V``."""
-        size = len(M)
-        seen = identity(size + 1)[:size]
+        seen = identity(len(M) + len(allowed))[: len(M)]
         if discrete:
             before = times(transpose(seen), times(M, seen))
             return combine((1, times(transpose(A), times(after, A))), (-1, before))
@@ -227,36 +259,73 @@ def _invariant_ellipsoid(system: SwitchedSystem, item: InvariantEllipsoid) -> bo
         return combine((1, half), (1, transpose(half)))
 
     def crossing(row: list[Fraction], weight: Fraction) -> list[tuple[Fraction, Rows]]:
-        product_ = times([[entry] for entry in unit[n - 1]], [row])
+        product_ = times([[entry] for entry in identity(size)[n - 1]], [row])
         return [(weight, product_), (weight, transpose(product_))]
 
-    touching, flying = wide[: len(system.modes)], wide[len(system.modes) :]
-    blocks = [[row[: n - 1] + row[n:] for row in A] for A in flying]
-    forms = [Q] + [combine((1, ball(Q)), (-1, rise(Q, A, Q))) for A in touching]
+    count = len(system.modes)
+    touching = list(zip(wide[:count], slacks[:count], strict=True))
+    flying, others = wide[count:], [_cut(slack, n - 1) for slack in slacks[count:]]
+    blocks = [
+        ([row[: n - 1] + row[n:] for row in A], slack)
+        for A, slack in zip(flying, others, strict=True)
+    ]
+    forms = [Q] + [combine((1, ball(Q)), (-1, rise(Q, A, Q)), (1, S)) for A, S in touching]
     if discrete:
         if contact is not None and (contact.pulls or len(weights) != 1):
             return False
-        for A in touching if contact is not None else []:
-            lost = combine((1, ball(Q)), (-1, rise(Q, A[:-1], inner)), *crossing(A[-1], weights[0]))
-            forms.append(lost)
-        for A in blocks:
-            forms.append(combine((1, ball(inner)), (-1, rise(inner, A[:-1], inner))))
-            forms.append(combine((1, ball(inner)), (-1, rise(inner, A, Q))))
+        for A, S in touching if contact is not None else []:
+            kept = (1, ball(Q)), (-1, rise(Q, A[:-1], inner)), (1, S)
+            forms.append(combine(*kept, *crossing(A[-1], weights[0])))
+        for A, S in blocks:
+            forms.append(combine((1, ball(inner)), (-1, rise(inner, A[:-1], inner)), (1, S)))
+            forms.append(combine((1, ball(inner)), (-1, rise(inner, A, Q)), (1, S)))
     else:
-        for A in blocks:
+        for A, _ in blocks:
             forms.append(combine((1, ball(inner)), (-1, rise(inner, A[:-1], inner))))
         pulls = () if contact is None else contact.pulls
         pairs = [(A, q.fractions()[0]) for A in flying for q in pulls]
         if len(pairs) != len(weights):
             return False
         for (A, q), weight in zip(pairs, weights, strict=True):
-            row = [*q, Fraction(0)]
+            row = [*q, *(Fraction(0) for _ in allowed)]
             forms.append(combine((1, ball(Q)), (-1, rise(Q, A, Q)), *crossing(row, weight)))
     for q in output.rows:
         row = q.fractions()[0]
         outer = [[x * y for y in row] for x in row]
         forms.append(combine((item.level**2, Q), (-1, outer)))
-    return min(weights, default=0) >= 0 and all(map(is_definite, forms))
+    return all(map(is_definite, forms))
+
+
+def _cut(M: Rows, k: int) -> Rows:
+    """Leave out a row and a column."""
+    return [[*row[:k], *row[k + 1 :]] for i, row in enumerate(M) if i != k]
+
+
+def _errors(
+    system: SwitchedSystem, named: Sequence[Channel], taus: Sequence[Fraction]
+) -> tuple[list[Rows], list[Rows]] | None:
+    """Return [A, B, C] of all modes, and ``sum tau (r^2 - (q (x, d))^2)``; None if they misfit."""
+    if min(taus, default=0) < 0 or (taus and len(taus) != len(system.roundings)):
+        return None
+    free = () if system.contact is None else system.contact.free
+    n, c = system.order, len(named)
+    chosen = [*range(n), *(n + system.channels.index(channel) for channel in named)]
+    wide, slacks = [], []
+    for k, mode in enumerate((*system.modes, *free)):
+        A = mode.A.fractions()
+        items = system.roundings[: len(taus)]
+        for column in (*(c.columns[k] for c in named), *(i.columns[k] for i in items)):
+            A = [[*row, *entry] for row, entry in zip(A, column.fractions(), strict=True)]
+        size = n + c + len(taus)
+        slack = [[Fraction(0)] * size for _ in range(size)]
+        for i, (tau, item) in enumerate(zip(taus, items, strict=True)):
+            q = [item.rows[k].fractions()[0][j] for j in chosen] + [Fraction(0)] * len(taus)
+            outer = [[-x * y for y in q] for x in q]
+            outer[n + c + i][n + c + i] += 1
+            slack = combine((1, slack), (tau, outer))
+        wide.append(A)
+        slacks.append(slack)
+    return wide, slacks
 
 
 def _common_polynomial(system: SwitchedSystem, item: CommonPolynomial) -> bool:
@@ -273,6 +342,26 @@ def _common_polynomial(system: SwitchedSystem, item: CommonPolynomial) -> bool:
         if not is_definite(_gram(mode.A, item, N, basis, V, system.time)):
             return False
     return True
+
+
+def _conewise_polynomial(system: SwitchedSystem, item: ConewisePolynomial) -> bool:
+    """In contact a common polynomial; free, its terms without the deflection are another one."""
+    contact, V, n = system.contact, item.in_contact, system.order
+    if contact is None or contact.pulls or system.time is Time.DISCRETE:
+        return False
+    if not _common_polynomial(replace(system, contact=None), V):
+        return False
+    basis = sorted(a for a in product(range(V.degree + 1), repeat=n) if sum(a) == V.degree)[::-1]
+    kept = [i for i, monomial in enumerate(basis) if not monomial[-1]]
+    Q = tuple(tuple(V.Q[i][j] for j in kept) for i in kept)
+    modes = tuple(
+        Mode(m.name, RationalMatrix.from_rows([row[:-1] for row in m.A.fractions()[:-1]]))
+        for m in contact.free
+    )
+    flight = replace(system, states=system.states[:-1], modes=modes, contact=None)
+    if len(item.vanishing_free) != len(modes):
+        return False
+    return _common_polynomial(flight, replace(V, Q=Q, vanishing=item.vanishing_free))
 
 
 def _gram(mode, item, N, basis, V, time) -> Rows:
@@ -578,6 +667,7 @@ def restrict(system: SwitchedSystem, block: tuple[int, ...]) -> SwitchedSystem:
 
 _ORACLES = {
     CommonQuadratic: _common_quadratic,
+    ConewisePolynomial: _conewise_polynomial,
     ConewiseQuadratic: _conewise_quadratic,
     InvariantEllipsoid: _invariant_ellipsoid,
     CommonPolynomial: _common_polynomial,

@@ -52,7 +52,12 @@ switching: arbitrary
 
 
 def thesis_robot(
-    k: tuple[str, str], Bt: tuple[str, ...], Mt: str, tolerance: str = "0", **sections: str
+    k: tuple[str, str],
+    Bt: tuple[str, ...],
+    Mt: str,
+    tolerance: str = "0",
+    load: str | None = None,
+    **sections: str,
 ) -> SwitchedSystem:
     """Return the loop of the thesis with impedance controllers on a spring, as a spec says it."""
     lines = (
@@ -66,6 +71,8 @@ def thesis_robot(
         low, high = (Decimal(value) * (1 + s * Decimal(tolerance)) for s in (-1, 1))
         ranged = f"{{nominal: {value} {unit}, range: [{low} {unit}, {high} {unit}]}}"
         text = text.replace(key, ranged if Decimal(tolerance) else f"{value} {unit}")
+    if load is not None:
+        text = text.replace("time_constant:", f"load_inertia: {load} kg*m^2, time_constant:")
     text += "".join(f"{name}: {section}\n" for name, section in sections.items())
     designed = run_design(LoadedSpec("soft", "", text, parse_spec(text)))
     assert designed is not None

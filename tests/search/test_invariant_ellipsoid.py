@@ -31,9 +31,9 @@ ENCODER = f"{{encoder_step: {360 / 8192 / 5:.10f} deg}}"
 
 def bounded(system: SwitchedSystem) -> InvariantEllipsoid:
     """Return the first bound that the exact check accepts."""
-    (channel,), (output,) = system.channels, system.outputs
+    (output,) = system.outputs
     with floats_in_silence():
-        search = search_ellipsoid(system, channel, output, Allowance())
+        search = search_ellipsoid(system, system.channels, output, Allowance())
         evidence, outcome = first_accepted(search, system)
     assert isinstance(evidence, InvariantEllipsoid), outcome
     return evidence
@@ -118,7 +118,7 @@ def test_nothing_is_found_where_no_quadratic_function_exists():
     """Stable, but by a polynomial only."""
     system = pushed(dayawansa_martin(6))
     with floats_in_silence():
-        search = search_ellipsoid(system, system.channels[0], system.outputs[0], Allowance())
+        search = search_ellipsoid(system, system.channels, system.outputs[0], Allowance())
         evidence, why = first_accepted(search, system)
     assert evidence is None
     assert why
@@ -142,21 +142,21 @@ def test_ten_thousand_runs_do_not_leave_the_bound(contact, Bt, near):
         disturbances="{command: 8 deg/s}",
     )
     evidence = bounded(system)
-    motions = DisturbedMotions.of(system, system.channels[0], system.outputs[0], 1.0)
+    motions = DisturbedMotions.of(system, system.channels, system.outputs[0], 1.0)
     rng = np.random.default_rng(13)
     count = len(motions.maps)
     bad = worst_disturbed(motions, 1.0, LENGTH)
     held = rng.integers(1, 60, (RUNS, 1))
     blocks = np.arange(LENGTH) // held
     modes = np.take_along_axis(rng.integers(0, count, (RUNS, LENGTH)), blocks, axis=1)
-    signs = np.take_along_axis(rng.choice([-1.0, 1.0], (RUNS, LENGTH)), blocks, axis=1)
+    signs = np.take_along_axis(rng.choice([-1.0, 1.0], (RUNS, LENGTH)), blocks, axis=1)[:, :, None]
     half = RUNS // 2
     kept = rng.random((half, LENGTH)) < rng.random((half, 1))
     modes[:half] = np.where(kept, bad.mode, modes[:half])
     # How the adversary pushed follows from where the state went.
     pushes = _signs(motions, bad.state, bad.mode)
-    signs[:half] = np.where(kept, pushes, signs[:half])
-    signs[0], modes[0] = pushes, bad.mode
+    signs[:half] = np.where(kept[:, :, None], pushes[:, None], signs[:half])
+    signs[0], modes[0] = pushes[:, None], bad.mode
     largest = 0.0
     for part in range(0, RUNS, 1000):
         states, _ = follow(motions, modes[part : part + 1000], signs[part : part + 1000])

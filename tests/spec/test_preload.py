@@ -135,7 +135,11 @@ def test_what_makes_no_sense_is_refused(old, new, message):
 @pytest.mark.parametrize(
     ("end", "message"),
     [
-        ("contact: losable\n", "loss of contact with 'soft' is not modelled"),
+        (
+            "contact: losable\n",
+            "loss of contact is not modelled: 'soft' is known within its preload only",
+        ),
+        ("disturbances: {command: 8 deg/s}\n", "bounds from rest are not modelled"),
         ("coordinates: force\n", "its deflection does not jump"),
     ],
 )

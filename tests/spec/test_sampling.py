@@ -57,14 +57,36 @@ RANGED = TEXT.replace(
 )
 
 
-def test_ranges_of_the_actuator_need_the_sampled_loop():
-    spec = sampled("{period: 2 ms, delay: 0}", RANGED)
-    assert [end.exact for end in spec.actuator.time_constant.range] == [
-        Fraction("0.034"),
-        Fraction("0.036"),
-    ]
-    with pytest.raises(SpecError, match="covered for the sampled loop only"):
-        parse_spec(RANGED)
+LOADED = TEXT.replace(
+    "time_constant: 0.0351 s", "time_constant: 0.0351 s\n  load_inertia: 1 kg*m^2"
+)
+POSITION = "  held: {type: position}\n"
+
+
+def test_ranges_of_the_actuator_are_for_impedance_controllers_with_and_without_samples():
+    for spec in (sampled("{period: 2 ms, delay: 0}", RANGED), parse_spec(RANGED)):
+        assert [end.exact for end in spec.actuator.time_constant.range] == [
+            Fraction("0.034"),
+            Fraction("0.036"),
+        ]
+    mixed = "idle_states: {decay: 20 1/s}\n"
+    for text, what in ((RANGED, "the time_constant has a range"), (LOADED, "load_inertia")):
+        both = text.replace("controllers:\n", f"controllers:\n{POSITION}") + mixed
+        with pytest.raises(SpecError, match=rf"{what}.*impedance controllers alone, and 'held'"):
+            parse_spec(both)
+
+
+def test_a_load_of_the_motor_is_for_continuous_time():
+    assert parse_spec(LOADED).actuator.load_inertia.exact == 1
+    with pytest.raises(SpecError, match="not modelled in the sampled loop"):
+        sampled("{period: 2 ms, delay: 0}", LOADED)
+    with pytest.raises(SpecError, match="load_inertia"):
+        parse_spec(LOADED.replace("1 kg*m^2", "0 kg*m^2"))
+
+
+def test_a_motor_that_may_change_and_a_dwell_time_exclude_each_other():
+    with pytest.raises(SpecError, match="a dwell time and a range of the actuator"):
+        parse_spec(RANGED.replace("switching: arbitrary", "switching: {dwell_time: 1 s}"))
 
 
 def test_ranges_of_the_actuator_do_not_go_with_a_stated_loop():

@@ -7,7 +7,13 @@ import numpy as np
 import pytest
 from scipy.linalg import expm
 
-from nrs_design.controllers.sampled import SampledAdmittance, SampledMotion
+from nrs_design.controllers.sampled import (
+    ROUNDINGS,
+    UNIT,
+    SampledAdmittance,
+    SampledMotion,
+    rounding_share,
+)
 from nrs_design.errors import AssemblyError
 from nrs_design.models.actuator import ActuatorRanges
 from nrs_design.pipeline import run_design
@@ -61,8 +67,10 @@ def test_modes_and_states_of_the_thesis_robot(tmp_path):
     assert len(system.modes) == 16
     assert len(system.contact.free) == 8
     assert system.find_contradiction() is None
+    assert [item.name for item in system.roundings] == [*ROUNDINGS]
     texts = " ".join(system.assumptions)
     assert "0 to 1 sample old" in texts
+    assert "D (e - e before) 3" in texts
     assert "without jitter" in texts
     assert "Kd/T = 1030000" in texts
 
@@ -94,8 +102,9 @@ def test_largest_stable_stiffness(Bt, delay, limit):
     """
 
     def radius(k: float) -> float:
-        rows = np.array(_frame(delay).rows(_law(Bt), delay, _nominal(k)), dtype=float)
-        A = rows[:, : len(rows)]
+        frame = _frame(delay)
+        n = len(frame.states)
+        A = np.array(frame.rows(_law(Bt), delay, _nominal(k)), dtype=float)[:n, :n]
         return float(np.abs(np.linalg.eigvals(A)).max())
 
     assert radius(limit * 0.99) < 1 < radius(limit * 1.01)
@@ -152,8 +161,79 @@ def test_agrees_with_a_simulation_step_by_step():
         expected = [reference - moved[0], moved[1], e]
         expected += [a * v + gain * forces[delay]] if inertia else []
         expected += [*forces[:longest], moved[0]]
-        got = np.array(rows, dtype=float)[:, : len(x)] @ x
+        got = np.array(rows, dtype=float)[: len(x), : len(x)] @ x
         assert got == pytest.approx(np.array(expected), rel=1e-9, abs=1e-9)
+
+
+def exactly(number: np.float32) -> Fraction:
+    return Fraction(float(number))
+
+
+def test_single_precision_never_leaves_the_roundings():
+    """1,000 random states and laws, computed in float32: every error is within its row.
+
+    The operations of `nrs_design.controllers.sampled`, in numpy's single precision; what the exact
+    law would have made of the same numbers is computed in fractions. Angles are exact here.
+    """
+    rng = np.random.default_rng(14)
+    single = np.float32
+    largest: dict[str, Fraction] = {}
+    for _ in range(1000):
+        inertia = bool(rng.integers(0, 2))
+        Kp, D, a, b, T = (single(v) for v in rng.uniform(0.1, 2, 5) * [1e5, 1e6, 0.5, 0.2, 2e-3])
+        e, before, v, force, command = (single(x) for x in rng.normal(size=5) * 0.1)
+        true = exactly(force) * (1 + Fraction(rng.uniform(-1, 1)) * UNIT)
+        exact_e = exactly(e) * (1 + Fraction(rng.uniform(-1, 1)) * UNIT)
+        u = Kp * e + D * (e - before)
+        velocity = v if inertia else b * force
+        step = T * (command - velocity)
+        kept = a * v + b * force
+        law = SampledAdmittance(exactly(a) if inertia else None, exactly(b), exactly(T))
+        motion = SampledMotion(exactly(Kp), exactly(D))
+        frame = Frame(PERIOD, motion, inertia, 1, TAU)
+        n = len(frame.states)
+        values = {"Km": KM, "E": Fraction(94, 100), "k": Fraction(0), "b": Fraction(0)}
+        rows = frame.rows(law, 1, values)[n:]
+        state = [exact_e, Fraction(0), exactly(before), *([exactly(v)] * inertia)]
+        state += [true, Fraction(0), exactly(command)]
+        state += [Fraction(0)] * (len(rows[0]) - len(state))
+        sizes = dict(
+            zip(
+                frame.roundings,
+                (abs(sum(q * x for q, x in zip(row, state, strict=True))) for row in rows),
+                strict=True,
+            )
+        )
+        # The law commands what these errors, and these alone, add to the exact one.
+        errors = {"e": exactly(e) - exact_e}
+        drive = exactly(u) - exactly(Kp) * exactly(e)
+        drive -= exactly(D) * (exactly(e) - exactly(before))
+        both = {"u": (drive, sizes["Kp e"] + sizes["D (e - e before)"])}
+        both["e"] = (errors["e"], sizes["e"])
+        if inertia:
+            moved = exactly(kept) - exactly(a) * exactly(v) - exactly(b) * true
+            both["v"] = (moved, sizes["a vm"] + sizes["b F"])
+            exact = exactly(v)
+        else:
+            exact = exactly(b) * true
+        travelled = exactly(step) - exactly(T) * (exactly(command) - exact)
+        allowed = sizes["T (v - vm)"] + (0 if inertia else exactly(T) * sizes["b F"])
+        both["step"] = (travelled, allowed)
+        for name, (error, size) in both.items():
+            assert abs(error) <= size, name
+            largest[name] = max(largest.get(name, Fraction(0)), abs(error) / size)
+    # And they come near: what is allowed is not far too much.
+    assert min(largest[name] for name in ("e", "u", "v", "step")) > Fraction(3, 10)
+
+
+def test_the_share_of_many_roundings():
+    """Not below n u / (1 - n u), of which no product of n factors 1 + u has more."""
+    for n in range(1, 16):
+        assert (1 + UNIT) ** n - 1 <= n * UNIT / (1 - n * UNIT) <= rounding_share(n)
+        assert rounding_share(n) < n * UNIT * (1 + Fraction(1, 10**6))
+    for n in (0, 16):
+        with pytest.raises(ValueError, match="not counted"):
+            rounding_share(n)
 
 
 def test_bounds_of_the_motor_hold_what_lies_between():

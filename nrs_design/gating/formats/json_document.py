@@ -29,6 +29,7 @@ def _spec(spec: SpecOutcome) -> dict[str, Any]:
         "rate": spec.rate,
         "rate_name": spec.rate_name,
         "modes": spec.modes,
+        "bounds": list(spec.bounds),
         "certificate": None if spec.certificate is None else from_here(spec.certificate),
         "certificate_id": spec.certificate_id,
         "gains": {name: dict(gains) for name, gains in spec.gains.items()},

@@ -9,6 +9,7 @@ from nrs_design.proof.evidence.abstract import AbstractEvidence, Shows
 from nrs_design.proof.evidence.block_triangular import BlockTriangular
 from nrs_design.proof.evidence.common_polynomial import CommonPolynomial
 from nrs_design.proof.evidence.common_quadratic import CommonQuadratic
+from nrs_design.proof.evidence.conewise_polynomial import ConewisePolynomial
 from nrs_design.proof.evidence.conewise_quadratic import ConewiseQuadratic
 from nrs_design.proof.evidence.invariant_ellipsoid import InvariantEllipsoid
 from nrs_design.proof.evidence.mode_polynomial import ModePolynomial
@@ -25,6 +26,7 @@ KINDS: tuple[type[AbstractEvidence], ...] = (
     CommonQuadratic,
     CommonPolynomial,
     ConewiseQuadratic,
+    ConewisePolynomial,
     InvariantEllipsoid,
     ModeQuadratic,
     ModePolynomial,
@@ -58,6 +60,7 @@ __all__ = [
     "BlockTriangular",
     "CommonPolynomial",
     "CommonQuadratic",
+    "ConewisePolynomial",
     "ConewiseQuadratic",
     "InvariantEllipsoid",
     "ModePolynomial",

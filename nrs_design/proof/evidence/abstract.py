@@ -20,6 +20,9 @@ from nrs_design.proof.system import SwitchedSystem, Switching
 from nrs_design.proof.text import exact_text
 
 WHILE_KEPT = "This holds as long as contact is kept, the environment pulling as it pushes."
+ROUNDED = "What single-precision arithmetic rounds in the law is included."
+NOT_ROUNDED = "This holds for the law computed without rounding."
+GROWN_WITHOUT_ROUNDING = "This growth is that of the law computed without rounding."
 GROWN_IN_CONTACT = "This growth is that in kept contact, the environment pulling as it pushes."
 
 
@@ -37,6 +40,11 @@ _IN_CONTACT: Mapping[Shows, tuple[str, ...]] = {
     Shows.STABILITY: (WHILE_KEPT,),
     Shows.BOUND: (WHILE_KEPT,),
     Shows.INSTABILITY: (GROWN_IN_CONTACT,),
+}
+_EXACT: Mapping[Shows, tuple[str, ...]] = {
+    Shows.STABILITY: (NOT_ROUNDED,),
+    Shows.BOUND: (NOT_ROUNDED,),
+    Shows.INSTABILITY: (GROWN_WITHOUT_ROUNDING,),
 }
 
 
@@ -70,6 +78,11 @@ class AbstractEvidence(ABC):
         return False
 
     @property
+    def covers_rounding(self) -> bool:
+        """Whether it holds for the roundings of the system too."""
+        return False
+
+    @property
     def keeps_bound_in_mixtures(self) -> bool:
         """Whether convex combinations of modes get no further constant factor in discrete time."""
         return False
@@ -92,12 +105,14 @@ class AbstractEvidence(ABC):
         """Yield what must be positive definite, each with the name of its failure."""
 
     def claim(self, system: SwitchedSystem) -> str:
-        """Say in words what is shown, how fast in seconds, and whether contact is kept for it."""
+        """Say in words what is shown, how fast in seconds, and what it takes for granted."""
         said, rate = [self.claim_in_scope(system)], self.proved_rate(system)
         if system.sample_time is not None and rate is not None:
             said.append(_in_seconds(rate, system.sample_time))
         if system.contact is not None and not self.covers_lost_contact:
             said += _IN_CONTACT.get(self.shows, ())
+        if system.roundings:
+            said += (ROUNDED,) if self.covers_rounding else _EXACT.get(self.shows, ())
         return " ".join(said)
 
     @abstractmethod

@@ -64,7 +64,7 @@ class BlockTriangular(AbstractEvidence):
         """Return the slowest of the parts' rates: solutions decay at any slower one."""
         rates = [part.proved_rate(diagonal_block(system, self.blocks[k])) for k, part in self.parts]
         known = [rate for rate in rates if rate is not None]
-        if not known or len(known) < len(rates):
+        if len(known) < len(rates):
             return None
         return min(known) if system.time is Time.CONTINUOUS else max(known)
 

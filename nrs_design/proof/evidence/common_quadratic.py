@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Any, ClassVar, Self
 
@@ -12,6 +12,8 @@ from nrs_design.proof.evidence.fields import (
     rate_words,
     read_dyadic,
     read_ratio,
+    read_roundings,
+    rounding_fields,
 )
 from nrs_design.proof.evidence.function import AbstractFunction, is_square
 from nrs_design.proof.exact import (
@@ -21,7 +23,10 @@ from nrs_design.proof.exact import (
     multiply,
     stein_decrease,
 )
+from nrs_design.proof.steps import Steps, find_odd_roundings
 from nrs_design.proof.system import SwitchedSystem, Time
+
+_FAILURE = "V does not decrease at the claimed rate"
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,6 +42,9 @@ class CommonQuadratic(AbstractFunction):
     rate : Fraction
         Continuous time: the decay rate alpha in 1/s, with ``A'Q + QA + 2 alpha Q < 0``.
         Discrete time: the contraction rho per step, with ``A'QA < rho^2 Q``.
+    roundings : tuple of int
+        Over the denominator of Q: the multipliers of `nrs_design.proof.steps.Steps`, if what the
+        arithmetic rounds is covered.
     """
 
     kind: ClassVar[str] = "common-quadratic"
@@ -46,6 +54,12 @@ class CommonQuadratic(AbstractFunction):
     Q: tuple[tuple[int, ...], ...]
     denominator_log2: int
     rate: Fraction
+    roundings: tuple[int, ...] = ()
+
+    @property
+    def covers_rounding(self) -> bool:
+        """Whether it has the multipliers for it."""
+        return bool(self.roundings)
 
     @property
     def is_common_quadratic(self) -> bool:
@@ -61,6 +75,8 @@ class CommonQuadratic(AbstractFunction):
         """Check shapes and the sign of the rate."""
         if not is_square(self.Q, system.order):
             return f"Q is not a {system.order} x {system.order} matrix"
+        if (odd := find_odd_roundings(self.roundings, system)) is not None:
+            return odd
         return self.find_rate_misfit(system.time)
 
     def forms(
@@ -68,10 +84,15 @@ class CommonQuadratic(AbstractFunction):
     ) -> Iterator[tuple[str, IntegerMatrix]]:
         """Yield Q and the decrease in every mode."""
         yield "Q is not symmetric and positive definite", self.Q
+        if self.roundings:
+            kept = replace(system, contact=None)
+            steps = Steps(self.Q, self.denominator_log2, self.rate**2, roundings=self.roundings)
+            yield from ((f"{_FAILURE} {where}", form) for where, form in steps.forms(kept))
+            return
         form = lyapunov_decrease if system.time is Time.CONTINUOUS else stein_decrease
         for mode in system.modes:
-            failure = f"V does not decrease at the claimed rate in mode {mode.name}"
             N, denominator = mode.A.numerators, mode.A.denominator
+            failure = f"{_FAILURE} in mode {mode.name}"
             yield failure, form(N, denominator, self.Q, self.rate, multiply)
 
     def claim_in_scope(self, system: SwitchedSystem) -> str:
@@ -80,13 +101,14 @@ class CommonQuadratic(AbstractFunction):
 
     def to_fields(self) -> dict[str, Any]:
         """Return Q and the rate."""
-        return {"Q": matrix_fields(self.Q, self.denominator_log2), "rate": str(self.rate)}
+        Q = matrix_fields(self.Q, self.denominator_log2)
+        return {"Q": Q, "rate": str(self.rate), **rounding_fields(self.roundings)}
 
     @classmethod
     def from_fields(cls, fields: Mapping[str, Any], system: SwitchedSystem) -> Self:
         """Read Q and the rate."""
         Q, denominator_log2 = read_dyadic(fields["Q"])
-        return cls(Q, denominator_log2, read_ratio(fields["rate"]))
+        return cls(Q, denominator_log2, read_ratio(fields["rate"]), read_roundings(fields))
 
 
 def decay_claim(system: SwitchedSystem, rate: Fraction, norm: str) -> str:

@@ -15,18 +15,18 @@ from nrs_design.proof.evidence.fields import (
     read_dyadic,
     read_integer,
     read_ratio,
+    read_roundings,
+    rounding_fields,
 )
 from nrs_design.proof.evidence.function import AbstractFunction, is_square
 from nrs_design.proof.exact import (
     IntegerMatrix,
-    add,
-    congruence,
     lyapunov_decrease,
     lyapunov_factor,
-    stein_decrease,
-    stein_factor,
+    scaled,
 )
-from nrs_design.proof.matrix import RationalMatrix
+from nrs_design.proof.matrix import RationalMatrix, leading, with_crossing
+from nrs_design.proof.steps import Steps, find_odd_roundings
 from nrs_design.proof.system import Contact, Mode, SwitchedSystem, Time
 
 Forms = Iterator[tuple[str, IntegerMatrix]]
@@ -67,6 +67,9 @@ class ConewiseQuadratic(AbstractFunction):
     multipliers : tuple of int
         The lambdas, over the denominator of Q: in continuous time one for each free mode and each
         force in turn, in discrete time a single one.
+    roundings : tuple of int
+        Over the denominator of Q: the multipliers of `nrs_design.proof.steps.Steps`, if what the
+        arithmetic rounds is covered.
     """
 
     kind: ClassVar[str] = "conewise-quadratic"
@@ -78,6 +81,12 @@ class ConewiseQuadratic(AbstractFunction):
     denominator_log2: int
     rate: Fraction
     multipliers: tuple[int, ...]
+    roundings: tuple[int, ...] = ()
+
+    @property
+    def covers_rounding(self) -> bool:
+        """Whether it has the multipliers for it."""
+        return bool(self.roundings)
 
     @property
     def is_common_quadratic(self) -> bool:
@@ -101,6 +110,8 @@ class ConewiseQuadratic(AbstractFunction):
             return "there is not one multiplier for each condition that needs it"
         if min(self.multipliers, default=0) < 0:
             return "a multiplier is negative"
+        if (odd := find_odd_roundings(self.roundings, system)) is not None:
+            return odd
         return self.find_rate_misfit(system.time)
 
     def forms(self, system: SwitchedSystem) -> Forms:
@@ -109,46 +120,32 @@ class ConewiseQuadratic(AbstractFunction):
         yield "Q is not symmetric and positive definite", self.Q
         if system.time is Time.CONTINUOUS:
             yield from self._in_continuous_time(system.modes, system.contact)
-        else:
-            yield from self._in_discrete_time(system.modes, system.contact)
+            return
+        steps = Steps(
+            self.Q, self.denominator_log2, self.rate**2, self.multipliers[0], self.roundings
+        )
+        for where, form in steps.forms(system):
+            yield _failure(where), form
 
     def _in_continuous_time(self, modes: tuple[Mode, ...], contact: Contact) -> Forms:
         for mode in modes:
             yield _failure(f"in mode {mode.name}"), self._decrease(mode.A)
         for mode in contact.free:
-            free, Q = _block(mode.A), _leading(self.Q)
+            free, Q = _block(mode.A), leading(self.Q)
             form = lyapunov_decrease(free.numerators, free.denominator, Q, self.rate)
             yield _failure(f"in free motion, mode {mode.name}"), form
         pairs = product(contact.free, contact.pulls)
         for (mode, q), multiplier in zip(pairs, self.multipliers, strict=True):
-            factor = lyapunov_factor(mode.A.denominator, self.rate)
-            form = add(
-                _scaled(self._decrease(mode.A), q.denominator),
-                _with_last(q.numerators[0]),
-                multiplier * factor,
+            factor = multiplier * lyapunov_factor(mode.A.denominator, self.rate)
+            form = with_crossing(
+                scaled(self._decrease(mode.A), q.denominator),
+                len(self.Q) - 1,
+                [factor * entry for entry in q.numerators[0]],
             )
             yield _failure(f"while the environment lags, mode {mode.name}"), form
 
     def _decrease(self, A: RationalMatrix) -> list[list[int]]:
         return lyapunov_decrease(A.numerators, A.denominator, self.Q, self.rate)
-
-    def _in_discrete_time(self, modes: tuple[Mode, ...], contact: Contact) -> Forms:
-        (multiplier,), rate, inner = self.multipliers, self.rate, _leading(self.Q)
-        for mode in modes:
-            N, d = mode.A.numerators, mode.A.denominator
-            yield _failure(f"in mode {mode.name}"), stein_decrease(N, d, self.Q, rate)
-            *others, last = N
-            lost = _step_decrease(self.Q, others, d, inner, rate)
-            # The factor of this form over the denominator of its last row is an integer.
-            lost = add(lost, _with_last(last), multiplier * stein_factor(d, rate) // d)
-            yield _failure(f"where contact is lost in mode {mode.name}"), lost
-        for mode in contact.free:
-            rows = [row[:-1] for row in mode.A.numerators]
-            d = mode.A.denominator
-            kept = _step_decrease(inner, rows[:-1], d, inner, rate)
-            yield _failure(f"in free motion, mode {mode.name}"), kept
-            made = _step_decrease(inner, rows, d, self.Q, rate)
-            yield _failure(f"where contact is made, mode {mode.name}"), made
 
     def claim_in_scope(self, system: SwitchedSystem) -> str:
         """State the bound on every solution, with contact or without."""
@@ -170,6 +167,7 @@ class ConewiseQuadratic(AbstractFunction):
             "Q": matrix_fields(self.Q, self.denominator_log2),
             "rate": str(self.rate),
             "multipliers": list(self.multipliers),
+            **rounding_fields(self.roundings),
         }
 
     @classmethod
@@ -179,7 +177,8 @@ class ConewiseQuadratic(AbstractFunction):
             raise ValueError(NO_CONTACT)
         Q, denominator_log2 = read_dyadic(fields["Q"])
         multipliers = tuple(read_integer(entry) for entry in fields["multipliers"])
-        return cls(Q, denominator_log2, read_ratio(fields["rate"]), multipliers)
+        rate = read_ratio(fields["rate"])
+        return cls(Q, denominator_log2, rate, multipliers, read_roundings(fields))
 
 
 def multiplier_count(contact: Contact, time: Time) -> int:
@@ -197,30 +196,4 @@ def _count(number: int, noun: str) -> str:
 
 def _block(A: RationalMatrix) -> RationalMatrix:
     """Return the rows and columns of all states but the last."""
-    return RationalMatrix(tuple(_leading(A.numerators)), A.denominator)
-
-
-def _leading(M: IntegerMatrix) -> list[tuple[int, ...]]:
-    return [tuple(row[:-1]) for row in M[:-1]]
-
-
-def _with_last(row: tuple[int, ...]) -> list[list[int]]:
-    """Return ``e q + q' e'`` for a row q and the last unit vector e."""
-    n = len(row)
-    form = [[0] * n for _ in row]
-    for j, entry in enumerate(row):
-        form[n - 1][j] += entry
-        form[j][n - 1] += entry
-    return form
-
-
-def _scaled(M: IntegerMatrix, factor: int) -> list[list[int]]:
-    return [[factor * entry for entry in row] for row in M]
-
-
-def _step_decrease(
-    before: IntegerMatrix, N: IntegerMatrix, denominator: int, after: IntegerMatrix, rate: Fraction
-) -> list[list[int]]:
-    """Form ``rho^2 before - A' after A`` for ``A = N / denominator``, times `stein_factor`."""
-    p, q = (rate.numerator * denominator) ** 2, rate.denominator**2
-    return add(_scaled(before, p), congruence(N, after), -q)
+    return RationalMatrix(tuple(leading(A.numerators)), A.denominator)

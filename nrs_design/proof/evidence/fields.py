@@ -42,6 +42,16 @@ def read_integers(value: Any) -> Matrix:
     return matrix
 
 
+def rounding_fields(roundings: tuple[int, ...]) -> dict[str, Any]:
+    """Return the field of the multipliers for what the arithmetic rounds, if there are any."""
+    return {"roundings": list(roundings)} if roundings else {}
+
+
+def read_roundings(fields: Mapping[str, Any]) -> tuple[int, ...]:
+    """Read the multipliers for what the arithmetic rounds; none where there is no such field."""
+    return tuple(read_integer(entry) for entry in fields.get("roundings", []))
+
+
 def read_integer(value: object) -> int:
     """Read an integer; a truth value is not one."""
     if type(value) is not int:

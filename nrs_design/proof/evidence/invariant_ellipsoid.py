@@ -18,64 +18,73 @@ from nrs_design.proof.evidence.fields import (
     read_dyadic,
     read_integer,
     read_ratio,
+    read_roundings,
     read_text,
+    rounding_fields,
 )
 from nrs_design.proof.evidence.function import is_square
 from nrs_design.proof.exact import IntegerMatrix
-from nrs_design.proof.matrix import RationalMatrix
-from nrs_design.proof.system import Channel, Mode, Output, SwitchedSystem, Time
+from nrs_design.proof.matrix import RationalMatrix, leading, multiply, with_crossing
+from nrs_design.proof.steps import Steps, find_odd_roundings
+from nrs_design.proof.system import Channel, Contact, Output, SwitchedSystem, Time
 
 Forms = Iterator[tuple[str, IntegerMatrix]]
 Rows = Sequence[Sequence[Fraction]]
-Moves = Sequence[tuple[Mode, list[Fraction]]]
 
 
 @dataclass(frozen=True, slots=True)
 class InvariantEllipsoid(AbstractEvidence):
-    """``V = w' Q w <= 1`` is never left while ``|d| <= bound``, and there ``|z| <= level``.
+    """``V = w' Q w <= 1`` is never left while ``|d_i| <= bound_i``, and there ``|z| <= level``.
 
     The state moves by ``x' = A x + B d`` (``x+ = A x + B d``), and z is one of the rows q of an
-    output times w, with ``w = x``, or ``w = (y, max(delta, 0))`` where contact may be lost. In
-    continuous time
+    output times w, with ``w = x``, or ``w = (y, max(delta, 0))`` where contact may be lost. Every
+    disturbance d_i has a share a_i > 0, and a is their sum. In continuous time
 
-        [[-(A'Q + QA + a Q), -QB], [-B'Q, a/bound^2]] > 0
+        [[-(A'Q + QA + a Q), -QB], [-B'Q, diag(a_i/bound_i^2)]] > 0
 
-    gives ``V' <= a (d^2/bound^2 - V)``, which is not positive where ``V = 1``; in discrete time
+    gives ``V' <= sum a_i (d_i^2/bound_i^2 - V)``, which is not positive where ``V = 1``; in
+    discrete time
 
-        [[(1 - a) Q - A'QA, -A'QB], [-B'QA, a/bound^2 - B'QB]] > 0
+        [[(1 - a) Q - A'QA, -A'QB], [-B'QA, diag(a_i/bound_i^2) - B'QB]] > 0
 
-    gives ``V+ <= (1 - a) V + a d^2/bound^2``. And ``[[Q, q'], [q, level^2]] > 0`` gives
+    gives ``V+ <= (1 - a) V + sum a_i d_i^2/bound_i^2``. And ``[[Q, q'], [q, level^2]] > 0`` gives
     ``z^2 < level^2 V``. Where contact may be lost, the same holds for free motion and in between,
-    with the multipliers of `nrs_design.proof.evidence.conewise_quadratic`; the disturbance then
-    takes part in where the deflection goes.
+    with the multipliers of `nrs_design.proof.evidence.conewise_quadratic`; the disturbances then
+    take part in where the deflection goes.
 
     Parameters
     ----------
-    channel, output : str
-        Names of the disturbance and of the output.
+    channels : tuple of str
+        Names of the disturbances that act at once.
+    output : str
+        Name of the output.
     Q : tuple of tuple of int, shape (n, n)
         Numerators of the symmetric matrix.
     denominator_log2 : int
         Q is these numerators over two to this power.
-    share : Fraction
-        The a: in 1/s, or per step below 1.
+    shares : tuple of Fraction
+        The a_i: in 1/s, or per step with a sum below 1.
     level : Fraction
         In the unit of the output.
     multipliers : tuple of int
         Over the denominator of Q; none where contact is kept.
+    roundings : tuple of int
+        Over the denominator of Q: the multipliers of `nrs_design.proof.steps.Steps`, if what the
+        arithmetic rounds is covered.
     """
 
     kind: ClassVar[str] = "invariant-ellipsoid"
     covers_mixtures: ClassVar[bool] = True
     covers_lost_contact: ClassVar[bool] = True
 
-    channel: str
+    channels: tuple[str, ...]
     output: str
     Q: Matrix
     denominator_log2: int
-    share: Fraction
+    shares: tuple[Fraction, ...]
     level: Fraction
     multipliers: tuple[int, ...] = ()
+    roundings: tuple[int, ...] = ()
 
     @property
     def shows(self) -> Shows:
@@ -83,12 +92,17 @@ class InvariantEllipsoid(AbstractEvidence):
         return Shows.BOUND
 
     @property
+    def covers_rounding(self) -> bool:
+        """Whether it has the multipliers for it."""
+        return bool(self.roundings)
+
+    @property
     def keeps_bound_in_mixtures(self) -> bool:
         """True: the set is convex in contact, and free, and the multiplier is one for all modes."""
         return True
 
     def find_misfit(self, system: SwitchedSystem) -> str | None:
-        """Check names, shapes, and the signs of share, level and multipliers."""
+        """Check names, shapes, and the signs of shares, level and multipliers."""
         contact = system.contact
         if (unknown := self._find_unknown(system)) is not None:
             return unknown
@@ -103,12 +117,19 @@ class InvariantEllipsoid(AbstractEvidence):
             return "there is not one multiplier for each condition that needs it"
         if min(self.multipliers, default=0) < 0:
             return "a multiplier is negative"
-        if self.share <= 0 or (system.time is Time.DISCRETE and self.share >= 1):
-            return "the share is not one of a set that is not left"
+        if (odd := find_odd_roundings(self.roundings, system)) is not None:
+            return odd
+        if len(self.shares) != len(self.channels):
+            return "there is not one share for each disturbance"
+        if min(self.shares) <= 0 or (system.time is Time.DISCRETE and sum(self.shares) >= 1):
+            return "the shares are not those of a set that is not left"
         return None if self.level > 0 else "the level is not positive"
 
     def _find_unknown(self, system: SwitchedSystem) -> str | None:
-        if self.channel not in {channel.name for channel in system.channels}:
+        known = {channel.name for channel in system.channels}
+        if not self.channels or len(set(self.channels)) < len(self.channels):
+            return "it names no disturbance, or one of them twice"
+        if not known.issuperset(self.channels):
             return "the system has no disturbance of that name"
         if self.output not in {output.name for output in system.outputs}:
             return "the system has no output of that name"
@@ -116,13 +137,11 @@ class InvariantEllipsoid(AbstractEvidence):
 
     def forms(self, system: SwitchedSystem) -> Forms:
         """Yield Q, the condition of every motion, and that of every row of the output."""
-        channel = next(item for item in system.channels if item.name == self.channel)
         output = next(item for item in system.outputs if item.name == self.output)
         yield "Q is not symmetric and positive definite", self.Q
         Q = RationalMatrix(self.Q, 2**self.denominator_log2).fractions()
-        motions = _Motions(system, channel, Q, self.share, self._exact_multipliers())
-        for where, form in motions.forms():
-            yield f"the ellipsoid can be left {where}", RationalMatrix.from_rows(form).numerators
+        motions = self._motions(system, Q)
+        yield from ((f"the ellipsoid can be left {where}", form) for where, form in motions)
         for q in output.rows:
             row = q.fractions()[0]
             rows = [[*q_row, entry] for q_row, entry in zip(Q, row, strict=True)]
@@ -130,41 +149,73 @@ class InvariantEllipsoid(AbstractEvidence):
             failure = f"{self.output} can be beyond the level"
             yield failure, RationalMatrix.from_rows(form).numerators
 
-    def _exact_multipliers(self) -> list[Fraction]:
-        return [Fraction(entry, 2**self.denominator_log2) for entry in self.multipliers]
+    def _motions(self, system: SwitchedSystem, Q: Rows) -> Forms:
+        """Yield the condition of every motion, with where it is."""
+        named = self.acting(system)
+        weights = tuple(a / c.bound**2 for a, c in zip(self.shares, named, strict=True))
+        if system.time is Time.CONTINUOUS:
+            flows = _Flows(system, named, Q, sum(self.shares, Fraction(0)), weights)
+            multipliers = [Fraction(entry, 2**self.denominator_log2) for entry in self.multipliers]
+            for where, form in flows.forms(multipliers):
+                yield where, RationalMatrix.from_rows(form).numerators
+            return
+        yield from Steps(
+            self.Q,
+            self.denominator_log2,
+            1 - sum(self.shares, Fraction(0)),
+            sum(self.multipliers),
+            roundings=self.roundings,
+            channels=tuple(system.channels.index(channel) for channel in named),
+            weights=weights,
+        ).forms(system)
+
+    def acting(self, system: SwitchedSystem) -> tuple[Channel, ...]:
+        """Return the disturbances that it is about, in its own order."""
+        by_name = {channel.name: channel for channel in system.channels}
+        return tuple(by_name[name] for name in self.channels)
 
     def claim_in_scope(self, system: SwitchedSystem) -> str:
         """State how far the output goes, from rest and in the long run."""
-        channel = next(item for item in system.channels if item.name == self.channel)
         output = next(item for item in system.outputs if item.name == self.output)
         lost = "" if system.contact is None else ", contact lost and made again at any time"
-        size = rounded_down(channel.bound, channel.unit)
+        named = self.acting(system)
+        sizes = [f"|{c.name}| <= {rounded_down(c.bound, c.unit)}" for c in named]
         steps = " at a step" if system.time is Time.DISCRETE else ""
         return (
-            f"While |{channel.name}| <= {size} and nothing else disturbs, switching arbitrarily"
+            f"While {', '.join(sizes)} and nothing else disturbs, switching arbitrarily"
             f"{lost}: from rest, |{output.name}|{steps} never exceeds "
             f"{rounded_up(self.level, output.unit)}; from any state, it comes below every larger "
-            f"value and stays there.{self._beside_limit(output)}"
+            f"value and stays there.{self._beside_limit(output, named)}"
         )
 
-    def _beside_limit(self, output: Output) -> str:
-        """Say whether the level keeps the limit of the output, if it has one."""
+    def _beside_limit(self, output: Output, channels: Sequence[Channel]) -> str:
+        """Say whether the level keeps the limit of the output, or how much smaller a push does.
+
+        All conditions are homogeneous: with disturbances of a share of their bounds, the level is
+        the same share of itself.
+        """
         if output.limit is None:
             return ""
         limit = rounded_down(output.limit, output.unit)
         if self.level <= output.limit:
             return f" The limit of {limit} is kept."
-        return f" That the limit of {limit} is kept is not shown."
+        share = output.limit / self.level
+        smaller = (f"|{c.name}| <= {rounded_down(share * c.bound, c.unit)}" for c in channels)
+        return (
+            f" That the limit of {limit} is kept is not shown; it is, in proportion, for "
+            f"{', '.join(smaller)}."
+        )
 
     def to_fields(self) -> dict[str, Any]:
-        """Return the names, Q, share, level and multipliers."""
+        """Return the names, Q, shares, level and multipliers."""
         return {
-            "channel": self.channel,
+            "channels": list(self.channels),
             "output": self.output,
             "Q": matrix_fields(self.Q, self.denominator_log2),
-            "share": str(self.share),
+            "shares": [str(share) for share in self.shares],
             "level": str(self.level),
             "multipliers": list(self.multipliers),
+            **rounding_fields(self.roundings),
         }
 
     @classmethod
@@ -172,13 +223,14 @@ class InvariantEllipsoid(AbstractEvidence):
         """Read the names, which must be those of the system, and the numbers."""
         Q, denominator_log2 = read_dyadic(fields["Q"])
         evidence = cls(
-            read_text(fields["channel"]),
+            tuple(read_text(name) for name in fields["channels"]),
             read_text(fields["output"]),
             Q,
             denominator_log2,
-            read_ratio(fields["share"]),
+            tuple(read_ratio(share) for share in fields["shares"]),
             read_ratio(fields["level"]),
             tuple(read_integer(entry) for entry in fields["multipliers"]),
+            read_roundings(fields),
         )
         if (unknown := evidence._find_unknown(system)) is not None:
             raise ValueError(unknown)
@@ -186,103 +238,51 @@ class InvariantEllipsoid(AbstractEvidence):
 
 
 @dataclass(frozen=True, slots=True)
-class _Motions:
-    """Everything that the state can do, each with the condition that it does not leave V <= 1."""
+class _Flows:
+    """Everything that the state can do in continuous time, and that it does not leave V <= 1."""
 
     system: SwitchedSystem
-    channel: Channel
+    channels: Sequence[Channel]
     Q: Rows
     share: Fraction
-    multipliers: Sequence[Fraction]
+    weights: Sequence[Fraction]
 
-    def forms(self) -> Iterator[tuple[str, Rows]]:
+    def forms(self, multipliers: Sequence[Fraction]) -> Iterator[tuple[str, Rows]]:
         """Yield the condition of every motion, with where it is."""
-        contact = self.system.contact
-        free = () if contact is None else contact.free
-        columns = [[row[0] for row in column.fractions()] for column in self.channel.columns]
-        touching = list(zip(self.system.modes, columns, strict=False))
-        flying = list(zip(free, columns[len(touching) :], strict=True))
-        if self.system.time is Time.CONTINUOUS:
-            yield from self._in_continuous_time(touching, flying)
-        else:
-            yield from self._in_discrete_time(touching, flying)
+        contact = self.system.contact or Contact(())
+        inner, last, count = leading(self.Q), len(self.Q) - 1, len(self.system.modes)
+        for k, mode in enumerate(self.system.modes):
+            form = self._flow(mode.A.fractions(), self._columns(k), self.Q)
+            yield f"in mode {mode.name}", form
+        for k, mode in enumerate(contact.free, count):
+            form = self._flow(leading(mode.A.fractions()), self._columns(k)[:-1], inner)
+            yield f"in free motion, mode {mode.name}", form
+        pairs = product(enumerate(contact.free, count), contact.pulls)
+        for ((k, mode), q), multiplier in zip(pairs, multipliers, strict=True):
+            form = self._flow(mode.A.fractions(), self._columns(k), self.Q)
+            pushed = [*q.fractions()[0], *(Fraction(0) for _ in self.channels)]
+            crossing = [multiplier * entry for entry in pushed]
+            yield (
+                f"while the environment lags, mode {mode.name}",
+                with_crossing(form, last, crossing),
+            )
 
-    def _in_continuous_time(self, touching: Moves, flying: Moves) -> Iterator[tuple[str, Rows]]:
-        for mode, b in touching:
-            yield f"in mode {mode.name}", self._flow(mode.A.fractions(), b, self.Q)
-        inner = _leading(self.Q)
-        for mode, b in flying:
-            block = _leading(mode.A.fractions())
-            yield f"in free motion, mode {mode.name}", self._flow(block, b[:-1], inner)
-        pulls = self.system.contact.pulls if self.system.contact is not None else ()
-        pairs = product(flying, pulls)
-        for ((mode, b), q), multiplier in zip(pairs, self.multipliers, strict=True):
-            form = self._flow(mode.A.fractions(), b, self.Q)
-            crossing = [multiplier * entry for entry in (*q.fractions()[0], Fraction(0))]
-            where = f"while the environment lags, mode {mode.name}"
-            yield where, _with_crossing(form, len(self.Q) - 1, crossing)
+    def _columns(self, k: int) -> Rows:
+        """Return the B of the k-th mode."""
+        columns = [channel.columns[k].fractions() for channel in self.channels]
+        return [[row[0] for row in rows] for rows in zip(*columns, strict=True)]
 
-    def _in_discrete_time(self, touching: Moves, flying: Moves) -> Iterator[tuple[str, Rows]]:
-        inner, last = _leading(self.Q), len(self.Q) - 1
-        for mode, b in touching:
-            A = mode.A.fractions()
-            yield f"in mode {mode.name}", self._step(self.Q, A, b, self.Q)
-            if not self.multipliers:
-                continue
-            form = self._step(self.Q, A[:-1], b[:-1], inner)
-            crossing = [self.multipliers[0] * entry for entry in (*A[-1], b[-1])]
-            where = f"where contact is lost in mode {mode.name}"
-            yield where, _with_crossing(form, last, crossing)
-        for mode, b in flying:
-            A = [row[:-1] for row in mode.A.fractions()]
-            kept = self._step(inner, A[:-1], b[:-1], inner)
-            yield f"in free motion, mode {mode.name}", kept
-            made = self._step(inner, A, b, self.Q)
-            yield f"where contact is made, mode {mode.name}", made
-
-    def _flow(self, A: Rows, b: Sequence[Fraction], Q: Rows) -> Rows:
-        """Return ``[[-(A'Q + QA + a Q), -QB], [., a/bound^2]]``."""
-        moved = _times(Q, [[*row, entry] for row, entry in zip(A, b, strict=True)])
+    def _flow(self, A: Rows, B: Rows, Q: Rows) -> Rows:
+        """Return ``[[-(A'Q + QA + a Q), -QB], [., diag(weights)]]``."""
+        moved = multiply(Q, [[*row, *entries] for row, entries in zip(A, B, strict=True)])
         n = len(Q)
-        form = [
-            [-moved[i][j] - moved[j][i] - self.share * Q[i][j] for j in range(n)] for i in range(n)
-        ]
-        border = [-moved[i][n] for i in range(n)]
-        return _bordered(form, border, self.share / self.channel.bound**2)
-
-    def _step(self, before: Rows, A: Rows, b: Sequence[Fraction], after: Rows) -> Rows:
-        """Return ``[[(1 - a) before, 0], [0, a/bound^2]] - [A, B]' after [A, B]``."""
-        rows = [[*row, entry] for row, entry in zip(A, b, strict=True)]
-        kept = [[(1 - self.share) * entry for entry in row] for row in before]
-        zeros = [Fraction(0)] * len(before)
-        whole = _bordered(kept, zeros, self.share / self.channel.bound**2)
-        image = _times([list(column) for column in zip(*rows, strict=True)], _times(after, rows))
-        return [
-            [a - b for a, b in zip(left, right, strict=True)]
-            for left, right in zip(whole, image, strict=True)
-        ]
-
-
-def _bordered(M: Rows, border: Sequence[Fraction], corner: Fraction) -> Rows:
-    return [*([*row, entry] for row, entry in zip(M, border, strict=True)), [*border, corner]]
-
-
-def _with_crossing(form: Rows, last: int, row: Sequence[Fraction]) -> Rows:
-    """Add ``e r + r' e'`` for a row r and the unit vector e of the deflection."""
-    rows = [list(entries) for entries in form]
-    for j, entry in enumerate(row):
-        rows[last][j] += entry
-        rows[j][last] += entry
-    return rows
-
-
-def _leading(M: Rows) -> Rows:
-    return [list(row[:-1]) for row in M[:-1]]
-
-
-def _times(left: Rows, right: Rows) -> Rows:
-    columns = list(zip(*right, strict=True))
-    return [
-        [sum((a * b for a, b in zip(row, column, strict=True)), Fraction(0)) for column in columns]
-        for row in left
-    ]
+        size = n + len(self.weights)
+        form = [[Fraction(0)] * size for _ in range(size)]
+        for i in range(n):
+            for j in range(n):
+                form[i][j] = -moved[i][j] - moved[j][i] - self.share * Q[i][j]
+            for j in range(n, size):
+                form[i][j] = form[j][i] = -moved[i][j]
+        for j, weight in enumerate(self.weights, n):
+            form[j][j] = weight
+        return form

@@ -28,7 +28,9 @@ from nrs_design.proof.exact import (
     is_symmetric,
     is_too_large,
     lyapunov_decrease,
+    scaled,
     stein_decrease,
+    step_decrease,
 )
 from nrs_design.proof.matrix import RationalMatrix, multiply
 from nrs_design.proof.system import Edge, Mode, Stay, SwitchedSystem, Switching, Time
@@ -197,14 +199,11 @@ class ModeQuadratic(AbstractFunction):
         if system.time is Time.CONTINUOUS:
             return enclosed_form(edge, (begin, end), Q, self.rate)
         flow = power(edge.source.A, int(begin))
-        scale = self.rate ** (2 * int(begin))
         jump = flow
         if edge.map is not None:
             jump = RationalMatrix.from_rows(multiply(edge.map.fractions(), flow.fractions()))
-        image, square = congruence(jump.numerators, Q[edge.target.name]), jump.denominator**2
-        left = scale.numerator * square
-        before = [[left * q for q in row] for row in Q[edge.source.name]]
-        return add(before, image, -scale.denominator)
+        image = congruence(jump.numerators, Q[edge.target.name])
+        return step_decrease(Q[edge.source.name], image, jump.denominator, self.rate ** int(begin))
 
     def claim_in_scope(self, system: SwitchedSystem) -> str:
         """State the bound on every solution."""
@@ -309,7 +308,7 @@ def _jump(edge: Edge, Q: Mapping[str, Matrix]) -> IntegerMatrix:
     before, after, reset = Q[edge.source.name], Q[edge.target.name], edge.map
     if reset is None:
         return add(before, after, -1)
-    left = [[reset.denominator**2 * entry for entry in row] for row in before]
+    left = scaled(before, reset.denominator**2)
     return add(left, congruence(reset.numerators, after), -1)
 
 

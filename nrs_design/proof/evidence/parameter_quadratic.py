@@ -16,7 +16,7 @@ from nrs_design.proof.evidence.fields import (
     read_ratio,
 )
 from nrs_design.proof.evidence.function import AbstractFunction, is_square
-from nrs_design.proof.exact import IntegerMatrix, add, lyapunov_decrease
+from nrs_design.proof.exact import IntegerMatrix, add, lyapunov_decrease, scaled
 from nrs_design.proof.system import SwitchedSystem, Time
 
 
@@ -76,7 +76,7 @@ class ParameterQuadratic(AbstractFunction):
             at_low, at_high = (
                 [
                     lyapunov_decrease(
-                        _times(M.numerators, common // M.denominator), common, Q, rate
+                        scaled(M.numerators, common // M.denominator), common, Q, rate
                     )
                     for Q in (self.low, self.high)
                 ]
@@ -114,7 +114,3 @@ class ParameterQuadratic(AbstractFunction):
         if exponent != other:
             raise ValueError("the two ends of Q do not share one denominator")
         return cls(low, high, exponent, read_ratio(fields["rate"]))
-
-
-def _times(M: IntegerMatrix, factor: int) -> list[list[int]]:
-    return [[factor * entry for entry in row] for row in M]

@@ -74,7 +74,7 @@ class UnstablePeriod(AbstractEvidence):
         maps, switches = switching.maps(), _switches([name for name, _ in self.steps])
         counts = [len(maps.get(switch, ())) for switch in switches]
         if not self.edges:
-            return max(counts, default=0) <= 1
+            return all(count <= 1 for count in counts)
         return len(self.edges) == len(counts) and all(
             0 <= edge < max(count, 1) for edge, count in zip(self.edges, counts, strict=True)
         )

@@ -2,48 +2,32 @@
 
 from __future__ import annotations
 
-import numpy as np
-
 from nrs_design.proof.evidence import ConewiseQuadratic
-from nrs_design.proof.system import Time
 from nrs_design.reporting.document import Illustration, Paragraph, Section
-from nrs_design.reporting.figures.contact import draw_deflection
 from nrs_design.reporting.figures.lyapunov import draw_quadratic
-from nrs_design.reporting.figures.run import draw_run
 from nrs_design.reporting.kinds.abstract import AbstractKindPage
 from nrs_design.reporting.kinds.shared import words
+from nrs_design.reporting.kinds.shared.bouncing import bouncing_run
 from nrs_design.reporting.kinds.shared.matrix import SCALED, matrix_table
 from nrs_design.reporting.kinds.shared.rates import rate_blocks
-from nrs_design.reporting.kinds.shared.run import (
-    AGAINST,
-    bound_line,
-    freely,
-    horizon,
-    simulated,
-    some_modes,
-    trials_per_step,
-    until_small,
-)
+from nrs_design.reporting.kinds.shared.run import trials_per_step
 from nrs_design.reporting.sections.modes import hardest_modes
-from nrs_design.simulation.contact import contact_norm, with_free_modes, worst_contact
-from nrs_design.simulation.norms import scaled_matrices
+from nrs_design.simulation.norms import quadratic_norm, scaled_matrices
 from nrs_design.simulation.rates import mode_rates
-from nrs_design.simulation.switched import norms, worst_direction
+from nrs_design.simulation.switched import worst_direction
 
 _DECIDED = (
     "Q holds integers over a power of two, and integer arithmetic decides that Q is positive "
     "definite and decreases in every mode in contact, in every mode of free motion, and where "
     "contact is lost and made. The solver only proposed Q"
 )
-_RUN = (
-    "Simulated run from the slowest direction in contact: at every step the adversary takes the "
-    "possible mode after which the norm is largest. It is a bad run, not the worst one. The dashed "
-    "line is the bound of the certificate, which holds for every switching signal and any loss of "
-    "contact."
-)
 _RATES = (
     "How fast the norm of Q decays at least in each mode in contact. Free motion has conditions of "
     "its own, on the other states."
+)
+MOVED_REST = (
+    "A force reference or a velocity command that pushes into the environment: they move the point "
+    "of rest, and the bound is about the point of rest without them."
 )
 
 
@@ -72,10 +56,7 @@ class ConewiseQuadraticPage(AbstractKindPage[ConewiseQuadratic]):
 
     def limits(self) -> tuple[str, ...]:
         """Say what a constant force or command would change."""
-        return (
-            "A force reference or a velocity command that pushes into the environment: they move "
-            "the point of rest, and the bound is about the point of rest without them.",
-        )
+        return (MOVED_REST,)
 
     def sections(self, *, first: bool = True) -> tuple[Section, ...]:
         """Show the matrix of the certificate and how every mode in contact decreases it."""
@@ -102,38 +83,12 @@ class ConewiseQuadraticPage(AbstractKindPage[ConewiseQuadratic]):
     def run(self) -> Section:
         """Draw a run in the norm of Q, below its bound, and when contact is lost."""
         (Q,) = scaled_matrices(self.evidence.Q)
-        system, rate = self.system, float(self.evidence.rate)
-        hardest = hardest_modes(system, Q, trials_per_step(system))
-        initial, norm = worst_direction(hardest, Q), contact_norm(Q)
-        # It begins in contact.
-        initial = initial if initial[-1] > 0 else -initial
-        step, steps = horizon(with_free_modes(hardest), rate)
-        response = worst_contact(hardest, norm, initial, step, steps)
-        response = until_small(response, norms(response, norm))
-        deflection = response.state[:, -1]
-        unit = "steps" if system.time is Time.DISCRETE else "s"
-        return simulated(
-            Illustration(
-                "run",
-                AGAINST,
-                f"{_RUN}{freely(system)}{some_modes(system, hardest)}",
-                draw_run(
-                    response,
-                    norms(response, norm),
-                    bound_line(response, rate, system.time, "proved bound, "),
-                    with_free_modes(hardest),
-                    "|w(t)| / |w(0)| in the norm of Q [1]",
-                ),
-            ),
-            Illustration(
-                "deflection",
-                "Contact during this run",
-                "Deflection of the same run; shaded where the environment is not touched.",
-                draw_deflection(
-                    response.time,
-                    deflection / np.abs(deflection).max(),
-                    system.states[-1],
-                    unit,
-                ),
-            ),
+        hardest = hardest_modes(self.system, Q, trials_per_step(self.system))
+        return bouncing_run(
+            self.system,
+            hardest,
+            quadratic_norm(Q),
+            worst_direction(hardest, Q),
+            float(self.evidence.rate),
+            "in the norm of Q",
         )

@@ -43,8 +43,13 @@ class InvariantEllipsoidPage(AbstractKindPage[InvariantEllipsoid]):
         return "bound on an output under a disturbance"
 
     @property
-    def _channel(self) -> Channel:
-        return next(c for c in self.system.channels if c.name == self.evidence.channel)
+    def _channels(self) -> tuple[Channel, ...]:
+        return self.evidence.acting(self.system)
+
+    @property
+    def _disturbance(self) -> str:
+        every = len(self._channels) == len(self.system.channels) > 1
+        return "all disturbances at once" if every else ", ".join(self.evidence.channels)
 
     @property
     def _output(self) -> Output:
@@ -67,25 +72,28 @@ class InvariantEllipsoidPage(AbstractKindPage[InvariantEllipsoid]):
         """Say what the bound is not."""
         between = ("What happens between two steps.",) if self._is_discrete else ()
         return (
-            "Several disturbances at once, and larger ones.",
+            "Other disturbances beside those named, and larger ones.",
             "That the bound is reached: the largest possible value may be smaller.",
             *between,
         )
 
     def sections(self, *, first: bool = True) -> tuple[Section, ...]:
         """Show the level beside the run that an adversary finds."""
-        evidence, output, channel = self.evidence, self._output, self._channel
+        evidence, output = self.evidence, self._output
         response, motions = self._worst()
         values = motions.outputs(response.state)
         found = nearly(Fraction(float(np.abs(values).max())), output.unit)
         rows = [
-            ("Disturbance", f"|{channel.name}| <= {rounded_down(channel.bound, channel.unit)}"),
+            *(
+                ("Disturbance", f"|{item.name}| <= {rounded_down(item.bound, item.unit)}")
+                for item in self._channels
+            ),
             (f"|{output.name}|, proved never to exceed", rounded_up(evidence.level, output.unit)),
             (f"|{output.name}|, found by simulation", found),
         ]
         if output.limit is not None:
             rows.append(("Limit of the spec", nearly(output.limit, output.unit)))
-        share = number(float(evidence.share), 4)
+        share = number(float(sum(evidence.shares)), 4)
         unit = "per step" if self._is_discrete else "1/s"
         text = (
             f"The certificate holds Q and the share a = {share} {unit}: V grows by at most a times "
@@ -93,7 +101,7 @@ class InvariantEllipsoidPage(AbstractKindPage[InvariantEllipsoid]):
         )
         return (
             Section(
-                f"Bound on {output.name} under {channel.name}",
+                f"Bound on {output.name} under {self._disturbance}",
                 (
                     Paragraph(text),
                     Table("Bound and simulation", ("Quantity", "Value"), tuple(rows)),
@@ -112,11 +120,11 @@ class InvariantEllipsoidPage(AbstractKindPage[InvariantEllipsoid]):
         return self.system.time is Time.DISCRETE
 
     def _worst(self) -> tuple[TimeResponse, DisturbedMotions]:
-        system, share = self.system, float(self.evidence.share)
+        system, share = self.system, float(sum(self.evidence.shares))
         step = fine_step(system)
         rate = -np.log1p(-share) if self._is_discrete else share
         steps = int(np.clip(_FILLED / (rate * step), _FEWEST, _MOST))
-        motions = DisturbedMotions.of(system, self._channel, self._output, step)
+        motions = DisturbedMotions.of(system, self._channels, self._output, step)
         return worst_disturbed(motions, step, steps), motions
 
     def _illustration(self, response: TimeResponse, values: Array) -> Illustration:
@@ -125,8 +133,8 @@ class InvariantEllipsoidPage(AbstractKindPage[InvariantEllipsoid]):
         if system.sample_time is not None:
             shown, unit = float(system.sample_time), "s"
         return Illustration(
-            f"bound-{self.evidence.channel}-{output.name}".replace(" ", "-"),
-            f"{output.name.capitalize()} under {self.evidence.channel}",
+            f"bound-{self._disturbance}-{output.name}".replace(" ", "-"),
+            f"{output.name.capitalize()} under {self._disturbance}",
             _RUN,
             draw_bound(
                 response.time * shown,

@@ -18,7 +18,14 @@ from nrs_design.proof.evidence import (
 from nrs_design.proof.exact import MAX_WORK
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.system import Mode, Reset, Switching
-from tests.proof.systems import SYSTEMS, family, genuine, matrix
+from tests.proof.systems import (
+    SYSTEMS,
+    bouncing,
+    bouncing_in_steps,
+    family,
+    genuine,
+    matrix,
+)
 
 
 def twice(system):
@@ -61,6 +68,95 @@ class Claimed(AbstractEvidence):
         return cls()
 
 
+@dataclass(frozen=True)
+class Said(Claimed):
+    """Evidence that shows what it is told, at the rate that it is told."""
+
+    what: Shows = Shows.STABILITY
+    rate: Fraction | None = None
+
+    @property
+    def shows(self):
+        return self.what
+
+    def proved_rate(self, system):
+        return self.rate
+
+    def claim_in_scope(self, system):
+        return "It is so."
+
+
+@dataclass(frozen=True)
+class SaidOfAllContact(Said):
+    covers_lost_contact = True
+
+
+@dataclass(frozen=True)
+class SaidOfUnequalModes(Said):
+    allows_unequal_modes = True
+
+
+KEPT = " This holds as long as contact is kept, the environment pulling as it pushes."
+GROWN = " This growth is that in kept contact, the environment pulling as it pushes."
+
+
+@pytest.mark.parametrize(
+    ("what", "words"),
+    [
+        (Shows.STABILITY, KEPT),
+        (Shows.BOUND, KEPT),
+        (Shows.INSTABILITY, GROWN),
+        (Shows.NO_COMMON_QUADRATIC, ""),
+    ],
+)
+def test_what_is_taken_for_granted_of_contact_is_said(what, words):
+    for system in (bouncing(), bouncing_in_steps()):
+        assert Said(what=what).claim(system) == f"It is so.{words}"
+        assert Said(what=what).claim(replace(system, contact=None)) == "It is so."
+        assert SaidOfAllContact(what=what).claim(system) == "It is so."
+
+
+def test_a_rate_by_the_step_is_said_in_seconds_too():
+    system = replace(bouncing_in_steps(), contact=None)
+    words = "A step takes 0.1 s, so that is exp(-alpha t) with alpha"
+    assert Said(rate=Fraction(3, 4)).claim(system) == f"It is so. {words} = 2.5 1/s."
+    assert Said(rate=Fraction(2, 3)).claim(system) == f"It is so. {words} >= 3.33333 1/s."
+    assert Said().claim(system) == "It is so."
+    assert Said(rate=Fraction(3, 4)).claim(replace(system, sample_time=None)) == "It is so."
+
+
+@pytest.mark.parametrize(
+    ("what", "is_refused"),
+    [
+        (Shows.STABILITY, True),
+        (Shows.BOUND, True),
+        (Shows.INSTABILITY, False),
+        (Shows.NO_COMMON_QUADRATIC, False),
+    ],
+)
+def test_where_contact_may_be_lost_its_loss_must_be_covered(what, is_refused):
+    kept = bouncing()
+    losable = replace(kept, contact=replace(kept.contact, required=True))
+    fault = Said(what=what).find_fault(losable)
+    assert fault == (
+        "evidence of kind claimed does not cover the loss of contact" if is_refused else None
+    )
+    assert Said(what=what).find_fault(kept) is None
+    assert Said(what=what).find_fault(replace(kept, contact=None)) is None
+    assert SaidOfAllContact(what=what).find_fault(losable) is None
+
+
+def test_unequal_modes_where_they_are_allowed():
+    unequal = family([[-1]], [[-1, 0], [0, -1]])
+    assert SaidOfUnequalModes().find_fault(unequal) is None
+    assert SaidOfUnequalModes().find_fault(SYSTEM) is None
+
+
+def test_rules_that_contradict_each_other_carry_no_proof():
+    odd = replace(SYSTEM, switching=Switching(transitions=(("m0", "m0"),)))
+    assert Claimed().find_fault(odd) == "a transition does not lead from one mode to another"
+
+
 def test_positive_definite_forms_hold():
     assert Claimed((((2, 1), (1, 2)), ((5,),))).find_fault(SYSTEM) is None
 
@@ -93,6 +189,14 @@ def test_a_form_too_large_is_no_proof():
 def test_numbers_that_no_file_can_hold_are_no_proof(number, said):
     """Integers of NumPy overflow without a word, long ones cannot be written."""
     assert said in Claimed((((number,),),)).find_fault(SYSTEM)
+
+
+def test_the_largest_form_is_decided(monkeypatch):
+    evidence, n = Claimed((((4, 0), (0, 7)),)), 2
+    monkeypatch.setattr("nrs_design.proof.exact.MAX_WORK", n**3 * 3)
+    assert evidence.find_fault(SYSTEM) is None
+    monkeypatch.setattr("nrs_design.proof.exact.MAX_WORK", n**3 * 3 - 1)
+    assert "too large to check" in evidence.find_fault(SYSTEM)
 
 
 def test_a_misfit_comes_before_the_forms():
@@ -150,7 +254,8 @@ def test_the_rate_is_one_of_decay_or_there_is_none(example):
     assert rate is None or rate > 0
 
 
-FREE = {"common-quadratic", "common-polynomial", "conewise-quadratic", "parameter-quadratic"}
+BOUNCING = {"conewise-polynomial", "conewise-quadratic"}
+FREE = {"common-quadratic", "common-polynomial", "parameter-quadratic"} | BOUNCING
 SETS = {"common-quadratic", "conewise-quadratic", "invariant-ellipsoid"}
 RULED = {"mode-quadratic", "mode-polynomial"}
 FACTS = {
@@ -158,8 +263,8 @@ FACTS = {
     "allows_unequal_modes": RULED | {"unstable-mode"},
     "attains_rate": FREE | RULED,
     "bounds_at_once": FREE,
-    "covers_lost_contact": {"conewise-quadratic", "invariant-ellipsoid", "no-common-quadratic"},
-    "covers_mixtures": SETS | {"common-polynomial", "block-triangular"},
+    "covers_lost_contact": BOUNCING | {"invariant-ellipsoid", "no-common-quadratic"},
+    "covers_mixtures": SETS | {"common-polynomial", "conewise-polynomial", "block-triangular"},
     "is_common_quadratic": {"common-quadratic", "conewise-quadratic"},
     # The blocks of the example have polynomials.
     "keeps_bound_in_mixtures": SETS | {"parameter-quadratic"} | RULED,

@@ -10,6 +10,8 @@ from nrs_design.certificates.certificate import CommonQuadraticStatus, Verdict
 from nrs_design.proof.evidence import (
     BlockTriangular,
     CommonQuadratic,
+    ModeQuadratic,
+    NoCommonQuadratic,
     UnstableMode,
     read_evidence,
 )
@@ -106,6 +108,68 @@ def test_resets_may_drive_against_the_order():
     assert evidence.find_fault(replace(CASCADE, switching=Switching(resets=resets))) is not None
 
 
+def test_resets_are_not_covered_whatever_the_parts_cover():
+    """A reset may couple blocks, and a part is only told of its own states."""
+    rows = [[1, 0], [0, -1]]
+    resets = Switching(resets=resets_between(("m0", "m1", [[1, 0], [0, 1]])))
+    system = family(rows, rows)
+    evidence = BlockTriangular(((0,), (1,)), ((0, UnstableMode("m0", "1")),))
+    assert evidence.find_fault(system) is None
+    fault = evidence.find_fault(replace(system, switching=resets))
+    assert fault == "evidence of kind block-triangular does not cover this kind of switching"
+
+
+def test_every_part_must_fit_the_switching():
+    ends = replace(CASCADE, switching=Switching(fixed_ends=(("m0", "m1"),)))
+    each = ModeQuadratic((("m0", ((1,),)), ("m1", ((1,),))), 0, Fraction(1, 2))
+    for parts in (((0, ONE), (1, each)), ((0, each), (1, ONE))):
+        evidence = BlockTriangular(((0,), (1,)), parts)
+        assert evidence.find_fault(CASCADE) is None
+        assert "does not cover this kind of switching" in evidence.find_fault(ends)
+    assert BlockTriangular(((0,), (1,)), ((0, ONE), (1, ONE))).find_fault(ends) is None
+
+
+def test_one_unstable_block_is_named_and_no_more():
+    system = family([[1, 0], [0, 1]])
+    unstable = UnstableMode("m0", "1")
+    blocks, short = ((0,), (1,)), "there is not the evidence for the blocks that is needed"
+    for parts, fault in (
+        (((0, unstable),), None),
+        (((1, unstable),), None),
+        (((0, unstable), (1, unstable)), short),
+        (((2, unstable),), "a part is of no block"),
+        (((-1, unstable),), "a part is of no block"),
+        ((), "the parts do not show one and the same"),
+    ):
+        assert BlockTriangular(blocks, parts).find_fault(system) == fault
+    none = NoCommonQuadratic((("m0", ((1,),)),))
+    mixed = BlockTriangular(blocks, ((0, unstable), (1, none)))
+    assert mixed.find_fault(system) == "the parts do not show one and the same"
+
+
+def test_what_fails_in_a_block_is_said_of_it():
+    blocks, wide = ((0,), (1,)), CommonQuadratic(((1, 0), (0, 1)), 0, Fraction(1, 2))
+    for k in (0, 1):
+        parts = [ONE, ONE]
+        parts[k] = wide
+        evidence = BlockTriangular(blocks, tuple(enumerate(parts)))
+        assert evidence.find_fault(CASCADE) == f"block {k + 1}: Q is not a 1 x 1 matrix"
+        parts[k] = replace(ONE, Q=((-1,),))
+        evidence = BlockTriangular(blocks, tuple(enumerate(parts)))
+        failure = "Q is not symmetric and positive definite"
+        assert evidence.find_fault(CASCADE) == f"block {k + 1}: {failure}"
+
+
+def test_the_claim_names_blocks_and_states():
+    evidence = BlockTriangular(((0,), (1,)), ((0, ONE), (1, ONE)))
+    one = ONE.claim(family([[-1]], [[-1]]))
+    assert evidence.claim(CASCADE) == (
+        "In a common order of the states all modes are block triangular with 2 diagonal blocks. "
+        f"Block 1 (x1): {one} Block 2 (x2): {one} Together: every solution decays exponentially, "
+        "at any rate slower than the slowest of these."
+    )
+
+
 def test_a_part_must_fit_the_switching_too():
     mixed = genuine("unstable-mixture")[1]
     rows = [mode.A.fractions() for mode in genuine("unstable-mixture")[0].modes]
@@ -124,6 +188,7 @@ def test_a_part_must_fit_the_switching_too():
         {"blocks": [[0], [7]]},
         {"parts": []},
         {"parts": [{"block": -1, "kind": "common-quadratic"}]},
+        {"parts": [{"block": 2, "kind": "common-quadratic"}]},
         {"parts": [{"block": 0, "kind": "block-triangular", "blocks": [[0]], "parts": []}]},
     ],
 )

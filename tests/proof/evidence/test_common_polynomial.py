@@ -8,7 +8,8 @@ from time import process_time
 import pytest
 
 from nrs_design.proof.evidence import CommonPolynomial, read_evidence
-from nrs_design.proof.system import Switching
+from nrs_design.proof.evidence.common_polynomial import lifted_factor
+from nrs_design.proof.system import Switching, Time
 from nrs_design.search.certify import Limits, Verdict, certify
 from nrs_design.search.method import Method
 from tests.proof.systems import (
@@ -149,3 +150,93 @@ def test_numbers_that_would_take_minutes_are_refused():
     assert evidence.find_fault(system) == "its numbers are too large to check"
     small = tuple(tuple(int(i == j) for j in range(size)) for i in range(size))
     assert replace(evidence, Q=small).find_fault(system) is None
+
+
+def scalar(degree):
+    """The form ``x^(2 d)`` for one mode of one state."""
+    return CommonPolynomial(degree, ((1,),), 0, (((0,),),), Fraction(1, 2))
+
+
+@pytest.mark.parametrize(("degree", "fits"), [(0, False), (1, True), (32, True), (33, False)])
+def test_degrees(degree, fits):
+    fault = None if fits else f"degree {2 * degree} is not between 2 and 64"
+    assert scalar(degree).find_fault(family([[-1]])) == fault
+
+
+@pytest.mark.parametrize(("n", "degree", "fits"), [(120, 1, True), (121, 1, False), (3, 14, True)])
+def test_the_most_monomials(n, degree, fits):
+    """There are 120 of degree 14 in three variables."""
+    size = comb(n + degree - 1, degree)
+    unit, zero = (
+        tuple(tuple(c * (i == j) for j in range(size)) for i in range(size)) for c in (1, 0)
+    )
+    evidence = CommonPolynomial(degree, unit, 0, (zero,), Fraction(1, 2))
+    fault = None if fits else f"there are more than 120 monomials of degree {degree}"
+    system = family([[-int(i == j) for j in range(n)] for i in range(n)])
+    assert evidence.find_misfit(system) == fault
+
+
+@pytest.mark.parametrize(("time", "bits"), [(Time.CONTINUOUS, 2 + 3), (Time.DISCRETE, 2 + 4 * 3)])
+def test_the_longest_numbers(monkeypatch, time, bits):
+    """Of Q, two bits, and of the modes, three: in discrete time for each of four factors."""
+    limit = "nrs_design.proof.evidence.common_polynomial.MAX_WORK"
+    Q, zero = (tuple(tuple(c * (i == j) for j in range(3)) for i in range(3)) for c in (3, 0))
+    evidence = CommonPolynomial(2, Q, 0, (zero, zero), Fraction(1, 2))
+    short, long = [["-1/9", 0], [0, "-1/9"]], [["-7/9", 0], [0, "-1/9"]]
+    for system in (family(long, short, time=time), family(short, long, time=time)):
+        monkeypatch.setattr(limit, 3**3 * bits)
+        assert evidence.find_misfit(system) is None
+        monkeypatch.setattr(limit, 3**3 * bits - 1)
+        assert evidence.find_misfit(system) == "its numbers are too large to check"
+
+
+def test_forms_of_one_state_by_hand():
+    """``x' = -2/3 x`` and ``x+ = -2/3 x`` with ``V = 5 x^6``, at the rate 1/2 or 3/4."""
+    evidence = CommonPolynomial(3, ((5,),), 0, (((0,),),), Fraction(1, 2))
+    A, a = family([["-2/3"]]), Fraction(2, 3)
+    (_, Q), (_, form) = evidence.forms(A)
+    assert Q == ((5,),)
+    factor = lifted_factor(A.modes[0], 3, Fraction(1, 2), Time.CONTINUOUS)
+    assert form == [[factor * 5 * 2 * 3 * (a - Fraction(1, 2))]]
+    assert evidence.find_fault(A) is None
+    assert replace(evidence, rate=a).find_fault(A) is not None
+    in_steps, rate = replace(A, time=Time.DISCRETE), Fraction(3, 4)
+    _, (_, form) = replace(evidence, rate=rate).forms(in_steps)
+    factor = lifted_factor(A.modes[0], 3, rate, Time.DISCRETE)
+    assert form == [[factor * 5 * (rate**6 - a**6)]]
+    assert replace(evidence, rate=rate).find_fault(in_steps) is None
+    assert replace(evidence, rate=a).find_fault(in_steps) is not None
+
+
+def test_factors_clear_the_denominators():
+    (mode,) = family([["-2/3"]]).modes
+    # 3 for the mode, and 1 for 2 * 3 * 1/2 * 3; or (3^2)^2 for the mode, and (4^2)^2 for the rate.
+    assert lifted_factor(mode, 3, Fraction(1, 2), Time.CONTINUOUS) == 3
+    assert lifted_factor(mode, 1, Fraction(1, 7), Time.CONTINUOUS) == 21
+    assert lifted_factor(mode, 2, Fraction(3, 4), Time.DISCRETE) == 3**4 * 4**4
+
+
+@pytest.mark.parametrize("which", [0, 1, 2])
+def test_every_form_is_square(which):
+    system, evidence = genuine("common-polynomial")
+    forms = [evidence.Q, *evidence.vanishing]
+    forms[which] = forms[which][:-1]
+    fault = replace(evidence, Q=forms[0], vanishing=tuple(forms[1:])).find_fault(system)
+    assert fault == "a form is not a 3 x 3 matrix"
+
+
+def test_every_form_vanishes():
+    system, evidence = genuine("common-polynomial")
+    for which in (0, 1):
+        forms = list(evidence.vanishing)
+        forms[which] = evidence.Q
+        fault = replace(evidence, vanishing=tuple(forms)).find_fault(system)
+        assert fault == "a form that must vanish does not"
+
+
+def test_the_claim_and_the_file_name_the_degree():
+    assert "where |x|^6 is a positive definite form of degree 6 in x" in scalar(3).claim(
+        family([[-1]])
+    )
+    assert scalar(3).to_fields()["degree"] == 6
+    assert CommonPolynomial.from_fields(scalar(3).to_fields(), family([[-1]])) == scalar(3)

@@ -102,6 +102,35 @@ def test_words_of_a_rate_say_whether_it_is_rounded(rate, continuous, discrete):
 
 
 LONG = Fraction(1, 10**2000)
+# What `find_unreadable` lets pass at the most, in bits and in entries.
+INTEGER, RATIO, ENTRIES = 14_000, 6_640, 100_000
+
+
+@pytest.mark.parametrize(
+    ("value", "is_readable"),
+    [
+        (2**INTEGER - 1, True),
+        (1 - 2**INTEGER, True),
+        (2**INTEGER, False),
+        (-(2**INTEGER), False),
+        (Fraction(2**RATIO - 1), True),
+        (Fraction(2**RATIO), False),
+        (Fraction(1, 2**RATIO - 1), True),
+        (Fraction(1, 2**RATIO), False),
+        ((None,) * ENTRIES, True),
+        ((None,) * (ENTRIES + 1), False),
+        ([1, [2]], True),
+        ([1, [2.0]], False),
+        ((2.0, 1), False),
+    ],
+    ids=lambda value: type(value).__name__,
+)
+def test_what_is_just_readable(value, is_readable):
+    assert (find_unreadable(value) is None) is is_readable
+
+
+def test_a_denominator_of_one():
+    assert read_dyadic({"numerators": [[3]], "denominator_log2": 0}) == (((3,),), 0)
 
 
 @pytest.mark.parametrize(

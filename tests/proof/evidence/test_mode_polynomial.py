@@ -6,7 +6,7 @@ from fractions import Fraction
 import pytest
 
 from nrs_design.proof.evidence import ModePolynomial, ModeQuadratic
-from nrs_design.proof.evidence.mode_polynomial import lift_system
+from nrs_design.proof.evidence.mode_polynomial import find_large_lift, lift_system
 from nrs_design.proof.evidence.mode_quadratic import MAX_DWELL_STEPS
 from nrs_design.proof.system import Stay, Switching, Time
 from nrs_design.search.certify import Limits, certify
@@ -141,3 +141,107 @@ def test_the_modes_that_must_be_left_are_those_of_its_functions():
     assert evidence.leaving == evidence.quadratic.leaving
     left = replace(evidence, quadratic=replace(evidence.quadratic, leaving=("m0",)))
     assert left.leaving == ("m0",)
+
+
+def scalars(degree, rate="3/4", **fields):
+    """``5 x^(2 d)`` and ``7 x^(2 d)`` for two modes of one state."""
+    quadratic = ModeQuadratic((("m0", ((5,),)), ("m1", ((7,),))), 0, Fraction(rate), **fields)
+    return ModePolynomial(degree, quadratic, (((0,),),) * 4)
+
+
+HALVES = family([["1/2"]], [["-1/2"]], time=Time.DISCRETE)
+
+
+@pytest.mark.parametrize(("degree", "fits"), [(0, False), (1, True), (32, True), (33, False)])
+def test_degrees(degree, fits):
+    fault = None if fits else f"degree {2 * degree} is not between 2 and 64"
+    assert scalars(degree).find_fault(HALVES) == fault
+
+
+def test_forms_of_one_state_by_hand():
+    """Of degree six, at the rate 3/4: in a mode, and from one to the other."""
+    *functions, first, second, there, back = (form for _, form in scalars(3).forms(HALVES))
+    assert functions == [((5,),), ((7,),)]
+    rate, factor = Fraction(3, 4) ** 6, Fraction(1, 64)
+    clear = (8 * 64) ** 2
+    assert first == [[clear * 5 * (rate - factor)]]
+    assert second == [[clear * 7 * (rate - factor)]]
+    assert there == [[clear * (5 * rate - 7 * factor)]]
+    assert back == [[clear * (7 * rate - 5 * factor)]]
+
+
+@pytest.mark.parametrize(("n", "fits"), [(120, True), (121, False)])
+def test_the_most_monomials(n, fits):
+    large = family([[int(i == j) for j in range(n)] for i in range(n)], [[1]], time=Time.DISCRETE)
+    fault = None if fits else "there are more than 120 monomials of degree 1"
+    assert find_large_lift(large, 1) == fault
+    turned = replace(large, modes=large.modes[::-1])
+    assert find_large_lift(turned, 1) == fault
+
+
+@pytest.mark.parametrize(
+    "system",
+    [
+        family([[7]], [[1]], time=Time.DISCRETE),
+        family([["1/5"]], [[1]], time=Time.DISCRETE),
+        family([[1]], [[-7]], time=Time.DISCRETE),
+        family([[1]], [[1]], time=Time.DISCRETE, switching=Switching(
+            resets=resets_between(("m0", "m1", [[5]])))),
+        family([[1]], [[1]], time=Time.DISCRETE, switching=Switching(
+            resets=resets_between(("m0", "m1", [["1/7"]])))),
+    ],
+)  # fmt: skip
+def test_the_longest_numbers_that_are_lifted(monkeypatch, system):
+    limit = "nrs_design.proof.evidence.mode_polynomial.MAX_WORK"
+    monkeypatch.setattr(limit, 2 * 3)
+    assert find_large_lift(system, 2) is None
+    monkeypatch.setattr(limit, 2 * 3 - 1)
+    assert find_large_lift(system, 2) == "the numbers are too large to lift"
+
+
+def test_the_work_of_a_lift_grows_with_the_monomials(monkeypatch):
+    system = family([[1, 0], [0, 1]], time=Time.DISCRETE)
+    monkeypatch.setattr("nrs_design.proof.evidence.mode_polynomial.MAX_WORK", 4**3 * 3)
+    assert find_large_lift(system, 3) is None
+    monkeypatch.setattr("nrs_design.proof.evidence.mode_polynomial.MAX_WORK", 4**3 * 3 - 1)
+    assert find_large_lift(system, 3) == "the numbers are too large to lift"
+
+
+def test_every_form_fits_the_mode_in_which_its_decrease_begins():
+    assert len({len(N) for N in EVIDENCE.vanishing}) == 1
+    for k, N in enumerate(EVIDENCE.vanishing):
+        forms = list(EVIDENCE.vanishing)
+        forms[k] = N[:-1]
+        fault = replace(EVIDENCE, vanishing=tuple(forms)).find_fault(SYSTEM)
+        assert "a form that must vanish has the wrong size for mode" in fault
+        forms[k] = dict(EVIDENCE.quadratic.functions)["n1"]
+        fault = replace(EVIDENCE, vanishing=tuple(forms)).find_fault(SYSTEM)
+        assert fault == "a form that must vanish does not"
+
+
+def test_lifted_states_are_those_of_the_largest_mode():
+    resets = resets_between(("m0", "m1", [[1, 0]]), ("m1", "m0", [[1], [0]]))
+    system = family(
+        [["1/2", 0], [0, "1/3"]], [["1/2"]], time=Time.DISCRETE, switching=Switching(resets=resets)
+    )
+    lifted = lift_system(system, 3)
+    assert lifted.states == ("z1", "z2", "z3", "z4")
+    assert lifted.modes[0].A.fractions() == [
+        [Fraction(int(i == j), 2 ** (3 - i) * 3**i) for j in range(4)] for i in range(4)
+    ]
+    assert lifted.modes[1].A.fractions() == [[Fraction(1, 8)]]
+
+
+def test_the_degree_in_a_file():
+    fields = scalars(3).to_fields()
+    assert fields["degree"] == 6
+    assert ModePolynomial.from_fields(fields, HALVES) == scalars(3)
+    with pytest.raises(ValueError, match="odd"):
+        ModePolynomial.from_fields({**fields, "degree": 7}, HALVES)
+
+
+def test_the_rate_is_one_of_decay():
+    for rate in ("0", "1", "-1/2"):
+        fault = scalars(2, rate).find_fault(HALVES)
+        assert fault == "the claimed rate is not one of exponential decay"
+    assert scalars(2, "2/3").proved_rate(HALVES) == Fraction(2, 3)

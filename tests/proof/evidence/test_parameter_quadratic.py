@@ -122,3 +122,46 @@ def test_it_proves_nothing_about_a_parameter_that_moves():
 def test_rates(rate):
     system, evidence = genuine("parameter-quadratic")
     assert replace(evidence, rate=Fraction(rate)).find_fault(system) is not None
+
+
+@pytest.mark.parametrize("end", ["low", "high"])
+@pytest.mark.parametrize("Q", [((1, 0),), ((1, 0), (0,)), (), ((1,),)])
+def test_both_ends_of_q_have_the_size_of_the_state(end, Q):
+    system, evidence = genuine("parameter-quadratic")
+    assert replace(evidence, **{end: Q}).find_fault(system) == "Q is not a 2 x 2 matrix"
+
+
+@pytest.mark.parametrize("end", ["low", "high"])
+def test_both_ends_of_q_are_positive(end):
+    system, evidence = genuine("parameter-quadratic")
+    fault = replace(evidence, **{end: ((1, 0), (0, 0))}).find_fault(system)
+    assert fault == f"Q at the {end} end is not symmetric and positive definite"
+
+
+def test_forms_by_hand():
+    """Scalars -1/2 and -1/3 with Q = 5 and 7 at the rate 1/5, all over the denominator 6."""
+    system = family([["-1/2"]], [["-1/3"]], switching=PAIR)
+    evidence = ParameterQuadratic(((5,),), ((7,),), 0, Fraction(1, 5))
+    low, high, at_low, at_high, between = (form[0][0] for _, form in evidence.forms(system))
+    assert (low, high) == (5, 7)
+    factor = 6 * 5
+    assert at_low == factor * 2 * 5 * (Fraction(1, 2) - Fraction(1, 5))
+    assert at_high == factor * 2 * 7 * (Fraction(1, 3) - Fraction(1, 5))
+    slow = 7 * (Fraction(1, 2) - Fraction(1, 5)) + 5 * (Fraction(1, 3) - Fraction(1, 5))
+    assert between == factor * 2 * slow
+
+
+def test_ends_over_two_denominators_are_not_read():
+    system, evidence = genuine("parameter-quadratic")
+    fields = evidence.to_fields()
+    fields["Q_high"] = {**fields["Q_high"], "denominator_log2": evidence.denominator_log2 + 1}
+    with pytest.raises(ValueError, match="do not share one denominator"):
+        ParameterQuadratic.from_fields(fields, system)
+
+
+def test_the_claim_counts_the_modes_of_a_value():
+    system, evidence = genuine("parameter-quadratic")
+    assert "switching arbitrarily among the one mode at that value" in evidence.claim(system)
+    pairs = Switching(fixed_ends=(("m0", "m1"), ("m2", "m3")))
+    rows = [mode.A.fractions() for mode in system.modes] * 2
+    assert "among the 2 modes at that value" in evidence.claim(family(*rows, switching=pairs))

@@ -14,7 +14,8 @@ from nrs_design.proof.evidence.unstable_mode import (
     worst_eigenvalue,
 )
 from nrs_design.proof.exact import MAX_SPECTRUM_WORK, TooLargeError, spectrum_work
-from nrs_design.proof.system import Reset, Stay, Switching, Time
+from nrs_design.proof.matrix import RationalMatrix
+from nrs_design.proof.system import Mode, Reset, Stay, Switching, Time
 from nrs_design.search.certify import certify
 from tests.support import dayawansa_martin, family, holds, is_stable_by_lyapunov, matrix
 
@@ -142,6 +143,36 @@ def test_what_would_take_minutes_is_not_decided(time):
     certification = certify(system)
     assert str(certification.verdict) == "inconclusive"
     assert any("too large" in attempt.outcome for attempt in certification.attempts)
+
+
+@pytest.mark.parametrize("time", Time)
+@pytest.mark.parametrize(
+    "A", [RationalMatrix(((16, 0), (0, -1))), RationalMatrix(((1, 0), (0, -1)), 16)]
+)
+def test_the_largest_numbers_that_are_decided(monkeypatch, time, A):
+    limit, work = "nrs_design.proof.evidence.unstable_mode.MAX_SPECTRUM_WORK", spectrum_work(2, 5)
+    system = replace(family([[0, 0], [0, 0]], time=time), modes=(Mode("m0", A),))
+    monkeypatch.setattr(limit, work)
+    is_unstable = not is_stable(A, time)
+    assert (UnstableMode("m0", "").find_fault(system) is None) is is_unstable
+    assert worst_eigenvalue(A, time)
+    assert [fits for _, fits in affordable(system.modes)] == [True]
+    monkeypatch.setattr(limit, work - 1)
+    with pytest.raises(TooLargeError):
+        is_stable(A, time)
+    with pytest.raises(TooLargeError):
+        worst_eigenvalue(A, time)
+    assert "too large to check" in UnstableMode("m0", "").find_fault(system)
+    assert [fits for _, fits in affordable(system.modes)] == [False]
+
+
+def test_what_is_left_goes_to_smaller_modes(monkeypatch):
+    limit = "nrs_design.proof.evidence.unstable_mode.MAX_SPECTRUM_WORK"
+    large, small = spectrum_work(2, 5), spectrum_work(2, 1)
+    modes = [Mode(f"m{k}", RationalMatrix(((a, 0), (0, 1)))) for k, a in enumerate((16, 16, 1, 1))]
+    monkeypatch.setattr(limit, large + small)
+    assert [fits for _, fits in affordable(modes)] == [True, False, True, False]
+    assert [mode for mode, _ in affordable(modes)] == modes
 
 
 def test_many_modes_share_what_is_affordable():

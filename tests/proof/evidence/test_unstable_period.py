@@ -7,8 +7,9 @@ from time import process_time
 
 import numpy as np
 import pytest
-from flint import ctx
+from flint import arb, ctx, fmpq
 
+from nrs_design.proof.enclosure import precision
 from nrs_design.proof.evidence import UnstablePeriod, read_evidence
 from nrs_design.proof.evidence.unstable_period import monodromy
 from nrs_design.proof.system import Stay, Switching, Time
@@ -318,3 +319,159 @@ def test_an_edge_against_the_transitions_refutes_nothing():
 def test_a_signal_that_is_too_long_is_not_looked_at():
     steps = (("m0", Fraction(1)), ("m1", Fraction(1))) * 513
     assert "does not cover" in UnstablePeriod(steps, 3).find_fault(branicky())
+
+
+GROWING = [[1, 1], [0, 1]], [[1, 0], [1, 1]]
+STEPS, SECONDS = Time.DISCRETE, Time.CONTINUOUS
+
+
+def test_the_longest_signal():
+    system = family(*GROWING, time=STEPS)
+    longest = signal(*[(0, 1), (1, 1)] * 512, doublings=0)
+    assert longest.find_fault(system) is None
+    longer = replace(longest, steps=(*longest.steps, ("m0", Fraction(1))))
+    assert longer.find_misfit(system) == "the signal is empty or too long"
+    assert "does not cover" in longer.find_fault(system)
+    assert signal().find_misfit(system) == "the signal is empty or too long"
+
+
+@pytest.mark.parametrize(("doublings", "fits"), [(-1, False), (0, True), (60, True), (61, False)])
+def test_doublings(doublings, fits):
+    evidence = signal((0, 1), (1, 1), doublings=doublings)
+    fault = None if fits else "the signal is empty or too long"
+    assert evidence.find_fault(family(*GROWING, time=STEPS)) == fault
+
+
+def test_the_most_work(monkeypatch):
+    limit = "nrs_design.proof.evidence.unstable_period.MAX_WORK"
+    evidence, system = signal((0, 1), (1, 1), doublings=2), family(*GROWING, time=STEPS)
+    monkeypatch.setattr(limit, 2 * 2**3)
+    assert evidence.find_fault(system) is None
+    monkeypatch.setattr(limit, 2 * 2**3 - 1)
+    assert evidence.find_fault(system) == "the signal is too long for so many states"
+
+
+@pytest.mark.parametrize(
+    ("dwell", "time", "fault"),
+    [
+        ("4096", SECONDS, None),
+        ("4096", STEPS, None),
+        ("4097", STEPS, "a dwell time is not between 0 and 4096"),
+        ("8193/2", SECONDS, "a dwell time is not between 0 and 4096"),
+        ("0", SECONDS, "a dwell time is not between 0 and 4096"),
+        ("1/2", SECONDS, None),
+        ("1/2", STEPS, "a number of steps is not whole"),
+        ("3/2", STEPS, "a number of steps is not whole"),
+        ("1", STEPS, None),
+    ],
+)
+def test_dwell_times_between_the_limits(dwell, time, fault):
+    system = family([[2]], time=time)
+    assert signal((0, dwell), doublings=4).find_misfit(system) == fault
+    if time is SECONDS:
+        assert signal((0, 1), (0, dwell), doublings=4).find_misfit(system) == fault
+
+
+@pytest.mark.parametrize(
+    ("dwell", "shortest", "longest", "fits"),
+    [
+        (2, 2, None, True),
+        (1, 2, None, False),
+        (2, 2, 2, True),
+        (2, 1, 3, True),
+        (1, 2, 3, False),
+        (4, 2, 3, False),
+    ],
+)
+def test_how_long_a_mode_may_stay(dwell, shortest, longest, fits):
+    stay = Stay(Fraction(shortest), longest and Fraction(longest))
+    evidence = signal((0, dwell), (1, 1))
+    assert evidence.fits(Switching(stays=(("m0", stay),))) is fits
+
+
+@pytest.mark.parametrize(
+    ("steps", "transitions", "fits"),
+    [
+        ([(0, 1), (1, 1)], (("m0", "m1"), ("m1", "m0")), True),
+        ([(0, 1), (1, 1)], (("m0", "m1"),), False),
+        ([(0, 1), (1, 1), (2, 1)], (("m0", "m1"), ("m1", "m2"), ("m2", "m0")), True),
+        ([(0, 1), (1, 1), (2, 1)], (("m0", "m1"), ("m1", "m2"), ("m0", "m2")), False),
+        ([(0, 1), (0, 1), (1, 1)], (("m0", "m1"), ("m1", "m0")), True),
+        ([(0, 1)], (), True),
+        ([], (), False),
+    ],
+)
+def test_switches_that_are_allowed(steps, transitions, fits):
+    assert signal(*steps).fits(Switching(transitions=transitions)) is fits
+
+
+def test_a_mode_of_no_end_is_at_no_value():
+    ends = Switching(fixed_ends=(("m0", "m1"), ("m2", "m3")))
+    for modes, fits in (((0, 2), True), ((1, 3), True), ((0, 3), False), ((0, 4), False)):
+        assert signal(*((mode, 1) for mode in modes)).fits(ends) is fits
+
+
+def test_every_step_takes_its_own_reset():
+    """Of two resets one doubles and one triples; the way back has none."""
+    resets = resets_between(("m0", "m1", [[2]]), ("m0", "m1", [[3]]))
+    system = family([[1]], [["1/5"]], time=STEPS, switching=Switching(resets=resets))
+    steps = signal((0, 1), (1, 1), (0, 1), (1, 1)).steps
+    for edges, factor in (((0, 0, 0, 0), 4), ((1, 0, 0, 0), 6), ((1, 0, 1, 0), 9)):
+        with precision():
+            assert monodromy(system, steps, edges)[0, 0].contains(arb(fmpq(factor, 25)))
+    for edges, fits in (
+        ((1, 0, 0, 0), True),
+        ((1, 0, 1, 0), True),
+        ((2, 0, 0, 0), False),
+        ((0, 0, 2, 0), False),
+        ((0, 1, 0, 0), False),
+        ((0, -1, 0, 0), False),
+        ((0, 0, 0), False),
+        ((0, 0, 0, 0, 0), False),
+        ((), False),
+    ):
+        assert UnstablePeriod(steps, 3, edges).fits(system.switching) is fits
+    one = Switching(resets=resets[:1])
+    assert UnstablePeriod(steps, 3).fits(one)
+    assert UnstablePeriod(steps, 3).fits(Switching())
+
+
+@pytest.mark.parametrize(
+    ("growth", "doublings", "expands"),
+    [("3", 0, True), ("2", 0, False), ("-3", 0, True), ("7/4", 0, False), ("7/4", 1, True)],
+)
+def test_a_trace_beyond_the_number_of_states(growth, doublings, expands):
+    """Of diag(g, 0): g to the power 2^k is compared to two."""
+    system = family([[growth, 0], [0, 0]], time=STEPS)
+    fault = None if expands else "the enclosure of the monodromy matrix does not show growth"
+    assert signal((0, 1), doublings=doublings).find_fault(system) == fault
+
+
+def test_claims():
+    ways = two_ways(5)
+    resets = UnstablePeriod((("m0", Fraction(1)), ("m1", Fraction(2))), 6, (1, 0)).claim(ways)
+    assert resets == (
+        "Repeating the signal (m0 for 1 steps, then reset 2 to m1, m1 for 2 steps) makes some "
+        "solution grow without bound: the spectral radius over one period is above 1, so "
+        "x+ = A x is unstable under this switching."
+    )
+    first = UnstablePeriod((("m0", Fraction(1)), ("m1", Fraction(2))), 6).claim(ways)
+    assert "(m0 for 1 steps, then reset 1 to m1, m1 for 2 steps)" in first
+    short = signal((0, "1/2"), (1, "1/4")).claim(branicky())
+    assert "signal (m0 for 0.5 s, m1 for 0.25 s) makes" in short
+    assert "so x' = A x is unstable" in short
+    for times in (("1/3", "1/4"), ("1/4", "1/3")):
+        long = signal(*enumerate(times)).claim(branicky())
+        assert "about 0.333" in long
+        assert "; the certificate holds the exact times) makes" in long
+
+
+def test_edges_in_a_file():
+    system, evidence = genuine("unstable-period")
+    fields = {"kind": evidence.kind, **evidence.to_fields()}
+    assert read_evidence(fields, system).edges == ()
+    edges = [0] * len(evidence.steps)
+    assert read_evidence({**fields, "edges": edges}, system).edges == tuple(edges)
+    for wrong in ([0], [*edges, 0]):
+        with pytest.raises(ValueError, match="one edge for each step"):
+            read_evidence({**fields, "edges": wrong}, system)

@@ -69,15 +69,40 @@ def test_only_the_share_at_which_it_is_unstable(share):
 
 def test_shares_are_short():
     system = hidden_value(3)
-    for bits, fault in ((63, False), (65, True)):
+    for bits, fault in ((63, False), (64, False), (65, True)):
         near = replace(MIDDLE, share=HALF + Fraction(1, 2**bits))
         assert (near.find_fault(system) is not None) is fault
 
 
+@pytest.mark.parametrize(
+    ("share", "holds"), [("-1/9", False), (0, True), ("1/2", True), ("4/7", False), (1, False)]
+)
+def test_both_ends_are_values_too(share, holds):
+    """``x' = (1 - 2 s) x`` is unstable for s up to 1/2."""
+    share, part = Fraction(share), UnstableMode("m0 to m1", "1")
+    system, other_way = (
+        family(*ends, switching=PAIR) for ends in ([[[1]], [[-1]]], [[[-1]], [[1]]])
+    )
+    assert (UnstableValue(share, part).find_fault(system) is None) is holds
+    assert (UnstableValue(1 - share, part).find_fault(other_way) is None) is holds
+
+
+@pytest.mark.parametrize("share", ["3/2", "18446744073709551617/36893488147419103232"])
+def test_shares_out_of_bounds_are_not_read(share):
+    fields = {**MIDDLE.to_fields(), "share": share}
+    with pytest.raises(ValueError, match="out of bounds"):
+        UnstableValue.from_fields(fields, hidden_value(3))
+    with pytest.raises(ValueError, match="no parameter is constant"):
+        UnstableValue.from_fields(
+            MIDDLE.to_fields(), replace(hidden_value(3), switching=Switching())
+        )
+    assert UnstableValue.from_fields(MIDDLE.to_fields(), hidden_value(3)).share == HALF
+
+
 def test_a_parameter_that_is_not_declared_constant_has_no_such_value():
     ends = [mode.A.fractions() for mode in hidden_value(3).modes]
-    for system in (family(*ends), family(*ends, ends[0], switching=PAIR)):
-        assert MIDDLE.find_fault(system) is not None
+    assert "does not cover this kind of switching" in MIDDLE.find_fault(family(*ends))
+    assert MIDDLE.find_fault(family(*ends, ends[0], switching=PAIR)) is not None
 
 
 @pytest.mark.parametrize("time", Time)

@@ -1,0 +1,161 @@
+"""``nrs-design ros2 check``: the parameters that a robot runs, against what it touches."""
+
+from __future__ import annotations
+
+import sys
+from fractions import Fraction
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from nrs_design.cli.gate import OF_SEVERITY, GateFormat, format_of
+from nrs_design.cli.options import Json, Quiet
+from nrs_design.cli.printing import note, progress, say, say_failure
+from nrs_design.errors import NrsDesignError, SpecError
+from nrs_design.spec.quantity import QuantityKind, parse_quantity
+
+if TYPE_CHECKING:
+    from nrs_design.gating.obligations import GateOutcome, SpecOutcome
+
+LONGEST_AGE = 20
+STIFFNESS = QuantityKind("a stiffness for translations", ("N/m",), "200..2000 N/m")
+ROTATIONAL = QuantityKind("a stiffness for rotations", ("N*m/rad",), "5..40 N*m/rad")
+LAG = QuantityKind("a time", ("s",), "5..20 ms")
+
+
+def check(
+    file: Annotated[
+        Path, typer.Argument(metavar="FILE", help="Parameter file, such as controllers.yaml.")
+    ],
+    stiffness: Annotated[
+        str | None,
+        typer.Option(metavar="RANGE", help="What translations touch, such as '200..2000 N/m'."),
+    ] = None,
+    rotational_stiffness: Annotated[
+        str | None,
+        typer.Option(metavar="RANGE", help="What rotations touch, such as '5..40 N*m/rad'."),
+    ] = None,
+    age: Annotated[
+        str,
+        typer.Option(metavar="RANGE", help="Age of the measured pose and force in periods: 1..3."),
+    ] = "0",
+    lag: Annotated[
+        str,
+        typer.Option(
+            metavar="RANGE", help="Time constant with which the robot follows, such as '5..20 ms'."
+        ),
+    ] = "0 ms",
+    rate: Annotated[
+        str | None,
+        typer.Option(metavar="HZ", help="Of the control loop; default: update_rate in the file."),
+    ] = None,
+    budget: Annotated[
+        float, typer.Option(min=0.0, help="Time for the search of each axis in s.")
+    ] = 20.0,
+    format_: Annotated[
+        GateFormat, typer.Option("--format", help="What to print.")
+    ] = GateFormat.TEXT,
+    as_json: Json = False,
+    quiet: Quiet = False,
+) -> None:
+    """Prove or refute every axis of the admittance controllers in a parameter file.
+
+    The law of admittance_controller (ros2_controllers) is taken as an exact difference equation at
+    the rate of the loop, with its force filter, for every stiffness in the range and every age of
+    the measurement, changing at will. Where there is no proof, it says up to which stiffness there
+    is one; and it warns of parameters that do not do what they seem to.
+
+    Exit code 0: all axes proved. 1: one refuted. 2: the controller would not start. 3: undecided.
+
+    Example: nrs-design ros2 check docs/examples/admittance.ros2.yaml --stiffness '200..2000 N/m'
+
+    Example: nrs-design ros2 check controllers.yaml --stiffness '0..900 N/m' --age 1..3 --rate 500
+    """
+    from nrs_design.gating.formats import FORMATS
+    from nrs_design.ros2.check import Question, check_file
+    from nrs_design.search.certification import Limits
+
+    chosen = format_of(format_, as_json=as_json)
+    question = Question(
+        _ages(age),
+        _range_of("--stiffness", stiffness, STIFFNESS),
+        _range_of("--rotational-stiffness", rotational_stiffness, ROTATIONAL),
+        None if rate is None else _rate(rate),
+        _range_of("--lag", lag, LAG) or (Fraction(0), Fraction(0)),
+    )
+    with progress("checking", quiet=quiet) as step:
+        outcome = check_file(file, question, Limits(budget=budget), step)
+    if chosen is not GateFormat.TEXT:
+        sys.stdout.write(FORMATS[chosen](outcome))
+    elif not quiet:
+        _show(outcome)
+    raise typer.Exit(OF_SEVERITY[outcome.severity])
+
+
+def _show(outcome: GateOutcome) -> None:
+    """Print every axis, and below it what surprises people."""
+    (found,) = outcome.specs
+    for item in found.obligations:
+        line = f"{item.path}:{item.line}: {item.status}: {item.message}"
+        if item.fulfilled:
+            say(line)
+        else:
+            say_failure(line, item.status)
+    for caution in found.cautions:
+        note(f"{found.path}:{caution.line}: warning: {caution.message}")
+    _conclude(found, outcome.notes)
+
+
+def _conclude(found: SpecOutcome, notes: tuple[str, ...]) -> None:
+    if found.verdict is not None:
+        say(f"{found.path}: {found.verdict.upper()}", verdict=found.verdict)
+    for line in notes:
+        say(f"  {line}")
+
+
+def _ages(text: str) -> tuple[int, int]:
+    low, _, high = text.partition("..")
+    try:
+        ages = int(low), int(high or low)
+    except ValueError:
+        raise NrsDesignError(
+            f"--age: {text!r} is no range of periods", remedy="write --age 1 or --age 0..2"
+        ) from None
+    if not 0 <= ages[0] <= ages[1] <= LONGEST_AGE:
+        raise NrsDesignError(
+            f"--age: {text!r} does not rise from 0 to at most {LONGEST_AGE}",
+            remedy="write --age 0..2",
+        )
+    return ages
+
+
+def _range_of(
+    option: str, text: str | None, kind: QuantityKind
+) -> tuple[Fraction, Fraction] | None:
+    if text is None:
+        return None
+    numbers, _, unit = text.partition(" ")
+    low, _, high = numbers.partition("..")
+    try:
+        ends = [parse_quantity(f"{n} {unit}".strip(), kind).exact for n in (low, high or low)]
+    except SpecError as error:
+        raise NrsDesignError(f"{option}: {error.message}", remedy=error.remedy) from None
+    if not 0 <= ends[0] <= ends[1]:
+        raise NrsDesignError(
+            f"{option}: {text!r} is not a rising range from zero or above",
+            remedy=f"write '{kind.example}'",
+        )
+    return ends[0], ends[1]
+
+
+def _rate(text: str) -> Fraction:
+    from nrs_design.spec.exact import parse_exact
+
+    try:
+        rate = parse_exact(text.removesuffix("Hz").rstrip(" "))
+    except SpecError as error:
+        raise NrsDesignError(f"--rate: {error.message}", remedy="write --rate 500") from None
+    if rate <= 0:
+        raise NrsDesignError("--rate: is not positive", remedy="write --rate 500")
+    return rate

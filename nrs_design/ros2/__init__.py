@@ -1,0 +1,1 @@
+"""Parameter files of ros2_controllers: what a user already runs, held against its environment."""

@@ -1,0 +1,230 @@
+"""One axis of the admittance controller in contact, as an exact difference equation.
+
+In each period the controller smooths the force, ``f = (1-c) f + c F``, and moves by symplectic
+Euler: ``v = v + T ((f - D v - K x)/M - d v)``, ``p = p + T v``
+(ros2_controllers, ``admittance_rule_impl.hpp``). The robot follows with a lag, ``r = E r + (1-E)
+p``, ``E = exp(-T/lag)``; x is where it was some periods ago, and what it touches answers with
+``F = -k x``.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from functools import partial
+from math import isqrt
+
+from nrs_design.models.linear_form import LinearForm, combine, coordinates, zero
+from nrs_design.proof.matrix import RationalMatrix
+from nrs_design.proof.system import Contact, Mode, SwitchedSystem, Time
+from nrs_design.proof.taylor import exponential_between
+from nrs_design.ros2.law import AdmittanceLaw, Axis
+from nrs_design.spec.interval import Interval
+from nrs_design.switched.parameter_box import Box
+
+ONE = Fraction(1)
+# Digits in base two behind the point of a square root that is not rational.
+BITS = 80
+
+
+@dataclass(frozen=True, slots=True)
+class Surroundings:
+    """What the controller runs in.
+
+    Parameters
+    ----------
+    period : Fraction
+        Of the control loop, in s.
+    delays : tuple of int
+        Smallest and largest age of the measured offset and force, in periods.
+    stiffness, rotational : tuple of Fraction or None
+        Range of the environment for translations in N/m, and for rotations in N*m/rad.
+    lag : tuple of Fraction
+        Smallest and largest time constant in s with which the robot follows its command.
+    """
+
+    period: Fraction
+    delays: tuple[int, int]
+    stiffness: tuple[Fraction, Fraction] | None
+    rotational: tuple[Fraction, Fraction] | None
+    lag: tuple[Fraction, Fraction] = (Fraction(0), Fraction(0))
+
+    @property
+    def kept(self) -> Interval:
+        """Where E lies, the share of its distance to the command that the robot keeps."""
+        shares = [
+            exponential_between(-self.period / lag) if lag else (Fraction(0), Fraction(0))
+            for lag in self.lag
+        ]
+        return Interval(shares[0][0], shares[0][0], shares[1][1])
+
+    def of(self, axis: Axis) -> tuple[Fraction, Fraction] | None:
+        """Return the range that an axis meets; None where nothing is said of it."""
+        if not axis.selected:
+            return Fraction(0), Fraction(0)
+        return self.rotational if axis.rotates else self.stiffness
+
+    def up_to(self, stiffness: Fraction) -> Surroundings:
+        """Return the same with other upper ends of the ranges."""
+        low, angular = self.stiffness, self.rotational
+        return replace(
+            self,
+            stiffness=None if low is None else (low[0], stiffness),
+            rotational=None if angular is None else (angular[0], stiffness),
+        )
+
+
+def square_root_between(value: Fraction) -> Interval:
+    """Enclose a square root; a rational one is a point.
+
+    Parameters
+    ----------
+    value : Fraction
+        Not negative.
+    """
+    p, q = value.numerator, value.denominator
+    root = Fraction(isqrt(p * q), q)
+    if root * root == value:
+        return Interval.point(root)
+    below = Fraction(isqrt(p * q << 2 * BITS), q << BITS)
+    return Interval(below, below, below + Fraction(1, q << BITS))
+
+
+def damping_of(axis: Axis) -> Interval:
+    """Return where the damping of an axis lies, in N*s/m or N*m*s/rad."""
+    root, factor = square_root_between(axis.mass * axis.stiffness), 2 * axis.damping_ratio
+    ends = sorted((factor * root.low, factor * root.high))
+    return Interval(ends[0], *ends)
+
+
+@dataclass(frozen=True, slots=True)
+class _Frame:
+    """What one period does to ``[v, e, steps of the robot, f, delta]``.
+
+    e is the distance to the command, delta where the robot was at the greatest age; e and f are
+    left out where there is no lag and no filter, the steps where nothing is old.
+    """
+
+    axis: Axis
+    joint_damping: Fraction
+    c: Fraction
+    around: Surroundings
+
+    @property
+    def smooths(self) -> bool:
+        """Whether the smoothed force is a state."""
+        return self.axis.selected and self.c != 1
+
+    @property
+    def lags(self) -> bool:
+        """Whether the robot follows with a lag."""
+        return self.around.lag[1] > 0
+
+    @property
+    def moves(self) -> bool:
+        """Whether anything depends on where the axis is."""
+        return self.axis.selected or self.axis.stiffness > 0
+
+    @property
+    def states(self) -> tuple[str, ...]:
+        """Names and units."""
+        place, force = ("rad", "N*m") if self.axis.rotates else ("m", "N")
+        speed = f"v [{place}/s]"
+        if not self.moves:
+            return (speed,)
+        behind = (f"e [{place}]",) if self.lags else ()
+        steps = (f"step {i} before [{place}]" for i in range(self.around.delays[1]))
+        smoothed = (f"f [{force}]",) if self.smooths else ()
+        return (speed, *behind, *steps, *smoothed, f"delta [{place}]")
+
+    def rows(self, age: int, values: Mapping[str, Fraction]) -> list[LinearForm]:
+        """Return the map of one period.
+
+        Parameters
+        ----------
+        age : int
+            Of what is measured, in periods.
+        values : mapping
+            The stiffness k, the damping D and the share E.
+        """
+        T, E, oldest = self.around.period, values["E"], self.around.delays[1]
+        unit = coordinates(len(self.states))
+        v, delta = unit[0], unit[-1]
+        slowed = combine((1 - T * (values["D"] / self.axis.mass + self.joint_damping), v))
+        if not self.moves:
+            return [slowed]
+        behind = unit[1] if self.lags else zero(len(unit))
+        steps = unit[1 + self.lags :][:oldest]
+        measured = combine((ONE, delta), *((ONE, step) for step in steps[age:]))
+        force, smoothed = combine((-values["k"] * self.c, measured)), []
+        if self.smooths:
+            force = combine((1 - self.c, unit[-2]), (ONE, force))
+            smoothed = [force]
+        gain = T / self.axis.mass
+        new = combine((ONE, slowed), (gain, force), (-gain * self.axis.stiffness, measured))
+        ahead = combine((ONE, behind), (T, new))
+        moved = [combine((1 - E, ahead)), *steps]
+        left = [combine((E, ahead))] if self.lags else []
+        return [new, *left, *moved[:oldest], *smoothed, combine((ONE, delta), (ONE, moved[oldest]))]
+
+
+def close_axis(law: AdmittanceLaw, axis: Axis, around: Surroundings) -> SwitchedSystem:
+    """Assemble the modes of one axis: every age of the measurement, every end of the ranges.
+
+    Parameters
+    ----------
+    law : AdmittanceLaw
+        Of the controller.
+    axis : Axis
+        One of its axes.
+    around : Surroundings
+        With the range that this axis meets.
+    """
+    low, high = around.of(axis) or (Fraction(0), Fraction(0))
+    frame = _Frame(axis, law.joint_damping, law.filter_coefficient, around)
+    others = Box({"D": damping_of(axis), "E": around.kept})
+    box = Box({"k": Interval(low, low, high)}).beside(others)
+    modes = tuple(_modes(frame, box, around.delays, "contact"))
+    free = None
+    if axis.selected and axis.stiffness == 0 and around.delays[0] == around.delays[1]:
+        # Without a spring nothing but the environment knows where the axis is.
+        none = Box({"k": Interval.point(Fraction(0))}).beside(others)
+        free = Contact(tuple(_modes(frame, none, around.delays, "free")))
+    return SwitchedSystem(
+        f"{law.node.name}: axis {axis.name}",
+        Time.DISCRETE,
+        frame.states,
+        modes,
+        assumptions(around),
+        contact=free,
+        sample_time=around.period,
+    )
+
+
+def _modes(frame: _Frame, box: Box, delays: tuple[int, int], name: str) -> Iterator[Mode]:
+    for delay in range(delays[0], delays[1] + 1) if frame.moves else (0,):
+        late = f"{name}/age-{delay}" if delays[0] < delays[1] else name
+        for corner, rows in box.corners(partial(frame.rows, delay), late):
+            yield Mode(corner, RationalMatrix.from_rows(rows))
+
+
+def assumptions(around: Surroundings) -> tuple[str, ...]:
+    """Say what a verdict on an axis takes for granted."""
+    first, last = around.delays
+    age = f"{first} periods" if first == last else f"{first} to {last} periods, in any order,"
+    follows = "the robot is where it was commanded to be (--lag)"
+    if around.lag[1]:
+        ends = " to ".join(f"{float(1000 * lag):g}" for lag in around.lag)
+        follows = f"the robot follows its command with a lag of first order, {ends} ms"
+    return (
+        "what is touched is a spring without damping, whose stiffness lies in the range at every "
+        "period and may change from one to the next; a range from 0 also covers contact that is "
+        "lost and made at the reference",
+        f"the period is always the same; measured offset and force are {age} old",
+        follows,
+        "each axis acts by itself: the control frame is aligned with the base, the Jacobian is "
+        "square and regular and does not change, and its damped inverse (alpha) is its inverse",
+        "the parameters are not changed while the controller runs",
+        "nothing is limited on the way, and arithmetic is not rounded",
+    )

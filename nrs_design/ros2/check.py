@@ -1,0 +1,270 @@
+"""Hold a parameter file of ros2_controllers against what its robot touches."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field, replace
+from fractions import Fraction
+from pathlib import Path
+
+from nrs_design.errors import Fault, SpecError
+from nrs_design.gating.obligations import Caution, GateOutcome, Obligation, SpecOutcome, Status
+from nrs_design.gating.rules import ROS_AXIS, ROS_PARAMETERS
+from nrs_design.proof.bounds import lower, nearly
+from nrs_design.proof.evidence.fields import rate_text
+from nrs_design.proof.system import Time
+from nrs_design.ros2.axis import Surroundings, assumptions, close_axis
+from nrs_design.ros2.law import AdmittanceLaw, Axis, is_admittance, read_law
+from nrs_design.ros2.parameters import RosNode, read_integer, read_nodes, texts
+from nrs_design.ros2.traps import find_traps, has_chain
+from nrs_design.search.certification import Certification, Limits
+from nrs_design.search.certify import certify
+from nrs_design.search.margin import find_margin
+
+# For each of the proofs by which a safe range is looked for.
+MARGIN_BUDGET = 5.0
+_STATUS = {
+    "proved": Status.PROVED,
+    "refuted": Status.REFUTED,
+    "inconclusive": Status.INCONCLUSIVE,
+}
+# The worst first: what a file is called where its axes differ.
+_ORDER = (Status.ERROR, Status.MISSED, Status.REFUTED, Status.INCONCLUSIVE, Status.PROVED)
+
+
+@dataclass(frozen=True, slots=True)
+class Question:
+    """What is asked about a parameter file.
+
+    Parameters
+    ----------
+    delays : tuple of int
+        Smallest and largest age of what is measured, in periods.
+    stiffness, rotational : tuple of Fraction or None
+        What translations meet in N/m, and rotations in N*m/rad.
+    rate : Fraction or None
+        Of the control loop in 1/s; None for what the file says.
+    lag : tuple of Fraction
+        Smallest and largest time constant of the robot in s.
+    """
+
+    delays: tuple[int, int]
+    stiffness: tuple[Fraction, Fraction] | None
+    rotational: tuple[Fraction, Fraction] | None
+    rate: Fraction | None = None
+    lag: tuple[Fraction, Fraction] = (Fraction(0), Fraction(0))
+
+    def around(self, period: Fraction) -> Surroundings:
+        """Return what a controller of this period runs in."""
+        return Surroundings(period, self.delays, self.stiffness, self.rotational, self.lag)
+
+
+@dataclass(slots=True)
+class _Asker:
+    """Decides axes, each distinct one once."""
+
+    path: Path
+    limits: Limits
+    progress: Callable[[str], None]
+    known: dict[tuple[object, ...], tuple[Status, str]] = field(default_factory=dict)
+
+    def obligation(self, law: AdmittanceLaw, axis: Axis, around: Surroundings) -> Obligation:
+        """Return what holds for one axis."""
+        status, message = self._decide(law, axis, around)
+        name = f"{law.node.name}: axis {axis.name}"
+        place = axis.position
+        return Obligation(
+            ROS_AXIS, self.path, name, status, f"{name}: {message}", place.line, place.column
+        )
+
+    def _decide(self, law: AdmittanceLaw, axis: Axis, around: Surroundings) -> tuple[Status, str]:
+        if axis.selected and has_chain(law):
+            return Status.INCONCLUSIVE, "its force passes through a filter chain: not modelled"
+        met = around.of(axis)
+        if met is None:
+            option = "--rotational-stiffness" if axis.rotates else "--stiffness"
+            return Status.INCONCLUSIVE, f"nothing is said of what it touches: give {option}"
+        numbers = (axis.mass, axis.damping_ratio, axis.stiffness, axis.selected, axis.rotates, met)
+        key = (*numbers, law.joint_damping, law.filter_coefficient, around.period)
+        if key not in self.known:
+            self.progress(f"{law.node.name}: axis {axis.name}")
+            self.known[key] = self._certify(law, axis, around, met)
+        return self.known[key]
+
+    def _certify(
+        self,
+        law: AdmittanceLaw,
+        axis: Axis,
+        around: Surroundings,
+        met: tuple[Fraction, Fraction],
+    ) -> tuple[Status, str]:
+        system = close_axis(law, axis, around)
+        found = certify(system, limits=self.limits)
+        status = _STATUS[str(found.verdict)]
+        unit = "N*m/rad" if axis.rotates else "N/m"
+        where = "by itself (no force acts on it)" if not axis.selected else _range(met, unit)
+        evidence = found.evidence
+        if evidence is None:
+            claim = "neither a proof nor a refutation was found"
+        elif status is Status.PROVED:
+            rate = evidence.proved_rate(system)
+            shown = "" if rate is None else f", rho <= {rate_text(rate, Time.DISCRETE)} per period"
+            lost = ""
+            if axis.selected:
+                lost = ", contact lost at will" if evidence.covers_lost_contact else ", in contact"
+            claim = f"stable{lost}{shown}"
+        else:
+            claim = evidence.claim(system)
+        message = f"{where}: {claim}"
+        if status is not Status.PROVED and axis.selected:
+            message += self._margin(law, axis, around, met, found, unit)
+        return status, message
+
+    def _margin(
+        self,
+        law: AdmittanceLaw,
+        axis: Axis,
+        around: Surroundings,
+        met: tuple[Fraction, Fraction],
+        known: Certification,
+        unit: str,
+    ) -> str:
+        """Say up to which stiffness there is a proof."""
+        low, high = met
+        if low == high:
+            return ""
+
+        limits = replace(self.limits, budget=min(MARGIN_BUDGET, self.limits.budget))
+        margin = find_margin(
+            lambda scale: close_axis(law, axis, around.up_to(low + scale * (high - low))),
+            lambda system: certify(system, limits=limits),
+            known,
+        )
+        if margin.proved is None:
+            return f"; no proof even for {nearly(low, unit)} alone"
+        safe = low + margin.proved * (high - low)
+        return f"; proved for {lower(low)} to {lower(safe, 4)} {unit}"
+
+
+def check_file(
+    path: Path, question: Question, limits: Limits, progress: Callable[[str], None]
+) -> GateOutcome:
+    """Read every admittance controller of a file, and decide each of its axes.
+
+    Parameters
+    ----------
+    path : Path
+        Parameter file.
+    question : Question
+        What the robot touches, and how old its measurements are.
+    limits : Limits
+        Of the search, for each axis.
+    progress : callable
+        Told what is being decided.
+
+    Raises
+    ------
+    SpecError
+        If the file cannot be read, holds no admittance controller, or does not say its rate.
+    """
+    nodes = read_nodes(path)
+    types, manager = _managed(nodes)
+    controllers = [node for node in nodes if is_admittance(node, types)]
+    if not controllers:
+        names = ", ".join(node.name for node in nodes)
+        raise SpecError(
+            f"no admittance controller is among its nodes ({names})",
+            path=path,
+            remedy="name the file that holds `admittance:` with mass, damping_ratio and stiffness",
+        )
+    asker = _Asker(path, limits, progress)
+    obligations: list[Obligation] = []
+    cautions: list[Caution] = []
+    notes: dict[str, None] = {}
+    for node in controllers:
+        try:
+            law = read_law(node)
+        except SpecError as error:
+            obligations += [_unreadable(path, node, fault) for fault in error.faults]
+            continue
+        around = question.around(1 / _rate(law, manager, question.rate, path))
+        notes |= dict.fromkeys(assumptions(around))
+        obligations.append(_readable(path, node))
+        obligations += [asker.obligation(law, axis, around) for axis in law.axes]
+        cautions += find_traps(law, path)
+    verdicts = {item.status for item in obligations if item.rule is ROS_AXIS}
+    worst = next((status for status in _ORDER if status in verdicts), None)
+    verdict = None if worst is None else str(worst)
+    outcome = SpecOutcome(path, tuple(obligations), verdict=verdict, cautions=tuple(cautions))
+    return GateOutcome((outcome,), tuple(f"taken for granted: {note}" for note in notes))
+
+
+def _managed(nodes: tuple[RosNode, ...]) -> tuple[dict[str, str], RosNode | None]:
+    """Return the types of controllers, and the node of their manager."""
+    manager = next((n for n in nodes if n.name.rpartition("/")[2] == "controller_manager"), None)
+    if manager is None:
+        return {}, None
+    types: dict[str, str] = {}
+    for name, value in manager.values.items():
+        listed = texts(value)
+        if name.endswith(".type") and listed:
+            types[name.removesuffix(".type")] = listed[0].text
+    return types, manager
+
+
+def _rate(
+    law: AdmittanceLaw, manager: RosNode | None, given: Fraction | None, path: Path
+) -> Fraction:
+    """Return how often the law runs, in 1/s: the manager's rate, or its own if that is lower."""
+    found = given
+    if found is None and manager is not None and "update_rate" in manager.values:
+        found = _written_rate(manager, path)
+    own = law.values["update_rate"][0]
+    if found is None or found <= 0:
+        raise SpecError(
+            "the rate of the control loop is not in this file",
+            path=path,
+            line=law.node.position.line,
+            column=law.node.position.column,
+            remedy="give --rate '500 1/s', or add update_rate of controller_manager",
+        )
+    return min(found, own) if own else found
+
+
+def _written_rate(manager: RosNode, path: Path) -> Fraction:
+    place = manager.place("update_rate")
+    listed = texts(manager.values["update_rate"])
+    try:
+        if not listed:
+            raise SpecError("update_rate is no number", remedy="write `update_rate: 500`")
+        return read_integer(listed[0].text)
+    except SpecError as error:
+        raise SpecError(
+            f"update_rate: {error.message}",
+            path=path,
+            line=place.line,
+            column=place.column,
+            remedy=error.remedy,
+        ) from None
+
+
+def _unreadable(path: Path, node: RosNode, fault: Fault) -> Obligation:
+    message = f"{fault.message} ({fault.remedy})" if fault.remedy else fault.message
+    return Obligation(
+        ROS_PARAMETERS, path, node.name, Status.ERROR, message, fault.line, fault.column
+    )
+
+
+def _readable(path: Path, node: RosNode) -> Obligation:
+    message = f"{node.name}: the parameters that the law depends on are read as written"
+    place = node.position
+    return Obligation(
+        ROS_PARAMETERS, path, node.name, Status.MET, message, place.line, place.column
+    )
+
+
+def _range(met: tuple[Fraction, Fraction], unit: str) -> str:
+    low, high = met
+    if low == high:
+        return f"at {nearly(low, unit)}"
+    return f"from {nearly(low)} to {nearly(high, unit)}"

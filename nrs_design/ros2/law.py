@@ -1,0 +1,232 @@
+"""The law of ``admittance_controller`` of ros2_controllers, from its parameters.
+
+Names, types and bounds are those of the parameters that it declares
+(ros2_controllers, ``admittance_controller_parameters.yaml``).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass
+from fractions import Fraction
+from types import MappingProxyType
+
+from nrs_design.errors import Fault, SpecError
+from nrs_design.ros2.parameters import RosNode, read_bool, read_double, read_integer, texts
+from nrs_design.spec.document import Position, Scalar
+
+AXES = ("x", "y", "z", "rx", "ry", "rz")
+TYPE = "admittance_controller/AdmittanceController"
+FILTER = "ft_sensor.filter_coefficient"
+CHAIN = "sensor_filter_chain"
+
+
+@dataclass(frozen=True, slots=True)
+class Parameter:
+    """A parameter that the law depends on.
+
+    Parameters
+    ----------
+    read : callable
+        Reads one value, and says why ROS 2 would not.
+    count : int
+        Length of the list; 1 for a single value.
+    low, high : Fraction or None
+        Bounds that the node enforces.
+    default : Fraction or None
+        None if it must be given.
+    """
+
+    read: Callable[[str], Fraction]
+    count: int = 1
+    low: Fraction | None = None
+    high: Fraction | None = None
+    default: Fraction | None = None
+
+
+LAW: Mapping[str, Parameter] = MappingProxyType(
+    {
+        "admittance.selected_axes": Parameter(read_bool, 6),
+        "admittance.mass": Parameter(read_double, 6, Fraction("0.0001"), Fraction(10**6)),
+        "admittance.damping_ratio": Parameter(read_double, 6),
+        "admittance.stiffness": Parameter(read_double, 6, Fraction(0), Fraction(10**8)),
+        "admittance.joint_damping": Parameter(read_double, low=Fraction(0), default=Fraction(5)),
+        FILTER: Parameter(read_double, default=Fraction("0.05")),
+        "gravity_compensation.CoG.force": Parameter(read_double, default=Fraction(0)),
+        "kinematics.alpha": Parameter(read_double, default=Fraction("0.01")),
+        "enable_parameter_update_without_reactivation": Parameter(read_bool, default=Fraction(1)),
+        "update_rate": Parameter(read_integer, low=Fraction(0), default=Fraction(0)),
+    }
+)
+# What the node knows besides; everything else it passes over without a word.
+OTHERS = frozenset(
+    {
+        "joints",
+        "command_joints",
+        "command_interfaces",
+        "state_interfaces",
+        "chainable_command_interfaces",
+        "kinematics.plugin_name",
+        "kinematics.plugin_package",
+        "kinematics.base",
+        "kinematics.tip",
+        "ft_sensor.name",
+        "ft_sensor.frame.id",
+        "control.frame.id",
+        "fixed_world_frame.frame.id",
+        "gravity_compensation.frame.id",
+        "gravity_compensation.CoG.pos",
+        "robot_description",
+        "type",
+        "use_sim_time",
+        "is_async",
+    }
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Axis:
+    """One Cartesian axis of the law, in SI units of a translation or a rotation.
+
+    Parameters
+    ----------
+    name : str
+        Out of `AXES`.
+    position : Position
+        Where its mass stands.
+    selected : bool
+        Whether the force acts on it.
+    mass, damping_ratio, stiffness : Fraction
+        As written; the damping is ``2 damping_ratio sqrt(mass stiffness)``.
+    """
+
+    name: str
+    position: Position
+    selected: bool
+    mass: Fraction
+    damping_ratio: Fraction
+    stiffness: Fraction
+
+    @property
+    def rotates(self) -> bool:
+        """Whether it is a rotation."""
+        return self.name.startswith("r")
+
+
+@dataclass(frozen=True, slots=True)
+class AdmittanceLaw:
+    """What one admittance controller computes.
+
+    Parameters
+    ----------
+    node : RosNode
+        Its parameters.
+    axes : tuple of Axis
+        All six.
+    joint_damping : Fraction
+        In 1/s.
+    filter_coefficient : Fraction
+        Share of the new sample in the smoothed force, in each period.
+    values : mapping of str to tuple of Fraction
+        Everything that was read, defaults filled in.
+    """
+
+    node: RosNode
+    axes: tuple[Axis, ...]
+    joint_damping: Fraction
+    filter_coefficient: Fraction
+    values: Mapping[str, tuple[Fraction, ...]]
+
+
+def is_admittance(node: RosNode, types: Mapping[str, str]) -> bool:
+    """Tell whether a node is an admittance controller, by its type or by what it is given.
+
+    Parameters
+    ----------
+    node : RosNode
+        The node.
+    types : mapping of str to str
+        What a controller manager says of its controllers.
+    """
+    kind = types.get(node.name.rpartition("/")[2])
+    if kind is not None:
+        return kind == TYPE
+    return any(name.startswith("admittance.") for name in node.values)
+
+
+def read_law(node: RosNode) -> AdmittanceLaw:
+    """Read the law of an admittance controller.
+
+    Raises
+    ------
+    SpecError
+        With everything for which the node would refuse to start.
+    """
+    values: dict[str, tuple[Fraction, ...]] = {}
+    faults: list[Fault] = []
+    for name, parameter in LAW.items():
+        found, wrong = _read(node, name, parameter)
+        values[name] = found
+        faults += wrong
+    if faults:
+        raise SpecError.of(faults, None)
+    mass, ratio, stiffness, selected = (
+        values[f"admittance.{key}"]
+        for key in ("mass", "damping_ratio", "stiffness", "selected_axes")
+    )
+    axes = tuple(
+        Axis(
+            name,
+            node.place("admittance.mass", i),
+            bool(selected[i]),
+            mass[i],
+            ratio[i],
+            stiffness[i],
+        )
+        for i, name in enumerate(AXES)
+    )
+    return AdmittanceLaw(
+        node, axes, values["admittance.joint_damping"][0], values[FILTER][0], values
+    )
+
+
+def _read(
+    node: RosNode, name: str, parameter: Parameter
+) -> tuple[tuple[Fraction, ...], list[Fault]]:
+    """Return the values of a parameter, and what is wrong with it."""
+    if name not in node.values:
+        if parameter.default is not None:
+            return (parameter.default,), []
+        return (), [node.fault(name, "is missing", f"add {name}: the controller needs it")]
+    listed = texts(node.values[name])
+    if listed is None or len(listed) != parameter.count:
+        wanted = "one value" if parameter.count == 1 else f"a list of {parameter.count} values"
+        found = "something else" if listed is None else f"{len(listed)}"
+        return (), [node.fault(name, f"expected {wanted}, found {found}", f"write {wanted}")]
+    numbers, faults = [], []
+    for index, item in enumerate(listed):
+        try:
+            numbers.append(_bounded(item, parameter))
+        except SpecError as error:
+            at = index if parameter.count > 1 else None
+            faults.append(node.fault(name, error.message, error.remedy or "", at))
+    return tuple(numbers), faults
+
+
+def _bounded(item: Scalar, parameter: Parameter) -> Fraction:
+    value = parameter.read(item.text)
+    low, high = parameter.low, parameter.high
+    if (low is not None and value < low) or (high is not None and value > high):
+        ends = "at least" if high is None else "between"
+        wanted = " and ".join(f"{float(end):g}" for end in (low, high) if end is not None)
+        raise SpecError(
+            f"{item.text} is not {ends} {wanted}: the controller refuses to start",
+            remedy=f"write a number {ends} {wanted}",
+        )
+    return value
+
+
+def unknown_names(node: RosNode) -> Iterable[str]:
+    """Return the parameters that the controller passes over without a word."""
+    known = {*LAW, *OTHERS}
+    return [n for n in node.values if n not in known and not n.startswith(f"{CHAIN}.")]

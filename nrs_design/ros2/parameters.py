@@ -1,0 +1,166 @@
+"""The parameters of a node as ROS 2 reads them from YAML: dotted names, typed values, places."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from fractions import Fraction
+from pathlib import Path
+
+from nrs_design.errors import Fault, SpecError
+from nrs_design.proof.text import quoted
+from nrs_design.spec.document import Mapping as Tree
+from nrs_design.spec.document import Node, Position, Scalar, Sequence, parse_document, read_source
+from nrs_design.spec.exact import parse_exact
+
+KEY = "ros__parameters"
+# How rcl_yaml_param_parser tells the type of a text: a truth value, an integer, else a number.
+_TRUE = frozenset({"Y", "y", "yes", "Yes", "YES", "true", "True", "TRUE", "on", "On", "ON"})
+_FALSE = frozenset({"N", "n", "no", "No", "NO", "false", "False", "FALSE", "off", "Off", "OFF"})
+_INTEGER = re.compile(r"[+-]?[0-9]+")
+
+
+@dataclass(frozen=True, slots=True)
+class RosNode:
+    """A node of ROS 2 and its parameters.
+
+    Parameters
+    ----------
+    name : str
+        With its namespace, as the file says.
+    position : Position
+        Where its parameters begin.
+    values : mapping of str to Node
+        By dotted name.
+    places : mapping of str to Position
+        Where each name stands.
+    """
+
+    name: str
+    position: Position
+    values: Mapping[str, Node]
+    places: Mapping[str, Position]
+
+    def fault(self, name: str, message: str, remedy: str, index: int | None = None) -> Fault:
+        """Return a fault at a parameter, or at one item of its list.
+
+        Parameters
+        ----------
+        name : str
+            Dotted name.
+        message, remedy : str
+            What is wrong, and what to do.
+        index : int, optional
+            Of the item.
+        """
+        place = self.place(name, index)
+        return Fault(f"{self.name}: {name}: {message}", place.line, place.column, remedy)
+
+    def place(self, name: str, index: int | None = None) -> Position:
+        """Return where a parameter or an item of it stands; the node's place if it is not there."""
+        value = self.values.get(name)
+        if index is not None and isinstance(value, Sequence) and index < len(value.items):
+            return value.items[index].position
+        return self.places.get(name, self.position)
+
+
+def read_nodes(path: Path) -> tuple[RosNode, ...]:
+    """Read a parameter file.
+
+    Parameters
+    ----------
+    path : Path
+        YAML with nodes that hold ``ros__parameters``.
+
+    Raises
+    ------
+    SpecError
+        If it is no YAML, or holds no parameters of ROS 2.
+    """
+    _, text = read_source(path)
+    root = parse_document(text, path)
+    found = tuple(_nodes(root, ()))
+    if not found:
+        raise SpecError(
+            f"no node of ROS 2 is in this file: nothing has the key {KEY}",
+            path=path,
+            remedy=f"name a parameter file: `NODE: {{{KEY}: {{...}}}}`",
+        )
+    return found
+
+
+def _nodes(tree: Node, above: tuple[str, ...]) -> Iterator[RosNode]:
+    if not isinstance(tree, Tree):
+        return
+    for key, value in tree.entries.items():
+        if key == KEY and isinstance(value, Tree):
+            flat = list(_flat(value, ""))
+            values = {name: node for name, node, _ in flat}
+            places = {name: place for name, _, place in flat}
+            yield RosNode("/".join(above) or "/", tree.keys[key], values, places)
+        else:
+            yield from _nodes(value, (*above, key.strip("/") or key))
+
+
+def _flat(tree: Tree, before: str) -> Iterator[tuple[str, Node, Position]]:
+    """Yield name, value and place; a dot in a key is the same as a level."""
+    for key, value in tree.entries.items():
+        name = f"{before}{key}"
+        if isinstance(value, Tree):
+            yield from _flat(value, f"{name}.")
+        else:
+            yield name, value, tree.keys[key]
+
+
+def read_double(text: str) -> Fraction:
+    """Read what ROS 2 takes for a double, exactly as written.
+
+    Raises
+    ------
+    SpecError
+        If it is an integer for ROS 2, so that the node does not start, or no number.
+    """
+    value = parse_exact(text)
+    if _INTEGER.fullmatch(text):
+        raise SpecError(
+            f"{quoted(text)} is an integer for ROS 2, and a floating-point number is wanted: the "
+            "controller refuses to start",
+            remedy=f"write {text}.0",
+        )
+    if "/" in text:
+        raise SpecError(f"{quoted(text)} is no number for ROS 2", remedy="write a decimal")
+    return value
+
+
+def read_integer(text: str) -> Fraction:
+    """Read what ROS 2 takes for an integer.
+
+    Raises
+    ------
+    SpecError
+        If it is none.
+    """
+    if not _INTEGER.fullmatch(text):
+        raise SpecError(f"{quoted(text)} is no integer", remedy="write digits without a point")
+    return parse_exact(text)
+
+
+def read_bool(text: str) -> Fraction:
+    """Read what ROS 2 takes for a truth value, as 1 or 0.
+
+    Raises
+    ------
+    SpecError
+        If it is none.
+    """
+    if text in _TRUE or text in _FALSE:
+        return Fraction(text in _TRUE)
+    raise SpecError(f"{quoted(text)} is no truth value", remedy="write true or false")
+
+
+def texts(value: Node) -> list[Scalar] | None:
+    """Return the texts of a single value or of a list, or None where it holds something else."""
+    items = value.items if isinstance(value, Sequence) else (value,)
+    scalars = [item for item in items if isinstance(item, Scalar)]
+    return scalars if len(scalars) == len(items) else None

@@ -1,0 +1,100 @@
+"""What about the parameters surprises people, though the controller starts with them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from difflib import get_close_matches
+from pathlib import Path
+
+from nrs_design.gating.obligations import Caution
+from nrs_design.ros2.law import CHAIN, FILTER, LAW, OTHERS, AdmittanceLaw, unknown_names
+
+RETUNING = "enable_parameter_update_without_reactivation"
+Trap = tuple[str, int | None, str]
+
+
+def find_traps(law: AdmittanceLaw, path: Path) -> Iterator[Caution]:
+    """Yield what is doubtful about the parameters, each at its place.
+
+    Parameters
+    ----------
+    law : AdmittanceLaw
+        As read.
+    path : Path
+        The file, as it was named.
+    """
+    for name, index, message in _traps(law):
+        place = law.node.place(name, index)
+        yield Caution(path, f"{law.node.name}: {name}: {message}", place.line, place.column)
+
+
+def _traps(law: AdmittanceLaw) -> Iterator[Trap]:
+    yield from _damping(law)
+    yield from _filter(law)
+    masses = {axis.mass for axis in law.axes[:3]}, {axis.mass for axis in law.axes[3:]}
+    if any(len(values) > 1 for values in masses):
+        yield (
+            "admittance.mass",
+            None,
+            "masses differ; they act along the axes of the base, stiffness and damping along those "
+            "of the control frame, so axes are coupled wherever the two are turned",
+        )
+    if law.values[RETUNING][0]:
+        said = "is on" if RETUNING in law.node.values else "is on by default"
+        yield (
+            RETUNING,
+            None,
+            f"{said}: parameters change while the controller runs, and no verdict covers that; set "
+            "it to false",
+        )
+    yield from _unknown(law)
+
+
+def _unknown(law: AdmittanceLaw) -> Iterator[Trap]:
+    """Yield names that may be slips of the pen, and the others together."""
+    known, others = sorted({*LAW, *OTHERS}), []
+    for name in unknown_names(law.node):
+        if near := get_close_matches(name, known, n=1, cutoff=0.85):
+            yield name, None, f"is not known to the controller; did you mean {near[0]}?"
+        else:
+            others.append(name)
+    if others:
+        yield (
+            others[0],
+            None,
+            f"the controller passes over what it does not know: {', '.join(others)}",
+        )
+
+
+def _damping(law: AdmittanceLaw) -> Iterator[Trap]:
+    for index, axis in enumerate(law.axes):
+        if axis.damping_ratio < 0:
+            yield (
+                "admittance.damping_ratio",
+                index,
+                f"is negative for axis {axis.name}: it drives the motion",
+            )
+        elif axis.selected and axis.stiffness == 0 < axis.damping_ratio:
+            left = float(law.joint_damping * axis.mass)
+            unit = "N*m*s/rad" if axis.rotates else "N*s/m"
+            yield (
+                "admittance.stiffness",
+                index,
+                f"0 takes away the damping of axis {axis.name}, 2 damping_ratio sqrt(mass "
+                f"stiffness); joint_damping is left, {float(law.joint_damping):g} 1/s, which acts "
+                f"like {left:.3g} {unit}",
+            )
+
+
+def _filter(law: AdmittanceLaw) -> Iterator[Trap]:
+    c = law.filter_coefficient
+    if FILTER not in law.node.values:
+        if not has_chain(law):
+            yield FILTER, None, "is not given; the default 0.05 smooths the force over 20 periods"
+    elif not 0 < c <= 1:
+        yield FILTER, None, f"{float(c):g} is no share of the new sample: write 0 < c <= 1"
+
+
+def has_chain(law: AdmittanceLaw) -> bool:
+    """Tell whether the force passes through filters that are not modelled."""
+    return any(name.startswith(f"{CHAIN}.") for name in law.node.values)

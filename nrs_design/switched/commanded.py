@@ -1,0 +1,102 @@
+"""What a bounded velocity command does to the loop of an impedance design in continuous time."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from fractions import Fraction
+
+from nrs_design.errors import AssemblyError
+from nrs_design.models.contact.environment import Environment
+from nrs_design.models.linear_form import coordinates
+from nrs_design.models.motion_loop import JointMotion, MotionLoop, Realization, realize
+from nrs_design.proof.matrix import RationalMatrix
+from nrs_design.proof.system import Channel, Mode, Output, SwitchedSystem
+from nrs_design.spec import InteractionDesignSpec
+from nrs_design.spec.sampling import DisturbancesSpec
+from nrs_design.switched.joint import Joint
+
+_ASSUMED = (
+    "A velocity command acts where a statement names it; it may change arbitrarily fast within its "
+    "bound."
+)
+
+
+def with_command(
+    system: SwitchedSystem,
+    spec: InteractionDesignSpec,
+    disturbances: DisturbancesSpec,
+    loop: MotionLoop,
+    joint: Joint | None,
+    touched: Sequence[Environment],
+) -> SwitchedSystem:
+    """Let the largest velocity command act on a loop, with force and velocity as its outputs.
+
+    The command goes where the velocity of the admittance is subtracted, into the motion loop, in
+    contact and free alike.
+
+    Parameters
+    ----------
+    system : SwitchedSystem
+        The loop without inputs, in deflection coordinates.
+    spec : InteractionDesignSpec
+        With the limit of the torque.
+    disturbances : DisturbancesSpec
+        Of the spec.
+    loop : MotionLoop
+        Closed motion loop G.
+    joint : Joint or None
+        The motor in its physical state, where it has ranges or a load.
+    touched : sequence of Environment
+        All contacts.
+
+    Raises
+    ------
+    AssemblyError
+        If it is not modelled for these controllers, environments or coordinates.
+    """
+    plain = all(controller.type == "impedance" for controller in spec.controllers.values())
+    remember = any(environment.law.remembers for environment in touched)
+    if not plain or remember or spec.coordinates != "deflection" or not touched:
+        raise AssemblyError(
+            "a velocity command is modelled for impedance controllers on elastic and damped "
+            "environments in deflection coordinates",
+            remedy="leave disturbances out",
+            at=("disturbances",),
+        )
+    n = system.order
+    motion = realize(loop) if joint is None else joint.nominal
+    free = () if system.contact is None else system.contact.free
+    columns = tuple(_column(mode, motion) for mode in (*system.modes, *free))
+    ((name, (bound, unit)),) = disturbances.bounds().items()
+    return replace(
+        system,
+        assumptions=(*system.assumptions, _ASSUMED),
+        channels=(Channel(name, unit, bound, columns),),
+        outputs=(
+            Output("force", "N*m", tuple(_forces(motion, n, touched)), spec.limits.torque.exact),
+            Output("velocity", "rad/s", (RationalMatrix.from_rows([motion.output(n)]),)),
+        ),
+    )
+
+
+def _column(mode: Mode, motion: Realization | JointMotion) -> RationalMatrix:
+    """Return what a commanded velocity does to a mode; the motor is the one of its corner."""
+    n = len(mode.A.numerators)
+    if isinstance(motion, JointMotion):
+        # The error drives the motor by Km Kp/tau, a command by Km Kd/tau.
+        drive = Fraction(mode.A.numerators[1][0], mode.A.denominator) / motion.Kp
+        column = [[Fraction(1)], [drive * motion.Kd]]
+    else:
+        column = [[row[-1]] for row in motion.rates(coordinates(n + 1)[-1])]
+    return RationalMatrix.from_rows([*column, *([Fraction(0)] for _ in range(n - motion.order))])
+
+
+def _forces(
+    motion: Realization | JointMotion, n: int, touched: Sequence[Environment]
+) -> Iterator[RationalMatrix]:
+    deflection = coordinates(n)[-1:]
+    for environment in touched:
+        for law in environment.corners:
+            force, _ = law.react(motion.output(n), deflection)
+            yield RationalMatrix.from_rows([force])

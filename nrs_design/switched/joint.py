@@ -1,0 +1,99 @@
+"""The motion loop of a motor that is known to within ranges, or that the environment slows."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from fractions import Fraction
+
+from nrs_design.controllers.laws import ProportionalDerivative
+from nrs_design.models.actuator import ActuatorRanges
+from nrs_design.models.motion_loop import JointMotion
+from nrs_design.models.plant import Plant
+from nrs_design.proof.text import exact_text
+from nrs_design.spec.interval import Interval
+from nrs_design.switched.parameter_box import Box
+
+
+@dataclass(frozen=True, slots=True)
+class Joint:
+    """The motion loop in its physical state, wherever gain and time constant of the motor are.
+
+    Parameters
+    ----------
+    motion : ProportionalDerivative
+        The PD gains that ship.
+    ranges : ActuatorRanges
+        Where the motor may be.
+    load_inertia : Fraction or None
+        The J of `nrs_design.models.motion_loop.JointMotion`.
+    """
+
+    motion: ProportionalDerivative
+    ranges: ActuatorRanges
+    load_inertia: Fraction | None
+
+    @classmethod
+    def of(cls, plant: Plant, motion: ProportionalDerivative) -> Joint | None:
+        """Return the joint of a plant, or None where its motor is a point and carries no load."""
+        if plant.actuator_ranges is None and plant.load_inertia is None:
+            return None
+        known = ActuatorRanges(
+            Interval.point(plant.actuator.gain), Interval.point(plant.actuator.time_constant)
+        )
+        return cls(motion, plant.actuator_ranges or known, plant.load_inertia)
+
+    @property
+    def box(self) -> Box:
+        """The box in which the loop is affine in the gain, and in one over the time constant."""
+        return Box({"Km": self.ranges.gain, "tau": self.ranges.time_constant}, frozenset({"tau"}))
+
+    @property
+    def nominal(self) -> JointMotion:
+        """The loop that the design uses."""
+        motor = self.ranges.nominal
+        return self.at({"Km": motor.gain, "tau": motor.time_constant})
+
+    def at(self, values: Mapping[str, Fraction]) -> JointMotion:
+        """Return the loop at the values of ``Km`` and ``tau``.
+
+        Parameters
+        ----------
+        values : mapping
+            By symbols; others are left alone.
+        """
+        gains = self.motion.Kp, self.motion.Kd
+        return JointMotion(*gains, values["Km"], values["tau"], self.load_inertia)
+
+    def texts(self) -> Iterator[str]:
+        """Say what is taken for granted about the motor."""
+        moving = "" if self.ranges.fixed else ", and may change arbitrarily fast"
+        yield (
+            "The motion loop is the linear actuator model of the spec under the motion gains "
+            f"listed here; {motor_text(self.ranges)}{moving}."
+        )
+        if self.load_inertia is None:
+            yield "What is touched does not slow the motor: it acts through the force sensor alone."
+        else:
+            yield (
+                "The torque of what is touched acts on the axis as well, against an inertia of "
+                f"{exact_text(self.load_inertia)} kg*m^2."
+            )
+
+
+def motor_text(ranges: ActuatorRanges) -> str:
+    """Say where gain and time constant of the motor are."""
+    texts = (
+        f"its {name} {_interval_text(interval)} {unit}"
+        for name, interval, unit in (
+            ("gain", ranges.gain, "rad/s/rpm"),
+            ("time constant", ranges.time_constant, "s"),
+        )
+    )
+    return " and ".join(texts)
+
+
+def _interval_text(interval: Interval) -> str:
+    if interval.low == interval.high:
+        return f"is {exact_text(interval.low)}"
+    return f"stays in [{exact_text(interval.low)}, {exact_text(interval.high)}]"

@@ -1,0 +1,42 @@
+"""Parameter files for tests."""
+
+from fractions import Fraction
+
+from nrs_design.ros2.axis import Surroundings
+from nrs_design.ros2.law import AXES, AdmittanceLaw, Axis
+from nrs_design.ros2.parameters import RosNode
+from nrs_design.spec.document import Position
+from tests.support import ROOT
+
+EXAMPLE = ROOT / "docs" / "examples" / "admittance.ros2.yaml"
+PLACE = Position(1, 1)
+NODE = RosNode("arm", PLACE, {}, {})
+F = Fraction
+
+
+def axis(mass, ratio, stiffness, *, selected=True, rotates=False):
+    """An axis with numbers as text."""
+    name = AXES[3] if rotates else AXES[0]
+    return Axis(name, PLACE, selected, F(mass), F(ratio), F(stiffness))
+
+
+def law(one, damping, c):
+    """A law with one axis."""
+    return AdmittanceLaw(NODE, (one,), F(damping), F(c), {})
+
+
+def around(period, ages, stiffness, lag=(0, 0)):
+    """Surroundings in which all axes meet the same."""
+    ends = F(stiffness[0]), F(stiffness[1])
+    return Surroundings(F(period), ages, ends, ends, (F(lag[0]), F(lag[1])))
+
+
+def changed(tmp_path, *changes):
+    """Write the example with some of its text replaced."""
+    text = EXAMPLE.read_text()
+    for old, new in changes:
+        assert old in text
+        text = text.replace(old, new)
+    file = tmp_path / "controllers.yaml"
+    file.write_text(text)
+    return file

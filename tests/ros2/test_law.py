@@ -1,0 +1,58 @@
+"""The law from its parameters."""
+
+import pytest
+
+from nrs_design.errors import SpecError
+from nrs_design.ros2.law import is_admittance, read_law, unknown_names
+from nrs_design.ros2.parameters import read_nodes
+from tests.ros2.support import EXAMPLE, changed
+
+
+def controller(file):
+    return read_nodes(file)[1]
+
+
+def test_the_example():
+    law = read_law(controller(EXAMPLE))
+    assert [axis.name for axis in law.axes] == ["x", "y", "z", "rx", "ry", "rz"]
+    assert [axis.selected for axis in law.axes] == [True] * 3 + [False] * 3
+    assert law.axes[0].mass == 5
+    assert law.filter_coefficient * 2 == 1
+    assert list(unknown_names(law.node)) == []
+
+
+def test_defaults(tmp_path):
+    """As declared in admittance_controller_parameters.yaml of ros2_controllers."""
+    file = changed(
+        tmp_path, ("      joint_damping: 5.0\n", ""), ("      filter_coefficient: 0.5\n", "")
+    )
+    law = read_law(controller(file))
+    assert law.joint_damping == 5
+    assert law.filter_coefficient * 20 == 1
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        ("mass: [5.0, 5.0", "mass: [5, 5.0", "integer for ROS 2"),
+        ("mass: [5.0, 5.0", "mass: [0.0, 5.0", "between 0.0001 and 1e"),
+        ("mass: [5.0, 5.0, 5.0, ", "mass: [5.0, 5.0, ", "expected a list of 6 values, found 5"),
+        ("joint_damping: 5.0", "joint_damping: -5.0", "at least 0"),
+        ("selected_axes: [true", "selected_axes: [1", "no truth value"),
+        ("      stiffness: [200.0, 200.0, 200.0, 10.0, 10.0, 10.0]\n", "", "is missing"),
+        ("filter_coefficient: 0.5", "filter_coefficient: [0.5, 0.5]", "expected one value"),
+        ("damping_ratio: [2.8,", "damping_ratio: [{a: 1},", "something else"),
+    ],
+)
+def test_what_keeps_the_controller_from_starting(tmp_path, old, new, message):
+    with pytest.raises(SpecError) as caught:
+        read_law(controller(changed(tmp_path, (old, new))))
+    assert message in str(caught.value)
+    assert caught.value.line is not None
+
+
+def test_which_nodes_are_admittance_controllers():
+    manager, node = read_nodes(EXAMPLE)
+    assert not is_admittance(manager, {})
+    assert is_admittance(node, {})
+    assert not is_admittance(node, {"admittance_controller": "other/Controller"})

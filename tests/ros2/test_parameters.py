@@ -1,0 +1,71 @@
+"""Parameters as ROS 2 reads them."""
+
+import pytest
+
+from nrs_design.errors import SpecError
+from nrs_design.ros2.parameters import read_bool, read_double, read_integer, read_nodes
+from tests.ros2.support import EXAMPLE
+
+INTEGERS = ["5", "-5", "+3"]
+
+
+@pytest.mark.parametrize("text", INTEGERS)
+def test_an_integer_is_no_double(text):
+    """rcl_yaml_param_parser tells types by the text; a node that declares a double refuses it."""
+    with pytest.raises(SpecError, match="integer for ROS 2") as caught:
+        read_double(text)
+    assert caught.value.remedy == f"write {text}.0"
+
+
+def test_doubles():
+    assert [read_double(t) * 1000 for t in ("5.0", ".5", "5.", "1e3", "2.5e-1")] == [
+        5000,
+        500,
+        5000,
+        10**6,
+        250,
+    ]
+    for text in ("1/2", "nan", ".inf", "five", "0x10", "010.0", ""):
+        with pytest.raises(SpecError):
+            read_double(text)
+
+
+def test_truth_values():
+    assert [int(read_bool(t)) for t in ("true", "Yes", "ON", "y")] == [1, 1, 1, 1]
+    assert [int(read_bool(t)) for t in ("false", "No", "OFF", "n")] == [0, 0, 0, 0]
+    for text in ("tRUE", "1", "0", ""):
+        with pytest.raises(SpecError, match="truth value"):
+            read_bool(text)
+
+
+def test_integers():
+    assert read_integer("500") == 500
+    for text in ("500.0", "5e2", "x"):
+        with pytest.raises(SpecError, match="no integer"):
+            read_integer(text)
+
+
+def test_nodes_by_name_and_dots_as_levels(tmp_path):
+    file = tmp_path / "a.yaml"
+    file.write_text(
+        "/left:\n  arm:\n    ros__parameters:\n      admittance.mass: [1.0]\n"
+        "      ft_sensor: {filter_coefficient: 0.1}\n"
+        "/**:\n  ros__parameters: {use_sim_time: true}\n"
+    )
+    first, second = read_nodes(file)
+    assert (first.name, second.name) == ("left/arm", "**")
+    assert set(first.values) == {"admittance.mass", "ft_sensor.filter_coefficient"}
+    assert first.places["admittance.mass"].line == 4
+
+
+def test_what_is_no_parameter_file(tmp_path):
+    file = tmp_path / "a.yaml"
+    file.write_text("kind: robot\n")
+    with pytest.raises(SpecError, match="ros__parameters"):
+        read_nodes(file)
+
+
+def test_the_example():
+    manager, controller = read_nodes(EXAMPLE)
+    assert manager.name == "controller_manager"
+    assert controller.place("admittance.mass", 2).line == 30

@@ -1,0 +1,53 @@
+"""What surprises people."""
+
+from pathlib import Path
+
+import pytest
+
+from nrs_design.ros2.law import read_law
+from nrs_design.ros2.parameters import read_nodes
+from nrs_design.ros2.traps import find_traps
+from tests.ros2.support import EXAMPLE, changed
+
+STIFF = "stiffness: [200.0, 200.0, 200.0, 10.0"
+
+
+def traps(file):
+    return list(find_traps(read_law(read_nodes(file)[1]), Path(file)))
+
+
+def test_the_example_has_none():
+    assert traps(EXAMPLE) == []
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "message", "line"),
+    [
+        (STIFF, "stiffness: [0.0, 200.0, 200.0, 10.0", "takes away the damping of axis x", 32),
+        ("mass: [5.0, ", "mass: [6.0, ", "masses differ", 30),
+        ("damping_ratio: [2.8,", "damping_ratio: [-2.8,", "negative for axis x", 31),
+        ("update_without_reactivation: false", "update_without_reactivation: true", "is on:", 34),
+        ("filter_coefficient: 0.5", "filter_coefficient: 0.0", "no share of the new sample", 22),
+        ("filter_coefficient: 0.5", "filter_coefficent: 0.5", "did you mean ft_sensor.filter", 22),
+        ("tip: tool0", "tip: tool0\n      group_name: arm", "passes over", 18),
+    ],
+)
+def test_each_at_its_place(tmp_path, old, new, message, line):
+    found = [trap for trap in traps(changed(tmp_path, (old, new))) if message in trap.message]
+    assert [trap.line for trap in found] == [line]
+
+
+def test_damping_that_is_left(tmp_path):
+    (found,) = traps(changed(tmp_path, (STIFF, "stiffness: [0.0, 200.0, 200.0, 10.0")))
+    assert "acts like 25 N*s/m" in found.message
+
+
+def test_defaults_are_said(tmp_path):
+    file = changed(
+        tmp_path,
+        ("      filter_coefficient: 0.5\n", ""),
+        ("    enable_parameter_update_without_reactivation: false\n", ""),
+    )
+    messages = [trap.message for trap in traps(file)]
+    assert any("default 0.05" in text for text in messages)
+    assert any("on by default" in text for text in messages)

@@ -1,0 +1,118 @@
+"""A motor that is known to within ranges, in continuous time: known answers for the thesis's robot.
+
+The verdicts and rates were found by an independent program.
+"""
+
+from dataclasses import replace
+from fractions import Fraction
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from nrs_design.certificates.certificate import Verdict
+from nrs_design.proof.evidence import ConewiseQuadratic, UnstablePeriod
+from nrs_design.search.certify import Limits, certify
+from nrs_design.search.method import Method
+from tests.proof.truth import combine
+from tests.search.support import thesis_robot
+
+SOFT, BOTH, INSERTION = ("41.5", "44.2"), ("2.15", "1.04"), ("2.15",)
+ANY_RATE = Limits(optimize_rate=False)
+
+
+@pytest.mark.parametrize(
+    ("Bt", "tolerance", "load", "rate"),
+    [
+        (BOTH, "0.02", None, 3.54),
+        (BOTH, "0.02", "1.213", 3.81),
+        (BOTH, "0.10", "1.213", 2.0),
+        (BOTH, "0.10", None, None),
+        (BOTH, "0.16", None, None),
+        (INSERTION, "0.38", None, None),
+    ],
+)
+def test_tolerances_that_are_proved_while_contact_is_lost(Bt, tolerance, load, rate):
+    system = thesis_robot(SOFT, Bt, "0.01", tolerance, load)
+    found = certify(system, limits=Limits(optimize_rate=rate is not None)).evidence
+    assert isinstance(found, ConewiseQuadratic)
+    assert rate is None or float(found.rate) > 0.98 * rate
+
+
+def test_a_tolerance_of_27_percent_is_proved_for_opposite_corners_and_false_for_all():
+    """Gain and time constant at their ends together do not suffice: the other corners grow."""
+    system = thesis_robot(SOFT, BOTH, "0.01", "0.27", contact="kept")
+    ends = ("Km-min/tau-min", "Km-max/tau-max")
+    few = replace(system, modes=tuple(m for m in system.modes if m.name.endswith(ends)))
+    assert len(few.modes) == len(system.modes) / 2
+    found = certify(few, Method.LMI, ANY_RATE)
+    assert found.verdict is Verdict.PROVED
+    fault = replace(found.evidence).find_fault(system)
+    assert "V does not decrease" in fault
+    # Found by the search for periods, with more digits.
+    names = "c1/soft/k-max/Km-min/tau-max", "c1/soft/k-max/Km-max/tau-min"
+    period = zip(names, (Fraction(241, 4096), Fraction(181, 8192)), strict=True)
+    assert UnstablePeriod(tuple(period), 12).find_fault(system) is None
+
+
+def test_states_and_assumptions():
+    system = thesis_robot(SOFT, BOTH, "0.01", "0.02", "1.213")
+    assert system.states == ("e [rad]", "omega [rad/s]", "vm [rad/s]", "delta [rad]")
+    assert len(system.modes) == 16
+    assert len(system.contact.free) == 8
+    text = " ".join(system.assumptions)
+    assert "its gain stays in [0.0004744866, 0.0004938534] rad/s/rpm" in text
+    assert "its time constant stays in [0.034398, 0.035802] s, and may change" in text
+    assert "against an inertia of 1.213 kg*m^2" in text
+    unloaded = thesis_robot(SOFT, BOTH, "0.01", "0.02")
+    assert "does not slow the motor" in " ".join(unloaded.assumptions)
+
+
+def test_a_load_alone_makes_physical_states_and_no_corners():
+    system = thesis_robot(SOFT, INSERTION, "0.01", load="1.213")
+    assert system.states[0] == "e [rad]"
+    assert len(system.modes) == 2
+    # In flight there is no force.
+    assert all(row[-1] == 0 for row in system.contact.free[0].A.fractions())
+    assert system.modes[0].A.fractions()[1][-1] == -Fraction("41.5") / Fraction("1.213")
+
+
+def test_without_ranges_and_load_both_states_have_one_spectrum():
+    """The physical state and the canonical one are coordinates of one loop."""
+    heavy = thesis_robot(SOFT, INSERTION, "0.01", load="1e30")
+    plain = thesis_robot(SOFT, INSERTION, "0.01")
+    for one, other in zip(heavy.modes, plain.modes, strict=True):
+        for power in range(1, 5):
+            traces = [_trace(mode.A.fractions(), power) for mode in (one, other)]
+            assert float(traces[0]) == pytest.approx(float(traces[1]), rel=1e-9)
+
+
+def _trace(A, power):
+    M = A
+    for _ in range(power - 1):
+        M = [[sum(a * b for a, b in zip(row, c, strict=True)) for c in zip(*A, strict=True)]
+             for row in M]  # fmt: skip
+    return sum(M[i][i] for i in range(len(M)))
+
+
+@given(*[st.fractions(0, 1, max_denominator=20)] * 2)
+def test_every_motor_of_the_ranges_is_an_average_of_corners(gain, share):
+    """Affine in Km, and in one over tau: weights are products."""
+    system = thesis_robot(SOFT, INSERTION, "0.01", "0.1", contact="kept")
+    corners = {m.name.split("/", 3)[3]: m.A.fractions() for m in system.modes if "k-min" in m.name}
+    low, high = (Fraction("0.0351") * (1 + Fraction(s, 10)) for s in (-1, 1))
+    tau = 1 / ((1 - share) / low + share / high)
+    Km = Fraction("4.8417e-4") * (Fraction(9, 10) + gain / 5)
+    mean = combine(
+        *(
+            (a * b, corners[f"Km-{end}/tau-{other}"])
+            for end, a in (("min", 1 - gain), ("max", gain))
+            for other, b in (("min", 1 - share), ("max", share))
+        )
+    )
+    reference = corners["Km-min/tau-min"]
+    Kd = -reference[0][1]
+    drive = (reference[1][0] * low / (Fraction("4.8417e-4") * Fraction(9, 10))) * Km / tau
+    assert mean[1][0] == drive
+    assert mean[0] == reference[0]
+    assert Kd == 1

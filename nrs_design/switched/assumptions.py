@@ -166,12 +166,12 @@ def preload_texts(spec: InteractionDesignSpec, scale: Fraction) -> Iterator[str]
             continue
         yield (
             f"{name} is a Hunt-Crossley law whose deflection stays between {low} and {high}. About "
-            f"a rest anywhere from its surface to {high}, its force is then k times the deflection "
-            "from that rest and b times the velocity, exactly, with k and b moving in the ranges "
-            "of the modes: motions need not be small or slow. Nothing is said once the deflection "
-            "has left this preload, nor of the difference of two motions of which neither is at "
-            "rest. The law moves k and b together, so what is refuted with any such k and b may "
-            "hold with it."
+            f"a rest anywhere from its surface to {high}, its force is then that at rest, plus k "
+            "times the deflection from there, plus b times the velocity, exactly, with k and b "
+            "moving in the ranges of the modes: motions need not be small or slow. Nothing is said "
+            "once the deflection has left this preload, nor of the difference of two motions of "
+            "which neither is at rest. The law moves k and b together, so what is refuted with any "
+            "such k and b may hold with it."
         )
 
 

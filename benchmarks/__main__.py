@@ -24,6 +24,7 @@ BENCHMARKS = (
     "tissue_fits",
     "robot_dynamics",
     "scaling",
+    "bounded_runs",
 )
 MET = {True: "yes", False: "NO", None: "-"}
 

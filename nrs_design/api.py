@@ -138,9 +138,15 @@ class Decision:
         ------
         OutputError
             If nothing was shown, so that there is no certificate, or a file cannot be written, or
-            another spec stands in its place.
+            another spec stands in its place; or if a file is named, not a folder.
         """
         place, loaded = Path(folder), self.result.loaded
+        if place.suffix == ".json":
+            raise OutputError(
+                f"is the name of a file; the certificate is {loaded.spec.name}.cert.json",
+                path=place,
+                remedy=f"name the folder for it, such as {str(place.parent)!r}",
+            )
         if self.result.certificate is None:
             raise OutputError(
                 "nothing was proved or refuted, so there is no certificate",

@@ -7,7 +7,6 @@ it is not checked, and a certificate holds wherever its spec is.
 
 from __future__ import annotations
 
-import html
 import os
 import re
 from pathlib import Path
@@ -17,7 +16,7 @@ from nrs_design.output import PAGE
 
 REMEDY = "give this spec a `name` of its own, choose another place, or remove that file"
 # As the template of the page writes it, near its beginning.
-_PAGE_ORIGIN = re.compile(re.escape(PAGE) + rb'<meta name="spec" content="([^"]{1,4096})">')
+_PAGE_ORIGIN = re.escape(PAGE) + rb'<meta name="spec" content="([^"]{1,4096})">'
 
 
 def origin_of(spec: Path, file: Path) -> str:
@@ -52,8 +51,10 @@ def check_owner(spec: Path, name: str, folder: Path) -> None:
 def check_page(spec: Path, page: Path) -> None:
     """Refuse to overwrite the page of another spec; see `check_owner`."""
     if page.is_file():
+        import html
+
         with page.open("rb") as file:
-            found = _PAGE_ORIGIN.match(file.read(8192))
+            found = re.match(_PAGE_ORIGIN, file.read(8192))
         if found:
             _refuse_other(spec, html.unescape(found[1].decode(errors="replace")), page)
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from fractions import Fraction
@@ -26,9 +26,11 @@ if TYPE_CHECKING:
     from nrs_design.design.analysis import DesignAnalysis
     from nrs_design.models.plant import Plant
     from nrs_design.models.robot import Robot
+    from nrs_design.search.loop_margin import Bracket, CommandMargin, LoopMargins
     from nrs_design.search.margin import BoxMargin, DwellMargin
     from nrs_design.search.method_run import MethodRun
     from nrs_design.spec import InteractionDesignSpec, RobotSpec, Spec
+    from nrs_design.spec.sampling import SamplingSpec
 
 Progress = Callable[[str], None]
 
@@ -418,6 +420,83 @@ def run_margin(
     return find_margin(
         assemble_at, lambda system: certify(system, limits=quick), result.certification
     )
+
+
+def run_loop_margins(
+    result: Result, limits: Limits | None = None, progress: Progress = _silent
+) -> LoopMargins | None:
+    """Find how far delay, period and disturbances stretch; None where a spec has none of them.
+
+    Parameters
+    ----------
+    result : Result
+        Of the spec as it stands; its design is kept.
+    limits : Limits, optional
+        How far the searches go each time; the decay rate is not optimized.
+    progress : callable
+        Told the name of each step.
+    """
+    from nrs_design.search.loop_margin import LoopMargins
+
+    spec = None if result.designed is None else result.designed.spec
+    if spec is None or (spec.sampling is None and spec.disturbances is None):
+        return None
+    limits = limits or limits_of(result.loaded.spec)
+    quick = replace(limits, optimize_rate=False, budget=min(limits.budget, MARGIN_BUDGET))
+    delay = period = None
+    if result.designed is not None and spec.sampling is not None:
+        delay, period = _sampling_margins(result.designed, spec.sampling, result, quick, progress)
+    return LoopMargins(delay, period, _command_margin(result))
+
+
+def _sampling_margins(
+    designed: Designed,
+    sampling: SamplingSpec,
+    result: Result,
+    limits: Limits,
+    progress: Progress,
+) -> tuple[Bracket, Bracket]:
+    """Decide the loop at other delays and other periods, without what disturbs it."""
+    from nrs_design.search.certify import certify
+    from nrs_design.search.loop_margin import find_longest_delay, find_longest_period
+    from nrs_design.spec.sampling import LONGEST_DELAY
+
+    known = result.certification.verdict
+
+    def decide(changes: Mapping[str, object], what: str) -> Verdict:
+        progress(what)
+        changed = sampling.model_copy(update=changes)
+        spec = designed.spec.model_copy(update={"sampling": changed, "disturbances": None})
+        other = replace(designed, spec=spec)
+        return certify(_assemble(result.loaded, other, result.coordinates), limits=limits).verdict
+
+    def at_delay(longest: int) -> Verdict:
+        if longest == sampling.delay[1]:
+            return known
+        return decide({"delay": (sampling.delay[0], longest)}, f"delay {longest}")
+
+    def at_period(period: Fraction) -> Verdict | None:
+        if period == sampling.period.exact:
+            return known
+        value = period * sampling.period.value / sampling.period.exact
+        try:
+            return decide({"period": replace(sampling.period, value=value)}, f"period {period} s")
+        except NrsDesignError:
+            return None
+
+    delay = find_longest_delay(*sampling.delay, LONGEST_DELAY, at_delay)
+    return delay, find_longest_period(sampling.period.exact, at_period)
+
+
+def _command_margin(result: Result) -> CommandMargin | None:
+    """Hold the bound on the force against an adversary's run."""
+    from nrs_design.certificates.bounds import bound_on
+    from nrs_design.search.loop_margin import command_margin
+    from nrs_design.simulation.disturbed import worst_output
+
+    system = result.certification.system
+    found = bound_on(system, result.certification.statements, "force") if system.channels else None
+    return None if found is None else command_margin(system, found, worst_output(system, found))
 
 
 def run_shortest_dwell(

@@ -2,12 +2,22 @@
 
 One thread for small matrices, as the commands of the program set it: tests run side by side. And no
 deadline for examples of hypothesis: how fast a machine is decides nothing.
+
+Where no bytecode may be kept beside the sources, commands that run in processes of their own keep
+it in the cache of pytest: to compile all modules takes as long as to run them.
 """
 
 import os
 
+import pytest
 from hypothesis import settings
 
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 settings.register_profile("untimed", deadline=None)
 settings.load_profile("untimed")
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    cache = getattr(config, "cache", None)
+    if cache is not None and os.environ.pop("PYTHONDONTWRITEBYTECODE", ""):
+        os.environ.setdefault("PYTHONPYCACHEPREFIX", str(cache.mkdir("bytecode")))

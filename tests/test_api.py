@@ -108,6 +108,13 @@ def test_save_and_verify(tmp_path):
     assert nrs.verify(file, tmp_path / "other" / "pair.nrs.yaml").fault is not None
 
 
+def test_a_file_is_no_folder(tmp_path):
+    """What looks like a file would become a folder of that name."""
+    with pytest.raises(OutputError, match=r"name of a file; .*pair\.cert\.json"):
+        nrs.certify(pair(6), name="pair").save(tmp_path / "mine.cert.json")
+    assert not list(tmp_path.iterdir())
+
+
 def test_unknown_method():
     with pytest.raises(DesignError, match="no method 'foo'"):
         nrs.certify(pair(6), method="foo")

@@ -43,11 +43,11 @@ def test_figures_are_the_same_beside_hostile_settings(tmp_path):
 
 
 @pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="this system has no pipes with a name")
-@pytest.mark.parametrize("command", ["optimize", "report"])
-def test_a_pipe_is_not_waited_for(tmp_path, command):
+@pytest.mark.parametrize(("command", "spec"), [("optimize", SOFT_TISSUE), ("report", COMMUTING)])
+def test_a_pipe_is_not_waited_for(tmp_path, command, spec):
     """Whoever opens it waits until somebody writes; python-control imports matplotlib, too."""
     os.mkfifo(tmp_path / "matplotlibrc")
-    shutil.copy(SOFT_TISSUE, tmp_path / "s.nrs.yaml")
+    shutil.copy(spec, tmp_path / "s.nrs.yaml")
     assert typed(command, "s.nrs.yaml", cwd=tmp_path).returncode == 0
 
 

@@ -5,6 +5,7 @@ import re
 import sys
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
 
 import pytest
@@ -48,6 +49,12 @@ def module_name(path: Path) -> str:
 FILES = {module_name(path): path for path in sorted(PACKAGE.rglob("*.py"))}
 
 
+@cache
+def nodes_of(path: Path) -> tuple[ast.AST, ...]:
+    """All that a file says, read once for all questions."""
+    return tuple(ast.walk(ast.parse(path.read_text(encoding="utf-8"))))
+
+
 def targets(node: ast.AST) -> Iterator[str]:
     """Modules that a statement imports, as far down as they are modules."""
     if isinstance(node, ast.Import):
@@ -61,14 +68,13 @@ def targets(node: ast.AST) -> Iterator[str]:
 
 
 def imports_of(name: str) -> Iterator[Import]:
-    tree = ast.parse(FILES[name].read_text(encoding="utf-8"))
     for_types = {
         id(inner)
-        for node in ast.walk(tree)
+        for node in nodes_of(FILES[name])
         if isinstance(node, ast.If) and ast.unparse(node.test) == "TYPE_CHECKING"
         for inner in ast.walk(node)
     }
-    for node in ast.walk(tree):
+    for node in nodes_of(FILES[name]):
         for target in targets(node):
             yield Import(name, target, node.lineno, id(node) in for_types)
 
@@ -127,9 +133,9 @@ def test_the_proof_stands_on_itself():
     assert below - sys.stdlib_module_names <= {"flint"}
 
 
-def private_names(tree: ast.AST) -> Iterator[str]:
+def private_names(path: Path) -> Iterator[str]:
     """Names with one underscore that a test imports, reads or puts something in the place of."""
-    for node in ast.walk(tree):
+    for node in nodes_of(path):
         match node:
             case ast.ImportFrom(module=str(module)) if module.startswith("nrs_design"):
                 yield from (alias.name for alias in node.names)
@@ -145,7 +151,7 @@ def test_tests_use_what_is_public():
     private = [
         (path.name, name)
         for path in sorted((ROOT / "tests").rglob("*.py"))
-        for name in private_names(ast.parse(path.read_text(encoding="utf-8")))
+        for name in private_names(path)
         if re.match(r"_[^_]", name) and name not in known
     ]
     assert not private
@@ -191,7 +197,7 @@ def test_only_the_pipeline_calls_the_stages():
     callers = {
         (name, verb)
         for name, path in FILES.items()
-        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8")))
+        for node in nodes_of(path)
         if isinstance(node, ast.ImportFrom)
         for alias in node.names
         if (verb := (node.module, alias.name)) in VERBS
@@ -211,7 +217,7 @@ def uses(name: str, word: str) -> bool:
         word in (getattr(node, "id", None), getattr(node, "attr", None))
         or (isinstance(node, ast.ImportFrom) and word in {alias.name for alias in node.names})
         or (isinstance(node, ast.FunctionDef) and node.name == word)
-        for node in ast.walk(ast.parse(FILES[name].read_text(encoding="utf-8")))
+        for node in nodes_of(FILES[name])
     )
 
 
@@ -266,6 +272,7 @@ def test_adding_is_cheap():
         ("Admittance", "impedance", {"spec/describe.py", "design/doubts.py"}),
         ("ProportionalForce", "force", set()),
         ("PositionControl", "position", set()),
+        ("ParallelForce", "parallel", set()),
     ],
 )
 def test_a_control_law_is_known_to_the_files_of_the_table(law, file, also):
@@ -292,7 +299,7 @@ def test_nobody_asks_which_law_it_is():
     asked = [
         (name, node.lineno)
         for name, path in FILES.items()
-        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8")))
+        for node in nodes_of(path)
         if isinstance(node, ast.Call)
         and ast.unparse(node.func) in ("isinstance", "issubclass")
         and (specs - {"SpecModel", "ProvenanceSpec", "GainSpec", "GoalsSpec"} | laws)
@@ -319,13 +326,13 @@ def test_a_linear_law_of_contact_is_known_to_the_files_of_the_table(law, file):
     }
 
 
-def names_in(path: Path) -> set[str]:
+@cache
+def names_in(path: Path) -> frozenset[str]:
     """Names that the code of a file uses or imports."""
-    tree = ast.parse(path.read_text(encoding="utf-8"))
-    used = {node.id for node in ast.walk(tree) if isinstance(node, ast.Name)}
-    return used | {
+    used = {node.id for node in nodes_of(path) if isinstance(node, ast.Name)}
+    return frozenset(used) | {
         alias.name
-        for node in ast.walk(tree)
+        for node in nodes_of(path)
         if isinstance(node, ast.ImportFrom)
         for alias in node.names
     }

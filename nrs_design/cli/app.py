@@ -27,6 +27,7 @@ COMMANDS = (
     "identify",
     "optimize",
     "tune",
+    "mode-logic",
     "certify-switching",
     "compare-methods",
     "verify",

@@ -18,6 +18,7 @@ from nrs_design.cli.gradient_options import (
     StartMode,
     UpdateOrder,
 )
+from nrs_design.cli.loop_margins import loop_summary, print_loop_margins
 from nrs_design.cli.options import (
     Budget,
     Json,
@@ -43,7 +44,9 @@ if TYPE_CHECKING:
 LargestBox = Annotated[
     bool,
     typer.Option(
-        "--margin", help="Find the largest box of ranges with a proof, the smallest refuted."
+        "--margin",
+        help="Find the largest box of ranges with a proof, the smallest refuted; the same for "
+        "delay and period of a sampled loop, and for what disturbs.",
     ),
 ]
 ShortestDwell = Annotated[
@@ -89,6 +92,7 @@ def certify_switching(
         find_relief,
         limits_of,
         run_certification,
+        run_loop_margins,
         run_margin,
         run_shortest_dwell,
     )
@@ -113,7 +117,9 @@ def certify_switching(
             limits=limits,
             progress=step,
         )
-        box = run_margin(result, limits, step) if margin else None
+        loop = run_loop_margins(result, limits, step) if margin else None
+        ranged = loop is None or loaded.spec.has_ranges
+        box = run_margin(result, limits, step) if margin and ranged else None
         dwell = run_shortest_dwell(result, limits, step) if shortest_dwell else None
     if result.certificate is not None:
         write_output(path, dump(result.certificate, origin_of(spec, path)), replaces=CERTIFICATE)
@@ -122,12 +128,14 @@ def certify_switching(
         told: dict[str, Any] = {"gradient_history": history} if history else {}
         told["relief"] = list(find_relief(result))
         content = summary(result, written) | margins_summary(box, dwell) | told
+        content |= {} if loop is None else {"loop_margins": loop_summary(loop)}
         print_json("certify-switching", content)
     elif not quiet:
         _print(result, written, verbose=verbose)
         for relief in find_relief(result):
             say(f"  {relief}")
         _print_margin(box)
+        print_loop_margins(loop)
         _print_dwell(dwell)
     raise typer.Exit(exit_codes.OF_VERDICT[str(result.certification.verdict)])
 

@@ -14,6 +14,7 @@ from nrs_design.cli.tables import print_table
 
 if TYPE_CHECKING:
     from nrs_design.design.analysis import DesignAnalysis, ImpedanceAnalysis
+    from nrs_design.pipeline import Designed
 
 
 def optimize(spec: SpecFile, as_json: Json = False, quiet: Quiet = False) -> None:
@@ -46,6 +47,7 @@ def optimize(spec: SpecFile, as_json: Json = False, quiet: Quiet = False) -> Non
                 "spec": loaded.spec.name,
                 "spec_sha256": loaded.sha256,
                 "motion_loop": motion_summary(analysis),
+                "sensor": _sensor(designed),
                 "controllers": [_summary(item) for item in analysis.impedance],
                 "warnings": warnings,
             },
@@ -77,6 +79,7 @@ def _summary(item: ImpedanceAnalysis) -> dict[str, Any]:
         "stiffness": item.problem.loop.contact.stiffness,
         "Mt": item.Mt,
         "Bt": item.Bt,
+        "Kt": item.problem.loop.Kt,
         "cost": item.cost,
         "optimum": {"Mt": item.optimum.Mt, "Bt": item.optimum.Bt, "cost": item.optimum.cost},
         "sensitivity_peak": finite(margins.sensitivity_peak),
@@ -85,13 +88,41 @@ def _summary(item: ImpedanceAnalysis) -> dict[str, Any]:
         "delay_margin_s": finite(margins.delay_margin),
         "disk_margin": finite(margins.disk_margin),
         "stiffness_limit": finite(margins.stiffness_limit),
+        "creep": _creep(item),
         "goals": goals_summary(item),
         "units": {
             "Mt": "kg*m^2",
             "Bt": "N*m*s/rad",
+            "Kt": "N*m/rad",
             "impedance": "N*m*s/rad",
             "stiffness": "N*m/rad",
         },
+    }
+
+
+def _sensor(designed: Designed) -> dict[str, Any]:
+    """Return what may last of the errors of the force signal, N m, rounded up."""
+    from nrs_design.proof.bounds import upper_float
+
+    sensor = designed.design.sensor
+    return {
+        "lasting_error": upper_float(sensor.lasting),
+        "parts": {name: upper_float(error) for name, error in sensor.errors.items()},
+        "unit": "N*m",
+    }
+
+
+def _creep(item: ImpedanceAnalysis) -> dict[str, Any] | None:
+    """Return the bounds on the creep, rounded up; None without a sensor whose errors are known."""
+    from nrs_design.proof.bounds import upper_float
+
+    if item.creep is None:
+        return None
+    angle = item.creep.angle
+    return {
+        "velocity_rad_s": upper_float(item.creep.velocity),
+        "angle_rad": None if angle is None else upper_float(angle),
+        "noise_rms_rad_s": item.creep.noise,
     }
 
 

@@ -35,6 +35,13 @@ FORCE_COLUMNS = (
     "natural\nfrequency",
     "steady-state\nerror ratio",
 )
+PARALLEL_COLUMNS = (
+    "controller",
+    "k\nN m/rad",
+    "Kp\nrad/(N m)",
+    "Ki\nrad/(N m s)",
+    "unstable for k\nN m/rad",
+)
 
 OFFSETS = {"reference": "reference of the motion loop", "measured": "measured position"}
 
@@ -106,6 +113,18 @@ def _summary(design: ControllerDesign, analysis: DesignAnalysis) -> dict[str, An
             }
             for item in analysis.force
         ],
+        "parallel": [
+            {
+                "name": item.name,
+                "stiffness": item.stiffness,
+                "Kp": float(item.Kp),
+                "Ki": float(item.Ki),
+                "decided": item.decided,
+                "unstable_stiffness": item.unstable_ends,
+                "units": {"Kp": "rad/(N*m)", "Ki": "rad/(N*m*s)", "stiffness": "N*m/rad"},
+            }
+            for item in analysis.parallel
+        ],
     }
 
 
@@ -118,6 +137,8 @@ def _print(name: str, design: ControllerDesign, analysis: DesignAnalysis) -> Non
         for item in analysis.force:
             if item.peak is not None:
                 say(_offset_text(item))
+    if analysis.parallel:
+        print_table(f"{name}: parallel control", PARALLEL_COLUMNS, _parallel_rows(analysis))
 
 
 def _motion_rows(design: ControllerDesign, analysis: DesignAnalysis) -> list[list[str]]:
@@ -165,6 +186,19 @@ def _force_rows(analysis: DesignAnalysis) -> list[list[str]]:
             f"{item.steady_error:.3f}",
         ]
         for item in analysis.force
+    ]
+
+
+def _parallel_rows(analysis: DesignAnalysis) -> list[list[str]]:
+    return [
+        [
+            item.name,
+            f"{item.stiffness:.6g}",
+            f"{float(item.Kp):.6g}",
+            f"{float(item.Ki):.6g}",
+            item.unstable_text,
+        ]
+        for item in analysis.parallel
     ]
 
 

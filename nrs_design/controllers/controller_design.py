@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 from nrs_design.controllers.laws import AbstractLaw, CompliantLaw, ProportionalDerivative
+from nrs_design.controllers.sensor import Sensor
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,10 +66,13 @@ class ControllerDesign:
         The motion controller below the compliant ones.
     controllers : tuple of Controller
         In the order of the spec.
+    sensor : Sensor
+        Of the force that they act on.
     """
 
     motion: ProportionalDerivative
     controllers: tuple[Controller, ...]
+    sensor: Sensor = field(default_factory=Sensor)
 
     @property
     def contacts(self) -> frozenset[str]:

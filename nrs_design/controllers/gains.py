@@ -9,6 +9,7 @@ from nrs_design.controllers.controller_design import Controller, ControllerDesig
 from nrs_design.controllers.float32 import exact_decimal, is_float32, to_float32
 from nrs_design.controllers.gain_range import faults_of_ranges
 from nrs_design.controllers.laws import LAWS, ProportionalDerivative
+from nrs_design.controllers.sensor import build_sensor
 from nrs_design.errors import CertificateError
 from nrs_design.spec import ControllerSpec, IdleStatesSpec, InteractionDesignSpec, parse_exact
 from nrs_design.spec.controllers import contact_names
@@ -46,7 +47,7 @@ def design_from_gains(
     controllers = tuple(
         _controller(name, controller, gains) for name, controller in spec.controllers.items()
     )
-    return ControllerDesign(motion, controllers)
+    return ControllerDesign(motion, controllers, build_sensor(spec.sensor))
 
 
 def idle_decay(idle: IdleStatesSpec) -> Fraction:
@@ -66,7 +67,7 @@ def _controller(
     name: str, spec: ControllerSpec, gains: Mapping[str, Mapping[str, str]]
 ) -> Controller:
     law_type = LAWS[spec.type]
-    values = _numbers(gains, name, tuple(law_type.units))
+    values = _numbers(gains, name, law_type.gains_in(spec))
     for gain, bounds in spec.gains().items():
         low, high = to_float32(bounds.min.exact), to_float32(bounds.max.exact)
         if not low <= values[gain] <= high:

@@ -5,6 +5,8 @@ Every coefficient is a single-precision number, and so is every result of these 
     e = xref - theta
     u = Kp e + D (e - e_before)
     xref = xref + T (v - vm)
+    x1 = p x1 + q F              (where the force is filtered; then x2 = p x2 + q x1, ...)
+    F = x1 + Kt (xref - xref_0)  (x1 is the last lag, or the force sample; with a spring)
     vm = a vm + b F              (without inertia vm = b F, before it is used)
 
 Rounding to nearest changes a result by at most 2^-24 of its size, so a term that takes part in n
@@ -19,6 +21,8 @@ from fractions import Fraction
 from typing import TYPE_CHECKING
 
 from nrs_design.controllers.float32 import PRECISION, to_float32
+from nrs_design.errors import DesignError
+from nrs_design.models.linear_form import LinearForm, combine
 
 if TYPE_CHECKING:
     from nrs_design.controllers.laws import ProportionalDerivative
@@ -53,6 +57,39 @@ def rounding_share(count: int) -> Fraction:
 
 
 @dataclass(frozen=True, slots=True)
+class Term:
+    """A term of a sum that the processor forms.
+
+    Parameters
+    ----------
+    name : str
+        Such as ``b F``.
+    form : LinearForm
+        What it is without rounding, of the state.
+    roundings : int
+        In how many it takes part.
+    """
+
+    name: str
+    form: LinearForm
+    roundings: int
+
+    def times(self, factor: Fraction, prefix: str, more: int) -> Term:
+        """Return the term times a factor, which is named in front, with more roundings.
+
+        Parameters
+        ----------
+        factor : Fraction
+            A single-precision number.
+        prefix : str
+            Its name, and a blank.
+        more : int
+            Roundings, that of the product included.
+        """
+        return Term(prefix + self.name, combine((factor, self.form)), self.roundings + more)
+
+
+@dataclass(frozen=True, slots=True)
 class SampledMotion:
     """``u = Kp e + D (e - e_before)``, with the backward difference for the derivative.
 
@@ -77,6 +114,8 @@ class SampledMotion:
 class SampledAdmittance:
     """``v+ = a v + b F``, and the reference moves on by ``-T v``; without inertia ``v = b F``.
 
+    With a spring F is the force sample plus Kt times the offset that the reference has by then.
+
     Parameters
     ----------
     a : Fraction or None
@@ -85,13 +124,36 @@ class SampledAdmittance:
         In rad/(s N m).
     T : Fraction
         The period as the processor holds it, in s.
+    Kt : Fraction
+        In N m/rad; zero is no spring.
     """
 
     a: Fraction | None
     b: Fraction
     T: Fraction
+    Kt: Fraction = Fraction(0)
+
+    @property
+    def lasting_gain(self) -> Fraction:
+        """Velocity over a lasting force without a spring, rad/(s N m): 1/Bt, but for rounding.
+
+        Raises
+        ------
+        DesignError
+            If the step forgets nothing, so that the velocity grows as long as the force lasts.
+        """
+        if self.a is None:
+            return self.b
+        if self.a == 1:
+            raise DesignError(
+                "the damping is lost in single precision: a step keeps all of the velocity",
+                remedy="raise Bt, lower Mt, or sample with a longer period",
+            )
+        return self.b / (1 - self.a)
 
     @property
     def coefficients(self) -> dict[str, Fraction]:
         """The coefficients by name."""
-        return ({} if self.a is None else {"a": self.a}) | {"b": self.b, "T": self.T}
+        first = {} if self.a is None else {"a": self.a}
+        last = {"Kt": self.Kt} if self.Kt else {}
+        return {**first, "b": self.b, "T": self.T, **last}

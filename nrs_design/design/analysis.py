@@ -12,6 +12,7 @@ from nrs_design.design.laws import LAW_DESIGNS
 from nrs_design.design.laws.force import ForceAnalysis
 from nrs_design.design.laws.impedance import ImpedanceAnalysis
 from nrs_design.design.laws.law import AbstractControllerAnalysis, Task
+from nrs_design.design.laws.parallel import ParallelAnalysis
 from nrs_design.design.root_locus import MotionLoopResponse, PdDesign, motion_loop_response
 from nrs_design.design.transfer import TransferFunction
 from nrs_design.models.plant import Plant
@@ -22,6 +23,7 @@ __all__ = [
     "DesignAnalysis",
     "ForceAnalysis",
     "ImpedanceAnalysis",
+    "ParallelAnalysis",
     "analyze_design",
 ]
 
@@ -61,6 +63,11 @@ class DesignAnalysis:
     def force(self) -> tuple[ForceAnalysis, ...]:
         """The force controllers."""
         return self._of(ForceAnalysis)
+
+    @property
+    def parallel(self) -> tuple[ParallelAnalysis, ...]:
+        """The parallel controllers."""
+        return self._of(ParallelAnalysis)
 
     @property
     def tuned(self) -> tuple[AbstractControllerAnalysis, ...]:

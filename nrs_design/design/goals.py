@@ -19,6 +19,8 @@ from nrs_design.design.force_limit import NO_OFFSET, Approach, steady_force_erro
 from nrs_design.design.impedance import ImpedanceLoop
 from nrs_design.design.loops import Loops, extremes, multiply
 from nrs_design.design.measures import (
+    CREEP,
+    CREEP_ANGLE,
     DELAY_MARGIN,
     DISK_MARGIN,
     FORCE_ERROR,
@@ -75,6 +77,8 @@ class ContactCorner:
         gains.
     Mt, Bt : float or None
         End of a declared range of the gain; None is the designed gain.
+    Kt : float
+        Spring of the admittance, N m/rad; zero is none.
     """
 
     label: str
@@ -82,6 +86,7 @@ class ContactCorner:
     home: bool
     Mt: float | None = None
     Bt: float | None = None
+    Kt: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -100,6 +105,10 @@ class Requirement:
         Desired impedance, N m s/rad; impedance controllers only.
     bandwidth : float
         Highest frequency of the command, rad/s; impedance controllers only.
+    lags : tuple of float
+        Denominator of the filter of the force, whose numerator is 1.
+    force_error : float
+        Bound on the lasting error of the force signal, N m.
     """
 
     motion: TransferFunction
@@ -107,6 +116,8 @@ class Requirement:
     goals: tuple[tuple[Measure, float], ...] = ()
     desired: float = 0.0
     bandwidth: float = 0.0
+    lags: tuple[float, ...] = (1.0,)
+    force_error: float = 0.0
 
     def violation(self, Mt: FloatArray, Bt: FloatArray) -> FloatArray:
         """Return by which part the worst goal is missed; not positive where all are met."""
@@ -133,17 +144,25 @@ class Requirement:
         table = np.array([self._at(corner, measure, Mt, Bt) for corner in corners])
         worst = table.argmax(axis=0) if measure.upper else table.argmin(axis=0)
         values = np.take_along_axis(table, worst[None, :], axis=0)[0]
-        return values, [corners[index].label for index in worst]
+        in_the_air = measure in (CREEP, CREEP_ANGLE)
+        return values, ["free motion" if in_the_air else corners[i].label for i in worst]
 
     def _at(
         self, corner: ContactCorner, measure: Measure, Mt: FloatArray, Bt: FloatArray
     ) -> FloatArray:
         Mt = Mt if corner.Mt is None else np.full_like(Mt, corner.Mt)
         Bt = Bt if corner.Bt is None else np.full_like(Bt, corner.Bt)
-        loops = _impedance_loops(self.motion, corner, Mt, Bt)
+        if measure is CREEP:
+            return np.zeros_like(Bt) if corner.Kt else self.force_error / Bt
+        if measure is CREEP_ANGLE:
+            return np.full_like(Bt, self.force_error / corner.Kt if corner.Kt else np.inf)
+        loops = _impedance_loops(self, corner, Mt, Bt)
         if measure is not IMPEDANCE_ERROR:
             return _margin(loops, measure)
-        displayed = multiply(loops.numerator, np.stack([Mt, Bt], axis=1))
+        if corner.Kt:  # Towards rest the robot displays the spring, and no damping.
+            return np.full(len(Mt), np.inf)
+        forward = multiply(loops.numerator, np.tile(self.lags, (len(Mt), 1)))
+        displayed = multiply(forward, np.stack([Mt, Bt], axis=1))
         low, high = extremes(displayed, loops.closed, self.bandwidth)
         error = np.maximum(high / self.desired, self.desired / low)
         return np.where(loops.stable, error, np.inf)
@@ -209,6 +228,7 @@ def corners_of(
     environments: tuple[Environment, ...],
     home: str,
     gains: Mapping[str, tuple[float, ...]],
+    spring: float = 0.0,
 ) -> tuple[ContactCorner, ...]:
     """List where a controller is measured.
 
@@ -219,38 +239,47 @@ def corners_of(
     home : str
         The one that it is designed for.
     gains : mapping
-        Ends of the declared ranges of ``Mt`` and ``Bt``, empty for a gain without a range.
+        Ends of the declared ranges of ``Mt``, ``Bt`` and ``Kt``, empty for a gain without a range.
+    spring : float
+        The designed Kt, N m/rad.
     """
     return tuple(
-        corner for environment in environments for corner in _corners(environment, home, gains)
+        corner
+        for environment in environments
+        for corner in _corners(environment, home, gains, spring)
     )
 
 
 def _corners(
-    environment: Environment, home: str, gains: Mapping[str, tuple[float, ...]]
+    environment: Environment, home: str, gains: Mapping[str, tuple[float, ...]], spring: float
 ) -> Iterator[ContactCorner]:
     points = list(environment.corners)
     if environment.nominal not in points:
         points.insert(0, environment.nominal)
-    retuned = [*product(gains.get("Mt") or (None,), gains.get("Bt") or (None,))]
-    for contact, (Mt, Bt) in product(points, dict.fromkeys([(None, None), *retuned])):
+    designed = (None, None, None)
+    retuned = [*product(*(gains.get(name) or (None,) for name in ("Mt", "Bt", "Kt")))]
+    for contact, (Mt, Bt, Kt) in product(points, dict.fromkeys([designed, *retuned])):
         at = [*contact.texts()]
         at += [f"Mt = {Mt:.6g} kg*m^2"] if Mt is not None else []
         at += [f"Bt = {Bt:.6g} N*m*s/rad"] if Bt is not None else []
-        designed = environment.name == home and Mt is None and Bt is None
-        yield ContactCorner(f"{environment.name}, {', '.join(at)}", contact, designed, Mt, Bt)
+        at += [f"Kt = {Kt:.6g} N*m/rad"] if Kt is not None else []
+        is_home = environment.name == home and (Mt, Bt, Kt) == designed
+        label = f"{environment.name}, {', '.join(at)}"
+        yield ContactCorner(label, contact, is_home, Mt, Bt, spring if Kt is None else Kt)
 
 
 def _impedance_loops(
-    motion: TransferFunction, corner: ContactCorner, Mt: FloatArray, Bt: FloatArray
+    requirement: Requirement, corner: ContactCorner, Mt: FloatArray, Bt: FloatArray
 ) -> Loops:
-    """Return ``G Ze Y`` of many admittances (thesis fig. 6.13)."""
-    contact, free = ImpedanceLoop(motion, corner.contact).forward
+    """Return ``G Ze H Y`` of many admittances (thesis fig. 6.13)."""
+    loop = ImpedanceLoop(requirement.motion, corner.contact, corner.Kt, requirement.lags)
+    contact, free = loop.forward
     numerator = np.zeros((len(Mt), len(free) + 1))
     numerator[:, len(free) + 1 - len(contact) :] = contact
     denominator = np.zeros_like(numerator)
     denominator[:, :-1] += np.outer(Mt, free)
     denominator[:, 1:] += np.outer(Bt, free)
+    denominator[:, len(free) + 1 - len(loop.drawn) :] += loop.drawn
     return Loops(numerator, denominator)
 
 

@@ -2,7 +2,8 @@
 
 The admittance ``Y = 1/(Mt s + Bt)`` turns the measured torque into a velocity that is taken off
 the commanded one; the motion loop G follows the difference, and the environment
-``Ze = k/s + b`` answers: open loop ``G Ze Y``.
+``Ze = k/s + b`` answers: open loop ``G Ze Y``. A spring Kt, which is given and not chosen, makes it
+``Y = 1/(Mt s + Bt + Kt/s)``.
 """
 
 from __future__ import annotations
@@ -52,15 +53,21 @@ class ImpedanceLoop:
         Closed motion loop G, from commanded to actual velocity.
     contact : AbstractLinearLaw
         The environment as a rotation about the pivot, N m/rad and N m s/rad.
+    Kt : float
+        Spring of the admittance in N m/rad; zero is none.
+    lags : tuple of float
+        Denominator of the filter H of the force, whose numerator is 1: highest power of s first.
 
     Raises
     ------
     DesignError
-        If a parameter is outside its domain.
+        If a parameter is outside its domain, or there is a spring and no rest position.
     """
 
     motion: TransferFunction
     contact: AbstractLinearLaw
+    Kt: float = 0.0
+    lags: tuple[float, ...] = (1.0,)
 
     def __post_init__(self) -> None:
         """Check the environment."""
@@ -69,15 +76,41 @@ class ImpedanceLoop:
             if not law.admits(index, value):
                 must = "not be negative" if law.admits(index, 0) else "be positive"
                 raise DesignError(f"the {kind} must {must}: {value}")
+        if not (math.isfinite(self.Kt) and self.Kt >= 0):
+            raise DesignError(f"Kt must not be negative: {self.Kt}", at=("Kt",))
+        if self.Kt and not law.has_rest:
+            raise DesignError(
+                f"an admittance with a spring Kt is not modelled in contact that is {law.name}, "
+                "which has no rest position",
+                remedy="leave Kt out",
+                at=("Kt",),
+            )
 
     @property
     def forward(self) -> tuple[FloatArray, FloatArray]:
-        """Numerator and denominator of ``G Ze``, highest power of s first."""
+        """Numerator and denominator of ``G Ze H``, highest power of s first."""
         numerator, denominator = self.contact.impedance
         return (
             np.convolve(self.motion.numerator, trim(numerator)),
-            np.convolve(self.motion.denominator, denominator),
+            np.convolve(np.convolve(self.motion.denominator, denominator), self.lags),
         )
+
+    def free(self, Mt: float, Bt: float) -> FloatArray:
+        """Return the denominator of ``G Ze H Y``; an s that it has in common is left out.
+
+        Parameters
+        ----------
+        Mt : float
+            Virtual mass, kg m^2.
+        Bt : float
+            Virtual damping, N m s/rad.
+        """
+        return np.asarray(np.polyadd(np.convolve(self.forward[1], trim((Mt, Bt))), self.drawn))
+
+    @property
+    def drawn(self) -> FloatArray:
+        """What the spring adds to that denominator: Kt times that of ``G Ze H``, over s."""
+        return np.asarray(self.Kt * self.forward[1][:-1]) if self.Kt else np.zeros(1)
 
 
 @dataclass(frozen=True)
@@ -125,7 +158,7 @@ class ImpedanceProblem:
 
 
 def open_loop(loop: ImpedanceLoop, Mt: float, Bt: float) -> TransferFunction:
-    """Return ``G Ze Y`` (thesis fig. 6.13) of an admittance with mass Mt and damping Bt.
+    """Return ``G Ze H Y`` (thesis fig. 6.13, with the filter H) for mass Mt and damping Bt.
 
     Parameters
     ----------
@@ -137,15 +170,14 @@ def open_loop(loop: ImpedanceLoop, Mt: float, Bt: float) -> TransferFunction:
         Virtual damping, N m s/rad.
     """
     _check_admittance(Mt, Bt)
-    numerator, denominator = loop.forward
-    denominator = np.convolve(denominator, trim((Mt, Bt)))
-    return TransferFunction(tuple(numerator.tolist()), tuple(denominator.tolist()))
+    numerator, _ = loop.forward
+    return TransferFunction(tuple(numerator.tolist()), tuple(loop.free(Mt, Bt).tolist()))
 
 
 def displayed_impedance(
     loop: ImpedanceLoop, Mt: float, Bt: float, omega: ArrayLike
 ) -> ComplexArray:
-    """Evaluate ``Zdisp = G Ze / (1 + G Ze Y)`` (thesis 6.3).
+    """Evaluate ``Zdisp = G Ze / (1 + G Ze H Y)`` (thesis 6.3).
 
     Parameters
     ----------
@@ -154,27 +186,30 @@ def displayed_impedance(
     Mt, Bt : float
         Admittance, kg m^2 and N m s/rad.
     omega : array_like
-        Frequencies, rad/s; zero is allowed.
+        Frequencies, rad/s; zero is allowed where there is no spring.
 
     Returns
     -------
     ndarray of complex
         Impedance, N m s/rad, in the shape of `omega`.
     """
-    forward, _ = loop.forward
-    return _over_characteristic(loop, Mt, Bt, np.convolve(forward, trim((Mt, Bt))), omega)
+    forward = np.convolve(loop.forward[0], loop.lags)
+    if not loop.Kt:
+        return _over_characteristic(loop, Mt, Bt, np.convolve(forward, trim((Mt, Bt))), omega)
+    numerator = np.convolve(forward, trim((Mt, Bt, loop.Kt)))
+    omega = np.asarray(omega, np.float64)
+    return np.asarray(_over_characteristic(loop, Mt, Bt, numerator, omega) / (1j * omega))
 
 
 def sensitivity(loop: ImpedanceLoop, Mt: float, Bt: float, omega: ArrayLike) -> ComplexArray:
-    """Evaluate ``L = 1 / (1 + G Ze Y)`` (thesis 6.5); parameters as `displayed_impedance`.
+    """Evaluate ``L = 1 / (1 + G Ze H Y)`` (thesis 6.5); parameters as `displayed_impedance`.
 
     Parameters
     ----------
     loop, Mt, Bt, omega
         As for `displayed_impedance`.
     """
-    numerator = np.convolve(loop.forward[1], trim((Mt, Bt)))
-    return _over_characteristic(loop, Mt, Bt, numerator, omega)
+    return _over_characteristic(loop, Mt, Bt, loop.free(Mt, Bt), omega)
 
 
 def characteristic_polynomial(loop: ImpedanceLoop, Mt: float, Bt: float) -> FloatArray:
@@ -185,12 +220,8 @@ def characteristic_polynomial(loop: ImpedanceLoop, Mt: float, Bt: float) -> Floa
 
     Parameters
     ----------
-    loop : ImpedanceLoop
-        Motion loop and environment.
-    Mt : float
-        Virtual mass, kg m^2.
-    Bt : float
-        Virtual damping, N m s/rad.
+    loop, Mt, Bt
+        As for `open_loop`.
 
     Raises
     ------
@@ -291,6 +322,7 @@ class _Samples:
     real: FloatArray
     imag: FloatArray
     target: FloatArray
+    drawn: FloatArray
     weights: tuple[float, float]
 
     def cost(self, Mt: FloatArray, Bt: FloatArray) -> FloatArray:
@@ -300,7 +332,7 @@ class _Samples:
         return np.concatenate(parts) if parts else np.empty(0)
 
     def _block(self, Mt: FloatArray, Bt: FloatArray) -> FloatArray:
-        reactance = Mt * self.omega
+        reactance = Mt * self.omega - self.drawn
         below = (reactance + self.imag) ** 2 + (Bt + self.real) ** 2
         squared = (reactance**2 + Bt**2) / below  # |L|^2, and |Zdisp| = |G Ze| |L|
         displayed = np.abs(self.target - 0.5 * np.log10(squared)).mean(axis=1)
@@ -312,11 +344,13 @@ def _sample(problem: ImpedanceProblem, nodes: int) -> _Samples:
     omega: FloatArray = (np.arange(nodes, dtype=np.float64) + 0.5) * (problem.bandwidth / nodes)
     Ze = TransferFunction(*problem.loop.contact.impedance)
     forward = frequency_response(problem.loop.motion, omega) * frequency_response(Ze, omega)
+    filtered = forward / np.polyval(problem.loop.lags, 1j * omega)
     return _Samples(
         omega=omega,
-        real=forward.real,
-        imag=forward.imag,
+        real=filtered.real,
+        imag=filtered.imag,
         target=np.log10(problem.desired / np.abs(forward)),
+        drawn=problem.loop.Kt / omega,
         weights=(problem.weight_displayed, problem.weight_sensitivity),
     )
 
@@ -328,6 +362,7 @@ def _basis(loop: ImpedanceLoop) -> FloatArray:
     basis[0, :-1] = den
     basis[1, 1:] = den
     basis[2, len(den) + 1 - len(contact) :] = contact
+    basis[2, len(den) + 1 - len(loop.drawn) :] += loop.drawn
     return basis
 
 

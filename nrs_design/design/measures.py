@@ -84,10 +84,16 @@ DISK_MARGIN = Measure("min_disk_margin", "disk margin")
 IMPEDANCE_ERROR = Measure(
     "max_impedance_error", "factor off the desired impedance", upper=True, doubtful=2.0
 )
+CREEP = Measure("max_creep", "creep in free motion", unit="deg/s", scale=180 / math.pi, upper=True)
+CREEP_ANGLE = Measure(
+    "max_creep_angle", "angle of creep in free motion", "deg", 180 / math.pi, upper=True
+)
 FORCE_ERROR = Measure(
     "max_force_error", "steady force error over command", upper=True, doubtful=0.5
 )
 
 MARGINS = (SENSITIVITY_PEAK, GAIN_MARGIN, PHASE_MARGIN, DELAY_MARGIN, DISK_MARGIN)
 IMPEDANCE_MEASURES = (*MARGINS, IMPEDANCE_ERROR)
+# Where the errors of the force signal are known.
+CREEP_MEASURES = (CREEP, CREEP_ANGLE)
 FORCE_MEASURES = (*MARGINS, FORCE_ERROR)

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 
 from nrs_design.controllers.float32 import round_significant
 from nrs_design.design.impedance import ImpedanceLoop
 from nrs_design.design.margins import stiffness_limit
-from nrs_design.design.transfer import TransferFunction
 from nrs_design.models.contact.environment import Environment
 from nrs_design.spec import Doubt
 
@@ -17,7 +17,7 @@ _DIGITS = 3
 
 
 def doubt_stiffness(
-    name: str, motion: TransferFunction, contacts: tuple[Environment, ...], Mt: float, Bt: float
+    name: str, loop: ImpedanceLoop, contacts: tuple[Environment, ...], Mt: float, Bt: float
 ) -> Iterator[Doubt]:
     """Yield the contacts whose stiffness reaches the limit of an admittance.
 
@@ -25,19 +25,19 @@ def doubt_stiffness(
     ----------
     name : str
         Of the controller.
-    motion : TransferFunction
-        Closed motion loop.
+    loop : ImpedanceLoop
+        Motion loop, and what else is in the loop; its contact is not used.
     contacts : tuple of Environment
         All that it touches.
     Mt, Bt : float
         Its gains, kg m^2 and N m s/rad.
     """
     for contact in contacts:
-        loop = ImpedanceLoop(motion, contact.nominal)
-        highest, limit = float(contact.stiffness.high), stiffness_limit(loop, Mt, Bt)
+        touched = replace(loop, contact=contact.nominal)
+        highest, limit = float(contact.stiffness.high), stiffness_limit(touched, Mt, Bt)
         if highest < limit:
             continue
-        enough = enough_damping(loop, Mt, Bt, highest)
+        enough = enough_damping(touched, Mt, Bt, highest)
         held = "no Bt" if enough is None else f"Bt = {enough:g} N*m*s/rad"
         text = (
             f"{name}: the stiffness of {contact.name}, up to {highest:.6g} N*m/rad, reaches the "

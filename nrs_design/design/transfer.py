@@ -109,6 +109,33 @@ def to_control(tf: TransferFunction) -> Any:
     return control.TransferFunction(list(trim(tf.numerator)), list(tf.denominator))
 
 
+def white_noise_power(numerator: Sequence[float], denominator: Sequence[float]) -> float | None:
+    """Return ``int_0^inf |N/D|^2 df``: the power of the output over the one-sided density.
+
+    Parameters
+    ----------
+    numerator, denominator : sequence of float
+        Of a stable transfer function, highest power of s first.
+
+    Returns
+    -------
+    float or None
+        In the unit of the squared gain times Hz; None where it has no bound.
+    """
+    from scipy.linalg import solve_continuous_lyapunov
+
+    n = len(denominator) - 1
+    if len(numerator) > n:
+        return None
+    A = np.diag(np.ones(n - 1), 1)
+    A[-1] = -np.array(denominator[:0:-1]) / denominator[0]
+    C = np.zeros(n)
+    C[: len(numerator)] = np.array(numerator[::-1]) / denominator[0]
+    entry = np.zeros((n, n))
+    entry[-1, -1] = 1.0
+    return float(C @ solve_continuous_lyapunov(A, -entry) @ C) / 2
+
+
 def hurwitz(coefficients: ArrayLike) -> BoolArray:
     """Tell which of many polynomials have all their roots in the open left half plane.
 

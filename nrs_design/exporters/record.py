@@ -15,6 +15,7 @@ from nrs_design.controllers.controller_design import ControllerDesign
 from nrs_design.controllers.float32 import exact_decimal
 from nrs_design.controllers.gains import gains_of, idle_decay
 from nrs_design.controllers.laws import AbstractLaw
+from nrs_design.controllers.sensor import LowPass
 from nrs_design.errors import CertificateError
 from nrs_design.proof.evidence.fields import rate_text
 from nrs_design.proof.system import Time
@@ -80,6 +81,13 @@ class IdleStates(_Frozen):
     reset: bool
 
 
+class ForceFilter(_Frozen):
+    """The low-pass of the force signal: so many equal lags in a row, each with this pole."""
+
+    order: int
+    pole: Gain
+
+
 class SpecReference(_Frozen):
     """The spec that the design belongs to."""
 
@@ -125,6 +133,8 @@ class ExportRecord(_Frozen):
     idle_states: IdleStates | None = None
     # Only where force controllers have one.
     offset: Literal["reference", "measured"] | None = None
+    # Only where the force passes through one on its way to the controllers.
+    force_filter: ForceFilter | None = None
     proof: Proof
 
 
@@ -175,6 +185,7 @@ def build_record(
         ),
         idle_states=None if idle is None else _idle_states(idle),
         offset=None if offset == "none" else offset,
+        force_filter=_force_filter(design.sensor.filter),
         proof=Proof.model_validate(
             {
                 "claim": evidence.claim(certificate.system),
@@ -205,6 +216,12 @@ def dump_record(record: ExportRecord) -> str:
 
 def _idle_states(idle: IdleStatesSpec) -> IdleStates:
     return IdleStates(decay=_gain("decay", "1/s", idle_decay(idle)), reset=idle.reset)
+
+
+def _force_filter(low_pass: LowPass | None) -> ForceFilter | None:
+    if low_pass is None:
+        return None
+    return ForceFilter(order=low_pass.order, pole=_gain("pole", "rad/s", low_pass.pole))
 
 
 def _gains(law: AbstractLaw) -> tuple[Gain, ...]:

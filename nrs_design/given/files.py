@@ -177,8 +177,9 @@ def _read_mat(raw: bytes) -> dict[str, Any]:
     from scipy.io import loadmat
 
     check_mat(raw)
-    # It reads from streams, too, whatever its annotations say.
-    variables = loadmat(BytesIO(raw))  # type: ignore[arg-type]
+    # It reads from streams, too, which its annotations do not know.
+    stream: Any = BytesIO(raw)
+    variables = loadmat(stream)
     arrays = {key: value for key, value in variables.items() if not key.startswith("__")}
     _check_entries(sum(map(_size, arrays.values())))
     return {key: _plain(value) for key, value in arrays.items()}

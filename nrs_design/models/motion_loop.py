@@ -61,6 +61,34 @@ class Realization:
         rows = [[*row, *zero(len(command) - self.order)] for row in self.A]
         return [*rows[:-1], combine((Fraction(1), rows[-1]), (Fraction(1), command))]
 
+    def integral(self, output: LinearForm) -> LinearForm:
+        """Return the integral of the command u, which follows from that of the output.
+
+        Both are zero at rest in the state zero. From the last row of A, with
+        ``u = xn' + a[n-1] xn + ... + a0 x1`` and ``y = c0 x1 + c1 x2 + ...``, where ``xi+1 = xi'``,
+        the integral of u is ``xn + a[n-1] xn-1 + ... + a1 x1`` plus a0 times that of x1.
+
+        Parameters
+        ----------
+        output : LinearForm
+            The integral of y, as a form of a state in which xp stands first.
+
+        Raises
+        ------
+        AssemblyError
+            If a lasting command does not move the output.
+        """
+        first, *rest = self.C
+        if first == 0:
+            raise AssemblyError(
+                "the motion loop does not follow a lasting command: its gain at zero is zero",
+                remedy="give it a numerator with a constant term",
+            )
+        share = -self.A[-1][0] / first
+        own = [-a - share * c for a, c in zip(self.A[-1][1:], rest, strict=True)]
+        form = [*own, Fraction(1), *zero(len(output) - self.order)]
+        return combine((Fraction(1), form), (share, output))
+
 
 @dataclass(frozen=True, slots=True)
 class JointMotion:
@@ -121,6 +149,16 @@ class JointMotion:
         if load is not None and self.J is not None:
             turn = combine((Fraction(1), turn), (-1 / self.J, load))
         return [slip, turn]
+
+    def integral(self, output: LinearForm) -> LinearForm:
+        """Return the integral of the command u: the error plus that of omega.
+
+        Parameters
+        ----------
+        output : linear form
+            The integral of omega.
+        """
+        return combine((Fraction(1), coordinates(len(output))[0]), (Fraction(1), output))
 
 
 def realize(loop: MotionLoop) -> Realization:

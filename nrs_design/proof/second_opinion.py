@@ -15,26 +15,24 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from fractions import Fraction
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from nrs_design.proof.constant import system_at
 from nrs_design.proof.enclosure import eigenvalues, exponential, overlap, precision
-from nrs_design.proof.evidence import (
-    AbstractEvidence,
-    BlockTriangular,
-    CommonQuadratic,
-    ModeQuadratic,
-    UnstableMixture,
-    UnstableMode,
-    UnstablePeriod,
-    UnstableValue,
-)
-from nrs_design.proof.evidence.block_triangular import diagonal_block
+from nrs_design.proof.evidence.abstract import AbstractEvidence
 from nrs_design.proof.evidence.flow import shifted
-from nrs_design.proof.evidence.unstable_mixture import mixture
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.system import SwitchedSystem, Time
 from nrs_design.proof.taylor import exponential_nearly
+
+if TYPE_CHECKING:
+    from nrs_design.proof.evidence.block_triangular import BlockTriangular
+    from nrs_design.proof.evidence.common_quadratic import CommonQuadratic
+    from nrs_design.proof.evidence.mode_quadratic import ModeQuadratic
+    from nrs_design.proof.evidence.unstable_mixture import UnstableMixture
+    from nrs_design.proof.evidence.unstable_mode import UnstableMode
+    from nrs_design.proof.evidence.unstable_period import UnstablePeriod
+    from nrs_design.proof.evidence.unstable_value import UnstableValue
 
 # A matrix and a time, of which the exponential is enclosed.
 Exponent = tuple[RationalMatrix, Fraction]
@@ -44,7 +42,7 @@ def agrees(system: SwitchedSystem, evidence: AbstractEvidence) -> bool:
     """Tell whether the second opinion, too, is that evidence holds which the check has accepted."""
     if not all(_is_met(A, time) for A, time in _exponents(system, evidence)):
         return False
-    return _OPINIONS.get(type(evidence), _has_positive_forms)(system, evidence)
+    return _OPINIONS.get(evidence.kind, _has_positive_forms)(system, evidence)
 
 
 def _has_positive_forms(system: SwitchedSystem, evidence: AbstractEvidence) -> bool:
@@ -57,6 +55,8 @@ def _is_mode_unstable(system: SwitchedSystem, evidence: UnstableMode) -> bool:
 
 
 def _is_mixture_unstable(system: SwitchedSystem, evidence: UnstableMixture) -> bool:
+    from nrs_design.proof.evidence.unstable_mixture import mixture
+
     return not _is_surely_stable(mixture(system, evidence.weights), system.time)
 
 
@@ -65,13 +65,15 @@ def _is_value_unstable(system: SwitchedSystem, evidence: UnstableValue) -> bool:
 
 
 def _agrees_on_every_part(system: SwitchedSystem, evidence: BlockTriangular) -> bool:
+    from nrs_design.proof.evidence.block_triangular import diagonal_block
+
     blocks = evidence.blocks
     return all(agrees(diagonal_block(system, blocks[k]), part) for k, part in evidence.parts)
 
 
 def _exponents(system: SwitchedSystem, evidence: AbstractEvidence) -> set[Exponent]:
     """Return matrices and times of which flint encloses the exponential."""
-    enclosed = _ENCLOSED.get(type(evidence))
+    enclosed = _ENCLOSED.get(evidence.kind)
     if enclosed is None or system.time is Time.DISCRETE:
         return set()
     return set(enclosed(system, evidence))
@@ -90,9 +92,9 @@ def _stays(system: SwitchedSystem, evidence: ModeQuadratic) -> Iterator[Exponent
                 yield shifted(modes[name], evidence.rate), time
 
 
-_ENCLOSED: Mapping[type[AbstractEvidence], Callable[[SwitchedSystem, Any], Iterator[Exponent]]] = {
-    UnstablePeriod: _steps,
-    ModeQuadratic: _stays,
+_ENCLOSED: Mapping[str, Callable[[SwitchedSystem, Any], Iterator[Exponent]]] = {
+    "unstable-period": _steps,
+    "mode-quadratic": _stays,
 }
 
 
@@ -121,12 +123,12 @@ def _decreases_everywhere(system: SwitchedSystem, evidence: CommonQuadratic) -> 
 
 
 # The kinds on which flint has more to say than on the definiteness of their forms.
-_OPINIONS: Mapping[type[AbstractEvidence], Callable[[SwitchedSystem, Any], bool]] = {
-    BlockTriangular: _agrees_on_every_part,
-    CommonQuadratic: _decreases_everywhere,
-    UnstableMixture: _is_mixture_unstable,
-    UnstableMode: _is_mode_unstable,
-    UnstableValue: _is_value_unstable,
+_OPINIONS: Mapping[str, Callable[[SwitchedSystem, Any], bool]] = {
+    "block-triangular": _agrees_on_every_part,
+    "common-quadratic": _decreases_everywhere,
+    "unstable-mixture": _is_mixture_unstable,
+    "unstable-mode": _is_mode_unstable,
+    "unstable-value": _is_value_unstable,
 }
 
 

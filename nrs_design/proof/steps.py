@@ -154,6 +154,6 @@ def find_odd_roundings(roundings: tuple[int, ...], system: SwitchedSystem) -> st
     """
     if roundings and len(roundings) != len(system.roundings):
         return "there is not one multiplier for each rounding"
-    if min(roundings, default=0) < 0:
+    if any(entry < 0 for entry in roundings):
         return "the multiplier of a rounding is negative"
     return None

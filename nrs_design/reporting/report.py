@@ -10,6 +10,7 @@ from nrs_design.reporting.sections.evidence import evidence_sections
 from nrs_design.reporting.sections.goals import goal_facts
 from nrs_design.reporting.sections.head import claim_of, facts, proved_rate, remarks_of
 from nrs_design.reporting.sections.methods import methods_section
+from nrs_design.reporting.sections.mode_logic import logic_section
 from nrs_design.reporting.sections.modes import modes_section
 from nrs_design.reporting.sections.proof import proof_section
 from nrs_design.reporting.sections.tail import assumptions_section, recheck_section, rungs_section
@@ -65,6 +66,7 @@ def build_report(
         sections=(
             proof_section(result),
             *_design(result, analysis),
+            *_logic(result),
             modes_section(system, proved_rate(system, certification.evidence)),
             *evidence_sections(certification),
             assumptions_section(certification),
@@ -74,6 +76,11 @@ def build_report(
         ),
         date=date,
     )
+
+
+def _logic(result: Result) -> tuple[Section, ...]:
+    found = None if result.designed is None else logic_section(result.designed.spec)
+    return () if found is None else (found,)
 
 
 def _design(result: Result, analysis: DesignAnalysis | None) -> tuple[Section, ...]:

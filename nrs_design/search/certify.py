@@ -15,12 +15,7 @@ from nrs_design.certificates.certificate import (
     verdict_of,
 )
 from nrs_design.errors import DISAGREE, DesignError, InternalError
-from nrs_design.proof.evidence import (
-    AbstractEvidence,
-    BlockTriangular,
-    Shows,
-)
-from nrs_design.proof.evidence.block_triangular import diagonal_block
+from nrs_design.proof.evidence import AbstractEvidence, Shows
 from nrs_design.proof.exact import TooLargeError
 from nrs_design.proof.second_opinion import agrees
 from nrs_design.proof.system import SwitchedSystem
@@ -30,7 +25,6 @@ from nrs_design.search.certification import Attempt, Certification, Limits
 from nrs_design.search.family import Family, floats_in_silence
 from nrs_design.search.fast_check import find_fault
 from nrs_design.search.gradient_settings import Gradient
-from nrs_design.search.invariant_ellipsoid import search_ellipsoid
 from nrs_design.search.ladder import applicable_methods, steps
 from nrs_design.search.method import Method
 from nrs_design.search.rate_limit import rate_limit
@@ -119,12 +113,16 @@ def _bounds(
     system: SwitchedSystem, allowance: Allowance, progress: Progress
 ) -> tuple[tuple[AbstractEvidence, ...], tuple[Attempt, ...]]:
     """Bound every output under all disturbances at once, and the first one under each alone."""
-    found: list[AbstractEvidence] = []
-    attempts: list[Attempt] = []
     alone = [(channel,) for channel in system.channels]
     pairs = [(system.channels, output) for output in system.outputs if alone]
     if len(alone) > 1:
         pairs += [(channels, output) for channels in alone for output in system.outputs[:1]]
+    if not pairs:
+        return (), ()
+    from nrs_design.search.invariant_ellipsoid import search_ellipsoid
+
+    found: list[AbstractEvidence] = []
+    attempts: list[Attempt] = []
     for count, (channels, output) in enumerate(pairs):
         under = " and ".join(channel.name for channel in channels)
         name, start = f"bound on {output.name} under {under}", perf_counter()
@@ -154,6 +152,8 @@ def _certify_block(
     progress: Progress,
 ) -> Certification:
     """Certify the family of one diagonal block."""
+    from nrs_design.proof.evidence.block_triangular import diagonal_block
+
     full = diagonal_block(system, block)
     merged = merge_equal_modes(full)
     limits = _limits_for(merged, full, limits)
@@ -285,6 +285,8 @@ def _combine(
     system: SwitchedSystem, blocks: tuple[tuple[int, ...], ...], parts: list[Certification]
 ) -> Certification:
     """Put the certifications of the diagonal blocks together."""
+    from nrs_design.proof.evidence import BlockTriangular
+
     attempts = tuple(
         replace(attempt, step=f"block {k + 1}: {attempt.step}")
         for k, part in enumerate(parts)

@@ -16,9 +16,7 @@ from nrs_design.search.balance import mean_norm, mean_norm_coordinates, scale
 from nrs_design.search.candidates import NO_MARGIN, OUT_OF_RANGE, Candidate, Candidates
 from nrs_design.search.decay import fastest_first, rate_of
 from nrs_design.search.family import Family
-from nrs_design.search.gradient import find_by_gradient, find_faster_by_gradient
 from nrs_design.search.lmi import find_common_quadratic, margins, solve_by_clarabel
-from nrs_design.search.raw import find_raw_quadratic
 from nrs_design.search.rounding import BITS, claims, digits, rate_at, round_rate, unscale
 
 BACK_OFF = Fraction(1999, 2000)
@@ -81,6 +79,8 @@ def decide_one_state(family: Family) -> Candidates[CommonQuadratic]:
 
 def search_by_gradient(family: Family) -> Candidates[CommonQuadratic]:
     """Search by the Liberzon-Tempo iteration; then, if asked to, raise the rate."""
+    from nrs_design.search.gradient import find_by_gradient, find_faster_by_gradient
+
     if not np.isfinite(family.limit):
         return OUT_OF_RANGE
     # The rungs below need time as well.
@@ -100,6 +100,8 @@ def search_by_gradient(family: Family) -> Candidates[CommonQuadratic]:
 
 def search_raw(family: Family) -> Candidates[CommonQuadratic]:
     """Search by CVXPY in the coordinates of the spec, without balancing."""
+    from nrs_design.search.raw import find_raw_quadratic
+
     time = family.system.time
     if not np.isfinite(family.limit):
         return OUT_OF_RANGE

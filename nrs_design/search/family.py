@@ -18,6 +18,9 @@ from nrs_design.search.balance import balance, scale
 from nrs_design.search.decay import limit_rate
 from nrs_design.search.gradient_settings import Gradient
 
+# Modes that differ by less, relative to their largest entries, are nearly the same.
+NEARLY = 1e-12
+
 
 @dataclass(frozen=True)
 class Family:
@@ -48,6 +51,25 @@ class Family:
     allowance: Allowance = field(default_factory=Allowance)
     optimize_rate: bool = True
     gradient: Gradient = field(default_factory=Gradient)
+
+    def stand_ins(self) -> dict[str, str]:
+        """Return for each mode the first that is nearly the same; nothing where rules matter.
+
+        The two ends of an enclosed number make modes that differ by its last digits. In discrete
+        time only: without rules, modes of continuous time need no functions of their own.
+        """
+        system, matrices = self.system, self.matrices
+        if not system.switching.is_arbitrary or system.time is Time.CONTINUOUS:
+            return {}
+        kept: list[int] = []
+        found: dict[str, str] = {}
+        for i, A in enumerate(matrices):
+            near = (k for k in kept if np.abs(matrices[k] - A).max() <= NEARLY * np.abs(A).max())
+            k = next(near, i)
+            if k == i:
+                kept.append(i)
+            found[system.modes[i].name] = system.modes[k].name
+        return found
 
     @classmethod
     def of(

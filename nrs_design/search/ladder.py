@@ -7,39 +7,22 @@ from dataclasses import dataclass
 from functools import partial
 from itertools import islice, zip_longest
 from math import inf
+from typing import Any
 
 from nrs_design.proof.evidence import AbstractEvidence
-from nrs_design.proof.evidence.common_polynomial import MAX_DEGREE, MAX_MONOMIALS
 from nrs_design.proof.evidence.unstable_mode import affordable, is_stable
+from nrs_design.proof.late import late_function
 from nrs_design.proof.system import SwitchedSystem, Time
 from nrs_design.search.allowance import Allowance, Cost
 from nrs_design.search.candidates import Candidates, Search
 from nrs_design.search.certification import Limits
-from nrs_design.search.common_quadratic import (
-    decide_one_state,
-    search_by_gradient,
-    search_by_lmi,
-    search_preconditioned,
-    search_raw,
-)
-from nrs_design.search.conewise_polynomial import conewise_cost, search_conewise_polynomial
-from nrs_design.search.conewise_quadratic import search_conewise
 from nrs_design.search.family import Family
 from nrs_design.search.method import Method
-from nrs_design.search.mixture import search_mixture
-from nrs_design.search.mode_quadratic import functions_cost, search_mode_functions
-from nrs_design.search.obstruction import search_obstruction
-from nrs_design.search.parameter_quadratic import search_parameter_quadratic
-from nrs_design.search.period import search_period
-from nrs_design.search.polynomial import highest_degree, polynomial_cost, search_polynomial
-from nrs_design.search.unstable_mode import examine_every_mode, examine_suspicious_modes
-from nrs_design.search.unstable_value import search_switching_at_values, search_value
 
 # Degrees that are tried before the rungs below, which are quicker than higher ones.
 FIRST_DEGREES = 2
 # Seconds of a degree of what is tried before the cheaper rungs.
 QUICK = 0.5
-HELD = f"a certificate holds at most {MAX_MONOMIALS} monomials and degree {MAX_DEGREE}"
 
 Step = tuple[str, Search]
 
@@ -196,6 +179,8 @@ class Rung:
             return
         if system.order == 1:
             return
+        from nrs_design.search.polynomial import HELD, highest_degree
+
         for d in range(2, highest_degree(system.order) + 1):
             step = f"{self.name} of degree {2 * d}"
             if limits.max_degree is not None and 2 * d > limits.max_degree:
@@ -218,26 +203,36 @@ def _refuse(reason: str) -> Search:
     return search
 
 
+def _in(module: str, name: str) -> Callable[..., Any]:
+    """Name a function of a module here: most rungs are never reached, and need not be loaded."""
+    return late_function(f"nrs_design.search.{module}", name)
+
+
 # Cheapest first. A rung that rises is tried here with its first degrees, with higher ones at last.
 LADDER: tuple[Rung, ...] = (
-    Rung("suspicious modes", None, lambda f: f.system.is_uniform, examine_suspicious_modes),
+    Rung(
+        "suspicious modes",
+        None,
+        lambda f: f.system.is_uniform,
+        _in("unstable_mode", "examine_suspicious_modes"),
+    ),
     Rung(
         "one state",
         Method.LMI,
         lambda f: f.may_share_a_function and not f.may_share_an_ellipsoid,
-        decide_one_state,
+        _in("common_quadratic", "decide_one_state"),
     ),
     Rung(
         "conewise quadratic",
         Method.CONEWISE_QUADRATIC,
         lambda f: f.may_lose_contact and f.may_share_an_ellipsoid,
-        search_conewise,
+        _in("conewise_quadratic", "search_conewise"),
     ),
     Rung(
         "quadratic, with roundings",
         Method.LMI,
         lambda f: f.rounds and not f.may_lose_contact and f.may_share_an_ellipsoid,
-        search_conewise,
+        _in("conewise_quadratic", "search_conewise"),
     ),
     # Before what takes for granted that contact is kept; that no quadratic function exists is said
     # of the matrices all the same.
@@ -245,82 +240,97 @@ LADDER: tuple[Rung, ...] = (
         "obstruction in contact",
         Method.OBSTRUCTION,
         lambda f: f.may_bounce,
-        search_obstruction,
+        _in("obstruction", "search_obstruction"),
     ),
     Rung(
         "conewise polynomial",
         Method.CONEWISE_POLYNOMIAL,
         lambda f: f.may_bounce,
-        search_conewise_polynomial,
-        cost=conewise_cost,
+        _in("conewise_polynomial", "search_conewise_polynomial"),
+        cost=_in("conewise_polynomial", "conewise_cost"),
         first=QUICK,
     ),
-    Rung("lmi", Method.LMI, lambda f: f.may_share_an_ellipsoid, search_by_lmi),
+    Rung(
+        "lmi",
+        Method.LMI,
+        lambda f: f.may_share_an_ellipsoid,
+        _in("common_quadratic", "search_by_lmi"),
+    ),
     Rung(
         "obstruction",
         Method.OBSTRUCTION,
         lambda f: f.may_share_a_function and not f.may_bounce,
-        search_obstruction,
+        _in("obstruction", "search_obstruction"),
     ),
     # The solver may have stalled: other coordinates, before giving up on quadratics.
     Rung(
         "lmi, raw",
         Method.LMI,
         lambda f: f.may_share_an_ellipsoid,
-        search_raw,
+        _in("common_quadratic", "search_raw"),
         only_quadratic=True,
     ),
     Rung(
         "lmi, preconditioned",
         Method.LMI,
         lambda f: f.may_share_an_ellipsoid,
-        search_preconditioned,
+        _in("common_quadratic", "search_preconditioned"),
         only_quadratic=True,
     ),
     Rung(
         "gradient",
         Method.GRADIENT,
         lambda f: f.may_share_a_function,
-        search_by_gradient,
+        _in("common_quadratic", "search_by_gradient"),
         only_quadratic=True,
     ),
-    Rung("every mode", None, _always, examine_every_mode),
-    Rung("constant values", Method.VALUE, lambda f: f.has_values, search_value),
+    Rung("every mode", None, _always, _in("unstable_mode", "examine_every_mode")),
+    Rung(
+        "constant values",
+        Method.VALUE,
+        lambda f: f.has_values,
+        _in("unstable_value", "search_value"),
+    ),
     Rung(
         "parameter quadratic",
         Method.PARAMETER_QUADRATIC,
         lambda f: f.has_constant and f.leaves_stable,
-        search_parameter_quadratic,
+        _in("parameter_quadratic", "search_parameter_quadratic"),
     ),
     Rung(
         "mode quadratic",
         Method.MODE_QUADRATIC,
         _always,
-        search_mode_functions,
+        _in("mode_quadratic", "search_mode_functions"),
         # Under arbitrary switching in continuous time, all modes have the same function.
         in_auto=lambda f: f.has_rules or (f.is_arbitrary and not f.is_continuous),
     ),
-    Rung("mixture", Method.MIXTURE, lambda f: f.is_arbitrary and f.is_continuous, search_mixture),
+    Rung(
+        "mixture",
+        Method.MIXTURE,
+        lambda f: f.is_arbitrary and f.is_continuous,
+        _in("mixture", "search_mixture"),
+    ),
     Rung(
         "polynomial",
         Method.POLYNOMIAL,
         lambda f: f.may_share_a_function,
-        search_polynomial,
-        cost=lambda system, d: polynomial_cost(system.order, len(system.modes), d),
+        _in("polynomial", "search_polynomial"),
+        cost=_in("polynomial", "family_cost"),
     ),
     Rung(
         "mode polynomial",
         Method.MODE_POLYNOMIAL,
         lambda f: f.has_rules and not f.is_continuous,
-        search_mode_functions,
-        cost=functions_cost,
+        _in("mode_quadratic", "search_mode_functions"),
+        cost=_in("mode_quadratic", "functions_cost"),
     ),
-    Rung("period", Method.PERIOD, lambda f: f.system.is_uniform, search_period),
+    Rung("period", Method.PERIOD, lambda f: f.system.is_uniform, _in("period", "search_period")),
     Rung(
         "switching at constant values",
         Method.VALUE,
         lambda f: f.has_values,
-        search_switching_at_values,
+        _in("unstable_value", "search_switching_at_values"),
     ),
 )
 

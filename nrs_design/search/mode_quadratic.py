@@ -6,7 +6,7 @@ with a form that vanishes identically added to every decrease.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from itertools import pairwise, product
@@ -32,7 +32,7 @@ from nrs_design.search.polynomial import (
     products,
     vanishing_basis,
 )
-from nrs_design.search.rounding import digits, rate_at, round_form
+from nrs_design.search.rounding import claims, digits, rate_at, round_form
 from nrs_design.search.sdp import (
     maximize_margin,
     pack,
@@ -76,10 +76,21 @@ def search_mode_functions(family: Family, degree: int = 1) -> Candidates[Functio
         If time or memory do not suffice for another solution.
     """
     system, allowance = family.system, family.allowance
+    stand_ins = family.stand_ins() if degree == 1 else {}
+    if stand_ins:
+        # What is left of the margin covers the differences.
+        kept = tuple(mode for mode in system.modes if mode.name in stand_ins.values())
+        system = system.with_modes(kept, system.states, system.switching)
     allowance.require(*functions_cost(system, degree))
-    problem = _Problem(system, degree)
-    if problem.solve(rate_at(0.0, family.limit, system.time), allowance) is None:
+    problem = _Problem(system, degree, stand_ins)
+    first = problem.solve(rate_at(0.0, family.limit, system.time), allowance)
+    if first is None:
         return NO_MARGIN
+    if stand_ins and not family.optimize_rate:
+        for claim in claims(1.0, problem.own_rate(first), system.time):
+            for evidence in problem.roundings(first, claim):
+                yield Candidate(evidence)
+        return None
     few = problem.encloses_stays
     for solution, claim in fastest_first(
         problem.solve,
@@ -127,8 +138,8 @@ class _Solution:
 class _Problem:
     """The semidefinite program, in balanced coordinates, for any rate."""
 
-    def __init__(self, system: SwitchedSystem, degree: int) -> None:
-        self.given, self.degree = system, degree
+    def __init__(self, system: SwitchedSystem, degree: int, stand_ins: Mapping[str, str]) -> None:
+        self.given, self.degree, self.stand_ins = system, degree, stand_ins
         self.cost = functions_cost(system, degree)
         balanced = _balanced(system)
         if degree > 1:
@@ -203,6 +214,21 @@ class _Problem:
         spans = bases + [forms[i] for i, _, _ in wanted]
         found = [np.tensordot(x[c], span, axes=1) for c, span in zip(columns, spans, strict=True)]
         return _Solution(found[: len(bases)], found[len(bases) :])
+
+    def own_rate(self, solution: _Solution) -> float:
+        """Return the contraction per step that quadratic functions show, each stay being a step.
+
+        Parameters
+        ----------
+        solution : _Solution
+            In discrete time, without rules.
+        """
+        least = 1.0
+        for i, parts, _ in self._decreases(solution.functions, 1.0):
+            inverse = np.linalg.inv(np.linalg.cholesky(solution.functions[i]))
+            form = inverse @ np.sum([part for _, part in parts], axis=0) @ inverse.T
+            least = min(least, float(np.linalg.eigvalsh(form)[0]))
+        return float(np.sqrt(max(1.0 - least, 0.0)))
 
     def _decreases(
         self, functions: list[Array], rate: float
@@ -308,6 +334,9 @@ class _Problem:
         rounded = []
         for mode, Q, d in zip(self.system.modes, functions, self.exponents, strict=True):
             rounded.append((mode.name, round_form(Q, top - d, bits - unit)))
+        if self.stand_ins:
+            own = dict(rounded)
+            rounded = [(name, own[other]) for name, other in self.stand_ins.items()]
         names = (mode.name for mode in self.system.modes)
         leaving = tuple(name for name, left in zip(names, self.leaving, strict=True) if left)
         return ModeQuadratic(tuple(rounded), max(0, bits + 2 * top), rate, leaving)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from fractions import Fraction
-from itertools import chain, groupby
+from itertools import chain, compress, groupby
 from math import ceil, exp, isinf, log, log2
 
 import numpy as np
@@ -52,10 +52,16 @@ def search_period(family: Family) -> Candidates[UnstablePeriod]:
         for word, radius in growing_words(family.matrices, allowance):
             steps = tuple((system.modes[i].name, Fraction(1)) for i in word)
             yield from _powers(system, UnstablePeriod(steps, 0), radius)
-        return NOTHING_GROWS
-    # The scaled modes of a search do not fit resets.
-    floats = [mode.A.floats() for mode in system.modes]
-    graph = Graph.of(system, np.array(floats) if system.switching.resets else family.matrices)
+    matrices = family.matrices
+    if system.switching.resets:
+        # The scaled modes of a search do not fit resets.
+        matrices = np.array([mode.A.floats() for mode in system.modes])
+    if stand_ins := family.stand_ins():
+        kept = [mode.name in stand_ins.values() for mode in system.modes]
+        few = tuple(compress(system.modes, kept))
+        system = system.with_modes(few, system.states, system.switching)
+        matrices = matrices[kept]
+    graph = Graph.of(system, matrices)
     for cycle, times in _signals(system, graph, allowance):
         yield from _roundings(system, graph, cycle, times)
         allowance.check()
@@ -79,10 +85,10 @@ def _signals(system: SwitchedSystem, graph: Graph, allowance: Allowance) -> Iter
 
 def _longer_signals(system: SwitchedSystem, graph: Graph, allowance: Allowance) -> Iterator[Signal]:
     """Yield signals that may come back to a mode; in continuous time few, for refining is slow."""
-    if system.switching.is_arbitrary:
-        yield from _greedy_signals(graph)
-    elif system.time is Time.DISCRETE:
+    if system.time is Time.DISCRETE:
         yield from growing_walks(graph, allowance)
+    elif system.switching.is_arbitrary:
+        yield from _greedy_signals(graph)
     else:
         walks = growing_walks(graph, allowance)
         yield from sorted(walks, key=lambda walk: -float(graph.growth(*walk)))[:WALKS]

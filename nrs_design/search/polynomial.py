@@ -50,6 +50,7 @@ SMALLEST = 2.0**-8
 BACK_OFF = 0.98
 NEAREST = 0.99
 FEWEST_BITS = 10
+HELD = f"a certificate holds at most {MAX_MONOMIALS} monomials and degree {MAX_DEGREE}"
 
 
 @dataclass(frozen=True)
@@ -99,7 +100,7 @@ def search_polynomial(family: Family, degree: int) -> Candidates[CommonPolynomia
         The d of a form of degree 2d.
     """
     system, allowance = family.system, family.allowance
-    allowance.require(*polynomial_cost(system.order, len(system.modes), degree))
+    allowance.require(*family_cost(system, degree))
     lift = lift_family(system, family.exponents, degree)
     least = rate_at(0.0, family.limit, system.time)
     solution = find_common_polynomial(lift, system.time, least, allowance)
@@ -225,6 +226,11 @@ def polynomial_cost(variables: int, modes: int, degree: int) -> tuple[Cost, str]
     forms = shared - 1 - comb(variables + 2 * degree - 1, 2 * degree)
     cones = [(order, shared)] * 2 + [(order, shared + forms)] * modes
     return program_cost(shared + modes * forms, shared, cones), f"a program in {order} monomials"
+
+
+def family_cost(system: SwitchedSystem, degree: int) -> tuple[Cost, str]:
+    """Predict the same for a system; see `polynomial_cost`."""
+    return polynomial_cost(system.order, len(system.modes), degree)
 
 
 def find_common_polynomial(

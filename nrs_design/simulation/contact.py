@@ -25,13 +25,14 @@ def clipped(norm: Norm) -> Norm:
     norm : callable
         Of states, of which the deflection is the last entry.
     """
+    return lambda states: norm(deflected(states))
 
-    def of_clipped(states: Array) -> Array:
-        w = states.copy()
-        w[..., -1] = np.maximum(w[..., -1], 0.0)
-        return norm(w)
 
-    return of_clipped
+def deflected(states: Array) -> Array:
+    """Return ``w = (y, max(delta, 0))`` of states, of which the deflection is the last entry."""
+    w = states.copy()
+    w[..., -1] = np.maximum(w[..., -1], 0.0)
+    return w
 
 
 def worst_contact(

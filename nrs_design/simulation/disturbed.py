@@ -8,14 +8,19 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from nrs_design.proof.evidence import InvariantEllipsoid
 from nrs_design.proof.system import Channel, Output, SwitchedSystem, Time
+from nrs_design.simulation.contact import deflected
 from nrs_design.simulation.norms import Array
-from nrs_design.simulation.switched import TimeResponse, times
+from nrs_design.simulation.switched import TimeResponse, fine_step, times
 
 Indices = NDArray[np.int64]
 
 # How often the adversary improves a run; after few of them it has settled.
 SWEEPS = 12
+# A run is as long as a set with this share needs to fill up to a thousandth, if steps are few.
+_FILLED = 7.0
+_FEWEST, _MOST = 100, 800
 
 
 @dataclass(frozen=True)
@@ -84,11 +89,40 @@ class DisturbedMotions:
 
     def outputs(self, states: Array) -> Array:
         """Return the output at states, shape (..., n), for every row; shape (..., r)."""
-        w = states
-        if len(self.flying):
-            w = states.copy()
-            w[..., -1] = np.maximum(w[..., -1], 0.0)
+        w = deflected(states) if len(self.flying) else states
         return np.asarray(w @ self.rows.T)
+
+
+def worst_run(
+    system: SwitchedSystem, evidence: InvariantEllipsoid
+) -> tuple[TimeResponse, DisturbedMotions]:
+    """Simulate an adversary against a bound, for about as long as its set takes to fill.
+
+    Parameters
+    ----------
+    system : SwitchedSystem
+        That the bound is about.
+    evidence : InvariantEllipsoid
+        Whose disturbances act, and whose output is to become large.
+    """
+    share, step = float(sum(evidence.shares)), fine_step(system)
+    rate = -np.log1p(-share) if system.time is Time.DISCRETE else share
+    steps = int(np.clip(_FILLED / (rate * step), _FEWEST, _MOST))
+    output = next(item for item in system.outputs if item.name == evidence.output)
+    motions = DisturbedMotions.of(system, evidence.acting(system), output, step)
+    return worst_disturbed(motions, step, steps), motions
+
+
+def worst_output(system: SwitchedSystem, evidence: InvariantEllipsoid) -> float:
+    """Return how large the output of a bound becomes in `worst_run`.
+
+    Parameters
+    ----------
+    system, evidence
+        As for `worst_run`.
+    """
+    response, motions = worst_run(system, evidence)
+    return float(np.abs(motions.outputs(response.state)).max())
 
 
 def worst_disturbed(motions: DisturbedMotions, step: float, steps: int) -> TimeResponse:

@@ -4,8 +4,9 @@ Every name here is imported from its module when it is first asked for: a comman
 kind of spec that it reads. `Spec`, any of them, is for annotations only.
 """
 
-from importlib import import_module
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
+
+from nrs_design.proof.late import late_names
 
 if TYPE_CHECKING:
     from nrs_design.spec.affine import Affine
@@ -15,6 +16,7 @@ if TYPE_CHECKING:
         ForceControllerSpec,
         IdleStatesSpec,
         ImpedanceControllerSpec,
+        ParallelControllerSpec,
         PositionControllerSpec,
     )
     from nrs_design.spec.doubts import Doubt, doubt_spec
@@ -79,6 +81,7 @@ __all__ = [
     "LoadedSpec",
     "ModeSpec",
     "MotionLoopSpec",
+    "ParallelControllerSpec",
     "ParameterSpec",
     "PositionControllerSpec",
     "ProvenanceSpec",
@@ -103,7 +106,8 @@ _HOMES = {
     for module, names in {
         "affine": "Affine",
         "controllers": "ControllerSpec CostWeights ForceControllerSpec "
-        "IdleStatesSpec ImpedanceControllerSpec PositionControllerSpec",
+        "IdleStatesSpec ImpedanceControllerSpec ParallelControllerSpec "
+        "PositionControllerSpec",
         "doubts": "Doubt doubt_spec",
         "environment": "ElasticSpec EnvironmentSpec KelvinVoigtSpec",
         "exact": "parse_exact",
@@ -124,8 +128,4 @@ _HOMES = {
     for name in names.split()
 }
 
-
-def __getattr__(name: str) -> Any:
-    if name not in _HOMES:
-        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    return getattr(import_module(f"nrs_design.spec.{_HOMES[name]}"), name)
+__getattr__ = late_names(__name__, _HOMES)

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from typing import Annotated, Any
 
-from pydantic import Field, PlainValidator, WithJsonSchema
+from pydantic import Field, WithJsonSchema
 
 from nrs_design.spec import kinds
 from nrs_design.spec.faults import fault
 from nrs_design.spec.fields import read_exact
-from nrs_design.spec.model import SpecModel
+from nrs_design.spec.model import ReadBy, SpecModel
 from nrs_design.spec.quantity import Quantity
 from nrs_design.spec.quantity_fields import quantity_schema, read_quantity
 
@@ -42,16 +42,14 @@ def _read_budget(value: object) -> Quantity:
 class CertificationSpec(SpecModel):
     """How far the search for a proof goes; options of the commands override it."""
 
-    max_degree: Annotated[
-        int | None, PlainValidator(_read_degree), WithJsonSchema(_DEGREE_SCHEMA)
-    ] = Field(
+    max_degree: Annotated[int | None, ReadBy(_read_degree), WithJsonSchema(_DEGREE_SCHEMA)] = Field(
         default=None,
         description="highest degree of a polynomial Lyapunov function, even, at most 64; default: "
         "as high as the budget allows",
     )
     budget: Annotated[
         Quantity | None,
-        PlainValidator(_read_budget),
+        ReadBy(_read_budget),
         WithJsonSchema(quantity_schema(kinds.SEARCH_BUDGET)),
     ] = Field(
         default=None, description="time for the search, at most 600 s; default 60 s, such as '30 s'"

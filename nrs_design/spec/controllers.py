@@ -10,11 +10,11 @@ from pydantic import ConfigDict, Discriminator, Field, field_validator, model_va
 
 from nrs_design.spec.faults import fault
 from nrs_design.spec.fields import Contact, Label, Positive, TouchedAtOnce, UnitFraction, Weight
-from nrs_design.spec.gain_fields import DampingGain, GainSpec, InertiaGain
+from nrs_design.spec.gain_fields import DampingGain, GainSpec, InertiaGain, SpringGain
 from nrs_design.spec.goals import GoalsSpec
 from nrs_design.spec.model import SpecModel
 from nrs_design.spec.parameters import Switch
-from nrs_design.spec.quantity_fields import Decay, ForceGain, Impedance
+from nrs_design.spec.quantity_fields import Decay, ForceGain, Impedance, IntegralForceGain
 
 _ENVIRONMENT = "name of the environment that the gains are designed for"
 _CONTACTS = (
@@ -96,14 +96,17 @@ class AbstractControllerSpec(SpecModel):
 
 
 class ImpedanceControllerSpec(AbstractControllerSpec):
-    """Admittance ``1/(Mt s + Bt)`` that makes the robot display an impedance (thesis 6.3.1)."""
+    """Admittance ``1/(Mt s + Bt)`` that makes the robot display an impedance (thesis 6.3.1).
+
+    With a spring it is ``1/(Mt s + Bt + Kt/s)`` (thesis 2.2.6.2).
+    """
 
     model_config = ConfigDict(
         json_schema_extra={"not": {"required": ["desired_impedance", "desired_impedance_ratio"]}}
     )
     commands: ClassVar[Command] = "velocity"
 
-    type: Literal["impedance"] = Field(description="impedance: admittance Y = 1/(Mt s + Bt)")
+    type: Literal["impedance"] = Field(description="impedance: admittance Y = 1/(Mt s + Bt + Kt/s)")
     environment: Label = Field(description=_ENVIRONMENT)
     contacts: tuple[TouchedAtOnce, ...] = Field(
         default_factory=lambda data: (data.get("environment", ""),),
@@ -126,12 +129,30 @@ class ImpedanceControllerSpec(AbstractControllerSpec):
         description="admittance damping in N*m*s/rad: one quantity, {min: ..., max: ...} for the "
         f"design, or {{nominal: ...}}; > 0; {_GAIN_RANGE}"
     )
+    Kt: SpringGain | None = Field(
+        default=None,
+        description="admittance spring in N*m/rad, which draws the robot back to its position "
+        "reference: one quantity, or {nominal: ..., range: ...}; > 0; default: no spring; with "
+        "one, contact is taken for kept unless the spec says `contact: losable`; "
+        f"{_GAIN_RANGE}",
+    )
     weights: CostWeights = Field(
         default_factory=CostWeights, description="weights of the design cost, no unit"
     )
     goals: GoalsSpec | None = Field(default=None, description=_GOALS)
 
     _contacts = field_validator("contacts")(_distinct)
+
+    @field_validator("Kt")
+    @classmethod
+    def _check_given(cls, spring: GainSpec | None) -> GainSpec | None:
+        if spring is not None and not spring.fixed:
+            raise fault(
+                "the design chooses Mt and Bt only",
+                "give nominal instead of min and max",
+                "min",
+            )
+        return spring
 
     @model_validator(mode="after")
     def _check_one_target(self) -> ImpedanceControllerSpec:
@@ -195,6 +216,27 @@ class ForceControllerSpec(AbstractControllerSpec):
         return self
 
 
+class ParallelControllerSpec(AbstractControllerSpec):
+    """Position command and a PI of the force error in parallel (thesis 2.2.6.4)."""
+
+    commands: ClassVar[Command] = "position"
+    goals: ClassVar[GoalsSpec | None] = None
+
+    type: Literal["parallel"] = Field(
+        description="parallel: u = Xc + Kp (Fd - F) + the integral of Ki (Fd - F)"
+    )
+    environment: Label = Field(description=_ENVIRONMENT)
+    contacts: tuple[Label, ...] = Field(
+        default_factory=lambda data: (data.get("environment", ""),),
+        min_length=1,
+        description=_CONTACTS,
+    )
+    proportional_gain: ForceGain = Field(description="Kp in rad/(N*m)")
+    integral_gain: IntegralForceGain = Field(description="Ki in rad/(N*m*s)")
+
+    _contacts = field_validator("contacts")(_distinct)
+
+
 class PositionControllerSpec(AbstractControllerSpec):
     """Position mode of the hybrid scheme: the closed motion loop alone (thesis 6.3.3)."""
 
@@ -220,5 +262,6 @@ class IdleStatesSpec(SpecModel):
 
 
 ControllerSpec = Annotated[
-    ImpedanceControllerSpec | ForceControllerSpec | PositionControllerSpec, Discriminator("type")
+    ImpedanceControllerSpec | ForceControllerSpec | ParallelControllerSpec | PositionControllerSpec,
+    Discriminator("type"),
 ]

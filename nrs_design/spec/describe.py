@@ -35,7 +35,14 @@ MAX_LISTED = 20
 # Keys of a controller that are listed in a way of their own, and the kinds of gains.
 _TARGETS = frozenset({"desired_impedance", "desired_impedance_ratio"})
 _LISTED = _TARGETS | {"type", "environment", "contacts", "goals"}
-_GAINS = (kinds.INERTIA, kinds.IMPEDANCE, kinds.FORCE_GAIN)
+_SHOWN = (
+    kinds.INERTIA,
+    kinds.IMPEDANCE,
+    kinds.SPRING,
+    kinds.FORCE_GAIN,
+    kinds.TORQUE,
+    kinds.TORQUE_RATE,
+)
 
 
 class Line(NamedTuple):
@@ -137,6 +144,9 @@ def _interaction(spec: InteractionDesignSpec) -> Iterator[Line]:
         yield from _provenance("sampling", spec.sampling)
     if spec.disturbances is not None:
         yield from describe_model(spec.disturbances, "disturbances")
+    yield from describe_model(spec.sensor, "sensor")
+    if spec.mode_logic is not None:
+        yield from describe_model(spec.mode_logic, "mode_logic")
     yield Line("contact", spec.contact or "losable where proved", "", "")
     yield Line("coordinates", spec.coordinates, "", "")
     yield from _switching(spec.switching)
@@ -219,16 +229,16 @@ def _controller(name: str, controller: ControllerSpec, limits: LimitsSpec) -> It
 def _own_field(name: str, value: object) -> Iterator[Line]:
     """List what only one type of controller has."""
     if isinstance(value, GainSpec):
-        yield from _gain(name, value, _gain_unit(value.min))
+        yield from _gain(name, value, _shown_unit(value.min))
     elif isinstance(value, Quantity):
-        yield _quantity(name, value, _gain_unit(value))
+        yield _quantity(name, value, _shown_unit(value))
     else:
         yield from describe_model(value, name)
 
 
-def _gain_unit(quantity: Quantity) -> str:
-    """Return the unit in which a gain is shown."""
-    known = (kind.si_unit for kind in _GAINS if kind.accepts(quantity.dimension))
+def _shown_unit(quantity: Quantity) -> str:
+    """Return the unit in which a gain, or a signal, is shown."""
+    known = (kind.si_unit for kind in _SHOWN if kind.accepts(quantity.dimension))
     return next(known, si_unit(quantity.dimension))
 
 
@@ -287,7 +297,7 @@ def describe_model(value: object, name: str = "") -> Iterator[Line]:
         for index, item in enumerate(value):
             yield from describe_model(item, f"{name}[{index}]")
     elif isinstance(value, Quantity):
-        yield Line(name, value.text, _text(value.si), si_unit(value.dimension))
+        yield Line(name, value.text, _text(value.si), _shown_unit(value))
     elif isinstance(value, Fraction):
         yield _number(name, value)
     elif isinstance(value, bool):

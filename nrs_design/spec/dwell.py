@@ -40,6 +40,8 @@ def find_changing_contact(
     actuator: ActuatorSpec,
     controllers: Mapping[str, ControllerSpec],
     environments: Mapping[str, EnvironmentSpec],
+    *,
+    by_contact: bool = False,
 ) -> DwellObstacle | None:
     """Find what changes while one controller is active: the environment obeys no rule of ours.
 
@@ -49,6 +51,8 @@ def find_changing_contact(
         The motor.
     controllers, environments : mapping
         By name.
+    by_contact : bool
+        The rules of switching are about the environment that is touched, too.
     """
     # A spec of given matrices has no controllers, and does not pay for their models.
     from nrs_design.spec.controllers import touched_in
@@ -60,7 +64,7 @@ def find_changing_contact(
             "give the actuator its nominal values only",
         )
     for name, controller in controllers.items():
-        if len(controller.contacts) > 1:
+        if len(controller.contacts) > 1 and not by_contact:
             return DwellObstacle(
                 f"a dwell time and several contacts of {name!r} exclude each other: the contact "
                 "may change at any time, whatever the controller",

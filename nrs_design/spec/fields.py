@@ -7,12 +7,13 @@ from collections.abc import Callable
 from fractions import Fraction
 from typing import Annotated, Any
 
-from pydantic import PlainValidator, WithJsonSchema
+from pydantic import WithJsonSchema
 
 from nrs_design.files import is_device_name
 from nrs_design.proof.text import quoted
 from nrs_design.spec.exact import DECIMAL_PATTERN, RATIO_PATTERN, parse_exact
 from nrs_design.spec.faults import as_text, fault, reported
+from nrs_design.spec.model import ReadBy
 
 NAME_PATTERN = "^[a-z0-9][a-z0-9._-]{0,63}$"
 LABEL_PATTERN = "^[A-Za-z0-9][A-Za-z0-9._-]{0,63}$"
@@ -42,14 +43,14 @@ def read_exact(value: object) -> Fraction:
     return reported(lambda: parse_exact(text))
 
 
-def _number(accepts: Callable[[Fraction], bool], expected: str) -> PlainValidator:
+def _number(accepts: Callable[[Fraction], bool], expected: str) -> ReadBy:
     def read(value: object) -> Fraction:
         number = read_exact(value)
         if not accepts(number):
             raise fault(f"{value} is not {expected}", f"write a number that is {expected}")
         return number
 
-    return PlainValidator(read)
+    return ReadBy(read)
 
 
 def _read_name(value: object, pattern: str) -> str:
@@ -71,8 +72,8 @@ def _read_label(value: object) -> str:
     return _read_name(value, LABEL_PATTERN)
 
 
-def _text(pattern: str) -> PlainValidator:
-    return PlainValidator(lambda value: _read_name(value, pattern))
+def _text(pattern: str) -> ReadBy:
+    return ReadBy(lambda value: _read_name(value, pattern))
 
 
 def read_digits(value: object) -> int:
@@ -101,7 +102,7 @@ def read_hash(value: object) -> str:
     return text
 
 
-Exact = Annotated[Fraction, PlainValidator(read_exact), WithJsonSchema(NUMBER_SCHEMA)]
+Exact = Annotated[Fraction, ReadBy(read_exact), WithJsonSchema(NUMBER_SCHEMA)]
 UnitFraction = Annotated[
     Fraction, _number(lambda x: 0 < x < 1, "between 0 and 1"), WithJsonSchema(NUMBER_SCHEMA)
 ]
@@ -115,7 +116,7 @@ BelowTwo = Annotated[
 ]
 Digits = Annotated[
     int,
-    PlainValidator(read_digits),
+    ReadBy(read_digits),
     WithJsonSchema({"type": "integer", "minimum": 1, "maximum": 7}),
 ]
 Name = Annotated[
@@ -142,16 +143,16 @@ def read_contact(value: object) -> Contact:
 
 TouchedAtOnce = Annotated[
     Contact,
-    PlainValidator(read_contact),
+    ReadBy(read_contact),
     WithJsonSchema(
         {"anyOf": [*_LABEL["anyOf"], {"type": "array", "items": _LABEL, "minItems": 2}]}
     ),
 ]
 Title = Annotated[
-    str, PlainValidator(read_title), WithJsonSchema({"type": "string", "maxLength": MAX_TITLE})
+    str, ReadBy(read_title), WithJsonSchema({"type": "string", "maxLength": MAX_TITLE})
 ]
 Hash = Annotated[
     str,
-    PlainValidator(read_hash),
+    ReadBy(read_hash),
     WithJsonSchema({"type": "string", "pattern": HASH_PATTERN}),
 ]

@@ -120,6 +120,7 @@ def _gain(kind: QuantityKind, *, positive: bool) -> BeforeValidator:
 _AT_ZERO = {
     kinds.INERTIA.name: "without inertia the loop has one state less, so no state is shared",
     kinds.IMPEDANCE.name: "without damping the admittance does not follow from the force",
+    kinds.SPRING.name: "without a spring nothing draws the admittance back",
 }
 
 
@@ -144,7 +145,7 @@ def _check_keys(entries: dict[str, object]) -> None:
             )
 
 
-def _schema(kind: QuantityKind) -> WithJsonSchema:
+def _schema(kind: QuantityKind, *, designed: bool = True) -> WithJsonSchema:
     single = quantity_schema(kind)
     known = {key: single | {"description": text} for key, text in _KEYS.items()}
     ends: dict[str, Any] = {"type": "array", "items": single, "minItems": 2, "maxItems": 2}
@@ -158,8 +159,12 @@ def _schema(kind: QuantityKind) -> WithJsonSchema:
             "additionalProperties": False,
         }
 
-    return WithJsonSchema({"anyOf": [single, mapping("min", "max"), mapping("nominal")]})
+    chosen = [mapping("min", "max")] if designed else []
+    return WithJsonSchema({"anyOf": [single, *chosen, mapping("nominal")]})
 
 
 InertiaGain = Annotated[GainSpec, _gain(kinds.INERTIA, positive=False), _schema(kinds.INERTIA)]
 DampingGain = Annotated[GainSpec, _gain(kinds.IMPEDANCE, positive=True), _schema(kinds.IMPEDANCE)]
+SpringGain = Annotated[
+    GainSpec, _gain(kinds.SPRING, positive=True), _schema(kinds.SPRING, designed=False)
+]

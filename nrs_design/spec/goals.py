@@ -13,10 +13,21 @@ from nrs_design.spec.faults import fault
 from nrs_design.spec.fields import AboveOne, BelowTwo, UnitFraction
 from nrs_design.spec.model import SpecModel
 from nrs_design.spec.quantity import Quantity
-from nrs_design.spec.quantity_fields import Angle, DecayRate, Duration, Torque
+from nrs_design.spec.quantity_fields import (
+    Angle,
+    AngularVelocity,
+    DecayRate,
+    Duration,
+    Torque,
+)
 
 # What only one type of controller has.
-ONLY_FOR = {"max_impedance_error": "impedance", "max_force_error": "force"}
+ONLY_FOR = {
+    "max_impedance_error": "impedance",
+    "max_creep": "impedance",
+    "max_creep_angle": "impedance",
+    "max_force_error": "force",
+}
 # What a certificate must show, for all controllers together.
 OF_THE_CERTIFICATE = frozenset({"peak_torque", "decay_rate"})
 
@@ -50,6 +61,16 @@ class GoalsSpec(SpecModel):
         description="largest factor between displayed and desired impedance up to the bandwidth, "
         "above 1, no unit; impedance controllers only",
     )
+    max_creep: AngularVelocity | None = Field(
+        default=None,
+        description="largest lasting velocity in free motion by errors of the force signal, such "
+        "as 0.5 deg/s; impedance controllers only, and with sensor",
+    )
+    max_creep_angle: Angle | None = Field(
+        default=None,
+        description="largest angle that the robot creeps in free motion by errors of the force "
+        "signal, such as 2 deg; impedance controllers with a spring Kt only, and with sensor",
+    )
     max_force_error: UnitFraction | None = Field(
         default=None,
         description="largest steady force error over the commanded force, between 0 and 1, no "
@@ -57,8 +78,8 @@ class GoalsSpec(SpecModel):
     )
     peak_torque: Torque | None = Field(
         default=None,
-        description="what the proved bound on the torque under all disturbances of the spec must "
-        "not exceed; for the whole spec, not for one controller",
+        description="largest torque in N*m that the proved bound under all disturbances of the "
+        "spec may have; for the whole spec, not for one controller",
     )
     decay_rate: DecayRate | None = Field(
         default=None,
@@ -70,6 +91,11 @@ class GoalsSpec(SpecModel):
         if not dict(self.given()):
             raise fault("no goal is given", "add one, such as `max_sensitivity_peak: 2`")
         return self
+
+    @property
+    def wants_creep(self) -> bool:
+        """Whether there is a goal that errors of the force signal decide."""
+        return self.max_creep is not None or self.max_creep_angle is not None
 
     def given(self) -> Iterator[tuple[str, Quantity | Fraction]]:
         """Yield the goals that are set, by key."""
@@ -100,7 +126,8 @@ def check_applicable(goals: GoalsSpec | None, types: set[str], *at: str) -> None
         )
     if not types and given - OF_THE_CERTIFICATE:
         raise fault(
-            "there is no controller that a goal applies to: position control has no contact",
+            "there is no controller that a goal applies to: they are for impedance and force "
+            "control",
             "remove goals",
             *at,
         )

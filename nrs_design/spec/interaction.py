@@ -6,7 +6,8 @@ from collections.abc import Callable
 from functools import partial
 from typing import Annotated, Literal
 
-from pydantic import Field, model_validator
+from pydantic import Field, ValidationInfo, field_validator, model_validator
+from pydantic_core import PydanticCustomError
 
 from nrs_design.spec.certification import CertificationSpec
 from nrs_design.spec.controllers import (
@@ -22,6 +23,7 @@ from nrs_design.spec.environment import EnvironmentSpec
 from nrs_design.spec.faults import all_of, did_you_mean, fault
 from nrs_design.spec.fields import Digits, Label, Name, Title
 from nrs_design.spec.goals import GoalsSpec, check_applicable
+from nrs_design.spec.mode_logic import ModeLogicSpec, check_kept, rules_of
 from nrs_design.spec.model import SpecModel
 from nrs_design.spec.motion import ActuatorSpec, LimitsSpec, MotionLoopSpec
 from nrs_design.spec.provenance import IdentifiedSpec
@@ -32,7 +34,8 @@ from nrs_design.spec.sampling import (
     check_motor,
     check_peak,
 )
-from nrs_design.spec.switching import DwellTime, SwitchingRule, check_names
+from nrs_design.spec.sensor import SensorSpec
+from nrs_design.spec.switching import MODE_LOGIC, DwellTime, LogicalRule, check_names
 
 MAX_ENTRIES = 64
 
@@ -80,6 +83,11 @@ class InteractionDesignSpec(SpecModel):
         description="what acts on the loop from outside; its effect on force and velocity is "
         "bounded",
     )
+    sensor: SensorSpec | None = Field(
+        default=None,
+        description="the force signal: its filter is a part of the loop, its errors bound the "
+        "creep; without it the force is taken for exact",
+    )
     contact: Literal["losable", "kept"] | None = Field(
         default=None,
         description="whether a proof must hold while contact is lost and made again (losable), or "
@@ -90,13 +98,42 @@ class InteractionDesignSpec(SpecModel):
         description="state of the contact: deflection stays continuous when the stiffness "
         "switches; force is what the thesis uses",
     )
-    switching: SwitchingRule = Field(
-        description="when controllers change: arbitrary, or rules with dwell_time and transitions "
-        "between controllers"
+    mode_logic: ModeLogicSpec | None = Field(
+        default=None,
+        description="what decides which controller is active; `switching: mode-logic` lets the "
+        "proof be about the switching signals that it can give",
     )
+    switching: LogicalRule = Field(
+        description="when controllers change: arbitrary, mode-logic (as mode_logic says), or rules "
+        "with dwell_time and transitions between controllers, or between controllers in one "
+        "contact each, such as tissue/soft"
+    )
+    # The default is made without validation, for which a validator of its own would be built.
     certification: CertificationSpec = Field(
-        default_factory=CertificationSpec, description="how far the search for a proof goes"
+        default_factory=CertificationSpec.model_construct,
+        description="how far the search for a proof goes",
     )
+
+    @field_validator("switching", mode="before")
+    @classmethod
+    def _follow_logic(cls, value: object, info: ValidationInfo) -> object:
+        """Put the rules of the mode logic in the place of its name."""
+        if value != MODE_LOGIC or not {"controllers", "environments", "mode_logic"} <= set(
+            info.data
+        ):
+            # Where one of them is faulty, that is reported instead.
+            return "arbitrary" if value == MODE_LOGIC else value
+        if info.data["mode_logic"] is None:
+            raise fault(
+                "there is no mode_logic to take the rules of switching from",
+                "add mode_logic, or write `switching: arbitrary`",
+            )
+        given = (info.data[name] for name in ("mode_logic", "controllers", "environments"))
+        try:
+            return rules_of(*given)
+        except PydanticCustomError:
+            # It does not fit: `check_kept` says so at its place.
+            return "arbitrary"
 
     @model_validator(mode="after")
     def _check_controllers(self) -> InteractionDesignSpec:
@@ -122,6 +159,7 @@ class InteractionDesignSpec(SpecModel):
                 for item in self.controllers.items()
             ),
             partial(check_disturbances, self.disturbances, self.sampling),
+            partial(_check_sensor, self),
             partial(check_peak, self.goals, self.disturbances),
             partial(
                 check_motor,
@@ -142,9 +180,19 @@ class InteractionDesignSpec(SpecModel):
                 for item in self.controllers.items()
             ),
             lambda: check_applicable(
-                self.goals, {c.type for c in self.controllers.values() if c.contacts}, "goals"
+                self.goals,
+                {c.type for c in self.controllers.values() if "goals" in type(c).model_fields},
+                "goals",
             ),
-            lambda: check_names(self.switching, self.controllers, "controller"),
+            lambda: check_names(
+                self.switching,
+                self.contact_names if self.switching.names_contacts else self.controllers,
+                "controller",
+            ),
+            partial(_check_contact_names, self),
+            partial(
+                check_kept, self.mode_logic, self.switching, self.controllers, self.environments
+            ),
             *(
                 partial(_check_dwell_time, dwell, self.find_dwell_obstacle, ("switching", *at))
                 for at, dwell in dwell_times
@@ -159,7 +207,18 @@ class InteractionDesignSpec(SpecModel):
         parts.update((("environments", name), item) for name, item in self.environments.items())
         if self.sampling is not None:
             parts["sampling",] = self.sampling
+        if self.sensor is not None and self.sensor.tool is not None:
+            parts["sensor", "tool"] = self.sensor.tool
         return parts
+
+    @property
+    def contact_names(self) -> tuple[str, ...]:
+        """Every controller in every contact, such as ``tissue/soft``; without one, the former."""
+        return tuple(
+            name if contact is None else f"{name}/{contact_name(contact)}"
+            for name, controller in self.controllers.items()
+            for contact in controller.contacts or (None,)
+        )
 
     @property
     def touched(self) -> frozenset[str]:
@@ -201,7 +260,12 @@ class InteractionDesignSpec(SpecModel):
 
     def find_dwell_obstacle(self) -> DwellObstacle | None:
         """Say why no dwell time can be claimed for this spec, or None."""
-        return find_changing_contact(self.actuator, self.controllers, self.environments)
+        return find_changing_contact(
+            self.actuator,
+            self.controllers,
+            self.environments,
+            by_contact=self.switching.names_contacts,
+        )
 
 
 def _check_mixture(
@@ -277,6 +341,22 @@ def _check_offsets(controllers: dict[str, ControllerSpec], idle: IdleStatesSpec 
             )
 
 
+def _check_contact_names(spec: InteractionDesignSpec) -> None:
+    """Refuse rules about single contacts where modes are not made one by one."""
+    if not spec.switching.names_contacts:
+        return
+    offset = None if spec.offset == "none" else spec.offset
+    beside = (("idle_states", spec.idle_states), ("sampling", spec.sampling), ("offset", offset))
+    for at, what in beside:
+        if what is not None:
+            raise fault(
+                f"rules of switching about controllers in one contact each, beside {at}, are not "
+                "modelled",
+                f"name controllers alone in the rules, or leave {at} out",
+                "switching",
+            )
+
+
 def _check_references(
     name: str,
     controller: ControllerSpec,
@@ -313,6 +393,40 @@ def _check_references(
             "controllers",
             name,
             "contacts",
+        )
+
+
+def _check_sensor(spec: InteractionDesignSpec) -> None:
+    """Refuse a filter that is not modelled, errors that are there twice, and goals without any."""
+    sensor = spec.sensor
+    goals = (
+        ("goals", spec.goals),
+        *((f"controllers.{n}", c.goals) for n, c in spec.controllers.items()),
+    )
+    for at, given in goals:
+        if sensor is None and given is not None and given.wants_creep:
+            raise fault(
+                "a goal for the creep without a sensor, whose errors the robot creeps by",
+                "add `sensor: {bias: 5e-3 N*m}`, or remove the goal",
+                *at.split("."),
+            )
+    if sensor is None:
+        return
+    if sensor.filter is not None and any(
+        c.commands != "velocity" for c in spec.controllers.values()
+    ):
+        raise fault(
+            "a filter of the force is modelled for impedance controllers only",
+            "leave filter out, or position and force controllers",
+            "sensor",
+            "filter",
+        )
+    if spec.disturbances is not None and spec.disturbances.force_step is not None:
+        raise fault(
+            "the sensor says how far its signal is off, and force_step does, too",
+            "move it to `sensor: {resolution: ...}`",
+            "disturbances",
+            "force_step",
         )
 
 

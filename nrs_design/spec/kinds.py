@@ -106,7 +106,32 @@ FORCE_GAIN = QuantityKind(
         "1/(N*m)": "the gain gives an angle: write '{value} rad/(N*m)'",
     },
 )
+INTEGRAL_FORCE_GAIN = QuantityKind(
+    "an integral force gain",
+    ("rad/(N*m*s)",),
+    "0.5 rad/(N*m*s)",
+    {"rad/(N*m)": "that is a proportional gain: write '{value} rad/(N*m*s)'"},
+)
 
+SPRING = QuantityKind(
+    "a rotational stiffness",
+    ("N*m/rad",),
+    "0.5 N*m/rad",
+    {
+        "N*m": _STIFFNESS,
+        "N/m": "that is a linear stiffness: multiply it by the square of its lever arm and write "
+        "N*m/rad",
+    },
+)
+TORQUE_RATE = QuantityKind(
+    "a drift of a torque", ("N*m/s",), "1e-5 N*m/s", {"N*m": "a drift is per second: write N*m/s"}
+)
+NOISE_DENSITY = QuantityKind(
+    "a density of noise",
+    ("N^2*m^2*s",),
+    "1e-8 N^2*m^2*s",
+    {"N*m": "that is an rms: square it, and divide by the bandwidth in Hz"},
+)
 LINEAR_STIFFNESS = QuantityKind("a linear stiffness", ("N/m",), "747.1461 N/m")
 LINEAR_DAMPING = QuantityKind("a linear damping", ("N*s/m",), "5 N*s/m")
 

@@ -6,7 +6,7 @@ import re
 from fractions import Fraction
 from typing import Annotated
 
-from pydantic import Field, PlainValidator, WithJsonSchema, model_validator
+from pydantic import Field, WithJsonSchema, model_validator
 
 from nrs_design.proof.text import quoted
 from nrs_design.spec.affine import Affine
@@ -14,7 +14,7 @@ from nrs_design.spec.exact import parse_exact
 from nrs_design.spec.expression import EXPRESSION_PATTERN, parse_affine
 from nrs_design.spec.faults import as_text, fault, reported
 from nrs_design.spec.fields import NUMBER_SCHEMA, read_exact
-from nrs_design.spec.model import SpecModel
+from nrs_design.spec.model import ReadBy, SpecModel
 
 PARAMETER_PATTERN = "^[A-Za-z][A-Za-z0-9_]{0,31}$"
 MAX_PARAMETERS = 16
@@ -72,21 +72,21 @@ def _read_range(value: object) -> tuple[Fraction, Fraction]:
     return _read_value(value[0], 0), _read_value(value[1], 1)
 
 
-_Value = Annotated[Fraction, PlainValidator(_read_value), WithJsonSchema(NUMBER_SCHEMA)]
+_Value = Annotated[Fraction, ReadBy(_read_value), WithJsonSchema(NUMBER_SCHEMA)]
 _Range = Annotated[
     tuple[Fraction, Fraction],
-    PlainValidator(_read_range),
+    ReadBy(_read_range),
     WithJsonSchema({"type": "array", "items": NUMBER_SCHEMA, "minItems": 2, "maxItems": 2}),
 ]
 ParameterName = Annotated[
     str,
-    PlainValidator(read_name),
+    ReadBy(read_name),
     WithJsonSchema({"type": "string", "pattern": PARAMETER_PATTERN}),
 ]
-Switch = Annotated[bool, PlainValidator(_read_switch), WithJsonSchema({"type": "boolean"})]
+Switch = Annotated[bool, ReadBy(_read_switch), WithJsonSchema({"type": "boolean"})]
 Entry = Annotated[
     Affine,
-    PlainValidator(read_entry),
+    ReadBy(read_entry),
     WithJsonSchema(
         {"anyOf": [*NUMBER_SCHEMA["anyOf"], {"type": "string", "pattern": EXPRESSION_PATTERN}]}
     ),

@@ -23,7 +23,7 @@ PI_BETWEEN = (
     Fraction("3.14159265358979323846264338328"),
 )
 QUANTITY_PATTERN = rf"^(?:{DECIMAL_PATTERN}|{RATIO_PATTERN}) +[A-Za-z1(][A-Za-z0-9*/^()+-]*$"
-_GLUED = re.compile(rf"({DECIMAL_PATTERN})([A-Za-z].*)")
+_GLUED = rf"({DECIMAL_PATTERN})([A-Za-z].*)"
 
 
 @dataclass(frozen=True, slots=True)
@@ -86,6 +86,12 @@ class Quantity:
     def not_below(self) -> Fraction:
         """A fraction not below the SI value, and above it only where the unit holds a pi."""
         pi = PI_BETWEEN[(self.pi_power > 0) == (self.value >= 0)]
+        return self.rational_part * pi**self.pi_power
+
+    @property
+    def not_above(self) -> Fraction:
+        """A fraction not above the SI value, and below it only where the unit holds a pi."""
+        pi = PI_BETWEEN[(self.pi_power > 0) != (self.value >= 0)]
         return self.rational_part * pi**self.pi_power
 
     @property
@@ -198,7 +204,7 @@ def _irrational(quantity: Quantity, kind: QuantityKind) -> SpecError:
 
 
 def _without_unit(text: str, kind: QuantityKind) -> SpecError:
-    glued = len(text) <= MAX_LENGTH and _GLUED.fullmatch(text)
+    glued = len(text) <= MAX_LENGTH and re.fullmatch(_GLUED, text)
     if glued:
         return SpecError(
             f"{quoted(text)} has no space between number and unit",

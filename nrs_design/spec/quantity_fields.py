@@ -5,14 +5,14 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Annotated, Any
 
-from pydantic import BeforeValidator, Field, PlainValidator, WithJsonSchema, model_validator
+from pydantic import BeforeValidator, Field, WithJsonSchema, model_validator
 from pydantic_core import PydanticCustomError
 
 from nrs_design.errors import SpecError
 from nrs_design.proof.text import quoted
 from nrs_design.spec import kinds
 from nrs_design.spec.faults import as_text, fault, reported
-from nrs_design.spec.model import SpecModel
+from nrs_design.spec.model import ReadBy, SpecModel
 from nrs_design.spec.quantity import (
     QUANTITY_PATTERN,
     Quantity,
@@ -65,10 +65,8 @@ def quantity_schema(kind: QuantityKind) -> dict[str, Any]:
     return {"type": "string", "pattern": QUANTITY_PATTERN, "examples": [kind.example]}
 
 
-def _quantity(kind: QuantityKind, *, positive: bool = True, signed: bool = False) -> PlainValidator:
-    return PlainValidator(
-        lambda value: read_quantity(value, kind, positive=positive, signed=signed)
-    )
+def _quantity(kind: QuantityKind, *, positive: bool = True, signed: bool = False) -> ReadBy:
+    return ReadBy(lambda value: read_quantity(value, kind, positive=positive, signed=signed))
 
 
 def _schema(kind: QuantityKind) -> WithJsonSchema:
@@ -86,7 +84,7 @@ def _as_is(value: object) -> Quantity:
 # Inside bounds and ranges: the field around them knows the kind and reads the text.
 AnyQuantity = Annotated[
     Quantity,
-    PlainValidator(_as_is),
+    ReadBy(_as_is),
     WithJsonSchema({"type": "string", "pattern": QUANTITY_PATTERN}),
 ]
 
@@ -164,17 +162,17 @@ def _bounds(kind: QuantityKind, *, positive: bool) -> BeforeValidator:
     return BeforeValidator(read)
 
 
-def _ranged(kind: QuantityKind, *, positive: bool) -> BeforeValidator:
+def _ranged(kind: QuantityKind, *, positive: bool, signed: bool = False) -> BeforeValidator:
     def read(value: object) -> object:
         if isinstance(value, str | Quantity):
-            return {"nominal": read_quantity(value, kind, positive=positive)}
+            return {"nominal": reader(value)}
         entries = read_entries(value, ("nominal",), reader)
         if isinstance(entries, dict) and "range" in entries:
             entries["range"] = read_range(entries["range"], reader)
         return entries
 
     def reader(value: object) -> Quantity:
-        return read_quantity(value, kind, positive=positive)
+        return read_quantity(value, kind, positive=positive, signed=signed)
 
     return BeforeValidator(read)
 
@@ -261,10 +259,18 @@ Zero = Annotated[Quantity, _quantity(kinds.ZERO), _schema(kinds.ZERO)]
 AngularVelocity = Annotated[
     Quantity, _quantity(kinds.ANGULAR_VELOCITY), _schema(kinds.ANGULAR_VELOCITY)
 ]
+SignedAngularVelocity = Annotated[
+    Quantity, _quantity(kinds.ANGULAR_VELOCITY, signed=True), _schema(kinds.ANGULAR_VELOCITY)
+]
 Torque = Annotated[Quantity, _quantity(kinds.TORQUE), _schema(kinds.TORQUE)]
+SignedTorque = Annotated[Quantity, _quantity(kinds.TORQUE, signed=True), _schema(kinds.TORQUE)]
+TorqueRate = Annotated[Quantity, _quantity(kinds.TORQUE_RATE), _schema(kinds.TORQUE_RATE)]
 Bandwidth = Annotated[Quantity, _quantity(kinds.BANDWIDTH), _schema(kinds.BANDWIDTH)]
 LeverArm = Annotated[Quantity, _quantity(kinds.LEVER_ARM), _schema(kinds.LEVER_ARM)]
 Impedance = Annotated[Quantity, _quantity(kinds.IMPEDANCE), _schema(kinds.IMPEDANCE)]
+IntegralForceGain = Annotated[
+    Quantity, _quantity(kinds.INTEGRAL_FORCE_GAIN), _schema(kinds.INTEGRAL_FORCE_GAIN)
+]
 ForceGain = Annotated[Quantity, _quantity(kinds.FORCE_GAIN), _schema(kinds.FORCE_GAIN)]
 Stiffness = Annotated[
     RangedQuantity, _ranged(kinds.STIFFNESS, positive=True), _ranged_schema(kinds.STIFFNESS)
@@ -277,6 +283,14 @@ PositiveDamping = Annotated[
 ]
 Deflection = Annotated[Quantity, _quantity(kinds.DEFLECTION), _schema(kinds.DEFLECTION)]
 Mass = Annotated[Quantity, _quantity(kinds.MASS, positive=False), _schema(kinds.MASS)]
+RangedMass = Annotated[
+    RangedQuantity, _ranged(kinds.MASS, positive=True), _ranged_schema(kinds.MASS)
+]
+RangedCoordinate = Annotated[
+    RangedQuantity, _ranged(kinds.LENGTH, positive=False, signed=True), _ranged_schema(kinds.LENGTH)
+]
+NoiseDensity = Annotated[Quantity, _quantity(kinds.NOISE_DENSITY), _schema(kinds.NOISE_DENSITY)]
+Force = Annotated[Quantity, _quantity(kinds.FORCE), _schema(kinds.FORCE)]
 Length = Annotated[Quantity, _quantity(kinds.LENGTH), _schema(kinds.LENGTH)]
 Coordinate = Annotated[Quantity, _quantity(kinds.LENGTH, signed=True), _schema(kinds.LENGTH)]
 Angle = Annotated[Quantity, _quantity(kinds.ANGLE), _schema(kinds.ANGLE)]

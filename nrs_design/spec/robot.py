@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from typing import Annotated, ClassVar, Literal
 
-from pydantic import Field, PlainValidator, WithJsonSchema, model_validator
+from pydantic import Field, WithJsonSchema, model_validator
 
 from nrs_design.spec.faults import fault
 from nrs_design.spec.fields import Name, Positive, Title, read_exact
-from nrs_design.spec.model import SpecModel
+from nrs_design.spec.model import ReadBy, SpecModel
 from nrs_design.spec.motion import MotionLoopSpec
 from nrs_design.spec.quantity_fields import (
     ActuatorGain,
@@ -50,11 +50,11 @@ def _read_counts(value: object) -> int:
 
 
 ElbowSign = Annotated[
-    int, PlainValidator(_read_elbow_sign), WithJsonSchema({"type": "integer", "enum": [-1, 1]})
+    int, ReadBy(_read_elbow_sign), WithJsonSchema({"type": "integer", "enum": [-1, 1]})
 ]
 Counts = Annotated[
     int,
-    PlainValidator(_read_counts),
+    ReadBy(_read_counts),
     WithJsonSchema({"type": "integer", "minimum": 2, "maximum": MAX_COUNTS}),
 ]
 

@@ -6,13 +6,13 @@ from collections.abc import Mapping
 from fractions import Fraction
 from typing import Annotated, Literal
 
-from pydantic import Field, PlainValidator, WithJsonSchema
+from pydantic import Field, WithJsonSchema
 
 from nrs_design.spec.controllers import ControllerSpec
 from nrs_design.spec.faults import fault
 from nrs_design.spec.fields import read_exact
 from nrs_design.spec.goals import GoalsSpec
-from nrs_design.spec.model import SpecModel
+from nrs_design.spec.model import ReadBy, SpecModel
 from nrs_design.spec.motion import ActuatorSpec
 from nrs_design.spec.provenance import IdentifiedSpec
 from nrs_design.spec.quantity_fields import Angle, AngularVelocity, Command, Duration, Torque
@@ -38,7 +38,7 @@ def _read_delay(value: object) -> tuple[int, int]:
 _SAMPLES = {"type": "integer", "minimum": 0, "maximum": LONGEST_DELAY}
 Delay = Annotated[
     tuple[int, int],
-    PlainValidator(_read_delay),
+    ReadBy(_read_delay),
     WithJsonSchema(
         {"anyOf": [_SAMPLES, {"type": "array", "items": _SAMPLES, "minItems": 2, "maxItems": 2}]}
     ),

@@ -103,8 +103,10 @@ class SwitchedSystemSpec(SpecModel):
         description="what switches do to the state; the others leave it as it is. Several from one "
         "mode to another are as many switches: any one of them may happen",
     )
+    # The default is made without validation, for which a validator of its own would be built.
     certification: CertificationSpec = Field(
-        default_factory=CertificationSpec, description="how far the search for a proof goes"
+        default_factory=CertificationSpec.model_construct,
+        description="how far the search for a proof goes",
     )
 
     @property

@@ -9,7 +9,7 @@ from functools import partial
 from math import lcm
 from typing import Annotated, Any
 
-from pydantic import BeforeValidator, Field, PlainValidator, WithJsonSchema, model_validator
+from pydantic import BeforeValidator, Field, WithJsonSchema, model_validator
 
 from nrs_design.errors import SpecError
 from nrs_design.proof.text import quoted
@@ -17,7 +17,7 @@ from nrs_design.spec import kinds
 from nrs_design.spec.exact import parse_exact
 from nrs_design.spec.faults import all_of, as_text, did_you_mean, fault, reported
 from nrs_design.spec.fields import Exact, Label
-from nrs_design.spec.model import SpecModel
+from nrs_design.spec.model import ReadBy, SpecModel
 from nrs_design.spec.quantity import QUANTITY_PATTERN, parse_quantity
 
 MAX_TRANSITIONS = 20_000
@@ -28,6 +28,8 @@ MAX_DENOMINATOR_BITS = 1024
 LONGEST_DWELL = 4096
 
 ARBITRARY = "arbitrary"
+# The rules are those that the mode logic of the spec keeps.
+MODE_LOGIC = "mode-logic"
 _FORM = "write 'arbitrary', or {dwell_time: ..., transitions: [[from, to], ...]}"
 _DWELL_TIME = (
     "shortest time in a mode before the next switch, in s; a number of steps in discrete time; one "
@@ -89,7 +91,8 @@ def parse_dwell_time(text: str) -> DwellTime:
     return dwell
 
 
-def _read_dwell_times(value: object) -> DwellTimes:
+def read_dwell_times(value: object) -> DwellTimes:
+    """Read one time for all modes, or times by the names of modes."""
     if isinstance(value, DwellTime):
         return value
     if not isinstance(value, Mapping):
@@ -126,7 +129,7 @@ def _read_transitions(value: object) -> tuple[Transition, ...]:
 
 
 _ONE_DWELL: dict[str, Any] = {"type": "string", "pattern": QUANTITY_PATTERN}
-_DWELL_SCHEMA: dict[str, Any] = {
+DWELL_SCHEMA: dict[str, Any] = {
     "anyOf": [
         _ONE_DWELL,
         {"type": "object", "additionalProperties": _ONE_DWELL, "minProperties": 1},
@@ -147,21 +150,21 @@ class SwitchingSpec(SpecModel):
     """Rules for the switching signal; without any, it is arbitrary."""
 
     dwell_time: Annotated[
-        DwellTimes | None, PlainValidator(_read_dwell_times), WithJsonSchema(_DWELL_SCHEMA)
+        DwellTimes | None, ReadBy(read_dwell_times), WithJsonSchema(DWELL_SCHEMA)
     ] = Field(default=None, description=_DWELL_TIME)
     longest_dwell_time: Annotated[
-        DwellTimes | None, PlainValidator(_read_dwell_times), WithJsonSchema(_DWELL_SCHEMA)
+        DwellTimes | None, ReadBy(read_dwell_times), WithJsonSchema(DWELL_SCHEMA)
     ] = Field(default=None, description=_LONGEST_DWELL_TIME)
     transitions: Annotated[
         tuple[Transition, ...] | None,
-        PlainValidator(_read_transitions),
+        ReadBy(_read_transitions),
         WithJsonSchema(_TRANSITIONS_SCHEMA),
     ] = Field(default=None, description=_TRANSITIONS)
 
     @property
     def is_arbitrary(self) -> bool:
         """Whether there are no rules."""
-        return self == SwitchingSpec()
+        return self == ANY_SIGNAL
 
     def dwell_times(self) -> Iterator[tuple[tuple[str, ...], DwellTime]]:
         """Yield every time in a mode that is written, and where it is: field, and mode if any."""
@@ -176,6 +179,13 @@ class SwitchingSpec(SpecModel):
         """Return the shortest and the longest time in a mode."""
         return _of(self.dwell_time, name), _of(self.longest_dwell_time, name)
 
+    @property
+    def names_contacts(self) -> bool:
+        """Whether rules are about controllers in one contact each, such as ``tissue/soft``."""
+        named = (name for at, _ in self.dwell_times() for name in at[1:])
+        ends = (name for transition in self.transitions or () for name in transition)
+        return any("/" in name for name in (*named, *ends))
+
     def __str__(self) -> str:
         """Say the rules in a few words."""
         rules = [
@@ -188,6 +198,10 @@ class SwitchingSpec(SpecModel):
         return ", ".join(rules) or ARBITRARY
 
 
+# Without rules. Made without validation, for which a validator would be built.
+ANY_SIGNAL = SwitchingSpec.model_construct()
+
+
 def _of(written: DwellTimes | None, name: str) -> DwellTime | None:
     return written.get(name) if isinstance(written, dict) else written
 
@@ -196,24 +210,22 @@ def _read_switching(value: object) -> object:
     if isinstance(value, str):
         if value != ARBITRARY:
             raise fault(f"{quoted(value)} is not known", _FORM)
-        return SwitchingSpec()
+        return ANY_SIGNAL
     if isinstance(value, dict) and not value:
         raise fault("no rule is given", _FORM)
     return value
 
 
-SwitchingRule = Annotated[
-    SwitchingSpec,
-    BeforeValidator(_read_switching),
-    WithJsonSchema(
+def _rule_schema(*words: str) -> WithJsonSchema:
+    return WithJsonSchema(
         {
             "anyOf": [
-                {"enum": [ARBITRARY]},
+                {"enum": list(words)},
                 {
                     "type": "object",
                     "properties": {
-                        "dwell_time": _DWELL_SCHEMA | {"description": _DWELL_TIME},
-                        "longest_dwell_time": _DWELL_SCHEMA | {"description": _LONGEST_DWELL_TIME},
+                        "dwell_time": DWELL_SCHEMA | {"description": _DWELL_TIME},
+                        "longest_dwell_time": DWELL_SCHEMA | {"description": _LONGEST_DWELL_TIME},
                         "transitions": _TRANSITIONS_SCHEMA | {"description": _TRANSITIONS},
                     },
                     "minProperties": 1,
@@ -221,7 +233,13 @@ SwitchingRule = Annotated[
                 },
             ]
         }
-    ),
+    )
+
+
+SwitchingRule = Annotated[SwitchingSpec, BeforeValidator(_read_switching), _rule_schema(ARBITRARY)]
+# Of a spec that may have a mode logic, which its own validator turns into rules first.
+LogicalRule = Annotated[
+    SwitchingSpec, BeforeValidator(_read_switching), _rule_schema(ARBITRARY, MODE_LOGIC)
 ]
 
 

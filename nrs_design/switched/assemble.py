@@ -18,6 +18,7 @@ from nrs_design.switched.assumptions import (
     scale_texts,
 )
 from nrs_design.switched.constraints import assemble_switching
+from nrs_design.switched.logic_assumptions import logic_texts
 from nrs_design.switched.parameters import corner_modes, fixed_parameter, read_parameters
 
 if TYPE_CHECKING:
@@ -137,6 +138,7 @@ def assemble(
     from nrs_design.switched.commanded import with_command
     from nrs_design.switched.gain_box import gain_boxes
     from nrs_design.switched.joint import Joint
+    from nrs_design.switched.sensor_assumptions import sensor_texts
 
     _check_scale(scale)
     if spec.sampling is not None:
@@ -167,8 +169,14 @@ def assemble(
             system = with_command(system, spec, spec.disturbances, loop, joint, touched)
     else:
         raise AssemblyError(f"unknown coordinates {coordinates!r}: deflection or force")
+    period = None if spec.sampling is None else spec.sampling.period.exact
+    sensed = sensor_texts(
+        design.sensor, period, disturbed=bool(system.channels) and period is not None
+    )
     texts = (
         *system.assumptions,
+        *sensed,
+        *logic_texts(spec),
         *identified_texts(spec),
         *preload_texts(spec, scale),
         *scale_texts(scale),

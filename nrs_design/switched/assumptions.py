@@ -25,6 +25,18 @@ REST = {
     False: "all modes then rest at one point, the state zero.",
     True: "all modes in contact then rest at one point, the state zero.",
 }
+# What a bounded velocity command adds up to is not bounded.
+SPRING = (
+    "The spring Kt of an admittance acts on q, by how much the admittances have moved the position "
+    "reference: the integral of vm over all controllers, which no switch resets. The reference "
+    "itself stays where the contact is at rest. At rest elsewhere it is a constant input; while it "
+    "moves on, as under a lasting velocity command, the force grows with it."
+)
+LOST_ANYWHERE = (
+    "Contact may be lost and made again at any moment, whatever the deflection: free motion, in "
+    "which the spring draws the axis back, is one of the modes. The surface is back in its place "
+    "at once."
+)
 CONTINUOUS = "continuous at a switch (identity resets)"
 _STAYS = {
     "dwell_time": "stays active for at least",

@@ -5,7 +5,7 @@ While another environment is touched, the memory of an environment decays as it 
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import partial
@@ -14,6 +14,7 @@ from itertools import chain
 from nrs_design.controllers.controller_design import Controller, ControllerDesign
 from nrs_design.controllers.gains import idle_decay
 from nrs_design.controllers.laws import CompliantLaw
+from nrs_design.controllers.sensor import LowPass
 from nrs_design.errors import AssemblyError
 from nrs_design.models.contact.environment import Environment
 from nrs_design.models.contact.kelvin_voigt import KelvinVoigt
@@ -100,11 +101,18 @@ def close_loop(
     rules = rules or SwitchingSpec()
     boxes = {c.name: GainBox.point(c.law) for c in design.controllers} | {**(boxes or {})}
     state = _shared_state(plant, loop, design, coordinates, idle, offset)
-    losable = None if contact == "kept" else _lost_contact(state, design, boxes, contact)
+    sprung = any(controller.law.spring for controller in design.controllers)
+    free = sprung and _adds_free_motion(state, design, contact)
+    losable = None if sprung or contact == "kept" else _lost_contact(state, design, boxes, contact)
     parts = {
-        controller.name: tuple(_controller_modes(controller, plant, state, boxes[controller.name]))
+        controller.name: (
+            *_controller_modes(controller, plant, state, boxes[controller.name]),
+            *(_free_modes(controller, state, boxes[controller.name]) if free else ()),
+        )
         for controller in design.controllers
     }
+    if rules.names_contacts:
+        parts = _by_contact(chain.from_iterable(parts.values()))
     groups = {key: tuple(Corner(mode.name) for mode in part) for key, part in parts.items()}
     if idle is not None and idle.reset:
         resets = resets_of(design, state.realization.order, state.idle_count)
@@ -127,12 +135,22 @@ def close_loop(
                 given=loop.given,
                 losable=losable is not None,
                 offset=offset,
+                free=free,
                 joint=state.joint,
             )
         ),
         assemble_switching(rules, groups, resets),
         losable,
     )
+
+
+def _by_contact(modes: Iterable[Mode]) -> dict[str, tuple[Mode, ...]]:
+    """Return the modes by controller and contact, such as ``tissue/soft``, with all corners."""
+    found: dict[str, tuple[Mode, ...]] = {}
+    for mode in modes:
+        name = "/".join(mode.name.split("/")[:2])
+        found[name] = (*found.get(name, ()), mode)
+    return found
 
 
 def _shared_state(
@@ -145,6 +163,7 @@ def _shared_state(
 ) -> _State:
     touched = plant.among(design.contacts)
     _check_coordinates(coordinates, touched)
+    _check_spring(coordinates, touched, design)
     if idle is not None:
         check_mixture(coordinates, touched)
     shared = _shared_law(design, mixed=idle is not None)
@@ -155,7 +174,8 @@ def _shared_state(
             remedy="give nominal values of the actuator and no load_inertia",
             at=("actuator",),
         )
-    return _State(realize(loop), coordinates, touched, shared, idle, offset, joint)
+    low_pass = design.sensor.filter
+    return _State(realize(loop), coordinates, touched, shared, idle, offset, joint, low_pass)
 
 
 def _check_coordinates(coordinates: str, touched: tuple[Environment, ...]) -> None:
@@ -175,6 +195,31 @@ def _check_coordinates(coordinates: str, touched: tuple[Environment, ...]) -> No
                 remedy="let the controllers touch no other environment, or write a spec for each",
                 at=("environments", environment.name),
             )
+
+
+def _check_spring(
+    coordinates: str, touched: tuple[Environment, ...], design: ControllerDesign
+) -> None:
+    """Refuse a spring in an admittance where the state does not tell its displacement."""
+    name = next((c.name for c in design.controllers if c.law.spring), None)
+    if name is None:
+        return
+    at = ("controllers", name, "Kt")
+    if coordinates == "force":
+        raise AssemblyError(
+            "force coordinates do not apply to an admittance with a spring Kt: where the "
+            "deflection jumps, so would its displacement",
+            remedy="use coordinates: deflection, or leave Kt out",
+            at=at,
+        )
+    restless = next((e for e in touched if not e.law.has_rest), None)
+    if restless is not None:
+        raise AssemblyError(
+            f"an admittance with a spring Kt is not modelled in contact with {restless.name}, "
+            f"which has no rest position ({restless.law.name})",
+            remedy="leave Kt out, or give the environment a law that has a rest position",
+            at=at,
+        )
 
 
 def _shared_law(design: ControllerDesign, *, mixed: bool) -> CompliantLaw:
@@ -198,7 +243,8 @@ def _shared_law(design: ControllerDesign, *, mixed: bool) -> CompliantLaw:
         raise AssemblyError(
             f"the controllers keep different states of their own ({found}), so their modes share "
             "no state",
-            remedy="give all impedance controllers a virtual inertia Mt > 0, or none of them",
+            remedy="give all impedance controllers a virtual inertia Mt > 0, or none of them; mix "
+            "no parallel controllers with others",
             at=("controllers",),
         )
     return leading[0]
@@ -218,6 +264,7 @@ class _State:
     idle: IdleStatesSpec | None
     offset: Offset
     joint: Joint | None
+    low_pass: LowPass | None
 
     @property
     def motion(self) -> Realization | JointMotion:
@@ -258,7 +305,8 @@ class _State:
             return loop
         contact = "F [N*m]" if self.coordinates == "force" else self.touched[0].law.states[0]
         memories = (f"{e.name}: {name}" for e in self.touched for name in e.law.states[1:])
-        return (*loop, contact, *memories)
+        sensed = () if self.low_pass is None else self.low_pass.states
+        return (*loop, *sensed, contact, *memories)
 
     def contact_box(self, environment: Environment) -> Box:
         """Return the parameters of a contact, and the rates of the memories that it leaves alone.
@@ -280,7 +328,7 @@ class _State:
         if self.idle is not None or law.commands == "position":
             rows = position_mode(self.realization, held, contact, environment.name)
             return self.padded(rows, law)
-        rows = velocity_mode(self.motion_at(values), held, contact)
+        rows = velocity_mode(self.motion_at(values), held, contact, self.low_pass)
         if self.coordinates == "force":
             return to_force_coordinates(rows, self.motion, contact)
         creeps = {
@@ -334,7 +382,35 @@ def _lost_contact(
         If it is not modelled, and the spec asks for it.
     """
     damped = [e for e in state.touched if "b" in e.parameters]
-    modelled = (
+    if not _can_be_free(state):
+        if contact == "losable":
+            raise _not_losable("")
+        return None
+    free = [mode for c in design.controllers for mode in _free_modes(c, state, boxes[c.name])]
+    pulls = (_force_row(state, law) for environment in damped for law in environment.corners)
+    return Contact(tuple(free), tuple(pulls), required=contact == "losable")
+
+
+def _adds_free_motion(state: _State, design: ControllerDesign, contact: str | None) -> bool:
+    """Tell whether free motion is one of the modes: with springs, it ends at rest in one place.
+
+    That contact is lost at any deflection is more than happens, and is covered on demand only.
+
+    Raises
+    ------
+    AssemblyError
+        If it is not modelled, and the spec asks for it.
+    """
+    everywhere = all(controller.law.spring for controller in design.controllers)
+    if contact == "losable" and not everywhere:
+        raise _not_losable(", where some controllers have a spring Kt, for all that have one")
+    if contact == "losable" and not _can_be_free(state):
+        raise _not_losable("")
+    return contact == "losable"
+
+
+def _can_be_free(state: _State) -> bool:
+    return (
         state.idle is None
         and state.law.commands == "velocity"
         and state.coordinates == "deflection"
@@ -342,32 +418,29 @@ def _lost_contact(
         and not any(e.parts and not e.each_losable for e in state.touched)
         and bool(state.touched)
     )
-    if not modelled:
-        if contact == "losable":
-            raise AssemblyError(
-                "loss of contact is modelled for impedance controllers on elastic and damped "
-                "environments in deflection coordinates",
-                remedy="use `contact: kept`",
-                at=("contact",),
-            )
-        return None
-    free = []
-    for controller in design.controllers:
-        name = f"{controller.name}/free"
-        box = boxes[controller.name].box.beside(state.motor_box)
-        rows_at = partial(_free_rows, state, controller.law)
-        for corner, rows in box.corners(rows_at, name):
-            free.append(Mode(corner, RationalMatrix.from_rows(rows)))
-    pulls = (_force_row(state, law) for environment in damped for law in environment.corners)
-    return Contact(tuple(free), tuple(pulls), required=contact == "losable")
+
+
+def _not_losable(which: str) -> AssemblyError:
+    return AssemblyError(
+        "loss of contact is modelled for impedance controllers on elastic and damped environments "
+        f"in deflection coordinates{which}",
+        remedy="use `contact: kept`",
+        at=("contact",),
+    )
+
+
+def _free_modes(controller: Controller, state: _State, gains: GainBox) -> Iterator[Mode]:
+    box, rows_at = gains.box.beside(state.motor_box), partial(_free_rows, state, controller.law)
+    for corner, rows in box.corners(rows_at, f"{controller.name}/free"):
+        yield Mode(corner, RationalMatrix.from_rows(rows))
 
 
 def _free_rows(state: _State, law: CompliantLaw, values: Mapping[str, Fraction]) -> Rows:
-    return velocity_mode(state.motion_at(values), law.of(values), NOTHING)
+    return velocity_mode(state.motion_at(values), law.of(values), NOTHING, state.low_pass)
 
 
 def _force_row(state: _State, law: AbstractLinearLaw) -> RationalMatrix:
     """Return the force of a damped spring as a row on the states."""
-    own = coordinates(state.motion.order + len(state.law.states) + 1)
+    own = coordinates(len(state.names))
     force, _ = law.react(state.motion.output(len(own)), own[-1:])
     return RationalMatrix.from_rows([force])

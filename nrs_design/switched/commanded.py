@@ -64,6 +64,13 @@ def with_command(
             remedy="leave disturbances out",
             at=("disturbances",),
         )
+    sprung = next((name for name, c in spec.controllers.items() if "Kt" in c.gains()), None)
+    if sprung is not None:
+        raise AssemblyError(
+            "a velocity command moves the position that the spring Kt draws the robot to",
+            remedy="leave command out, or Kt",
+            at=("controllers", sprung, "Kt"),
+        )
     n = system.order
     motion = realize(loop) if joint is None else joint.nominal
     free = () if system.contact is None else system.contact.free

@@ -15,8 +15,10 @@ from nrs_design.spec import IdleStatesSpec, SwitchingSpec
 from nrs_design.spec.controllers import Command, Offset
 from nrs_design.switched.assumptions import (
     CONTINUOUS,
+    LOST_ANYWHERE,
     LOST_CONTACT,
     REST,
+    SPRING,
     at_once_texts,
     rule_texts,
 )
@@ -35,7 +37,8 @@ _INPUTS = "All inputs are zero (velocity command, reference force, motion of the
 # In free motion, a command moves the axis ever further from the surface.
 _COMMANDED = (
     "Under a constant command the modes may rest at different points. Where stability is proved, "
-    "bounded inputs keep the state bounded{}; how far it goes, and that it settles, is not claimed."
+    "bounded inputs{} keep the state bounded{}; how far it goes, and that it settles, is not "
+    "claimed."
 )
 _IN_THE_AIR = ", but not how far the axis moves away while contact is lost"
 _CONTACT = (
@@ -103,6 +106,8 @@ class Assumed:
         Whether the system says how contact is lost; then a statement says whether it is kept.
     offset : {"none", "reference", "measured"}
         Where force controllers take their offset from.
+    free : bool
+        Whether free motion is one of the modes.
     joint : Joint or None
         The motor, where it has ranges or is loaded by the environment.
     """
@@ -117,6 +122,7 @@ class Assumed:
     given: bool
     losable: bool = False
     offset: Offset = "none"
+    free: bool = False
     joint: Joint | None = None
 
 
@@ -145,8 +151,7 @@ def assume_loop(loop: Assumed) -> tuple[str, ...]:
 def _input_texts(loop: Assumed) -> tuple[str, ...]:
     """Say what acts from outside, and what then rests."""
     if loop.offset == "none":
-        commanded = _COMMANDED.format(_IN_THE_AIR if loop.losable else "")
-        return _INPUTS + REST[loop.losable], commanded
+        return _INPUTS + REST[loop.losable], *_command_texts(loop)
     taken = (
         f"X_i is taken at every switch of controllers, as {_TAKEN[loop.offset]}, and held until "
         "the next; in position mode the command is X_i and what the operator commands since."
@@ -160,6 +165,14 @@ def _loop_texts(loop: Assumed) -> Iterator[str]:
     if loop.joint is not None:
         return loop.joint.texts()
     return iter((_GIVEN_LOOP if loop.given else _DESIGNED_LOOP,))
+
+
+def _command_texts(loop: Assumed) -> Iterator[str]:
+    sprung = any(c.law.spring for c in loop.design.controllers)
+    integral = ", if the integral of the velocity command is bounded too," if sprung else ""
+    yield _COMMANDED.format(integral, _IN_THE_AIR if loop.losable else "")
+    if sprung:
+        yield SPRING
 
 
 def _contact_texts(loop: Assumed) -> Iterator[str]:
@@ -208,6 +221,8 @@ def _names(design: ControllerDesign, command: Command) -> dict[str, None]:
 def _kept_texts(loop: Assumed) -> Iterator[str]:
     if loop.losable:
         return iter((LOST_CONTACT,))
+    if loop.free:
+        return iter((LOST_ANYWHERE,))
     used = {controller.law.name for controller in loop.design.controllers}
     texts = (law.contact_text(alone=loop.idle is None) for law in LAWS.values() if law.name in used)
     return (text for text in texts if text is not None)
@@ -221,6 +236,8 @@ def _switch_texts(rules: SwitchingSpec, *, reset: bool) -> tuple[str, ...]:
         "While a controller is active, the environment that it touches may change among its "
         "contacts at any time."
     )
+    if rules.names_contacts:
+        return (f"{states} {CONTINUOUS}.", *rule_texts(rules, "mode"))
     contacts = () if rules.dwell_time is not None else (environment,)
     return (f"{states} {CONTINUOUS}.", *rule_texts(rules, "controller"), *contacts)
 

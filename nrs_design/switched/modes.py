@@ -1,9 +1,10 @@
 """State matrices of one controller in one contact, exactly: loop, law and contact put together.
 
 Where all controllers give the motion loop a velocity, the state is ``[xp, own, contact]``: the
-motion loop from velocity to velocity, the states of the law and those of the contact. Otherwise
-it is ``[xi, own, r]``, the motion loop from position to position; r is the position reference that
-the robot integrates from a velocity, and only controllers that command one have it.
+motion loop from velocity to velocity, the states of the law (after them those of a filter of the
+force) and those of the contact. Otherwise it is ``[xi, own, r]``, the motion loop from position to
+position; r is the position reference that the robot integrates from a velocity, and only
+controllers that command one have it.
 """
 
 from __future__ import annotations
@@ -12,6 +13,7 @@ from collections.abc import Mapping, Sequence
 from fractions import Fraction
 
 from nrs_design.controllers.laws import CompliantLaw
+from nrs_design.controllers.sensor import LowPass
 from nrs_design.errors import AssemblyError
 from nrs_design.models.contact.law import AbstractLinearLaw
 from nrs_design.models.linear_form import LinearForm, combine, coordinates, zero
@@ -22,7 +24,10 @@ Rows = list[LinearForm]
 
 
 def velocity_mode(
-    motion: Realization | JointMotion, law: CompliantLaw, contact: AbstractLinearLaw
+    motion: Realization | JointMotion,
+    law: CompliantLaw,
+    contact: AbstractLinearLaw,
+    low_pass: LowPass | None = None,
 ) -> Rows:
     """Return A in deflection coordinates: for impedance control, thesis 6.28.
 
@@ -36,12 +41,21 @@ def velocity_mode(
         With its gains; it commands a velocity.
     contact : AbstractLinearLaw
         Of the environment, at fixed parameters.
+    low_pass : LowPass, optional
+        Through which the law gets the force; its states stand between those of law and contact.
     """
     own = motion.order + len(law.states)
-    state = coordinates(own + len(contact.states))
-    force, reaction = contact.react(motion.output(len(state)), state[own:])
-    command, rates = law.respond(force, state[motion.order : own])
-    return [*motion.rates(command, force), *rates, *reaction]
+    touch = own + (0 if low_pass is None else low_pass.order)
+    state = coordinates(touch + len(contact.states))
+    force, reaction = contact.react(motion.output(len(state)), state[touch:])
+    felt, sensed = force, list[LinearForm]()
+    if low_pass is not None:
+        felt, sensed = low_pass.respond(force, state[own:touch])
+    if law.spring:
+        # What the command adds up to moves the robot against the contact: no state of its own.
+        felt = combine((Fraction(1), felt), (law.spring, motion.integral(state[touch])))
+    command, rates = law.respond(felt, state[motion.order : own])
+    return [*motion.rates(command, force), *rates, *sensed, *reaction]
 
 
 def to_force_coordinates(
@@ -135,6 +149,8 @@ def position_mode(
         )
     if contact is not None:
         force = [*contact.react(velocity, [position])[0]]
+    if law.spring:
+        force = combine((Fraction(1), force), (law.spring, state[-1]))
     command, rates = law.respond(force, state[motion.order : own])
     if integrates:
         return [*motion.rates(state[-1]), *rates, command]

@@ -2,25 +2,28 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
+from types import MappingProxyType
+from typing import Literal
 
 from nrs_design.controllers.controller_design import ControllerDesign
 from nrs_design.controllers.float32 import exact_decimal
-from nrs_design.controllers.sampled import (
-    ROUNDINGS,
-    ROUNDINGS_WITHOUT_INERTIA,
-    SampledAdmittance,
-    SampledMotion,
-)
+from nrs_design.controllers.sampled import SampledAdmittance, SampledMotion
 from nrs_design.models.actuator import ActuatorRanges
 from nrs_design.proof.bounds import rounded_down
 from nrs_design.proof.text import exact_text
 from nrs_design.spec import InteractionDesignSpec
 from nrs_design.spec.sampling import SamplingSpec
-from nrs_design.switched.assumptions import CONTINUOUS, LOST_CONTACT, REST, rule_texts
+from nrs_design.switched.assumptions import (
+    CONTINUOUS,
+    LOST_ANYWHERE,
+    LOST_CONTACT,
+    REST,
+    SPRING,
+    rule_texts,
+)
 from nrs_design.switched.joint import motor_text
 
-_KEPT = "Contact is not lost: free motion is not one of the modes."
 _INPUTS = "All inputs are zero (velocity command, motion of the environment); "
 _NOT_MODELLED = (
     "The quantization of encoder and force sensor, friction and saturation are not modelled."
@@ -36,14 +39,23 @@ _HELD = (
     "Joint angle and reference stay within {}, and are rounded like every other number; that "
     "acts where a statement names it."
 )
+# What is said of a sensor stands in lines of its own.
+_SENSED = "The quantization of the encoder, friction and saturation are not modelled."
 _DISTURBED = (
     "A disturbance acts where a statement names it, and keeps its value from one sample to the "
     "next; that friction changes its sign within a period is not covered.",
     "A bound on the force holds at the samples; what happens in between is not claimed.",
 )
-_NOT_COVERED = (
-    "Contact is not lost: that an environment with damping lags behind is not modelled in the "
-    "sampled loop."
+# Where contact is lost: only where the spring of the tissue ends, or whatever the deflection.
+Loss = Literal["never", "not modelled", "anywhere", "on the surface"]
+_LOST: Mapping[Loss, str] = MappingProxyType(
+    {
+        "never": "Contact is not lost: free motion is not one of the modes.",
+        "not modelled": "Contact is not lost: that an environment with damping lags behind is not "
+        "modelled in the sampled loop.",
+        "anywhere": LOST_ANYWHERE,
+        "on the surface": LOST_CONTACT,
+    }
 )
 
 
@@ -54,8 +66,8 @@ def assume_sampled(
     motion: SampledMotion,
     laws: Mapping[str, SampledAdmittance],
     design: ControllerDesign,
-    *,
-    springs: bool,
+    loss: Loss,
+    counts: Mapping[str, int],
 ) -> tuple[str, ...]:
     """Say what holds for the sampled loop of an interaction design.
 
@@ -73,8 +85,10 @@ def assume_sampled(
         The admittances by the names of their controllers.
     design : ControllerDesign
         With the contacts.
-    springs : bool
-        Whether all that is touched are springs.
+    loss : {"never", "not modelled", "anywhere", "on the surface"}
+        Where contact is lost.
+    counts : mapping of str to int
+        How often each term of the law is rounded.
     """
     rules = spec.switching
     switched = f"States are {CONTINUOUS}; a switch happens at a sample."
@@ -85,7 +99,8 @@ def assume_sampled(
         f"The motor follows the linear actuator model of the spec; {_actuator_text(ranges)}.",
         "The tissue does not load the motor: it acts through the force sensor alone.",
         *(_DISTURBED if spec.disturbances is not None else ()),
-        _beside(spec, _INPUTS + REST[springs and spec.contact != "kept"]),
+        _beside(spec, _INPUTS + REST[loss == "on the surface"]),
+        *((SPRING,) if any(law.Kt for law in laws.values()) else ()),
         "The axes of the robot do not act on each other.",
         *(
             f"While {c.name} is active, nothing but {' or '.join(c.contacts)} is touched."
@@ -93,19 +108,14 @@ def assume_sampled(
         ),
         "In contact, the environment follows its linear model; its parameters stay in the declared "
         "ranges and may change arbitrarily fast.",
-        *_contact_texts(spec, springs=springs),
+        _LOST[loss],
         switched,
         *rule_texts(rules, "controller"),
         f"The coefficients are these single-precision numbers: {_coefficients(motion, laws)}.",
-        _ARITHMETIC.format(_counted(inertia=any(law.a is not None for law in laws.values()))),
+        _ARITHMETIC.format(", ".join(f"{name} {count}" for name, count in counts.items())),
         _angle_text(spec),
-        _beside(spec, _NOT_MODELLED),
+        _beside(spec, _NOT_MODELLED if spec.sensor is None else _SENSED),
     )
-
-
-def _counted(*, inertia: bool) -> str:
-    counts = ROUNDINGS if inertia else ROUNDINGS_WITHOUT_INERTIA
-    return ", ".join(f"{name} {count}" for name, count in counts.items())
 
 
 def _angle_text(spec: InteractionDesignSpec) -> str:
@@ -138,15 +148,6 @@ def _samples(count: int) -> str:
 
 def _actuator_text(ranges: ActuatorRanges) -> str:
     return motor_text(ranges) + ("" if ranges.fixed else ", and may change at every sample")
-
-
-def _contact_texts(spec: InteractionDesignSpec, *, springs: bool) -> Iterator[str]:
-    if spec.contact == "kept":
-        yield _KEPT
-    elif not springs:
-        yield _NOT_COVERED
-    else:
-        yield LOST_CONTACT
 
 
 def _coefficients(motion: SampledMotion, laws: Mapping[str, SampledAdmittance]) -> str:

@@ -4,7 +4,7 @@ The actuator holds the command between samples and is not loaded by the tissue, 
 enters through the force sample alone: every entry is affine in it, and a stiffness that moves at
 will is covered by its ends. State: ``[e, omega, e_before, vm, F_1, ..., F_d, delta]`` with the
 error e of the motion loop, its value a period ago, the velocity vm of the admittance (absent
-without inertia), the force samples on their way, and the deflection.
+without inertia), the lags of a filter, the force samples on their way, and the deflection.
 """
 
 from __future__ import annotations
@@ -21,8 +21,10 @@ from nrs_design.controllers.sampled import (
     ROUNDINGS_WITHOUT_INERTIA,
     SampledAdmittance,
     SampledMotion,
+    Term,
     rounding_share,
 )
+from nrs_design.controllers.sensor import SampledLowPass
 from nrs_design.errors import AssemblyError
 from nrs_design.models.actuator import ActuatorRanges
 from nrs_design.models.contact.environment import Environment
@@ -46,7 +48,7 @@ from nrs_design.switched.assumptions import at_once_texts
 from nrs_design.switched.constraints import assemble_switching
 from nrs_design.switched.parameter_box import Box
 from nrs_design.switched.parameters import Corner
-from nrs_design.switched.sampled_assumptions import assume_sampled
+from nrs_design.switched.sampled_assumptions import Loss, assume_sampled
 
 ONE = Fraction(1)
 KP, KD, FORCE, STEP = "Kp e", "D (e - e before)", "b F", "T (v - vm)"
@@ -77,6 +79,10 @@ class Frame:
         Force samples on their way.
     time_constant : Fraction or None
         The tau of the motor in s, if it is known.
+    low_pass : SampledLowPass or None
+        Through which the law gets the force samples.
+    sprung : bool
+        Whether an admittance has a spring.
     """
 
     period: Fraction
@@ -84,12 +90,43 @@ class Frame:
     has_inertia: bool
     longest_delay: int
     time_constant: Fraction | None
+    low_pass: SampledLowPass | None = None
+    sprung: bool = False
 
     @property
     def roundings(self) -> dict[str, Fraction]:
         """What the arithmetic changes of every term of the law at most, over its size."""
-        counts = ROUNDINGS if self.has_inertia else ROUNDINGS_WITHOUT_INERTIA
-        return {name: rounding_share(count) for name, count in counts.items()}
+        return {name: rounding_share(count) for name, count in self.counts.items()}
+
+    @property
+    def counts(self) -> dict[str, int]:
+        """How often each term of the law is rounded."""
+        plain = ROUNDINGS if self.has_inertia else ROUNDINGS_WITHOUT_INERTIA
+        stages, pushes = self._force_terms(ONE, [], [[]] * self._order, [])
+        forces = {term.name: term.roundings for term in chain(*stages, pushes)}
+        counts: dict[str, int] = {}
+        for name, count in plain.items():
+            counts |= forces if name == FORCE else {name: count}
+        return counts
+
+    @property
+    def _order(self) -> int:
+        return 0 if self.low_pass is None else self.low_pass.order
+
+    def _force_terms(
+        self, b: Fraction, sample: LinearForm, lags: Sequence[LinearForm], pull: LinearForm
+    ) -> tuple[list[tuple[Term, ...]], tuple[Term, ...]]:
+        """Return the terms of each lag, and those of what the force adds to the velocity."""
+        # The sample is rounded when it is read; the pull is a difference of references times Kt.
+        felt: tuple[Term, ...] = (Term("F", sample, 1),)
+        stages: list[tuple[Term, ...]] = []
+        if self.low_pass is not None:
+            stages = self.low_pass.stages(felt, lags)
+            felt = stages[-1]
+        if self.sprung:
+            felt = (*(term.times(ONE, "", 1) for term in felt), Term("Kt r", pull, 3))
+        more = 1 + self.has_inertia
+        return stages, tuple(term.times(b, "b ", more) for term in felt)
 
     @property
     def states(self) -> tuple[str, ...]:
@@ -97,7 +134,8 @@ class Frame:
         ages = (f"F {j} before [N*m]" for j in range(1, self.longest_delay + 1))
         inner = ("vm [rad/s]",) if self.has_inertia else ()
         first = ("e [rad]", "omega [rad/s]", "e before [rad]")
-        return (*first, *inner, *ages, "delta [rad]")
+        sensed = () if self.low_pass is None else self.low_pass.states
+        return (*first, *inner, *sensed, *ages, "delta [rad]")
 
     def rows(
         self, admittance: SampledAdmittance, delay: int, values: Mapping[str, Fraction]
@@ -133,8 +171,13 @@ class Frame:
         drive = combine((ONE, drive), (ONE, rounded[KP]), (ONE, rounded[KD]))
         moved = combine((s, omega), (Km * (self.period - s), drive))
         ages = [combine((k, delta), (b, omega), (ONE, sensor)), *samples]
-        pushed, kept = combine((admittance.b, ages[delay])), []
-        velocity = exact = combine((ONE, pushed), (ONE, rounded[FORCE]))
+        lags = unit[3 + self.has_inertia : 3 + self.has_inertia + self._order]
+        # The reference, e + theta, is by how much the admittance has moved it.
+        pull = combine((admittance.Kt, error), (admittance.Kt, delta))
+        stages, pushes = self._force_terms(admittance.b, ages[delay], lags, pull)
+        sensed = [_sum_of(stage, rounded) for stage in stages]
+        pushed, kept = combine(*((ONE, term.form) for term in pushes)), list[LinearForm]()
+        velocity = exact = _sum_of(pushes, rounded)
         if admittance.a is None:
             exact = pushed
         else:
@@ -144,12 +187,14 @@ class Frame:
         moving = combine((T, command), (-T, exact))
         first = combine((ONE, error), (T, command), (-T, velocity), (ONE, rounded[STEP]))
         # Of a sum of two sizes, the part that is of second order counts with another term.
+        beyond = ONE if kept else 1 + shares[STEP]
         sizes = {
             "e": combine((shares["e"], read)),
             KP: combine((shares[KP] * Kp * (1 + shares["e"]) + shares[KD] * D * shares["e"], read)),
             KD: combine((shares[KD] * D, read), (-shares[KD] * D, before)),
             "a vm": combine((shares.get("a vm", ONE) * (admittance.a or 0), unit[3])),
-            FORCE: combine((shares[FORCE] * (1 if kept else 1 + shares[STEP]), pushed)),
+            **{t.name: combine((shares[t.name], t.form)) for t in chain(*stages)},
+            **{t.name: combine((shares[t.name] * beyond, t.form)) for t in pushes},
             STEP: combine((shares[STEP], moving)),
         }
         return [
@@ -157,10 +202,16 @@ class Frame:
             combine((E, omega), (Km * (1 - E), drive)),
             seen,
             *kept,
+            *sensed,
             *ages[: self.longest_delay],
             combine((ONE, delta), (ONE, moved)),
             *(sizes[name] for name in shares),
         ]
+
+
+def _sum_of(terms: Iterable[Term], rounded: Mapping[str, LinearForm]) -> LinearForm:
+    """Return the sum of terms, each with what it is rounded by."""
+    return combine(*((ONE, form) for t in terms for form in (t.form, rounded[t.name])))
 
 
 @dataclass(frozen=True, slots=True)
@@ -213,6 +264,7 @@ def close_sampled_loop(
         Interval.point(plant.actuator.gain), Interval.point(plant.actuator.time_constant)
     )
     has_inertia = _have_inertia(laws.values())
+    low_pass = design.sensor.filter
     tau = ranges.time_constant
     frame = Frame(
         period,
@@ -220,6 +272,8 @@ def close_sampled_loop(
         has_inertia,
         sampling.delay[1],
         tau.nominal if tau.low == tau.high else None,
+        None if low_pass is None else low_pass.sampled(period),
+        any(law.Kt for law in laws.values()),
     )
     motor = motor_box(ranges, period)
     parts = {
@@ -229,23 +283,26 @@ def close_sampled_loop(
         for controller in design.controllers
     }
     touched = plant.among(design.contacts)
-    springs = all(_is_zero(damping_of(e)) and not e.preloaded for e in touched)
-    free: tuple[_Motion, ...] = ()
-    if spec.contact != "kept" and springs:
-        free = tuple(_free_motions(frame, laws, sampling.delay, motor))
+    loss = _loss_of_contact(spec, touched, laws.values())
+    air = {
+        name: _free_motions(frame, name, law, sampling.delay, motor) for name, law in laws.items()
+    }
+    if loss == "anywhere":
+        parts = {name: (*part, *air[name]) for name, part in parts.items()}
+    free = tuple(chain.from_iterable(air.values())) if loss == "on the surface" else ()
     groups = {key: tuple(Corner(item.mode.name) for item in part) for key, part in parts.items()}
     motions = tuple(chain.from_iterable(parts.values()))
     flying = tuple(item.mode for item in free)
     losable = Contact(flying, required=spec.contact == "losable") if free else None
     every = (*motions, *free)
-    channels = tuple(_channels(spec, every))
+    channels = tuple(_channels(spec, design.sensor.lasting, every))
     return SwitchedSystem(
         spec.name,
         Time.DISCRETE,
         frame.states,
         tuple(item.mode for item in motions),
         (
-            *assume_sampled(spec, sampling, ranges, frame.motion, laws, design, springs=springs),
+            *assume_sampled(spec, sampling, ranges, frame.motion, laws, design, loss, frame.counts),
             *at_once_texts(touched),
         ),
         assemble_switching(spec.switching, groups, ()),
@@ -270,11 +327,15 @@ def _have_inertia(laws: Iterable[SampledAdmittance]) -> bool:
     return True in found
 
 
-def _channels(spec: InteractionDesignSpec, motions: Sequence[_Motion]) -> Iterator[Channel]:
-    """Yield the disturbances that the spec declares, with their columns."""
+def _channels(
+    spec: InteractionDesignSpec, off: Fraction, motions: Sequence[_Motion]
+) -> Iterator[Channel]:
+    """Yield the disturbances of the spec, and the errors of its sensor, with their columns."""
     if spec.disturbances is None:
         return
     bounds = spec.disturbances.bounds() | _angle_bounds(spec.disturbances)
+    if off:
+        bounds["force error"] = (off, "N*m")
     for i, name in enumerate(INPUTS):
         if name in bounds:
             bound, unit = bounds[name]
@@ -352,13 +413,23 @@ def _motions(
 
 
 def _free_motions(
-    frame: Frame,
-    laws: Mapping[str, SampledAdmittance],
-    delays: tuple[int, int],
-    motor: Box,
+    frame: Frame, controller: str, law: SampledAdmittance, delays: tuple[int, int], motor: Box
 ) -> Iterator[_Motion]:
-    for controller, law in laws.items():
-        yield from _corners(frame, law, delays, motor, f"{controller}/free")
+    return _corners(frame, law, delays, motor, f"{controller}/free")
+
+
+def _loss_of_contact(
+    spec: InteractionDesignSpec,
+    touched: Iterable[Environment],
+    laws: Iterable[SampledAdmittance],
+) -> Loss:
+    """Tell how contact is lost; with springs everywhere, free motion is a mode like others."""
+    sprung = {law.Kt != 0 for law in laws}
+    if spec.contact == "kept" or (True in sprung and spec.contact is None):
+        return "never"
+    if not all(_is_zero(damping_of(e)) and not e.preloaded for e in touched):
+        return "not modelled"
+    return "anywhere" if sprung == {True} else "on the surface"
 
 
 def _corners(
@@ -418,6 +489,14 @@ def _not_modelled(
         if spec.contact == "losable" and not _is_zero(damping_of(environment)):
             what = f"loss of contact with {environment.name}, which has damping"
             yield ("contact",), what, "use `contact: kept`, or leave sampling out"
+    sprung = {law.Kt != 0 for law in laws.values() if law is not None}
+    if spec.contact == "losable" and len(sprung) > 1:
+        what = "loss of contact where some controllers have a spring Kt and some have none"
+        yield ("contact",), what, "use `contact: kept`, or give all of them a spring"
+    commanded = spec.disturbances is not None and spec.disturbances.command is not None
+    if commanded and True in sprung:
+        what = "a velocity command moves the position that the spring Kt draws the robot to"
+        yield ("disturbances", "command"), what, "leave command out, or Kt"
     if next(iter(spec.switching.dwell_times()), None) is not None:
         what = "the rules of switching have dwell times in s"
         yield ("switching",), what, "leave them out, or sampling"

@@ -432,7 +432,7 @@ class TestForgery:
         spec = read_spec(path)
         document = json.loads(dump(run_certification(spec, limits=ANY_RATE).certificate))
         assert verify_document(document, spec).fault is None
-        proof, bound = document["statements"]
+        proof, bound, _ = document["statements"]
         assert bound["kind"] == "invariant-ellipsoid"
         assert "force" in bound["claim"]
         for field, value in (

@@ -9,6 +9,7 @@ import pytest
 
 from nrs_design import __version__
 from nrs_design.cli.app import COMMANDS, make_app
+from nrs_design.proof.evidence import KINDS
 from tests.support import COMMUTING, ROOT, run, typed
 
 
@@ -99,6 +100,35 @@ def test_imports_wait_for_no_collection_of_garbage(tmp_path):
     )
     result = start(tmp_path, "-c", program, "certify-switching", COMMUTING)
     assert result.stderr.splitlines()[-1] == "0"
+
+
+def test_an_easy_proof_loads_one_search_and_few_kinds_of_evidence(tmp_path):
+    result, facts = loaded_by(tmp_path, "certify-switching", COMMUTING)
+    assert result.returncode == 0, result.stderr
+    kinds = {kind.replace("-", "_") for kind in KINDS}
+    loaded = {name.removeprefix("nrs_design.proof.evidence.") for name in facts["modules"]}
+    assert kinds & loaded == {"common_quadratic", "unstable_mode"}
+    for needless in ("period", "polynomial", "mode_quadratic", "invariant_ellipsoid", "gradient"):
+        assert f"nrs_design.search.{needless}" not in facts["modules"]
+
+
+@pytest.mark.parametrize(("arguments", "code"), [(["--version"], 0), (["nonsense"], 2)])
+def test_the_end_comes_at_once_but_after_what_others_want_done(tmp_path, arguments, code):
+    program = (
+        "import atexit, pathlib\n"
+        "import nrs_design.cli.app\n"
+        "from nrs_design.cli import program\n"
+        "run = nrs_design.cli.app.main\n"
+        "def main():\n"
+        "    atexit.register(pathlib.Path('done').touch)\n"
+        "    run()\n"
+        "nrs_design.cli.app.main = main\n"
+        "program()"
+    )
+    result = start(tmp_path, "-c", program, *arguments)
+    assert result.returncode == code
+    assert result.stdout or result.stderr
+    assert (tmp_path / "done").exists()
 
 
 def test_settings_of_libraries_are_defaults_only(tmp_path):

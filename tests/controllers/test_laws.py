@@ -1,25 +1,13 @@
-from dataclasses import FrozenInstanceError, dataclass, fields
+from dataclasses import FrozenInstanceError, fields
 from fractions import Fraction
 from typing import get_args
 
 import pytest
 
-from nrs_design.controllers.laws import (
-    LAWS,
-    AbstractCompliantLaw,
-    Admittance,
-    PositionControl,
-    ProportionalDerivative,
-)
+from nrs_design.controllers.laws import LAWS, Admittance, ProportionalDerivative
 from nrs_design.design.laws import LAW_DESIGNS
-from nrs_design.spec import ControllerSpec, PositionControllerSpec
+from nrs_design.spec import ControllerSpec
 from nrs_design.spec.units import parse_unit
-
-
-def test_zero_of_the_thesis():
-    # Thesis 4.3: Kp = Kd z = 2060 * 56.9706 = 117359.43.
-    law = ProportionalDerivative(Fraction("117359.436"), Fraction(2060))
-    assert law.zero == Fraction("56.9706")
 
 
 def test_laws_are_values():
@@ -36,7 +24,8 @@ def test_every_type_of_controller_has_a_law_and_a_design():
 
 def test_every_law_has_a_name_of_its_own_and_a_unit_for_every_gain():
     laws = (ProportionalDerivative, *LAWS.values())
-    assert sorted(law.name for law in laws) == ["force", "impedance", "motion", "position"]
+    names = ["force", "impedance", "motion", "parallel", "position"]
+    assert sorted(law.name for law in laws) == names
     for law in laws:
         assert list(law.units) == [field.name for field in fields(law)]
     # A torque over an angular velocity.
@@ -44,22 +33,8 @@ def test_every_law_has_a_name_of_its_own_and_a_unit_for_every_gain():
     assert Admittance(Fraction(1), Fraction(2)).gains == {"Mt": 1, "Bt": 2}
 
 
-@dataclass(frozen=True, slots=True)
-class Unbounded(AbstractCompliantLaw):
-    """A law that says nothing of the gain that its spec does not bound."""
-
-    K: Fraction
-
-    def respond(self, force, states):
-        return force, states
-
-    @classmethod
-    def contact_text(cls, *, alone):
-        return None
-
-
-def test_a_gain_that_neither_spec_nor_law_limits_is_not_allowed():
-    """A certificate may quote any gain: one that nothing is held against must not pass."""
-    given = PositionControllerSpec(type="position")
-    assert Unbounded(Fraction(1)).find_fault(given) == "gain K has no bounds in the spec"
-    assert PositionControl().find_fault(given) is None
+def test_a_spring_is_a_gain_only_where_there_is_one():
+    sprung = Admittance(Fraction(1), Fraction(2), Fraction(3))
+    assert sprung.gains == {"Mt": 1, "Bt": 2, "Kt": 3}
+    for law in (sprung, Admittance(Fraction(1), Fraction(2))):
+        assert Admittance.of(law.gains) == law

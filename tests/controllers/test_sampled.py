@@ -1,5 +1,6 @@
 """The law as a processor runs it: coefficients by formula, and against a general discretization."""
 
+from dataclasses import replace
 from fractions import Fraction
 
 import numpy as np
@@ -44,3 +45,11 @@ def test_one_step_of_euler():
 def test_without_inertia_the_law_has_no_memory():
     law = Admittance(Fraction(0), Fraction(2)).sampled(PERIOD, "exact")
     assert law.coefficients == {"b": Fraction(1, 2), "T": to_float32(PERIOD)}
+
+
+def test_a_spring_is_a_coefficient_of_its_own():
+    """Its force counts as force: the other coefficients are those of the law without it."""
+    sprung = replace(LAW, Kt=Fraction(1, 2))
+    for method in ("exact", "euler"):
+        plain = LAW.sampled(PERIOD, method).coefficients
+        assert sprung.sampled(PERIOD, method).coefficients == plain | {"Kt": Fraction(1, 2)}

@@ -136,3 +136,18 @@ def test_force_margins_are_those_of_the_force_loop():
     peaks = [np.abs(1 / (1 + 0.2 * k * G)).max() for k in (43, 41.5, 44.25)]
     assert found[SENSITIVITY_PEAK].value == pytest.approx(max(peaks), rel=1e-5)
     assert found[SENSITIVITY_PEAK].where == "soft, k = 44.25 N*m/rad"
+
+
+def test_a_spring_and_its_range_are_measured_too():
+    corners = corners_of((SOFT,), "soft", {"Kt": (0.5, 2.0)}, 0.8)
+    assert {c.Kt for c in corners} == {0.8, 0.5, 2.0}
+    assert sum(corner.home for corner in corners) == 3
+    requirement = Requirement(EXACT, corners, (), 2.15, 4 * math.pi)
+    found = worst(requirement)
+    loops = [
+        ImpedanceLoop(EXACT, Elastic(k), Kt) for k in (43, 41.5, 44.25) for Kt in (0.8, 0.5, 2)
+    ]
+    peaks = [loop_margins(loop, 0.01, 2.15).sensitivity_peak for loop in loops]
+    assert found[SENSITIVITY_PEAK].value == pytest.approx(max(peaks), rel=1e-9)
+    # Towards rest it shows a spring, which is no damping at all.
+    assert found[IMPEDANCE_ERROR].value == math.inf

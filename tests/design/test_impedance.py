@@ -3,6 +3,7 @@
 import math
 from dataclasses import replace
 
+import control
 import numpy as np
 import pytest
 from hypothesis import assume, given, settings
@@ -331,3 +332,42 @@ def test_cost_in_viscoelastic_contact_is_the_mean_of_its_parts():
 def test_viscoelastic_parameters_are_positive(contact):
     with pytest.raises(DesignError, match="must be positive"):
         ImpedanceLoop(EXACT, contact)
+
+
+class TestSpring:
+    """An admittance ``1/(Mt s + Bt + Kt/s)`` (thesis 2.2.6.2)."""
+
+    omega = np.array([0.05, 0.7, 12.0, 200.0])
+    contact = KelvinVoigt(SOFT, 0.3)
+    loop = ImpedanceLoop(EXACT, contact, 0.8)
+
+    def test_the_loop_is_the_formula(self):
+        s = 1j * self.omega
+        forward = frequency_response(EXACT, self.omega) * (SOFT / s + 0.3)
+        Y = 1 / (0.01 * s + 1.04 + 0.8 / s)
+        L = forward * Y
+        assert frequency_response(open_loop(self.loop, 0.01, 1.04), self.omega) == pytest.approx(L)
+        assert sensitivity(self.loop, 0.01, 1.04, self.omega) == pytest.approx(1 / (1 + L))
+        displayed = displayed_impedance(self.loop, 0.01, 1.04, self.omega)
+        assert displayed == pytest.approx(forward / (1 + L))
+
+    def test_poles_are_those_that_python_control_closes(self):
+        """The s that Ze and Y have in common is left out: python-control keeps it, a zero more."""
+        s = control.tf("s")
+        G = control.tf(EXACT.numerator, EXACT.denominator)
+        Ze = (0.3 * s + SOFT) / s
+        Y = s / (0.01 * s**2 + 1.04 * s + 0.8)
+        wanted = np.sort_complex(control.feedback(G * Ze * Y, 1).poles())
+        found = np.roots(characteristic_polynomial(self.loop, 0.01, 1.04))
+        assert np.sort_complex([*found, 0]) == pytest.approx(wanted, rel=1e-6, abs=1e-9)
+
+    def test_cost_is_the_mean_of_its_parts(self):
+        problem = replace(make_problem(), loop=self.loop)
+        cost = float(impedance_cost(problem, 0.01, 1.04))
+        assert cost == pytest.approx(reference_cost(problem, 0.01, 1.04, 256), rel=1e-9)
+
+    def test_what_has_no_rest_position_has_no_spring(self):
+        with pytest.raises(DesignError, match="no rest position"):
+            ImpedanceLoop(EXACT, Maxwell(1.129, 120.233), 0.8)
+        with pytest.raises(DesignError, match="not be negative"):
+            ImpedanceLoop(EXACT, self.contact, -1.0)

@@ -13,6 +13,7 @@ from nrs_design.design.measures import GAIN_MARGIN
 from nrs_design.errors import DesignError
 from nrs_design.gating.examine import Examiner, certified_rate
 from nrs_design.gating.obligations import Status
+from nrs_design.proof.evidence import CommonQuadratic
 from nrs_design.proof.system import ARBITRARY, Stay, Switching, Time
 from nrs_design.search.certify import certify
 from nrs_design.spec import read_spec
@@ -138,6 +139,52 @@ def test_goals_are_met_missed_or_not_set(examiner, goal, statuses):
     item = SimpleNamespace(name="a", achieved=[Achieved(GAIN_MARGIN, 2.5, "soft", goal)])
     found = list(examiner.goals(SimpleNamespace(measured=[item])))
     assert [obligation.status for obligation in found] == statuses
+
+
+def wanting(tmp_path, goals):
+    path = tmp_path / "wanting.nrs.yaml"
+    text = SOFT_TISSUE.read_text(encoding="utf-8")
+    path.write_text(f"{text}\ndisturbances: {{command: 8 deg/s}}\ngoals: {goals}\n")
+    return Examiner.of(read_spec(path))
+
+
+@pytest.mark.parametrize(
+    ("goals", "level", "ends"),
+    [
+        ("{peak_torque: 0.6 N*m}", Fraction(3, 5), [Status.PROVED]),
+        ("{peak_torque: 0.59 N*m}", Fraction(3, 5), [Status.INCONCLUSIVE]),
+        ("{peak_torque: 0.6 N*m}", None, [Status.INCONCLUSIVE]),
+        ("{decay_rate: 0.4 1/s}", None, [Status.PROVED]),
+        ("{decay_rate: 0.6 1/s}", None, [Status.INCONCLUSIVE]),
+        ("{decay_rate: 0.4 1/s, peak_torque: 1 N*m}", Fraction(1), [Status.PROVED] * 2),
+        ("{max_sensitivity_peak: 2}", None, []),
+    ],
+)
+def test_goals_that_a_certificate_must_show(tmp_path, goals, level, ends):
+    """The decay rate of the proof is 1/2 1/s; without a bound on everything, none is shown."""
+    from tests.proof.evidence.test_invariant_ellipsoid import BOUNCE
+    from tests.proof.systems import bouncing, pushed
+
+    system = pushed(bouncing())
+    proof = CommonQuadratic(((1, 0), (0, 1)), 0, Fraction(1, 2))
+    bounds = () if level is None else (replace(BOUNCE, level=level),)
+    certificate = Certificate("s", "0", None, {}, system, (proof, *bounds), "0")
+    found = list(wanting(tmp_path, goals).certified_goals(certificate))
+    assert [item.status for item in found] == ends
+    assert all(item.rule.id == "NRS108" and item.line for item in found)
+    none = wanting(tmp_path, goals).certified_goals(None)
+    assert {item.status for item in none} <= {Status.INCONCLUSIVE}
+
+
+def test_a_rate_per_step_counts_in_seconds(tmp_path):
+    """rho = 0.95 in steps of a tenth of a second is at least 1/2 1/s."""
+    from tests.proof.systems import bouncing_in_steps
+
+    proof = CommonQuadratic(((1, 0), (0, 1)), 0, Fraction("0.95"))
+    for goal, status in (("0.5 1/s", Status.PROVED), ("0.6 1/s", Status.INCONCLUSIVE)):
+        certificate = Certificate("s", "0", None, {}, bouncing_in_steps(), (proof,), "0")
+        examiner = wanting(tmp_path, f"{{decay_rate: {goal}}}")
+        assert [item.status for item in examiner.certified_goals(certificate)] == [status]
 
 
 @pytest.mark.parametrize(

@@ -1,5 +1,6 @@
 """Matrices as users hold them."""
 
+import warnings
 from fractions import Fraction
 
 import control
@@ -12,6 +13,10 @@ from nrs_design.proof.system import Time
 
 F = Fraction
 TENTH = F(3602879701896397, 2**55)
+with warnings.catch_warnings():
+    # NumPy advises against matrices; people hold them all the same.
+    warnings.simplefilter("ignore", PendingDeprecationWarning)
+    MATRIX = np.matrix([[0.1, 1], [2, 3]])
 
 
 @pytest.mark.parametrize(
@@ -21,7 +26,7 @@ TENTH = F(3602879701896397, 2**55)
         [[0.1, 1], [2, 3]],
         ((F(3602879701896397, 2**55), 1), (2, 3.0)),
         [["3602879701896397/36028797018963968", "1"], [np.int64(2), np.float64(3)]],
-        np.matrix([[0.1, 1], [2, 3]]),
+        MATRIX,
         control.ss([[0.1, 1], [2, 3]], [[0], [1]], [[1, 0]], 0),
     ],
     ids=["array", "lists", "fractions", "texts", "matrix", "state space"],

@@ -2,6 +2,7 @@
 
 import json
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
 
 from ruamel.yaml import YAML
@@ -42,6 +43,7 @@ def names(*groups: str) -> list[str]:
     return [name for group in groups or entries for name in entries[group]]
 
 
+@cache
 def read_groups() -> dict[str, dict[str, dict]]:
     # The base loader keeps every scalar as text, so that no entry passes through a float.
     return YAML(typ="base").load(DATA.read_text(encoding="utf-8"))
@@ -86,12 +88,14 @@ def robot(name, Mt, contacts, coordinates="deflection") -> SwitchedSystem:
     return SwitchedSystem(name, Time.CONTINUOUS, states, tuple(modes), GIVEN_MATRICES)
 
 
-def settle(name: str, **options: str) -> Certification:
+@cache
+def settle(name: str, coordinates: str = "deflection") -> Certification:
     """Certify, and insist on the whole truth.
 
-    Every statement must pass the exact check and agree with its definition.
+    Every statement must pass the exact check and agree with its definition. It is asked once of
+    each system, however many tests look at the answer.
     """
-    truth = known(name, **options)
+    truth = known(name, coordinates)
     found = certify(truth.system)
     assert found.verdict is (Verdict.PROVED if truth.stable else Verdict.REFUTED)
     assert found.common_quadratic == truth.common_quadratic

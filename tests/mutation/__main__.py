@@ -9,8 +9,9 @@ import signal
 import sys
 import tomllib
 from collections import Counter
-from collections.abc import Iterable, Iterator, Sequence
-from multiprocessing.sharedctypes import RawArray
+from collections.abc import Iterable, Iterator
+from itertools import pairwise
+from multiprocessing.sharedctypes import RawArray, RawValue
 from pathlib import Path
 from time import process_time
 
@@ -23,8 +24,9 @@ from tests.mutation.mutants import Mutant, mutants
 ROOT = Path(__file__).parents[2]
 PROOF = ROOT / "nrs_design" / "proof"
 TESTS = ROOT / "tests" / "proof"
+KINDS = TESTS / "evidence"
 EQUIVALENT = Path(__file__).with_name("equivalent.toml")
-# Files of evidence that are no kind, so that no example is tampered with.
+# Files of evidence that are no kind, or all: what tampers with examples is the mirror of the last.
 SHARED = {"abstract", "fields", "flow", "function", "__init__"}
 # A mutant may loop for ever, or count to the end of memory. A test gets so many times what it
 # takes without a change, and so many seconds more.
@@ -52,23 +54,20 @@ class Examination:
 
     def __init__(self, name: str, path: Path, candidates: Iterable[Mutant]) -> None:
         self.name, self.path, self.candidates = name, path, candidates
-        self.items: list[pytest.Item] = []
-        self.took: Sequence[float] = ()
+        self.order: list[int] = []
         self.unnoticed: list[str] = []
         self.running: dict[int, str] = {}
 
     @pytest.hookimpl(tryfirst=True)
     def pytest_runtestloop(self, session: pytest.Session) -> bool:
         """Take the place of the one run of the tests."""
-        self.items = session.items
-        # In memory that the processes share.
-        self.took = RawArray("d", [60.0] * len(self.items))
+        # In memory that the processes share: what each test took, and which one is run.
+        self.took = RawArray("d", [60.0] * len(session.items))
+        self.running_test = RawValue("i")
+        self.order = list(range(len(session.items)))
         if os.waitpid(self.start(session, None), 0)[1]:
             raise session.Failed(f"{self.name}: its tests fail without any change")
-        # The quickest first.
-        order = sorted(range(len(self.items)), key=self.took.__getitem__)
-        self.items = [self.items[k] for k in order]
-        self.took = RawArray("d", [self.took[k] for k in order])
+        self.order.sort(key=self.took.__getitem__)
         for mutant in self.candidates:
             if len(self.running) == len(os.sched_getaffinity(0)):
                 self.wait()
@@ -84,6 +83,11 @@ class Examination:
         if status == 0:
             self.unnoticed.append(name)
             print(f"  {name}", flush=True)
+            return
+        # What has noticed one mutant notices the next as well, as a rule; others by what they take.
+        killer = self.running_test.value
+        self.order.remove(killer)
+        self.order.insert(0, killer)
 
     def start(self, session: pytest.Session, mutant: Mutant | None) -> int:
         """Begin the run for a mutant, or for the module as it is."""
@@ -104,10 +108,11 @@ class Examination:
         signal.setitimer(signal.ITIMER_PROF, SECONDS)
         if mutant:
             graft(importlib.import_module(self.name), mutant.compile(self.path))
-        for k, item in enumerate(self.items):
+        items = [*(session.items[k] for k in self.order), None]
+        for k, (item, following) in zip(self.order, pairwise(items), strict=True):
+            self.running_test.value, begin = k, process_time()
             signal.setitimer(signal.ITIMER_PROF, SECONDS + TIMES * self.took[k])
-            begin, following = process_time(), self.items[k + 1 : k + 2]
-            item.config.hook.pytest_runtest_protocol(item=item, nextitem=(*following, None)[0])
+            session.config.hook.pytest_runtest_protocol(item=item, nextitem=following)
             if session.testsfailed:
                 return 1
             if not mutant:
@@ -167,12 +172,11 @@ def in_words(count: Counter[str]) -> str:
 def own_tests(path: Path) -> list[str]:
     """Return what mirrors a module, and for a kind of evidence the tests of all kinds, too."""
     mirror = TESTS / path.relative_to(PROOF).with_name(f"test_{path.name}")
-    tests = [str(mirror if mirror.exists() else TESTS)]
-    if path.parent != PROOF and path.stem not in SHARED:
-        kind = path.stem.replace("_", "-")
-        tests.append(f"{TESTS}/evidence/test_abstract.py::test_facts_of_the_kinds")
-        tests += [str(TESTS / "evidence/test_tampering.py"), "-k", f"not tampering or {kind}"]
-    return tests
+    if path.parent == PROOF or path.stem in SHARED:
+        return [str(mirror if mirror.exists() else KINDS / "test_tampering.py")]
+    facts = f"{KINDS}/test_abstract.py::test_facts_of_the_kinds"
+    kind = path.stem.replace("_", "-")
+    return [str(mirror), facts, f"{KINDS}/test_tampering.py", "-k", f"not tampering or {kind}"]
 
 
 if __name__ == "__main__":

@@ -32,7 +32,7 @@ def _graft_names(names: Any, changed: Any, owner: Any) -> None:
 def _functions(thing: Any) -> list[FunctionType]:
     """Return what runs when a name is called or read, behind decorators of the standard library."""
     if isinstance(thing, property):
-        return [thing.fget]  # type: ignore[list-item]
+        return _functions(thing.fget)
     thing = getattr(thing, "__func__", thing)
     thing = getattr(thing, "__wrapped__", thing)
     return [thing] if isinstance(thing, FunctionType) else []

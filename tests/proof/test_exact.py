@@ -10,6 +10,7 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from nrs_design.proof.exact import (
+    MAX_SPECTRUM_WORK,
     add,
     bit_length,
     characteristic_polynomial,
@@ -191,6 +192,9 @@ class TestLimits:
         assert spectrum_work(2, 750) == 12_000 * 3 // 2
         assert spectrum_work(5, 6_000) == 5**4 * 6_000 * 11
         assert spectrum_work(1, 1) == 1
+
+    def test_the_largest_spectrum(self):
+        assert spectrum_work(10, 5329) <= MAX_SPECTRUM_WORK < spectrum_work(10, 5330)
 
     @pytest.mark.parametrize(
         ("M", "bits"),

@@ -10,9 +10,18 @@ from hypothesis import strategies as st
 from nrs_design.proof.evidence import CommonQuadratic, ConewiseQuadratic, InvariantEllipsoid
 from nrs_design.proof.evidence.abstract import NOT_ROUNDED, ROUNDED
 from nrs_design.proof.second_opinion import agrees
-from nrs_design.proof.system import Channel, Output, Rounding, SwitchedSystem, Time
+from nrs_design.proof.steps import Steps, find_odd_roundings
+from nrs_design.proof.system import (
+    Channel,
+    Contact,
+    Mode,
+    Output,
+    Rounding,
+    SwitchedSystem,
+    Time,
+)
 from tests.proof.systems import Entry, bouncing_in_steps, family, matrix
-from tests.proof.truth import holds
+from tests.proof.truth import combine, holds, is_positive_multiple, times, transpose
 
 ONE = Fraction(1)
 
@@ -177,3 +186,145 @@ def test_against_the_definition(contact, errors, Q, multiplier, tau):
     x, y, z = Q
     candidate = ConewiseQuadratic(((x, y), (y, z)), 2, Fraction("0.95"), (multiplier,), (tau,))
     assert (candidate.find_fault(system) is None) == holds(system, candidate)
+
+
+# Of three states, the last of which is the deflection, three disturbances and two errors; for two
+# modes in contact and one in free motion. Denominators differ, and nothing is symmetric but Q.
+Q3 = ((9, 2, -1), (2, 7, 3), (-1, 3, 8))
+MAPS3 = (
+    [["-1/2", "1/3", "2/3"], [1, "-1/5", "-3/7"], ["1/4", "2/3", "-1/9"]],
+    [["-1/11", "2/3", "1/8"], ["-1/5", -2, 1], ["5/4", "1/6", "1/3"]],
+    [["-1/3", "1/2", 0], ["1/7", "-2/5", 0], ["3/4", "-1/6", 1]],
+    [["1/8", "-1/2", 0], ["2/7", "1/5", 0], ["-1/4", "5/6", 1]],
+)
+PUSHES3 = tuple(
+    [[[row[k]] for row in rows] for k in range(4)]
+    for rows in (
+        (["1/2", "3/2", "1/9", 2], ["-1/3", "1/7", 3, 1], ["2/5", 2, "-1/4", "1/6"]),
+        ([2, "1/3", "2/3", "-1/5"], ["1/4", -2, "-1/8", 1], [-1, "1/5", 1, "1/2"]),
+        ([-1, "1/6", "3/8", 1], ["1/2", 5, -1, "1/3"], ["1/5", "-3/4", "7/4", -2]),
+    )
+)
+ERRORS3 = tuple(
+    [[[row[k]] for row in rows] for k in range(4)]
+    for rows in (
+        ([1, "1/5", "-1/7", 3], [0, 2, "1/2", "1/4"], ["1/2", 0, 1, -1]),
+        (["1/3", 1, 0, "2/7"], [1, "-3/4", "2/9", 1], [-1, "1/6", "5/2", "1/2"]),
+    )
+)
+SIZES3 = (
+    [
+        [["1/2", 1, "1/5", 3, "-1/4", "1/3"]],
+        [[2, "-1/3", 1, "1/7", 2, -1]],
+        [[1, "1/6", 0, 5, 1, "2/3"]],
+        [["1/4", 2, 0, "1/5", -1, 1]],
+    ],
+    [
+        [["-1/9", 2, 1, "1/2", 1, 4]],
+        [["1/8", 1, -2, 1, "3/5", 2]],
+        [["3/2", -1, 0, "1/3", -2, 1]],
+        [[1, "1/7", 0, 2, "1/2", "-1/3"]],
+    ],
+)
+KEEPS, WEIGHTS = Fraction(5, 7), (Fraction(2, 3), Fraction(3, 5))
+
+
+def three_states(*, contact: bool) -> SwitchedSystem:
+    count, names = 4 if contact else 2, "abc"
+    free = (Mode("f", matrix(MAPS3[2])), Mode("g", matrix(MAPS3[3])))
+    landing = Contact(free) if contact else None
+    return replace(
+        family(*MAPS3[:2], time=Time.DISCRETE),
+        contact=landing,
+        channels=tuple(
+            Channel(name, "N", ONE, tuple(matrix(b) for b in columns[:count]))
+            for name, columns in zip(names, PUSHES3, strict=True)
+        ),
+        roundings=tuple(
+            Rounding(name, tuple(map(matrix, columns[:count])), tuple(map(matrix, rows[:count])))
+            for name, columns, rows in zip(names, ERRORS3, SIZES3, strict=False)
+        ),
+    )
+
+
+def by_hand(k, before, after, acting, roundings, crossing=None, *, lands=True, flies=False):
+    """The form of the module, in fractions, over the state, what acts, and the errors."""
+    exact, covered = [matrix(A).fractions() for A in MAPS3], range(len(roundings))
+    moved = [list(row) for row in exact[k]]
+    for columns in (*(PUSHES3[i] for i in acting), *(ERRORS3[i] for i in covered)):
+        for row, (entry,) in zip(moved, matrix(columns[k]).fractions(), strict=True):
+            row.append(entry)
+    sizes = [matrix(SIZES3[i][k]).fractions()[0] for i in covered]
+    zeros = [Fraction(0)] * len(roundings)
+    sizes = [[*q[:3], *(q[3 + i] for i in acting), *zeros] for q in sizes]
+    if flies:
+        moved, sizes = ([[*row[:2], *row[3:]] for row in rows] for rows in (moved, sizes))
+    image = moved if lands else moved[:2]
+    form = combine((-1, times(transpose(image), times(after, image))))
+    for i, row in enumerate(before):
+        for j, entry in enumerate(row):
+            form[i][j] += KEEPS * entry
+    n = len(before)
+    for i in range(len(acting)):
+        form[n + i][n + i] += WEIGHTS[i]
+    for i, (tau, q) in enumerate(zip(roundings, sizes, strict=True), n + len(acting)):
+        form[i][i] += Fraction(tau, 4)
+        form = combine((1, form), (-Fraction(tau, 4), [[a * b for b in q] for a in q]))
+    if crossing is not None:
+        e, c = [Fraction(int(i == 2)) for i in range(len(form))], moved[2]
+        product = [[e[i] * c[j] + c[i] * e[j] for j in range(len(c))] for i in range(len(c))]
+        form = combine((1, form), (Fraction(crossing, 4), product))
+    return form
+
+
+QUARTERS = [[Fraction(entry, 4) for entry in row] for row in Q3]
+INNER = [row[:2] for row in QUARTERS[:2]]
+
+
+@pytest.mark.parametrize("acting", [(), (1,), (2, 0)])
+@pytest.mark.parametrize("roundings", [(), (4, 9), (0, 1)])
+def test_every_form_by_hand(acting, roundings):
+    weights = WEIGHTS[: len(acting)]
+    steps = Steps(Q3, 2, KEEPS, 5, roundings, acting, weights)
+    numbers = {"acting": acting, "roundings": roundings}
+    wanted = [
+        ("in mode m0", by_hand(0, QUARTERS, QUARTERS, **numbers)),
+        (
+            "where contact is lost in mode m0",
+            by_hand(0, QUARTERS, INNER, **numbers, crossing=5, lands=False),
+        ),
+        ("in mode m1", by_hand(1, QUARTERS, QUARTERS, **numbers)),
+        (
+            "where contact is lost in mode m1",
+            by_hand(1, QUARTERS, INNER, **numbers, crossing=5, lands=False),
+        ),
+    ]
+    for k, name in ((2, "f"), (3, "g")):
+        flight = by_hand(k, INNER, INNER, **numbers, lands=False, flies=True)
+        landing = by_hand(k, INNER, QUARTERS, **numbers, flies=True)
+        wanted += [(f"in free motion, mode {name}", flight)]
+        wanted += [(f"where contact is made, mode {name}", landing)]
+    system = three_states(contact=True)
+    assert system.find_contradiction() is None
+    kept = [form for form in wanted if form[0].startswith("in mode")]
+    for given_system, true in ((system, wanted), (three_states(contact=False), kept)):
+        found = list(steps.forms(given_system))
+        assert [where for where, _ in found] == [where for where, _ in true]
+        for (_, form), (_, form_by_hand) in zip(found, true, strict=True):
+            assert is_positive_multiple(form, form_by_hand)
+
+
+@pytest.mark.parametrize(
+    ("roundings", "fault"),
+    [
+        ((), None),
+        ((1, 2), None),
+        ((0, 0), None),
+        ((1,), "there is not one multiplier for each rounding"),
+        ((1, 2, 3), "there is not one multiplier for each rounding"),
+        ((-1, 2), "the multiplier of a rounding is negative"),
+        ((2, -1), "the multiplier of a rounding is negative"),
+    ],
+)
+def test_multipliers_of_roundings(roundings, fault):
+    assert find_odd_roundings(roundings, three_states(contact=True)) == fault

@@ -11,6 +11,7 @@ from nrs_design.proof.system import (
     Mode,
     Output,
     Reset,
+    Rounding,
     Stay,
     Switching,
     Time,
@@ -315,3 +316,57 @@ def test_disturbances_and_outputs_that_make_sense():
     kept = family([[-1, 0], [0, -1]])
     one_mode = replace(kept, channels=(replace(PUSH, columns=(COLUMN,)),))
     assert one_mode.find_contradiction() is None
+
+
+ROUNDS = replace(pushed(bouncing_in_steps()), sample_time=None)
+ERROR = Rounding(
+    "F", (COLUMN,) * 3, (matrix([[1, 2, 3]]), matrix([[4, 5, 6]]), matrix([[7, 0, 8]]))
+)
+
+
+@pytest.mark.parametrize(
+    ("changes", "reason"),
+    [
+        ({}, None),
+        ({"columns": (COLUMN, COLUMN, ONE)}, "the rounding of F does not have the size"),
+        (
+            {"columns": (COLUMN, COLUMN, matrix([[1, 0]]))},
+            "the rounding of F does not have the size",
+        ),
+        (
+            {"columns": (COLUMN, COLUMN, RationalMatrix(((1,), (0,)), 0))},
+            "the rounding of F does not have the size",
+        ),
+        ({"rows": (*ERROR.rows[:2], matrix([[7, 0]]))}, "the rounding of F does not have the size"),
+        (
+            {"rows": (*ERROR.rows[:2], matrix([[7, 0, 8, 9]]))},
+            "the rounding of F does not have the size",
+        ),
+        ({"columns": (COLUMN,) * 2}, "the rounding of F has not one column and row"),
+        ({"columns": (COLUMN,) * 4}, "the rounding of F has not one column and row"),
+        ({"rows": ERROR.rows[:2]}, "the rounding of F has not one column and row"),
+        ({"rows": (*ERROR.rows, ERROR.rows[2])}, "the rounding of F has not one column and row"),
+        (
+            {"rows": (*ERROR.rows[:2], matrix([[7, 1, 8]]))},
+            "the rounding of F depends on the deflection in free motion",
+        ),
+    ],
+)
+def test_roundings_that_make_sense_and_others(changes, reason):
+    other = replace(ERROR, name="other")
+    for roundings in ((replace(ERROR, **changes),), (other, replace(ERROR, **changes))):
+        found = replace(ROUNDS, roundings=roundings).find_contradiction()
+        assert found == reason if reason is None else found.startswith(reason)
+
+
+def test_roundings_need_steps_of_one_size_and_names():
+    twice = replace(ROUNDS, roundings=(ERROR, ERROR))
+    assert twice.find_contradiction() == "two roundings have one name"
+    first = Rounding("F", (matrix([[1]]),), (ONE,))
+    in_time = replace(family([[-1]]), roundings=(first,))
+    assert in_time.find_contradiction() == "the arithmetic rounds, but there are no steps"
+    assert replace(in_time, time=Time.DISCRETE).find_contradiction() is None
+    unequal = family([["1/2"]], [["1/2", 0], [0, "1/2"]], time=Time.DISCRETE)
+    found = replace(unequal, roundings=(first,)).find_contradiction()
+    assert found == "the arithmetic rounds, but the modes are not of one size"
+    assert unequal.find_contradiction() is None

@@ -7,9 +7,9 @@ from fractions import Fraction
 import pytest
 
 from nrs_design.proof.matrix import RationalMatrix
-from nrs_design.proof.system import FixedParameter, Mode, Reset, Stay, Switching
+from nrs_design.proof.system import FixedParameter, Mode, Reset, Rounding, Stay, Switching
 from nrs_design.proof.system_fields import read_system, system_fields
-from tests.proof.systems import SYSTEMS, bouncing, family, genuine
+from tests.proof.systems import SYSTEMS, bouncing, bouncing_in_steps, family, genuine, matrix
 
 RESET = Reset("m0", "m1", RationalMatrix(((1, -2), (0, 3)), 4))
 RULES = Switching(
@@ -23,6 +23,10 @@ RULES = Switching(
 RULED = family([[-1, 0], [0, -1]], [["-1/2", 1], [0, -2]], switching=RULES)
 
 
+ROUNDED = replace(
+    bouncing_in_steps(),
+    roundings=(Rounding("F", (matrix([[1], ["1/2"]]),) * 3, (matrix([["1/9", 0]]),) * 3),),
+)
 NAMELESS = {"numerators": [[1, 0], [0, 1]], "denominator": 1}
 
 
@@ -30,7 +34,9 @@ def stored(system):
     return json.loads(json.dumps(system_fields(system)))
 
 
-@pytest.mark.parametrize("system", [*(genuine(name)[0] for name in SYSTEMS), RULED], ids=str)
+@pytest.mark.parametrize(
+    "system", [*(genuine(name)[0] for name in SYSTEMS), RULED, ROUNDED], ids=str
+)
 def test_what_is_written_is_read(system):
     assert read_system(system.name, stored(system)) == system
 

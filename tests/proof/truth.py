@@ -52,6 +52,14 @@ def combine(*terms: tuple[Fraction | int, Rows]) -> Rows:
     ]
 
 
+def is_positive_multiple(form, wanted: Rows) -> bool:
+    """Tell whether a matrix is another one times a number > 0."""
+    pairs = [(Fraction(a), b) for rows in zip(form, wanted, strict=True)
+             for a, b in zip(*rows, strict=True)]  # fmt: skip
+    scale = next(a / b for a, b in pairs if b)
+    return scale > 0 and all(a == scale * b for a, b in pairs)
+
+
 def is_definite(M: Rows, *, strictly: bool = True) -> bool:
     """Gaussian elimination in fractions; singular matrices by all their principal minors."""
     M = [list(row) for row in M]

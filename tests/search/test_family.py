@@ -1,8 +1,11 @@
 """The modes in floating point."""
 
+from fractions import Fraction
+
 import numpy as np
 import pytest
 
+from nrs_design.proof.system import Switching, Time
 from nrs_design.search.family import Family, floats_in_silence
 from tests.proof.systems import dayawansa_martin, family, golden, rectangular
 
@@ -25,3 +28,13 @@ def test_the_limit_is_the_rate_of_the_slowest_mode(system, limit):
 def test_numbers_beyond_floating_point_do_not_crash():
     with floats_in_silence():
         Family.of(family([[-(10**400), 0], [0, -1]]))
+
+
+def test_modes_that_differ_by_the_last_digits_have_one_that_stands_for_them():
+    nearly = Fraction(1, 2) + Fraction(1, 10**20)
+    matrices = [["1/2", 1], [0, "1/4"]], [[nearly, 1], [0, "1/4"]], [["1/2", "1.001"], [0, "1/4"]]
+    discrete = family(*matrices, time=Time.DISCRETE)
+    assert Family.of(discrete).stand_ins() == {"m0": "m0", "m1": "m0", "m2": "m2"}
+    ruled = family(*matrices, time=Time.DISCRETE, switching=Switching(Fraction(3)))
+    assert Family.of(ruled).stand_ins() == {}
+    assert Family.of(family(*matrices)).stand_ins() == {}

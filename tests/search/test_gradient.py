@@ -93,8 +93,11 @@ def test_one_update_by_hand(time):
 
 def test_it_starts_with_the_named_mode():
     seen = []
+
+    def tell(updates, v):
+        seen.append((updates, v))
+
     for start in (0, 1):
-        tell = lambda updates, v: seen.append((updates, v))  # noqa: E731
         iterate_gradient(PAIR, Time.CONTINUOUS, Gradient(max_updates=0, tell=tell), start)
     expected = [max(largest(M, own_norm(A, Time.CONTINUOUS)) for M in PAIR) for A in PAIR]
     assert seen == [(0, pytest.approx(v)) for v in expected]

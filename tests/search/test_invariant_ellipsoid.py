@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from nrs_design.proof.evidence import InvariantEllipsoid
-from nrs_design.proof.system import Channel, Contact, Mode, Output, SwitchedSystem
+from nrs_design.proof.system import Channel, Contact, Mode, Output, Rounding, SwitchedSystem
 from nrs_design.search.allowance import Allowance
 from nrs_design.search.certify import Limits, certify, first_accepted
 from nrs_design.search.family import floats_in_silence
@@ -31,7 +31,7 @@ ENCODER = f"{{encoder_step: {360 / 8192 / 5:.10f} deg}}"
 
 def bounded(system: SwitchedSystem) -> InvariantEllipsoid:
     """Return the first bound that the exact check accepts."""
-    (output,) = system.outputs
+    output = system.outputs[0]
     with floats_in_silence():
         search = search_ellipsoid(system, system.channels, output, Allowance())
         evidence, outcome = first_accepted(search, system)
@@ -60,6 +60,30 @@ def in_continuous_time(k: tuple[str, ...], Bt: tuple[str, ...]) -> SwitchedSyste
         channels=(Channel("velocity command", "rad/s", speed, columns),),
         outputs=(Output("force", "N*m", rows),),
     )
+
+
+@pytest.mark.parametrize(
+    ("k", "Bt", "Mt", "level", "speed"),
+    [
+        (("43", "43"), INSERTION, "0.01", 0.448, 5.4),
+        (SOFT, BOTH, "0.01", 1.12, 2.1),
+        (SOFT, BOTH, "0", 0.66, 3.6),
+    ],
+)
+def test_the_command_that_keeps_the_limit_in_continuous_time(k, Bt, Mt, level, speed):
+    """From a spec; found by an independent program, to two digits or three."""
+    system = thesis_robot(k, Bt, Mt, contact="losable", disturbances="{command: 8 deg/s}")
+    evidence = bounded(system)
+    assert float(evidence.level) == pytest.approx(level, rel=0.02)
+    kept = 8 * 0.3 / float(evidence.level)
+    assert kept == pytest.approx(speed, abs=0.06)
+    said = f"{np.floor(kept * pi / 180 * 1e4) / 1e4:.4f}"
+    assert f"in proportion, for |velocity command| <= {said}" in evidence.claim(system)
+    slow_command = replace(
+        system,
+        channels=(replace(system.channels[0], bound=Fraction(kept * pi / 180 * 0.999)),),
+    )
+    assert float(bounded(slow_command).level) < 0.3
 
 
 @pytest.mark.parametrize(("k", "Bt", "level"), [(("43",), INSERTION, 0.449), (SOFT, BOTH, 1.13)])
@@ -171,3 +195,39 @@ def _signs(motions: DisturbedMotions, states: np.ndarray, modes: np.ndarray) -> 
         moved, push = motions.maps[mode, :, :-1] @ x, motions.maps[mode, :, -1]
         found.append(np.sign((after - moved) @ push))
     return np.array(found)
+
+
+def test_all_disturbances_at_once():
+    """The bound on all is above each alone, and not far above their sum."""
+    system = thesis_robot(
+        SOFT,
+        INSERTION,
+        "0.01",
+        sampling="{period: 2 ms, delay: 1}",
+        contact="losable",
+        disturbances="{friction: 55.3 rpm, force_step: 0.01 N*m, largest_angle: 20 deg}",
+    )
+    names = [channel.name for channel in system.channels]
+    assert names[2:] == ["rounding of the reference", "rounding of the angle"]
+    found = certify(system, limits=Limits(optimize_rate=False))
+    bounds = [item for item in found.statements if isinstance(item, InvariantEllipsoid)]
+    forces = {item.channels: float(item.level) for item in bounds if item.output == "force"}
+    assert all(item.covers_rounding for item in found.statements)
+    every, *alone = forces.values()
+    assert len(alone) == 4
+    assert max(alone) < every < 1.1 * sum(alone)
+    # Angles that are off by 2^-24 of 20 degrees do next to nothing.
+    assert forces["rounding of the angle",] < 1e-3
+    claim = bounds[0].claim(system)
+    assert "|friction| <= 55.3 rpm, |force error| <= 0.005 N*m, |rounding of the ref" in claim
+
+
+def test_a_law_that_rounds_coarsely_is_bounded_without_its_roundings():
+    """Where every term may be off by much, only exact arithmetic is covered, and it says so."""
+    system = pushed(bouncing_in_steps())
+    column, row = matrix([[1], [0]]), matrix([["1/2", 0, 0]])
+    coarse = replace(system, roundings=(Rounding("v", (column,) * 3, (row,) * 3),))
+    found = certify(coarse, limits=Limits(optimize_rate=False))
+    assert str(found.verdict) == "proved"
+    assert not any(item.covers_rounding for item in found.statements)
+    assert all("computed without rounding" in item.claim(coarse) for item in found.statements)

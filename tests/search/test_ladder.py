@@ -190,6 +190,14 @@ def test_every_method_is_on_the_ladder():
     assert len({rung.name for rung in LADDER}) == len(LADDER)
 
 
+@pytest.mark.parametrize("rung", LADDER, ids=lambda rung: rung.name)
+def test_every_rung_names_a_search_that_there_is(rung):
+    """A search is loaded when its rung is reached; a wrong name would be seen only then."""
+    for named in filter(None, (rung.search, rung.cost)):
+        with pytest.raises(TypeError, match=rf"{named.__name__}\(\) missing"):
+            named()
+
+
 def test_degrees_rise_while_they_fit_into_what_is_left():
     allowance = Allowance(0.5, clock=lambda: 0.0)
     found = names(dayawansa_martin(6), Method.POLYNOMIAL, allowance=allowance)

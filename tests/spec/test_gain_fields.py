@@ -140,3 +140,34 @@ def test_schema_and_reader_agree(gain: str, fits: bool) -> None:
         interaction(text)
     else:
         refusal(text)
+
+
+SPRINGS = [
+    ("0.5 N*m/rad", True),
+    ("{nominal: 0.5 N*m/rad, range: [0.2 N*m/rad, 1 N*m/rad]}", True),
+    ("{min: 0.2 N*m/rad, max: 1 N*m/rad}", False),
+]
+
+
+@pytest.mark.parametrize(("gain", "fits"), SPRINGS)
+def test_a_spring_is_given(gain: str, fits: bool) -> None:
+    text = spoiled(IMPEDANCE, BT, f"2 N*m*s/rad\n    Kt: {gain}")
+    data = YAML(typ="safe", pure=True).load(text)
+    assert Draft7Validator(json_schema()).is_valid(data) is fits
+    if fits:
+        interaction(text)
+    else:
+        assert "chooses Mt and Bt only" in refusal(text).message
+
+
+@pytest.mark.parametrize(
+    ("gain", "said"),
+    [
+        ("0 N*m/rad", "positive"),
+        ("0.5 N*m", "per radian"),
+        ("{nominal: 0.5 N*m/rad, range: [0 N*m/rad, 1 N*m/rad]}", "nothing draws"),
+    ],
+)
+def test_refuses_a_spring(gain: str, said: str) -> None:
+    error = refusal(spoiled(IMPEDANCE, BT, f"2 N*m*s/rad\n    Kt: {gain}"))
+    assert said in f"{error.message} ({error.remedy})"

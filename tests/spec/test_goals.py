@@ -54,6 +54,8 @@ def test_check_shows_goals_and_those_of_a_controller():
         ("goals: {max_ms: 2}", "max_ms", "unknown key"),
         ("goals: {max_force_error: 0.1}", "max_force_error", "for force controllers"),
         ("goals: {}", "goals", "no goal"),
+        ("goals: {peak_torque: 0.3}", "0.3}", "no unit"),
+        ("goals: {decay_rate: 0 1/s}", "0 1/s", "positive"),
     ],
 )
 def test_a_wrong_goal_is_refused_at_its_place(text, piece, message):
@@ -77,3 +79,21 @@ def test_goals_without_a_controller_in_contact_are_refused():
     text += "controllers: {position: {type: position}}\ngoals: {min_gain_margin: 2}\n"
     error = refusal(text + "switching: arbitrary\n")
     assert "no controller that a goal applies to" in error.message
+
+
+@pytest.mark.parametrize("goal", ["peak_torque: 0.3 N*m", "decay_rate: 1 1/s"])
+def test_a_goal_for_all_controllers_together_is_none_of_one(goal):
+    error = refusal(own(f"goals: {{{goal}}}"))
+    assert "for all controllers together" in error.message
+    assert "goals of the spec" in error.remedy
+
+
+def test_a_torque_is_wanted_only_where_something_causes_one():
+    error = refusal(with_goals("goals: {peak_torque: 0.3 N*m}\n"))
+    assert "nothing is said to disturb" in error.message
+    spec = interaction(
+        with_goals("goals: {peak_torque: 0.3 N*m}\ndisturbances: {command: 8 deg/s}\n")
+    )
+    assert float(spec.goals.peak_torque.exact) == 0.3
+    rows = {row.name: row for row in describe(spec)}
+    assert rows["goals.peak_torque"].written == "0.3 N*m"

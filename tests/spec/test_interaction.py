@@ -110,6 +110,15 @@ def test_offset_of_force_controllers() -> None:
     assert "offset" in str(error)
 
 
+def test_offset_beside_rules_about_single_contacts_is_refused() -> None:
+    gain = "    proportional_gain: 0.02 rad/(N*m)\n"
+    rules = "switching: {transitions: [[position, force/soft], [force/soft, position]]}"
+    plain = spoiled(FORCE, "switching: arbitrary", rules)
+    assert interaction(plain).switching.names_contacts
+    error = refusal(spoiled(plain, gain, gain + "    offset: measured\n"))
+    assert "beside offset" in error.message
+
+
 def test_offset_beside_impedance_controllers_is_refused() -> None:
     force = FORCE.partition("controllers:\n")[2].replace("switching: arbitrary\n", "")
     mixed = spoiled(IMPEDANCE, "switching:", force + "idle_states: {decay: 20 1/s}\nswitching:")

@@ -102,3 +102,22 @@ def test_check_lists_what_the_processor_does():
     assert rows["sampling.delay"][1] == "[0, 2]"
     assert rows["contact"][1] == "losable where proved"
     assert rows["actuator.time_constant.range"][1] == "[0.034 s, 0.036 s]"
+
+
+@pytest.mark.parametrize(
+    ("section", "said"),
+    [
+        ("{friction: 55.3 rpm}", "without sampling, friction is not modelled"),
+        ("{command: 8 deg/s, largest_angle: 20 deg}", "without sampling, largest_angle is not"),
+        ("{}", "no disturbance is named"),
+    ],
+)
+def test_what_may_disturb_a_loop_in_continuous_time(section, said):
+    with pytest.raises(SpecError, match=said):
+        parse_spec(f"{TEXT}\ndisturbances: {section}\n")
+
+
+def test_the_largest_angle_may_stand_alone():
+    spec = sampled("{period: 2 ms, delay: 0}\ndisturbances: {largest_angle: 20 deg}")
+    assert spec.disturbances.largest_angle.text == "20 deg"
+    assert spec.disturbances.bounds() == {}

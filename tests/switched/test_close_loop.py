@@ -117,6 +117,38 @@ class TestAssembly:
         assert "bounded inputs keep the state bounded;" in kept
         assert "all modes then rest at one point" in kept
 
+    def test_a_spring_is_said_and_what_it_does_not_bound(self):
+        law = Admittance(F("0.01"), F(2), F("0.5"))
+        system = assembled(impedance("in", "0.01"), Controller("out", law, "soft", ("soft",)))
+        assert system.states == ("xp1", "xp2", "vm [rad/s]", "delta [rad]")
+        texts = " ".join(system.assumptions)
+        assert "the integral of vm over all controllers, which no switch resets" in texts
+        assert "bounded inputs, if the integral of the velocity command is bounded too," in texts
+        # Without a spring of its own, `in` stays anywhere in the air.
+        assert "Contact is not lost" in texts
+        assert "spring" not in " ".join(assembled(impedance("in", "0.01")).assumptions)
+
+    def test_with_a_spring_free_motion_is_a_mode_like_others(self):
+        sprung = Controller("in", Admittance(F("0.01"), F(2), F("0.5")), "soft", ("soft",))
+        system = assembled(sprung, contact="losable")
+        assert [mode.name for mode in system.modes] == ["in/soft/k-min", "in/soft/k-max", "in/free"]
+        assert system.contact is None
+        assert all(stable(mode.A.fractions()) for mode in system.modes)
+        assert "at any moment" in " ".join(system.assumptions)
+        for contact in (None, "kept"):
+            assert len(assembled(sprung, contact=contact).modes) == 2
+        plain = impedance("out", "0.01")
+        with pytest.raises(AssemblyError, match="some controllers have a spring Kt"):
+            assembled(sprung, plain, contact="losable")
+
+    def test_a_spring_needs_a_deflection_that_stays(self):
+        sprung = Controller("in", Admittance(F("0.01"), F(2), F("0.5")), "soft", ("soft",))
+        with pytest.raises(AssemblyError, match="force coordinates do not apply") as caught:
+            assembled(sprung, coordinates="force")
+        assert caught.value.at == ("controllers", "in", "Kt")
+        with pytest.raises(AssemblyError, match="gel, which has no rest position"):
+            viscoelastic("gel", law=sprung.law)
+
     def test_loss_of_contact_is_named_for_force_control_too(self):
         law = ProportionalForce(F("0.02"))
         texts = " ".join(assembled(Controller("f", law, "soft", ("soft",))).assumptions)

@@ -1,9 +1,10 @@
 """State matrices entry by entry, against the published ones and against other formulas."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from types import MappingProxyType
 
+import control
 import numpy as np
 import pytest
 from hypothesis import given
@@ -14,12 +15,14 @@ from nrs_design.controllers.laws import (
     Admittance,
     ProportionalForce,
 )
+from nrs_design.controllers.sensor import LowPass
 from nrs_design.design.impedance import ImpedanceLoop
 from nrs_design.design.margins import stiffness_limit
 from nrs_design.design.transfer import TransferFunction
 from nrs_design.errors import AssemblyError
 from nrs_design.models.contact import Elastic, KelvinVoigt
 from nrs_design.models.linear_form import combine
+from nrs_design.models.motion_loop import MotionLoop, realize
 from nrs_design.switched.modes import (
     position_mode,
     to_force_coordinates,
@@ -146,6 +149,95 @@ class TestImpedance:
     def test_damped_contact(self):
         rows = velocity_mode(MOTION, Admittance(F(1, 100), F(2)), KelvinVoigt(F(43), F(3)))
         assert rows[2] == [300 * F("1618.80"), 300 * F("28.416"), -200, 4300]
+
+
+def with_displacement(law, contact):
+    """The mode with q, the integral of vm, as its last state."""
+    plain = replace(law, Kt=F(0))
+    rows = [[*row, F(0)] for row in velocity_mode(MOTION, plain, contact)]
+    n, own = len(rows), MOTION.order
+    rows.append([*[F(0)] * n, F(0)])
+    if law.Mt:
+        rows[own][n] = -law.Kt / law.Mt
+        rows[n][own] = F(1)
+        return rows
+    # vm = (F - Kt q)/Bt: what F does to the motion loop, minus Kt times what it is of q.
+    force, _ = contact.react(MOTION.output(n + 1), [[F(int(j == n - 1)) for j in range(n + 1)]])
+    vm = combine((1 / law.Bt, force))
+    vm[n] = -law.Kt / law.Bt
+    rows[own - 1][n] = law.Kt / law.Bt
+    rows[n] = vm
+    return rows
+
+
+class TestSpring:
+    """An admittance ``1/(Mt s + Bt + Kt/s)`` (thesis 2.2.6.2)."""
+
+    parts = (positive, positive, positive, positive, st.fractions(0, 10), st.booleans())
+
+    @given(*parts)
+    def test_characteristic_polynomial(self, Mt, Bt, Kt, k, b, massless):
+        """den(s)(Mt s^2 + Bt s + Kt) + num(s)(b s + k), over its leading coefficient."""
+        law = Admittance(F(0) if massless else Mt, Bt, Kt)
+        rows = velocity_mode(MOTION, law, KelvinVoigt(k, b))
+        num, den = (objects(*part) for part in (LOOP.numerator, LOOP.denominator))
+        own, contact = objects(law.Mt, law.Bt, law.Kt), objects(b, k)
+        total = np.polyadd(np.polymul(den, own), np.polymul(num, contact))
+        total = np.trim_zeros(total, "f")
+        assert polynomial(rows) == [c / total[0] for c in total]
+
+    @given(*parts)
+    def test_the_displacement_is_no_state_of_its_own(self, Mt, Bt, Kt, k, b, massless):
+        """With q for a state the loop has an eigenvalue of zero more: where the reference is."""
+        law, contact = Admittance(F(0) if massless else Mt, Bt, Kt), KelvinVoigt(k, b)
+        rows = velocity_mode(MOTION, law, contact)
+        assert polynomial(with_displacement(law, contact)) == [*polynomial(rows), 0]
+
+    @given(*parts)
+    def test_reference_and_deflection_tell_the_same(self, Mt, Bt, Kt, k, b, massless):
+        """As a position loop with the reference for a state: that contact must be a spring."""
+        law = Admittance(F(0) if massless else Mt, Bt, Kt)
+        contact = Elastic(k)
+        assert polynomial(position_mode(MOTION, law, contact)) == polynomial(
+            velocity_mode(MOTION, law, contact)
+        )
+
+    def test_in_the_air_it_returns_to_its_reference(self):
+        """Without a spring it stays anywhere: an eigenvalue of zero."""
+        law = Admittance(F("0.01"), F("1.04"), F("0.5"))
+        assert stable(velocity_mode(MOTION, law, KelvinVoigt(F(0), F(0))))
+        assert not stable(velocity_mode(MOTION, replace(law, Kt=F(0)), KelvinVoigt(F(0), F(0))))
+
+    def test_a_loop_that_does_not_follow_is_refused(self):
+        motion = realize(MotionLoop((F(1), F(0)), (F(1), F(2), F(3))))
+        with pytest.raises(AssemblyError, match="gain at zero is zero"):
+            velocity_mode(motion, Admittance(F(1), F(1), F(1)), SOFT)
+
+
+class TestFilter:
+    @pytest.mark.parametrize("order", [1, 2, 3])
+    def test_eigenvalues_are_the_poles_that_python_control_closes(self, order):
+        """``G Ze H Y`` under unit feedback, H so many lags of 30 Hz in a row."""
+        low_pass = LowPass(order, F(188))
+        rows = velocity_mode(
+            MOTION, Admittance(F("0.01"), F(2)), KelvinVoigt(F(43), F(1)), low_pass
+        )
+        s = control.tf("s")
+        G = control.tf(*([*map(float, part)] for part in (LOOP.numerator, LOOP.denominator)))
+        Ze, H, Y = (43 + s) / s, 1 / (s / 188 + 1) ** order, 1 / (0.01 * s + 2)
+        wanted = np.sort_complex(control.feedback(G * Ze * H * Y, 1).poles())
+        found = np.sort_complex(np.linalg.eigvals(np.array(rows, dtype=float)))
+        assert found == pytest.approx(wanted, rel=1e-4)
+
+    def test_a_spring_and_a_filter(self):
+        """The characteristic polynomial ``denH den (Mt s^2 + Bt s + Kt) + num (b s + k)``."""
+        low_pass, law = LowPass(2, F(100)), Admittance(F("0.01"), F(2), F("0.5"))
+        rows = velocity_mode(MOTION, law, KelvinVoigt(F(43), F(1)), low_pass)
+        num, den = (objects(*part) for part in (LOOP.numerator, LOOP.denominator))
+        lags = objects(F(1, 10_000), F(1, 50), F(1))
+        free = np.polymul(np.polymul(den, lags), objects(law.Mt, law.Bt, law.Kt))
+        total = np.polyadd(free, np.polymul(num, objects(F(1), F(43))))
+        assert polynomial(rows) == [c / total[0] for c in total]
 
 
 class TestForce:

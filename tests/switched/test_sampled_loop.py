@@ -14,6 +14,7 @@ from nrs_design.controllers.sampled import (
     SampledMotion,
     rounding_share,
 )
+from nrs_design.controllers.sensor import SampledLowPass
 from nrs_design.errors import AssemblyError
 from nrs_design.models.actuator import ActuatorRanges
 from nrs_design.pipeline import run_design
@@ -143,24 +144,33 @@ def test_agrees_with_a_simulation_step_by_step():
         longest = int(rng.integers(0, 4))
         delay = int(rng.integers(0, longest + 1))
         inertia = bool(rng.integers(0, 2))
-        law = SampledAdmittance(Fraction(a) if inertia else None, Fraction(gain), Fraction(T))
-        frame = Frame(
-            Fraction(T), SampledMotion(Fraction(Kp), Fraction(D)), inertia, longest, Fraction(tau)
+        Kt = float(rng.integers(0, 2) * rng.uniform(0, 10))
+        law = SampledAdmittance(
+            Fraction(a) if inertia else None, Fraction(gain), Fraction(T), Fraction(Kt)
         )
+        order, p, q = int(rng.integers(0, 3)), rng.uniform(), rng.uniform()
+        low_pass = SampledLowPass(order, Fraction(p), Fraction(q)) if order else None
+        motion = SampledMotion(Fraction(Kp), Fraction(D))
+        frame = Frame(Fraction(T), motion, inertia, longest, Fraction(tau), low_pass, Kt > 0)
         values = {"Km": Km, "E": float(np.exp(-T / tau)), "k": k, "b": b}
         rows = frame.rows(law, delay, {key: Fraction(value) for key, value in values.items()})
         x = rng.normal(size=len(frame.states))
         e, omega, before, theta = x[0], x[1], x[2], x[-1]
-        forces = [k * theta + b * omega, *x[3 + inertia : -1]]
-        v = x[3] if inertia else gain * forces[delay]
+        forces = [k * theta + b * omega, *x[3 + inertia + order : -1]]
+        filtered, felt = [], forces[delay]
+        for lag in x[3 + inertia : 3 + inertia + order]:
+            felt = p * lag + q * felt
+            filtered.append(felt)
+        felt += Kt * (e + theta)
+        v = x[3] if inertia else gain * felt
         u = Kp * e + D * (e - before)
         held = np.zeros((3, 3))
         held[:2] = [[0, 1, 0], [0, -1 / tau, Km / tau]]
         moved = (expm(held * T) @ [theta, omega, u])[:2]
         reference = e + theta - T * v
         expected = [reference - moved[0], moved[1], e]
-        expected += [a * v + gain * forces[delay]] if inertia else []
-        expected += [*forces[:longest], moved[0]]
+        expected += [a * v + gain * felt] if inertia else []
+        expected += [*filtered, *forces[:longest], moved[0]]
         got = np.array(rows, dtype=float)[: len(x), : len(x)] @ x
         assert got == pytest.approx(np.array(expected), rel=1e-9, abs=1e-9)
 
@@ -226,6 +236,56 @@ def test_single_precision_never_leaves_the_roundings():
     assert min(largest[name] for name in ("e", "u", "v", "step")) > Fraction(3, 10)
 
 
+def test_filter_and_spring_in_single_precision_stay_within_the_roundings():
+    """Two lags and a spring, computed in float32: lags and velocity are off by what is allowed.
+
+    From the same numbers, what the exact law makes of them is computed in fractions.
+    """
+    rng = np.random.default_rng(12)
+    single = np.float32
+    nearest = Fraction(0)
+    for _ in range(200):
+        inertia = bool(rng.integers(0, 2))
+        p, q, a, b, Kt = (single(v) for v in rng.uniform(0.1, 1, 5) * [1, 1, 0.5, 0.2, 10])
+        x1, x2, v, force, reference, start = (single(x) for x in rng.normal(size=6) * 0.1)
+        true = exactly(force) * (1 + Fraction(rng.uniform(-1, 1)) * UNIT)
+        moved = exactly(reference) - exactly(start)
+        y1 = p * x1 + q * force
+        y2 = p * x2 + q * y1
+        pushed = b * (y2 + Kt * (reference - start))
+        velocity = a * v + pushed if inertia else pushed
+        step = SampledLowPass(2, exactly(p), exactly(q))
+        law = SampledAdmittance(exactly(a) if inertia else None, exactly(b), PERIOD, exactly(Kt))
+        frame = Frame(PERIOD, MOTION, inertia, 1, TAU, step, sprung=True)
+        n, names = len(frame.states), list(frame.roundings)
+        values = {"Km": KM, "E": Fraction(94, 100), "k": Fraction(0), "b": Fraction(0)}
+        rows = frame.rows(law, 1, values)
+        # The reference is e + delta, and the law takes the force that is one sample old.
+        state = [moved, *[Fraction(0)] * 2, *([exactly(v)] * inertia), exactly(x1), exactly(x2)]
+        state += [true, Fraction(0)]
+        first = 3 + inertia
+        state += [Fraction(0)] * (len(rows[0]) - len(state))
+        sizes = [abs(sum(c * x for c, x in zip(row, state, strict=True))) for row in rows[n:]]
+        exact = [sum(c * x for c, x in zip(row, state, strict=True)) for row in rows[:n]]
+        pairs = [(exactly(y1), first), (exactly(y2), first + 1)]
+        if inertia:
+            pairs.append((exactly(velocity), 3))
+        for found, i in pairs:
+            columns = rows[i][-len(names) :]
+            allowed = sum(abs(c) * size for c, size in zip(columns, sizes, strict=True))
+            assert abs(found - exact[i]) <= allowed
+            nearest = max(nearest, abs(found - exact[i]) / allowed)
+        if not inertia:
+            terms = [j for j, name in enumerate(names) if name.startswith("b ")]
+            wanted = exactly(b) * (
+                exactly(p) * exactly(x2)
+                + exactly(q) * (exactly(p) * exactly(x1) + exactly(q) * true)
+                + exactly(Kt) * moved
+            )
+            assert abs(exactly(velocity) - wanted) <= sum(sizes[j] for j in terms)
+    assert nearest > Fraction(3, 10)
+
+
 def test_the_share_of_many_roundings():
     """Not below n u / (1 - n u), of which no product of n factors 1 + u has more."""
     for n in range(1, 16):
@@ -234,6 +294,25 @@ def test_the_share_of_many_roundings():
     for n in (0, 16):
         with pytest.raises(ValueError, match="not counted"):
             rounding_share(n)
+
+
+def test_a_spring_does_not_go_with_a_command_that_moves_on(tmp_path):
+    """The state tells the displacement only while the reference stays where it is."""
+    sprung = (BT, "Kt: 0.5 N*m/rad\n    " + BT)
+    sampling = "{period: 2 ms, delay: 0}\ndisturbances: {command: 8 deg/s}"
+    with pytest.raises(AssemblyError, match="the spring Kt draws") as caught:
+        system_of(tmp_path, sampling, sprung)
+    assert caught.value.at == ("disturbances", "command")
+
+
+def test_with_a_spring_free_motion_is_a_mode_like_others(tmp_path):
+    sprung = (BT, "Kt: 0.5 N*m/rad\n    " + BT)
+    system = system_of(tmp_path, "{period: 2 ms, delay: 0}\ncontact: losable", sprung)
+    assert system.contact is None
+    assert sum("/free/" in mode.name for mode in system.modes) == 4
+    assert "at any moment" in " ".join(system.assumptions)
+    kept = system_of(tmp_path, "{period: 2 ms, delay: 0}", sprung)
+    assert not any("free" in mode.name for mode in kept.modes)
 
 
 def test_bounds_of_the_motor_hold_what_lies_between():

@@ -8,6 +8,7 @@ from nrs_design.controllers.laws.force import ProportionalForce
 from nrs_design.controllers.laws.impedance import Admittance
 from nrs_design.controllers.laws.law import AbstractCompliantLaw, AbstractLaw
 from nrs_design.controllers.laws.motion import ProportionalDerivative
+from nrs_design.controllers.laws.parallel import ParallelForce
 from nrs_design.controllers.laws.position import PositionControl
 
 # A law that fits its spec: who takes both from one controller need not ask which.
@@ -15,7 +16,7 @@ CompliantLaw = AbstractCompliantLaw[Any]
 
 # Laws that the robot switches between, by the type of a controller in a spec.
 LAWS: Mapping[str, type[CompliantLaw]] = MappingProxyType(
-    {law.name: law for law in (Admittance, ProportionalForce, PositionControl)}
+    {law.name: law for law in (Admittance, ProportionalForce, ParallelForce, PositionControl)}
 )
 
 __all__ = [
@@ -24,6 +25,7 @@ __all__ = [
     "AbstractLaw",
     "Admittance",
     "CompliantLaw",
+    "ParallelForce",
     "PositionControl",
     "ProportionalDerivative",
     "ProportionalForce",

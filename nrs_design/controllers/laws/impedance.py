@@ -30,20 +30,49 @@ STATIC_LAW = (
 class Admittance(AbstractCompliantLaw[ImpedanceControllerSpec]):
     """Velocity correction ``vm = F / (Mt s + Bt)`` (thesis 6.8), subtracted from the command.
 
+    With a spring it is ``vm = F / (Mt s + Bt + Kt/s)`` (thesis 2.2.6.2): the spring acts on the
+    integral of vm, which is by how much the position reference has been moved.
+
     Parameters
     ----------
     Mt : Fraction
         Virtual inertia in kg m^2; zero makes the law static.
     Bt : Fraction
         Virtual damping in N m s/rad; positive.
+    Kt : Fraction
+        Virtual stiffness in N m/rad; zero is no spring, and then no gain of the law.
     """
 
     name: ClassVar[str] = "impedance"
-    units: ClassVar[Mapping[str, str]] = MappingProxyType({"Mt": "kg*m^2", "Bt": "N*m*s/rad"})
+    units: ClassVar[Mapping[str, str]] = MappingProxyType(
+        {"Mt": "kg*m^2", "Bt": "N*m*s/rad", "Kt": "N*m/rad"}
+    )
     commands: ClassVar[Command] = ImpedanceControllerSpec.commands
 
     Mt: Fraction
     Bt: Fraction
+    Kt: Fraction = Fraction(0)
+
+    @property
+    def gains(self) -> Mapping[str, Fraction]:
+        """The gains by name; the spring only where there is one."""
+        found = {"Mt": self.Mt, "Bt": self.Bt}
+        return found | {"Kt": self.Kt} if self.Kt else found
+
+    @classmethod
+    def of(cls, gains: Mapping[str, Fraction]) -> Admittance:
+        """Return the law with these gains; without Kt it has no spring."""
+        return cls(gains["Mt"], gains["Bt"], gains.get("Kt", Fraction(0)))
+
+    @classmethod
+    def gains_in(cls, given: ImpedanceControllerSpec) -> tuple[str, ...]:
+        """Return the names of its gains; Kt is one where the spec gives it."""
+        return ("Mt", "Bt") if given.Kt is None else ("Mt", "Bt", "Kt")
+
+    @property
+    def spring(self) -> Fraction:
+        """The virtual stiffness."""
+        return self.Kt
 
     @property
     def states(self) -> tuple[str, ...]:
@@ -61,7 +90,10 @@ class Admittance(AbstractCompliantLaw[ImpedanceControllerSpec]):
         return frozenset({"Mt" if self.Mt else "Bt"})
 
     def respond(self, force: LinearForm, states: Sequence[LinearForm]) -> Response:
-        """Return ``-vm``, with ``Mt vm' = F - Bt vm``; without inertia ``vm = F / Bt``."""
+        """Return ``-vm``, with ``Mt vm' = F - Bt vm``; without inertia ``vm = F / Bt``.
+
+        The force F has that of the spring in it, -Kt q.
+        """
         if self.Mt == 0:
             return combine((-1 / self.Bt, force)), []
         (vm,) = states
@@ -72,16 +104,17 @@ class Admittance(AbstractCompliantLaw[ImpedanceControllerSpec]):
         """Discretize ``Mt v' + Bt v = F`` (thesis 6.8).
 
         Exactly for a force that is held: ``a = exp(-Bt T/Mt)`` and ``b = (1 - a)/Bt``; or by
-        Euler's method: ``a = 1 - Bt T/Mt`` and ``b = T/Mt``.
+        Euler's method: ``a = 1 - Bt T/Mt`` and ``b = T/Mt``. The spring's force counts as part of
+        the force.
         """
         T = to_float32(period)
         if self.Mt == 0:
-            return SampledAdmittance(None, to_float32(1 / self.Bt), T)
+            return SampledAdmittance(None, to_float32(1 / self.Bt), T, self.Kt)
         step = self.Bt * period / self.Mt
         if method == "euler":
-            return SampledAdmittance(to_float32(1 - step), to_float32(period / self.Mt), T)
+            return SampledAdmittance(to_float32(1 - step), to_float32(period / self.Mt), T, self.Kt)
         a, _ = exponential_between(-step)
-        return SampledAdmittance(to_float32(a), to_float32((1 - a) / self.Bt), T)
+        return SampledAdmittance(to_float32(a), to_float32((1 - a) / self.Bt), T, self.Kt)
 
     @classmethod
     def contact_text(cls, *, alone: bool) -> str:

@@ -65,6 +65,14 @@ class AbstractCompliantLaw(AbstractLaw, Generic[S]):
         """Gains in one over which `respond` is affine; it is affine in all others."""
         return frozenset()
 
+    @property
+    def spring(self) -> Fraction:
+        """Stiffness in N m/rad that draws the robot back to its position reference; 0 is none.
+
+        Times the offset that the law has given the reference, it adds to the force in `respond`.
+        """
+        return Fraction(0)
+
     @abstractmethod
     def respond(self, force: LinearForm, states: Sequence[LinearForm]) -> Response:
         """Return the command, and the rates of the states, as linear forms of the whole loop.
@@ -72,7 +80,7 @@ class AbstractCompliantLaw(AbstractLaw, Generic[S]):
         Parameters
         ----------
         force : LinearForm
-            Of all contacts on the robot, N m.
+            Of all contacts on the robot and of the `spring`, N m.
         states : sequence of LinearForm
             Those named in `states`.
         """
@@ -86,6 +94,11 @@ class AbstractCompliantLaw(AbstractLaw, Generic[S]):
             If a coefficient is beyond single precision.
         """
         return None
+
+    @classmethod
+    def gains_in(cls, given: S) -> tuple[str, ...]:
+        """Return the names of the gains that a controller of a spec has; by default all."""
+        return tuple(cls.units)
 
     def find_fault(self, given: S) -> str | None:
         """Say which gain is not one that the spec allows, beyond bounds and ranges; or None.

@@ -3,12 +3,17 @@
 from collections.abc import Mapping
 from types import MappingProxyType
 
-from nrs_design.design.laws import force, impedance, position
+from nrs_design.design.laws import force, impedance, parallel, position
 from nrs_design.design.laws.law import LawDesign
 
 # By the type of a controller in a spec; analyses are shown in this order.
 LAW_DESIGNS: Mapping[str, LawDesign] = MappingProxyType(
-    {"impedance": impedance.DESIGN, "force": force.DESIGN, "position": position.DESIGN}
+    {
+        "impedance": impedance.DESIGN,
+        "force": force.DESIGN,
+        "parallel": parallel.DESIGN,
+        "position": position.DESIGN,
+    }
 )
 
 __all__ = ["LAW_DESIGNS", "LawDesign"]

@@ -64,12 +64,8 @@ def analyze(task: Task, given: ForceControllerSpec, controller: Controller) -> F
 
     Parameters
     ----------
-    task : Task
-        What the gains were chosen for.
-    given : ForceControllerSpec
-        What the spec says of the controller.
-    controller : Controller
-        With the gains that ship.
+    task, given, controller
+        As for `LawDesign`.
 
     Raises
     ------

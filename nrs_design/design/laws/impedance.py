@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from itertools import product
 
@@ -12,6 +12,7 @@ from nrs_design.controllers.float32 import neighbors, round_significant, to_floa
 from nrs_design.controllers.gain_range import faults_of_ranges, gain_interval
 from nrs_design.controllers.laws import Admittance
 from nrs_design.design.constrained import best_rounding, meets, optimize_with_goals
+from nrs_design.design.creep import Creep, creep_of, with_creep
 from nrs_design.design.doubts import doubt_bounds
 from nrs_design.design.goals import Requirement, achieve_impedance, corners_of
 from nrs_design.design.impedance import (
@@ -29,10 +30,11 @@ from nrs_design.design.laws.law import (
     naming,
 )
 from nrs_design.design.margins import LoopMargins, loop_margins, stiffness_limit
-from nrs_design.design.measures import IMPEDANCE_MEASURES
+from nrs_design.design.measures import CREEP_MEASURES, IMPEDANCE_MEASURES, Measure
 from nrs_design.design.relief import doubt_stiffness
 from nrs_design.errors import DesignError
 from nrs_design.models.contact.environment import Environment
+from nrs_design.proof.bounds import upper_float
 from nrs_design.spec import Doubt, GainSpec, ImpedanceControllerSpec, InteractionDesignSpec
 from nrs_design.spec.controllers import contact_names, names_in
 
@@ -52,7 +54,7 @@ class ImpedanceAnalysis(AbstractControllerAnalysis):
     optimum : ImpedanceOptimum
         Before rounding.
     Mt, Bt : float
-        As shipped, in kg m^2 and N m s/rad.
+        As shipped, in kg m^2 and N m s/rad; a spring is that of the loop in the problem.
     cost : float
         Of the shipped gains.
     margins : LoopMargins
@@ -64,6 +66,8 @@ class ImpedanceAnalysis(AbstractControllerAnalysis):
         declared ranges.
     stiff : tuple of Doubt
         Contacts that are too stiff for the shipped gains.
+    creep : Creep or None
+        By the errors of the force signal, where the spec says how large they are.
     """
 
     given: ImpedanceControllerSpec
@@ -76,6 +80,7 @@ class ImpedanceAnalysis(AbstractControllerAnalysis):
     highest_stiffness: float
     lowest_limit: float
     stiff: tuple[Doubt, ...]
+    creep: Creep | None = None
 
     def doubts(self) -> Iterator[Doubt]:
         """Yield what is doubtful about the gains, and which of them the bounds have chosen."""
@@ -89,7 +94,8 @@ def choose(task: Task, given: ImpedanceControllerSpec) -> Choice:
     optimum = None
     if given.Mt.fixed and given.Bt.fixed:
         # Nothing to choose; whether these gains are stable is for the certificate to say.
-        law = Admittance(to_float32(given.Mt.min.exact), to_float32(given.Bt.min.exact))
+        Mt, Bt = (to_float32(gain.min.exact) for gain in (given.Mt, given.Bt))
+        law = Admittance(Mt, Bt, _spring(given))
     else:
         law, optimum = _optimize(task, given)
     for gain, outside in faults_of_ranges(given, law.gains):
@@ -105,12 +111,8 @@ def analyze(
 
     Parameters
     ----------
-    task : Task
-        What the gains were chosen for.
-    given : ImpedanceControllerSpec
-        What the spec says of the controller.
-    controller : Controller
-        With the gains that ship.
+    task, given, controller
+        As for `LawDesign`.
 
     Raises
     ------
@@ -122,14 +124,16 @@ def analyze(
     Mt, Bt = float(shipped["Mt"]), float(shipped["Bt"])
     with naming(controller.name):
         margins = loop_margins(problem.loop, Mt, Bt)
-    ranges = (gain_interval(given.Mt, shipped["Mt"]), gain_interval(given.Bt, shipped["Bt"]))
+    ends = (gain_interval(gain, shipped[name]).ends for name, gain in given.gains().items())
     limits = (
-        stiffness_limit(problem.loop, float(mass), float(damping))
-        for (_, mass), (_, damping) in product(*(interval.ends for interval in ranges))
+        stiffness_limit(replace(problem.loop, Kt=sum(springs)), Mt_end, Bt_end)
+        for Mt_end, Bt_end, *springs in product(*([float(v) for _, v in pair] for pair in ends))
     )
+    achieved = achieve_impedance(_requirement(task, given), _measures(task), Mt, Bt)
+    creep = creep_of(task.spec, task.loop, given, controller) if task.sensor.errors else None
     return ImpedanceAnalysis(
         name=controller.name,
-        achieved=achieve_impedance(_requirement(task, given), IMPEDANCE_MEASURES, Mt, Bt),
+        achieved=achieved if creep is None else with_creep(achieved, creep),
         given=given,
         problem=problem,
         # Gains that the spec gives are their own optimum.
@@ -141,6 +145,7 @@ def analyze(
         highest_stiffness=float(_highest_stiffness(task, given)),
         stiff=tuple(too_stiff(task, given, controller)),
         lowest_limit=min(margins.stiffness_limit, *limits),
+        creep=creep,
     )
 
 
@@ -159,7 +164,8 @@ def too_stiff(
         With the gains that ship.
     """
     Mt, Bt = (float(controller.law.gains[gain]) for gain in ("Mt", "Bt"))
-    yield from doubt_stiffness(controller.name, task.motion, _measured_in(task, given), Mt, Bt)
+    loop = impedance_problem(task, given).loop
+    yield from doubt_stiffness(controller.name, loop, _measured_in(task, given), Mt, Bt)
 
 
 DESIGN = LawDesign(choose, analyze, too_stiff)
@@ -176,7 +182,12 @@ def impedance_problem(task: Task, given: ImpedanceControllerSpec) -> ImpedancePr
         With bounds and weights.
     """
     return ImpedanceProblem(
-        loop=ImpedanceLoop(task.motion, task.plant.environment(given.environment).nominal),
+        loop=ImpedanceLoop(
+            task.motion,
+            task.plant.environment(given.environment).nominal,
+            float(_spring(given)),
+            _lags(task),
+        ),
         desired=desired_impedance(task.spec, given),
         bandwidth=task.spec.limits.bandwidth.si,
         mass_bounds=(given.Mt.min.si, given.Mt.max.si),
@@ -201,10 +212,12 @@ def _requirement(task: Task, given: ImpedanceControllerSpec) -> Requirement:
     gains = {name: _ends(gain) for name, gain in given.gains().items()}
     return Requirement(
         motion=task.motion,
-        corners=corners_of(contacts, given.environment, gains),
-        goals=goals_of(task.spec, given, IMPEDANCE_MEASURES),
+        corners=corners_of(contacts, given.environment, gains, float(_spring(given))),
+        goals=goals_of(task.spec, given, _measures(task)),
         desired=desired_impedance(task.spec, given),
         bandwidth=task.spec.limits.bandwidth.si,
+        lags=_lags(task),
+        force_error=upper_float(task.sensor.lasting),
     )
 
 
@@ -219,6 +232,16 @@ def _highest_stiffness(task: Task, given: ImpedanceControllerSpec) -> Fraction:
     at_once = (c for c in given.contacts if given.environment in names_in(c))
     names = (given.environment, *contact_names(tuple(at_once)))
     return max(task.plant.environment(name).stiffness.high for name in names)
+
+
+def _measures(task: Task) -> tuple[Measure, ...]:
+    """Return what an impedance controller is measured by: creep where its cause is known."""
+    return (*IMPEDANCE_MEASURES, *(CREEP_MEASURES if task.sensor.errors else ()))
+
+
+def _lags(task: Task) -> tuple[float, ...]:
+    low_pass = task.sensor.filter
+    return (1.0,) if low_pass is None else low_pass.denominator
 
 
 def _ends(gain: GainSpec) -> tuple[float, ...]:
@@ -236,6 +259,7 @@ def _optimize(task: Task, given: ImpedanceControllerSpec) -> tuple[Admittance, I
     law = Admittance(
         Mt=_shipped(optimum.Mt, given.Mt, task.digits),
         Bt=_shipped(optimum.Bt, given.Bt, task.digits),
+        Kt=_spring(given),
     )
     if not meets(requirement, float(law.Mt), float(law.Bt)):
         law = _rounded_within(problem, requirement, optimum, given, task.digits)
@@ -261,7 +285,12 @@ def _rounded_within(
             f"Bt = {optimum.Bt:.6g} N m s/rad meet the goals",
             remedy="raise design.significant_digits (at most 7), or relax a goal",
         )
-    return Admittance(*map(Fraction, pair))
+    return Admittance(Fraction(pair[0]), Fraction(pair[1]), _spring(controller))
+
+
+def _spring(given: ImpedanceControllerSpec) -> Fraction:
+    """Return Kt as the robot holds it; zero where the spec gives none."""
+    return Fraction(0) if given.Kt is None else to_float32(given.Kt.min.exact)
 
 
 def _shipped(value: float, bounds: GainSpec, digits: int) -> Fraction:

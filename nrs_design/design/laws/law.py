@@ -11,6 +11,7 @@ from typing import Any
 
 from nrs_design.controllers.controller_design import Controller, ImpedanceOptimum
 from nrs_design.controllers.laws import CompliantLaw
+from nrs_design.controllers.sensor import Sensor, build_sensor
 from nrs_design.design.doubts import doubt_values
 from nrs_design.design.goals import Achieved
 from nrs_design.design.measures import Measure
@@ -43,6 +44,11 @@ class Task:
     def motion(self) -> TransferFunction:
         """The motion loop in floating point."""
         return to_transfer_function(self.loop)
+
+    @property
+    def sensor(self) -> Sensor:
+        """The sensor of the force that the controllers act on."""
+        return build_sensor(self.spec.sensor)
 
     @property
     def digits(self) -> int:
@@ -83,8 +89,9 @@ class LawDesign:
     choose : callable
         Gives the law for a task and the spec of a controller.
     analyze : callable or None
-        gives the analysis for a task, the spec of a controller and the controller; None where
-        nothing is measured.
+        Gives the analysis for what the gains were chosen for (`task`), what the spec says of the
+        controller (`given`), and the controller with the gains that ship; None where nothing is
+        measured.
     too_stiff : callable or None
         Gives the contacts that are too stiff for the gains, and what would hold, for the same; None
         where that is not known.

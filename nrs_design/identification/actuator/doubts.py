@@ -18,6 +18,8 @@ Array = NDArray[np.float64]
 
 # A cause is named where it alone explains so much of the power of the errors.
 _EXPLAINS = 0.3
+# Causes that explain the same to this part are all named.
+_ALIKE = 0.01
 # Of the largest command: where a driver may limit it.
 _LEVELS = (0.5, 0.6, 0.7, 0.8, 0.9, 0.95)
 # Of the largest error: half the play that is tried.
@@ -65,27 +67,34 @@ def find_doubts(
     yield f"the model misses {100 * missed:.2g} % of the motion, in errors that are not noise"
     causes = sorted(_causes(records, found), reverse=True)
     if causes and causes[0][0] >= _EXPLAINS:
-        share, words = causes[0]
+        share = causes[0][0]
+        # Between two levels of a command, a limit and an offset do the same.
+        words = ", or ".join(words for other, words in causes if other > share - _ALIKE)
         yield f"likely {words}; it alone would explain {100 * share:.0f} % of what is missed"
 
 
 def _causes(records: Sequence[ActuatorRecord], found: TimeFit) -> Iterator[tuple[float, str]]:
     """Yield the part of the errors that each cause would explain, and its words."""
     motor = found.motor
+    unit = records[0].unit
     largest = max(float(np.abs(record.command).max()) for record in records)
+    limits = []
     for level in (share * largest for share in _LEVELS):
         share, factor = _explained(records, found, partial(_cut, motor, level))
         if factor < -_LARGE:
-            unit = records[0].unit
-            yield share, f"saturation: commands act as if cut at some {level:.3g} {unit}"
+            limits.append((share, f"saturation: commands act as if cut at some {level:.3g} {unit}"))
+    yield from sorted(limits)[-1:]
     share, factor = _explained(records, found, lambda r: motor.forced(r, *_constant(r)))
-    yield share, f"an offset of some {factor:.3g} {records[0].unit} on the command"
+    yield share, f"an offset of some {factor:.3g} {unit} on the command"
     if not all(record.is_angle for record in records):
         return
+    plays = []
     for play in (p * 2 * float(np.abs(found.errors).max()) for p in _PLAYS):
         share, factor = _explained(records, found, partial(_lost, motor, play))
         if factor > _LARGE:
-            yield share, f"backlash: the output loses some {play * factor:.2g} rad at reversals"
+            words = f"backlash: the output loses some {play * factor:.2g} rad at reversals"
+            plays.append((share, words))
+    yield from sorted(plays)[-1:]
 
 
 def _explained(

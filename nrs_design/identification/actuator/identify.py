@@ -223,6 +223,8 @@ def _first_order(records: Sequence[ActuatorRecord]) -> TimeFit:
         found = fit_in_time(records, start)
     except DataError:
         return fit_in_time(records, without)
+    if found.uncertainty.whiteness >= WHITE and found.tells_friction:
+        return found
     try:
         return min(found, fit_in_time(records, without), key=lambda fit: fit.bic)
     except DataError:

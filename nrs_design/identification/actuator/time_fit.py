@@ -13,15 +13,21 @@ from nrs_design.identification.actuator.motor import Motor
 from nrs_design.identification.datasets import ActuatorRecord
 from nrs_design.identification.rounding import rounding_scatter
 from nrs_design.identification.statistics import Uncertainty, uncertainty
+from nrs_design.identification.steps import shortened
 
 Array = NDArray[np.float64]
 
 _STEPS = 60
 _CONVERGED = 1e-6
+# Of the power of one error: in a valley without an end errors fall no more, parameters go on.
+_NO_BETTER = 1e-3
 _LARGEST_STEP = 0.5
 _HALVINGS = 12
 # From so many records on, their spread says how far they agree; before, that of parts of them.
 MANY_RECORDS = 5
+# Friction is told where it is so many standard errors; where it is among the parameters.
+_CLEAR = 4.0
+_FRICTION = 2
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -41,6 +47,13 @@ class TimeFit:
     motor: Motor
     uncertainty: Uncertainty
     errors: Array
+
+    @property
+    def tells_friction(self) -> bool:
+        """Whether the friction stands out of its standard error."""
+        if self.motor.friction is None:
+            return False
+        return float(self.uncertainty.errors[_FRICTION]) < 1 / _CLEAR
 
     @property
     def bic(self) -> float:
@@ -79,12 +92,15 @@ def fit_in_time(records: Sequence[ActuatorRecord], start: Motor) -> TimeFit:
         step = scale * np.linalg.lstsq(J * scale, error, rcond=None)[0]
         limit = np.full(len(step), _LARGEST_STEP)
         limit[-1] = 2 * usual + motor.time_constant / 4
-        step = np.clip(step, -limit, limit)
+        step = shortened(step, limit)
         small = np.abs(step / scale).max() < _CONVERGED
         better = _improved(records, motor, step, float(error @ error))
         if better is None or small:
             break
         motor, parts = better
+        left = sum(float(part @ part) for _, part in parts)
+        if left > (1 - _NO_BETTER / len(error)) * float(error @ error):
+            break
     else:
         raise DataError(
             "the fit in the time domain does not settle",

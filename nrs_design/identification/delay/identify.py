@@ -29,6 +29,9 @@ Array = NDArray[np.float64]
 _LONGEST = 0.1
 _PARTS = 10
 _PART_STEPS = 6
+# A model with more parameters must lower BIC by so much (very strong evidence: Kass and Raftery
+# 1995).
+_CLEARLY = 10.0
 # In samples: a difference for derivatives, and one that is worth a word.
 _PART_SHIFT = 0.05
 _NOTABLE = 0.1
@@ -52,7 +55,7 @@ class DelayIdentification:
     fits : tuple of DelayFit
         One for each model.
     chosen : DelayFit
-        That of the least BIC.
+        The simplest of those whose BIC none clearly beats.
     delay : Estimate
         In s, with a 95 % interval.
     samples : Estimate
@@ -129,7 +132,7 @@ def identify_delay(record: SignalRecord) -> DelayIdentification:
     skipped = max(peak[0], 0.0) + 5 * record.step
     rows = np.flatnonzero(record.time >= skipped)
     fits = tuple(fit_delay(record, *start, rows) for start in _starts(record, peak[0], rows))
-    chosen = min(fits, key=lambda fit: fit.bic)
+    chosen = _simplest(fits)
     step = record.step
     half = student_quantile(chosen.uncertainty.degrees) * float(chosen.uncertainty.errors[0])
     value = chosen.delay / step
@@ -144,6 +147,17 @@ def identify_delay(record: SignalRecord) -> DelayIdentification:
         record, fits, chosen, samples.scaled(step), samples, peak, parts, ends,
         tuple(_doubts(record, chosen, value, half, parts)),
     )  # fmt: skip
+
+
+def _simplest(fits: Sequence[DelayFit]) -> DelayFit:
+    """Return the fit with the fewest parameters among those that none clearly beats.
+
+    A fast second lag and a delay are nearly alike: chance alone would choose it now and then, and
+    its interval for the delay would not hold.
+    """
+    least = min(fit.bic for fit in fits)
+    good = [fit for fit in fits if fit.bic <= least + _CLEARLY]
+    return min(good, key=lambda fit: (len(fit.follower.shape), fit.bic))
 
 
 def correlation_peak(record: SignalRecord) -> tuple[float, float]:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from nrs_design.errors import DesignError
 from nrs_design.models.plant import build_environments
-from nrs_design.spec import InteractionDesignSpec, LoadedSpec
+from nrs_design.spec import InteractionDesignSpec, LoadedSpec, SwitchingSpec
 from nrs_design.spec.controllers import contact_names, touched_in
 
 
@@ -89,11 +89,13 @@ def bounds_of(loaded: LoadedSpec) -> RunBounds:
             remedy="name a spec of kind interaction-design",
         )
     arms = {e.lever_arm.si for e in spec.environments.values() if e.lever_arm is not None}
-    transitions = spec.switching.transitions
+    # A log says which controller is active, not what is touched.
+    rules = SwitchingSpec() if spec.switching.names_contacts else spec.switching
+    transitions = rules.transitions
     margin = spec.goals.min_delay_margin if spec.goals else None
     return RunBounds(
         stiffness={name: _stiffness(spec, name) for name in spec.controllers},
-        stays={name: _stay(spec, name) for name in spec.controllers},
+        stays={name: _stay(rules, name) for name in spec.controllers},
         transitions=None if transitions is None else frozenset(transitions),
         torque=spec.limits.torque.si,
         delay=None if margin is None else margin.si,
@@ -114,8 +116,8 @@ def _stiffness(spec: InteractionDesignSpec, name: str) -> Stiffness | None:
     return Stiffness(tuple((float(k.low), float(k.high)) for k in ranges), foreign)
 
 
-def _stay(spec: InteractionDesignSpec, name: str) -> tuple[float, float]:
-    shortest, longest = spec.switching.stay(name)
+def _stay(rules: SwitchingSpec, name: str) -> tuple[float, float]:
+    shortest, longest = rules.stay(name)
     return (
         float(shortest.value) if shortest else 0.0,
         float(longest.value) if longest else float("inf"),

@@ -25,6 +25,8 @@ _REFINED = 3
 _FINE = 15
 _RIDGE = 1e-9
 _CYCLES = 4
+# Terms of the curve behind the corner.
+_PLAIN, _GROWING = 4, 5
 # Air must be this part of the travel at least, with so many samples.
 _LEAST_AIR = 0.01
 _FEWEST = 10
@@ -86,7 +88,8 @@ class Contact:
         edges = np.flatnonzero(padded[1:] != padded[:-1]).reshape(-1, 2).tolist()
         found = []
         for first, end in edges:
-            clear = np.flatnonzero(self.clear[first:end])
+            # Smoothing carries a force by half its width into the air.
+            clear = np.flatnonzero(self.clear[first:end])[_SMOOTH // 2 : -(_SMOOTH // 2)]
             if len(clear):
                 rows = first, first + int(clear[0]), first + int(clear[-1]) + 1, end
                 found.append(Touch(*rows))
@@ -133,19 +136,12 @@ def _corner(u: Array, velocity: Array, force: Array) -> tuple[float, float] | No
     low, span = float(u.min()), float(np.ptp(u))
     # Between 0 and 1, powers are told apart.
     v, centered = (u - low) / span, force - force.mean()
-    grid = np.linspace(0.5 * _LEAST_AIR, 0.95, _GRID)
-    step = float(grid[1] - grid[0])
-    for _ in range(_REFINED):
-        errors = _errors(np.maximum(v - grid[:, None], 0.0), velocity, centered)
-        at = int(np.argmin(errors))
-        best, error = float(grid[at]), float(errors[at])
-        grid = np.linspace(max(best - step, 0.0), min(best + step, 1.0), _FINE)
-        step = float(grid[1] - grid[0])
+    curve, best, error = _best_corner(v, velocity, centered)
     air = v < best
     if min(air.sum(), (~air).sum()) < _FEWEST or best < _LEAST_AIR:
         return None
-    smooth = float(_errors(v[None], velocity, centered)[0])
-    left = _left(np.maximum(v - best, 0.0), velocity, centered)
+    smooth = float(_errors(curve, v[None], velocity, centered)[0])
+    left = _left(curve, np.maximum(v - best, 0.0), velocity, centered)
     if smooth < error * np.exp(_BETTER / independent(left)):
         return None
     if error > (1 - _EXPLAINED) * float(centered @ centered):
@@ -153,28 +149,55 @@ def _corner(u: Array, velocity: Array, force: Array) -> tuple[float, float] | No
     return (low + best * span, error) if _is_flat(u, force, low + best * span) else None
 
 
-def _errors(w: Array, velocity: Array, force: Array) -> Array:
+def _best_corner(v: Array, velocity: Array, force: Array) -> tuple[int, float, float]:
+    """Return the curve, its best corner between 0 and 1, and its squared error.
+
+    Damping that grows with the deflection must be clear: without it, its curve is too free.
+    """
+    plain, grows = (_corner_of(curve, v, velocity, force) for curve in (_PLAIN, _GROWING))
+    left = _left(_PLAIN, np.maximum(v - plain[1], 0.0), velocity, force)
+    clear = plain[2] > grows[2] * np.exp(_BETTER / independent(left))
+    return grows if clear else plain
+
+
+def _corner_of(curve: int, v: Array, velocity: Array, force: Array) -> tuple[int, float, float]:
+    grid = np.linspace(0.5 * _LEAST_AIR, 0.95, _GRID)
+    step = float(grid[1] - grid[0])
+    for _ in range(_REFINED):
+        errors = _errors(curve, np.maximum(v - grid[:, None], 0.0), velocity, force)
+        at = int(np.argmin(errors))
+        best, error = float(grid[at]), float(errors[at])
+        grid = np.linspace(max(best - step, 0.0), min(best + step, 1.0), _FINE)
+        step = float(grid[1] - grid[0])
+    return curve, best, error
+
+
+def _errors(curve: int, w: Array, velocity: Array, force: Array) -> Array:
     """Squared errors of a curve that leaves a constant where w leaves zero, shape (m,).
 
-    The curve is quadratic, with a force in proportion to the velocity: that begins with a jump.
+    The curve is quadratic, with a force in proportion to the velocity that begins with a jump, and
+    perhaps one that grows with the deflection, too.
 
     Parameters
     ----------
+    curve : int
+        How many terms it has.
     w : ndarray, shape (m, n)
         Deflections between 0 and 1, for m corners.
     velocity, force : ndarray, shape (n,)
         In any unit.
     """
-    rest = _left(w, velocity, force)
+    rest = _left(curve, w, velocity, force)
     return np.asarray(np.einsum("...n,...n->...", rest, rest))
 
 
-def _left(w: Array, velocity: Array, force: Array) -> Array:
+def _left(curve: int, w: Array, velocity: Array, force: Array) -> Array:
     """Return what such curves leave of the force, of the shape of w."""
-    X = np.stack([np.ones_like(w), w, w**2, velocity * (w > 0)], axis=-1)
+    terms = [np.ones_like(w), w, w**2, velocity * (w > 0), velocity * w]
+    X = np.stack(terms[:curve], axis=-1)
     size = np.maximum(np.sqrt(np.einsum("...ni,...ni->...i", X, X)), np.finfo(float).tiny)
     X /= size[..., None, :]
-    gram = np.einsum("...ni,...nj->...ij", X, X) + _RIDGE * np.eye(4)
+    gram = np.einsum("...ni,...nj->...ij", X, X) + _RIDGE * np.eye(curve)
     found = np.linalg.solve(gram, np.einsum("...ni,n->...i", X, force)[..., None])
     return np.asarray(force - np.einsum("...ni,...i->...n", X, found[..., 0]))
 

@@ -25,6 +25,7 @@ from nrs_design.identification.tissue.trial import Trial
 from nrs_design.models.contact import LINEAR_LAWS, AbstractContactLaw, AbstractNonlinearLaw, Motion
 
 Array = NDArray[np.float64]
+Flags = NDArray[np.bool_]
 
 # Of a difference in the logarithm of a parameter.
 _STEP = 1e-6
@@ -136,9 +137,18 @@ class Problem:
         """Return the force of the law in the used samples, shape (n,)."""
         return self._pushing(self.law(point).simulate(self.motion(point)))[self.trial.used]
 
+    @cached_property
+    def _reached(self) -> Flags:
+        """Samples in contact; where its position is sought, the way in to it, too."""
+        trial = self.trial
+        if not len(self.no_shift):
+            return trial.touching
+        way_in = np.gradient(trial.position, trial.motion.time) > 0
+        return np.asarray(trial.touching | way_in)
+
     def _pushing(self, values: Array) -> Array:
         """Return a force, or its derivatives, without what a surface that nothing touches has."""
-        values[~self.trial.touching] = 0.0
+        values[~self._reached] = 0.0
         return values
 
     def sensitivities(self, point: Array) -> Array:

@@ -50,6 +50,7 @@ def doubt_residuals(
     yield from _size(trial, residuals)
     yield from _structure(trial, residuals)
     yield from _given_offsets(trial, residuals, sensitivities)
+    yield from _drift(trial, residuals, sensitivities)
     yield from _conditioning(trial, residuals)
 
 
@@ -129,23 +130,43 @@ def _given_offsets(trial: Trial, residuals: Array, sensitivities: Array) -> Iter
     wanted = trial.preparation
     if wanted.zero is None and wanted.tare is None:
         return
+    columns = np.column_stack([np.ones(len(residuals)), trial.touching[trial.used]])
+    gain = _gain(residuals, sensitivities, columns)
+    if gain > _BIC:
+        yield (
+            f"a fit with a free offset is better (BIC {gain:.3g} less): the given zero or tare "
+            "disagrees with the record"
+        )
+
+
+def _drift(trial: Trial, residuals: Array, sensitivities: Array) -> Iterator[str]:
+    """Doubt a tare that moves, straight or bent, where no air was asked."""
+    if trial.found is not None:
+        return
+    time = trial.motion.time[trial.used]
+    part = (time - time[0]) / (time[-1] - time[0])
+    gain = _gain(residuals, sensitivities, np.column_stack([part, part**2]))
+    if gain > _BIC:
+        yield (
+            f"a tare that moves with time fits better (BIC {gain:.3g} less), and no air shows "
+            "whether it does: record air before and after"
+        )
+
+
+def _gain(residuals: Array, sensitivities: Array, columns: Array) -> float:
+    """Return by how much BIC falls with more columns, shape (n, q), beside a linearized fit."""
     n = len(residuals)
-    columns = np.column_stack([np.ones(n), trial.touching[trial.used]])
     X = np.column_stack([sensitivities, columns])
     size = np.maximum(np.linalg.norm(X, axis=0), np.finfo(float).tiny)
     found, _, rank, _ = np.linalg.lstsq(X / size, residuals, rcond=1e-9)
     left = residuals - (X / size) @ found
     more = int(rank) - np.linalg.matrix_rank(sensitivities / size[: sensitivities.shape[1]])
     if more < 1 or not (left @ left):
-        return
-    gain = n * float(np.log((residuals @ residuals) / (left @ left))) - more * float(np.log(n))
+        return 0.0
+    fall = float(np.log((residuals @ residuals) / (left @ left)))
+    gain = n * fall - float(more) * float(np.log(n))
     # Colored residuals hold fewer samples than they count.
-    gain *= 1.0 if ljung_box(left) >= WHITE else _BINS / n * 2
-    if gain > _BIC:
-        yield (
-            f"a fit with a free offset is better (BIC {gain:.3g} less): the given zero or tare "
-            "disagrees with the record"
-        )
+    return gain * (1.0 if ljung_box(left) >= WHITE else _BINS / n * 2)
 
 
 def _conditioning(trial: Trial, residuals: Array) -> Iterator[str]:

@@ -39,7 +39,9 @@ def surface(
     for touch in touches:
         met, left = float(position[touch.met]), float(position[touch.lost - 1])
         late = lost > 0 and met > rest
-        rows = slice(touch.met if late else touch.first, touch.lost if left > rest else touch.end)
+        # Whether a tissue that was lost has quite come back, only its force tells.
+        begin = touch.met if lost > 0 else touch.first
+        rows = slice(begin, touch.lost if left > rest else touch.end)
         deflection[rows], touching[rows] = position[rows], True
         if lost > 0:
             gap = slice(since, rows.start)

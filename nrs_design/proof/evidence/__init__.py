@@ -1,58 +1,33 @@
-"""Kinds of evidence, one file each: what it claims, and the exact conditions to check."""
+"""Kinds of evidence, one file each: what it claims, and the exact conditions to check.
+
+Every class is imported from its module when it is first asked for: a proof loads the kinds that it
+comes to use.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from nrs_design.proof.evidence.abstract import AbstractEvidence, Shows
-from nrs_design.proof.evidence.block_triangular import BlockTriangular
-from nrs_design.proof.evidence.common_polynomial import CommonPolynomial
-from nrs_design.proof.evidence.common_quadratic import CommonQuadratic
-from nrs_design.proof.evidence.conewise_polynomial import ConewisePolynomial
-from nrs_design.proof.evidence.conewise_quadratic import ConewiseQuadratic
-from nrs_design.proof.evidence.invariant_ellipsoid import InvariantEllipsoid
-from nrs_design.proof.evidence.mode_polynomial import ModePolynomial
-from nrs_design.proof.evidence.mode_quadratic import ModeQuadratic
-from nrs_design.proof.evidence.no_common_quadratic import NoCommonQuadratic
-from nrs_design.proof.evidence.parameter_quadratic import ParameterQuadratic
-from nrs_design.proof.evidence.unstable_mixture import UnstableMixture
-from nrs_design.proof.evidence.unstable_mode import UnstableMode
-from nrs_design.proof.evidence.unstable_period import UnstablePeriod
-from nrs_design.proof.evidence.unstable_value import UnstableValue
+from nrs_design.proof.late import late_names
 from nrs_design.proof.system import SwitchedSystem
 
-KINDS: tuple[type[AbstractEvidence], ...] = (
-    CommonQuadratic,
-    CommonPolynomial,
-    ConewiseQuadratic,
-    ConewisePolynomial,
-    InvariantEllipsoid,
-    ModeQuadratic,
-    ModePolynomial,
-    NoCommonQuadratic,
-    ParameterQuadratic,
-    UnstableMode,
-    UnstableMixture,
-    UnstablePeriod,
-    UnstableValue,
-    BlockTriangular,
-)
-
-
-def read_evidence(fields: Mapping[str, Any], system: SwitchedSystem) -> AbstractEvidence:
-    """Read one statement of a certificate file.
-
-    Raises
-    ------
-    KeyError, TypeError, ValueError
-        If its kind is unknown, or a field is missing or malformed.
-    """
-    for kind in KINDS:
-        if kind.kind == fields["kind"]:
-            return kind.from_fields(fields, system)
-    raise ValueError(f"unknown kind of evidence {fields['kind']!r}")
-
+if TYPE_CHECKING:
+    from nrs_design.proof.evidence.block_triangular import BlockTriangular
+    from nrs_design.proof.evidence.common_polynomial import CommonPolynomial
+    from nrs_design.proof.evidence.common_quadratic import CommonQuadratic
+    from nrs_design.proof.evidence.conewise_polynomial import ConewisePolynomial
+    from nrs_design.proof.evidence.conewise_quadratic import ConewiseQuadratic
+    from nrs_design.proof.evidence.invariant_ellipsoid import InvariantEllipsoid
+    from nrs_design.proof.evidence.mode_polynomial import ModePolynomial
+    from nrs_design.proof.evidence.mode_quadratic import ModeQuadratic
+    from nrs_design.proof.evidence.no_common_quadratic import NoCommonQuadratic
+    from nrs_design.proof.evidence.parameter_quadratic import ParameterQuadratic
+    from nrs_design.proof.evidence.unstable_mixture import UnstableMixture
+    from nrs_design.proof.evidence.unstable_mode import UnstableMode
+    from nrs_design.proof.evidence.unstable_period import UnstablePeriod
+    from nrs_design.proof.evidence.unstable_value import UnstableValue
 
 __all__ = [
     "KINDS",
@@ -72,5 +47,46 @@ __all__ = [
     "UnstableMode",
     "UnstablePeriod",
     "UnstableValue",
+    "class_of",
     "read_evidence",
 ]
+
+# The name in a certificate file, and the class; its module has the same name as the kind.
+KINDS: Mapping[str, str] = {
+    "block-triangular": "BlockTriangular",
+    "common-polynomial": "CommonPolynomial",
+    "common-quadratic": "CommonQuadratic",
+    "conewise-polynomial": "ConewisePolynomial",
+    "conewise-quadratic": "ConewiseQuadratic",
+    "invariant-ellipsoid": "InvariantEllipsoid",
+    "mode-polynomial": "ModePolynomial",
+    "mode-quadratic": "ModeQuadratic",
+    "no-common-quadratic": "NoCommonQuadratic",
+    "parameter-quadratic": "ParameterQuadratic",
+    "unstable-mixture": "UnstableMixture",
+    "unstable-mode": "UnstableMode",
+    "unstable-period": "UnstablePeriod",
+    "unstable-value": "UnstableValue",
+}
+
+__getattr__ = late_names(__name__, {name: kind.replace("-", "_") for kind, name in KINDS.items()})
+
+
+def class_of(kind: str) -> type[AbstractEvidence]:
+    """Return the class of a kind of evidence."""
+    found: type[AbstractEvidence] = __getattr__(KINDS[kind])
+    return found
+
+
+def read_evidence(fields: Mapping[str, Any], system: SwitchedSystem) -> AbstractEvidence:
+    """Read one statement of a certificate file.
+
+    Raises
+    ------
+    KeyError, TypeError, ValueError
+        If its kind is unknown, or a field is missing or malformed.
+    """
+    kind = fields["kind"]
+    if kind not in KINDS:
+        raise ValueError(f"unknown kind of evidence {kind!r}")
+    return class_of(kind).from_fields(fields, system)

@@ -108,7 +108,7 @@ class ConewiseQuadratic(AbstractFunction):
             return "in discrete time, an environment that could pull is not covered"
         if len(self.multipliers) != multiplier_count(system.contact, system.time):
             return "there is not one multiplier for each condition that needs it"
-        if min(self.multipliers, default=0) < 0:
+        if any(entry < 0 for entry in self.multipliers):
             return "a multiplier is negative"
         if (odd := find_odd_roundings(self.roundings, system)) is not None:
             return odd

@@ -115,7 +115,7 @@ class InvariantEllipsoid(AbstractEvidence):
         needed = 0 if contact is None else multiplier_count(contact, system.time)
         if len(self.multipliers) != needed:
             return "there is not one multiplier for each condition that needs it"
-        if min(self.multipliers, default=0) < 0:
+        if any(entry < 0 for entry in self.multipliers):
             return "a multiplier is negative"
         if (odd := find_odd_roundings(self.roundings, system)) is not None:
             return odd

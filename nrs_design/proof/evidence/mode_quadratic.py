@@ -149,8 +149,7 @@ class ModeQuadratic(AbstractFunction):
         """
         stays = system.stays()
         counts = {
-            name: int(stay.longest or 0) - int(stay.shortest) + 1 if name in self.leaving else 1
-            for name, stay in stays.items()
+            name: len(_steps(stay)) if name in self.leaving else 1 for name, stay in stays.items()
         }
         modes = [mode for mode in system.modes if mode.name not in self.leaving]
         return modes + [e.source for e in system.edges() for _ in range(counts[e.source.name])]
@@ -177,11 +176,11 @@ class ModeQuadratic(AbstractFunction):
         self, system: SwitchedSystem, edge: Edge, stay: Stay, Q: Mapping[str, Matrix]
     ) -> Iterator[IntegerMatrix]:
         """Yield a form for each number of steps, or for each piece of the times in a mode."""
-        assert stay.longest is not None
         if system.time is Time.DISCRETE:
-            for steps in range(int(stay.shortest), int(stay.longest) + 1):
+            for steps in _steps(stay):
                 yield self._form_after(system, edge, Fraction(steps), Fraction(steps), Q)
             return
+        assert stay.longest is not None
         width = (stay.longest - stay.shortest) / self.pieces
         for k in range(self.pieces):
             begin = stay.shortest + k * width
@@ -312,6 +311,12 @@ def _jump(edge: Edge, Q: Mapping[str, Matrix]) -> IntegerMatrix:
     return add(left, congruence(reset.numerators, after), -1)
 
 
+def _steps(stay: Stay) -> range:
+    """Return the numbers of steps of a stay that ends, from the shortest to the longest."""
+    assert stay.longest is not None
+    return range(int(stay.shortest), int(stay.longest) + 1)
+
+
 def _power_is_too_large(system: SwitchedSystem, evidence: ModeQuadratic) -> bool:
     """Tell whether the powers would take more than some seconds, one by one or all together."""
     numbers = [v for mode in system.modes for row in mode.A.numerators for v in row]
@@ -320,10 +325,9 @@ def _power_is_too_large(system: SwitchedSystem, evidence: ModeQuadratic) -> bool
     stays, total, largest = system.stays(), 0, 0
     for edge in system.edges():
         stay = stays[edge.source.name]
-        leaves = edge.source.name in evidence.leaving and stay.longest is not None
-        last = int(stay.longest) if leaves and stay.longest is not None else int(stay.shortest)
-        largest = max(largest, last)
-        if leaves:
-            total += sum(range(int(stay.shortest), last + 1))
+        if edge.source.name in evidence.leaving:
+            total += sum(_steps(stay))
+            largest = max(largest, _steps(stay)[-1])
+        largest = max(largest, int(stay.shortest))
     work = system.order**3 * bits
     return largest * bits > MAX_POWER_BITS or largest * work > MAX_WORK or total * work > MAX_WORK

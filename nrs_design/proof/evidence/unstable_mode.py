@@ -61,9 +61,10 @@ class UnstableMode(AbstractEvidence):
         named = [mode for mode in system.modes if mode.name == self.mode]
         if len(named) != 1:
             return f"there is no single mode named {self.mode}"
-        if is_spectrum_too_large(named[0].A):
+        (mode,) = named
+        if is_spectrum_too_large(mode.A):
             return f"the numbers of mode {self.mode} are too large to check"
-        return f"mode {self.mode} is stable" if is_stable(named[0].A, system.time) else None
+        return f"mode {self.mode} is stable" if is_stable(mode.A, system.time) else None
 
     def forms(self, system: SwitchedSystem) -> Iterator[tuple[str, IntegerMatrix]]:
         """Yield nothing: no matrix has to be positive definite."""

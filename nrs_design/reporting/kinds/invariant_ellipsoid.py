@@ -15,9 +15,9 @@ from nrs_design.reporting.formatting import number
 from nrs_design.reporting.kinds.abstract import AbstractKindPage
 from nrs_design.reporting.kinds.shared import words
 from nrs_design.reporting.kinds.shared.run import simulated
-from nrs_design.simulation.disturbed import DisturbedMotions, worst_disturbed
+from nrs_design.simulation.disturbed import worst_run
 from nrs_design.simulation.norms import Array
-from nrs_design.simulation.switched import TimeResponse, fine_step
+from nrs_design.simulation.switched import TimeResponse
 
 _DECIDED = (
     "Q holds integers over a power of two, and exact arithmetic decides that no motion leaves the "
@@ -29,9 +29,6 @@ _RUN = (
     "disturbance at every step, and improves his choice a few times. It is a bad run, not the "
     "worst one; the shading covers the corners of the output. No run crosses the dashed lines."
 )
-# A run is as long as a set with this share needs to fill up to a thousandth, if steps are few.
-_FILLED = 7.0
-_FEWEST, _MOST = 100, 800
 
 
 class InvariantEllipsoidPage(AbstractKindPage[InvariantEllipsoid]):
@@ -80,7 +77,7 @@ class InvariantEllipsoidPage(AbstractKindPage[InvariantEllipsoid]):
     def sections(self, *, first: bool = True) -> tuple[Section, ...]:
         """Show the level beside the run that an adversary finds."""
         evidence, output = self.evidence, self._output
-        response, motions = self._worst()
+        response, motions = worst_run(self.system, self.evidence)
         values = motions.outputs(response.state)
         found = nearly(Fraction(float(np.abs(values).max())), output.unit)
         rows = [
@@ -112,20 +109,12 @@ class InvariantEllipsoidPage(AbstractKindPage[InvariantEllipsoid]):
 
     def run(self) -> Section:
         """Draw the adversary's run between the bounds."""
-        response, motions = self._worst()
+        response, motions = worst_run(self.system, self.evidence)
         return simulated(self._illustration(response, motions.outputs(response.state)))
 
     @property
     def _is_discrete(self) -> bool:
         return self.system.time is Time.DISCRETE
-
-    def _worst(self) -> tuple[TimeResponse, DisturbedMotions]:
-        system, share = self.system, float(sum(self.evidence.shares))
-        step = fine_step(system)
-        rate = -np.log1p(-share) if self._is_discrete else share
-        steps = int(np.clip(_FILLED / (rate * step), _FEWEST, _MOST))
-        motions = DisturbedMotions.of(system, self._channels, self._output, step)
-        return worst_disturbed(motions, step, steps), motions
 
     def _illustration(self, response: TimeResponse, values: Array) -> Illustration:
         system, output = self.system, self._output

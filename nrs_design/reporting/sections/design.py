@@ -13,7 +13,9 @@ from nrs_design.reporting.document import Block, Illustration, Paragraph, Sectio
 from nrs_design.reporting.figures.complex_plane import draw_root_locus
 from nrs_design.reporting.figures.impedance import draw_displayed_impedance, draw_sensitivity
 from nrs_design.reporting.formatting import number, polynomial, root, roots
+from nrs_design.reporting.sections.creep import creep_section
 from nrs_design.reporting.sections.goals import goals_section
+from nrs_design.reporting.sections.parallel import parallel_section
 from nrs_design.spec import InteractionDesignSpec
 
 if TYPE_CHECKING:
@@ -35,6 +37,12 @@ _SUDDEN = (
     "Viscoelastic contact: the stiffness is that which a sudden motion meets, and up to the "
     "stiffness limit all parameters of the law grow in proportion to it."
 )
+
+
+def _spring(item: ImpedanceAnalysis) -> str:
+    return number(item.problem.loop.Kt, 6) if item.problem.loop.Kt else ""
+
+
 _IMPEDANCE_ROWS: tuple[tuple[str, Callable[[ImpedanceAnalysis], str]], ...] = (
     ("Desired impedance [N·m·s/rad]", lambda item: number(item.problem.desired, 5)),
     ("Nominal stiffness [N·m/rad]", lambda item: number(item.problem.loop.contact.stiffness, 6)),
@@ -44,6 +52,7 @@ _IMPEDANCE_ROWS: tuple[tuple[str, Callable[[ImpedanceAnalysis], str]], ...] = (
     ("Bt at the optimum [N·m·s/rad]", lambda item: number(item.optimum.Bt, 6)),
     ("Mt as shipped [kg·m²]", lambda item: number(item.Mt, 6)),
     ("Bt as shipped [N·m·s/rad]", lambda item: number(item.Bt, 6)),
+    ("Kt as given [N·m/rad]", _spring),
     ("Cost as shipped [1]", lambda item: number(item.cost, 5)),
     ("Sensitivity peak Ms [1]", lambda item: number(item.margins.sensitivity_peak)),
     ("Frequency of Ms [rad/s]", lambda item: number(item.margins.sensitivity_peak_frequency)),
@@ -79,9 +88,13 @@ def design_sections(designed: Designed, analysis: DesignAnalysis | None) -> tupl
     parts = [gains, _motion_section(designed, analysis)]
     if analysis.impedance:
         parts.append(_impedance_section(analysis.impedance))
+    if sensor := creep_section(designed, analysis):
+        parts.append(sensor)
     if analysis.force:
         parts.append(_force_section(analysis))
-    if analysis.measured:
+    if analysis.parallel:
+        parts.append(parallel_section(analysis))
+    if any(item.achieved for item in analysis.measured):
         parts.append(goals_section(spec, analysis))
     return tuple(parts)
 

@@ -51,6 +51,15 @@ def test_dynamics_are_no_delay(options, name):
         assert found.peak[0] > 2 * motors.DELAY
 
 
+def test_of_models_that_are_nearly_as_good_the_simplest_is_chosen():
+    """Here a second, fast lag lowers BIC by 3 and takes a third of a sample from the delay."""
+    found = identify_delay(signals.lag(92))
+    least = min(found.fits, key=lambda fit: fit.bic)
+    assert least.follower.name == "a second-order lag"
+    assert found.chosen.follower.name == "a first-order lag"
+    assert found.samples.covers(LATE)
+
+
 def test_a_square_wave_turned_into_an_angle():
     # Delay and lag lie in a narrow valley: cut one by one, the steps of the search left it.
     delay, tau, step = 5, 0.05, 1 / signals.RATE

@@ -44,12 +44,29 @@ def test_a_soft_start_of_one_touch_is_none():
     assert not prepare(TissueRecord(source("soft"), Motion(time, x), force, False)).drift
 
 
-def test_without_air_a_bent_drift_passes_for_relaxation_and_that_is_said():
-    """A known limit, told in the docs: the stiffness at rest comes out three times as large."""
-    still = record(synthetic.NOSE, slow(1), 0.0165, 1)
+def creeping(bend, seed=1):
+    """A relaxing tissue without air, and a tare that moves by a tenth of the range of the force."""
+    still = record(synthetic.NOSE, slow(seed), 0.0165, seed)
     time = still.motion.time
-    bent = 0.1 * np.ptp(still.force) * np.sqrt((time - time[0]) / (time[-1] - time[0]))
-    fit = fit_record(KelvinBoltzmann, replace(still, force=still.force + bent))
+    part = (time - time[0]) / (time[-1] - time[0])
+    return replace(still, force=still.force + 0.1 * np.ptp(still.force) * bend(part))
+
+
+@pytest.mark.parametrize("bend", [np.sqrt, np.square, np.positive])
+def test_without_air_a_drift_that_fits_better_is_a_doubt(bend):
+    fit = fit_record(KelvinBoltzmann, creeping(bend))
+    assert fit.law.k1 > 2 * synthetic.NOSE.k1
+    assert any("a tare that moves with time fits better" in doubt for doubt in fit.doubts)
+
+
+def test_without_drift_there_is_no_doubt():
+    for seed in range(1, 6):
+        assert fit_record(KelvinBoltzmann, creeping(np.zeros_like, seed)).doubts == ()
+
+
+def test_a_drift_that_fades_as_the_tissue_does_passes_for_relaxation_and_that_is_said():
+    """A known limit, told in the docs: the stiffness at rest comes out three times as large."""
+    fit = fit_record(KelvinBoltzmann, creeping(lambda part: 1 - np.exp(-3 * part)))
     assert fit.law.k1 > 2.5 * synthetic.NOSE.k1
     assert fit.doubts == ()
     assert any("would pass for relaxation" in remark for remark in fit.trial.remarks)

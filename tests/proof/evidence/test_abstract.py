@@ -9,15 +9,11 @@ import pytest
 from nrs_design.proof.evidence import (
     KINDS,
     AbstractEvidence,
-    BlockTriangular,
-    CommonPolynomial,
-    CommonQuadratic,
     Shows,
-    UnstableMode,
 )
 from nrs_design.proof.exact import MAX_WORK
 from nrs_design.proof.matrix import RationalMatrix
-from nrs_design.proof.system import Mode, Reset, Switching
+from nrs_design.proof.system import Mode, Reset, Rounding, Switching, Time
 from tests.proof.systems import (
     SYSTEMS,
     bouncing,
@@ -114,6 +110,35 @@ def test_what_is_taken_for_granted_of_contact_is_said(what, words):
         assert Said(what=what).claim(system) == f"It is so.{words}"
         assert Said(what=what).claim(replace(system, contact=None)) == "It is so."
         assert SaidOfAllContact(what=what).claim(system) == "It is so."
+
+
+@dataclass(frozen=True)
+class SaidWithRounding(Said):
+    covers_rounding = True
+
+
+NOT_ROUNDED = " This holds for the law computed without rounding."
+
+
+@pytest.mark.parametrize(
+    ("what", "words"),
+    [
+        (Shows.STABILITY, NOT_ROUNDED),
+        (Shows.BOUND, NOT_ROUNDED),
+        (Shows.INSTABILITY, " This growth is that of the law computed without rounding."),
+        (Shows.NO_COMMON_QUADRATIC, ""),
+    ],
+)
+def test_what_is_taken_for_granted_of_rounding_is_said(what, words):
+    one = matrix([[1]])
+    exact = family([["1/2"]], time=Time.DISCRETE)
+    system = replace(exact, roundings=(Rounding("x", (one,), (one,)),))
+    included = " What single-precision arithmetic rounds in the law is included."
+    assert Said(what=what).claim(system) == f"It is so.{words}"
+    assert SaidWithRounding(what=what).claim(system) == f"It is so.{included}"
+    for evidence in (Said(what=what), SaidWithRounding(what=what)):
+        assert evidence.claim(exact) == "It is so."
+    assert not Said(what=what).covers_rounding
 
 
 def test_a_rate_by_the_step_is_said_in_seconds_too():
@@ -275,21 +300,10 @@ FACTS = {
 @pytest.mark.parametrize("fact", FACTS)
 def test_facts_of_the_kinds(fact):
     pairs = [genuine(example) for example in SYSTEMS]
-    assert {item.kind for _, item in pairs} == {kind.kind for kind in KINDS}
+    assert {item.kind for _, item in pairs} == set(KINDS)
     assert {item.kind for _, item in pairs if getattr(item, fact)} == FACTS[fact]
 
 
 @pytest.mark.parametrize("fact", FACTS)
 def test_a_kind_that_says_nothing_of_itself_claims_nothing(fact):
     assert getattr(Claimed(), fact) is False
-
-
-def test_blocks_say_of_themselves_what_their_parts_do():
-    one, slow = CommonQuadratic(((1,),), 0, Fraction(1)), UnstableMode("m0", "0")
-    form = CommonPolynomial(1, ((1,),), 0, (), Fraction(1))
-    quadratic = BlockTriangular(((0,), (1,)), ((0, one), (1, one)))
-    mixed = BlockTriangular(((0,), (1,)), ((0, one), (1, form)))
-    unstable = BlockTriangular(((0,), (1,)), ((1, slow),))
-    assert [b.is_common_quadratic for b in (quadratic, mixed, unstable)] == [True, False, False]
-    assert [b.keeps_bound_in_mixtures for b in (quadratic, mixed)] == [True, False]
-    assert [b.names_unstable_mode for b in (quadratic, mixed, unstable)] == [False, False, True]

@@ -9,6 +9,7 @@ import pytest
 from nrs_design.certificates.certificate import CommonQuadraticStatus, Verdict
 from nrs_design.proof.evidence import (
     BlockTriangular,
+    CommonPolynomial,
     CommonQuadratic,
     ModeQuadratic,
     NoCommonQuadratic,
@@ -214,3 +215,14 @@ def test_no_rate_follows_from_a_part_without_one():
     evidence = BlockTriangular(((0,), (1,)), ((0, UnstableMode("m0", "1")),))
     assert evidence.find_fault(system) is None
     assert evidence.proved_rate(system) is None
+
+
+def test_blocks_say_of_themselves_what_their_parts_do():
+    one, slow = CommonQuadratic(((1,),), 0, Fraction(1)), UnstableMode("m0", "0")
+    form = CommonPolynomial(1, ((1,),), 0, (), Fraction(1))
+    quadratic = BlockTriangular(((0,), (1,)), ((0, one), (1, one)))
+    mixed = BlockTriangular(((0,), (1,)), ((0, one), (1, form)))
+    unstable = BlockTriangular(((0,), (1,)), ((1, slow),))
+    assert [b.is_common_quadratic for b in (quadratic, mixed, unstable)] == [True, False, False]
+    assert [b.keeps_bound_in_mixtures for b in (quadratic, mixed)] == [True, False]
+    assert [b.names_unstable_mode for b in (quadratic, mixed, unstable)] == [False, False, True]

@@ -9,8 +9,9 @@ from hypothesis import strategies as st
 
 from nrs_design.proof.evidence import CommonQuadratic, Shows, UnstableMode
 from nrs_design.proof.matrix import RationalMatrix
-from nrs_design.proof.system import Mode, Reset, SwitchedSystem, Switching, Time
-from tests.proof.systems import genuine
+from nrs_design.proof.steps import Steps
+from nrs_design.proof.system import Mode, Reset, Rounding, SwitchedSystem, Switching, Time
+from tests.proof.systems import bouncing_in_steps, genuine
 from tests.support import dayawansa_martin, family, holds, is_definite_by_ldl, matrix
 
 # Narendra and Balakrishnan 1994: x1^2 + x2^2 works for normal stable matrices.
@@ -214,3 +215,27 @@ def test_what_a_common_quadratic_function_carries_over_to():
 def test_a_claim_counts_the_modes(modes, words):
     evidence = CommonQuadratic(((1,),), 0, Fraction(1, 2))
     assert words in evidence.claim(family(*[[[-1]]] * modes))
+
+
+def test_with_rounding_its_forms_are_those_of_a_step_in_kept_contact():
+    system = bouncing_in_steps()
+    count = len(system.modes) + len(system.contact.free)
+    error = Rounding("F", (matrix([[1], ["1/2"]]),) * count, (matrix([["1/9", 0]]),) * count)
+    rounded = replace(system, roundings=(error,))
+    exact = CommonQuadratic(((40, 20), (20, 60)), 3, Fraction(99, 100))
+    covered = replace(exact, roundings=(7,))
+    assert (exact.covers_rounding, covered.covers_rounding) == (False, True)
+    (_, Q), *forms = covered.forms(rounded)
+    assert Q == exact.Q
+    steps = Steps(exact.Q, 3, Fraction(99, 100) ** 2, roundings=(7,))
+    kept = steps.forms(replace(rounded, contact=None))
+    words = "V does not decrease at the claimed rate"
+    assert forms == [(f"{words} {where}", form) for where, form in kept]
+    assert list(exact.forms(rounded)) == list(exact.forms(system))
+    assert [failure for failure, _ in exact.forms(system)][1:] == [
+        f"{words} in mode m0",
+        f"{words} in mode m1",
+    ]
+    assert CommonQuadratic.from_fields(covered.to_fields(), rounded) == covered
+    assert CommonQuadratic.from_fields(exact.to_fields(), rounded) == exact
+    assert "one multiplier for each rounding" in covered.find_misfit(system)

@@ -12,7 +12,7 @@ from nrs_design.proof.evidence import CommonQuadratic, ConewiseQuadratic, Shows
 from nrs_design.proof.second_opinion import agrees
 from nrs_design.proof.system import Contact, Mode, Reset, SwitchedSystem, Switching, Time
 from tests.proof.systems import Entry, bouncing, bouncing_in_steps, family, genuine, matrix
-from tests.proof.truth import holds
+from tests.proof.truth import combine, decrease, holds, is_positive_multiple, times, transpose
 from tests.support import is_definite_by_ldl
 
 Rows = Sequence[Sequence[Entry]]
@@ -177,6 +177,7 @@ def test_an_environment_that_lags_needs_its_own_condition():
         ({"multipliers": ()}, "multiplier"),
         ({"multipliers": (1, 1)}, "multiplier"),
         ({"multipliers": (-1,)}, "negative"),
+        ({"roundings": (1,)}, "one multiplier for each rounding"),
     ],
 )
 def test_misfits_in_steps(changes, fault):
@@ -231,3 +232,105 @@ def test_against_the_definition(contact, free, Q, multiplier, rate, time):
     p, q, r = Q
     candidate = ConewiseQuadratic(((p, q), (q, r)), 0, rate, (multiplier,))
     assert (candidate.find_fault(system) is None) == holds(system, candidate)
+
+
+# Of three states, with denominators that differ, and nothing symmetric but Q.
+Q3 = ((9, 2, -1), (2, 7, 3), (-1, 3, 8))
+CONTACT3 = [["-1/2", "1/3", "2/3"], [1, "-1/5", "-3/7"], ["1/4", "2/3", "-1/9"]]
+FREE3 = [["-1/3", "1/2", 0], ["1/7", "-2/5", 0], ["3/4", "-1/6", 0]]
+OTHER3 = [["-1/11", "2/3", 0], ["-1/5", "-2", 0], ["5/4", "1/6", 0]]
+
+
+def columns(rows: Rows, *states: int) -> list[list[Fraction]]:
+    return [[Fraction(row[j]) for j in states] for row in rows]
+
+
+def crossing(row: Sequence[Entry]) -> list[list[Fraction]]:
+    """Return ``e q + q' e'`` with e the last unit vector."""
+    q, last = [Fraction(entry) for entry in row], len(row) - 1
+    return [[q[j] * (i == last) + q[i] * (j == last) for j in range(len(q))] for i in range(len(q))]
+
+
+def test_forms_in_continuous_time_by_hand():
+    pulls, rate, multipliers = (
+        ((["1/2", "-1/3", 2]), (["1/5", 4, "3/2"])),
+        Fraction(2, 7),
+        (3, 5, 7, 11),
+    )
+    free = tuple(Mode(f"f{k}", matrix(rows)) for k, rows in enumerate((FREE3, OTHER3)))
+    contact = Contact(free, tuple(matrix([row]) for row in pulls))
+    system = replace(family(CONTACT3, OTHER3), contact=contact)
+    evidence = ConewiseQuadratic(Q3, 0, rate, multipliers)
+    assert evidence.find_misfit(system) is None
+    Q, *forms = (form for _, form in evidence.forms(system))
+    assert Q == Q3
+    A, B, F = (matrix(rows).fractions() for rows in (CONTACT3, OTHER3, FREE3))
+    inner = [row[:2] for row in Q3[:2]]
+    wanted = [decrease(M, Q3, rate, Time.CONTINUOUS) for M in (A, B)]
+    wanted += [decrease([r[:2] for r in M[:2]], inner, rate, Time.CONTINUOUS) for M in (F, B)]
+    pairs = [(M, q) for M in (F, B) for q in pulls]
+    wanted += [
+        combine((1, decrease(M, Q3, rate, Time.CONTINUOUS)), (weight, crossing(q)))
+        for (M, q), weight in zip(pairs, multipliers, strict=True)
+    ]
+    for form, true in zip(forms, wanted, strict=True):
+        assert is_positive_multiple(form, true)
+
+
+def test_forms_in_steps_by_hand():
+    landing = [[*row[:2], int(k == 2)] for k, row in enumerate(FREE3)]
+    rate, multiplier = Fraction(6, 7), 5
+    contact = Contact((Mode("f", matrix(landing)),))
+    system = replace(family(CONTACT3, OTHER3, time=Time.DISCRETE), contact=contact)
+    evidence = ConewiseQuadratic(Q3, 0, rate, (multiplier,))
+    assert evidence.find_misfit(system) is None
+    Q, *forms = (form for _, form in evidence.forms(system))
+    assert Q == Q3
+    inner, wanted = [row[:2] for row in Q3[:2]], []
+    for A in (matrix(rows).fractions() for rows in (CONTACT3, OTHER3)):
+        lost = times(transpose(A[:2]), times(inner, A[:2]))
+        wanted.append(decrease(A, Q3, rate, Time.DISCRETE))
+        wanted.append(combine((rate**2, Q3), (-1, lost), (multiplier, crossing(A[2]))))
+    rows = columns(landing, 0, 1)
+    for image, M in ((rows[:2], inner), (rows, Q3)):
+        wanted.append(combine((rate**2, inner), (-1, times(transpose(image), times(M, image)))))
+    for form, true in zip(forms, wanted, strict=True):
+        assert is_positive_multiple(form, true)
+
+
+def test_claims_count_modes():
+    one = replace(bouncing(), modes=bouncing().modes[:1])
+    free = (*bouncing().contact.free, Mode("g", matrix([[-1, 0], [1, 0]])))
+    two = replace(one, contact=Contact(free))
+    assert "among 1 mode in contact and 1 mode of free motion" in BOUNCE.claim(one)
+    assert "among 1 mode in contact and 2 modes of free motion" in BOUNCE.claim(two)
+    assert "|w(t)| <= exp(-alpha t) |w(0)| with alpha = 0.2 1/s" in BOUNCE.claim(one)
+    assert "|w(t)| <= rho^t |w(0)| with rho = 0.99" in STEPS.claim(bouncing_in_steps())
+
+
+@pytest.mark.parametrize(
+    ("multipliers", "fault"),
+    [
+        ((4, 4), None),
+        ((0, 0), None),
+        ((4, -1), "a multiplier is negative"),
+        ((-1, 4), "a multiplier is negative"),
+        ((4,), "there is not one multiplier for each condition that needs it"),
+        ((4, 4, 4), "there is not one multiplier for each condition that needs it"),
+    ],
+)
+def test_a_multiplier_for_each_force(multipliers, fault):
+    assert replace(PULLED, multipliers=multipliers).find_misfit(bouncing(1)) == fault
+
+
+def test_nothing_is_read_where_no_contact_can_be_lost():
+    assert ConewiseQuadratic.from_fields(STEPS.to_fields(), bouncing_in_steps()) == STEPS
+    with pytest.raises(ValueError, match="how contact is lost"):
+        ConewiseQuadratic.from_fields(STEPS.to_fields(), replace(bouncing_in_steps(), contact=None))
+
+
+def test_rounding_is_covered_where_there_are_multipliers_for_it():
+    assert not STEPS.covers_rounding
+    assert replace(STEPS, roundings=(1,)).covers_rounding
+    covered = replace(STEPS, roundings=(1,))
+    assert type(covered).from_fields(covered.to_fields(), bouncing_in_steps()) == covered

@@ -11,16 +11,18 @@ from hypothesis import strategies as st
 from nrs_design.proof.evidence import InvariantEllipsoid, Shows
 from nrs_design.proof.evidence.fields import MAX_INTEGER_BITS
 from nrs_design.proof.second_opinion import agrees
+from nrs_design.proof.steps import Steps
 from nrs_design.proof.system import (
     Channel,
     Contact,
     Mode,
     Output,
+    Rounding,
     SwitchedSystem,
     Time,
 )
 from tests.proof.systems import Entry, Rows, bouncing, bouncing_in_steps, family, matrix, pushed
-from tests.proof.truth import holds
+from tests.proof.truth import combine, decrease, holds, is_positive_multiple, times, transpose
 from tests.support import is_definite_by_ldl
 
 # By hand, for pushes of 1/4: V = 13 v^2 + 10 v delta + 14 delta^2, about.
@@ -339,3 +341,249 @@ def test_against_the_definition(contact, free, columns, Q, multiplier, share, le
         ("push",), "force", ((p, q), (q, r)), 1, (share,), level, (multiplier,)
     )
     assert (candidate.find_fault(system) is None) == holds(system, candidate)
+
+
+# Of three states, with denominators that differ, and nothing symmetric but Q.
+Q3 = ((9, 2, -1), (2, 7, 3), (-1, 3, 8))
+CONTACT3 = [["-1/2", "1/3", "2/3"], [1, "-1/5", "-3/7"], ["1/4", "2/3", "-1/9"]]
+FREE3 = [["-1/3", "1/2", 0], ["1/7", "-2/5", 0], ["3/4", "-1/6", 0]]
+OTHER3 = [["-1/11", "2/3", 0], ["-1/5", "-2", 0], ["5/4", "1/6", 0]]
+# For every mode, and after them for the free ones, the columns of both disturbances.
+PUSH3 = [[["1/2"], ["-1/3"], ["2/5"]], [["3/2"], ["1/7"], [2]], [["1/9"], [3], ["-1/4"]]]
+PUSH3 += [[[-1], ["1/2"], ["1/5"]]]
+GUST3 = [[[2], ["1/4"], [-1]], [["1/3"], [-2], ["1/5"]], [["2/3"], ["-1/8"], [1]]]
+GUST3 += [[["1/6"], [5], ["-3/4"]]]
+SHARES3, BOUNDS3, LEVEL = (
+    (Fraction(2, 7), Fraction(1, 5)),
+    (Fraction(3, 5), Fraction(7, 4)),
+    Fraction(4, 9),
+)
+WEIGHTS3 = [share / bound**2 for share, bound in zip(SHARES3, BOUNDS3, strict=True)]
+EVIDENCE3 = InvariantEllipsoid(("push", "gust"), "force", Q3, 3, SHARES3, LEVEL, ())
+ROWS3 = (["1/2", -1, "2/3"], [3, "1/4", 1])
+
+
+def three_states(time: Time, free: tuple[Rows, ...], pulls: tuple[Rows, ...]) -> SwitchedSystem:
+    motions = tuple(Mode(f"f{k}", matrix(rows)) for k, rows in enumerate(free))
+    count = 2 + len(free)
+    push, gust = (tuple(matrix(b) for b in columns[:count]) for columns in (PUSH3, GUST3))
+    return replace(
+        family(CONTACT3, OTHER3, time=time),
+        contact=Contact(motions, tuple(matrix([q]) for q in pulls)) if free else None,
+        # In another order than the evidence has them, and one that it does not name.
+        channels=(
+            Channel("idle", "N", Fraction(1), push),
+            Channel("gust", "N", BOUNDS3[1], gust),
+            Channel("push", "N", BOUNDS3[0], push),
+        ),
+        outputs=(Output("force", "N", tuple(matrix([q]) for q in ROWS3)),),
+    )
+
+
+def flowing(A, B, Q):
+    """``[[-(A'Q + QA + a Q), -QB], [-B'Q, diag(a_i/bound_i^2)]]``."""
+    top = decrease(A, Q, sum(SHARES3) / 2, Time.CONTINUOUS)
+    QB = [[-entry for entry in row] for row in times(Q, B)]
+    corner = [[w * (i == j) for j in range(2)] for i, w in enumerate(WEIGHTS3)]
+    return [
+        *([*row, *beside] for row, beside in zip(top, QB, strict=True)),
+        *([*row, *below] for row, below in zip(transpose(QB), corner, strict=True)),
+    ]
+
+
+def crossing(row, weight):
+    """``weight (e q + q' e')`` with e the unit vector of the deflection, before both pushes."""
+    e = [Fraction(int(k == len(row) - 3)) for k in range(len(row))]
+    return [
+        [weight * (e[i] * row[j] + row[i] * e[j]) for j in range(len(row))] for i in range(len(row))
+    ]
+
+
+def all_forms(system: SwitchedSystem, evidence: InvariantEllipsoid, motions: list) -> None:
+    """Compare all forms to those of the motions and of the rows of the output."""
+    assert evidence.find_misfit(system) is None
+    first, *forms = (form for _, form in evidence.forms(system))
+    assert first == Q3
+    reach = []
+    for q in ROWS3:
+        row = [Fraction(x) for x in q]
+        rows = [[*above, x] for above, x in zip(EIGHTHS, row, strict=True)]
+        reach.append([*rows, [*row, LEVEL**2]])
+    for form, wanted in zip(forms, [*motions, *reach], strict=True):
+        assert is_positive_multiple(form, wanted)
+
+
+EIGHTHS = [[Fraction(entry, 8) for entry in row] for row in Q3]
+INNER = [row[:2] for row in EIGHTHS[:2]]
+
+
+def exact_of(*matrices: Rows):
+    """Return every matrix with its columns of both disturbances."""
+    return [
+        (
+            matrix(A).fractions(),
+            [[*p, *g] for p, g in zip(*(matrix(b).fractions() for b in both), strict=True)],
+        )
+        for A, *both in zip(matrices, PUSH3, GUST3, strict=False)
+    ]
+
+
+def test_forms_in_kept_contact_by_hand():
+    flows = [flowing(A, B, EIGHTHS) for A, B in exact_of(CONTACT3, OTHER3)]
+    all_forms(three_states(Time.CONTINUOUS, (), ()), EVIDENCE3, flows)
+
+
+def test_forms_while_contact_comes_and_goes_by_hand():
+    pulls, weights = (["1/2", "-1/3", 2], ["1/5", 4, "3/2"]), (3, 5, 7, 11)
+    system = three_states(Time.CONTINUOUS, (FREE3, OTHER3), pulls)
+    moves = exact_of(CONTACT3, OTHER3, FREE3, OTHER3)
+    motions = [flowing(A, B, EIGHTHS) for A, B in moves[:2]]
+    motions += [flowing([row[:2] for row in A[:2]], B[:2], INNER) for A, B in moves[2:]]
+    pairs = [(move, q) for move in moves[2:] for q in pulls]
+    motions += [
+        combine(
+            (1, flowing(A, B, EIGHTHS)),
+            (
+                1,
+                crossing(
+                    [*(Fraction(x) for x in q), Fraction(0), Fraction(0)], Fraction(weight, 8)
+                ),
+            ),
+        )
+        for ((A, B), q), weight in zip(pairs, weights, strict=True)
+    ]
+    all_forms(system, replace(EVIDENCE3, multipliers=weights), motions)
+
+
+@pytest.mark.parametrize(
+    ("multipliers", "roundings"), [((), ()), ((), (4, 9)), ((5,), ()), ((5,), (4, 9))]
+)
+def test_forms_in_steps_are_those_of_its_numbers(multipliers, roundings):
+    landing = [[*row[:2], int(k == 2)] for k, row in enumerate(FREE3)]
+    system = three_states(Time.DISCRETE, (landing,) if multipliers else (), ())
+    count = len(system.channels[0].columns)
+    errors = (
+        Rounding(name, (matrix(column),) * count, (matrix([[1, "1/2", 0, 1, 2, 3]]),) * count)
+        for name, column in zip("ab", PUSH3, strict=False)
+    )
+    system = replace(system, roundings=tuple(errors))
+    evidence = replace(EVIDENCE3, multipliers=multipliers, roundings=roundings)
+    assert evidence.find_misfit(system) is None
+    assert system.find_contradiction() is None
+    steps = Steps(
+        Q3, 3, 1 - sum(SHARES3), sum(multipliers), roundings, (2, 1), tuple(WEIGHTS3)
+    ).forms(system)
+    wanted = [(f"the ellipsoid can be left {where}", form) for where, form in steps]
+    _, *forms = evidence.forms(system)
+    assert forms[: len(wanted)] == wanted
+    assert len(forms) == len(wanted) + len(ROWS3)
+
+
+@pytest.mark.parametrize(
+    ("changes", "fault"),
+    [
+        ({"denominator_log2": 0}, None),
+        ({"denominator_log2": -1}, "the denominator of Q is not two to a power up to 14000"),
+        ({"denominator_log2": 14_000}, None),
+        ({"denominator_log2": 14_001}, "the denominator of Q is not two to a power up to 14000"),
+        ({"shares": (Fraction(0),)}, "the shares are not those of a set that is not left"),
+        ({"shares": (Fraction(1, 9),)}, None),
+        ({"shares": (Fraction(8, 9),)}, None),
+        ({"shares": (Fraction(1),)}, "the shares are not those of a set that is not left"),
+        ({"shares": ()}, "there is not one share for each disturbance"),
+        ({"shares": (Fraction(1, 9),) * 2}, "there is not one share for each disturbance"),
+        ({"roundings": (1,)}, "there is not one multiplier for each rounding"),
+        ({"level": Fraction(0)}, "the level is not positive"),
+        ({"level": Fraction(1, 9)}, None),
+        ({"multipliers": (0,)}, None),
+        ({"multipliers": (-1,)}, "a multiplier is negative"),
+        ({"multipliers": ()}, "there is not one multiplier for each condition that needs it"),
+        ({"multipliers": (1, 1)}, "there is not one multiplier for each condition that needs it"),
+        ({"channels": ("pull",)}, "the system has no disturbance of that name"),
+        ({"channels": ("push", "pull")}, "the system has no disturbance of that name"),
+        ({"channels": ("push", "push")}, "it names no disturbance, or one of them twice"),
+        ({"channels": ()}, "it names no disturbance, or one of them twice"),
+        ({"output": "push"}, "the system has no output of that name"),
+    ],
+)
+def test_the_limits_of_every_number_in_steps(changes, fault):
+    assert replace(STEPS, **changes).find_misfit(pushed(bouncing_in_steps())) == fault
+
+
+@pytest.mark.parametrize(("share", "is_odd"), [(0, True), ("1/9", False), (1, False), (2, False)])
+def test_a_share_by_the_second(share, is_odd):
+    misfit = replace(BOUNCE, shares=(Fraction(share),)).find_misfit(pushed(bouncing()))
+    assert (misfit == "the shares are not those of a set that is not left") is is_odd
+    assert (misfit is None) is not is_odd
+
+
+@pytest.mark.parametrize(
+    ("shares", "time", "fits"),
+    [
+        (("1/2", "1/3"), Time.DISCRETE, True),
+        (("1/2", "1/2"), Time.DISCRETE, False),
+        (("3/4", "1/3"), Time.DISCRETE, False),
+        (("3/4", "1/3"), Time.CONTINUOUS, True),
+        (("0", "1/3"), Time.CONTINUOUS, False),
+        (("1/3", "-1/9"), Time.CONTINUOUS, False),
+    ],
+)
+def test_shares_of_two_disturbances(shares, time, fits):
+    both = replace(EVIDENCE3, shares=tuple(Fraction(share) for share in shares))
+    assert (both.find_misfit(three_states(time, (), ())) is None) is fits
+
+
+@pytest.mark.parametrize("multipliers", [(80, -1), (-1, 80)])
+def test_no_multiplier_is_negative(multipliers):
+    misfit = replace(PULLED, multipliers=multipliers).find_misfit(pushed(bouncing(1)))
+    assert misfit == "a multiplier is negative"
+
+
+def test_no_multiplier_where_contact_is_kept():
+    for multipliers, fits in (((), True), ((1,), False)):
+        kept = pushed(replace(bouncing_in_steps(), contact=None))
+        misfit = replace(STEPS, multipliers=multipliers).find_misfit(kept)
+        assert (misfit is None) is fits
+
+
+@pytest.mark.parametrize(
+    ("limit", "words"),
+    [
+        (None, "stays there."),
+        (Fraction(3, 5), "The limit of 0.6 N is kept."),
+        (Fraction(1), "The limit of 1 N is kept."),
+        (
+            Fraction(1, 2),
+            "That the limit of 0.5 N is kept is not shown; it is, in proportion, for "
+            "|push| <= 0.208333 N (rounded down).",
+        ),
+    ],
+)
+def test_a_limit_beside_the_level(limit, words):
+    system = pushed(bouncing())
+    output = replace(system.outputs[0], limit=limit)
+    assert BOUNCE.claim(replace(system, outputs=(output,))).endswith(words)
+
+
+def test_the_disturbance_and_the_output_are_those_of_the_name():
+    """Whatever else the system has, before them or after."""
+    system = pushed(bouncing())
+    channel, output = system.channels[0], system.outputs[0]
+    gust, torque = replace(channel, name="gust", bound=Fraction(9)), replace(output, name="torque")
+    for channels in ((gust, channel), (channel, gust)):
+        for outputs in ((torque, output), (output, torque)):
+            both = replace(system, channels=channels, outputs=outputs)
+            assert BOUNCE.find_fault(both) is None
+            assert BOUNCE.claim(both) == BOUNCE.claim(system)
+            assert list(BOUNCE.forms(both)) == list(BOUNCE.forms(system))
+            fields = BOUNCE.to_fields()
+            assert InvariantEllipsoid.from_fields(fields, both) == BOUNCE
+            with pytest.raises(ValueError, match="no disturbance of that name"):
+                InvariantEllipsoid.from_fields({**fields, "channels": ["wind"]}, both)
+
+
+def test_rounding_is_covered_where_there_are_multipliers_for_it():
+    assert not STEPS.covers_rounding
+    assert replace(STEPS, roundings=(1,)).covers_rounding
+    covered = replace(STEPS, roundings=(1,))
+    assert type(covered).from_fields(covered.to_fields(), pushed(bouncing_in_steps())) == covered

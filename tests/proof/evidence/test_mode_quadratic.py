@@ -2,11 +2,13 @@
 
 from dataclasses import replace
 from fractions import Fraction
+from itertools import pairwise
 from time import process_time
 
 import pytest
 
 from nrs_design.proof.evidence import ModeQuadratic, read_evidence
+from nrs_design.proof.evidence.mode_quadratic import find_odd_switch, signals_of
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.system import Mode, Reset, Stay, Switching, Time
 from nrs_design.search.certify import Verdict, certify
@@ -353,3 +355,263 @@ def test_many_dwell_times_are_counted_and_not_listed():
     system = family(*[[[-1]]] * 9, switching=Switching(stays=stays))
     claim = functions(*[((1,),)] * 9, rate="1/2").claim(system)
     assert "9 modes with dwell times of their own" in claim
+
+
+MODULE = "nrs_design.proof.evidence.mode_quadratic"
+HALF, IN_STEPS = Fraction(1, 2), {"time": Time.DISCRETE}
+
+
+def left_within(*stays, **rules):
+    """Rules by which m0, m1, ... are left, each from a shortest to a longest time."""
+    named = tuple(
+        (f"m{k}", Stay(*(end if end is None else Fraction(end) for end in stay)))
+        for k, stay in enumerate(stays)
+    )
+    return Switching(stays=named, **rules)
+
+
+@pytest.mark.parametrize(
+    ("dwell", "time", "fault"),
+    [
+        (4096, Time.CONTINUOUS, None),
+        (Fraction(8193, 2), Time.CONTINUOUS, "the dwell time is too long"),
+        (4096, Time.DISCRETE, None),
+        (4097, Time.DISCRETE, "the dwell time is too long"),
+        (Fraction(3, 2), Time.DISCRETE, "the dwell time is not a whole number of steps"),
+        (Fraction(3, 2), Time.CONTINUOUS, None),
+    ],
+)
+def test_dwell_times_within_the_limits(dwell, time, fault):
+    system, evidence = family([["-1/2"]], [["-1/2"]], time=time), scalars(1, 1, rate=HALF)
+    at_once = replace(system, switching=Switching(Fraction(dwell)))
+    assert evidence.find_misfit(at_once) == fault
+    for stays in ((1, dwell), (dwell, dwell)), ((dwell, dwell), (1, dwell)):
+        left = replace(system, switching=left_within(*stays))
+        assert replace(evidence, leaving=("m0", "m1")).find_misfit(left) == fault
+    one = replace(system, switching=left_within((1, None), (dwell, None)))
+    assert evidence.find_misfit(one) == fault
+
+
+@pytest.mark.parametrize(
+    ("leaving", "fault"),
+    [
+        ((), None),
+        (("m0",), None),
+        (("m0", "m0"), "the modes that must be left are not those of the system"),
+        (("m3",), "the modes that must be left are not those of the system"),
+        (("m0", "m1"), "a mode in which the function need not decrease has no longest dwell time"),
+        (("m1", "m0"), "a mode in which the function need not decrease has no longest dwell time"),
+    ],
+)
+def test_only_what_must_be_left_need_not_decrease(leaving, fault):
+    system = family([[-1]], [[-1]], switching=left_within((0, 1)))
+    assert scalars(1, 1, rate=HALF, leaving=leaving).find_misfit(system) == fault
+
+
+@pytest.mark.parametrize("pieces", [1, 4096])
+def test_pieces_within_the_limits(pieces):
+    system, evidence = genuine("mode-quadratic, left in time")
+    assert replace(evidence, pieces=pieces).find_misfit(system) is None
+
+
+def test_the_most_pieces(monkeypatch):
+    """Of three modes two are left, each in two ways."""
+    system = family([[-1]], [[-1]], [[-1]], switching=left_within((1, 2), (1, 2)))
+    evidence = scalars(1, 1, 1, rate=HALF, leaving=("m0", "m1"), pieces=5)
+    monkeypatch.setattr(f"{MODULE}.MAX_ENCLOSED", 20)
+    assert evidence.find_misfit(system) is None
+    monkeypatch.setattr(f"{MODULE}.MAX_ENCLOSED", 19)
+    assert evidence.find_misfit(system) == "the stays are enclosed in too few or too many pieces"
+
+
+@pytest.mark.parametrize(
+    ("system", "limit", "value"),
+    [
+        # The bits of the largest number, once for every step of the longest stay that counts.
+        (family([[7]], [[1]], **IN_STEPS, switching=Switching(Fraction(4))), "POWER_BITS", 12),
+        (family([[1]], [["1/4"]], **IN_STEPS, switching=Switching(Fraction(4))), "POWER_BITS", 12),
+        (family([[-1]], [[1]], **IN_STEPS, switching=Switching(Fraction(4))), "POWER_BITS", 8),
+        (family([[7]], [[1]], **IN_STEPS, switching=left_within((1, 4))), "POWER_BITS", 12),
+        (
+            family([[7]], [[1]], **IN_STEPS, switching=left_within((1, 2), (3, None))),
+            "POWER_BITS",
+            9,
+        ),
+        # The same for products of matrices, and for all stays in modes that are left.
+        (family([[7]], [[1]], **IN_STEPS, switching=Switching(Fraction(4))), "WORK", 12),
+        (
+            family(
+                [[7, 0], [0, 1]], [[1, 0], [0, 1]], **IN_STEPS, switching=Switching(Fraction(4))
+            ),
+            "WORK",
+            8 * 12,
+        ),
+        (family([[7]], [[1]], **IN_STEPS, switching=left_within((1, 4))), "WORK", 3 * 10),
+        (family([[7]], [[1]], [[1]], **IN_STEPS, switching=left_within((2, 4))), "WORK", 3 * 18),
+    ],
+)
+def test_the_largest_powers(monkeypatch, system, limit, value):
+    n = system.order
+    Q = tuple(tuple(int(i == j) for j in range(n)) for i in range(n))
+    evidence = functions(*[Q] * len(system.modes), rate="1/2")
+    if dict(system.switching.stays).get("m0", Stay()).longest is not None:
+        evidence = replace(evidence, leaving=("m0",))
+    monkeypatch.setattr(f"{MODULE}.MAX_{limit}", value)
+    assert evidence.find_misfit(system) is None
+    monkeypatch.setattr(f"{MODULE}.MAX_{limit}", value - 1)
+    assert evidence.find_misfit(system) == "the dwell time is too long for such large numbers"
+
+
+def test_the_rate_counts_among_the_numbers_of_a_power(monkeypatch):
+    system = family([[1]], [[1]], **IN_STEPS, switching=Switching(Fraction(4)))
+    evidence = scalars(1, 1, rate=Fraction(1, 8))
+    monkeypatch.setattr(f"{MODULE}.MAX_POWER_BITS", 16)
+    assert evidence.find_misfit(system) is None
+    monkeypatch.setattr(f"{MODULE}.MAX_POWER_BITS", 15)
+    assert "too long for such large numbers" in evidence.find_misfit(system)
+
+
+RESETS = resets_between(("m0", "m1", [[1, 0], [0, 1]]), ("m1", "m0", [[1, 0], [0, 1]]))
+
+
+@pytest.mark.parametrize(
+    ("switching", "count"),
+    [
+        (Switching(), 6),
+        (Switching(transitions=(("m0", "m1"), ("m1", "m2"))), 2),
+        (Switching(resets=RESETS), 8),
+        (Switching(transitions=(("m0", "m1"),), resets=RESETS), 3),
+    ],
+)
+def test_the_most_switches(monkeypatch, switching, count):
+    A = [[-1, 0], [0, -1]]
+    system, fault = family(A, A, A, switching=switching), "there are too many switches to check"
+    for limit, value in (("SWITCHES", count), ("WORK", count * 2**3)):
+        with monkeypatch.context() as patch:
+            patch.setattr(f"{MODULE}.MAX_{limit}", value)
+            assert find_odd_switch(system) is None
+            patch.setattr(f"{MODULE}.MAX_{limit}", value - 1)
+            assert find_odd_switch(system) == fault
+
+
+def test_a_switch_at_once_raises_nothing_and_a_later_one_may():
+    """x' = -x, and half a second of it makes up for a function that is twice as large."""
+    at_once, later = (Switching(Fraction(dwell), (("m0", "m1"),)) for dwell in ("0", "1/2"))
+    raising = scalars(1, 2, rate=Fraction(1, 100))
+    system = family([[-1]], [[-1]], switching=at_once)
+    assert raising.find_fault(system) == "the switch from m0 to m1 raises the function"
+    assert raising.find_fault(replace(system, switching=later)) is None
+    assert scalars(2, 2, rate=Fraction(1, 100)).find_fault(system) is None
+
+
+def test_a_mode_that_is_left_at_once_is_enclosed_from_the_beginning():
+    left = replace(left_within((0, 1)), transitions=(("m0", "m1"),))
+    system = family([[-1]], [[-1]], switching=left)
+    for second, fault in ((1, None), (3, "after some stay, from m0 to m1 raises the function")):
+        evidence = scalars(2, second, rate=Fraction(1, 100), leaving=("m0",), pieces=16)
+        assert evidence.find_fault(system) == fault
+
+
+def test_forms_of_steps_by_hand():
+    """``rho^2k Q0 - (G A^k)^2 Q1`` for A = 1/3, G = 2/5, rho = 3/4, over ``(5 3^k 4^k)^2``."""
+    resets = resets_between(("m0", "m1", [["2/5"]]))
+    rules = replace(left_within((2, 3), (1, None)), resets=resets)
+    system = family([["1/3"]], [["1/2"]], **IN_STEPS, switching=rules)
+    evidence = scalars(7, 11, rate=Fraction(3, 4), leaving=("m0",))
+    first, second, m1, two, three, back = (form[0][0] for _, form in evidence.forms(system))
+    assert (first, second) == (7, 11)
+    assert m1 == 2**2 * 4**2 * 11 * (Fraction(9, 16) - Fraction(1, 4))
+    for k, form in ((2, two), (3, three)):
+        decrease = Fraction(3, 4) ** (2 * k) * 7 - (Fraction(2, 5) / 3**k) ** 2 * 11
+        assert form == (5 * 3**k) ** 2 * 4 ** (2 * k) * decrease
+    assert back == 2**2 * 4**2 * (Fraction(9, 16) * 11 - Fraction(1, 4) * 7)
+    words = [failure for failure, _ in evidence.forms(system)]
+    assert words[2:] == [
+        "V does not decrease at the claimed rate in mode m1",
+        "after some stay, from m0 to m1 raises the function",
+        "after some stay, from m0 to m1 raises the function",
+        "after the dwell time, from m1 to m0 raises the function",
+    ]
+    assert [mode.name for mode in evidence.decreasing_modes(system)] == ["m1", "m0", "m0", "m1"]
+
+
+def test_the_state_moves_before_it_is_reset():
+    resets = resets_between(("m0", "m1", [[0, 1], [0, 0]]))
+    rules = Switching(transitions=(("m0", "m1"),), resets=resets)
+    system = family([[0, 0], ["1/2", 0]], [[0, 0], [0, 0]], **IN_STEPS, switching=rules)
+    *_, (_, form) = functions(I2, I2, rate="3/4").forms(system)
+    # A x = (0, x1/2), and the reset takes that to (x1/2, 0).
+    assert form == [[9 * 4 - 16, 0], [0, 9 * 4]]
+
+
+def test_pieces_of_a_stay(monkeypatch):
+    asked = []
+
+    def record(edge, times, Q, rate):
+        asked.append((edge.source.name, *times))
+        return ((1,),)
+
+    monkeypatch.setattr(f"{MODULE}.enclosed_form", record)
+    system = family([[1]], [[-2]], switching=left_within((HALF, 2), (3, 4)))
+    evidence = scalars(1, 1, rate=HALF, leaving=("m0",), pieces=3)
+    assert evidence.find_fault(system) is None
+    ends = [HALF, Fraction(1), Fraction(3, 2), Fraction(2)]
+    pieces = [("m0", *pair) for pair in pairwise(ends)]
+    assert asked == [*pieces, ("m1", Fraction(3), Fraction(3))]
+
+
+@pytest.mark.parametrize(
+    ("switching", "time", "words"),
+    [
+        (Switching(), Time.CONTINUOUS, "arbitrary"),
+        (Switching(HALF), Time.CONTINUOUS, "at least 0.5 s in each mode"),
+        (Switching(Fraction(1)), Time.DISCRETE, "at least 1 step in each mode"),
+        (Switching(Fraction(2)), Time.DISCRETE, "at least 2 steps in each mode"),
+        (Switching(Fraction(1)), Time.CONTINUOUS, "at least 1 s in each mode"),
+        (left_within((0, 1)), Time.CONTINUOUS, "at most 1 s in m0"),
+        (left_within((0, 1)), Time.DISCRETE, "at most 1 step in m0"),
+        (left_within((1, 3)), Time.DISCRETE, "1 to 3 steps in m0"),
+        (
+            left_within((1, None), dwell_time=HALF),
+            Time.CONTINUOUS,
+            "at least 0.5 s in each other mode, at least 1 s in m0",
+        ),
+        (
+            left_within(*[(1, None)] * 8),
+            Time.CONTINUOUS,
+            ", ".join(f"at least 1 s in m{k}" for k in range(8)),
+        ),
+        (
+            left_within(*[(1, None)] * 9),
+            Time.CONTINUOUS,
+            ", ".join(f"at least 1 s in m{k}" for k in range(8))
+            + ", 9 modes with dwell times of their own",
+        ),
+        (Switching(transitions=()), Time.CONTINUOUS, "0 allowed transitions"),
+        (
+            Switching(transitions=(("m0", "m1"),), resets=RESETS),
+            Time.CONTINUOUS,
+            "1 allowed transitions, 2 resets",
+        ),
+    ],
+)
+def test_words_for_the_signals(switching, time, words):
+    system = family([[-1]], [[-1]], time=time, switching=switching)
+    assert signals_of(system) == words
+    law = "x' = A x" if time is Time.CONTINUOUS else "x+ = A x"
+    bound = "exp(-alpha t)" if time is Time.CONTINUOUS else "rho^t"
+    claim = functions(((1,),), ((1,),), rate="1/2").claim(system)
+    assert f"Every solution of {law} under the declared switching ({words})" in claim
+    assert f"satisfies |x(t)| <= c {bound} |x(0)|" in claim
+
+
+def test_a_file_without_pieces_has_one():
+    system, evidence = genuine("mode-quadratic, dwell")
+    found = read_evidence({"kind": evidence.kind, **evidence.to_fields()}, system)
+    assert (found.leaving, found.pieces) == ((), 1)
+    fields = {"kind": evidence.kind, **evidence.to_fields()}
+    fields["functions"][0]["Q"]["denominator_log2"] += 1
+    with pytest.raises(ValueError, match="do not share one denominator"):
+        read_evidence(fields, system)
+    with pytest.raises(ValueError, match="do not share one denominator"):
+        read_evidence({**fields, "functions": []}, system)

@@ -29,7 +29,14 @@ def stored(evidence) -> dict:
 
 
 def test_every_kind_has_an_example():
-    assert {name.split(",")[0] for name in SYSTEMS} == {kind.kind for kind in KINDS}
+    assert {name.split(",")[0] for name in SYSTEMS} == set(KINDS)
+
+
+@pytest.mark.parametrize("kind", ["common-quadratics", "", None, 0])
+def test_a_kind_that_does_not_exist_shows_nothing(kind):
+    system, evidence = genuine("common-quadratic")
+    with pytest.raises(ValueError, match="unknown kind of evidence"):
+        read_evidence({**stored(evidence), "kind": kind}, system)
 
 
 @pytest.mark.parametrize("example", SYSTEMS)

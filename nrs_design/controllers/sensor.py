@@ -1,0 +1,225 @@
+"""The force sensor: the lags of its filter, and how far its signal may be off for long.
+
+All errors are torques about the pivot. A wrench ``(F, T)`` that is measured at the sensor is the
+torque ``T - p x F`` about a pivot at p. The weight of the tool is taken off with the nominal mass
+and center of mass; what is left is the weight of what they miss, and that of the nominal tool in
+the wrong direction: by an angle e, at most ``2 sin(e/2) <= e`` of it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from fractions import Fraction
+from itertools import product
+from math import comb, isqrt
+
+from nrs_design.controllers.float32 import to_float32
+from nrs_design.controllers.sampled import Term
+from nrs_design.models.linear_form import LinearForm, combine
+from nrs_design.proof.taylor import exponential_between
+from nrs_design.spec.quantity_fields import RangedQuantity
+from nrs_design.spec.sensor import PointSpec, SensorSpec, ToolSpec
+
+ONE, ZERO = Fraction(1), Fraction(0)
+Vector = Sequence[Fraction]
+# Roots are taken in parts of a nanometer and less.
+_FINE = 10**24
+
+
+@dataclass(frozen=True, slots=True)
+class LowPass:
+    """Equal lags in a row, ``x1' = w (F - x1)``, ``x2' = w (x1 - x2)``, ...; the last is used.
+
+    Parameters
+    ----------
+    order : int
+        How many.
+    pole : Fraction
+        The corner frequency w in rad/s, a single-precision number.
+    """
+
+    order: int
+    pole: Fraction
+
+    @property
+    def states(self) -> tuple[str, ...]:
+        """Names and units of the states."""
+        return tuple(f"filtered {i} [N*m]" for i in range(1, self.order + 1))
+
+    @property
+    def denominator(self) -> tuple[float, ...]:
+        """Of the transfer function, whose numerator is 1: highest power of s first."""
+        powers = ((1 / self.pole) ** k * comb(self.order, k) for k in range(self.order, -1, -1))
+        return tuple(map(float, powers))
+
+    def respond(
+        self, force: LinearForm, states: Sequence[LinearForm]
+    ) -> tuple[LinearForm, list[LinearForm]]:
+        """Return the filtered force, and the rates of the states.
+
+        Parameters
+        ----------
+        force : LinearForm
+            That acts on the sensor, N m.
+        states : sequence of LinearForm
+            Those named in `states`.
+        """
+        sources = (force, *states)
+        rates = [
+            combine((self.pole, before), (-self.pole, own))
+            for before, own in zip(sources, states, strict=False)
+        ]
+        return states[-1], [*rates]
+
+    def sampled(self, period: Fraction) -> SampledLowPass:
+        """Discretize each lag for an input that is held over a period in s."""
+        keep = to_float32(exponential_between(-self.pole * period)[0])
+        return SampledLowPass(self.order, keep, to_float32(1 - keep))
+
+
+@dataclass(frozen=True, slots=True)
+class SampledLowPass:
+    """What a processor computes at every sample: ``x1 = p x1 + q F``, ``x2 = p x2 + q x1``, ...
+
+    Each lag takes what the one before it has just computed, and the law takes the last.
+
+    Parameters
+    ----------
+    order : int
+        How many lags.
+    p, q : Fraction
+        Single-precision numbers without unit.
+    """
+
+    order: int
+    p: Fraction
+    q: Fraction
+
+    @property
+    def states(self) -> tuple[str, ...]:
+        """Names and units of the states."""
+        return tuple(f"filtered {i} before [N*m]" for i in range(1, self.order + 1))
+
+    @property
+    def lasting_gain(self) -> Fraction:
+        """Output over input in the long run: one, but for what the coefficients round."""
+        return (self.q / (1 - self.p)) ** self.order
+
+    def stages(
+        self, sample: tuple[Term, ...], states: Sequence[LinearForm]
+    ) -> list[tuple[Term, ...]]:
+        """Return the terms that each lag is the sum of; the last is the filtered force.
+
+        All are terms of what was there before the sample, and of the sample itself.
+
+        Parameters
+        ----------
+        sample : tuple of Term
+            The force sample that is taken now.
+        states : sequence of LinearForm
+            Those named in `states`.
+        """
+        found: list[tuple[Term, ...]] = []
+        for i, own in enumerate(states, 1):
+            # A product and a sum.
+            before = (term.times(self.q, "q ", 2) for term in sample)
+            sample = (Term(f"p x{i}", combine((self.p, own)), 2), *before)
+            found.append(sample)
+        return found
+
+
+@dataclass(frozen=True, slots=True)
+class Sensor:
+    """A force sensor, in exact numbers that are not too small.
+
+    Parameters
+    ----------
+    errors : mapping of str to Fraction
+        What may last, by where it comes from: bounds on torques about the pivot in N m.
+    filter : LowPass or None
+        Of the signal.
+    noise : float or None
+        One-sided power density in (N m)^2/Hz.
+    arm : Fraction or None
+        Distance from the pivot to the contact point in m, rounded down.
+    """
+
+    errors: Mapping[str, Fraction] = field(default_factory=dict)
+    filter: LowPass | None = None
+    noise: float | None = None
+    arm: Fraction | None = None
+
+    @property
+    def lasting(self) -> Fraction:
+        """Bound on the lasting error of the torque about the pivot, N m."""
+        return sum(self.errors.values(), ZERO)
+
+
+def build_sensor(spec: SensorSpec | None) -> Sensor:
+    """Convert what a spec says of the sensor; without it, the force is exact."""
+    if spec is None:
+        return Sensor()
+    pivot = _coordinates(spec.pivot)
+    low_pass = None
+    if spec.filter is not None:
+        low_pass = LowPass(spec.filter.order, to_float32(spec.filter.cutoff.not_below))
+    arm = None
+    if spec.contact is not None:
+        lever = [a - b for a, b in zip(spec.contact.exact, pivot, strict=True)]
+        arm = length_between(lever)[0]
+    return Sensor(
+        dict(_errors(spec, pivot)),
+        low_pass,
+        None if spec.noise_density is None else spec.noise_density.si,
+        arm,
+    )
+
+
+def _errors(spec: SensorSpec, pivot: Vector) -> Iterator[tuple[str, Fraction]]:
+    if spec.bias is not None:
+        yield "bias", spec.bias.exact
+    if spec.force_bias is not None:
+        yield "bias of the force", spec.force_bias.exact * length_between(pivot)[1]
+    if spec.drift is not None and spec.tared_every is not None:
+        yield "drift since taring", spec.drift.exact * spec.tared_every.exact
+    if spec.resolution is not None:
+        yield "half a step of resolution", spec.resolution.exact / 2
+    if spec.tool is None:
+        return
+    missed, nominal = _moments(spec.tool, pivot)
+    if missed:
+        yield "mass and center of mass of the tool", missed
+    for name, angle in (("pose", spec.pose_error), ("IMU", spec.imu_error)):
+        if angle is not None:
+            yield f"weight of the tool at the error of the {name}", nominal * angle.not_below
+
+
+def _moments(tool: ToolSpec, pivot: Vector) -> tuple[Fraction, Fraction]:
+    """Return the weight times arm that the nominal tool misses at most, and its own, in N m."""
+    center = (tool.center_of_mass.x, tool.center_of_mass.y, tool.center_of_mass.z)
+    mass = tool.mass.nominal.exact
+    off, own = [], []
+    for axis, origin in zip(center, pivot, strict=True):
+        moment = mass * (axis.nominal.exact - origin)
+        ends = product(_ends(tool.mass), _ends(axis))
+        off.append(max(abs(m * (at - origin) - moment) for m, at in ends))
+        own.append(moment)
+    gravity = tool.gravity.exact
+    return gravity * length_between(off)[1], gravity * length_between(own)[1]
+
+
+def _ends(written: RangedQuantity) -> tuple[Fraction, ...]:
+    return tuple(end.exact for end in written.range)
+
+
+def _coordinates(point: PointSpec | None) -> Vector:
+    return (ZERO,) * 3 if point is None else point.exact
+
+
+def length_between(vector: Vector) -> tuple[Fraction, Fraction]:
+    """Return fractions not above and not below the length of a vector."""
+    square = sum((c * c for c in vector), ZERO) * _FINE**2
+    root = isqrt(square.numerator // square.denominator)
+    exact = root * root * square.denominator == square.numerator
+    return Fraction(root, _FINE), Fraction(root + (not exact), _FINE)

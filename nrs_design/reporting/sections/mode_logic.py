@@ -1,0 +1,183 @@
+"""The mode logic: which controller is active when, and how far apart switches lie."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from typing import TYPE_CHECKING
+
+from nrs_design.proof.bounds import lower, upper
+from nrs_design.reporting.document import Paragraph, Section, Table
+from nrs_design.spec.environment_estimator import EstimatorSpec, decide
+from nrs_design.spec.threshold_logic import (
+    LogicSwitchSpec,
+    ThresholdLogicSpec,
+    reach,
+)
+
+if TYPE_CHECKING:
+    from nrs_design.spec import InteractionDesignSpec, Quantity
+
+_CHATTER_FREE = (
+    "No chatter: between two switches a signal that is known up to a noise N, as old as an age D "
+    "and no faster than a rate R has to cross a band between two thresholds, which takes at least "
+    "(band - 2 N)/R - D. The timer holds every controller that long (rounded down), or as long as "
+    "`hold` says, whatever the signals do.",
+    "A switch is made when all of its conditions hold. The true signal has then gone no further "
+    "than listed, if its own condition is the last one to come true.",
+)
+_ESTIMATED = (
+    "Torque over travel of a segment is compared with a stiffness between both ranges; two "
+    "segments in a row that agree decide. A segment is long enough for noise, age and steps not to "
+    "matter, and no more than two can lie across a change.",
+    "Until the decision the wrong controller is in contact: those modes are part of the proof, for "
+    "no longer than the decision takes. That rests on the declared slowest speed: at rest nothing "
+    "is decided.",
+)
+_UNITS = {"command": "rad/s", "torque": "N·m"}
+
+
+def logic_section(spec: InteractionDesignSpec) -> Section | None:
+    """Describe the mode logic of a spec, if it has one."""
+    if spec.mode_logic is None:
+        return None
+    words = tuple(Paragraph(text) for text in logic_meaning(spec))
+    return Section("Mode logic", (*words, *logic_tables(spec)))
+
+
+def logic_meaning(spec: InteractionDesignSpec) -> tuple[str, ...]:
+    """Say in sentences what the numbers of a mode logic mean, and what the proof makes of them."""
+    assert spec.mode_logic is not None
+    texts = _CHATTER_FREE if spec.mode_logic.type == "thresholds" else _ESTIMATED
+    if spec.switching.is_arbitrary:
+        return (*texts, "The statement about stability needs none of this: switching is arbitrary.")
+    return (*texts, "The statement about stability is for the switching that this logic can give.")
+
+
+def logic_tables(spec: InteractionDesignSpec) -> tuple[Table, ...]:
+    """Return what a mode logic does, in tables of text."""
+    assert spec.mode_logic is not None
+    if spec.mode_logic.type == "thresholds":
+        return _switches(spec.mode_logic), _stays(spec.mode_logic)
+    return (_decision(spec, spec.mode_logic),)
+
+
+def _switches(logic: ThresholdLogicSpec) -> Table:
+    rows = []
+    for number, switch in enumerate(logic.switches, 1):
+        conditions = switch.conditions.items()
+        when = " and ".join(
+            f"{name} above {_text(c.above)}"
+            if c.above is not None
+            else f"{name} below {_text(c.below)}"
+            for name, c in conditions
+        )
+        rows.append((str(number), switch.source, switch.target, when, _reach_text(logic, switch)))
+    columns = ("Switch", "From", "To", "When", "True signal then, at worst")
+    return Table("Switches, in the order in which they are tried", columns, tuple(rows))
+
+
+def _text(quantity: Quantity | None) -> str:
+    return "" if quantity is None else quantity.text
+
+
+def _reach_text(logic: ThresholdLogicSpec, switch: LogicSwitchSpec) -> str:
+    ends = reach(logic, switch)
+    return ", ".join(
+        f"{name} ≤ {upper(Fraction(ends[name]))} {_UNITS[name]}"
+        if condition.above is not None
+        else f"{name} ≥ {lower(Fraction(ends[name]))} {_UNITS[name]}"
+        for name, condition in switch.conditions.items()
+    )
+
+
+def _stays(logic: ThresholdLogicSpec) -> Table:
+    rows = []
+    for name in logic.controllers:
+        stay, derived, apart = logic.stay(name), logic.derived(name), logic.tightest(name)
+        kept = (
+            "–"
+            if apart is None or apart.signal is None
+            else (f"{apart.signal}, from switch {apart.entering + 1} to {apart.leaving + 1}")
+        )
+        rows.append(
+            (
+                name,
+                "–" if stay is None else stay.text,
+                "–" if derived is None else derived.text,
+                kept,
+                f"{upper(logic.held_back(name))} s",
+            )
+        )
+    columns = (
+        "Controller",
+        "Held for at least",
+        "Of which by thresholds",
+        "Signal that has to move",
+        "Timer holds a switch back, at most",
+    )
+    return Table("How long every controller stays active", columns, tuple(rows))
+
+
+def _decision(spec: InteractionDesignSpec, estimator: EstimatorSpec) -> Table:
+    found = decide(estimator, spec.controllers, spec.environments)
+    soft, stiff = found.environments
+    right = f"{found.softer}/{soft}, {found.stiffer}/{stiff}"
+    wrong = f"{found.softer}/{stiff}, {found.stiffer}/{soft}"
+    rows = (
+        (f"{stiff}, not {soft}, from a stiffness of", f"{float(found.limit):.6g} N·m/rad"),
+        ("Travel of a segment, at least", f"{upper(found.travel)} rad"),
+        ("From a change to the decision, at most", f"{upper(found.delay)} s"),
+        ("From the decision to the next change, at least", f"{lower(found.stay)} s"),
+        ("Right modes", right),
+        ("Wrong modes, until the decision", wrong),
+    )
+    return Table("How the environment is told", ("What", "Value"), rows)
+
+
+def logic_summary(spec: InteractionDesignSpec) -> dict[str, object]:
+    """Return the numbers of a mode logic in SI units, each rounded to its safe side."""
+    assert spec.mode_logic is not None
+    logic = spec.mode_logic
+    used = not spec.switching.is_arbitrary
+    if logic.type == "estimator":
+        found = decide(logic, spec.controllers, spec.environments)
+        return {
+            "type": logic.type,
+            "used_in_proof": used,
+            "stiffness_limit": float(found.limit),
+            "travel": float(upper(found.travel)),
+            "decision_at_most": float(found.delay),
+            "right_at_least": float(found.stay),
+            "environments": list(found.environments),
+            "controllers": [found.softer, found.stiffer],
+            "units": {"stiffness_limit": "N*m/rad", "travel": "rad", "decision_at_most": "s"},
+        }
+    return {
+        "type": logic.type,
+        "used_in_proof": used,
+        "controllers": [_controller_summary(logic, name) for name in logic.controllers],
+        "switches": [
+            {"from": switch.source, "to": switch.target, "reach": dict(reach(logic, switch))}
+            for switch in logic.switches
+        ],
+        "units": {"stay": "s", "command": "rad/s", "torque": "N*m"},
+    }
+
+
+def _controller_summary(logic: ThresholdLogicSpec, name: str) -> dict[str, object]:
+    stay, derived = logic.stay(name), logic.derived(name)
+    return {
+        "name": name,
+        "stay": None if stay is None else float(stay.value),
+        "stay_by_thresholds": None if derived is None else float(derived.value),
+        "held_back_at_most": float(logic.held_back(name)),
+        "pairs": [
+            {
+                "entering": apart.entering + 1,
+                "leaving": apart.leaving + 1,
+                "signal": apart.signal,
+                "at_least": float(lower(apart.seconds)),
+            }
+            for apart in logic.pairs(name)
+        ],
+    }

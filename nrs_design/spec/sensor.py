@@ -1,0 +1,163 @@
+"""The force sensor of an interaction design: what its signal is, beside the force."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from typing import Annotated
+
+from pydantic import Field, WithJsonSchema, model_validator
+
+from nrs_design.spec.faults import fault
+from nrs_design.spec.fields import read_exact
+from nrs_design.spec.model import ReadBy, SpecModel
+from nrs_design.spec.provenance import IdentifiedSpec
+from nrs_design.spec.quantity import Quantity
+from nrs_design.spec.quantity_fields import (
+    Angle,
+    Bandwidth,
+    Coordinate,
+    Duration,
+    Force,
+    Gravity,
+    NoiseDensity,
+    RangedCoordinate,
+    RangedMass,
+    Torque,
+    TorqueRate,
+)
+
+# Every lag is a state more.
+HIGHEST_ORDER = 4
+_AT = "{axis} of {what}, in m along the axes of the sensor"
+
+
+def _read_order(value: object) -> int:
+    number = read_exact(value)
+    if number.denominator != 1 or not 1 <= number <= HIGHEST_ORDER:
+        raise fault(f"{value} is no order", f"write a whole number from 1 to {HIGHEST_ORDER}")
+    return int(number)
+
+
+Order = Annotated[
+    int,
+    ReadBy(_read_order),
+    WithJsonSchema({"type": "integer", "minimum": 1, "maximum": HIGHEST_ORDER}),
+]
+
+
+class FilterSpec(SpecModel):
+    """A low-pass of so many equal lags in a row, ``1/(s/cutoff + 1)^order``."""
+
+    order: Order = Field(default=1, description=f"number of lags, 1 to {HIGHEST_ORDER}, no unit")
+    cutoff: Bandwidth = Field(description="corner frequency of each lag, such as 30 Hz")
+
+
+class PointSpec(SpecModel):
+    """A point, from the origin of the sensor."""
+
+    x: Coordinate = Field(description=_AT.format(axis="x", what="the point"))
+    y: Coordinate = Field(description=_AT.format(axis="y", what="the point"))
+    z: Coordinate = Field(description=_AT.format(axis="z", what="the point"))
+
+    @property
+    def exact(self) -> tuple[Fraction, ...]:
+        """The coordinates in m."""
+        return (self.x.exact, self.y.exact, self.z.exact)
+
+
+class CenterSpec(SpecModel):
+    """A center of mass that is known within ranges, from the origin of the sensor."""
+
+    x: RangedCoordinate = Field(description=_AT.format(axis="x", what="the center of mass"))
+    y: RangedCoordinate = Field(description=_AT.format(axis="y", what="the center of mass"))
+    z: RangedCoordinate = Field(description=_AT.format(axis="z", what="the center of mass"))
+
+
+class ToolSpec(IdentifiedSpec):
+    """What hangs on the sensor. Its weight is taken off the signal, with the nominal values."""
+
+    mass: RangedMass = Field(
+        description="mass in kg: one quantity, or {nominal: ..., range: [lowest, highest]}"
+    )
+    center_of_mass: CenterSpec = Field(description="center of mass, from the origin of the sensor")
+    gravity: Gravity = Field(
+        default=Quantity("9.81 m/s^2", Fraction("9.81"), "m/s^2"),
+        description="gravitational acceleration in m/s^2; default: 9.81 m/s^2",
+    )
+
+
+class SensorSpec(SpecModel):
+    """The force signal: what filters it, and how far it may be off.
+
+    Errors that last move the robot in free motion, as an admittance integrates them: the creep.
+    """
+
+    bias: Torque | None = Field(
+        default=None,
+        description="largest bias of the torque about the pivot after taring, in N*m",
+    )
+    force_bias: Force | None = Field(
+        default=None,
+        description="largest bias of the measured force after taring, in N; it is a torque about "
+        "the pivot if the pivot is not where the sensor is",
+    )
+    drift: TorqueRate | None = Field(
+        default=None, description="largest drift of the bias in N*m/s; with tared_every"
+    )
+    tared_every: Duration | None = Field(
+        default=None, description="longest time between two tarings in s; with drift"
+    )
+    resolution: Torque | None = Field(
+        default=None, description="step of the measured torque in N*m: an error of half a step"
+    )
+    noise_density: NoiseDensity | None = Field(
+        default=None,
+        description="one-sided power density of white noise of the torque, in N^2*m^2*s, which is "
+        "(N*m)^2/Hz; shown, and in no bound",
+    )
+    filter: FilterSpec | None = Field(
+        default=None, description="low-pass of the force signal: a part of the loop"
+    )
+    tool: ToolSpec | None = Field(
+        default=None, description="what hangs on the sensor; its weight is taken off the signal"
+    )
+    pose_error: Angle | None = Field(
+        default=None,
+        description="largest error of the sensor's orientation in the robot, an angle; with tool",
+    )
+    imu_error: Angle | None = Field(
+        default=None,
+        description="largest error of the measured direction of gravity, an angle; with tool",
+    )
+    pivot: PointSpec | None = Field(
+        default=None, description="the pivot, from the origin of the sensor; default: there"
+    )
+    contact: PointSpec | None = Field(
+        default=None,
+        description="the contact point, from the origin of the sensor: errors are shown as a force "
+        "there, too",
+    )
+
+    @model_validator(mode="after")
+    def _check(self) -> SensorSpec:
+        given = self.model_fields_set
+        if not given:
+            raise fault("nothing is said of the sensor", "add `bias: 5 N*mm`, or remove sensor")
+        for key, other, remedy in (
+            ("drift", "tared_every", "tared_every: 600 s"),
+            ("tared_every", "drift", "drift: 1e-5 N*m/s"),
+            ("pose_error", "tool", "tool: {mass: 0.797 kg, center_of_mass: ...}"),
+            ("imu_error", "tool", "tool: {mass: 0.797 kg, center_of_mass: ...}"),
+            ("force_bias", "pivot", "pivot: {x: 0 m, y: 0 m, z: -0.1 m}"),
+        ):
+            if key in given and other not in given:
+                raise fault(f"{key} counts with {other} only", f"add `{remedy}`", key)
+        if self.contact is not None and self.contact.exact == self._pivot:
+            raise fault(
+                "the contact point is at the pivot", "a force has no torque there", "contact"
+            )
+        return self
+
+    @property
+    def _pivot(self) -> tuple[Fraction, ...]:
+        return (Fraction(0),) * 3 if self.pivot is None else self.pivot.exact

@@ -1,0 +1,328 @@
+"""Which controller is active when: thresholds on command and torque, and what keeps them apart.
+
+A switch is made when all of its conditions hold. A signal that is known up to a noise N, as old as
+an age D, and no faster than a rate R needs a time to get from one threshold to another: at least
+``(band - 2 N)/R - D``. So no switch follows another one sooner, where the two ask for opposite
+sides of such a band.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Annotated, Literal
+
+from pydantic import Field, WithJsonSchema, model_validator
+
+from nrs_design.proof.bounds import lower, lower_float, upper_float
+from nrs_design.proof.text import exact_text
+from nrs_design.spec.faults import did_you_mean, fault
+from nrs_design.spec.fields import Label
+from nrs_design.spec.model import ReadBy, SpecModel
+from nrs_design.spec.quantity import Quantity
+from nrs_design.spec.quantity_fields import (
+    AngularAcceleration,
+    AngularVelocity,
+    Duration,
+    SignedAngularVelocity,
+    SignedTorque,
+    Torque,
+    TorqueRate,
+)
+from nrs_design.spec.switching import (
+    DWELL_SCHEMA,
+    DwellTime,
+    DwellTimes,
+    SwitchingSpec,
+    read_dwell_times,
+)
+
+MAX_SWITCHES = 64
+DIGITS = 4
+
+_NOISE = "largest error of the value that the logic sees, either way, in {unit}"
+_AGE = (
+    "largest age in s of the value that the logic acts on, at any time: sampling period, filter, "
+    "bus and computation together"
+)
+_RATE = "how fast the true value changes at most, in {unit}"
+_ABOVE = "the value that the logic sees is at least this, in {unit}"
+_BELOW = "the value that the logic sees is at most this, in {unit}"
+
+
+class CommandSignalSpec(SpecModel):
+    """The velocity command of the surgeon, positive towards the tissue."""
+
+    noise: AngularVelocity = Field(description=_NOISE.format(unit="rad/s"))
+    age: Duration = Field(description=_AGE)
+    largest_rate: AngularAcceleration = Field(description=_RATE.format(unit="rad/s^2"))
+
+
+class TorqueSignalSpec(SpecModel):
+    """The torque of the tissue on the robot, positive where it is pushed."""
+
+    noise: Torque = Field(description=_NOISE.format(unit="N*m"))
+    age: Duration = Field(description=_AGE)
+    largest_rate: TorqueRate = Field(description=_RATE.format(unit="N*m/s"))
+
+
+SignalSpec = CommandSignalSpec | TorqueSignalSpec
+
+
+class LogicSignalsSpec(SpecModel):
+    """What the logic sees."""
+
+    command: CommandSignalSpec | None = Field(
+        default=None, description="velocity command, positive towards the tissue"
+    )
+    torque: TorqueSignalSpec | None = Field(
+        default=None, description="torque of the tissue on the robot, positive where it is pushed"
+    )
+
+
+class CommandCondition(SpecModel):
+    """One side of a threshold on the command."""
+
+    above: SignedAngularVelocity | None = Field(
+        default=None, description=_ABOVE.format(unit="rad/s")
+    )
+    below: SignedAngularVelocity | None = Field(
+        default=None, description=_BELOW.format(unit="rad/s")
+    )
+
+    @model_validator(mode="after")
+    def _check_one_side(self) -> CommandCondition:
+        _check_one_side(self.above, self.below)
+        return self
+
+
+class TorqueCondition(SpecModel):
+    """One side of a threshold on the torque."""
+
+    above: SignedTorque | None = Field(default=None, description=_ABOVE.format(unit="N*m"))
+    below: SignedTorque | None = Field(default=None, description=_BELOW.format(unit="N*m"))
+
+    @model_validator(mode="after")
+    def _check_one_side(self) -> TorqueCondition:
+        _check_one_side(self.above, self.below)
+        return self
+
+
+Condition = CommandCondition | TorqueCondition
+
+
+def _check_one_side(above: Quantity | None, below: Quantity | None) -> None:
+    if (above is None) == (below is None):
+        raise fault("a condition has one threshold", "write {above: ...} or {below: ...}")
+
+
+class LogicSwitchSpec(SpecModel):
+    """A switch, and what must hold when it is made."""
+
+    source: Label = Field(alias="from", description="controller that is left")
+    target: Label = Field(alias="to", description="controller that takes over")
+    command: CommandCondition | None = Field(
+        default=None, description="{above: ...} or {below: ...}, in rad/s"
+    )
+    torque: TorqueCondition | None = Field(
+        default=None, description="{above: ...} or {below: ...}, in N*m"
+    )
+
+    @property
+    def conditions(self) -> dict[str, Condition]:
+        """The conditions by signal."""
+        written = {"command": self.command, "torque": self.torque}
+        return {name: condition for name, condition in written.items() if condition is not None}
+
+    @model_validator(mode="after")
+    def _check(self) -> LogicSwitchSpec:
+        if self.source == self.target:
+            raise fault("a switch leads to another controller", "remove it", "to")
+        if not self.conditions:
+            raise fault("nothing says when this switch is made", "add command or torque")
+        return self
+
+
+@dataclass(frozen=True, slots=True)
+class Apart:
+    """How far apart two switches lie that follow each other.
+
+    Parameters
+    ----------
+    entering, leaving : int
+        Indices of the two switches.
+    signal : str or None
+        That has to move in between; None if none has.
+    seconds : Fraction
+        At least so long, not rounded; zero if nothing keeps them apart.
+    """
+
+    entering: int
+    leaving: int
+    signal: str | None
+    seconds: Fraction
+
+
+class ThresholdLogicSpec(SpecModel):
+    """Controllers that follow each other by thresholds on command and torque."""
+
+    type: Literal["thresholds"] = Field(
+        description="thresholds: switches by the size and the sign of command and torque"
+    )
+    start: Label = Field(description="controller that is active at first")
+    signals: LogicSignalsSpec = Field(description="what the logic sees, and how well")
+    switches: Annotated[
+        tuple[LogicSwitchSpec, ...], Field(min_length=1, max_length=MAX_SWITCHES)
+    ] = Field(description="switches from one controller to another; the first that may be made is")
+    hold: Annotated[DwellTimes | None, ReadBy(read_dwell_times), WithJsonSchema(DWELL_SCHEMA)] = (
+        Field(
+            default=None,
+            description="shortest time in s for which a controller is held whatever the signals say; "
+            "one for all, or by name. Default: what thresholds, noise and age give anyway",
+        )
+    )
+
+    @model_validator(mode="after")
+    def _check(self) -> ThresholdLogicSpec:
+        for index, switch in enumerate(self.switches):
+            for name in switch.conditions:
+                if getattr(self.signals, name) is None:
+                    raise fault(
+                        f"nothing is said of the signal {name}",
+                        f"add `{name}: {{noise: ..., age: ..., largest_rate: ...}}` to signals",
+                        "switches",
+                        index,
+                        name,
+                    )
+        self._check_hold()
+        for controller in self.controllers:
+            self._check_apart(controller)
+        return self
+
+    def _check_hold(self) -> None:
+        held = self.hold if isinstance(self.hold, dict) else {"": self.hold}
+        for name, time in held.items():
+            if name and name not in self.controllers:
+                remedy = did_you_mean(name, self.controllers)
+                raise fault(f"no switch leads to or from {name!r}", remedy, "hold", name)
+            if time is not None and time.unit != "s":
+                raise fault(f"{time.text!r} is not a time", "write seconds, as in '50 ms'", "hold")
+
+    def _check_apart(self, controller: str) -> None:
+        apart = self.tightest(controller)
+        if apart is None or self.stay(controller) is not None:
+            return
+        raise fault(
+            f"{controller!r} may be left as soon as it is entered, so the controllers may chatter: "
+            f"no signal has to move between switch {apart.entering + 1} and switch "
+            f"{apart.leaving + 1} of the list",
+            "let one of them ask for a signal above, the other for the same signal below, further "
+            f"apart than twice its noise and what it moves in its age; or add `hold: {{{controller}"
+            ": 50 ms}`",
+            "switches",
+            apart.leaving,
+        )
+
+    @property
+    def controllers(self) -> tuple[str, ...]:
+        """Names of the controllers in the order in which they are named."""
+        ends = (name for switch in self.switches for name in (switch.source, switch.target))
+        return tuple(dict.fromkeys((self.start, *ends)))
+
+    def pairs(self, controller: str) -> Iterator[Apart]:
+        """Yield how far apart every switch to a controller and every one from it lie."""
+        for i, entering in enumerate(self.switches):
+            for j, leaving in enumerate(self.switches):
+                if entering.target == controller == leaving.source:
+                    yield self._apart(i, j)
+
+    def tightest(self, controller: str) -> Apart | None:
+        """Return the two switches with the least time between; None if no such two are there."""
+        return min(self.pairs(controller), key=lambda apart: apart.seconds, default=None)
+
+    def derived(self, controller: str) -> DwellTime | None:
+        """Return what thresholds, noise and age give, rounded down; None if that is nothing."""
+        apart = self.tightest(controller)
+        return None if apart is None or apart.seconds <= 0 else shown_time(apart.seconds)
+
+    def stay(self, controller: str) -> DwellTime | None:
+        """Return for how long the timer holds a controller."""
+        held = self.hold.get(controller) if isinstance(self.hold, dict) else self.hold
+        times = [time for time in (held, self.derived(controller)) if time is not None]
+        return max(times, key=lambda time: time.value, default=None)
+
+    def held_back(self, controller: str) -> Fraction:
+        """Return for how long the timer may keep a switch from being made, in s."""
+        stay, derived = self.stay(controller), self.derived(controller)
+        if stay is None:
+            return Fraction(0)
+        return stay.value - (Fraction(0) if derived is None else derived.value)
+
+    def rules(self) -> SwitchingSpec:
+        """Return the switching signals that the logic can give."""
+        stays = {name: stay for name in self.controllers if (stay := self.stay(name)) is not None}
+        pairs = dict.fromkeys((switch.source, switch.target) for switch in self.switches)
+        return SwitchingSpec(dwell_time=stays or None, transitions=tuple(pairs))
+
+    def _apart(self, i: int, j: int) -> Apart:
+        entering, leaving = self.switches[i].conditions, self.switches[j].conditions
+        best = Apart(i, j, None, Fraction(0))
+        for name in entering.keys() & leaving.keys():
+            ends = _opposed(entering[name], leaving[name])
+            if ends is None:
+                continue
+            seconds = _least_time(*ends, getattr(self.signals, name))
+            if seconds > best.seconds:
+                best = Apart(i, j, name, seconds)
+        return best
+
+
+def _opposed(entering: Condition, leaving: Condition) -> tuple[Quantity, Quantity] | None:
+    """Return the upper and the lower threshold if the two ask for opposite sides."""
+    if entering.above is not None and leaving.below is not None:
+        return entering.above, leaving.below
+    if entering.below is not None and leaving.above is not None:
+        return leaving.above, entering.below
+    return None
+
+
+def _least_time(high: Quantity, low: Quantity, signal: SignalSpec) -> Fraction:
+    """Return ``(high - low - 2 N)/R - D``, or less where powers of pi do not cancel."""
+    noise, rate = signal.noise, signal.largest_rate
+    if len({q.pi_power for q in (high, low, noise, rate) if q.value}) <= 1:
+        band = high.rational_part - low.rational_part - 2 * noise.rational_part
+        return band / rate.rational_part - signal.age.exact
+    band = max(Fraction(0), high.not_above - low.not_below - 2 * noise.not_below)
+    return band / rate.not_below - signal.age.exact
+
+
+def shown_time(seconds: Fraction) -> DwellTime:
+    """Return a time in a few digits that is not longer."""
+    value = Fraction(lower(seconds, DIGITS))
+    return DwellTime(f"{exact_text(value)} s", value, "s")
+
+
+def reach(logic: ThresholdLogicSpec, switch: LogicSwitchSpec) -> Mapping[str, float]:
+    """Return how far the true value of each signal may have gone when a switch is made.
+
+    That is where its condition is the last one to come true: the threshold, the noise, and what the
+    signal moves in its age and while the timer holds the switch back.
+
+    Parameters
+    ----------
+    logic : ThresholdLogicSpec
+        With signals and timers.
+    switch : LogicSwitchSpec
+        One of its switches.
+    """
+    found = {}
+    for name, condition in switch.conditions.items():
+        signal: SignalSpec = getattr(logic.signals, name)
+        late = signal.age.exact + logic.held_back(switch.source)
+        beyond = signal.noise.not_below + signal.largest_rate.not_below * late
+        if condition.above is not None:
+            found[name] = upper_float(condition.above.not_below + beyond)
+        elif condition.below is not None:
+            found[name] = lower_float(condition.below.not_above - beyond)
+    return found

@@ -1,0 +1,51 @@
+"""What a statement takes for granted about the mode logic of a spec, in words."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+from nrs_design.proof.bounds import rounded_up
+from nrs_design.spec.environment_estimator import EstimatorSpec, decide
+
+if TYPE_CHECKING:
+    from nrs_design.spec import InteractionDesignSpec
+
+_TIMER = (
+    "The dwell times are kept by the timer of the mode logic, whatever the signals do. How noisy, "
+    "old and fast the signals are decides only whether it ever holds a switch back."
+)
+_ALONE = (
+    "The linear modes do not know which signals the logic sees: every switching signal that keeps "
+    "these times is covered, also one that thresholds would not give."
+)
+
+
+def logic_texts(spec: InteractionDesignSpec) -> Iterator[str]:
+    """Say what keeps the rules of switching, where they are those of a mode logic."""
+    if spec.mode_logic is None or spec.switching.is_arbitrary:
+        return
+    if spec.mode_logic.type == "thresholds":
+        yield _TIMER
+    else:
+        yield from _estimator_texts(spec, spec.mode_logic)
+    yield _ALONE
+
+
+def _estimator_texts(spec: InteractionDesignSpec, estimator: EstimatorSpec) -> Iterator[str]:
+    decision = decide(estimator, spec.controllers, spec.environments)
+    torque = estimator.signals.torque
+    yield (
+        "The environment that is touched does not change again within "
+        f"{estimator.shortest_contact.text}. After a change the controller for the one before stays"
+        f" active, for at most {rounded_up(decision.delay, 's')}: by then the estimator has "
+        "decided."
+    )
+    yield (
+        "That rests on an axis that moves in one direction at "
+        f"{estimator.slowest_speed.text} or faster from the change to the decision (at rest "
+        "nothing is decided, and nothing is claimed about a wrong controller that stays), on "
+        f"torques known within {torque.noise.text} that are at most {torque.age.text} old and "
+        f"change by at most {torque.largest_rate.text}, and on angles in steps of "
+        f"{estimator.signals.position_step.text}."
+    )

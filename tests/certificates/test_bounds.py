@@ -1,0 +1,31 @@
+"""The numbers of bounds for programs: on their safe side, and of the right statement."""
+
+from dataclasses import replace
+from fractions import Fraction
+
+from nrs_design.certificates.bounds import bound_on, bounds_summary
+from nrs_design.proof.evidence import CommonQuadratic
+from tests.proof.evidence.test_invariant_ellipsoid import BOUNCE
+from tests.proof.systems import bouncing, pushed
+
+
+def test_numbers_are_rounded_to_the_safe_side():
+    system = pushed(bouncing(), Fraction(1, 7))
+    level = replace(BOUNCE, level=Fraction(2, 3))
+    proof = CommonQuadratic(((1, 0), (0, 1)), 0, Fraction(1))
+    (found,) = bounds_summary(system, (proof, level))
+    assert Fraction(found["level"]) >= Fraction(2, 3)
+    (under,) = found["under"]
+    assert Fraction(under["bound"]) <= Fraction(1, 7)
+    assert under["name"] == "push"
+    assert (found["output"], found["unit"], found["limit"]) == ("force", "N", 1.0)
+    assert found["rounding_included"] is False
+
+
+def test_the_bound_under_everything_at_once():
+    system = pushed(bouncing())
+    assert bound_on(system, (BOUNCE,), "force") is BOUNCE
+    assert bound_on(system, (BOUNCE,), "velocity") is None
+    wind = replace(system.channels[0], name="wind")
+    both = replace(system, channels=(*system.channels, wind))
+    assert bound_on(both, (BOUNCE,), "force") is None

@@ -1,0 +1,77 @@
+"""Where text leaves the program: colours, line breaks, and what is made harmless."""
+
+import io
+import json
+
+import pytest
+
+from nrs_design.cli.printing import note, painted, print_json, progress, say, say_failure, wrapped
+
+
+class Terminal(io.StringIO):
+    """Text as a person would see it."""
+
+    def isatty(self):
+        return True
+
+
+@pytest.fixture
+def narrow(monkeypatch):
+    monkeypatch.setenv("COLUMNS", "20")
+
+
+def test_json_comes_in_an_envelope(capsys):
+    print_json("verify", {"words": "a\x1b[31m"})
+    said = capsys.readouterr().out
+    assert json.loads(said) == {"schema": "nrs-design/verify/1", "words": "a\x1b[31m"}
+    assert "\x1b" not in said
+
+
+def test_json_has_no_number_that_is_none(capsys):
+    with pytest.raises(ValueError, match="not JSON compliant"):
+        print_json("verify", {"rate": float("nan")})
+    assert capsys.readouterr().out == ""
+
+
+@pytest.mark.parametrize(
+    ("variables", "coloured"),
+    [({}, True), ({"NO_COLOR": "1"}, False), ({"TERM": "dumb"}, False)],
+)
+def test_colours_are_for_those_who_want_them(monkeypatch, variables, coloured):
+    for name in ("NO_COLOR", "TERM"):
+        monkeypatch.delenv(name, raising=False)
+    for name, value in variables.items():
+        monkeypatch.setenv(name, value)
+    expected = "\x1b[1;32mPROVED\x1b[0m" if coloured else "PROVED"
+    assert painted("PROVED", "green", Terminal()) == expected
+    assert painted("PROVED", "green", io.StringIO()) == "PROVED"
+
+
+def test_lines_break_between_words_on_a_terminal_only(narrow):
+    line = "  one two three four five six"
+    assert wrapped(line, io.StringIO()) == line
+    assert wrapped(line, Terminal()) == "  one two three four\n    five six"
+    assert wrapped(line, Terminal(), hanging=0) == "  one two three four\n  five six"
+
+
+def test_a_long_name_is_not_cut(narrow):
+    name = "a" * 30
+    assert wrapped(f"see {name}", Terminal()) == f"see\n  {name}"
+
+
+@pytest.mark.parametrize("print_line", [say, lambda line: say_failure(line, "missed")])
+def test_what_strangers_wrote_steers_no_terminal(capsys, print_line):
+    print_line("missed: name\x1b[2J\u202e")
+    assert capsys.readouterr().out == "missed: name\\x1b[2J\\u202e\n"
+
+
+def test_quiet_notes_are_not_printed(capsys):
+    note("one")
+    note("two", quiet=True)
+    assert capsys.readouterr() == ("", "one\n")
+
+
+def test_no_spinner_without_a_terminal(capsys):
+    with progress("certifying") as step:
+        step("lmi")
+    assert capsys.readouterr() == ("", "")

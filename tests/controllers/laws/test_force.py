@@ -1,0 +1,39 @@
+from fractions import Fraction
+
+import pytest
+
+from nrs_design.controllers.float32 import to_float32
+from nrs_design.controllers.laws import ProportionalForce
+from nrs_design.spec import ForceControllerSpec
+
+FIXED = ForceControllerSpec(type="force", environment="soft", proportional_gain="0.02 rad/(N*m)")
+CHOSEN = ForceControllerSpec(type="force", environment="soft", damping_ratio="0.741")
+SHIPPED = to_float32(Fraction("0.02"))
+
+
+def test_the_force_turns_the_command_back():
+    """Thesis 6.46: on a spring with k = 43 N m/rad, the correction is -Kp k times the angle."""
+    command, rates = ProportionalForce(Fraction(1, 50)).respond([Fraction(43), Fraction(0)], [])
+    assert command == [Fraction(-43, 50), 0]
+    assert rates == []
+
+
+@pytest.mark.parametrize(
+    ("given", "gain", "fits"),
+    [
+        (FIXED, SHIPPED, True),
+        # What ships is a single-precision number: the decimal itself is another one.
+        (FIXED, Fraction("0.02"), False),
+        (FIXED, 2 * SHIPPED, False),
+        (CHOSEN, SHIPPED, True),
+        (CHOSEN, Fraction(0), True),
+        (CHOSEN, -SHIPPED, False),
+    ],
+)
+def test_gains_that_the_spec_allows(given, gain, fits):
+    fault = ProportionalForce(gain).find_fault(given)
+    assert fault is None if fits else fault == "gain Kp is not what the spec fixes"
+
+
+def test_contact_is_said_to_be_kept():
+    assert "Contact is not lost" in ProportionalForce.contact_text(alone=True)

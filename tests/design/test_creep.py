@@ -1,0 +1,141 @@
+"""Creep in free motion: bounds against a simulation, and what the design makes of them."""
+
+from fractions import Fraction
+
+import numpy as np
+import pytest
+from scipy.integrate import quad
+
+from nrs_design.controllers.sampled import SampledMotion
+from nrs_design.design.measures import CREEP, CREEP_ANGLE
+from nrs_design.design.transfer import white_noise_power
+from nrs_design.errors import DesignError
+from nrs_design.pipeline import run_analysis, run_design
+from nrs_design.spec import read_spec
+from nrs_design.switched.sampled_loop import INPUTS, Frame
+from tests.support import SOFT_TISSUE
+
+TEXT = SOFT_TISSUE.read_text(encoding="utf-8")
+SENSOR = """
+sensor:
+  imu_error: 1 deg
+  tool: {mass: 0.797 kg, center_of_mass: {x: 0 m, y: 0 m, z: 0.2 m}}
+"""
+BT = "Bt: {min: 0.1 N*m*s/rad, max: 20 N*m*s/rad}"
+ERROR = 0.797 * 9.81 * 0.2 * np.radians(1)
+
+
+def designed(path, more="", *changes, sensor=SENSOR):
+    text = TEXT
+    for old, new in changes:
+        assert old in text
+        text = text.replace(old, new)
+    file = path / "sensed.nrs.yaml"
+    file.write_text(f"{text}{sensor}{more}\n", encoding="utf-8")
+    found = run_design(read_spec(file))
+    assert found is not None
+    return found
+
+
+def achieved(item):
+    return {found.measure: found for found in item.achieved}
+
+
+def test_the_thesis_robot_creeps_at_a_fifth_of_its_command(tmp_path):
+    withdrawal = run_analysis(designed(tmp_path)).impedance[1]
+    assert withdrawal.Bt == pytest.approx(1.04, rel=1e-6)
+    assert withdrawal.creep.angle is None
+    assert np.degrees(float(withdrawal.creep.velocity)) == pytest.approx(1.503, abs=1e-3)
+    assert float(withdrawal.creep.velocity) / np.radians(8) == pytest.approx(0.188, abs=1e-3)
+    found = achieved(withdrawal)[CREEP]
+    assert Fraction(found.value) >= withdrawal.creep.velocity
+    assert found.where == "free motion"
+    assert achieved(withdrawal)[CREEP_ANGLE].value == np.inf
+
+
+def test_a_goal_raises_the_damping(tmp_path):
+    plain = run_analysis(designed(tmp_path)).impedance[1]
+    wanted = run_analysis(designed(tmp_path, "goals: {max_creep: 1 deg/s}")).impedance[1]
+    assert not achieved(plain)[CREEP].goal
+    assert achieved(wanted)[CREEP].met
+    assert wanted.Bt >= ERROR / np.radians(1) > plain.Bt
+
+
+def test_a_spring_ends_it_at_an_angle(tmp_path):
+    sprung = (BT, BT + "\n    Kt: {nominal: 0.5 N*m/rad, range: [0.25 N*m/rad, 1 N*m/rad]}")
+    with pytest.raises(DesignError, match=r"the best is 6\.255 deg"):
+        designed(tmp_path, "goals: {max_creep_angle: 5 deg}", sprung)
+    found = run_analysis(designed(tmp_path, "goals: {max_creep_angle: 7 deg}", sprung))
+    creep = found.impedance[0].creep
+    assert creep.velocity == 0
+    assert float(creep.angle) == pytest.approx(ERROR / 0.25, rel=1e-12)
+    assert achieved(found.impedance[0])[CREEP_ANGLE].met
+
+
+def test_worst_gains_of_a_range_count(tmp_path):
+    ranged = (
+        BT,
+        "Bt: {min: 0.1 N*m*s/rad, max: 20 N*m*s/rad, range: [0.9 N*m*s/rad, 3 N*m*s/rad]}",
+    )
+    for item in run_analysis(designed(tmp_path, "", ranged)).impedance:
+        assert float(item.creep.velocity) == pytest.approx(ERROR / 0.9, rel=1e-6)
+
+
+FILTER = "\n  filter: {order: 2, cutoff: 60 Hz}\n"
+
+
+@pytest.mark.parametrize("spring", [None, "2 N*m/rad"])
+def test_simulated_and_bounded(tmp_path, spring):
+    """The sampled law in the air under the largest error: it gets there, and no further."""
+    changes = [] if spring is None else [(BT, f"{BT}\n    Kt: {spring}")]
+    found = designed(
+        tmp_path, "sampling: {period: 2 ms, delay: 1}", *changes, sensor=SENSOR + FILTER
+    )
+    item = run_analysis(found).impedance[1]
+    period, law = Fraction(1, 500), found.design.controllers[1].law
+    low_pass = found.design.sensor.filter.sampled(period)
+    motion = SampledMotion.of(found.design.motion, period)
+    frame = Frame(period, motion, True, 1, Fraction("0.0351"), low_pass, spring is not None)
+    E = Fraction(float(np.exp(-0.002 / 0.0351)))
+    rows = frame.rows(law.sampled(period, "exact"), 1, {"Km": Fraction("4.8417e-4"), "E": E})
+    n = len(frame.states)
+    assert n == 8
+    M = np.array(rows[:n], dtype=float)
+    force_error = n + INPUTS.index("force error")
+    A, b = M[:, :n], M[:, force_error] * float(found.design.sensor.lasting)
+    x, before = np.zeros(n), 0.0
+    for _ in range(20_000):
+        before, x = x[-1], A @ x + b
+    if spring is None:
+        assert abs(x[-1] - before) / 0.002 == pytest.approx(float(item.creep.velocity), rel=1e-9)
+    else:
+        assert abs(x[-1]) == pytest.approx(float(item.creep.angle), rel=1e-9)
+
+
+def test_without_a_sensor_nothing_is_said(tmp_path):
+    item = run_analysis(designed(tmp_path, sensor="")).impedance[0]
+    assert item.creep is None
+    assert CREEP not in achieved(item)
+
+
+def test_a_goal_out_of_reach_is_named(tmp_path):
+    with pytest.raises(
+        DesignError, match=r"max_creep, .* the best is 0\.07819 deg/s \(free motion\)"
+    ):
+        designed(tmp_path, "goals: {max_creep: 0.01 deg/s}")
+
+
+def test_noise_of_the_velocity(tmp_path):
+    """Of first order, S/(4 Mt Bt); with filter and spring, by quadrature."""
+    noisy = SENSOR + "  noise_density: 1e-8 N^2*m^2*s\n"
+    item = run_analysis(designed(tmp_path, sensor=noisy)).impedance[0]
+    assert item.creep.noise == pytest.approx(np.sqrt(1e-8 / (4 * 0.01 * item.Bt)), rel=1e-6)
+    above, below = (1.0, 0.0), np.convolve((0.01, 1.04, 2.0), (1e-4, 0.02, 1.0))
+
+    def power(f):
+        s = 2j * np.pi * f
+        return abs(np.polyval(above, s) / np.polyval(below, s)) ** 2
+
+    wanted = quad(power, 0, 5, limit=200)[0] + quad(power, 5, 5000, limit=500)[0]
+    assert white_noise_power(above, below.tolist()) == pytest.approx(wanted, rel=1e-6)
+    assert white_noise_power((1.0,), (2.0,)) is None

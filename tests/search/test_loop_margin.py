@@ -1,0 +1,76 @@
+"""How far delay, period and disturbances stretch: every verdict that a bracket may meet."""
+
+from fractions import Fraction
+
+import pytest
+
+from nrs_design.certificates.certificate import Verdict
+from nrs_design.search.loop_margin import (
+    Bracket,
+    command_margin,
+    find_longest_delay,
+    find_longest_period,
+)
+from tests.proof.evidence.test_invariant_ellipsoid import BOUNCE
+from tests.proof.systems import bouncing, pushed
+
+P, R, N = Verdict.PROVED, Verdict.REFUTED, Verdict.INCONCLUSIVE
+
+
+@pytest.mark.parametrize(
+    ("verdicts", "shortest", "declared", "expected"),
+    [
+        ("PPIR", 0, 1, (1, 3)),
+        ("PPPP", 0, 1, (3, None)),
+        ("PPII", 0, 1, (1, None)),
+        ("PPIP", 0, 1, (3, None)),
+        ("PRRR", 0, 2, (0, 1)),
+        ("PIRR", 0, 2, (0, 2)),
+        ("RRRR", 0, 0, (None, 0)),
+        ("IIII", 1, 2, (None, None)),
+        ("IIIR", 1, 2, (None, 3)),
+    ],
+)
+def test_the_longest_delay(verdicts, shortest, declared, expected):
+    asked = []
+
+    def decide(delay: int) -> Verdict:
+        asked.append(delay)
+        return {"P": P, "R": R, "I": N}[verdicts[delay]]
+
+    found = find_longest_delay(shortest, declared, 3, decide)
+    assert (found.proved, found.refuted) == expected
+    # Nothing is asked twice, and nothing below what is declared is possible.
+    assert len(set(asked)) == len(asked)
+    assert min(asked) >= shortest
+
+
+def test_the_longest_period():
+    """Proved up to 3, refuted from 5 on; in between nobody knows."""
+
+    def decide(period: Fraction) -> Verdict:
+        return P if period <= 3 else R if period >= 5 else N
+
+    found = find_longest_period(Fraction(1), decide)
+    assert Fraction(29, 10) < found.proved <= 3
+    assert 5 <= found.refuted < Fraction(51, 10) + Fraction(1, 4)
+    below = find_longest_period(Fraction(8), decide)
+    assert Fraction(5, 2) < below.proved <= 3
+    assert 5 <= below.refuted < Fraction(55, 10)
+
+
+def test_periods_that_make_no_system_are_not_verdicts():
+    found = find_longest_period(Fraction(1), lambda period: P if period == 1 else None)
+    assert found == Bracket(Fraction(1), None)
+    nothing = find_longest_period(Fraction(1), lambda period: N)
+    assert nothing == Bracket(None, None)
+
+
+def test_disturbances_that_keep_the_limit():
+    """The limit is 1 N, the level 3/5 N, and a run reaches 1/2 N: by proportion."""
+    system = pushed(bouncing())
+    found = command_margin(system, BOUNCE, 0.5)
+    assert found.limit == 1
+    kept, broken, unit = found.bounds["push"]
+    assert (kept, broken, unit) == (Fraction(1, 4) * Fraction(5, 3), Fraction(1, 2), "N")
+    assert command_margin(system, BOUNCE, 0.0) is None

@@ -71,7 +71,7 @@ def _summary(found: Achieved) -> dict[str, Any]:
         "wanted": found.goal,
         # JSON has no infinity: null is a margin that nothing limits, or an error without bound.
         "worst": found.value if math.isfinite(found.value) else None,
-        "unit": {"deg": "rad", "deg/s": "rad/s", "ms": "s"}.get(measure.unit, ""),
+        "unit": {"deg": "rad", "deg/s": "rad/s", "ms": "s"}.get(measure.unit, measure.unit),
         "at": found.where,
         "status": None if found.goal is None else "met" if found.met else "missed",
     }

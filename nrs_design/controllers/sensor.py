@@ -16,12 +16,13 @@ from math import comb, isqrt
 
 from nrs_design.controllers.float32 import to_float32
 from nrs_design.controllers.sampled import Term
+from nrs_design.errors import DesignError
 from nrs_design.models.linear_form import LinearForm, combine
 from nrs_design.proof.taylor import exponential_between
 from nrs_design.spec.quantity_fields import RangedQuantity
 from nrs_design.spec.sensor import PointSpec, SensorSpec, ToolSpec
 
-ONE, ZERO = Fraction(1), Fraction(0)
+ZERO = Fraction(0)
 Vector = Sequence[Fraction]
 # Roots are taken in parts of a nanometer and less.
 _FINE = 10**24
@@ -73,8 +74,20 @@ class LowPass:
         return states[-1], [*rates]
 
     def sampled(self, period: Fraction) -> SampledLowPass:
-        """Discretize each lag for an input that is held over a period in s."""
+        """Discretize each lag for an input that is held over a period in s.
+
+        Raises
+        ------
+        DesignError
+            If a step forgets nothing, so that the force never arrives.
+        """
         keep = to_float32(exponential_between(-self.pole * period)[0])
+        if keep == 1:
+            raise DesignError(
+                "the filter of the force is lost in single precision: a step keeps all it holds",
+                remedy="raise its cutoff, or sample with a longer period",
+                at=("sensor", "filter", "cutoff"),
+            )
         return SampledLowPass(self.order, keep, to_float32(1 - keep))
 
 
@@ -143,12 +156,15 @@ class Sensor:
         One-sided power density in (N m)^2/Hz.
     arm : Fraction or None
         Distance from the pivot to the contact point in m, rounded down.
+    carries : bool
+        Whether a tool hangs on it.
     """
 
     errors: Mapping[str, Fraction] = field(default_factory=dict)
     filter: LowPass | None = None
     noise: float | None = None
     arm: Fraction | None = None
+    carries: bool = False
 
     @property
     def lasting(self) -> Fraction:
@@ -173,6 +189,7 @@ def build_sensor(spec: SensorSpec | None) -> Sensor:
         low_pass,
         None if spec.noise_density is None else spec.noise_density.si,
         arm,
+        spec.tool is not None,
     )
 
 

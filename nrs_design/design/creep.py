@@ -25,8 +25,6 @@ from nrs_design.proof.bounds import upper_float
 from nrs_design.spec import InteractionDesignSpec
 from nrs_design.spec.controllers import AbstractControllerSpec
 
-ONE = Fraction(1)
-
 
 @dataclass(frozen=True, slots=True)
 class Creep:

@@ -16,18 +16,22 @@ from itertools import product
 import numpy as np
 
 from nrs_design.design.force_limit import NO_OFFSET, Approach, steady_force_error
+from nrs_design.design.hands_on import hand_effort, transparency
 from nrs_design.design.impedance import ImpedanceLoop
 from nrs_design.design.loops import Loops, extremes, multiply
 from nrs_design.design.measures import (
+    AT_HOME,
     CREEP,
     CREEP_ANGLE,
     DELAY_MARGIN,
     DISK_MARGIN,
     FORCE_ERROR,
     GAIN_MARGIN,
+    HAND_EFFORT,
     IMPEDANCE_ERROR,
     PHASE_MARGIN,
     SENSITIVITY_PEAK,
+    TRANSPARENCY,
     Measure,
 )
 from nrs_design.design.transfer import FloatArray, TransferFunction
@@ -140,7 +144,7 @@ class Requirement:
         Mt, Bt : ndarray, shape (m,)
             The admittances, kg m^2 and N m s/rad.
         """
-        corners = [c for c in self.corners if c.home or measure is not IMPEDANCE_ERROR]
+        corners = [c for c in self.corners if c.home or measure not in AT_HOME]
         table = np.array([self._at(corner, measure, Mt, Bt) for corner in corners])
         worst = table.argmax(axis=0) if measure.upper else table.argmin(axis=0)
         values = np.take_along_axis(table, worst[None, :], axis=0)[0]
@@ -157,6 +161,10 @@ class Requirement:
         if measure is CREEP_ANGLE:
             return np.full_like(Bt, self.force_error / corner.Kt if corner.Kt else np.inf)
         loops = _impedance_loops(self, corner, Mt, Bt)
+        if measure is TRANSPARENCY:
+            return transparency(loops, self.bandwidth)
+        if measure is HAND_EFFORT:
+            return hand_effort(loops, corner.contact, self.bandwidth)
         if measure is not IMPEDANCE_ERROR:
             return _margin(loops, measure)
         if corner.Kt:  # Towards rest the robot displays the spring, and no damping.

@@ -13,8 +13,8 @@ _DIGITS = 4
 MEANING = (
     "Margins: the worst at the nominal values and at every corner of the ranges of all contacts "
     "and gains.",
-    "Errors: the worst with the designed gains, in the environment that the controller is designed "
-    "for, at its nominal values and every corner of its ranges.",
+    "Errors, transparency and effort: the worst with the designed gains, in the environment that "
+    "the controller is designed for, at its nominal values and every corner of its ranges.",
     "Computed in floating point, not a proof; values between corners are not looked at.",
 )
 
@@ -91,9 +91,15 @@ CREEP_ANGLE = Measure(
 FORCE_ERROR = Measure(
     "max_force_error", "steady force error over command", upper=True, doubtful=0.5
 )
+# Of a hand that moves the robot: shown where they are asked for.
+TRANSPARENCY = Measure("min_transparency", "share of the motion of the hand that is followed")
+HAND_EFFORT = Measure("max_hand_effort", "effort of the hand", unit="N*m*s/rad", upper=True)
 
 MARGINS = (SENSITIVITY_PEAK, GAIN_MARGIN, PHASE_MARGIN, DELAY_MARGIN, DISK_MARGIN)
 IMPEDANCE_MEASURES = (*MARGINS, IMPEDANCE_ERROR)
+HAND_MEASURES = (TRANSPARENCY, HAND_EFFORT)
+# Taken with the designed gains only, in the environment that they are designed for.
+AT_HOME = (IMPEDANCE_ERROR, FORCE_ERROR, *HAND_MEASURES)
 # Where the errors of the force signal are known.
 CREEP_MEASURES = (CREEP, CREEP_ANGLE)
 FORCE_MEASURES = (*MARGINS, FORCE_ERROR)

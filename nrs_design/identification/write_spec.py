@@ -5,7 +5,7 @@ from __future__ import annotations
 import io
 from collections.abc import Iterable, Sequence
 from decimal import ROUND_CEILING, ROUND_FLOOR, ROUND_HALF_EVEN, Context, Decimal
-from math import isfinite
+from math import hypot, isfinite
 from pathlib import Path
 from typing import Any
 
@@ -16,6 +16,7 @@ from nrs_design.identification.delay import DelayIdentification
 from nrs_design.identification.statistics import Estimate
 from nrs_design.identification.tissue import TissueIdentification
 from nrs_design.identification.tissue.tangent import Tangent
+from nrs_design.identification.tool import ToolIdentification
 from nrs_design.models.contact import LINEAR_LAWS, AbstractLinearLaw, HuntCrossley
 from nrs_design.spec import InteractionDesignSpec, LoadedSpec, parse_spec
 from nrs_design.spec.fields import MAX_TITLE
@@ -244,6 +245,50 @@ def merge_delay(loaded: LoadedSpec, found: DelayIdentification) -> str:
     return document.text()
 
 
+def merge_tool(loaded: LoadedSpec, found: ToolIdentification) -> str:
+    """Return the text of a spec with the identified tool, and the bias that is left, in its sensor.
+
+    The identified bias is for the robot to take off; what may be left of it is half the width of
+    its interval along each axis.
+
+    Raises
+    ------
+    SpecError
+        If the spec is no interaction design.
+    DataError
+        If the interval of the mass reaches zero.
+    """
+    spec = _interaction(loaded)
+    document = _Document(loaded)
+    sensor = document.child(document.root, "sensor", ("bias", "tool"))
+    document.put(sensor, "bias", _left(found.torque_bias, "N*m"))
+    if spec.sensor is not None and spec.sensor.pivot is not None:
+        document.put(sensor, "force_bias", _left(found.force_bias, "N"))
+    tool = document.child(sensor, "tool", ("mass", "center_of_mass", "gravity", "provenance"))
+    _put_range(document, tool, "mass", _ranged(found.mass, "kg", "mass"))
+    center = document.child(tool, "center_of_mass", "xyz")
+    for axis, estimate in zip("xyz", found.center, strict=True):
+        _put_range(document, center, axis, _signed(estimate, "m"))
+    document.put(tool, "gravity", f"{found.gravity!r} m/s^2")
+    document.put(tool, "provenance", [_provenance(record.source) for record in found.records])
+    _put_doubts(document, tool, found.doubts)
+    return document.text()
+
+
+def _left(bias: Sequence[Estimate], unit: str) -> str:
+    """Write how far a bias may be from its estimate, rounded up."""
+    half = hypot(*((estimate.high - estimate.low) / 2 for estimate in bias))
+    return f"{_plain(_decimal(half, ROUND_CEILING))} {unit}"
+
+
+def _signed(estimate: Estimate, unit: str) -> dict[str, Any]:
+    """Write an estimate of either sign with ends rounded outwards."""
+    low, high = _decimal(estimate.low, ROUND_FLOOR), _decimal(estimate.high, ROUND_CEILING)
+    nominal = min(max(_decimal(estimate.value, ROUND_HALF_EVEN), low), high)
+    texts = [f"{number.normalize():e} {unit}" for number in (nominal, low, high)]
+    return {"nominal": texts[0], "range": texts[1:]}
+
+
 def _interaction(loaded: LoadedSpec) -> InteractionDesignSpec:
     if not isinstance(loaded.spec, InteractionDesignSpec):
         raise SpecError(
@@ -336,6 +381,25 @@ class _Document:
             node[key] = flow
         else:
             node.insert(max(len(node) - 1, 1), key, flow)
+
+    def child(self, node: Any, key: str, names: Iterable[str]) -> Any:
+        """Return the mapping at a key; where there is none, a new one in block style.
+
+        Parameters
+        ----------
+        node : mapping
+            The one above.
+        key : str
+            In it.
+        names : iterable of str
+            What is going to be put into a new one, in this order.
+        """
+        from ruamel.yaml.comments import CommentedMap
+
+        if node.get(key) is None:
+            self.put(node, key, "")
+            node[key] = CommentedMap.fromkeys(names)
+        return node[key]
 
     def drop(self, node: Any, key: str) -> None:
         """Remove a key, but not the comments that follow it."""

@@ -308,13 +308,13 @@ def is_hurwitz_polynomial(coefficients: Sequence[int]) -> bool:
         coefficients = [-c for c in coefficients]
     above, row = list(coefficients[0::2]), list(coefficients[1::2])
     for _ in range(len(coefficients) - 1):
-        if not row or row[0] <= 0 or above[0] <= 0:
+        if row[0] <= 0:
             return False
         shifted = row[1:] + [0] * (len(above) - len(row))
         below = [row[0] * a - above[0] * r for a, r in zip(above[1:], shifted, strict=True)]
         divisor = gcd(*below) or 1
         above, row = row, [entry // divisor for entry in below]
-    return above[0] > 0
+    return True
 
 
 def is_hurwitz(N: IntegerMatrix) -> bool:

@@ -61,15 +61,7 @@ class Family:
         system, matrices = self.system, self.matrices
         if not system.switching.is_arbitrary or system.time is Time.CONTINUOUS:
             return {}
-        kept: list[int] = []
-        found: dict[str, str] = {}
-        for i, A in enumerate(matrices):
-            near = (k for k in kept if np.abs(matrices[k] - A).max() <= NEARLY * np.abs(A).max())
-            k = next(near, i)
-            if k == i:
-                kept.append(i)
-            found[system.modes[i].name] = system.modes[k].name
-        return found
+        return stand_ins([mode.name for mode in system.modes], matrices)
 
     @classmethod
     def of(
@@ -112,6 +104,27 @@ def _limit(system: SwitchedSystem, families: list[NDArray[np.float64]]) -> float
             return float(max(sizes)) if system.time is Time.CONTINUOUS else 0.0
     limits = [limit_rate(matrices, system.time) for matrices in families]
     return min(limits) if system.time is Time.CONTINUOUS else max(limits)
+
+
+def stand_ins(names: Sequence[str], matrices: NDArray[np.float64]) -> dict[str, str]:
+    """Return for each name the first one with nearly the same matrix.
+
+    Parameters
+    ----------
+    names : sequence of str
+        All different.
+    matrices : ndarray, shape (m, n, n)
+        In their order.
+    """
+    kept: list[int] = []
+    found: dict[str, str] = {}
+    for i, A in enumerate(matrices):
+        near = (k for k in kept if np.abs(matrices[k] - A).max() <= NEARLY * np.abs(A).max())
+        k = next(near, i)
+        if k == i:
+            kept.append(i)
+        found[names[i]] = names[k]
+    return found
 
 
 def to_floats(matrices: Sequence[RationalMatrix]) -> NDArray[np.float64]:

@@ -82,10 +82,10 @@ class Facts:
 
     @property
     def may_bounce(self) -> bool:
-        """Whether one function could be for lost contact with springs, in continuous time."""
+        """Whether functions could be for lost contact with springs."""
         contact = self.system.contact
         springs = contact is not None and not contact.pulls
-        return self.may_share_an_ellipsoid and self.is_continuous and springs
+        return self.may_share_an_ellipsoid and springs
 
     @property
     def has_rules(self) -> bool:
@@ -243,9 +243,15 @@ LADDER: tuple[Rung, ...] = (
         _in("obstruction", "search_obstruction"),
     ),
     Rung(
+        "conewise mode quadratic",
+        Method.CONEWISE_MODE_QUADRATIC,
+        lambda f: f.may_bounce and not f.is_continuous,
+        _in("conewise_mode_quadratic", "search_conewise_modes"),
+    ),
+    Rung(
         "conewise polynomial",
         Method.CONEWISE_POLYNOMIAL,
-        lambda f: f.may_bounce,
+        lambda f: f.may_bounce and f.is_continuous,
         _in("conewise_polynomial", "search_conewise_polynomial"),
         cost=_in("conewise_polynomial", "conewise_cost"),
         first=QUICK,

@@ -7,6 +7,7 @@ class Method(StrEnum):
     """The rungs of the ladder, or all of them in turn."""
 
     AUTO = "auto"
+    CONEWISE_MODE_QUADRATIC = "conewise-mode-quadratic"
     CONEWISE_POLYNOMIAL = "conewise-polynomial"
     CONEWISE_QUADRATIC = "conewise-quadratic"
     LMI = "lmi"

@@ -5,7 +5,7 @@ from __future__ import annotations
 import difflib
 from collections.abc import Callable, Collection, Iterable, Iterator
 from itertools import islice
-from typing import Any, TypeVar, get_args, get_origin
+from typing import TYPE_CHECKING, Any, TypeVar, get_args, get_origin
 
 from pydantic import BaseModel, ValidationError
 from pydantic_core import ErrorDetails, PydanticCustomError
@@ -13,6 +13,9 @@ from pydantic_core import ErrorDetails, PydanticCustomError
 from nrs_design.errors import Fault, SpecError
 from nrs_design.proof.text import quoted
 from nrs_design.spec.document import Mapping, Node, Position, Sequence
+
+if TYPE_CHECKING:
+    from nrs_design.spec.model import SpecModel
 
 Location = tuple[int | str, ...]
 _T = TypeVar("_T")
@@ -104,6 +107,34 @@ def file_faults(error: ValidationError, model: type[BaseModel], root: Node) -> t
         for line, column, message, remedy in sorted(
             {resolved for details in _genuine(error) for resolved in _resolve(details, model, root)}
         )
+    )
+
+
+def faults_between(spec: SpecModel, model: type[BaseModel], root: Node) -> tuple[Fault, ...]:
+    """Return the faults between parts of a spec; checks of parts that it lacks are left out.
+
+    Parameters
+    ----------
+    spec : SpecModel
+        With those parts that are valid themselves.
+    model : type
+        Its model.
+    root : Node
+        The parsed file, for the positions.
+    """
+    contexts: list[dict[str, Any]] = []
+    for check in spec.across():
+        try:
+            check()
+        except AttributeError:
+            continue
+        except PydanticCustomError as error:
+            context = error.context or {}
+            contexts += context.get("all", [context])
+    details: ErrorDetails = {"type": _FAULT, "loc": (), "msg": "", "input": None}
+    resolved = {_resolve_one(details | {"ctx": context}, model, root) for context in contexts}
+    return tuple(
+        Fault(message, line, column, remedy) for line, column, message, remedy in sorted(resolved)
     )
 
 

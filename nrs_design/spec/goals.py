@@ -18,12 +18,15 @@ from nrs_design.spec.quantity_fields import (
     AngularVelocity,
     DecayRate,
     Duration,
+    Impedance,
     Torque,
 )
 
 # What only one type of controller has.
 ONLY_FOR = {
     "max_impedance_error": "impedance",
+    "min_transparency": "impedance",
+    "max_hand_effort": "impedance",
     "max_creep": "impedance",
     "max_creep_angle": "impedance",
     "max_force_error": "force",
@@ -60,6 +63,17 @@ class GoalsSpec(SpecModel):
         default=None,
         description="largest factor between displayed and desired impedance up to the bandwidth, "
         "above 1, no unit; impedance controllers only",
+    )
+    min_transparency: UnitFraction | None = Field(
+        default=None,
+        description="smallest share of the motion that the hand intends and the robot makes, "
+        "|L/(1 + L)| up to the bandwidth, between 0 and 1, no unit; impedance controllers whose "
+        "environment is the hand",
+    )
+    max_hand_effort: Impedance | None = Field(
+        default=None,
+        description="largest torque of the hand over the velocity that it intends, |Ze/(1 + L)| "
+        "up to the bandwidth in N*m*s/rad; impedance controllers whose environment is the hand",
     )
     max_creep: AngularVelocity | None = Field(
         default=None,

@@ -135,49 +135,43 @@ class InteractionDesignSpec(SpecModel):
             # It does not fit: `check_kept` says so at its place.
             return "arbitrary"
 
-    @model_validator(mode="after")
-    def _check_controllers(self) -> InteractionDesignSpec:
-        dwell_times = self.switching.dwell_times()
-        all_of(
-            partial(
-                _check_mixture,
-                self.controllers,
-                self.environments,
-                self.idle_states,
-                self.coordinates,
+    def across(self) -> tuple[Callable[[], object], ...]:
+        """Return the checks between parts: contacts, goals, disturbances, the motor, switching."""
+        return (
+            lambda: _check_mixture(
+                self.controllers, self.environments, self.idle_states, self.coordinates
             ),
-            *(
-                partial(_check_references, *item, self.environments)
-                for item in self.controllers.items()
+            partial(self._check_each, _check_references),
+            lambda: all_of(
+                *(
+                    partial(check_applicable, c.goals, {c.type}, "controllers", name, "goals")
+                    for name, c in self.controllers.items()
+                )
             ),
-            *(
-                partial(check_applicable, c.goals, {c.type}, "controllers", name, "goals")
-                for name, c in self.controllers.items()
-            ),
-            *(
-                partial(_check_springs, *item, self.environments)
-                for item in self.controllers.items()
-            ),
-            partial(check_disturbances, self.disturbances, self.sampling),
+            partial(self._check_each, _check_springs),
+            lambda: check_disturbances(self.disturbances, self.sampling),
             partial(_check_sensor, self),
-            partial(check_peak, self.goals, self.disturbances),
-            partial(
-                check_motor,
+            lambda: check_peak(self.goals, self.disturbances),
+            lambda: check_motor(
                 self.actuator,
                 self.sampling,
                 self.controllers,
                 given_loop=self.motion_loop.transfer_function is not None,
             ),
-            partial(_check_memories, self.controllers, self.environments, self.coordinates),
-            partial(_check_offsets, self.controllers, self.idle_states),
-            *(
-                partial(self._check_preload, name)
-                for name, environment in self.environments.items()
-                if environment.preloaded and name in self.touched
+            lambda: _check_memories(self.controllers, self.environments, self.coordinates),
+            lambda: _check_offsets(self.controllers, self.idle_states),
+            lambda: all_of(
+                *(
+                    partial(self._check_preload, name)
+                    for name, environment in self.environments.items()
+                    if environment.preloaded and name in self.touched
+                )
             ),
-            *(
-                partial(_check_at_once, *item, self.environments, self.contact)
-                for item in self.controllers.items()
+            lambda: all_of(
+                *(
+                    partial(_check_at_once, *item, self.environments, self.contact)
+                    for item in self.controllers.items()
+                )
             ),
             lambda: check_applicable(
                 self.goals,
@@ -190,14 +184,27 @@ class InteractionDesignSpec(SpecModel):
                 "controller",
             ),
             partial(_check_contact_names, self),
-            partial(
-                check_kept, self.mode_logic, self.switching, self.controllers, self.environments
+            lambda: check_kept(
+                self.mode_logic, self.switching, self.controllers, self.environments
             ),
-            *(
-                partial(_check_dwell_time, dwell, self.find_dwell_obstacle, ("switching", *at))
-                for at, dwell in dwell_times
+            lambda: all_of(
+                *(
+                    partial(_check_dwell_time, dwell, self.find_dwell_obstacle, ("switching", *at))
+                    for at, dwell in self.switching.dwell_times()
+                )
             ),
         )
+
+    def _check_each(
+        self, check: Callable[[str, ControllerSpec, dict[str, EnvironmentSpec]], None]
+    ) -> None:
+        """Check every controller against the environments."""
+        environments = self.environments
+        all_of(*(partial(check, *item, environments) for item in self.controllers.items()))
+
+    @model_validator(mode="after")
+    def _check_across(self) -> InteractionDesignSpec:
+        all_of(*self.across())
         return self
 
     @property
@@ -404,9 +411,10 @@ def _check_sensor(spec: InteractionDesignSpec) -> None:
         *((f"controllers.{n}", c.goals) for n, c in spec.controllers.items()),
     )
     for at, given in goals:
-        if sensor is None and given is not None and given.wants_creep:
+        errors = sensor is not None and sensor.has_errors
+        if not errors and given is not None and given.wants_creep:
             raise fault(
-                "a goal for the creep without a sensor, whose errors the robot creeps by",
+                "a goal for the creep, and no errors of a sensor that the robot creeps by",
                 "add `sensor: {bias: 5e-3 N*m}`, or remove the goal",
                 *at.split("."),
             )

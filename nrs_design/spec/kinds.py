@@ -124,7 +124,7 @@ SPRING = QuantityKind(
     },
 )
 TORQUE_RATE = QuantityKind(
-    "a drift of a torque", ("N*m/s",), "1e-5 N*m/s", {"N*m": "a drift is per second: write N*m/s"}
+    "a rate of torque", ("N*m/s",), "1e-5 N*m/s", {"N*m": "a rate is per second: write N*m/s"}
 )
 NOISE_DENSITY = QuantityKind(
     "a density of noise",

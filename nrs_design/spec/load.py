@@ -7,9 +7,9 @@ import json
 import os
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
-from pydantic import ValidationError
+from pydantic import TypeAdapter, ValidationError
 
 from nrs_design.errors import Fault, SpecError
 from nrs_design.proof.text import quoted
@@ -24,7 +24,14 @@ from nrs_design.spec.document import (
     read_source,
     to_data,
 )
-from nrs_design.spec.faults import did_you_mean, file_faults, place_of
+from nrs_design.spec.faults import (
+    MAX_LISTED,
+    did_you_mean,
+    faults_between,
+    file_faults,
+    place_of,
+)
+from nrs_design.spec.model import SpecModel
 
 if TYPE_CHECKING:
     from nrs_design.spec.interaction import InteractionDesignSpec
@@ -151,8 +158,39 @@ def _validate(root: Node, syntax: tuple[Fault, ...], path: Path | None) -> Spec:
         spec = model.model_validate(to_data(root))
     except ValidationError as error:
         found = file_faults(error, model, root)
+        # So many are enough to mend, and whoever wrote more need not be told all at once.
+        if len(found) < MAX_LISTED:
+            parts = valid_parts(model, to_data(root))
+            found = tuple(dict.fromkeys((*found, *faults_between(parts, model, root))))
     if syntax or found:
         raise _refusal(syntax, found, path)
+    return spec
+
+
+def valid_parts(model: type[SpecModel], said: Data) -> SpecModel:
+    """Return a spec without the parts that are not valid: to ask for one is an AttributeError.
+
+    Parameters
+    ----------
+    model : type
+        Of the spec.
+    said : dict
+        What the file says.
+    """
+    valid: dict[str, Any] = {}
+    missing: list[str] = []
+    for name, declared in model.model_fields.items():
+        if not isinstance(said, dict) or name not in said:
+            continue
+        try:
+            part: TypeAdapter[object] = TypeAdapter(declared.rebuild_annotation())
+            valid[name] = part.validate_python(said[name])
+        except ValidationError:
+            missing.append(name)
+    spec = model.model_construct(**valid)
+    for name in missing:
+        # Where a part is not valid, its default says nothing.
+        spec.__dict__.pop(name, None)
     return spec
 
 

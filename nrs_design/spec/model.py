@@ -17,6 +17,14 @@ class SpecModel(BaseModel):
         extra="forbid", frozen=True, arbitrary_types_allowed=True, defer_build=True
     )
 
+    def across(self) -> tuple[Callable[[], object], ...]:
+        """Return the checks between parts; none by default.
+
+        Each asks for the parts that it is about when it is called, and reports a fault if they do
+        not fit: so the faults between valid parts can be told although others are not valid.
+        """
+        return ()
+
 
 class ReadBy:
     """Marks a field whose value is what a function makes of the text, or of the data.

@@ -159,5 +159,16 @@ class SensorSpec(SpecModel):
         return self
 
     @property
+    def has_errors(self) -> bool:
+        """Whether it says of an error how large it is."""
+        named = (self.bias, self.force_bias, self.drift, self.resolution)
+        turned = (self.pose_error, self.imu_error)
+        if any(error is not None for error in (*named, *turned)):
+            return True
+        center = self.tool and self.tool.center_of_mass
+        parts = (center.x, center.y, center.z) if center else ()
+        return self.tool is not None and not all(p.fixed for p in (self.tool.mass, *parts))
+
+    @property
     def _pivot(self) -> tuple[Fraction, ...]:
         return (Fraction(0),) * 3 if self.pivot is None else self.pivot.exact

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from fractions import Fraction
 from functools import partial
 from typing import Annotated, Literal
@@ -123,14 +123,18 @@ class SwitchedSystemSpec(SpecModel):
         """Say why no dwell time can be claimed for this spec, or None."""
         return find_changing_parameter(self.parameters)
 
+    def across(self) -> tuple[Callable[[], object], ...]:
+        """Return the checks between parts: parameters, names of modes, dwell times."""
+        return (
+            lambda: _check_parameters(self),
+            lambda: check_names(self.switching, _modes_by_name(self.modes), "mode"),
+            lambda: _check_dwell_times(self),
+        )
+
     @model_validator(mode="after")
     def _check(self) -> SwitchedSystemSpec:
         modes = _modes_by_name(self.modes)
-        all_of(
-            lambda: _check_parameters(self),
-            lambda: check_names(self.switching, modes, "mode"),
-            lambda: _check_dwell_times(self),
-        )
+        all_of(*self.across())
         _check_resets(self, modes)
         _check_sizes(self, modes)
         return self

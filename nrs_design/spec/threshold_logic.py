@@ -178,8 +178,8 @@ class ThresholdLogicSpec(SpecModel):
     hold: Annotated[DwellTimes | None, ReadBy(read_dwell_times), WithJsonSchema(DWELL_SCHEMA)] = (
         Field(
             default=None,
-            description="shortest time in s for which a controller is held whatever the signals say; "
-            "one for all, or by name. Default: what thresholds, noise and age give anyway",
+            description="shortest time in s for which a controller is held whatever the signals "
+            "say; one for all, or by name. Default: what thresholds, noise and age give anyway",
         )
     )
 

@@ -32,6 +32,11 @@ SPRING = (
     "itself stays where the contact is at rest. At rest elsewhere it is a constant input; while it "
     "moves on, as under a lasting velocity command, the force grows with it."
 )
+# Where other controllers leave the position reference idle.
+SPRING_BESIDE = (
+    "The spring Kt of an admittance acts on the position reference of the impedance controllers, "
+    "and draws it to zero; a lasting velocity command moves it on, and the force grows with it."
+)
 LOST_ANYWHERE = (
     "Contact may be lost and made again at any moment, whatever the deflection: free motion, in "
     "which the spring draws the axis back, is one of the modes. The surface is back in its place "

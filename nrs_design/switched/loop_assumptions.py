@@ -19,6 +19,7 @@ from nrs_design.switched.assumptions import (
     LOST_CONTACT,
     REST,
     SPRING,
+    SPRING_BESIDE,
     at_once_texts,
     rule_texts,
 )
@@ -172,7 +173,7 @@ def _command_texts(loop: Assumed) -> Iterator[str]:
     integral = ", if the integral of the velocity command is bounded too," if sprung else ""
     yield _COMMANDED.format(integral, _IN_THE_AIR if loop.losable else "")
     if sprung:
-        yield SPRING
+        yield SPRING if loop.idle is None else SPRING_BESIDE
 
 
 def _contact_texts(loop: Assumed) -> Iterator[str]:

@@ -31,6 +31,8 @@ def sensor_texts(sensor: Sensor, period: Fraction | None, *, disturbed: bool) ->
             f"{rounded_up(sensor.lasting, 'N*m')} ({parts}). {_OUTSIDE[disturbed]} In free motion "
             "an admittance without a spring integrates it, and the robot creeps."
         )
+    if sensor.carries:
+        yield "The tool on the sensor acts on it by its weight alone, not by its acceleration."
     if sensor.noise is not None:
         yield "The noise of the force signal is left out: it has no bound."
 

@@ -137,6 +137,8 @@ def test_delay_into_a_spec(tmp_path):
     [
         (["loop.csv", "--command", "raw"], "name both columns"),
         (["loop.csv", "--command", "raw", "--measured", "usd"], "there is no column 'usd' to map"),
+        (["loop.csv", "--command", "raw", "--measured", "raw"], "name two columns"),
+        (["loop.csv", "--command", "time_s", "--measured", "raw"], "the column of --command"),
         (["loop.csv"], "are missing"),
         (["none.csv"], "cannot be read"),
     ],
@@ -146,6 +148,7 @@ def test_wrong_delays(tmp_path, arguments, message):
     done = run("identify", "delay", *arguments, cwd=tmp_path)
     assert done.returncode == 2
     assert message in done.stderr
+    assert "_any" not in done.stderr
 
 
 def test_help_has_examples(tmp_path):

@@ -78,3 +78,12 @@ def test_rules_about_contacts_by_hand_with_ranges(tmp_path):
     assert ["agile/tissue/k-min", "agile/tissue/k-max"] in allowed
     assert ["agile/tissue/k-max", "agile/tool"] in allowed
     assert ["careful/tool", "agile/tool"] not in allowed
+
+
+def test_the_torque_stays_below_the_limit_when_force_control_takes_over(tmp_path):
+    """0.27 + 0.002 + 6.2 * 0.004 N m, below the 0.3 N m of the thesis."""
+    path = ROOT / "docs/examples/force-by-threshold.nrs.yaml"
+    document = json.loads(run("mode-logic", path, "--json", cwd=tmp_path).stdout)
+    assert document["switches"][0]["reach"]["torque"] == pytest.approx(0.2968)
+    assert document["used_in_proof"] is False
+    assert "switching is arbitrary" in run("mode-logic", path, cwd=tmp_path).stdout

@@ -11,6 +11,7 @@ from tests.support import ROOT, SOFT_TISSUE, run
 
 ROBOT = ROOT / "specs" / "robots" / "neuroboscope.nrs.yaml"
 COMMANDS = ("check", "kinematics", "dynamics", "correction", "balance")
+PICTURES = ("correction", "inertia-errors")
 
 
 def document(*arguments, cwd):
@@ -134,9 +135,13 @@ def test_correction_table_replaces_tables_only(tmp_path):
 
 
 def test_correction_table_for_the_controller(tmp_path):
-    found = document("correction", "--table", "K.csv", cwd=tmp_path)
+    found = document("correction", "--table", "K.csv", "--figures", "out", cwd=tmp_path)
     assert found["trajectories"][0]["mean_ratio"] == pytest.approx([1.823, 1.819, 2.282], abs=6e-4)
-    assert found["files"] == ["K.csv"]
+    drawn = [f"out/{name}.{end}" for name in PICTURES for end in ("svg", "png")]
+    assert found["files"] == ["K.csv", *drawn]
+    assert (tmp_path / "out" / "inertia-errors.png").stat().st_size > 10_000
+    errors = found["apart"]["inertia_error"]
+    assert errors["single"] > errors["rows"] > errors["entries"] > found["apart"]["gravity_error"]
     with (tmp_path / "K.csv").open() as file:
         rows = list(csv.DictReader(file))
     by_tilt = {float(row["theta4_deg"]): row for row in rows}
@@ -149,6 +154,7 @@ def test_tables_for_people(tmp_path, command):
     result = run("robot", command, ROBOT, cwd=tmp_path)
     assert result.returncode == int(command == "check"), result.stderr
     assert len(result.stdout.splitlines()) > 3
+    assert ("inertia, by entries" in result.stdout) is (command == "correction")
 
 
 @pytest.mark.parametrize(
@@ -211,12 +217,3 @@ def test_help_imports_nothing_heavy(tmp_path):
     result = run("robot", "--help", cwd=tmp_path)
     assert result.returncode == 0
     assert all(command in result.stdout for command in COMMANDS)
-
-
-def test_inertia_and_gravity_are_corrected_apart(tmp_path):
-    found = document("correction", "--figures", "out", cwd=tmp_path)["apart"]
-    errors = found["inertia_error"]
-    assert errors["single"] > errors["rows"] > errors["entries"] > found["gravity_error"]
-    assert (tmp_path / "out" / "inertia-errors.png").stat().st_size > 10_000
-    text = run("robot", "correction", ROBOT, cwd=tmp_path).stdout
-    assert "inertia, by entries" in text

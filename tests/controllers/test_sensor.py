@@ -17,6 +17,7 @@ from nrs_design.controllers.sensor import (
     build_sensor,
     length_between,
 )
+from nrs_design.errors import DesignError
 from nrs_design.models.linear_form import coordinates
 from nrs_design.spec.sensor import SensorSpec
 
@@ -98,6 +99,11 @@ def test_lengths_are_enclosed(vector):
     square = sum(c * c for c in vector)
     assert low**2 <= square <= high**2
     assert high - low <= F(1, 10**24)
+
+
+def test_a_filter_that_single_precision_loses_is_refused():
+    with pytest.raises(DesignError, match="a step keeps all it holds"):
+        LowPass(1, F(1, 10**6)).sampled(F(1, 500))
 
 
 def test_a_contact_gives_its_arm():

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from nrs_design.identification.datasets import read_actuator, read_tissue
+from nrs_design.identification.datasets import read_actuator, read_poses, read_tissue
 from tests.identification import synthetic
 from tests.support import ROOT
 
@@ -29,6 +29,9 @@ def test_committed_sample_is_what_the_generator_makes(name):
 
 @pytest.mark.parametrize("name", SAMPLES)
 def test_samples_are_read_as_synthetic(name):
+    if name.startswith("tool"):
+        assert read_poses(DATA / name).source.synthetic
+        return
     if not name.startswith("actuator"):
         assert read_tissue(DATA / name).source.synthetic
         return

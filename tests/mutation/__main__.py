@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import importlib
 import os
 import resource
@@ -61,6 +62,8 @@ class Examination:
     @pytest.hookimpl(tryfirst=True)
     def pytest_runtestloop(self, session: pytest.Session) -> bool:
         """Take the place of the one run of the tests."""
+        # So that no process copies what is there already, only to look through it.
+        gc.freeze()
         # In memory that the processes share: what each test took, and which one is run.
         self.took = RawArray("d", [60.0] * len(session.items))
         self.running_test = RawValue("i")

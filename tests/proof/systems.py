@@ -239,6 +239,7 @@ SYSTEMS = {
     "common-quadratic": lambda: dayawansa_martin(5),
     "common-polynomial": lambda: dayawansa_martin(6),
     "common-polynomial, discrete": lambda: ando_shih("0.72"),
+    "conewise-mode-quadratic": bouncing_in_steps,
     "conewise-polynomial": bouncing,
     "conewise-quadratic": bouncing,
     "conewise-quadratic, pulling": lambda: bouncing(1),
@@ -271,6 +272,7 @@ SYSTEMS = {
     "unstable-value, period": lambda: hidden_shears(Time.DISCRETE),
 }
 METHODS = {
+    "conewise-mode-quadratic": Method.CONEWISE_MODE_QUADRATIC,
     "conewise-polynomial": Method.CONEWISE_POLYNOMIAL,
     "common-polynomial, discrete": Method.POLYNOMIAL,
     "unstable-mixture": Method.MIXTURE,

@@ -85,6 +85,8 @@ def test_states_in_other_units_cost_nothing(entries, radius, log2):
         ([[1]], [[2**160 - 2]]),
         ([[1, 0.5], [0.5, 1]], [[2**160 - 3, 2**159], [2**159, 2**160 - 3]]),
         ([[2, 0], [0, 0]], [[2**160 - 3, 0], [0, -3]]),
+        # Of sizes 2^-20 and 1, weights 2^-10 and 1: less 1 + 2^-10 and 2^10 + 1, and one more.
+        ([[arb(2) ** -20, 0], [0, 1]], [[2**140 - 2, 0], [0, 2**160 - 1026]]),
         # What is known to within zero only.
         ([[0]], [[-2]]),
         # What flint may take for zero counts on both sides, 2^-32767, in units of the largest.

@@ -9,8 +9,8 @@ from flint import fmpz_mat
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
+from nrs_design.proof import exact as trusted
 from nrs_design.proof.exact import (
-    MAX_SPECTRUM_WORK,
     add,
     bit_length,
     characteristic_polynomial,
@@ -194,7 +194,8 @@ class TestLimits:
         assert spectrum_work(1, 1) == 1
 
     def test_the_largest_spectrum(self):
-        assert spectrum_work(10, 5329) <= MAX_SPECTRUM_WORK < spectrum_work(10, 5330)
+        limit = trusted.MAX_SPECTRUM_WORK
+        assert spectrum_work(10, 5329) <= limit < spectrum_work(10, 5330)
 
     @pytest.mark.parametrize(
         ("M", "bits"),
@@ -302,11 +303,11 @@ class TestForms:
     A = (("-1/2", "1/3"), ("0.25", -2))
     Q = ((3, 1), (1, 2))
 
-    @pytest.mark.parametrize("rate", ["0", "1/7", "2"])
+    @pytest.mark.parametrize("rate", ["0", "1/7", "2", "1/4", "1/24"])
     def test_lyapunov_is_a_positive_multiple(self, rate):
         self.same_ray(lyapunov_decrease, rate, self.lyapunov, lyapunov_factor)
 
-    @pytest.mark.parametrize("rate", ["0", "1/7", "2"])
+    @pytest.mark.parametrize("rate", ["0", "1/7", "2", "1/4", "1/24"])
     def test_stein_is_a_positive_multiple(self, rate):
         self.same_ray(stein_decrease, rate, self.stein, stein_factor)
 
@@ -379,6 +380,7 @@ class TestHurwitz:
             ([-1, -6, -11, -6], True),  # a negative leading coefficient
             ([1, 6, 11, 0], False),
             ([1, 6, 0, 6], False),
+            ([1, -1, -2, 1], False),  # only the head of a row of two is negative
             ([1, 6, 11, 66], False),  # a pair exactly on the axis, s^2 + 11
             ([1, 6, 11, 65], True),
             ([1, 6, 11, 67], False),

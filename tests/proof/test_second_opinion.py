@@ -19,10 +19,10 @@ from nrs_design.proof.evidence import (
 )
 from nrs_design.proof.exact import is_positive_definite
 from nrs_design.proof.second_opinion import agrees, has_positive_spectrum
-from nrs_design.proof.system import Stay, Switching, Time
+from nrs_design.proof.system import Rounding, Stay, Switching, Time
 from nrs_design.proof.taylor import exponential_nearly
 from nrs_design.search.certify import certify
-from tests.proof.systems import PAIR, SYSTEMS, family, genuine
+from tests.proof.systems import PAIR, SYSTEMS, family, genuine, matrix
 
 INTS = st.integers(-9, 9)
 STABLE = family([[-1, 1], [-1, -1]], [[-2, 3], [-3, -2]])
@@ -161,6 +161,18 @@ def test_opinion_on_a_quadratic_function(matrices, time, Q, rate, holds):
     system = family(*matrices, time=time)
     assert agrees(system, evidence) is holds
     assert (evidence.find_fault(system) is None) is holds
+
+
+@pytest.mark.parametrize(("rate", "holds"), [("0.7501", True), ("0.7499", False)])
+def test_opinion_on_a_function_with_rounding(rate, holds):
+    """``x+ = x/2 + r`` with ``|r| <= |x|/4``: 3/4 at worst, where without it 1/2 is."""
+    one = matrix([[1]])
+    system = family([["1/2"]], time=DISCRETE)
+    rounded = replace(system, roundings=(Rounding("x", (one,), (matrix([["1/4"]]),)),))
+    covered = CommonQuadratic(((1,),), 0, Fraction(rate), (3,))
+    assert agrees(rounded, covered) is holds
+    assert (covered.find_fault(rounded) is None) is holds
+    assert agrees(rounded, replace(covered, roundings=()))
 
 
 @pytest.mark.parametrize(

@@ -17,6 +17,7 @@ from nrs_design.proof.evidence import (
     BlockTriangular,
     CommonPolynomial,
     CommonQuadratic,
+    ConewiseModeQuadratic,
     ConewisePolynomial,
     ConewiseQuadratic,
     InvariantEllipsoid,
@@ -221,6 +222,39 @@ def _padded(M: Rows, extra: int) -> Rows:
     """Add rows and columns of zeros."""
     zeros = [Fraction(0)] * extra
     return [[*row, *zeros] for row in M] + [[Fraction(0)] * (len(M) + extra)] * extra
+
+
+def _conewise_mode_quadratic(system: SwitchedSystem, item: ConewiseModeQuadratic) -> bool:
+    """Every step from every mode to every other, as the class states them, in fractions."""
+    contact, rate = system.contact, item.rate
+    if contact is None or contact.pulls or system.time is Time.CONTINUOUS:
+        return False
+    given = [name for name, _ in item.touching], [name for name, _ in item.flying]
+    if given != ([m.name for m in system.modes], [m.name for m in contact.free]):
+        return False
+    touching, flying = ([Q for _, Q in part] for part in (item.touching, item.flying))
+    if not is_rate(rate, system.time) or len(item.multipliers) != len(flying):
+        return False
+    if min(item.multipliers) < 0 or any(len(Q) != system.order for Q in touching):
+        return False
+    forms = [*touching, *flying]
+
+    def shrinks(before: Rows, A: Rows, after: Rows) -> Rows:
+        return combine((rate**2, before), (-1, times(transpose(A), times(after, A))))
+
+    for mode, Q in zip(system.modes, touching, strict=True):
+        A = mode.A.fractions()
+        forms += [shrinks(Q, A, after) for after in touching]
+        crossing = times([[Fraction(0)]] * (len(A) - 1) + [[Fraction(1)]], [A[-1]])
+        for R, weight in zip(flying, item.multipliers, strict=True):
+            lost = (weight, crossing), (weight, transpose(crossing))
+            forms.append(combine((1, shrinks(Q, A[:-1], R)), *lost))
+    for mode, R in zip(contact.free, flying, strict=True):
+        A = [row[:-1] for row in mode.A.fractions()]
+        forms += [shrinks(R, A[:-1], after) for after in flying]
+        for Q in touching:
+            forms += [shrinks(R, A, Q), shrinks(R, A[:-1], [row[:-1] for row in Q[:-1]])]
+    return all(map(is_definite, forms))
 
 
 def _invariant_ellipsoid(system: SwitchedSystem, item: InvariantEllipsoid) -> bool:
@@ -675,6 +709,7 @@ def restrict(system: SwitchedSystem, block: tuple[int, ...]) -> SwitchedSystem:
 
 _ORACLES = {
     CommonQuadratic: _common_quadratic,
+    ConewiseModeQuadratic: _conewise_mode_quadratic,
     ConewisePolynomial: _conewise_polynomial,
     ConewiseQuadratic: _conewise_quadratic,
     InvariantEllipsoid: _invariant_ellipsoid,

@@ -199,3 +199,43 @@ def test_every_name_at_the_door_is_there() -> None:
 def test_every_kind_has_its_model() -> None:
     kinds = {kind: model_of(kind).model_fields["kind"].annotation for kind in SPEC_KINDS}
     assert kinds == {kind: Literal[kind] for kind in SPEC_KINDS}
+
+
+BETWEEN = """\
+kind: interaction-design
+name: soft
+actuator: {gain: 4.8417e-4 GAIN, time_constant: 0.0351 s}
+motion_loop: {damping_ratio: 0.707, settling_time: 0.1404 s, derivative_gain: 2060 rpm*s/rad,
+              zero: 56.9706 1/s}
+limits: {velocity: 8 deg/s, torque: 0.3 N*m, bandwidth: 2 Hz}
+environments:
+  soft: {model: elastic, stiffness: 43 STIFFNESS}
+controllers:
+  a: {type: impedance, environment: sof, Mt: 0.01 kg*m^2, Bt: 2.15 N*m*s/rad}
+switching: {transitions: [[a, b]]}
+"""
+NO_ENVIRONMENT, NO_CONTROLLER = "there is no environment 'sof'", "there is no controller 'b'"
+
+
+@pytest.mark.parametrize(
+    ("gain", "stiffness", "said"),
+    [
+        ("rad/s/rpm", "N*m/rad", [NO_ENVIRONMENT, NO_CONTROLLER]),
+        ("rad/s", "N*m/rad", ["not an actuator gain", NO_ENVIRONMENT, NO_CONTROLLER]),
+        # Which environments there are is not known until all of them are valid.
+        ("rad/s/rpm", "N*m", ["not a stiffness", NO_CONTROLLER]),
+    ],
+)
+def test_faults_between_valid_parts_are_told_in_the_first_round(gain, stiffness, said) -> None:
+    error = refusal(BETWEEN.replace("GAIN", gain).replace("STIFFNESS", stiffness))
+    assert len(error.faults) == len(said)
+    for fault, words in zip(error.faults, said, strict=True):
+        assert words in fault.message
+
+
+def test_faults_between_valid_parts_of_given_matrices() -> None:
+    text = SWITCHED.replace("kind: switched-system", "kind: switched-system\ntitle: [no]")
+    text = text.replace("switching: arbitrary", "switching: {transitions: [[m, none]]}")
+    messages = [fault.message for fault in refusal(text).faults]
+    assert "title: expected a single value, not a list or a mapping" in messages
+    assert any("there is no mode 'none'" in message for message in messages)

@@ -69,9 +69,15 @@ def test_refuses(sensor: str, said: str) -> None:
 
 
 def test_a_goal_for_the_creep_needs_a_sensor() -> None:
-    with pytest.raises(SpecError, match="a goal for the creep without a sensor"):
+    with pytest.raises(SpecError, match="a goal for the creep, and no errors"):
         read("goals: {max_creep: 1 deg/s}\n")
+    with pytest.raises(SpecError, match="a goal for the creep, and no errors"):
+        read("goals: {max_creep: 1 deg/s}\nsensor: {filter: {cutoff: 30 Hz}}\n")
+    with pytest.raises(SpecError, match="a goal for the creep, and no errors"):
+        read(f"goals: {{max_creep: 1 deg/s}}\nsensor: {{tool: {TOOL}}}\n")
     read("goals: {max_creep: 1 deg/s}\nsensor: {bias: 1e-3 N*m}\n")
+    ranged = TOOL.replace("-1 mm", "{nominal: 0 mm, range: [-1 mm, 1 mm]}")
+    read(f"goals: {{max_creep: 1 deg/s}}\nsensor: {{tool: {ranged}}}\n")
 
 
 def test_a_filter_is_for_impedance_controllers() -> None:

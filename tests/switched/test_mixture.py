@@ -196,3 +196,15 @@ def test_stiff_contact_in_impedance_mode_is_that_of_the_thesis():
     for k, stable in ((F(75), True), (F(77), False)):
         rows = position_mode(MOTION, law, Elastic(k))
         assert (np.linalg.eigvals(np.array(rows, float)).real.max() < 0) == stable
+
+
+def test_a_spring_acts_on_the_reference_that_others_leave_idle(tmp_path):
+    text = MIXED.read_text(encoding="utf-8")
+    sprung = text.replace("    Bt:", "    Kt: 0.5 N*m/rad\n    Bt:", 1)
+    path = tmp_path / "mixed.nrs.yaml"
+    path.write_text(sprung, encoding="utf-8")
+    designed = run_design(read_spec(path))
+    system = assemble(designed.spec, designed.plant, designed.design, "deflection")
+    texts = " ".join(system.assumptions)
+    assert "draws it to zero" in texts
+    assert "which no switch resets" not in texts

@@ -60,6 +60,8 @@ def delay(
 
     if (command is None) != (measured is None):
         raise typer.BadParameter("name both columns or none", param_hint="--command, --measured")
+    if command is not None and command == measured:
+        raise typer.BadParameter("name two columns", param_hint="--command, --measured")
     if write is not None and command is None:
         raise typer.BadParameter(
             "name the force as measured by --command, and as the law used it by --measured",

@@ -30,7 +30,12 @@ from nrs_design.design.laws.law import (
     naming,
 )
 from nrs_design.design.margins import LoopMargins, loop_margins, stiffness_limit
-from nrs_design.design.measures import CREEP_MEASURES, IMPEDANCE_MEASURES, Measure
+from nrs_design.design.measures import (
+    CREEP_MEASURES,
+    HAND_MEASURES,
+    IMPEDANCE_MEASURES,
+    Measure,
+)
 from nrs_design.design.relief import doubt_stiffness
 from nrs_design.errors import DesignError
 from nrs_design.models.contact.environment import Environment
@@ -129,7 +134,10 @@ def analyze(
         stiffness_limit(replace(problem.loop, Kt=sum(springs)), Mt_end, Bt_end)
         for Mt_end, Bt_end, *springs in product(*([float(v) for _, v in pair] for pair in ends))
     )
-    achieved = achieve_impedance(_requirement(task, given), _measures(task), Mt, Bt)
+    requirement = _requirement(task, given)
+    asked = dict(requirement.goals)
+    measures = (*_measures(task), *(item for item in HAND_MEASURES if item in asked))
+    achieved = achieve_impedance(requirement, measures, Mt, Bt)
     creep = creep_of(task.spec, task.loop, given, controller) if task.sensor.errors else None
     return ImpedanceAnalysis(
         name=controller.name,
@@ -213,7 +221,7 @@ def _requirement(task: Task, given: ImpedanceControllerSpec) -> Requirement:
     return Requirement(
         motion=task.motion,
         corners=corners_of(contacts, given.environment, gains, float(_spring(given))),
-        goals=goals_of(task.spec, given, _measures(task)),
+        goals=goals_of(task.spec, given, (*_measures(task), *HAND_MEASURES)),
         desired=desired_impedance(task.spec, given),
         bandwidth=task.spec.limits.bandwidth.si,
         lags=_lags(task),

@@ -3,9 +3,11 @@
 from nrs_design.identification.datasets.records import (
     ActuatorRecord,
     FrequencyResponse,
+    PoseRecord,
     SignalRecord,
     TissueRecord,
     read_actuator,
+    read_poses,
     read_signals,
     read_tissue,
 )
@@ -14,10 +16,12 @@ from nrs_design.identification.datasets.table import Source
 __all__ = [
     "ActuatorRecord",
     "FrequencyResponse",
+    "PoseRecord",
     "SignalRecord",
     "Source",
     "TissueRecord",
     "read_actuator",
+    "read_poses",
     "read_signals",
     "read_tissue",
 ]

@@ -85,7 +85,20 @@ def read_mat(file: BinaryIO, path: Path) -> Content:
     opened: Any = file
     with _reading(path, "MATLAB"):
         content = loadmat(opened, squeeze_me=True, struct_as_record=False)
+    _check_objects(content, path)
     return _sorted(_flat({k: v for k, v in content.items() if not k.startswith("__")}))
+
+
+def _check_objects(content: Mapping[str, Any], path: Path) -> None:
+    """Refuse objects of classes (a timetable, a table), which MATLAB alone can read."""
+    from scipy.io.matlab import MatlabFunction, MatlabOpaque
+
+    if any(isinstance(value, MatlabOpaque | MatlabFunction) for value in content.values()):
+        raise DataError(
+            "holds an object of a MATLAB class, such as a timetable, which MATLAB alone can read",
+            path=path,
+            remedy="save plain columns, such as time_s = seconds(T.Time); or writetimetable to CSV",
+        )
 
 
 def read_npz(file: BinaryIO, path: Path) -> Content:

@@ -220,8 +220,8 @@ def _missing(
 ) -> DataError:
     present = {quantity for columns in found.values() for quantity in columns}
     nearest = min(layouts, key=lambda layout: len(set(layout) - present))
-    missing = [standard_name(quantity) for quantity in nearest if quantity not in present]
-    expected = " or ".join(", ".join(map(standard_name, layout)) for layout in layouts)
+    missing = [_called(quantity) for quantity in nearest if quantity not in present]
+    expected = " or ".join(", ".join(map(_called, layout)) for layout in layouts)
     example = missing[0] if missing else "force_N"
     return DataError(
         f"the columns {', '.join(missing) or 'of one group'} are missing: it has {_listed(header)}",
@@ -229,6 +229,12 @@ def _missing(
         line=line,
         remedy=f"expected {expected}; name foreign columns with --map {example}=NAME",
     )
+
+
+def _called(quantity: str) -> str:
+    """Return what a user calls a column: two are named by options."""
+    options = {"input": "the column of --command", "output": "the column of --measured"}
+    return options.get(quantity) or standard_name(quantity)
 
 
 def _listed(header: Sequence[str]) -> str:

@@ -42,6 +42,8 @@ class Header:
         Between cells; None for any number of blanks.
     decimal_comma : bool
         Whether numbers have one.
+    quoted : bool
+        Whether cells stand in quotes, which may hide separators.
     line : int
         Last line above the rows.
     synthetic : bool
@@ -53,6 +55,7 @@ class Header:
     names: list[str]
     separator: str | None
     decimal_comma: bool
+    quoted: bool
     line: int
     synthetic: bool
     rest: bytes
@@ -98,7 +101,8 @@ def read_header(
     comma = _has_decimal_comma(lines[below:], separator, path, below + 1)
     comments = [text.lower() for text in lines[:at] if text.startswith("#")]
     synthetic = any(SYNTHETIC in text for text in comments)
-    return Header(names, separator, comma, below, synthetic, b"".join(raw[below:]))
+    quoted = separator is not None and any('"' in text for text in lines[below:])
+    return Header(names, separator, comma, quoted, below, synthetic, b"".join(raw[below:]))
 
 
 def is_number(text: str) -> bool:
@@ -230,8 +234,6 @@ def _with_unit(name: str, unit: str, mapped: Collection[str]) -> str:
 
 
 def _has_decimal_comma(lines: Sequence[str], separator: str | None, path: Path, line: int) -> bool:
-    if separator == ",":
-        return False
     cells = [cell for text in lines for cell in _cells(text, separator)]
     commas = [cell for cell in cells if "," in cell]
     if commas and all(_THOUSANDS.match(cell) for cell in commas):

@@ -12,15 +12,19 @@ from types import MappingProxyType
 KGF = 9.80665
 _TURN = 2 * pi / 60
 
+_FORCES = {"N": 1.0, "mN": 1e-3, "kN": 1e3, "kgf": KGF, "gf": KGF / 1000}
+_TORQUES = {"Nm": 1.0, "mNm": 1e-3, "Nmm": 1e-3}
+_ANGLES = {"rad": 1.0, "mrad": 1e-3, "deg": pi / 180}
+
 # Factor to SI for every unit that a quantity may be written in; the first is the SI unit. A command
 # stays in the unit of its driver: rpm of a command are a number, not a velocity.
 UNITS: Mapping[str, Mapping[str, float]] = MappingProxyType(
     {
         "time": {"s": 1.0, "ms": 1e-3, "us": 1e-6, "ns": 1e-9, "min": 60.0},
         "deflection": {"m": 1.0, "mm": 1e-3, "cm": 1e-2, "um": 1e-6},
-        "force": {"N": 1.0, "mN": 1e-3, "kN": 1e3, "kgf": KGF, "gf": KGF / 1000},
-        "angle": {"rad": 1.0, "mrad": 1e-3, "deg": pi / 180},
-        "torque": {"Nm": 1.0, "mNm": 1e-3, "Nmm": 1e-3},
+        "force": _FORCES,
+        "angle": _ANGLES,
+        "torque": _TORQUES,
         "velocity": {"rad_s": 1.0, "deg_s": pi / 180, "rpm": _TURN},
         "command": {"rpm": 1.0, "V": 1.0, "mV": 1e-3, "A": 1.0, "mA": 1e-3, "counts": 1.0},
         "mode": {"": 1.0},
@@ -29,6 +33,12 @@ UNITS: Mapping[str, Mapping[str, float]] = MappingProxyType(
         "frequency": {"hz": 1.0, "khz": 1e3},
         "magnitude": {"db": 1.0},
         "phase": {"deg": pi / 180, "rad": 1.0},
+        # Of a wrench along the axes of its sensor, and of the orientation of that.
+        **{f"f{axis}": _FORCES for axis in "xyz"},
+        **{f"t{axis}": _TORQUES for axis in "xyz"},
+        **{f"q{axis}": {"1": 1.0, "": 1.0} for axis in "wxyz"},
+        "roll": _ANGLES,
+        "pitch": _ANGLES,
     }
 )
 # The unit that values of a command have once they are read.
@@ -118,7 +128,7 @@ class Name:
 def standard_name(quantity: str) -> str:
     """Return the name of a column in SI, such as ``force_N``."""
     unit = next(iter(UNITS[quantity]))
-    return f"{quantity}_{unit}" if unit else quantity
+    return quantity if unit in ("", "1") else f"{quantity}_{unit}"
 
 
 def read_name(text: str) -> Name | None:
@@ -137,7 +147,8 @@ def read_name(text: str) -> Name | None:
     word, _, rest = text.partition("_")
     if word in UNITS:
         return Name(word, *_unit_and_group(rest, word))
-    if text.lower() in UNITS:
+    # Who writes Fz means an axis of his own.
+    if text.lower() in UNITS and len(text) > 2:
         return Name(text.lower(), "")
     synonym, _, rest = text.lower().partition("_")
     quantity = _SYNONYMS.get(synonym)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import csv
 import warnings
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
@@ -82,6 +83,8 @@ class Parser:
 
     def parse(self, block: bytes, line: int) -> Array:
         """Read a block that begins at a line; find out what is wrong only if something is."""
+        if self.header.quoted:
+            block = self._tabbed(block)
         if self.header.decimal_comma:
             self._refuse_points(block, line)
             block = block.replace(b",", b".")
@@ -99,6 +102,22 @@ class Parser:
             self._explain(lines, line)
         return values
 
+    @property
+    def _separator(self) -> str | None:
+        """Tabs stand between cells that stood in quotes, and may hold commas."""
+        return "\t" if self.header.quoted else self.header.separator
+
+    def _tabbed(self, block: bytes) -> bytes:
+        text = block.decode("utf-8", "replace").replace("\r\n", "\n")
+        return "\n".join(map(self._without_quotes, text.split("\n"))).encode()
+
+    def _without_quotes(self, line: str) -> str:
+        try:
+            cells = next(csv.reader([line], delimiter=str(self.header.separator)), [])
+        except csv.Error:
+            return line
+        return "\t".join(cells)
+
     def _load(self, lines: list[str]) -> Array:
         used = [column.index for column in self.columns]
         words: dict[int | str, Callable[[str], float]] = {
@@ -109,7 +128,7 @@ class Parser:
             warnings.simplefilter("ignore")
             values = np.loadtxt(
                 lines,
-                delimiter=self.header.separator,
+                delimiter=self._separator,
                 usecols=used,
                 ndmin=2,
                 comments=None,
@@ -126,7 +145,7 @@ class Parser:
         return float(self.labels.index(word))
 
     def _is_regular(self, block: bytes, lines: list[str]) -> bool:
-        width, separator = len(self.header.names), self.header.separator
+        width, separator = len(self.header.names), self._separator
         if separator is None:
             return all(len(line.split()) == width for line in lines)
         return block.count(separator.encode()) == len(lines) * (width - 1) and all(lines)
@@ -136,7 +155,7 @@ class Parser:
         if b"." not in block:
             return
         for number, text in enumerate(block.decode("utf-8", "replace").split("\n"), start=line):
-            cells = dict(enumerate(text.split(self.header.separator)))
+            cells = dict(enumerate(text.split(self._separator)))
             for column in self.columns:
                 cell = cells.get(column.index, "").strip()
                 if "." in cell and is_number(cell):
@@ -144,7 +163,7 @@ class Parser:
                     self._fail(fault, number, _UNDECIDED)
 
     def _explain(self, lines: list[str], line: int) -> NoReturn:
-        width, separator = len(self.header.names), self.header.separator
+        width, separator = len(self.header.names), self._separator
         for number, text in enumerate(lines, start=line):
             cells = text.split(separator)
             if not text.strip():

@@ -39,6 +39,7 @@ _EXPLAINED = 0.1
 # A smoothed force beyond so many of its standard deviations from the air is one of contact.
 _CLEAR = 5.0
 _SMOOTH = 5
+_ENDS = _SMOOTH // 2 + 1
 
 
 @dataclass(frozen=True, slots=True)
@@ -88,8 +89,9 @@ class Contact:
         edges = np.flatnonzero(padded[1:] != padded[:-1]).reshape(-1, 2).tolist()
         found = []
         for first, end in edges:
-            # Smoothing carries a force by half its width into the air.
-            clear = np.flatnonzero(self.clear[first:end])[_SMOOTH // 2 : -(_SMOOTH // 2)]
+            # Smoothing carries a force by half its width into the air; noise that made the last
+            # mean clear is not fitted either.
+            clear = np.flatnonzero(self.clear[first:end])[_ENDS:-_ENDS]
             if len(clear):
                 rows = first, first + int(clear[0]), first + int(clear[-1]) + 1, end
                 found.append(Touch(*rows))

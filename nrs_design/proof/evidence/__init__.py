@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from nrs_design.proof.evidence.block_triangular import BlockTriangular
     from nrs_design.proof.evidence.common_polynomial import CommonPolynomial
     from nrs_design.proof.evidence.common_quadratic import CommonQuadratic
+    from nrs_design.proof.evidence.conewise_mode_quadratic import ConewiseModeQuadratic
     from nrs_design.proof.evidence.conewise_polynomial import ConewisePolynomial
     from nrs_design.proof.evidence.conewise_quadratic import ConewiseQuadratic
     from nrs_design.proof.evidence.invariant_ellipsoid import InvariantEllipsoid
@@ -35,6 +36,7 @@ __all__ = [
     "BlockTriangular",
     "CommonPolynomial",
     "CommonQuadratic",
+    "ConewiseModeQuadratic",
     "ConewisePolynomial",
     "ConewiseQuadratic",
     "InvariantEllipsoid",
@@ -56,6 +58,7 @@ KINDS: Mapping[str, str] = {
     "block-triangular": "BlockTriangular",
     "common-polynomial": "CommonPolynomial",
     "common-quadratic": "CommonQuadratic",
+    "conewise-mode-quadratic": "ConewiseModeQuadratic",
     "conewise-polynomial": "ConewisePolynomial",
     "conewise-quadratic": "ConewiseQuadratic",
     "invariant-ellipsoid": "InvariantEllipsoid",

@@ -79,7 +79,7 @@ class BlockTriangular(AbstractEvidence):
         if not is_block_triangular(system, self.blocks):
             return "a mode is not block triangular in this order"
         indices = [index for index, _ in self.parts]
-        if not self.parts or len({part.shows for _, part in self.parts}) != 1:
+        if len({part.shows for _, part in self.parts}) != 1:
             return "the parts do not show one and the same"
         if not set(indices) <= set(range(len(self.blocks))):
             return "a part is of no block"

@@ -10,6 +10,7 @@ from nrs_design.proof.evidence import (
     BlockTriangular,
     CommonPolynomial,
     CommonQuadratic,
+    ConewiseModeQuadratic,
     ConewisePolynomial,
     ConewiseQuadratic,
     InvariantEllipsoid,
@@ -27,6 +28,7 @@ from nrs_design.reporting.kinds.abstract import AbstractKindPage
 from nrs_design.reporting.kinds.block_triangular import BlockTriangularPage
 from nrs_design.reporting.kinds.common_polynomial import CommonPolynomialPage
 from nrs_design.reporting.kinds.common_quadratic import CommonQuadraticPage
+from nrs_design.reporting.kinds.conewise_mode_quadratic import ConewiseModeQuadraticPage
 from nrs_design.reporting.kinds.conewise_polynomial import ConewisePolynomialPage
 from nrs_design.reporting.kinds.conewise_quadratic import ConewiseQuadraticPage
 from nrs_design.reporting.kinds.invariant_ellipsoid import InvariantEllipsoidPage
@@ -43,6 +45,7 @@ KINDS: Mapping[type[AbstractEvidence], type[AbstractKindPage[Any]]] = {
     BlockTriangular: BlockTriangularPage,
     CommonPolynomial: CommonPolynomialPage,
     CommonQuadratic: CommonQuadraticPage,
+    ConewiseModeQuadratic: ConewiseModeQuadraticPage,
     ConewisePolynomial: ConewisePolynomialPage,
     ConewiseQuadratic: ConewiseQuadraticPage,
     InvariantEllipsoid: InvariantEllipsoidPage,

@@ -13,6 +13,7 @@ from nrs_design.reporting.kinds.shared.bouncing import bouncing_run
 from nrs_design.reporting.kinds.shared.rates import rate_blocks
 from nrs_design.reporting.kinds.shared.run import trials_per_step
 from nrs_design.reporting.sections.modes import hardest_modes
+from nrs_design.simulation.contact import clipped
 from nrs_design.simulation.norms import polynomial_norm
 from nrs_design.simulation.switched import fine_step, sampled_direction
 
@@ -92,7 +93,7 @@ class ConewisePolynomialPage(AbstractKindPage[ConewisePolynomial]):
         return bouncing_run(
             system,
             hardest,
-            norm,
+            clipped(norm),
             sampled_direction(hardest, norm, fine_step(hardest)),
             float(V.rate),
             f"in V^(1/{2 * V.degree})",

@@ -12,6 +12,7 @@ from nrs_design.reporting.kinds.shared.matrix import SCALED, matrix_table
 from nrs_design.reporting.kinds.shared.rates import rate_blocks
 from nrs_design.reporting.kinds.shared.run import trials_per_step
 from nrs_design.reporting.sections.modes import hardest_modes
+from nrs_design.simulation.contact import clipped
 from nrs_design.simulation.norms import quadratic_norm, scaled_matrices
 from nrs_design.simulation.rates import mode_rates
 from nrs_design.simulation.switched import worst_direction
@@ -87,7 +88,7 @@ class ConewiseQuadraticPage(AbstractKindPage[ConewiseQuadratic]):
         return bouncing_run(
             self.system,
             hardest,
-            quadratic_norm(Q),
+            clipped(quadratic_norm(Q)),
             worst_direction(hardest, Q),
             float(self.evidence.rate),
             "in the norm of Q",

@@ -44,7 +44,16 @@ MARKED = "\ufefftime_s,deflection_um,force_kgf\n" + rows(",", ".", (1, 1e6, 1 / 
 FOREIGN = "t;x;F\ns;mm;N\n" + rows(";", ",", (1, 1e3, 1))
 FROM_FOREIGN = ["time_s=t", "deflection_mm=x", "force_N=F"]
 
+# A table that was saved with all cells as text.
+QUOTED = '"Time (s)","Deflection (mm)","Force (N)"\n' + "".join(
+    ",".join(f'"{value:.6f}"'.replace(".", ",") for value in (t, 1e3 * d, f)) + "\n"
+    for t, d, f in zip(TIME, DEFLECTION, FORCE, strict=True)
+)
+POINTS = QUOTED.replace('","', "|").replace(",", ".").replace("|", '","')
+
 STYLES = {
+    "decimal commas in quotes": (QUOTED, []),
+    "decimal points in quotes": (POINTS, []),
     "commented header of NumPy": ("# time_s deflection_m force_N\n" + rows(" "), []),
     "tabs": ("time_s\tdeflection_m\tforce_N\n" + rows("\t"), []),
     "semicolons and decimal commas": (GERMAN, []),

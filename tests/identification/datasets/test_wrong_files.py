@@ -5,6 +5,7 @@ import sys
 import numpy as np
 import pytest
 from scipy.io import savemat
+from scipy.io.matlab import MatlabOpaque
 
 from nrs_design.errors import DataError
 from nrs_design.identification.datasets import read_actuator, read_tissue
@@ -82,6 +83,22 @@ WRONG = {
         "row has 5 values",
         2,
     ),
+    "a point among commas in quotes": (
+        "a.csv",
+        text(
+            replace=[(7, '"1.234","0,1","7,5"')],
+            body=[",".join(f'"{i},{n:02d}"' for i in range(3)) for n in range(60)],
+        ),
+        "decimal comma",
+        9,
+    ),
+    "marks between thousands in quotes": (
+        "a.csv",
+        text(body=[f'"{i}","{i % 9}","1,{100 + i}"' for i in range(60)]),
+        "may be",
+        2,
+    ),
+    "a quote that does not end": ("a.csv", text(replace=[(7, '"0.07,0.007,7')]), "has 1 values", 9),
     "time repeats": ("a.csv", text(replace=[(5, BODY[4])]), "time repeats", 7),
     "time goes back": ("a.csv", text(replace=[(5, "0.01,0.005,5")]), "time goes back", 7),
     "a gap": ("a.csv", text(body=[*BODY[:55], "9.5,0.01,3"]), "a gap of", None),
@@ -187,9 +204,13 @@ def test_an_actuator_needs_its_columns(tmp_path):
     assert "command" in caught.value.remedy
 
 
-def test_decimal_commas_in_quotes_beside_commas(tmp_path):
-    rows = "\n".join('"0,1","0,2","0,3"' for _ in range(60))
-    content = f'Area,"100,1",mm^2\n\nTime,Extension,Load\n(s),(mm),(N)\n{rows}\n'
-    with pytest.raises(DataError, match="the row has 6 values, the header 3") as caught:
-        read_tissue(write(tmp_path, "a.csv", content.encode()))
-    assert "separate them by semicolons" in caught.value.remedy
+def test_an_object_of_matlab(tmp_path, monkeypatch):
+    """As the library that reads such files gives a timetable; only MATLAB itself can write one."""
+    kind = [(name, object) for name in ("s0", "s1", "s2", "arr")]
+    opaque = MatlabOpaque(np.array((b"T", b"MCOS", b"timetable", None), dtype=kind))
+    monkeypatch.setattr("scipy.io.loadmat", lambda *_, **__: {"None": opaque})
+    path = tmp_path / "a.mat"
+    savemat(path, {"x": TIME})
+    with pytest.raises(DataError, match="an object of a MATLAB class") as caught:
+        read_tissue(path)
+    assert "writetimetable" in caught.value.remedy

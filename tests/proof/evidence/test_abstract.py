@@ -279,7 +279,7 @@ def test_the_rate_is_one_of_decay_or_there_is_none(example):
     assert rate is None or rate > 0
 
 
-BOUNCING = {"conewise-polynomial", "conewise-quadratic"}
+BOUNCING = {"conewise-mode-quadratic", "conewise-polynomial", "conewise-quadratic"}
 FREE = {"common-quadratic", "common-polynomial", "parameter-quadratic"} | BOUNCING
 SETS = {"common-quadratic", "conewise-quadratic", "invariant-ellipsoid"}
 RULED = {"mode-quadratic", "mode-polynomial"}
@@ -289,10 +289,10 @@ FACTS = {
     "attains_rate": FREE | RULED,
     "bounds_at_once": FREE,
     "covers_lost_contact": BOUNCING | {"invariant-ellipsoid", "no-common-quadratic"},
-    "covers_mixtures": SETS | {"common-polynomial", "conewise-polynomial", "block-triangular"},
+    "covers_mixtures": SETS | BOUNCING | {"common-polynomial", "block-triangular"},
     "is_common_quadratic": {"common-quadratic", "conewise-quadratic"},
     # The blocks of the example have polynomials.
-    "keeps_bound_in_mixtures": SETS | {"parameter-quadratic"} | RULED,
+    "keeps_bound_in_mixtures": SETS | {"parameter-quadratic", "conewise-mode-quadratic"} | RULED,
     "names_unstable_mode": {"unstable-mode"},
 }
 

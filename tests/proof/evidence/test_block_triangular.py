@@ -226,3 +226,26 @@ def test_blocks_say_of_themselves_what_their_parts_do():
     assert [b.is_common_quadratic for b in (quadratic, mixed, unstable)] == [True, False, False]
     assert [b.keeps_bound_in_mixtures for b in (quadratic, mixed)] == [True, False]
     assert [b.names_unstable_mode for b in (quadratic, mixed, unstable)] == [False, False, True]
+    assert BlockTriangular(((0,), (1,)), ((0, one), (1, slow))).names_unstable_mode
+
+
+def test_both_blocks_survive_a_file():
+    evidence = BlockTriangular(((0,), (1,)), ((0, ONE), (1, ONE)))
+    fields = {"kind": "block-triangular", **evidence.to_fields()}
+    assert read_evidence(fields, CASCADE) == evidence
+    # One that would be read in its block, if it were not in blocks itself.
+    inner = BlockTriangular(((0,),), ((0, ONE),))
+    for parts in (((0, inner), (1, ONE)), ((0, ONE), (1, inner))):
+        nested = {"kind": "block-triangular", **replace(evidence, parts=parts).to_fields()}
+        with pytest.raises(ValueError, match="a part is itself in blocks"):
+            read_evidence(nested, CASCADE)
+
+
+def test_parts_are_spread_over_equal_modes():
+    system, evidence = genuine("block-triangular")
+    again = tuple(replace(mode, name=f"{mode.name} again") for mode in system.modes)
+    twice = replace(system, modes=(*system.modes, *again))
+    spread = evidence.spread(system, twice)
+    assert [index for index, _ in spread.parts] == [index for index, _ in evidence.parts]
+    assert spread.find_fault(twice) is None
+    assert evidence.find_fault(twice) is not None

@@ -19,7 +19,9 @@ from nrs_design.proof.evidence.fields import (
     read_integer,
     read_integers,
     read_ratio,
+    read_roundings,
     read_text,
+    rounding_fields,
 )
 from nrs_design.proof.exact import MAX_WORK
 from nrs_design.proof.system import Time
@@ -162,3 +164,16 @@ def test_numbers_that_a_file_can_hold(number, ratio):
     assert find_unreadable((number, ("m0", ratio), None)) is None
     assert read_integer(json.loads(json.dumps(number))) == number
     assert read_ratio(str(ratio)) == ratio
+
+
+@pytest.mark.parametrize(
+    ("roundings", "fields"), [((), {}), ((0,), {"roundings": [0]}), ((3, 4), {"roundings": [3, 4]})]
+)
+def test_multipliers_of_roundings_stand_in_a_file_if_there_are_any(roundings, fields):
+    assert rounding_fields(roundings) == fields
+    assert read_roundings(fields) == roundings
+
+
+def test_only_integers_multiply_roundings():
+    with pytest.raises(TypeError, match="expected an integer"):
+        read_roundings({"roundings": [1.0]})

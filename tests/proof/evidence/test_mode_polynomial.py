@@ -245,3 +245,9 @@ def test_the_rate_is_one_of_decay():
         fault = scalars(2, rate).find_fault(HALVES)
         assert fault == "the claimed rate is not one of exponential decay"
     assert scalars(2, "2/3").proved_rate(HALVES) == Fraction(2, 3)
+
+
+def test_the_ends_of_a_constant_parameter_are_not_covered():
+    ends = replace(HALVES, switching=Switching(fixed_ends=(("m0", "m1"),)))
+    assert scalars(2).find_fault(HALVES) is None
+    assert "does not cover this kind of switching" in scalars(2).find_fault(ends)

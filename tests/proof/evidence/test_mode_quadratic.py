@@ -424,6 +424,34 @@ def test_the_most_pieces(monkeypatch):
     assert evidence.find_misfit(system) == "the stays are enclosed in too few or too many pieces"
 
 
+@pytest.mark.parametrize(("others", "is_refused"), [(64, False), (65, True)])
+def test_more_pieces_than_can_be_enclosed(others, is_refused):
+    """Of 4096 pieces, those of 64 switches are looked at."""
+    ways = tuple(("m0", f"m{k + 1}") for k in range(others))
+    rules = replace(left_within((1, 2)), transitions=ways)
+    system = family(*[[[-1]]] * (others + 1), switching=rules)
+    evidence = scalars(*[1] * (others + 1), rate=HALF, leaving=("m0",), pieces=4096)
+    fault = "the stays are enclosed in too few or too many pieces"
+    assert evidence.find_misfit(system) == (fault if is_refused else None)
+
+
+@pytest.mark.parametrize(("bits", "is_refused"), [(10**6, False), (10**6 + 1, True)])
+def test_longer_powers_than_can_be_formed(bits, is_refused):
+    system = family([[2 ** (bits - 1)]], [[1]], time=Time.DISCRETE)
+    fault = "the dwell time is too long for such large numbers" if is_refused else None
+    assert scalars(1, 1, rate=HALF).find_misfit(system) == fault
+    # One mode that is never left has no power.
+    alone = replace(system, modes=system.modes[:1])
+    assert scalars(1, rate=HALF).find_misfit(alone) is None
+
+
+@pytest.mark.parametrize(("count", "is_refused"), [(2**20, False), (2**20 + 1, True)])
+def test_more_ways_than_can_be_checked(count, is_refused):
+    system = family([[-1]], [[-1]], switching=Switching(transitions=(("m0", "m1"),) * count))
+    fault = "there are too many switches to check" if is_refused else None
+    assert find_odd_switch(system) == fault
+
+
 @pytest.mark.parametrize(
     ("system", "limit", "value"),
     [
@@ -615,3 +643,47 @@ def test_a_file_without_pieces_has_one():
         read_evidence(fields, system)
     with pytest.raises(ValueError, match="do not share one denominator"):
         read_evidence({**fields, "functions": []}, system)
+
+
+@pytest.mark.parametrize(
+    ("rate", "time", "decays"),
+    [
+        ("1/9", Time.CONTINUOUS, True),
+        ("0", Time.CONTINUOUS, False),
+        ("-1/9", Time.CONTINUOUS, False),
+        ("8/9", Time.DISCRETE, True),
+        ("1", Time.DISCRETE, False),
+        ("10/9", Time.DISCRETE, False),
+        ("-8/9", Time.DISCRETE, False),
+    ],
+)
+def test_the_rate_is_one_of_decay(rate, time, decays):
+    system = family([["-1/2"]], [["-1/2"]], time=time)
+    evidence = scalars(1, 1, rate=Fraction(rate))
+    assert evidence.pieces == 1
+    fault = None if decays else "the claimed rate is not one of exponential decay"
+    assert evidence.find_misfit(system) == fault
+
+
+def test_a_switch_at_once_is_seen_after_one_that_comes_later():
+    rules = Switching(stays=(("m0", Stay(HALF)),))
+    system = family([[-1]], [[-1]], switching=rules)
+    raising = scalars(2, 1, rate=Fraction(1, 100))
+    assert raising.find_misfit(system) == "the switch from m1 to m0 raises the function"
+    other = replace(rules, stays=(("m1", Stay(HALF)),))
+    assert raising.find_misfit(replace(system, switching=other)) is None
+
+
+def test_no_power_is_formed_in_continuous_time(monkeypatch):
+    monkeypatch.setattr(f"{MODULE}.MAX_POWER_BITS", 0)
+    system = family([[-1]], [[-1]], switching=Switching(Fraction(4)))
+    assert scalars(1, 1, rate=HALF).find_misfit(system) is None
+
+
+@pytest.mark.parametrize(("gain", "raises"), [("4/3", False), ("-4/3", False), ("1.34", True)])
+def test_a_reset_counts_with_its_denominator(gain, raises):
+    """``16 - (4/3)^2 9`` is zero."""
+    rules = Switching(transitions=(("m0", "m1"),), resets=resets_between(("m0", "m1", [[gain]])))
+    system = family([[-1]], [[-1]], switching=rules)
+    fault = "the switch from m0 to m1 raises the function" if raises else None
+    assert scalars(16, 9, rate=HALF).find_misfit(system) == fault

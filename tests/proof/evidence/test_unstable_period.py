@@ -352,6 +352,18 @@ def test_the_most_work(monkeypatch):
 
 
 @pytest.mark.parametrize(
+    ("count", "fault"),
+    [
+        (5, "the signal uses modes that do not exist"),
+        (6, "the signal is too long for so many states"),
+    ],
+)
+def test_the_most_steps_of_a_hundred_states(count, fault):
+    system = family([[int(i == j) for j in range(100)] for i in range(100)], time=STEPS)
+    assert signal(*[(9, 1)] * count).find_misfit(system) == fault
+
+
+@pytest.mark.parametrize(
     ("dwell", "time", "fault"),
     [
         ("4096", SECONDS, None),
@@ -457,6 +469,8 @@ def test_claims():
     )
     first = UnstablePeriod((("m0", Fraction(1)), ("m1", Fraction(2))), 6).claim(ways)
     assert "(m0 for 1 steps, then reset 1 to m1, m1 for 2 steps)" in first
+    one = replace(ways, switching=Switching(resets=ways.switching.resets[:1]))
+    assert "(m0 for 1 steps, m1 for 2 steps)" in signal((0, 1), (1, 2)).claim(one)
     short = signal((0, "1/2"), (1, "1/4")).claim(branicky())
     assert "signal (m0 for 0.5 s, m1 for 0.25 s) makes" in short
     assert "so x' = A x is unstable" in short

@@ -19,7 +19,7 @@ from nrs_design.reporting.kinds.shared.run import (
     some_modes,
     until_small,
 )
-from nrs_design.simulation.contact import clipped, with_free_modes, worst_contact
+from nrs_design.simulation.contact import with_free_modes, worst_contact
 from nrs_design.simulation.switched import norms
 
 if TYPE_CHECKING:
@@ -48,7 +48,7 @@ def bouncing_run(
     system, hardest : SwitchedSystem
         All modes, and those that take part.
     norm : callable
-        Root of the function in contact.
+        Of states in contact and free, as `nrs_design.simulation.contact.clipped` gives it.
     initial : ndarray, shape (n,)
         Where the run begins, or opposite to it: in contact.
     rate : float
@@ -56,11 +56,10 @@ def bouncing_run(
     label : str
         Which norm it is, such as ``in the norm of Q``.
     """
-    own = clipped(norm)
     initial = initial if initial[-1] > 0 else -initial
     step, steps = horizon(with_free_modes(hardest), rate)
-    response = worst_contact(hardest, own, initial, step, steps)
-    response = until_small(response, norms(response, own))
+    response = worst_contact(hardest, norm, initial, step, steps)
+    response = until_small(response, norms(response, norm))
     deflection = response.state[:, -1]
     unit = "steps" if system.time is Time.DISCRETE else "s"
     return simulated(
@@ -70,7 +69,7 @@ def bouncing_run(
             f"{_RUN}{freely(system)}{some_modes(system, hardest)}",
             draw_run(
                 response,
-                norms(response, own),
+                norms(response, norm),
                 bound_line(response, rate, system.time, "proved bound, "),
                 with_free_modes(hardest),
                 f"|w(t)| / |w(0)| {label} [1]",

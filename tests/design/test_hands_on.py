@@ -1,0 +1,129 @@
+"""What a hand feels: transparency and effort, against the responses themselves."""
+
+import json
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from nrs_design.design.goals import ContactCorner, Requirement
+from nrs_design.design.hands_on import hand_effort, transparency
+from nrs_design.design.loops import Loops
+from nrs_design.design.measures import HAND_EFFORT, TRANSPARENCY
+from nrs_design.design.transfer import TransferFunction
+from nrs_design.models.contact import Elastic, KelvinVoigt
+from tests.support import ROOT, run
+
+HANDS_ON = ROOT / "docs/examples/hands-on.nrs.yaml"
+# G of the thesis, 6.1, and an ideal one.
+MOTION = TransferFunction((0.99, 56.82), (0.0351, 1.997, 56.82))
+BAND = 4 * np.pi
+
+
+def by_grid(k, b, Mt, Bt):
+    """Both measures by their responses, on a fine grid that leaves out zero."""
+    s = 1j * np.linspace(1e-6, BAND, 5_001)
+    G = np.polyval(MOTION.numerator, s) / np.polyval(MOTION.denominator, s)
+    Ze = k / s + b
+    L = G * Ze / (Mt * s + Bt)
+    return np.abs(L / (1 + L)).min(), np.abs(Ze / (1 + L)).max()
+
+
+def hundredths(low, high):
+    return st.integers(low, high).map(lambda n: n / 100)
+
+
+@settings(max_examples=25)
+@given(hundredths(2500, 9040), hundredths(0, 50), hundredths(0, 300), hundredths(400, 800))
+def test_against_the_responses(k, b, Mt, Bt):
+    """Hands of the thesis, and admittances as in table 7.1, all of which they leave stable."""
+    hand = KelvinVoigt(k, b)
+    requirement = Requirement(MOTION, (ContactCorner("hand", hand, True),), bandwidth=BAND)
+    lowest, highest = by_grid(k, b, Mt, Bt)
+    gains = np.array([Mt]), np.array([Bt])
+    assert requirement.values(TRANSPARENCY, *gains)[0][0] == pytest.approx(lowest, rel=1e-4)
+    assert requirement.values(HAND_EFFORT, *gains)[0][0] == pytest.approx(highest, rel=1e-4)
+
+
+def test_steady_motion_takes_the_damping():
+    """At rest L is infinite: the hand applies Bt/G(0) per velocity, and the robot follows."""
+    loops = Loops(np.array([[0.0, 0.0, 50.0]]), np.array([[1.0, 8.0, 0.0]]))
+    assert hand_effort(loops, Elastic(50.0), 1e-9) == pytest.approx([8.0])
+    assert transparency(loops, 1e-9) == pytest.approx([1.0])
+
+
+def test_a_spring_is_held_for_ever():
+    """With Y = s/(Mt s^2 + Bt s + Kt) no effort is enough for a lasting velocity."""
+    loops = Loops(np.array([[0.0, 0.0, 50.0]]), np.array([[1.0, 8.0, 10.0]]))
+    assert hand_effort(loops, Elastic(50.0), BAND)[0] == np.inf
+    assert transparency(loops, 1e-9) == pytest.approx([50 / 60])
+
+
+def test_unstable_is_the_worst():
+    loops = Loops(np.array([[0.0, 0.0, 50.0]]), np.array([[1.0, -8.0, 0.0]]))
+    assert hand_effort(loops, Elastic(50.0), BAND)[0] == np.inf
+    assert transparency(loops, BAND)[0] == 0.0
+
+
+def table(mass, damping):
+    """The example with an admittance of table 7.1."""
+    text = HANDS_ON.read_text().replace("{min: 0.1 kg*m^2, max: 3 kg*m^2}", f"{mass} kg*m^2")
+    text = text.replace("{min: 1 kg*m^2/s, max: 20 kg*m^2/s}", f"{damping} kg*m^2/s")
+    return text.replace("contact: losable", "contact: kept")
+
+
+def test_the_goals_of_a_hand_choose_the_gains(tmp_path):
+    """Those of the example are met, and the lightest admittance of table 7.1 misses them."""
+    result = run("optimize", HANDS_ON, "--json", cwd=tmp_path)
+    assert result.returncode == 0
+    (light,) = json.loads(result.stdout)["controllers"]
+    goals = {item["goal"]: item for item in light["goals"]}
+    assert goals["max_hand_effort"]["worst"] < 6
+    assert goals["max_hand_effort"]["unit"] == "N*m*s/rad"
+    assert goals["min_transparency"]["worst"] > 0.4
+    (tmp_path / "table.nrs.yaml").write_text(table(1, 4))
+    missed = run("optimize", "table.nrs.yaml", cwd=tmp_path)
+    assert missed.returncode == 1
+    assert "effort of the hand" in missed.stdout
+    assert "MISSED" in missed.stdout
+
+
+@pytest.mark.parametrize(("mass", "damping", "code"), [(1, 8, 0), (2, 8, 0), (2, 4, 1)])
+def test_admittances_of_table_7_1_and_a_hand_that_changes_its_grip(tmp_path, mass, damping, code):
+    """Each is stable for every constant hand; one with less damping is pumped by its changes."""
+    (tmp_path / "table.nrs.yaml").write_text(table(mass, damping))
+    result = run("certify-switching", "table.nrs.yaml", "--out", "ours.json", cwd=tmp_path)
+    assert result.returncode == code, result.stdout
+    assert ("Repeating the signal" in result.stdout) == (code == 1)
+
+
+def test_a_hand_that_lets_go_is_proved(tmp_path):
+    result = run("certify-switching", HANDS_ON, "--out", "ours.json", cwd=tmp_path)
+    assert result.returncode == 0
+    assert "contact lost and made again at any time" in result.stdout
+
+
+def test_only_for_impedance_control(tmp_path):
+    text = (ROOT / "specs/neuroboscope/force-limit.nrs.yaml").read_text()
+    (tmp_path / "force.nrs.yaml").write_text(text + "goals: {min_transparency: 0.5}\n")
+    result = run("check", "force.nrs.yaml", cwd=tmp_path)
+    assert result.returncode == 2
+    assert "min_transparency is for impedance controllers" in result.stderr
+
+
+def test_a_spring_in_the_admittance(tmp_path):
+    """Kt of 5 N m/rad beside a hand of 25: at rest it gives way by 25/30; the proof takes it up."""
+    text = HANDS_ON.read_text().replace("{min: 0.1 kg*m^2, max: 3 kg*m^2}", "0.1 kg*m^2")
+    text = text.replace("{min: 1 kg*m^2/s, max: 20 kg*m^2/s}", "4.6 kg*m^2/s\n    Kt: 5 N*m/rad")
+    text = text.replace("contact: losable", "contact: kept")
+    (tmp_path / "spring.nrs.yaml").write_text(text)
+    result = run("optimize", "spring.nrs.yaml", "--json", cwd=tmp_path)
+    assert result.returncode == 1
+    (light,) = json.loads(result.stdout)["controllers"]
+    goals = {item["goal"]: item for item in light["goals"]}
+    assert goals["max_hand_effort"]["worst"] is None
+    assert goals["min_transparency"]["worst"] < 24.9984 / 29.9984
+    assert (
+        run("certify-switching", "spring.nrs.yaml", "--out", "o.json", cwd=tmp_path).returncode == 0
+    )

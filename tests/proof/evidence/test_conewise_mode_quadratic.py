@@ -1,0 +1,206 @@
+"""Functions of each mode for contact and free motion: known answers, attacks, what is barred."""
+
+from dataclasses import replace
+from fractions import Fraction
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from nrs_design.proof.evidence import ConewiseModeQuadratic, ConewiseQuadratic, Shows
+from nrs_design.proof.second_opinion import agrees
+from nrs_design.proof.system import Contact, Mode, SwitchedSystem, Time
+from tests.proof.evidence.test_conewise_quadratic import ESCAPES, growth, losable, over
+from tests.proof.systems import bouncing, bouncing_in_steps, family, genuine, matrix
+from tests.proof.truth import holds
+from tests.support import is_definite_by_ldl
+
+Q = ((40, 20), (20, 60))
+# By hand, as for one function: all modes have the same.
+STEPS = ConewiseModeQuadratic(
+    (("m0", Q), ("m1", Q)), (("free", ((40,),)),), 0, Fraction(99, 100), (16,)
+)
+
+
+def broken(system: SwitchedSystem, candidate: ConewiseModeQuadratic) -> set[str]:
+    return {
+        failure.partition("rate ")[2]
+        for failure, form in candidate.forms(system)
+        if not is_definite_by_ldl(form)
+    }
+
+
+def test_a_bouncing_mass_is_proved():
+    system, proposed = genuine("conewise-mode-quadratic")
+    for evidence in (STEPS, proposed):
+        assert evidence.find_fault(system) is None
+        assert agrees(system, evidence)
+        assert holds(system, evidence)
+        assert evidence.shows is Shows.STABILITY
+        assert evidence.proved_rate(system) == evidence.rate
+        claim = evidence.claim(system)
+        assert "contact lost and made again at any time" in claim
+        assert "2 modes in contact and 1 mode of free motion" in claim
+        assert "as long as contact is kept" not in claim
+
+
+def test_one_function_written_for_every_mode_has_the_same_conditions():
+    system = bouncing_in_steps()
+    one = ConewiseQuadratic(Q, 0, Fraction(99, 100), (16,))
+    forms = {tuple(map(tuple, form)) for _, form in one.forms(system)}
+    every = {tuple(map(tuple, form)) for _, form in STEPS.forms(system)}
+    assert forms <= every
+
+
+# With the block of y as the function of free motion, a step there is one of two equal conditions.
+@pytest.mark.parametrize("where", [where for where in ESCAPES if "free motion" not in where])
+def test_each_condition_bars_a_family_that_grows(where):
+    """The families of one function, and that function for every mode."""
+    contact, free, rows = ESCAPES[where]
+    system = losable(contact, free, Time.DISCRETE)
+    whole = tuple(tuple(64 * entry for entry in row) for row in rows)
+    block = tuple(row[:-1] for row in whole[:-1])
+    faults = set()
+    for multiplier in (0, 16, 32, 64, 128, 256, 512):
+        candidate = ConewiseModeQuadratic(
+            (("m0", whole),), (("f", block),), 0, Fraction(98, 100), (multiplier,)
+        )
+        found = broken(system, candidate)
+        assert any(failure.startswith(where) for failure in found)
+        faults.add(frozenset(f.partition(",")[0].removesuffix(" at the surface") for f in found))
+    named = where.partition(",")[0]
+    assert frozenset({named}) in faults
+
+
+def test_a_step_of_free_motion_is_a_condition_of_its_own():
+    """The velocity doubles and the surface is never reached; contact would stop all motion."""
+    system = losable([[0, 0], [0, 0]], [[2, 0], [0, 1]], Time.DISCRETE)
+    candidate = ConewiseModeQuadratic(
+        (("m0", ((1, 0), (0, 1))),), (("f", ((100,),)),), 0, Fraction(99, 100), (0,)
+    )
+    assert broken(system, candidate) == {"in free motion, mode f, then f"}
+    assert "in free motion" in candidate.find_fault(system)
+
+
+def test_landing_at_the_surface_is_a_condition_of_its_own():
+    """A family that grows, with functions that keep all but that. Found by a random search."""
+    contact = over(16, (-16, 13, 11), (-15, 8, 12), (-17, 6, 7))
+    system = losable(contact, over(16, (-9, 4, 0), (13, 13, 0), (-14, 1, 16)), Time.DISCRETE)
+    whole = ((2195, -1026, -1348), (-1026, 876, 758), (-1348, 758, 988))
+    candidate = ConewiseModeQuadratic(
+        (("m0", whole),), (("f", ((738, 184), (184, 554))),), 0, Fraction(995, 1000), (0,)
+    )
+    assert broken(system, candidate) == {"where contact is made at the surface, mode f, then m0"}
+    assert "at the surface" in candidate.find_fault(system)
+    assert max(growth(system, whole, start) for start in range(40)) > 1000
+
+
+def test_steps_from_one_mode_to_another_are_conditions_of_their_own():
+    """Each mode decreases its own function, and alternating grows."""
+    free = Contact((Mode("f", matrix([[0, 0], [0, 1]])),))
+    pair = [["1/2", 2], [0, "1/2"]], [["1/2", 0], [2, "1/2"]]
+    system = replace(family(*pair, time=Time.DISCRETE), contact=free)
+    wide, tall = ((1, 0), (0, 100)), ((100, 0), (0, 1))
+    candidate = ConewiseModeQuadratic(
+        (("m0", wide), ("m1", tall)), (("f", ((1,),)),), 0, Fraction(9, 10), (0,)
+    )
+    assert broken(system, candidate) == {"in mode m0, then m1", "in mode m1, then m0"}
+    assert "then m" in candidate.find_fault(system)
+    # The product of the two has the trace 4.5, above two, and positive entries: contact is kept.
+
+
+@pytest.mark.parametrize(
+    ("changes", "fault"),
+    [
+        ({"touching": STEPS.touching[:1]}, "one function for each mode"),
+        ({"touching": STEPS.touching[::-1]}, "one function for each mode"),
+        ({"flying": ()}, "one function for each mode"),
+        ({"touching": (("m0", ((1,),)), STEPS.touching[1])}, "not a 2 x 2"),
+        ({"flying": (("free", Q),)}, "not a 1 x 1"),
+        ({"touching": (("m0", ((40, 20), (19, 60))), STEPS.touching[1])}, "not symmetric"),
+        ({"flying": (("free", ((-40,),)),)}, "not symmetric and positive"),
+        ({"rate": Fraction(0)}, "exponential decay"),
+        ({"rate": Fraction(1)}, "exponential decay"),
+        ({"multipliers": ()}, "multiplier"),
+        ({"multipliers": (-1,)}, "multiplier"),
+    ],
+)
+def test_misfits(changes, fault):
+    assert fault in replace(STEPS, **changes).find_fault(bouncing_in_steps())
+
+
+def test_what_is_not_covered_is_refused():
+    steps = bouncing_in_steps()
+    assert "how contact is lost" in STEPS.find_fault(replace(steps, contact=None))
+    pulled = replace(steps, contact=Contact(steps.contact.free, (matrix([[1, 1]]),)))
+    assert "could pull" in STEPS.find_fault(pulled)
+    assert "discrete time" in STEPS.find_fault(bouncing())
+
+
+def test_equal_modes_repeat_their_functions():
+    system, evidence = genuine("conewise-mode-quadratic")
+    again = tuple(replace(mode, name=f"{mode.name} again") for mode in system.modes)
+    twice = replace(system, modes=(*system.modes, *again))
+    assert evidence.spread(system, twice).find_fault(twice) is None
+
+
+def test_numbers_survive_a_file():
+    system, evidence = genuine("conewise-mode-quadratic")
+    fields = evidence.to_fields()
+    assert ConewiseModeQuadratic.from_fields(fields, system) == evidence
+    with pytest.raises(ValueError, match="how contact is lost"):
+        ConewiseModeQuadratic.from_fields(fields, replace(system, contact=None))
+    fields["flying"][0]["Q"]["denominator_log2"] += 1
+    with pytest.raises(ValueError, match="one denominator"):
+        ConewiseModeQuadratic.from_fields(fields, system)
+
+
+@settings(deadline=None, max_examples=60)
+@given(
+    st.lists(st.integers(-6, 6), min_size=8, max_size=8),
+    st.tuples(st.integers(-7, 7), st.integers(-8, 8)),
+    st.lists(st.integers(-3, 3), min_size=2, max_size=2),
+    st.lists(st.integers(1, 9), min_size=5, max_size=5),
+    st.integers(0, 3),
+    st.sampled_from([Fraction(1, 2), Fraction(99, 100)]),
+)
+def test_against_the_definition(contact, free, sides, diagonal, multiplier, rate):
+    """The definition in fractions, decided by another elimination."""
+    a, b, c, d, e, f, g, h = (Fraction(entry, 8) for entry in contact)
+    ends = [[a, b], [c, d]], [[e, f], [g, h]]
+    motion = Mode("f", matrix([[Fraction(free[0], 8), 0], [Fraction(free[1], 8), 1]]))
+    system = replace(family(*ends, time=Time.DISCRETE), contact=Contact((motion,)))
+    p, q, r, s, t = diagonal
+    functions = ("m0", ((p, sides[0]), (sides[0], q))), ("m1", ((r, sides[1]), (sides[1], s)))
+    candidate = ConewiseModeQuadratic(functions, (("f", ((t,),)),), 0, rate, (multiplier,))
+    assert (candidate.find_fault(system) is None) == holds(system, candidate)
+
+
+@given(st.fractions(0, 1), st.fractions(0, 1), st.fractions(0, 1))
+def test_combinations_of_modes_keep_the_functions_that_belong_to_them(now, then, depth):
+    """A stiffness between its ends: it decreases all the same, landing at any depth."""
+    system, evidence = genuine("conewise-mode-quadratic")
+    ends = [mode.A.fractions() for mode in system.modes]
+    free = system.contact.free[0].A.fractions()
+
+    def mixed(share, first, second):
+        return [
+            [(1 - share) * x + share * y for x, y in zip(*rows, strict=True)]
+            for rows in zip(first, second, strict=True)
+        ]
+
+    def V(form, x):
+        return sum(a * b * y for a, row in zip(x, form, strict=True)
+                   for b, y in zip(row, x, strict=True))  # fmt: skip
+
+    (_, Q0), (_, Q1) = evidence.touching
+    (_, R), square = evidence.flying[0], evidence.rate**2
+    A, before, after = mixed(now, *ends), mixed(now, Q0, Q1), mixed(then, Q0, Q1)
+    for v in (Fraction(-3), Fraction(-1), Fraction(0), Fraction(2)):
+        x = [v, Fraction(1)]
+        moved = [sum(a * b for a, b in zip(row, x, strict=True)) for row in A]
+        value = V(after, moved) if moved[1] > 0 else V(R, moved[:1])
+        assert value < square * V(before, x)
+        flown = [free[0][0] * v, max(free[1][0] * v, Fraction(0)) * depth]
+        if v:
+            assert V(after, flown) < square * V(R, [v])

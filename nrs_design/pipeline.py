@@ -187,6 +187,16 @@ def run_analysis(designed: Designed) -> DesignAnalysis:
         return analyze_design(designed.spec, designed.plant, designed.design)
 
 
+def find_relief(result: Result) -> tuple[str, ...]:
+    """Return what would hold of a refuted design whose contacts are too stiff for its gains."""
+    designed = result.designed
+    if designed is None or result.certification.verdict is not Verdict.REFUTED:
+        return ()
+    from nrs_design.design.analysis import too_stiff
+
+    return tuple(map(str, too_stiff(designed.spec, designed.plant, designed.design)))
+
+
 @dataclass(frozen=True, slots=True)
 class Overrides:
     """What a command sets about the search, over what the spec says; None leaves it.

@@ -89,6 +89,7 @@ def certify_switching(
     from nrs_design.ownership import check_certificate, origin_of
     from nrs_design.pipeline import (
         Overrides,
+        find_relief,
         limits_of,
         run_certification,
         run_loop_margins,
@@ -124,12 +125,15 @@ def certify_switching(
         write_output(path, dump(result.certificate, origin_of(spec, path)), replaces=CERTIFICATE)
     written = None if result.certificate is None else path
     if as_json:
-        told = {"gradient_history": history} if history else {}
+        told: dict[str, Any] = {"gradient_history": history} if history else {}
+        told["relief"] = list(find_relief(result))
         content = summary(result, written) | margins_summary(box, dwell) | told
         content |= {} if loop is None else {"loop_margins": loop_summary(loop)}
         print_json("certify-switching", content)
     elif not quiet:
         _print(result, written, verbose=verbose)
+        for relief in find_relief(result):
+            say(f"  {relief}")
         _print_margin(box)
         print_loop_margins(loop)
         _print_dwell(dwell)

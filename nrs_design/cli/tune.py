@@ -15,7 +15,7 @@ from nrs_design.cli.tables import print_table
 
 if TYPE_CHECKING:
     from nrs_design.controllers.controller_design import ControllerDesign
-    from nrs_design.design.analysis import DesignAnalysis
+    from nrs_design.design.analysis import DesignAnalysis, ForceAnalysis
 
 MOTION_COLUMNS = (
     "motion PD",
@@ -42,6 +42,8 @@ PARALLEL_COLUMNS = (
     "Ki\nrad/(N m s)",
     "unstable for k\nN m/rad",
 )
+
+OFFSETS = {"reference": "reference of the motion loop", "measured": "measured position"}
 
 
 def tune(spec: SpecFile, as_json: Json = False, quiet: Quiet = False) -> None:
@@ -98,9 +100,16 @@ def _summary(design: ControllerDesign, analysis: DesignAnalysis) -> dict[str, An
                 "poles": _pairs(item.loop.poles),
                 "damping_ratio": item.loop.damping_ratio,
                 "natural_frequency": item.loop.natural_frequency,
-                "steady_state_ratio": item.loop.steady_state_ratio,
+                "offset": item.approach.offset,
+                "steady_state_ratio": item.steady_error,
+                "peak_torque": item.peak,
                 "goals": goals_summary(item),
-                "units": {"Kp": "rad/(N*m)", "stiffness": "N*m/rad", "poles": "1/s"},
+                "units": {
+                    "Kp": "rad/(N*m)",
+                    "stiffness": "N*m/rad",
+                    "poles": "1/s",
+                    "peak_torque": "N*m",
+                },
             }
             for item in analysis.force
         ],
@@ -125,6 +134,9 @@ def _print(name: str, design: ControllerDesign, analysis: DesignAnalysis) -> Non
         say("The spec states G itself: the poles are those of that G, not of the PD gains.")
     if analysis.force:
         print_table(f"{name}: force loop", FORCE_COLUMNS, _force_rows(analysis))
+        for item in analysis.force:
+            if item.peak is not None:
+                say(_offset_text(item))
     if analysis.parallel:
         print_table(f"{name}: parallel control", PARALLEL_COLUMNS, _parallel_rows(analysis))
 
@@ -153,6 +165,15 @@ def _motion_rows(design: ControllerDesign, analysis: DesignAnalysis) -> list[lis
     ]
 
 
+def _offset_text(item: ForceAnalysis) -> str:
+    velocity, force = math.degrees(item.approach.velocity), item.approach.force
+    return (
+        f"{item.name}: X_i is the {OFFSETS[item.approach.offset]} at the switch. Arriving at "
+        f"{velocity:.4g} deg/s, the torque peaks at {item.peak:.3f} N m and settles "
+        f"{100 * item.steady_error:.2f} % off {force:.4g} N m, for a switch exactly there."
+    )
+
+
 def _force_rows(analysis: DesignAnalysis) -> list[list[str]]:
     return [
         [
@@ -162,7 +183,7 @@ def _force_rows(analysis: DesignAnalysis) -> list[list[str]]:
             _poles(item.loop.poles),
             f"{item.loop.damping_ratio:.4f}",
             f"{item.loop.natural_frequency:.2f} rad/s",
-            f"{item.loop.steady_state_ratio:.3f}",
+            f"{item.steady_error:.3f}",
         ]
         for item in analysis.force
     ]

@@ -12,6 +12,7 @@ from nrs_design.controllers.laws import LAWS, ProportionalDerivative
 from nrs_design.controllers.sensor import build_sensor
 from nrs_design.errors import CertificateError
 from nrs_design.spec import ControllerSpec, IdleStatesSpec, InteractionDesignSpec, parse_exact
+from nrs_design.spec.controllers import contact_names
 
 MOTION = ProportionalDerivative.name
 
@@ -76,7 +77,7 @@ def _controller(
     law = law_type.of(values)
     if fault := law.find_fault(spec):
         raise CertificateError(f"controller {name}: {fault}")
-    return Controller(name, law, spec.environment, spec.contacts)
+    return Controller(name, law, spec.environment, contact_names(spec.contacts))
 
 
 def _numbers(

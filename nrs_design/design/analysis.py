@@ -112,6 +112,25 @@ def analyze_design(
     )
 
 
+def too_stiff(
+    spec: InteractionDesignSpec, plant: Plant, design: ControllerDesign
+) -> Iterator[Doubt]:
+    """Yield the contacts that are too stiff for their controllers, and what would hold.
+
+    It needs no margins, so a nominal loop may be unstable.
+
+    Parameters
+    ----------
+    spec, plant, design
+        As for `analyze_design`.
+    """
+    task = Task(spec, plant, plant.motion_loop(design.motion.Kp, design.motion.Kd))
+    for controller in design.controllers:
+        find = LAW_DESIGNS[controller.law.name].too_stiff
+        if find is not None:
+            yield from find(task, spec.controllers[controller.name], controller)
+
+
 def _measured(task: Task, design: ControllerDesign) -> Iterator[AbstractControllerAnalysis]:
     for kind, law in LAW_DESIGNS.items():
         for controller in design.controllers:

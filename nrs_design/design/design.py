@@ -11,6 +11,7 @@ from nrs_design.design.root_locus import PdDesign, design_pd
 from nrs_design.errors import DesignError
 from nrs_design.models.plant import Plant
 from nrs_design.spec import InteractionDesignSpec
+from nrs_design.spec.controllers import contact_names
 
 
 def design_controllers(spec: InteractionDesignSpec, plant: Plant) -> ControllerDesign:
@@ -34,7 +35,9 @@ def design_controllers(spec: InteractionDesignSpec, plant: Plant) -> ControllerD
     for name, given in spec.controllers.items():
         with naming(name):
             law, optimum = LAW_DESIGNS[given.type].choose(task, given)
-        controllers.append(Controller(name, law, given.environment, given.contacts, optimum))
+        controllers.append(
+            Controller(name, law, given.environment, contact_names(given.contacts), optimum)
+        )
     return ControllerDesign(motion, tuple(controllers), task.sensor)
 
 

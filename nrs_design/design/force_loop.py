@@ -35,7 +35,8 @@ class ForceLoop:
     natural_frequency : float
         Of the dominant pair, rad/s.
     steady_state_ratio : float
-        Steady force error over the commanded force, ``1/(1 + Kp k G(0))``.
+        Steady force error over the commanded force, ``1/(1 + Kp k G(0))``, of the law without
+        offset.
     """
 
     gain: float

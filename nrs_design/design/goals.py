@@ -15,6 +15,7 @@ from itertools import product
 
 import numpy as np
 
+from nrs_design.design.force_limit import NO_OFFSET, Approach, steady_force_error
 from nrs_design.design.hands_on import hand_effort, transparency
 from nrs_design.design.impedance import ImpedanceLoop
 from nrs_design.design.loops import Loops, extremes, multiply
@@ -33,7 +34,7 @@ from nrs_design.design.measures import (
     TRANSPARENCY,
     Measure,
 )
-from nrs_design.design.transfer import FloatArray, TransferFunction, static_gain
+from nrs_design.design.transfer import FloatArray, TransferFunction
 from nrs_design.models.contact import AbstractLinearLaw
 from nrs_design.models.contact.environment import Environment
 
@@ -200,7 +201,10 @@ def achieve_impedance(
 
 
 def achieve_force(
-    requirement: Requirement, measures: tuple[Measure, ...], gain: float
+    requirement: Requirement,
+    measures: tuple[Measure, ...],
+    gain: float,
+    approach: Approach = NO_OFFSET,
 ) -> tuple[Achieved, ...]:
     """Return the worst value of every measure of one force gain.
 
@@ -212,12 +216,14 @@ def achieve_force(
         What is measured.
     gain : float
         In rad/(N m).
+    approach : Approach
+        How the limit is reached, for the steady error; by default there is no offset.
     """
     goals = dict(requirement.goals)
     found = []
     for measure in measures:
         values = {
-            corner.label: _force_value(requirement.motion, corner, measure, gain)
+            corner.label: _force_value(requirement.motion, corner, measure, gain, approach)
             for corner in requirement.corners
             if corner.home or measure is not FORCE_ERROR
         }
@@ -286,7 +292,11 @@ def _impedance_loops(
 
 
 def _force_value(
-    motion: TransferFunction, corner: ContactCorner, measure: Measure, gain: float
+    motion: TransferFunction,
+    corner: ContactCorner,
+    measure: Measure,
+    gain: float,
+    approach: Approach,
 ) -> float:
     """Return a measure of the force loop ``Kp k G`` (thesis 6.33) in one contact."""
     loop_gain = gain * corner.contact.stiffness
@@ -295,7 +305,9 @@ def _force_value(
     loops = Loops(numerator, np.array([motion.denominator]))
     if measure is not FORCE_ERROR:
         return float(_margin(loops, measure)[0])
-    return 1 / (1 + loop_gain * static_gain(motion)) if loops.stable[0] else np.inf
+    if not loops.stable[0]:
+        return np.inf
+    return steady_force_error(motion, corner.contact.stiffness, gain, approach)
 
 
 def _margin(loops: Loops, measure: Measure) -> FloatArray:

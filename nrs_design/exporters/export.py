@@ -99,5 +99,5 @@ def _certified_by(file: Path, designed: Designed) -> Export:
 def _proved(
     spec: InteractionDesignSpec, design: ControllerDesign, certificate: Certificate
 ) -> Export:
-    record = build_record(design, certificate, spec.idle_states)
+    record = build_record(design, certificate, spec.idle_states, spec.offset)
     return Export("proved", record, certificate)

@@ -20,6 +20,7 @@ from nrs_design.errors import CertificateError
 from nrs_design.proof.evidence.fields import rate_text
 from nrs_design.proof.system import Time
 from nrs_design.spec import IdleStatesSpec
+from nrs_design.spec.controllers import Offset
 
 Sha256 = Annotated[str, Field(pattern="^[0-9a-f]{64}$")]
 
@@ -130,13 +131,18 @@ class ExportRecord(_Frozen):
     controllers: tuple[CompliantController, ...] = Field(min_length=1)
     # Only where impedance controllers stand beside others.
     idle_states: IdleStates | None = None
+    # Only where force controllers have one.
+    offset: Literal["reference", "measured"] | None = None
     # Only where the force passes through one on its way to the controllers.
     force_filter: ForceFilter | None = None
     proof: Proof
 
 
 def build_record(
-    design: ControllerDesign, certificate: Certificate, idle: IdleStatesSpec | None
+    design: ControllerDesign,
+    certificate: Certificate,
+    idle: IdleStatesSpec | None,
+    offset: Offset = "none",
 ) -> ExportRecord:
     """Put a design and its proof together.
 
@@ -148,6 +154,8 @@ def build_record(
         Made or re-checked just now; it must prove stability of exactly these gains.
     idle : IdleStatesSpec or None
         Of the spec that the certificate is about.
+    offset : {"none", "reference", "measured"}
+        Where its force controllers take X_i from.
 
     Raises
     ------
@@ -176,6 +184,7 @@ def build_record(
             for controller in design.controllers
         ),
         idle_states=None if idle is None else _idle_states(idle),
+        offset=None if offset == "none" else offset,
         force_filter=_force_filter(design.sensor.filter),
         proof=Proof.model_validate(
             {

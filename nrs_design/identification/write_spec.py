@@ -15,14 +15,18 @@ from nrs_design.identification.datasets import Source
 from nrs_design.identification.delay import DelayIdentification
 from nrs_design.identification.statistics import Estimate
 from nrs_design.identification.tissue import TissueIdentification
+from nrs_design.identification.tissue.tangent import Tangent
 from nrs_design.identification.tool import ToolIdentification
-from nrs_design.models.contact import LINEAR_LAWS, AbstractLinearLaw
+from nrs_design.models.contact import LINEAR_LAWS, AbstractLinearLaw, HuntCrossley
 from nrs_design.spec import InteractionDesignSpec, LoadedSpec, parse_spec
 from nrs_design.spec.fields import MAX_TITLE
+from nrs_design.spec.preload import FINEST, LARGEST, LEAST
 from nrs_design.spec.provenance import MAX_DOUBTS
 from nrs_design.spec.sampling import LONGEST_DELAY
 
 _DIGITS = 6
+# What only a power law has in a spec.
+_POWER_KEYS = ("exponent", "about", "preload")
 # A longer text is a sentence, and no quantity.
 _SENTENCE = 40
 
@@ -55,7 +59,7 @@ def merge_tissue(
     if not isinstance(law, AbstractLinearLaw):
         raise DataError(
             f"the chosen law, {law.name}, has no place in a spec",
-            remedy="linearize it about a preload by --preload, or choose one that has a place: "
+            remedy="say by --preload at which deflections, or choose one that has a place: "
             f"--model {' or --model '.join(LINEAR_LAWS)}",
         )
     if model.doubts and not all(map(_is_limited, ranges)):
@@ -67,11 +71,17 @@ def merge_tissue(
     name = _environment(spec, environment, loaded.path)
     document = _Document(loaded)
     node = document.root["environments"][name]
-    document.put(node, "model", law.name)
-    units = law.units(rotational=found.rotational)
-    for key, unit, estimate in zip(law.keys, units, ranges, strict=True):
-        _put_range(document, node, key, _ranged(estimate, unit, key))
-    for key in {key for other in LINEAR_LAWS.values() for key in other.keys}.difference(law.keys):
+    power = found.tangent is not None and has_place(found.tangent)
+    if found.tangent is not None and power:
+        kept = _put_power_law(document, node, found.tangent, law, rotational=found.rotational)
+    else:
+        document.put(node, "model", law.name)
+        units = law.units(rotational=found.rotational)
+        for key, unit, estimate in zip(law.keys, units, ranges, strict=True):
+            _put_range(document, node, key, _ranged(estimate, unit, key))
+        kept = law.keys
+    known = {key for other in LINEAR_LAWS.values() for key in other.keys}
+    for key in known.union(_POWER_KEYS).difference(kept):
         document.drop(node, key)
     if found.rotational:
         document.drop(node, "lever_arm")
@@ -84,13 +94,49 @@ def merge_tissue(
             remedy="give --lever-arm '0.24 m'",
         )
     document.put(node, "range_covers", model.coverage)
-    if found.tangent is None:
+    if found.tangent is None or power:
         document.drop(node, "linearized_about")
     else:
         document.put(node, "linearized_about", _preload(found))
     document.put(node, "provenance", [_provenance(record.source) for record in found.records])
     _put_doubts(document, node, found.caveats)
     return document.text()
+
+
+def has_place(about: Tangent) -> bool:
+    """Tell whether a power law has a place in a spec as it is: its exponent is at least 1."""
+    low, high = _exponent_range(about.power[2])
+    return low >= LEAST and high <= LARGEST
+
+
+def _exponent_range(estimate: Estimate) -> tuple[Decimal, Decimal]:
+    """Round the ends of the interval of an exponent outwards, as finely as a spec holds them."""
+    step = Decimal(1) / FINEST
+    if not _is_limited(estimate):
+        return Decimal(0), Decimal("Infinity")
+    return (
+        Decimal(estimate.low).quantize(step, ROUND_FLOOR),
+        Decimal(estimate.high).quantize(step, ROUND_CEILING),
+    )
+
+
+def _put_power_law(
+    document: _Document, node: Any, about: Tangent, law: AbstractLinearLaw, *, rotational: bool
+) -> tuple[str, ...]:
+    """Write a Hunt-Crossley law by its tangent; return the keys that it has."""
+    document.put(node, "model", HuntCrossley.name)
+    units = law.units(rotational=rotational)
+    *tangent, exponent = about.power
+    for key, unit, estimate in zip(law.keys, units, tangent, strict=True):
+        _put_range(document, node, key, _ranged(estimate, unit, key))
+    low, high = _exponent_range(exponent)
+    nominal = min(max(round(Decimal(exponent.value), 3), low), high)
+    written = {"nominal": str(nominal), "range": [str(low), str(high)]}
+    _put_range(document, node, "exponent", written)
+    length = "rad" if rotational else "m"
+    document.put(node, "about", f"{about.about!r} {length}")
+    document.put(node, "preload", [f"{end!r} {length}" for end in (about.low, about.high)])
+    return (*law.keys, *_POWER_KEYS)
 
 
 def _preload(found: TissueIdentification) -> str:

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Collection, Iterator
 from dataclasses import dataclass, replace
 from fractions import Fraction
 
 from nrs_design.models.actuator import Actuator, ActuatorRanges
 from nrs_design.models.contact import LINEAR_LAWS
-from nrs_design.models.contact.environment import Environment
+from nrs_design.models.contact.environment import Environment, touch_at_once
 from nrs_design.models.motion_loop import MotionLoop, close_motion_loop
 from nrs_design.spec import EnvironmentSpec, InteractionDesignSpec, RangedQuantity
 from nrs_design.spec.interval import Interval
@@ -23,7 +23,7 @@ class Plant:
     actuator : Actuator
         Identified model.
     environments : tuple of Environment
-        In the order of the spec.
+        In the order of the spec, and after them those that are several of them, touched at once.
     given_loop : MotionLoop or None
         The closed motion loop, if the spec states it.
     actuator_ranges : ActuatorRanges or None
@@ -69,7 +69,9 @@ class Plant:
         """
         if scale == 1:
             return self
-        environments = (e.scaled(scale) if e.name in touched else e for e in self.environments)
+        environments = (
+            e.scaled(scale) if e.parts or e.name in touched else e for e in self.environments
+        )
         ranges = self.actuator_ranges and self.actuator_ranges.scaled(scale)
         return replace(self, environments=tuple(environments), actuator_ranges=ranges)
 
@@ -77,9 +79,6 @@ class Plant:
 def build_plant(spec: InteractionDesignSpec) -> Plant:
     """Convert the plant of a spec to exact SI numbers, environments as the pivot sees them."""
     ranges = ActuatorRanges(_interval(spec.actuator.gain), _interval(spec.actuator.time_constant))
-    environments = tuple(
-        _environment(name, environment) for name, environment in spec.environments.items()
-    )
     stated = spec.motion_loop.transfer_function
     loop = None
     if stated is not None:
@@ -87,11 +86,25 @@ def build_plant(spec: InteractionDesignSpec) -> Plant:
     load = spec.actuator.load_inertia
     return Plant(
         ranges.nominal,
-        environments,
+        tuple(build_environments(spec)),
         loop,
         None if ranges.fixed else ranges,
         None if load is None else load.exact,
     )
+
+
+def build_environments(spec: InteractionDesignSpec) -> Iterator[Environment]:
+    """Yield every environment of a spec, then what several are that are touched at once."""
+    known = {name: _environment(name, written) for name, written in spec.environments.items()}
+    yield from known.values()
+    contacts = (contact for c in spec.controllers.values() for contact in c.contacts)
+    for contact in dict.fromkeys(contacts):
+        if not isinstance(contact, str):
+            parts = tuple(known[name] for name in contact)
+            losable = spec.contact != "kept" and all(
+                spec.environments[n].is_losable for n in contact
+            )
+            yield touch_at_once(parts, losable=losable)
 
 
 def _interval(written: RangedQuantity) -> Interval:
@@ -99,5 +112,6 @@ def _interval(written: RangedQuantity) -> Interval:
 
 
 def _environment(name: str, spec: EnvironmentSpec) -> Environment:
-    law, turned = LINEAR_LAWS[spec.model], spec.exact_at_pivot()
-    return Environment(name, law, tuple(turned[key] for key in law.keys))
+    law, turned = LINEAR_LAWS[spec.linear_model], spec.linear_at_pivot()
+    ranges = tuple(turned[key] for key in law.keys)
+    return Environment(name, law, ranges, preloaded=spec.preloaded)

@@ -2,9 +2,19 @@
 
 from __future__ import annotations
 
+import math
+
+from nrs_design.design.force_limit import Approach, peak_force, steady_force_error
 from nrs_design.design.force_loop import force_loop_response
 from nrs_design.reproduction import thesis
-from nrs_design.reproduction.comparison import Comparison, Tolerance, misprint, reproduced
+from nrs_design.reproduction.comparison import (
+    Comparison,
+    Tolerance,
+    derived,
+    misprint,
+    reproduced,
+)
+from nrs_design.spec.controllers import Offset
 
 
 def rows() -> tuple[Comparison, ...]:
@@ -46,4 +56,45 @@ def rows() -> tuple[Comparison, ...]:
             right="54.9",
             note=note,
         ),
+        *_offset_rows(),
     )
+
+
+def _offset_rows() -> tuple[Comparison, Comparison]:
+    """Recompute the force limit of 6.3.3.3 for both readings of X_i in 6.41."""
+    speeds = (3.0, 5.0, 8.0)
+    peak, left = _limited("reference", 5.0)
+    positions = [_limited("measured", speed) for speed in speeds]
+    return (
+        derived(
+            "peak torque, steady error; X_i the reference at the switch, 5 deg/s",
+            "6.41",
+            (peak, left),
+            "N m, %",
+            printed="0.35 measured in phi; 2 in phi and 12 in psi",
+            right=("0.3477", "11.84"),
+            tolerance=Tolerance(2e-4),
+            note="Kp 0.02, k_soft, Fd 0.3 N m. The error is k v/(Kv (1 + Kp k) Fd): it grows with "
+            f"the speed, and is 2 % at {10 / left:.2f} deg/s. Without X_i it would be 53.7 %.",
+        ),
+        derived(
+            "peak torque at 3, 5, 8 deg/s, steady error; X_i the measured position at the switch",
+            "6.41",
+            (*(force for force, _ in positions), max(error for _, error in positions)),
+            "N m, %",
+            printed="an integrator is held to be needed",
+            right=("0.3091", "0.3152", "0.3243", "0"),
+            tolerance=Tolerance(2e-4, absolute=1e-9),
+            note="No error is left at any speed, and no integrator is needed. The modes with the "
+            "resets of X_i are proved stable: specs/neuroboscope/force-limit-offset.nrs.yaml.",
+        ),
+    )
+
+
+def _limited(offset: Offset, speed: float) -> tuple[float, float]:
+    """Return the peak torque in N m and the steady error in %, arriving at a speed in deg/s."""
+    approach = Approach(offset, math.radians(speed), 0.3)
+    at = (thesis.EXACT_LOOP, float(thesis.SOFT), float(thesis.FORCE_GAIN), approach)
+    peak = peak_force(*at)
+    assert peak is not None
+    return peak, 100 * steady_force_error(*at)

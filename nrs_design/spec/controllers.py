@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from fractions import Fraction
 from typing import Annotated, ClassVar, Literal
 
 from pydantic import ConfigDict, Discriminator, Field, field_validator, model_validator
 
 from nrs_design.spec.faults import fault
-from nrs_design.spec.fields import Label, Positive, UnitFraction, Weight
+from nrs_design.spec.fields import Contact, Label, Positive, TouchedAtOnce, UnitFraction, Weight
 from nrs_design.spec.gain_fields import DampingGain, GainSpec, InertiaGain, SpringGain
 from nrs_design.spec.goals import GoalsSpec
 from nrs_design.spec.model import SpecModel
@@ -16,7 +17,10 @@ from nrs_design.spec.parameters import Switch
 from nrs_design.spec.quantity_fields import Decay, ForceGain, Impedance, IntegralForceGain
 
 _ENVIRONMENT = "name of the environment that the gains are designed for"
-_CONTACTS = "names of all environments touched while this controller is active; default: its own"
+_CONTACTS = (
+    "names of all environments touched while this controller is active; default: its own. A list "
+    "within it, such as [[soft, stiff]], is touched at once: forces add up"
+)
 
 _GOALS = "goals of this controller; they replace the spec's own, key by key"
 
@@ -28,13 +32,38 @@ _GAIN_RANGE = (
 
 # What the motion loop gets from a controller.
 Command = Literal["velocity", "position"]
+# Where the offset X_i of thesis 6.41 is taken from, at every switch.
+Offset = Literal["none", "reference", "measured"]
 
 
-def _distinct(contacts: tuple[str, ...]) -> tuple[str, ...]:
-    for index, name in enumerate(contacts):
-        if name in contacts[:index]:
-            raise fault(f"{name!r} is listed twice", "list each environment once", index)
+def _distinct(contacts: tuple[Contact, ...]) -> tuple[Contact, ...]:
+    known: list[frozenset[str]] = []
+    for index, contact in enumerate(contacts):
+        names = frozenset(names_in(contact))
+        if names in known:
+            raise fault(f"{contact_name(contact)!r} is listed twice", "list it once", index)
+        known.append(names)
     return contacts
+
+
+def names_in(contact: Contact) -> tuple[str, ...]:
+    """Return the environments that are touched in a contact: one, or several at once."""
+    return (contact,) if isinstance(contact, str) else contact
+
+
+def contact_name(contact: Contact) -> str:
+    """Return the name of a contact, such as ``soft`` or ``soft+stiff``; no label has a plus."""
+    return "+".join(names_in(contact))
+
+
+def contact_names(contacts: Sequence[Contact]) -> tuple[str, ...]:
+    """Return the names of contacts."""
+    return tuple(map(contact_name, contacts))
+
+
+def touched_in(contacts: Sequence[Contact]) -> tuple[str, ...]:
+    """Return every environment of some contacts, alone or with others, once."""
+    return tuple(dict.fromkeys(name for contact in contacts for name in names_in(contact)))
 
 
 class CostWeights(SpecModel):
@@ -79,7 +108,7 @@ class ImpedanceControllerSpec(AbstractControllerSpec):
 
     type: Literal["impedance"] = Field(description="impedance: admittance Y = 1/(Mt s + Bt + Kt/s)")
     environment: Label = Field(description=_ENVIRONMENT)
-    contacts: tuple[Label, ...] = Field(
+    contacts: tuple[TouchedAtOnce, ...] = Field(
         default_factory=lambda data: (data.get("environment", ""),),
         min_length=1,
         description=_CONTACTS,
@@ -146,9 +175,9 @@ class ForceControllerSpec(AbstractControllerSpec):
     )
     commands: ClassVar[Command] = "position"
 
-    type: Literal["force"] = Field(description="force: u = Kp (Fd - F)")
+    type: Literal["force"] = Field(description="force: u = Kp (Fd - F) + X_i, see offset")
     environment: Label = Field(description=_ENVIRONMENT)
-    contacts: tuple[Label, ...] = Field(
+    contacts: tuple[TouchedAtOnce, ...] = Field(
         default_factory=lambda data: (data.get("environment", ""),),
         min_length=1,
         description=_CONTACTS,
@@ -160,6 +189,12 @@ class ForceControllerSpec(AbstractControllerSpec):
     damping_ratio: UnitFraction | None = Field(
         default=None,
         description="wanted damping ratio of the dominant poles, in (0, 1), no unit; chooses Kp",
+    )
+    offset: Offset = Field(
+        default="none",
+        description="offset X_i that is added to the command (thesis 6.41), taken at every switch "
+        "of controllers and held until the next: the reference of the motion loop at the switch, "
+        "or the measured position; none: u = Kp (Fd - F) alone",
     )
     goals: GoalsSpec | None = Field(default=None, description=_GOALS)
 
@@ -207,7 +242,7 @@ class PositionControllerSpec(AbstractControllerSpec):
 
     commands: ClassVar[Command] = "position"
     environment: ClassVar[str | None] = None
-    contacts: ClassVar[tuple[str, ...]] = ()
+    contacts: ClassVar[tuple[Contact, ...]] = ()
     goals: ClassVar[GoalsSpec | None] = None
 
     type: Literal["position"] = Field(description="position: the motion loop alone, no contact")

@@ -8,8 +8,12 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from nrs_design.proof.text import exact_text
 from nrs_design.spec import kinds
-from nrs_design.spec.controllers import ControllerSpec, ImpedanceControllerSpec
-from nrs_design.spec.environment import EnvironmentSpec, unit_at_pivot
+from nrs_design.spec.controllers import (
+    ControllerSpec,
+    ImpedanceControllerSpec,
+    contact_names,
+)
+from nrs_design.spec.environment import EnvironmentSpec, HuntCrossleySpec, unit_at_pivot
 from nrs_design.spec.gain_fields import GainSpec
 from nrs_design.spec.goals import GoalsSpec
 from nrs_design.spec.interaction import InteractionDesignSpec
@@ -168,6 +172,8 @@ def _environment(name: str, environment: EnvironmentSpec) -> Iterator[Line]:
     for key, written in environment.parameters().items():
         unit = unit_at_pivot(written.nominal)
         yield from _ranged(f"{name}.{key}", written, turned[key], unit)
+    if environment.model == "hunt-crossley":
+        yield from _preload(name, environment)
     if environment.lever_arm is not None:
         yield _row(f"{name}.lever_arm", environment.lever_arm, kinds.LEVER_ARM)
     if environment.range_covers is not None:
@@ -176,6 +182,17 @@ def _environment(name: str, environment: EnvironmentSpec) -> Iterator[Line]:
     if environment.linearized_about is not None:
         yield Line(f"{name}.linearized_about", environment.linearized_about, "", "")
     yield from _provenance(name, environment)
+
+
+def _preload(name: str, environment: HuntCrossleySpec) -> Iterator[Line]:
+    """List the preload of a power law, and where stiffness and damping are then at the pivot."""
+    yield from describe_model(environment.exponent, f"{name}.exponent")
+    yield from describe_model(environment.about, f"{name}.about")
+    yield from describe_model(environment.preload, f"{name}.preload")
+    for key, interval in environment.linear_at_pivot().items():
+        unit = unit_at_pivot(getattr(environment, key).nominal)
+        value = f"[{_text(float(interval.low))}, {_text(float(interval.high))}]"
+        yield Line(f"{name}.{key} over the preload", "", value, unit)
 
 
 def _provenance(name: str, identified: IdentifiedSpec) -> Iterator[Line]:
@@ -200,7 +217,7 @@ def _controller(name: str, controller: ControllerSpec, limits: LimitsSpec) -> It
     if controller.environment is None:
         return
     yield Line(f"{name}.environment", controller.environment, "", "")
-    yield Line(f"{name}.contacts", ", ".join(controller.contacts), "", "")
+    yield Line(f"{name}.contacts", ", ".join(contact_names(controller.contacts)), "", "")
     if controller.type == "impedance":
         yield _desired_impedance(f"{name}.desired_impedance", controller, limits)
     for key in type(controller).model_fields:

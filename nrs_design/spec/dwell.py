@@ -54,6 +54,9 @@ def find_changing_contact(
     by_contact : bool
         The rules of switching are about the environment that is touched, too.
     """
+    # A spec of given matrices has no controllers, and does not pay for their models.
+    from nrs_design.spec.controllers import touched_in
+
     if not (actuator.gain.fixed and actuator.time_constant.fixed):
         return DwellObstacle(
             "a dwell time and a range of the actuator exclude each other: the motor may change "
@@ -67,6 +70,13 @@ def find_changing_contact(
                 "may change at any time, whatever the controller",
                 "write a spec for each environment",
             )
+        for contact in controller.contacts:
+            if not isinstance(contact, str):
+                return DwellObstacle(
+                    f"a dwell time and several things that {name!r} touches at once exclude each "
+                    "other: one of them may be lost at any time",
+                    "write a spec for each environment",
+                )
         for gain, declared in controller.gains().items():
             if declared.ranged:
                 return DwellObstacle(
@@ -74,10 +84,10 @@ def find_changing_contact(
                     "the gain may move during the dwell time, and the proof would not hold",
                     "give the gain one value only",
                 )
-        for contact in controller.contacts:
-            if not environments[contact].fixed:
+        for touched in touched_in(controller.contacts):
+            if not environments[touched].fixed:
                 return DwellObstacle(
-                    f"a dwell time and the range of environment {contact!r} exclude each other: "
+                    f"a dwell time and the range of environment {touched!r} exclude each other: "
                     "its parameters may move during the dwell time, and the proof would not hold",
                     "give the environment its nominal values only",
                 )

@@ -11,10 +11,12 @@ from nrs_design.spec import kinds
 from nrs_design.spec.faults import fault
 from nrs_design.spec.fields import Title
 from nrs_design.spec.interval import Interval
+from nrs_design.spec.preload import RangedExponent, power_box
 from nrs_design.spec.provenance import Coverage, IdentifiedSpec
 from nrs_design.spec.quantity import Quantity
 from nrs_design.spec.quantity_fields import (
     Damping,
+    Deflection,
     LeverArm,
     PositiveDamping,
     RangedQuantity,
@@ -48,6 +50,10 @@ class AbstractEnvironmentSpec(IdentifiedSpec):
     remembers: ClassVar[bool] = False
     # Whether a constant deflection keeps a force.
     has_rest: ClassVar[bool] = True
+    # Whether its ranges hold while the deflection stays in a preload, off its surface, and no more.
+    preloaded: ClassVar[bool] = False
+
+    model: str
 
     lever_arm: LeverArm | None = Field(default=None, description=_LEVER_ARM)
     range_covers: Coverage | None = Field(default=None, description=_COVERS)
@@ -72,6 +78,20 @@ class AbstractEnvironmentSpec(IdentifiedSpec):
     def is_spring(self) -> bool:
         """Whether the force follows from the deflection of the moment, in the whole range."""
         return not self.remembers
+
+    @property
+    def is_losable(self) -> bool:
+        """Whether contact with it may be lost while others are touched at once."""
+        return self.is_spring and not self.preloaded
+
+    @property
+    def linear_model(self) -> str:
+        """The linear law that stands for it."""
+        return self.model
+
+    def linear_at_pivot(self) -> dict[str, Interval]:
+        """Return the parameters of that law with their ranges for a rotation."""
+        return self.exact_at_pivot()
 
     def parameters(self) -> dict[str, RangedQuantity]:
         """Return the parameters of the law as written, by their keys."""
@@ -159,8 +179,80 @@ class KelvinBoltzmannSpec(AbstractEnvironmentSpec):
     damping: PositiveDamping = Field(description=_DAMPING.format(which=" b of the damper, > 0,"))
 
 
+class HuntCrossleySpec(AbstractEnvironmentSpec):
+    """Hunt-Crossley environment, ``F = rho delta^phi + lam delta^phi ddelta`` (thesis 2.18)."""
+
+    preloaded: ClassVar[bool] = True
+
+    model: Literal["hunt-crossley"] = Field(
+        description="law of the environment: hunt-crossley, F = (rho + lam ddelta/dt) delta^phi, "
+        "while its deflection stays in the preload"
+    )
+    stiffness: Stiffness = Field(
+        description=_STIFFNESS.format(which=" of small motions at the deflection `about`,")
+    )
+    damping: Damping = Field(description=_DAMPING.format(which=" at the deflection `about`,"))
+    exponent: RangedExponent = Field(
+        description="phi, 1 to 3 with at most three decimals, no unit; one number, or "
+        "{nominal: ..., range: [lowest, highest]}"
+    )
+    about: Deflection = Field(
+        description="deflection at which stiffness and damping are given, within the preload: a "
+        "length with lever_arm, an angle otherwise"
+    )
+    preload: tuple[Deflection, Deflection] = Field(
+        description="[lowest, highest] deflection, counted from the surface, within which the "
+        "proof holds"
+    )
+
+    @model_validator(mode="after")
+    def _check_preload(self) -> Self:
+        low, high = self.preload
+        of_length = kinds.LENGTH.accepts(self.about.dimension)
+        if of_length != (self.lever_arm is not None):
+            raise fault(
+                f"{self.about.text!r} is {'a length' if of_length else 'an angle'}, and "
+                f"{'there is no lever_arm' if of_length else 'a lever_arm is given'}",
+                "write lengths with a lever_arm, and angles without one",
+                "about",
+            )
+        scales = {(q.dimension, q.pi_power) for q in (self.about, low, high)}
+        if len(scales) > 1:
+            raise fault("about and preload have different units", "use one unit", "preload")
+        if not low.rational_part <= self.about.rational_part <= high.rational_part:
+            raise fault(
+                f"about {self.about.text!r} is not within the preload [{low.text}, {high.text}]",
+                "write [lowest, highest] around it",
+                "preload",
+            )
+        return self
+
+    @property
+    def fixed(self) -> bool:
+        """Whether stiffness and damping have single values: never in a preload."""
+        return False
+
+    @property
+    def is_spring(self) -> bool:
+        """Whether there is no damping."""
+        return not any(q.exact for q in (self.damping.nominal, *self.damping.range))
+
+    @property
+    def linear_model(self) -> str:
+        """A spring beside a damper."""
+        return "kelvin-voigt"
+
+    def linear_at_pivot(self) -> dict[str, Interval]:
+        """Return the box of stiffness and damping over the preload, rounded outwards."""
+        tangent, about = self.exact_at_pivot(), self.about.rational_part
+        low, high = (end.rational_part / about for end in self.preload)
+        box = power_box(tangent["stiffness"], tangent["damping"], self.exponent, (low, high))
+        return dict(zip(("stiffness", "damping"), box, strict=True))
+
+
 EnvironmentSpec = Annotated[
-    ElasticSpec | KelvinVoigtSpec | MaxwellSpec | KelvinBoltzmannSpec, Discriminator("model")
+    ElasticSpec | KelvinVoigtSpec | MaxwellSpec | KelvinBoltzmannSpec | HuntCrossleySpec,
+    Discriminator("model"),
 ]
 
 

@@ -179,7 +179,7 @@ def _ordered(
             "mode_logic",
         )
     for name in own:
-        if environments[name].remembers or not environments[name].is_spring:
+        if not environments[name].is_losable:
             raise fault(
                 f"{name!r} is {environments[name].model}: an estimator tells springs apart",
                 "use elastic environments",

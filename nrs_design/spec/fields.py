@@ -19,6 +19,8 @@ NAME_PATTERN = "^[a-z0-9][a-z0-9._-]{0,63}$"
 LABEL_PATTERN = "^[A-Za-z0-9][A-Za-z0-9._-]{0,63}$"
 HASH_PATTERN = "^[0-9a-f]{64}$"
 MAX_TITLE = 200
+# One environment that is touched, or several at once.
+Contact = str | tuple[str, ...]
 
 NUMBER_SCHEMA: dict[str, Any] = {
     "anyOf": [
@@ -51,22 +53,27 @@ def _number(accepts: Callable[[Fraction], bool], expected: str) -> ReadBy:
     return ReadBy(read)
 
 
-def _text(pattern: str) -> ReadBy:
-    def read(value: object) -> str:
-        text = as_text(value)
-        if not re.fullmatch(pattern, text):
-            raise fault(
-                f"{quoted(text)} is not a name",
-                f"use 1 to 64 letters, digits, '.', '_' and '-', as in {pattern}",
-            )
-        if is_device_name(text):
-            raise fault(
-                f"{quoted(text)} names a device on Windows, and files are named by it",
-                "choose another name",
-            )
-        return text
+def _read_name(value: object, pattern: str) -> str:
+    text = as_text(value)
+    if not re.fullmatch(pattern, text):
+        raise fault(
+            f"{quoted(text)} is not a name",
+            f"use 1 to 64 letters, digits, '.', '_' and '-', as in {pattern}",
+        )
+    if is_device_name(text):
+        raise fault(
+            f"{quoted(text)} names a device on Windows, and files are named by it",
+            "choose another name",
+        )
+    return text
 
-    return ReadBy(read)
+
+def _read_label(value: object) -> str:
+    return _read_name(value, LABEL_PATTERN)
+
+
+def _text(pattern: str) -> ReadBy:
+    return ReadBy(lambda value: _read_name(value, pattern))
 
 
 def read_digits(value: object) -> int:
@@ -116,6 +123,31 @@ Name = Annotated[
     str, _text(NAME_PATTERN), WithJsonSchema({"type": "string", "pattern": NAME_PATTERN})
 ]
 Label = Annotated[str, _text(LABEL_PATTERN), WithJsonSchema(_LABEL)]
+
+
+def read_contact(value: object) -> Contact:
+    """Read the name of what is touched, or the names of all that is touched at once."""
+    if not isinstance(value, list | tuple):
+        return _read_label(value)
+    names = tuple(map(_read_label, value))
+    if len(names) < 2:
+        raise fault(
+            "a list within contacts is what is touched at once, two things at least",
+            "write the name without a list of its own",
+        )
+    for index, name in enumerate(names):
+        if name in names[:index]:
+            raise fault(f"{name!r} is touched at once with itself", "list each environment once")
+    return names
+
+
+TouchedAtOnce = Annotated[
+    Contact,
+    ReadBy(read_contact),
+    WithJsonSchema(
+        {"anyOf": [*_LABEL["anyOf"], {"type": "array", "items": _LABEL, "minItems": 2}]}
+    ),
+]
 Title = Annotated[
     str, ReadBy(read_title), WithJsonSchema({"type": "string", "maxLength": MAX_TITLE})
 ]

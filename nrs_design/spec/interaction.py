@@ -10,7 +10,14 @@ from pydantic import Field, ValidationInfo, field_validator, model_validator
 from pydantic_core import PydanticCustomError
 
 from nrs_design.spec.certification import CertificationSpec
-from nrs_design.spec.controllers import ControllerSpec, IdleStatesSpec
+from nrs_design.spec.controllers import (
+    ControllerSpec,
+    IdleStatesSpec,
+    Offset,
+    contact_name,
+    names_in,
+    touched_in,
+)
 from nrs_design.spec.dwell import DwellObstacle, find_changing_contact
 from nrs_design.spec.environment import EnvironmentSpec
 from nrs_design.spec.faults import all_of, did_you_mean, fault
@@ -152,6 +159,20 @@ class InteractionDesignSpec(SpecModel):
                 given_loop=self.motion_loop.transfer_function is not None,
             ),
             lambda: _check_memories(self.controllers, self.environments, self.coordinates),
+            lambda: _check_offsets(self.controllers, self.idle_states),
+            lambda: all_of(
+                *(
+                    partial(self._check_preload, name)
+                    for name, environment in self.environments.items()
+                    if environment.preloaded and name in self.touched
+                )
+            ),
+            lambda: all_of(
+                *(
+                    partial(_check_at_once, *item, self.environments, self.contact)
+                    for item in self.controllers.items()
+                )
+            ),
             lambda: check_applicable(
                 self.goals,
                 {c.type for c in self.controllers.values() if "goals" in type(c).model_fields},
@@ -201,7 +222,7 @@ class InteractionDesignSpec(SpecModel):
     def contact_names(self) -> tuple[str, ...]:
         """Every controller in every contact, such as ``tissue/soft``; without one, the former."""
         return tuple(
-            name if contact is None else f"{name}/{contact}"
+            name if contact is None else f"{name}/{contact_name(contact)}"
             for name, controller in self.controllers.items()
             for contact in controller.contacts or (None,)
         )
@@ -209,7 +230,13 @@ class InteractionDesignSpec(SpecModel):
     @property
     def touched(self) -> frozenset[str]:
         """Names of the environments that some controller touches."""
-        return frozenset(name for c in self.controllers.values() for name in c.contacts)
+        return frozenset(name for c in self.controllers.values() for name in touched_in(c.contacts))
+
+    @property
+    def offset(self) -> Offset:
+        """Where the offset of the force controllers is taken from; they have one in common."""
+        offsets = (c.offset for c in self.controllers.values() if c.type == "force")
+        return next(offsets, "none")
 
     @property
     def has_ranges(self) -> bool:
@@ -219,6 +246,24 @@ class InteractionDesignSpec(SpecModel):
         return any(not self.environments[name].fixed for name in self.touched) or any(
             gain.ranged for c in self.controllers.values() for gain in c.gains().values()
         )
+
+    def _check_preload(self, name: str) -> None:
+        """Refuse what is not modelled about an environment that is known within a preload."""
+        known = f"{name!r} is known within its preload only"
+        if self.contact == "losable":
+            raise fault(
+                f"loss of contact is not modelled: {known}", "use `contact: kept`", "contact"
+            )
+        if self.disturbances is not None:
+            raise fault(
+                f"bounds from rest are not modelled: {known}", "remove disturbances", "disturbances"
+            )
+        if self.coordinates == "force":
+            raise fault(
+                f"force coordinates do not apply to {name!r}: its deflection does not jump",
+                "use `coordinates: deflection`",
+                "coordinates",
+            )
 
     def find_dwell_obstacle(self) -> DwellObstacle | None:
         """Say why no dwell time can be claimed for this spec, or None."""
@@ -279,11 +324,37 @@ def _check_mixture(
             )
 
 
+def _check_offsets(controllers: dict[str, ControllerSpec], idle: IdleStatesSpec | None) -> None:
+    """Refuse offsets that differ, and offsets where impedance controllers integrate a reference."""
+    first: tuple[str, Offset] | None = None
+    for name, controller in controllers.items():
+        if controller.type != "force":
+            continue
+        at = ("controllers", name, "offset")
+        if idle is not None and controller.offset != "none":
+            raise fault(
+                f"an offset is not modelled for force controllers beside impedance controllers "
+                f"({name!r} has offset {controller.offset})",
+                "leave offset out, or write a spec without impedance controllers",
+                *at,
+            )
+        first = first or (name, controller.offset)
+        if controller.offset != first[1]:
+            raise fault(
+                f"{name!r} has offset {controller.offset}, {first[0]!r} has {first[1]}: one state "
+                "cannot hold both",
+                f"give all force controllers `offset: {first[1]}`",
+                *at,
+            )
+
+
 def _check_contact_names(spec: InteractionDesignSpec) -> None:
     """Refuse rules about single contacts where modes are not made one by one."""
     if not spec.switching.names_contacts:
         return
-    for at, what in (("idle_states", spec.idle_states), ("sampling", spec.sampling)):
+    offset = None if spec.offset == "none" else spec.offset
+    beside = (("idle_states", spec.idle_states), ("sampling", spec.sampling), ("offset", offset))
+    for at, what in beside:
         if what is not None:
             raise fault(
                 f"rules of switching about controllers in one contact each, beside {at}, are not "
@@ -315,12 +386,13 @@ def _check_references(
         partial(check, controller.environment, "environment"),
         # By default the contact is the environment itself.
         *(
-            partial(check, contact, "contacts", index)
+            partial(check, name, "contacts", index)
             for index, contact in enumerate(controller.contacts)
+            for name in names_in(contact)
             if "contacts" in controller.model_fields_set
         ),
     )
-    if controller.environment not in controller.contacts:
+    if controller.environment not in touched_in(controller.contacts):
         raise fault(
             f"{name!r} is designed for {controller.environment!r}, but that is not among its "
             "contacts: nothing would be proved about it there",
@@ -372,7 +444,7 @@ def _check_springs(
     """Refuse force control of what is no spring: its force is not that of the position alone."""
     if controller.commands == "velocity":
         return
-    for contact in controller.contacts:
+    for contact in touched_in(controller.contacts):
         environment = environments.get(contact)
         if environment is None or environment.is_spring:
             continue
@@ -387,6 +459,35 @@ def _check_springs(
         )
 
 
+def _check_at_once(
+    name: str,
+    controller: ControllerSpec,
+    environments: dict[str, EnvironmentSpec],
+    losable: Literal["losable", "kept"] | None,
+) -> None:
+    """Refuse what is not modelled about several things that are touched at once."""
+    for index, contact in enumerate(controller.contacts):
+        known = [(key, environments[key]) for key in names_in(contact) if key in environments]
+        if len(names_in(contact)) == 1:
+            continue
+        at = ("controllers", name, "contacts", index)
+        for key, environment in known:
+            if environment.remembers:
+                raise fault(
+                    f"{key!r}, which is {environment.model}, remembers: touching it at once with "
+                    "others is not modelled",
+                    "use elastic or kelvin-voigt environments there",
+                    *at,
+                )
+            if losable == "losable" and not environment.is_losable:
+                raise fault(
+                    f"losing {key!r} on its own is not modelled while {contact_name(contact)} are "
+                    "touched at once: it has damping or a preload",
+                    "use `contact: kept`, or elastic environments",
+                    *at,
+                )
+
+
 def _check_memories(
     controllers: dict[str, ControllerSpec],
     environments: dict[str, EnvironmentSpec],
@@ -396,7 +497,7 @@ def _check_memories(
     touched = {
         contact: environments[contact]
         for controller in controllers.values()
-        for contact in controller.contacts
+        for contact in touched_in(controller.contacts)
         if contact in environments
     }
     for name, environment in touched.items():

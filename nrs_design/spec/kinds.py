@@ -147,6 +147,13 @@ ANGLE = QuantityKind(
     {"rad/s": "that is an angular velocity: write '{value} deg' or '{value} rad'"},
     rational=False,
 )
+DEFLECTION = QuantityKind(
+    "a deflection",
+    ("m", "rad"),
+    "5 mm",
+    {"N": "that is a force: write the deflection in mm, or in rad at the pivot"},
+    rational=False,
+)
 LINEAR_VELOCITY = QuantityKind("a velocity", ("m/s",), "18.5 mm/s")
 ACCELERATION = QuantityKind("an acceleration", ("m/s^2",), "9.81 m/s^2")
 ANGULAR_ACCELERATION = QuantityKind(

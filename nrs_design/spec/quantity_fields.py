@@ -281,6 +281,7 @@ Damping = Annotated[
 PositiveDamping = Annotated[
     RangedQuantity, _ranged(kinds.DAMPING, positive=True), _ranged_schema(kinds.DAMPING)
 ]
+Deflection = Annotated[Quantity, _quantity(kinds.DEFLECTION), _schema(kinds.DEFLECTION)]
 Mass = Annotated[Quantity, _quantity(kinds.MASS, positive=False), _schema(kinds.MASS)]
 RangedMass = Annotated[
     RangedQuantity, _ranged(kinds.MASS, positive=True), _ranged_schema(kinds.MASS)

@@ -14,6 +14,7 @@ from nrs_design.switched.assumptions import (
     GIVEN_MATRICES,
     assume_matrices,
     identified_texts,
+    preload_texts,
     scale_texts,
 )
 from nrs_design.switched.constraints import assemble_switching
@@ -155,6 +156,7 @@ def assemble(
             gain_boxes(spec, design, scale),
             spec.idle_states,
             spec.contact,
+            spec.offset,
         )
         if spec.disturbances is not None:
             touched = plant.among(design.contacts)
@@ -176,6 +178,7 @@ def assemble(
         *sensed,
         *logic_texts(spec),
         *identified_texts(spec),
+        *preload_texts(spec, scale),
         *scale_texts(scale),
     )
     return replace(system, assumptions=texts)

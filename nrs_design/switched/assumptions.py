@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
@@ -11,6 +11,7 @@ from nrs_design.spec import DwellTime, SwitchedSystemSpec, SwitchingSpec
 from nrs_design.switched.parameters import Parameter
 
 if TYPE_CHECKING:
+    from nrs_design.models.contact.environment import Environment
     from nrs_design.spec import InteractionDesignSpec
 
 MAX_LISTED = 20
@@ -93,6 +94,24 @@ def _switch_texts(spec: SwitchedSystemSpec) -> tuple[str, ...]:
     return jump, *rule_texts(spec.switching, "mode")
 
 
+def at_once_texts(touched: Iterable[Environment]) -> Iterator[str]:
+    """Say what is taken for granted where several environments are touched at once."""
+    for environment in touched:
+        names = " and ".join(part.name for part in environment.parts)
+        if environment.each_losable:
+            yield (
+                f"{environment.name}: {names} are touched from one side, each from where its own "
+                "surface is, and each may be lost on its own. The deflection counts from the "
+                "surface that is met first; the stiffness is at least that of one alone, and at "
+                "most the sum."
+            )
+        elif environment.parts:
+            yield (
+                f"{environment.name}: {names} are touched at once, at all times; their forces add "
+                "up, and none of them is lost on its own."
+            )
+
+
 def rule_texts(rules: SwitchingSpec, noun: str) -> tuple[str, ...]:
     """Say which switching signals are possible, between modes or controllers."""
     if rules.is_arbitrary:
@@ -140,6 +159,37 @@ def identified_texts(spec: InteractionDesignSpec) -> Iterator[str]:
             why = item.accept_doubt
             end = "nothing says why that is accepted" if why is None else f"accepted because: {why}"
             yield f"The identification of {at[-1]} is in doubt: {'; '.join(item.doubts)}; {end}."
+
+
+def preload_texts(spec: InteractionDesignSpec, scale: Fraction) -> Iterator[str]:
+    """Say what linear ranges cover of power laws that are known within a preload.
+
+    Parameters
+    ----------
+    spec : InteractionDesignSpec
+        With the environments.
+    scale : Fraction
+        By how much their ranges are stretched: less than declared do not cover the law.
+    """
+    for name, environment in spec.environments.items():
+        if environment.model != "hunt-crossley" or name not in spec.touched:
+            continue
+        low, high = (end.text for end in environment.preload)
+        if scale < 1:
+            yield (
+                f"{name} is a Hunt-Crossley law, and with ranges scaled below 1 that law is not "
+                "covered: it is taken for a linear one."
+            )
+            continue
+        yield (
+            f"{name} is a Hunt-Crossley law whose deflection stays between {low} and {high}. About "
+            f"a rest anywhere from its surface to {high}, its force is then that at rest, plus k "
+            "times the deflection from there, plus b times the velocity, exactly, with k and b "
+            "moving in the ranges of the modes: motions need not be small or slow. Nothing is said "
+            "once the deflection has left this preload, nor of the difference of two motions of "
+            "which neither is at rest. The law moves k and b together, so what is refuted with any "
+            "such k and b may hold with it."
+        )
 
 
 def _parameter_text(parameter: Parameter) -> str:

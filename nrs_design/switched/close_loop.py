@@ -25,6 +25,7 @@ from nrs_design.models.plant import Plant
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.system import Contact, Mode, SwitchedSystem, Time
 from nrs_design.spec import IdleStatesSpec, SwitchingSpec
+from nrs_design.spec.controllers import Offset
 from nrs_design.spec.interval import Interval
 from nrs_design.switched.constraints import assemble_switching
 from nrs_design.switched.gain_box import GainBox
@@ -39,6 +40,7 @@ from nrs_design.switched.modes import (
     with_idle,
     with_memories,
 )
+from nrs_design.switched.offset import names_of, retaken, to_motion
 from nrs_design.switched.parameter_box import Box
 from nrs_design.switched.parameters import Corner
 
@@ -53,6 +55,7 @@ def close_loop(
     boxes: Mapping[str, GainBox] | None = None,
     idle: IdleStatesSpec | None = None,
     contact: str | None = None,
+    offset: Offset = "none",
 ) -> SwitchedSystem:
     """Assemble every mode of an interaction design.
 
@@ -87,6 +90,8 @@ def close_loop(
     contact : {"losable", "kept"}, optional
         Whether contact may be lost; by default it is where that is modelled, and a statement says
         whether it covers it.
+    offset : {"none", "reference", "measured"}
+        Where force controllers take their offset from; only where none commands a velocity.
 
     Raises
     ------
@@ -95,7 +100,7 @@ def close_loop(
     """
     rules = rules or SwitchingSpec()
     boxes = {c.name: GainBox.point(c.law) for c in design.controllers} | {**(boxes or {})}
-    state = _shared_state(plant, loop, design, coordinates, idle)
+    state = _shared_state(plant, loop, design, coordinates, idle, offset)
     sprung = any(controller.law.spring for controller in design.controllers)
     free = sprung and _adds_free_motion(state, design, contact)
     losable = None if sprung or contact == "kept" else _lost_contact(state, design, boxes, contact)
@@ -109,8 +114,10 @@ def close_loop(
     if rules.names_contacts:
         parts = _by_contact(chain.from_iterable(parts.values()))
     groups = {key: tuple(Corner(mode.name) for mode in part) for key, part in parts.items()}
-    reset = idle is not None and idle.reset
-    resets = resets_of(design, state.motion.order, state.idle_count) if reset else ()
+    if idle is not None and idle.reset:
+        resets = resets_of(design, state.realization.order, state.idle_count)
+    else:
+        resets = retaken(design, offset, state.realization.order)
     return SwitchedSystem(
         name,
         Time.CONTINUOUS,
@@ -127,6 +134,7 @@ def close_loop(
                 state.law,
                 given=loop.given,
                 losable=losable is not None,
+                offset=offset,
                 free=free,
                 joint=state.joint,
             )
@@ -151,6 +159,7 @@ def _shared_state(
     design: ControllerDesign,
     coordinates: str,
     idle: IdleStatesSpec | None,
+    offset: Offset,
 ) -> _State:
     touched = plant.among(design.contacts)
     _check_coordinates(coordinates, touched)
@@ -166,7 +175,7 @@ def _shared_state(
             at=("actuator",),
         )
     low_pass = design.sensor.filter
-    return _State(realize(loop), coordinates, touched, shared, idle, joint, low_pass)
+    return _State(realize(loop), coordinates, touched, shared, idle, offset, joint, low_pass)
 
 
 def _check_coordinates(coordinates: str, touched: tuple[Environment, ...]) -> None:
@@ -253,6 +262,7 @@ class _State:
     touched: tuple[Environment, ...]
     law: CompliantLaw
     idle: IdleStatesSpec | None
+    offset: Offset
     joint: Joint | None
     low_pass: LowPass | None
 
@@ -283,6 +293,8 @@ class _State:
     @property
     def names(self) -> tuple[str, ...]:
         """Names of the states, with units where there are any."""
+        if self.offset != "none":
+            return names_of(self.realization.order)
         inner = self.motion.states
         if self.idle is not None:
             inner = tuple(f"xi{i + 1}" for i in range(len(inner)))
@@ -326,7 +338,9 @@ class _State:
         return with_memories(rows, touched, creeps)
 
     def padded(self, rows: Rows, law: CompliantLaw) -> Rows:
-        """Return a mode with the idle states that it leaves alone, if there are any."""
+        """Return a mode with the idle states that it leaves alone, or in coordinates of motion."""
+        if self.offset != "none":
+            return to_motion(rows, self.realization)
         if self.idle is None or law.commands == "velocity":
             return rows
         return with_idle(rows, self.idle_count, idle_decay(self.idle))
@@ -400,7 +414,8 @@ def _can_be_free(state: _State) -> bool:
         state.idle is None
         and state.law.commands == "velocity"
         and state.coordinates == "deflection"
-        and not any(e.law.remembers for e in state.touched)
+        and not any(e.law.remembers or e.preloaded for e in state.touched)
+        and not any(e.parts and not e.each_losable for e in state.touched)
         and bool(state.touched)
     )
 

@@ -12,7 +12,7 @@ from nrs_design.controllers.gains import idle_decay
 from nrs_design.controllers.laws import LAWS, CompliantLaw
 from nrs_design.models.contact.environment import Environment
 from nrs_design.spec import IdleStatesSpec, SwitchingSpec
-from nrs_design.spec.controllers import Command
+from nrs_design.spec.controllers import Command, Offset
 from nrs_design.switched.assumptions import (
     CONTINUOUS,
     LOST_ANYWHERE,
@@ -20,6 +20,7 @@ from nrs_design.switched.assumptions import (
     REST,
     SPRING,
     SPRING_BESIDE,
+    at_once_texts,
     rule_texts,
 )
 from nrs_design.switched.gain_box import GainBox
@@ -50,6 +51,31 @@ _AT_A_SWITCH = {
     "force": "Wherever stiffness or damping changes, at a switch or within its range, the force "
     "stays and the deflection jumps (the thesis's coordinates; not physical in lasting contact).",
 }
+_KICK = (
+    "The reference that the motion loop follows, and with it the velocity, may jump at a "
+    "switch; position and motion state xi do not: the PD differentiates the jump. A controller "
+    "that leaves this kick out is not covered."
+)
+# What holds with an offset, where a mode rests wherever the offset lets it.
+_MOVING = (
+    "The state is the motion of the loop: the rates dxp of its states, and the lead of its command "
+    "before the position. That it decays says that the axis comes to rest, not where: the offset "
+    "X_i holds it there, and the force that is left depends on X_i."
+)
+_CONSTANT = (
+    "All inputs are zero: position command, reference force Fd and environment do not move, and at "
+    "a switch to force control the force is Fd. What it is off there, times Kp, is a jump of the "
+    "command; such jumps, and a moving command, are inputs that nothing is claimed about."
+)
+_TAKEN = {
+    "reference": "the command of the motion loop just before the switch",
+    "measured": "the measured position at the switch",
+}
+_SAME_STIFFNESS = (
+    "In contact, the environment follows its linear model, with parameters in the declared ranges. "
+    "Where a stiffness changes while force is controlled, the step of the force that comes with it "
+    "is an input, too; what it does to the motion is covered, arbitrarily fast."
+)
 _NOT_MODELLED = (
     "Continuous time: sampling, delay, quantization, friction and saturation are not modelled."
 )
@@ -79,6 +105,8 @@ class Assumed:
         Whether the spec states the motion loop itself.
     losable : bool
         Whether the system says how contact is lost; then a statement says whether it is kept.
+    offset : {"none", "reference", "measured"}
+        Where force controllers take their offset from.
     free : bool
         Whether free motion is one of the modes.
     joint : Joint or None
@@ -94,6 +122,7 @@ class Assumed:
     law: CompliantLaw
     given: bool
     losable: bool = False
+    offset: Offset = "none"
     free: bool = False
     joint: Joint | None = None
 
@@ -102,8 +131,7 @@ def assume_loop(loop: Assumed) -> tuple[str, ...]:
     """Say what holds for an interaction design."""
     return (
         *_loop_texts(loop),
-        _INPUTS + REST[loop.losable],
-        *_command_texts(loop),
+        *_input_texts(loop),
         "The axes of the robot do not act on each other.",
         *_contact_texts(loop),
         *chain.from_iterable(
@@ -112,10 +140,26 @@ def assume_loop(loop: Assumed) -> tuple[str, ...]:
         ),
         *(_idle_texts(loop, loop.idle) if loop.idle is not None else ()),
         *_kept_texts(loop),
-        *_switch_texts(loop.rules, reset=loop.idle is not None and loop.idle.reset),
+        *_switch_texts(
+            loop.rules,
+            reset=(loop.idle is not None and loop.idle.reset) or loop.offset == "measured",
+        ),
         _NOT_MODELLED,
         *_gain_texts(loop.boxes),
     )
+
+
+def _input_texts(loop: Assumed) -> tuple[str, ...]:
+    """Say what acts from outside, and what then rests."""
+    if loop.offset == "none":
+        return _INPUTS + REST[loop.losable], *_command_texts(loop)
+    taken = (
+        f"X_i is taken at every switch of controllers, as {_TAKEN[loop.offset]}, and held until "
+        "the next; in position mode the command is X_i and what the operator commands since."
+    )
+    lead = "At a switch of controllers the lead is set to zero."
+    measured = (lead, _KICK) if loop.offset == "measured" else ()
+    return _MOVING, taken, *measured, _CONSTANT
 
 
 def _loop_texts(loop: Assumed) -> Iterator[str]:
@@ -137,7 +181,8 @@ def _contact_texts(loop: Assumed) -> Iterator[str]:
         if controller.contacts:
             contacts = " or ".join(controller.contacts)
             yield f"While {controller.name} is active, nothing but {contacts} is touched."
-    yield _CONTACT
+    yield from at_once_texts(loop.touched)
+    yield _CONTACT if loop.offset == "none" else _SAME_STIFFNESS
     integrated = any(c.law.commands == "velocity" for c in loop.design.controllers)
     if integrated and all(e.law.has_rest for e in loop.touched):
         yield _AT_A_SWITCH[loop.coordinates]
@@ -165,11 +210,7 @@ def _idle_texts(loop: Assumed, idle: IdleStatesSpec) -> Iterator[str]:
         "The commanded position is that at which the contact carries no force; position and "
         "reference are counted from it."
     )
-    yield (
-        "The reference that the motion loop follows, and with it the velocity, may jump at a "
-        "switch; position and motion state xi do not: the PD differentiates the jump. A controller "
-        "that leaves this kick out is not covered."
-    )
+    yield _KICK
 
 
 def _names(design: ControllerDesign, command: Command) -> dict[str, None]:

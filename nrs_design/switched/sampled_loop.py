@@ -45,6 +45,7 @@ from nrs_design.proof.taylor import exponential_between
 from nrs_design.spec import InteractionDesignSpec
 from nrs_design.spec.interval import Interval
 from nrs_design.spec.sampling import DisturbancesSpec, SamplingSpec
+from nrs_design.switched.assumptions import at_once_texts
 from nrs_design.switched.constraints import assemble_switching
 from nrs_design.switched.parameter_box import Box
 from nrs_design.switched.parameters import Corner
@@ -310,7 +311,10 @@ def close_sampled_loop(
         Time.DISCRETE,
         frame.states,
         tuple(item.mode for item in motions),
-        assume_sampled(spec, sampling, ranges, frame.motion, laws, design, loss, frame.counts),
+        (
+            *assume_sampled(spec, sampling, ranges, frame.motion, laws, design, loss, frame.counts),
+            *at_once_texts(touched),
+        ),
         assemble_switching(spec.switching, groups, ()),
         losable,
         period,
@@ -440,7 +444,7 @@ def _loss_of_contact(
     sprung = {law.Kt != 0 for law in laws}
     if spec.contact == "kept" or (True in sprung and spec.contact is None):
         return "never"
-    if not all(_is_zero(damping_of(environment)) for environment in touched):
+    if not all(_is_zero(damping_of(e)) and not e.preloaded for e in touched):
         return "not modelled"
     return "anywhere" if sprung == {True} else "on the surface"
 

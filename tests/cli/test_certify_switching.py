@@ -617,3 +617,22 @@ def test_margins_of_a_sampled_loop(tmp_path):
     assert result.returncode == 0, result.stderr
     assert re.search(r"longest delay of the force sample: \d+ samples is proved", result.stdout)
     assert re.search(r"period: \S+ s is proved, \S+ s is refuted \(each for", result.stdout)
+
+
+AT_ONCE = ROOT / "docs" / "examples" / "tissue-and-tool-at-once.nrs.yaml"
+
+
+def test_tissue_and_tool_touched_at_once(tmp_path):
+    """Thesis 6.1 and 6.3.2: 104.7 N m/rad is beyond the 75.9 of the withdrawal."""
+    result = typed("certify-switching", AT_ONCE, cwd=tmp_path)
+    assert result.returncode == 1, result.stderr
+    assert "Mode withdrawal/soft+stiff/k-max is not Hurwitz" in result.stdout
+    assert "up to 104.696 N*m/rad, reaches the limit 75.9465 N*m/rad" in result.stdout
+    assert "Bt = 1.29 N*m*s/rad would hold" in result.stdout
+    assert "each may be lost on its own" in result.stdout
+    more = tmp_path / "more.nrs.yaml"
+    text = AT_ONCE.read_text().replace("name: tissue-and-tool-at-once", "name: more")
+    more.write_text(text.replace("Bt: 1.04 N*m*s", "Bt: 2.15 N*m*s"))
+    told = json.loads(run("certify-switching", more, "--json", cwd=tmp_path).stdout)
+    assert (told["verdict"], told["relief"]) == ("proved", [])
+    assert told["modes"] == ["withdrawal/soft+stiff/k-min", "withdrawal/soft+stiff/k-max"]

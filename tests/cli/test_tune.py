@@ -4,7 +4,7 @@ import json
 
 import pytest
 
-from tests.support import COMMUTING, FORCE_LIMIT, SOFT_TISSUE, run, typed
+from tests.support import COMMUTING, FORCE_LIMIT, ROBOT, SOFT_TISSUE, run, typed
 
 GIVEN = """motion_loop:
   transfer_function: {numerator: [28.416, 1618.80], denominator: [1, 56.89, 1618.80]}
@@ -34,6 +34,25 @@ def test_force_loop_of_the_thesis(tmp_path):
     assert force["Kp"] == pytest.approx(0.02)
     assert force["damping_ratio"] == pytest.approx(0.741, abs=1e-3)
     assert force["natural_frequency"] == pytest.approx(54.9, abs=0.1)
+
+
+def test_force_limit_with_its_offset(tmp_path):
+    """The numbers are those of the law as declared: 8 deg/s, Fd = 0.3 N m."""
+    shown = run("tune", ROBOT / "force-limit-offset.nrs.yaml", cwd=tmp_path).stdout
+    assert "X_i is the measured position at the switch" in shown
+    assert "peaks at 0.324 N m and settles 0.00 % off 0.3 N m" in shown
+    spec = tmp_path / "reference.nrs.yaml"
+    text = (ROBOT / "force-limit-offset.nrs.yaml").read_text()
+    spec.write_text(text.replace("offset: measured", "offset: reference"))
+    result = run("tune", spec, "--json", cwd=tmp_path)
+    (force,) = json.loads(result.stdout)["force"]
+    assert force["offset"] == "reference"
+    assert force["steady_state_ratio"] == pytest.approx(0.1894, abs=1e-4)
+    assert force["peak_torque"] == pytest.approx(0.3763, abs=1e-4)
+    # That misses the goal of the spec.
+    assert result.returncode == 1
+    (goal,) = [goal for goal in force["goals"] if goal["goal"] == "max_force_error"]
+    assert goal["status"] == "missed"
 
 
 def test_tables(tmp_path):

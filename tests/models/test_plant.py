@@ -2,7 +2,7 @@ from fractions import Fraction
 
 import pytest
 
-from nrs_design.models.contact import LINEAR_LAWS, Elastic
+from nrs_design.models.contact import LAWS, LINEAR_LAWS, Elastic
 from nrs_design.models.plant import build_plant
 from nrs_design.spec import load_spec, parse_spec
 from nrs_design.spec.environment import AbstractEnvironmentSpec
@@ -63,7 +63,11 @@ def test_every_environment_of_a_spec_has_its_law():
         for spec in AbstractEnvironmentSpec.__subclasses__()
         if (field := spec.model_fields["model"])
     }
-    assert specs.keys() == LINEAR_LAWS.keys()
+    assert specs.keys() == LAWS.keys()
+    # A power law stands as a spring beside a damper, by the keys of these.
+    power = specs.pop("hunt-crossley")
+    keys = [k for k, f in power.model_fields.items() if f.annotation is RangedQuantity]
+    assert tuple(keys) == LINEAR_LAWS["kelvin-voigt"].keys
     for name, law in LINEAR_LAWS.items():
         spec = specs[name]
         keys = [k for k, f in spec.model_fields.items() if f.annotation is RangedQuantity]

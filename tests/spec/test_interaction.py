@@ -10,6 +10,7 @@ from nrs_design.spec import (
     KelvinVoigtSpec,
     PositionControllerSpec,
 )
+from nrs_design.spec.controllers import contact_names, touched_in
 from nrs_design.spec.environment import KelvinBoltzmannSpec, MaxwellSpec
 
 from .samples import FORCE, IMPEDANCE, interaction, place_of, refusal, spoiled
@@ -94,6 +95,89 @@ def test_position_and_force() -> None:
     assert force.proportional_gain is not None
     assert force.proportional_gain.exact == Fraction(1, 50)
     assert force.contacts == ("soft",)
+
+
+def test_offset_of_force_controllers() -> None:
+    """Thesis 6.41: by default there is none, and all force controllers have the same."""
+    assert interaction(FORCE).offset == "none"
+    gain = "    proportional_gain: 0.02 rad/(N*m)\n"
+    measured = spoiled(FORCE, gain, gain + "    offset: measured\n")
+    assert interaction(measured).offset == "measured"
+    other = f"  gentle:\n    type: force\n    environment: soft\n{gain}"
+    error = refusal(spoiled(measured, "switching:", other + "switching:"))
+    assert "'gentle' has offset none, 'force' has measured" in error.message
+    error = refusal(spoiled(FORCE, gain, gain + "    offset: position\n"))
+    assert "offset" in str(error)
+
+
+def test_offset_beside_rules_about_single_contacts_is_refused() -> None:
+    gain = "    proportional_gain: 0.02 rad/(N*m)\n"
+    rules = "switching: {transitions: [[position, force/soft], [force/soft, position]]}"
+    plain = spoiled(FORCE, "switching: arbitrary", rules)
+    assert interaction(plain).switching.names_contacts
+    error = refusal(spoiled(plain, gain, gain + "    offset: measured\n"))
+    assert "beside offset" in error.message
+
+
+def test_offset_beside_impedance_controllers_is_refused() -> None:
+    force = FORCE.partition("controllers:\n")[2].replace("switching: arbitrary\n", "")
+    mixed = spoiled(IMPEDANCE, "switching:", force + "idle_states: {decay: 20 1/s}\nswitching:")
+    assert interaction(mixed).offset == "none"
+    gain = "    proportional_gain: 0.02 rad/(N*m)\n"
+    error = refusal(spoiled(mixed, gain, gain + "    offset: measured\n"))
+    assert "beside impedance controllers" in error.message
+
+
+AT_ONCE = spoiled(
+    IMPEDANCE, "environment: soft\n", "environment: soft\n    contacts: [[soft, hand]]\n"
+)
+
+
+def test_contacts_touched_at_once() -> None:
+    spec = interaction(AT_ONCE)
+    insertion = spec.controllers["insertion"]
+    assert insertion.contacts == (("soft", "hand"),)
+    assert contact_names(insertion.contacts) == ("soft+hand",)
+    assert touched_in(insertion.contacts) == ("soft", "hand")
+    assert spec.touched == {"soft", "hand"}
+
+
+@pytest.mark.parametrize(
+    ("contacts", "message"),
+    [
+        ("[[soft]]", "two things at least"),
+        ("[[soft, soft]]", "touched at once with itself"),
+        ("[[soft, hand], [hand, soft]]", "'hand+soft' is listed twice"),
+        ("[[soft, [hand]]]", "expected a single value"),
+        ("[[soft, glass]]", "there is no environment 'glass'"),
+        ("[[hand, glass]]", "there is no environment 'glass'"),
+        ("[hand]", "not among its contacts"),
+    ],
+)
+def test_what_is_touched_at_once_is_checked(contacts: str, message: str) -> None:
+    assert message in str(refusal(spoiled(AT_ONCE, "[[soft, hand]]", contacts)))
+
+
+def test_a_dwell_time_and_things_touched_at_once_exclude_each_other() -> None:
+    text = spoiled(AT_ONCE, "switching: arbitrary", "switching: {dwell_time: 1 s}")
+    assert "touches at once" in refusal(text).message
+
+
+def test_damped_things_are_not_lost_on_their_own() -> None:
+    text = AT_ONCE + "contact: losable\n"
+    assert "losing 'hand' on its own is not modelled" in refusal(text).message
+    springs = spoiled(text, "damping: 0.5 N*m*s/rad", "damping: 0 N*m*s/rad")
+    assert interaction(springs).contact == "losable"
+
+
+def test_what_remembers_is_not_touched_at_once() -> None:
+    text = spoiled(AT_ONCE, "model: kelvin-voigt", "model: kelvin-boltzmann")
+    text = spoiled(
+        text,
+        "stiffness: 43 N*m/rad",
+        "parallel_stiffness: 4 N*m/rad\n    series_stiffness: 9 N*m/rad",
+    )
+    assert "'hand', which is kelvin-boltzmann, remembers" in refusal(text).message
 
 
 def test_environments_may_be_missing_without_contact() -> None:

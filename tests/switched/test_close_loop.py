@@ -23,7 +23,7 @@ from nrs_design.controllers.laws import (
 from nrs_design.errors import AssemblyError
 from nrs_design.models.actuator import Actuator
 from nrs_design.models.contact import Elastic, KelvinBoltzmann, KelvinVoigt, Maxwell
-from nrs_design.models.contact.environment import Environment
+from nrs_design.models.contact.environment import Environment, touch_at_once
 from nrs_design.models.linear_form import combine
 from nrs_design.models.plant import Plant
 from nrs_design.spec.interval import Interval
@@ -330,3 +330,27 @@ class TestViscoelastic:
     def test_what_has_no_rest_position_is_touched_alone(self):
         with pytest.raises(AssemblyError, match="gel has no rest position"):
             viscoelastic("tool", "gel")
+
+
+def test_things_touched_at_once():
+    """Springs may be lost one by one; what is damped is kept, and nothing is said of its loss."""
+    springs = touched_at_once(Environment("stiff", Elastic, (Interval.point(F(61)),)), losable=True)
+    assert [mode.name for mode in springs.modes] == ["a/soft+stiff/k-min", "a/soft+stiff/k-max"]
+    rows = [velocity_mode(MOTION, Admittance(F(1), F(2)), Elastic(F(k))) for k in (41, 106)]
+    assert [mode.A.fractions() for mode in springs.modes] == rows
+    assert springs.contact is not None
+    assert any("each may be lost on its own" in text for text in springs.assumptions)
+    damped = Environment("hand", KelvinVoigt, (Interval.point(F(61)), Interval.point(F(1))))
+    kept = touched_at_once(damped, losable=False)
+    assert kept.contact is None
+    assert any("none of them is lost on its own" in text for text in kept.assumptions)
+    assert any("Contact is not lost" in text for text in kept.assumptions)
+
+
+def touched_at_once(other, *, losable):
+    soft = Environment("soft", Elastic, (Interval(F(43), F(41), F(45)),))
+    both = touch_at_once((soft, other), losable=losable)
+    plant = Plant(Actuator(F(1), F(1)), (soft, other, both))
+    controller = Controller("a", Admittance(F(1), F(2)), "soft", (both.name,))
+    design = ControllerDesign(ProportionalDerivative(F(1), F(1)), (controller,))
+    return close_loop("robot", plant, LOOP, design, "deflection")

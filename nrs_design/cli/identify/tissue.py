@@ -208,6 +208,13 @@ def _print_tangent(about: Tangent, rotational: bool) -> None:
     values = ", ".join(f"{name} = {estimate} {unit}" for name, estimate, unit in parts)
     length = "rad" if rotational else "m"
     say(f"small motions about {about.low:.5g} to {about.high:.5g} {length}: {values}")
+    names = (*about.law.parameters(), "phi")
+    units = (*units_of(about.law, rotational), "")
+    power = ", ".join(
+        f"{name} = {estimate} {unit}".rstrip()
+        for name, estimate, unit in zip(names, about.power, units, strict=True)
+    )
+    say(f"the law itself, by its tangent at {about.about:.5g} {length}: {power}")
 
 
 def _offsets(fit: RecordFit, rotational: bool) -> list[str]:
@@ -257,6 +264,13 @@ def _summary(
                 name: numbers(estimate)
                 for name, estimate in zip(
                     found.tangent.law.parameters(), found.tangent.ranges, strict=True
+                )
+            },
+            "about": found.tangent.about,
+            "law": {
+                name: numbers(estimate)
+                for name, estimate in zip(
+                    (*found.tangent.law.parameters(), "phi"), found.tangent.power, strict=True
                 )
             },
         },

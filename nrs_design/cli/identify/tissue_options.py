@@ -64,7 +64,7 @@ Covers = Annotated[
 ]
 Preload = Annotated[
     str | None,
-    typer.Option(metavar="LOW..HIGH", help="Linearize about deflections, as in '1 mm..3 mm'."),
+    typer.Option(metavar="LOW..HIGH", help="Deflections of a power law, as in '1 mm..3 mm'."),
 ]
 Prony = Annotated[
     bool, typer.Option("--prony", help="Fit a Prony series, too: is one relaxation enough?")

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from nrs_design.controllers.controller_design import Controller
 from nrs_design.controllers.float32 import round_significant, to_float32
 from nrs_design.controllers.laws import ProportionalForce
+from nrs_design.design.force_limit import Approach, peak_force, steady_force_error
 from nrs_design.design.force_loop import ForceLoop, design_force_gain, force_loop_response
 from nrs_design.design.goals import Requirement, achieve_force, corners_of
 from nrs_design.design.laws.law import (
@@ -19,6 +20,7 @@ from nrs_design.design.laws.law import (
 )
 from nrs_design.design.measures import FORCE_MEASURES
 from nrs_design.spec import ForceControllerSpec
+from nrs_design.spec.controllers import contact_names
 
 
 @dataclass(frozen=True)
@@ -33,10 +35,19 @@ class ForceAnalysis(AbstractControllerAnalysis):
         Of nominal contact, in N m/rad.
     loop : ForceLoop
         Closed in nominal contact.
+    approach : Approach
+        How the limit of the spec on the force is reached: at the largest velocity.
+    steady_error : float
+        What is left of the force error then, over the force; of the law as declared.
+    peak : float or None
+        Largest force then, in N m; None without offset.
     """
 
     stiffness: float
     loop: ForceLoop
+    approach: Approach
+    steady_error: float
+    peak: float | None
 
 
 def choose(task: Task, given: ForceControllerSpec) -> Choice:
@@ -61,15 +72,20 @@ def analyze(task: Task, given: ForceControllerSpec, controller: Controller) -> F
     DesignError
         If the nominal loop is unstable.
     """
-    contacts = tuple(map(task.plant.environment, given.contacts))
+    names = dict.fromkeys((*contact_names(given.contacts), given.environment))
+    contacts = tuple(map(task.plant.environment, names))
     goals = goals_of(task.spec, given, FORCE_MEASURES)
     requirement = Requirement(task.motion, corners_of(contacts, given.environment, {}), goals)
     stiffness = task.plant.environment(given.environment).nominal.stiffness
     gain = float(controller.law.gains["Kp"])
+    limits = task.spec.limits
+    approach = Approach(given.offset, limits.velocity.si, limits.torque.si)
     with naming(controller.name):
         loop = force_loop_response(task.motion, stiffness, gain)
-    achieved = achieve_force(requirement, FORCE_MEASURES, gain)
-    return ForceAnalysis(controller.name, achieved, stiffness, loop)
+        left = steady_force_error(task.motion, stiffness, gain, approach)
+        peak = peak_force(task.motion, stiffness, gain, approach)
+        achieved = achieve_force(requirement, FORCE_MEASURES, gain, approach)
+    return ForceAnalysis(controller.name, achieved, stiffness, loop, approach, left, peak)
 
 
 DESIGN = LawDesign(choose, analyze)

@@ -37,9 +37,12 @@ from nrs_design.design.measures import (
     Measure,
 )
 from nrs_design.design.passivity import PassiveBand, passive_band
+from nrs_design.design.relief import doubt_stiffness
 from nrs_design.errors import DesignError
+from nrs_design.models.contact.environment import Environment
 from nrs_design.proof.bounds import upper_float
 from nrs_design.spec import Doubt, GainSpec, ImpedanceControllerSpec, InteractionDesignSpec
+from nrs_design.spec.controllers import contact_names, names_in
 
 
 @dataclass(frozen=True)
@@ -67,6 +70,8 @@ class ImpedanceAnalysis(AbstractControllerAnalysis):
     lowest_limit : float
         Smallest stiffness limit in N m/rad, of the shipped gains and of the corners of their
         declared ranges.
+    stiff : tuple of Doubt
+        Contacts that are too stiff for the shipped gains.
     creep : Creep or None
         By the errors of the force signal, where the spec says how large they are.
     band : PassiveBand or None
@@ -82,12 +87,14 @@ class ImpedanceAnalysis(AbstractControllerAnalysis):
     margins: LoopMargins
     highest_stiffness: float
     lowest_limit: float
+    stiff: tuple[Doubt, ...]
     creep: Creep | None = None
     band: PassiveBand | None = None
 
     def doubts(self) -> Iterator[Doubt]:
         """Yield what is doubtful about the gains, and which of them the bounds have chosen."""
         yield from super().doubts()
+        yield from self.stiff
         yield from doubt_bounds(self.name, self.given, self.optimum)
 
 
@@ -147,7 +154,8 @@ def analyze(
         Bt=Bt,
         cost=float(impedance_cost(problem, Mt, Bt)),
         margins=margins,
-        highest_stiffness=float(task.plant.environment(given.environment).stiffness.high),
+        highest_stiffness=float(_highest_stiffness(task, given)),
+        stiff=tuple(too_stiff(task, given, controller)),
         lowest_limit=min(margins.stiffness_limit, *limits),
         creep=creep,
         band=_band(task, given, controller),
@@ -162,7 +170,26 @@ def _band(task: Task, given: ImpedanceControllerSpec, controller: Controller) ->
     return passive_band(task.loop, gains["Mt"], gains["Bt"])
 
 
-DESIGN = LawDesign(choose, analyze)
+def too_stiff(
+    task: Task, given: ImpedanceControllerSpec, controller: Controller
+) -> Iterator[Doubt]:
+    """Yield the contacts that are too stiff for the gains, and what would hold.
+
+    Parameters
+    ----------
+    task : Task
+        What the gains were chosen for.
+    given : ImpedanceControllerSpec
+        What the spec says of the controller.
+    controller : Controller
+        With the gains that ship.
+    """
+    Mt, Bt = (float(controller.law.gains[gain]) for gain in ("Mt", "Bt"))
+    loop = impedance_problem(task, given).loop
+    yield from doubt_stiffness(controller.name, loop, _measured_in(task, given), Mt, Bt)
+
+
+DESIGN = LawDesign(choose, analyze, too_stiff)
 
 
 def impedance_problem(task: Task, given: ImpedanceControllerSpec) -> ImpedanceProblem:
@@ -202,7 +229,7 @@ def desired_impedance(spec: InteractionDesignSpec, controller: ImpedanceControll
 
 
 def _requirement(task: Task, given: ImpedanceControllerSpec) -> Requirement:
-    contacts = tuple(map(task.plant.environment, given.contacts))
+    contacts = _measured_in(task, given)
     gains = {name: _ends(gain) for name, gain in given.gains().items()}
     return Requirement(
         motion=task.motion,
@@ -213,6 +240,19 @@ def _requirement(task: Task, given: ImpedanceControllerSpec) -> Requirement:
         lags=_lags(task),
         force_error=upper_float(task.sensor.lasting),
     )
+
+
+def _measured_in(task: Task, given: ImpedanceControllerSpec) -> tuple[Environment, ...]:
+    """Return all contacts, and what the gains are designed for if it is none by itself."""
+    names = dict.fromkeys((*contact_names(given.contacts), given.environment))
+    return tuple(map(task.plant.environment, names))
+
+
+def _highest_stiffness(task: Task, given: ImpedanceControllerSpec) -> Fraction:
+    """Return that of the environment that the gains are designed for, and of what it is part of."""
+    at_once = (c for c in given.contacts if given.environment in names_in(c))
+    names = (given.environment, *contact_names(tuple(at_once)))
+    return max(task.plant.environment(name).stiffness.high for name in names)
 
 
 def _measures(task: Task) -> tuple[Measure, ...]:

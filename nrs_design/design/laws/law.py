@@ -92,10 +92,14 @@ class LawDesign:
         Gives the analysis for what the gains were chosen for (`task`), what the spec says of the
         controller (`given`), and the controller with the gains that ship; None where nothing is
         measured.
+    too_stiff : callable or None
+        Gives the contacts that are too stiff for the gains, and what would hold, for the same; None
+        where that is not known.
     """
 
     choose: Callable[[Task, Any], Choice]
     analyze: Callable[[Task, Any, Controller], AbstractControllerAnalysis] | None = None
+    too_stiff: Callable[[Task, Any, Controller], Iterator[Doubt]] | None = None
 
 
 @contextmanager

@@ -6,8 +6,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from nrs_design.errors import DesignError
+from nrs_design.models.plant import build_environments
 from nrs_design.spec import InteractionDesignSpec, LoadedSpec, SwitchingSpec
-from nrs_design.spec.environment import AbstractEnvironmentSpec
+from nrs_design.spec.controllers import contact_names, touched_in
 
 
 @dataclass(frozen=True, slots=True)
@@ -108,15 +109,11 @@ def _stiffness(spec: InteractionDesignSpec, name: str) -> Stiffness | None:
     controller = spec.controllers[name]
     if not controller.contacts:
         return None
-    touched = {contact: spec.environments[contact] for contact in controller.contacts}
-    plain = [e for e in touched.values() if not e.remembers]
+    touched = {name: spec.environments[name] for name in touched_in(controller.contacts)}
     foreign = tuple(contact for contact, e in touched.items() if e.remembers)
-    return Stiffness(tuple(_range(environment) for environment in plain), foreign)
-
-
-def _range(environment: AbstractEnvironmentSpec) -> tuple[float, float]:
-    stiffness = environment.exact_at_pivot()["stiffness"]
-    return float(stiffness.low), float(stiffness.high)
+    felt = set(contact_names(controller.contacts)).difference(foreign)
+    ranges = (e.stiffness for e in build_environments(spec) if e.name in felt)
+    return Stiffness(tuple((float(k.low), float(k.high)) for k in ranges), foreign)
 
 
 def _stay(rules: SwitchingSpec, name: str) -> tuple[float, float]:

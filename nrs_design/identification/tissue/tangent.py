@@ -17,6 +17,8 @@ from nrs_design.models.contact import AbstractNonlinearLaw, KelvinVoigt
 
 Array = NDArray[np.float64]
 
+_DIGITS = 4
+
 
 @dataclass(frozen=True, slots=True)
 class Tangent:
@@ -30,12 +32,18 @@ class Tangent:
         Of stiffness and damping over all preloads.
     low, high : float
         Preloads: deflections in m (rad).
+    about : float
+        A deflection in their middle, of few digits, in m (rad).
+    power : tuple of Estimate
+        The power law itself: stiffness and damping at that deflection, and the exponent.
     """
 
     law: KelvinVoigt
     ranges: tuple[Estimate, ...]
     low: float
     high: float
+    about: float
+    power: tuple[Estimate, Estimate, Estimate]
 
 
 def tangent(model: ModelFit, preload: tuple[float, float]) -> Tangent:
@@ -75,13 +83,20 @@ def tangent(model: ModelFit, preload: tuple[float, float]) -> Tangent:
         Estimate(value, min(at_low.low, at_high.low), max(at_low.high, at_high.high))
         for value, at_low, at_high in zip(middle.values, *ends, strict=True)
     )
-    return Tangent(middle, ranges, low, high)
+    about = min(max(float(f"{(low + high) / 2:.{_DIGITS}g}"), low), high)
+    stiffness, damping, exponent = _ranges_at(model, about, with_exponent=True)
+    power = (stiffness, damping, exponent)
+    return Tangent(middle, ranges, low, high, about, power)
 
 
-def _ranges_at(model: ModelFit, depth: float) -> Sequence[Estimate]:
-    """Return stiffness and damping at one deflection, with what the model's ranges hold."""
-    level = joint_level(2)
-    single = [_estimates(fit, depth, level) for fit in model.fits]
+def _ranges_at(model: ModelFit, depth: float, *, with_exponent: bool = False) -> Sequence[Estimate]:
+    """Return stiffness and damping at one deflection, with what the model's ranges hold.
+
+    With the exponent beside them, each has a smaller share of the 5 % that may fail.
+    """
+    level = joint_level(2 + with_exponent)
+    count = 2 + with_exponent
+    single = [_estimates(fit, depth, level)[:count] for fit in model.fits]
     logs = np.log([[e.value for e in row] for row in single])
     if len(single) == 1:
         return single[0]
@@ -94,7 +109,9 @@ def _ranges_at(model: ModelFit, depth: float) -> Sequence[Estimate]:
 def _estimates(fit: RecordFit, depth: float, level: float) -> tuple[Estimate, ...]:
     law = fit.law
     assert isinstance(law, AbstractNonlinearLaw)
-    chain = law.tangent_sensitivities(depth)
+    # By the logarithms of the parameters; the exponent is the last of them.
+    alone = np.eye(len(law.values))[-1:]
+    chain = np.vstack([law.tangent_sensitivities(depth), alone])
     covariance = chain @ fit.uncertainty.covariance @ chain.T
     known = Uncertainty(covariance, fit.uncertainty.degrees, fit.uncertainty.whiteness)
-    return known.estimates(np.log(law.tangent(depth)), level)
+    return known.estimates(np.log([*law.tangent(depth), law.values[-1]]), level)

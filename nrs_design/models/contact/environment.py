@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from itertools import product
 
 from nrs_design.errors import AssemblyError
+from nrs_design.models.contact.elastic import Elastic
+from nrs_design.models.contact.kelvin_voigt import KelvinVoigt
 from nrs_design.models.contact.law import AbstractLinearLaw
 from nrs_design.spec.interval import Interval
 
@@ -24,11 +26,20 @@ class Environment:
         What relates its force to its deflection.
     ranges : tuple of Interval
         Of the parameters, in the order of the law: N m/rad and N m s/rad.
+    parts : tuple of Environment
+        What it consists of, where several environments are touched at once.
+    each_losable : bool
+        Whether each of these parts may be lost on its own.
+    preloaded : bool
+        Whether the ranges hold for deflections off the surface only, so that contact is kept.
     """
 
     name: str
     law: type[AbstractLinearLaw]
     ranges: tuple[Interval, ...]
+    parts: tuple[Environment, ...] = ()
+    each_losable: bool = False
+    preloaded: bool = False
 
     @property
     def parameters(self) -> dict[str, Interval]:
@@ -69,6 +80,9 @@ class Environment:
         AssemblyError
             If a parameter would reach a value that the law does not admit.
         """
+        if self.parts:
+            parts = tuple(part.scaled(scale) for part in self.parts)
+            return touch_at_once(parts, losable=self.each_losable)
         ranges = tuple(interval.scaled(scale) for interval in self.ranges)
         for index, interval in enumerate(ranges):
             if self.law.admits(index, interval.low):
@@ -78,4 +92,38 @@ class Environment:
                 f"{self.law.kinds[index]} that no elastic or damped material has",
                 remedy="scale the ranges by less",
             )
-        return Environment(self.name, self.law, ranges)
+        return replace(self, ranges=ranges)
+
+
+def touch_at_once(parts: tuple[Environment, ...], *, losable: bool) -> Environment:
+    """Return what several springs and dampers are that are touched at once: forces add up.
+
+    Where each may be lost on its own, they are touched from one side, each from where its own
+    surface is. With a_j the depth at which part j is met, 0 for the first, the force at the depth
+    delta > 0 is ``sum k_j max(0, delta - a_j) = k delta``, and k is at least the stiffness of the
+    first part and at most the sum, whatever the a_j are and however the k_j move.
+
+    Parameters
+    ----------
+    parts : tuple of Environment
+        Elastic or Kelvin-Voigt; elastic where each may be lost.
+    losable : bool
+        Whether each may be lost on its own.
+    """
+    stiffness = tuple(part.stiffness for part in parts)
+    total = _sum(stiffness)
+    if losable:
+        total = Interval(total.nominal, min(k.low for k in stiffness), total.high)
+    damping = [part.parameters["b"] for part in parts if "b" in part.parameters]
+    name = "+".join(part.name for part in parts)
+    law, ranges = (KelvinVoigt, (total, _sum(damping))) if damping else (Elastic, (total,))
+    preloaded = any(part.preloaded for part in parts)
+    return Environment(name, law, ranges, parts, losable, preloaded)
+
+
+def _sum(intervals: Sequence[Interval]) -> Interval:
+    return Interval(
+        sum((i.nominal for i in intervals), Fraction(0)),
+        sum((i.low for i in intervals), Fraction(0)),
+        sum((i.high for i in intervals), Fraction(0)),
+    )

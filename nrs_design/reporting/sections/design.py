@@ -32,6 +32,10 @@ _CURVES = 6
 _NOMINAL = (
     "Design values in floating point, for contact at the nominal stiffness; no part of the proof."
 )
+_OFFSET = (
+    "Steady error and peak torque with an offset: for an axis that arrives at the largest velocity "
+    "of the spec, and a switch to force control exactly at its torque limit, which is Fd."
+)
 _SUDDEN = (
     "Viscoelastic contact: the stiffness is that which a sudden motion meets, and up to the "
     "stiffness limit all parameters of the law grow in proportion to it."
@@ -69,7 +73,9 @@ _FORCE_ROWS: tuple[tuple[str, Callable[[ForceAnalysis], str]], ...] = (
     ("Closed-loop poles [rad/s]", lambda item: roots(item.loop.poles)),
     ("Damping ratio [1]", lambda item: number(item.loop.damping_ratio)),
     ("Natural frequency [rad/s]", lambda item: number(item.loop.natural_frequency)),
-    ("Steady error over command [1]", lambda item: number(item.loop.steady_state_ratio)),
+    ("Offset X_i", lambda item: item.approach.offset),
+    ("Steady error over command [1]", lambda item: number(item.steady_error)),
+    ("Peak torque [N·m]", lambda item: "–" if item.peak is None else number(item.peak)),
 )
 
 
@@ -252,7 +258,10 @@ def _force_section(analysis: DesignAnalysis) -> Section:
         [[value(item) for _, value in _FORCE_ROWS] for item in analysis.force],
     )
     loci = (_force_locus(analysis.motion, item) for item in analysis.force[:_CURVES])
-    return Section("Force control", (Paragraph(_NOMINAL), *tables, *loci))
+    texts = [Paragraph(_NOMINAL)]
+    if any(item.peak is not None for item in analysis.force):
+        texts.append(Paragraph(_OFFSET))
+    return Section("Force control", (*texts, *tables, *loci))
 
 
 def _force_locus(motion: TransferFunction, item: ForceAnalysis) -> Illustration:

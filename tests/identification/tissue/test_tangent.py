@@ -1,5 +1,8 @@
 """A power law about a preload."""
 
+from dataclasses import replace
+from fractions import Fraction
+
 import pytest
 
 from nrs_design.errors import DataError
@@ -29,9 +32,46 @@ def test_the_true_tangents_are_in_the_range(count):
     assert stiffness.high / stiffness.low < 3
 
 
-def test_it_is_written_as_a_spring_and_a_damper():
+def written(found):
+    text = merge_tissue(read_spec(SOFT_TISSUE), found, None, None)
+    return text, parse_spec(text).environments["soft"]
+
+
+def test_it_is_written_as_the_law_that_it_is():
+    text, soft = written(identified(2, preload=PRELOAD))
+    assert soft.model == "hunt-crossley"
+    assert soft.linearized_about is None
+    assert [soft.about.si, *(end.si for end in soft.preload)] == [0.003, 0.002, 0.004]
+    k, b = LAW.tangent(0.003)
+    low, high = soft.stiffness.range
+    assert low.si < k < high.si
+    low, high = soft.damping.range
+    assert low.si < b < high.si
+    assert soft.exponent.range[0] <= Fraction("1.2") <= soft.exponent.range[1]
+    # Every tangent of the true law is in the box, and the chord from the surface.
+    box = soft.linear_at_pivot()
+    arm = soft.lever_arm.exact**2
+    for depth in PRELOAD:
+        k, b = LAW.tangent(depth)
+        assert box["stiffness"].low < k / LAW.phi * float(arm) < box["stiffness"].high
+        assert box["stiffness"].low < k * float(arm) < box["stiffness"].high
+        assert box["damping"].low < b * float(arm) < box["damping"].high
+    # Written again as another law, its keys are gone.
+    again = parse_spec(text)
+    assert again.environments["soft"] == soft
+    elastic = identify_tissue([record(Elastic(750.0), quick(), 0.1)], "elastic")
+    loaded = replace(read_spec(SOFT_TISSUE), text=text, spec=again)
+    plain = parse_spec(merge_tissue(loaded, elastic, None, None)).environments["soft"]
+    assert plain.model == "elastic"
+
+
+def test_an_exponent_that_may_be_below_one_leaves_a_spring_and_a_damper():
+    """Such a law is not convex, and its chords are not those that a spec covers."""
     found = identified(2, preload=PRELOAD)
-    soft = parse_spec(merge_tissue(read_spec(SOFT_TISSUE), found, None, None)).environments["soft"]
+    stiffness, damping, exponent = found.tangent.power
+    doubtful = replace(exponent, low=0.9)
+    about = replace(found.tangent, power=(stiffness, damping, doubtful))
+    _, soft = written(replace(found, tangent=about))
     assert soft.model == "kelvin-voigt"
     assert soft.linearized_about == "deflections from 0.002 m to 0.004 m"
     k, b = LAW.tangent(0.003)

@@ -1,0 +1,157 @@
+"""What force control makes of a limit on the force, with the offset that it has (thesis 6.41).
+
+The axis arrives at a constant velocity, and force control takes over when the force is Fd. What is
+left of the force error depends on the offset X_i alone: with none the loop forgets where contact
+was, with the reference it keeps the lead of the command before the position, with the measured
+position it keeps nothing.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from nrs_design.design.transfer import FloatArray, TransferFunction, static_gain
+from nrs_design.errors import DesignError
+from nrs_design.spec.controllers import Offset
+
+# Time constants and samples of the slowest and fastest pole that a run is looked at for.
+_LONG, _FINE = 12.0, 50.0
+_MOST = 20_000
+# How far G(0) may be from 1 by rounding.
+_REST = 1e-9
+
+
+@dataclass(frozen=True, slots=True)
+class Approach:
+    """How the limit is reached.
+
+    Parameters
+    ----------
+    offset : {"none", "reference", "measured"}
+        What is added to the correction.
+    velocity : float
+        At which the axis arrives, rad/s.
+    force : float
+        Fd, and the force at the switch, N m.
+    """
+
+    offset: Offset = "none"
+    velocity: float = 0.0
+    force: float = 1.0
+
+
+NO_OFFSET = Approach()
+
+
+def steady_force_error(
+    motion: TransferFunction, stiffness: float, gain: float, approach: Approach
+) -> float:
+    """Return the force error that is left in the end, over Fd.
+
+    ``1/(1 + Kp k G(0))`` without offset. With the reference it is ``k e / ((1 + Kp k) Fd)``, where
+    ``e = v / Kv`` is the lead of the command at the switch; with the measured position it is zero.
+
+    Parameters
+    ----------
+    motion : TransferFunction
+        Closed motion loop G, from commanded to actual position.
+    stiffness : float
+        Stiffness k of the environment, N m/rad.
+    gain : float
+        ``Kp``, rad/(N m).
+    approach : Approach
+        Offset, velocity and force.
+
+    Raises
+    ------
+    DesignError
+        If there is an offset, and G(0) is not 1.
+    """
+    at_rest = 1 + gain * stiffness * static_gain(motion)
+    if approach.offset == "none":
+        return 1 / at_rest
+    left = _lead(motion, approach) if approach.offset == "reference" else 0.0
+    return abs(stiffness * left / (at_rest * approach.force))
+
+
+def peak_force(
+    motion: TransferFunction, stiffness: float, gain: float, approach: Approach
+) -> float | None:
+    """Return the largest force after the switch in N m; None without offset.
+
+    Without offset the command jumps away from the contact, so the force is largest at the switch.
+
+    Parameters
+    ----------
+    motion, stiffness, gain, approach
+        As for `steady_force_error`.
+
+    Raises
+    ------
+    DesignError
+        If there is an offset, and G(0) is not 1.
+    """
+    if approach.offset == "none":
+        return None
+    from scipy.linalg import expm
+
+    lead = _lead(motion, approach)
+    A, C = _realize(motion)
+    n = len(C)
+    # The rates of the motion loop on a ramp are constant; the command then jumps by -e, or not.
+    start = np.zeros(n + 1)
+    start[0] = approach.velocity / C[0]
+    start[n - 1] -= lead if approach.offset == "measured" else 0.0
+    start[n] = approach.force
+    closed = np.zeros((n + 1, n + 1))
+    closed[:n, :n] = A
+    closed[n - 1, :n] -= gain * stiffness * C
+    closed[n, :n] = stiffness * C
+    rates = np.linalg.eigvals(closed[:n, :n])
+    step = 1 / (_FINE * float(np.abs(rates).max()))
+    count = min(_MOST, int(_LONG / (step * float(np.abs(rates.real).min()))))
+    transition, state, peak = expm(step * closed), start, approach.force
+    for _ in range(count):
+        before, state = state, transition @ state
+        peak = max(peak, _crest(before, state, step, stiffness * C))
+    return float(peak)
+
+
+def _crest(before: FloatArray, after: FloatArray, step: float, rate: FloatArray) -> float:
+    """Return the largest force within a step: cubic between its ends, by values and slopes."""
+    force = np.array([before[-1], after[-1]])
+    slope = step * np.array([rate @ before[:-1], rate @ after[:-1]])
+    if not slope[0] > 0 > slope[1]:
+        return float(force.max())
+    rise = force[1] - force[0]
+    cubic = np.array([slope.sum() - 2 * rise, 3 * rise - 2 * slope[0] - slope[1], *slope[:1]])
+    at = np.roots(cubic * [3, 2, 1])
+    inside = [float(t.real) for t in at if abs(t.imag) < _REST and 0 <= t.real <= 1]
+    return max(float(force[0] + np.polyval([*cubic, 0.0], t)) for t in (*inside, 0.0, 1.0))
+
+
+def _realize(motion: TransferFunction) -> tuple[FloatArray, FloatArray]:
+    """Return A and C of the controllable canonical form."""
+    denominator = np.asarray(motion.denominator) / motion.denominator[0]
+    n = len(denominator) - 1
+    A = np.eye(n, k=1)
+    A[-1] = -denominator[:0:-1]
+    C = np.zeros(n)
+    numerator = np.asarray(motion.numerator)[::-1] / motion.denominator[0]
+    C[: len(numerator)] = numerator
+    return A, C
+
+
+def _lead(motion: TransferFunction, approach: Approach) -> float:
+    """Return how far the command is before the position on a ramp, in rad."""
+    if abs(static_gain(motion) - 1) > _REST:
+        raise DesignError(
+            "an offset is not modelled for a motion loop that does not rest at its command: "
+            f"G(0) = {static_gain(motion):.6g}",
+            remedy="use `offset: none`, or a transfer function with G(0) = 1",
+            at=("offset",),
+        )
+    ahead = motion.numerator[-2] if len(motion.numerator) > 1 else 0.0
+    return approach.velocity * (motion.denominator[-2] - ahead) / motion.denominator[-1]

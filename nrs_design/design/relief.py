@@ -1,0 +1,80 @@
+"""What would hold where a contact is too stiff for an admittance: more virtual damping."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+
+from nrs_design.controllers.float32 import round_significant
+from nrs_design.design.impedance import ImpedanceLoop
+from nrs_design.design.margins import stiffness_limit
+from nrs_design.models.contact.environment import Environment
+from nrs_design.spec import Doubt
+
+# How far to look for a damping, as a factor, and how near to the least one to come.
+_FURTHEST, _NEAR = 1e4, 1e-3
+_DIGITS = 3
+
+
+def doubt_stiffness(
+    name: str, loop: ImpedanceLoop, contacts: tuple[Environment, ...], Mt: float, Bt: float
+) -> Iterator[Doubt]:
+    """Yield the contacts whose stiffness reaches the limit of an admittance.
+
+    Parameters
+    ----------
+    name : str
+        Of the controller.
+    loop : ImpedanceLoop
+        Motion loop, and what else is in the loop; its contact is not used.
+    contacts : tuple of Environment
+        All that it touches.
+    Mt, Bt : float
+        Its gains, kg m^2 and N m s/rad.
+    """
+    for contact in contacts:
+        touched = replace(loop, contact=contact.nominal)
+        highest, limit = float(contact.stiffness.high), stiffness_limit(touched, Mt, Bt)
+        if highest < limit:
+            continue
+        enough = enough_damping(touched, Mt, Bt, highest)
+        held = "no Bt" if enough is None else f"Bt = {enough:g} N*m*s/rad"
+        text = (
+            f"{name}: the stiffness of {contact.name}, up to {highest:.6g} N*m/rad, reaches the "
+            f"limit {limit:.6g} N*m/rad of its gains; with Mt = {Mt:g} kg*m^2, {held} would hold "
+            "one such contact (continuous time, floating point, not a proof)"
+        )
+        yield Doubt(("controllers", name), text)
+
+
+def enough_damping(loop: ImpedanceLoop, Mt: float, Bt: float, stiffness: float) -> float | None:
+    """Return a virtual damping above Bt that is stable up to a stiffness, with few digits.
+
+    Parameters
+    ----------
+    loop : ImpedanceLoop
+        Motion loop and law of the environment.
+    Mt, Bt : float
+        The gains that are not enough, kg m^2 and N m s/rad.
+    stiffness : float
+        N m/rad.
+
+    Returns
+    -------
+    float or None
+        The least one, rounded up; None if none up to 10,000 times Bt is enough.
+    """
+    low, high = Bt, Bt
+    while stiffness_limit(loop, Mt, high) <= stiffness:
+        low, high = high, 2 * high
+        if high > _FURTHEST * Bt:
+            return None
+    while high - low > _NEAR * high:
+        middle = (low + high) / 2
+        enough = stiffness_limit(loop, Mt, middle) > stiffness
+        low, high = (low, middle) if enough else (middle, high)
+    return next(
+        float(rounded)
+        for up in range(100)
+        if (rounded := round_significant(high * (1 + up * _NEAR), _DIGITS)) >= high
+    )

@@ -1,0 +1,50 @@
+"""TRUSTED: powers with rational exponents, between two decimals, in Python integers alone."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from math import floor, log10
+
+# Digits of the bounds, at least.
+DIGITS = 10
+
+
+def power_between(base: Fraction, exponent: Fraction) -> tuple[Fraction, Fraction]:
+    """Return decimals at most and at least ``base^exponent``, and nearly equal.
+
+    With ``exponent = p/q`` and a unit u, ``r u`` is the lower one for the largest r with
+    ``(r u)^q <= base^p``, and ``(r + 1) u`` the upper one, unless the lower one is the power.
+
+    Parameters
+    ----------
+    base : Fraction
+        Positive.
+    exponent : Fraction
+        Of a small denominator: numbers have as many digits as it is large.
+
+    Raises
+    ------
+    ValueError
+        If the base is not positive.
+    """
+    if base <= 0:
+        raise ValueError(f"{base} has no power with a rational exponent")
+    q, power = exponent.denominator, base**exponent.numerator
+    # How large the power is, is asked of a float; it decides how near the bounds are, no more.
+    size = float(exponent) * (log10(base.numerator) - log10(base.denominator))
+    unit = Fraction(10) ** (floor(size) - DIGITS)
+    scaled = power / unit**q
+    lower = _root(floor(scaled), q)
+    upper = lower if lower**q == scaled else lower + 1
+    return lower * unit, upper * unit
+
+
+def _root(value: int, q: int) -> int:
+    """Return the largest integer whose q-th power is at most an integer that is not negative."""
+    low, high = 0, 1
+    while high**q <= value:
+        low, high = high, 2 * high
+    while high - low > 1:
+        middle = (low + high) // 2
+        low, high = (middle, high) if middle**q <= value else (low, middle)
+    return low

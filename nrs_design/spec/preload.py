@@ -1,0 +1,132 @@
+"""A power law over a range of deflections, as the box of springs and dampers that it stays in.
+
+The law is ``F = rho delta^phi + lam delta^phi delta'`` (thesis 2.18), ``phi >= 1``. A spec gives
+its tangent at one deflection a, ``k = phi rho a^(phi-1)`` and ``b = lam a^phi``: no power of phi is
+in their units, and errors of rho and phi do not multiply.
+
+While delta stays in the preload [low, high], and about a rest at any delta_e in [0, high],
+``F(delta, delta') - F(delta_e, 0) = K (delta - delta_e) + B delta'`` exactly, with the chord K of
+``rho delta^phi`` and ``B = lam delta^phi``. The law is convex, so chords grow with both their ends:
+K is at least the chord from the surface to low, ``k/phi (low/a)^(phi-1)``, and at most the tangent
+at high, ``k (high/a)^(phi-1)``. B lies between ``b (low/a)^phi`` and ``b (high/a)^phi``. A power is
+monotonic in phi, so the ends of its range suffice.
+"""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from typing import Annotated, Any
+
+from pydantic import BeforeValidator, Field, PlainValidator, WithJsonSchema, model_validator
+
+from nrs_design.proof.power import power_between
+from nrs_design.spec.faults import fault
+from nrs_design.spec.fields import NUMBER_SCHEMA, read_exact
+from nrs_design.spec.interval import Interval
+from nrs_design.spec.model import SpecModel
+
+# Powers are enclosed in integers with as many digits as the denominator is large.
+FINEST = 1000
+LEAST, LARGEST = 1, 3
+
+
+def _read_exponent(value: object) -> Fraction:
+    number = read_exact(value)
+    if not LEAST <= number <= LARGEST:
+        raise fault(
+            f"the exponent {value} is not between {LEAST} and {LARGEST}",
+            "write phi of F = rho delta^phi, usually 1.1 to 1.3",
+        )
+    if number.denominator > FINEST:
+        raise fault(
+            f"the exponent {value} is finer than 1/{FINEST}",
+            "write at most three decimals; a range is rounded outwards",
+        )
+    return number
+
+
+_NOMINAL = "exponent that the design uses, no unit"
+_RANGE = "[lowest, highest] exponent that the proof covers; default: the nominal one"
+_SCHEMA: dict[str, Any] = {
+    "anyOf": [
+        NUMBER_SCHEMA,
+        {
+            "type": "object",
+            "properties": {
+                "nominal": NUMBER_SCHEMA | {"description": _NOMINAL},
+                "range": {
+                    "type": "array",
+                    "items": NUMBER_SCHEMA,
+                    "minItems": 2,
+                    "maxItems": 2,
+                    "description": _RANGE,
+                },
+            },
+            "required": ["nominal"],
+            "additionalProperties": False,
+        },
+    ]
+}
+_Exponent = Annotated[Fraction, PlainValidator(_read_exponent), WithJsonSchema(NUMBER_SCHEMA)]
+
+
+class ExponentSpec(SpecModel):
+    """An exponent that is known up to a range."""
+
+    nominal: _Exponent = Field(description=_NOMINAL)
+    range: tuple[_Exponent, _Exponent] = Field(
+        default_factory=lambda data: (data.get("nominal"), data.get("nominal")),
+        description=_RANGE,
+    )
+
+    @model_validator(mode="after")
+    def _check_order(self) -> ExponentSpec:
+        low, high = self.range
+        if not low <= self.nominal <= high:
+            raise fault(
+                f"nominal {self.nominal} is not within the range [{low}, {high}]",
+                "write [lowest, highest] around the nominal exponent",
+                "range",
+            )
+        return self
+
+
+RangedExponent = Annotated[
+    ExponentSpec,
+    BeforeValidator(lambda v: v if isinstance(v, dict | ExponentSpec) else {"nominal": v}),
+    WithJsonSchema(_SCHEMA),
+]
+
+
+def power_box(
+    stiffness: Interval,
+    damping: Interval,
+    exponent: ExponentSpec,
+    reach: tuple[Fraction, Fraction],
+) -> tuple[Interval, Interval]:
+    """Return where stiffness and damping stay while the deflection stays in its preload.
+
+    Parameters
+    ----------
+    stiffness, damping : Interval
+        Of the tangent at the deflection a.
+    exponent : ExponentSpec
+        phi.
+    reach : tuple of Fraction
+        The preload over a, lowest and highest, positive.
+
+    Returns
+    -------
+    tuple of Interval
+        Of stiffness and damping, rounded outwards; the nominal values are those at a.
+    """
+    low, high = reach
+    ends = exponent.range
+    softest = min(power_between(low, phi - 1)[0] for phi in ends) / ends[1]
+    stiffest = max(power_between(high, phi - 1)[1] for phi in ends)
+    least = min(power_between(low, phi)[0] for phi in ends)
+    most = max(power_between(high, phi)[1] for phi in ends)
+    return (
+        Interval(stiffness.nominal, stiffness.low * softest, stiffness.high * stiffest),
+        Interval(damping.nominal, damping.low * least, damping.high * most),
+    )

@@ -1,0 +1,109 @@
+"""The offset X_i of force control (thesis 6.41): a memory that every switch takes anew.
+
+The command of the motion loop is ``u = r`` in position mode and ``u = X_i + Kp (Fd - F)`` in force
+mode. X_i is held, so a mode has no rest point of its own: it rests wherever X_i lets it, and in
+coordinates of the position it has the eigenvalue zero. What decays is the motion. With
+``w = xi'`` and constant commands every mode is ``w' = A w``, with the A that it has without an
+offset, and X_i is gone. At a switch xi stays and u may jump: ``w+ = w + B (u+ - u)``.
+
+- `reference`: X_i is the command before the switch, so u stays and w too.
+- `measured`: X_i is the position theta, so ``u+ = theta``. As G(0) = 1, the lead of the command is
+  ``u - theta = -C Ap^-1 w``, a form of w alone. It stands last among the coordinates here: a switch
+  sets it to zero, and leaves the others as they are.
+
+Both hold where the force at a switch to force control is Fd; otherwise u+ has the term
+``Kp (Fd - F)`` besides, which is an input.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from fractions import Fraction
+
+from nrs_design.controllers.controller_design import ControllerDesign
+from nrs_design.errors import AssemblyError
+from nrs_design.models.linear_form import LinearForm, coordinates
+from nrs_design.models.motion_loop import Realization
+from nrs_design.proof.matrix import RationalMatrix, multiply
+from nrs_design.spec.controllers import Offset
+
+Rows = list[LinearForm]
+
+
+def lead(motion: Realization) -> list[Fraction]:
+    """Return ``u - theta`` as a linear form of ``w = xi'``: the y with ``y Ap = -C``.
+
+    Parameters
+    ----------
+    motion : Realization
+        Of the motion loop, from position to position.
+
+    Raises
+    ------
+    AssemblyError
+        If the motion loop does not rest where it is commanded to be, ``G(0) != 1``: then the lead
+        depends on the position too.
+    """
+    last, C = motion.A[-1], motion.C
+    if C[0] != -last[0] or not last[0]:
+        raise AssemblyError(
+            "an offset is not modelled for a motion loop that does not rest at its command: "
+            "G(0) is not 1",
+            remedy="use `offset: none`, or a transfer function with G(0) = 1",
+            at=("motion_loop", "transfer_function"),
+        )
+    return [*(-c - a for c, a in zip(C[1:], last[1:], strict=True)), Fraction(1)]
+
+
+def to_motion(rows: Rows, motion: Realization) -> Rows:
+    """Return a mode in the coordinates w, the lead in the place of the last (``T A T^-1``).
+
+    Parameters
+    ----------
+    rows : Rows
+        A of a mode, ``xi' = A xi + const``.
+    motion : Realization
+        Of the motion loop.
+
+    Raises
+    ------
+    AssemblyError
+        If ``G(0) != 1``.
+    """
+    T, inverse = coordinates(len(rows)), coordinates(len(rows))
+    T[-1] = lead(motion)
+    inverse[-1] = [*(-entry for entry in T[-1][:-1]), Fraction(1)]
+    return [*multiply(multiply(T, rows), inverse)]
+
+
+def names_of(order: int) -> tuple[str, ...]:
+    """Return the names of these states."""
+    return (*(f"dxp{i + 1}" for i in range(order - 1)), "lead [rad]")
+
+
+def retaken(
+    design: ControllerDesign, offset: Offset, order: int
+) -> Iterator[tuple[str, str, RationalMatrix]]:
+    """Yield what a switch does to the state, between any two controllers.
+
+    Parameters
+    ----------
+    design : ControllerDesign
+        All controllers.
+    offset : {"none", "reference", "measured"}
+        Where X_i is taken from.
+    order : int
+        How many states the motion loop has.
+
+    Yields
+    ------
+    tuple of (str, str, RationalMatrix)
+        Controller before and after the switch, and the map; nothing where the state stays.
+    """
+    if offset != "measured":
+        return
+    kept = [[Fraction(int(i == j < order - 1)) for j in range(order)] for i in range(order)]
+    for source in design.controllers:
+        for target in design.controllers:
+            if source.name != target.name:
+                yield source.name, target.name, RationalMatrix.from_rows(kept)

@@ -1,0 +1,147 @@
+"""A Hunt-Crossley law in a spec: the box of springs and dampers over its preload."""
+
+import math
+from fractions import Fraction
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from nrs_design.models.contact import HuntCrossley
+from nrs_design.models.plant import build_plant
+from nrs_design.spec.environment import HuntCrossleySpec
+from nrs_design.spec.interval import Interval
+from nrs_design.spec.preload import ExponentSpec, power_box
+
+from .samples import IMPEDANCE, interaction, refusal, spoiled
+
+F = Fraction
+LAW = """model: hunt-crossley
+    stiffness: {nominal: 750 N/m, range: [700 N/m, 800 N/m]}
+    damping: 10 N*s/m
+    exponent: {nominal: 1.2, range: [1.1, 1.3]}
+    about: 4 mm
+    preload: [2 mm, 8 mm]
+"""
+LINEAR = "model: elastic\n    stiffness: 747.1461 N/m\n"
+TEXT = spoiled(IMPEDANCE, LINEAR, LAW)
+
+
+def test_box_of_an_exact_power():
+    """phi = 1.5, from a quarter of `about` to four times it: all powers are rational."""
+    exponent = ExponentSpec(nominal=F("1.5"))
+    k, b = power_box(Interval.point(F(6)), Interval.point(F(1)), exponent, (F(1, 4), F(4)))
+    # Chord 6/1.5 (1/4)^0.5 = 2, tangent 6 4^0.5 = 12; damping (1/4)^1.5 and 4^1.5.
+    assert k == Interval(F(6), F(2), F(12))
+    assert b == Interval(F(1), F(1, 8), F(8))
+
+
+def test_tangent_of_the_models():
+    """The nominal values are the tangent of the law at `about`; the box holds it everywhere."""
+    law = HuntCrossley(1.054, 15.158, 1.2)  # thesis table 2.5
+    k, b = law.tangent(0.2)
+    exponent = ExponentSpec(nominal=F("1.2"))
+    box = power_box(
+        Interval.point(F(k)), Interval.point(F(b)), exponent, (F("0.1") / F("0.2"), F("1.5"))
+    )
+    for deflection in (0.1, 0.15, 0.2, 0.3):
+        stiffness, damping = law.tangent(deflection)
+        assert box[0].low <= stiffness <= box[0].high * (1 + 1e-12)
+        assert box[1].low * (1 - 1e-12) <= damping <= box[1].high * (1 + 1e-12)
+    assert float(box[0].high) == pytest.approx(law.tangent(0.3)[0])
+    # Not the tangent at the low end, but the chord from the surface to it.
+    assert float(box[0].low) == pytest.approx(law.tangent(0.1)[0] / 1.2)
+
+
+shares = st.floats(0, 1)
+
+
+@settings(max_examples=60)
+@given(
+    phi=st.tuples(shares, shares),
+    reach=st.tuples(st.floats(0.05, 1), st.floats(1, 6)),
+    at=st.tuples(shares, shares, shares, shares, shares),
+    speed=st.floats(-5, 5),
+)
+def test_force_about_any_rest_is_one_of_the_box(phi, reach, at, speed):
+    """Any law of the ranges, any rest from the surface to the end, any deflection between."""
+    ends = sorted(round(1 + share, 3) for share in phi)
+    exponent = ExponentSpec(nominal=F(str(ends[0])), range=(F(str(ends[0])), F(str(ends[1]))))
+    k0, b0 = Interval(F(5), F(4), F(6)), Interval(F(1), F(1, 2), F(2))
+    low, high = (F(round(end, 6)).limit_denominator(10**6) for end in reach)
+    k, b = power_box(k0, b0, exponent, (low, high))
+    power = ends[0] + at[0] * (ends[1] - ends[0])
+    stiffness, damping = 4 + 2 * at[1], 0.5 + 1.5 * at[2]
+    # rho and lam of the law with this tangent at the deflection 1.
+    law = HuntCrossley(stiffness / power, damping, power)
+    delta = float(low) + at[3] * float(high - low)
+    rest = at[4] * float(high)
+    chord = law.tangent(delta)[0]
+    if not math.isclose(delta, rest, rel_tol=1e-6):
+        chord = law.rho * (delta**power - rest**power) / (delta - rest)
+    near = 1e-7
+    assert float(k.low) * (1 - near) <= chord <= float(k.high) * (1 + near)
+    assert float(b.low) * (1 - near) <= law.lam * delta**power <= float(b.high) * (1 + near)
+    force = law.rho * delta**power + law.lam * delta**power * speed
+    linear = chord * (delta - rest) + law.lam * delta**power * speed
+    assert force - law.rho * rest**power == pytest.approx(linear, rel=1e-6, abs=1e-5)
+
+
+def test_spec():
+    spec = interaction(TEXT)
+    soft = spec.environments["soft"]
+    assert isinstance(soft, HuntCrossleySpec)
+    assert not soft.fixed
+    assert not soft.is_spring
+    environment = build_plant(spec).environment("soft")
+    assert environment.law.name == "kelvin-voigt"
+    assert environment.preloaded
+    arm = F("0.0576")
+    assert environment.stiffness.nominal == 750 * arm
+    # 700/1.3 0.5^0.3 and 800 2^0.3 at the contact point.
+    assert float(environment.stiffness.low / arm) == pytest.approx(437.367, abs=1e-3)
+    assert float(environment.stiffness.high / arm) == pytest.approx(984.915, abs=1e-3)
+    assert float(environment.parameters["b"].low / arm) == pytest.approx(10 * 0.5**1.3)
+    assert float(environment.parameters["b"].high / arm) == pytest.approx(10 * 2**1.3)
+
+
+def test_degrees_cancel():
+    angles = LAW.replace("N/m", "N*m/rad").replace("10 N*s/m", "0.5 N*m*s/rad").replace("mm", "deg")
+    spec = interaction(spoiled(IMPEDANCE, LINEAR + "    lever_arm: 0.24 m\n", angles))
+    stiffness = build_plant(spec).environment("soft").stiffness
+    assert float(stiffness.high) == pytest.approx(800 * 2**0.3)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        ("about: 4 mm", "about: 1 mm", "not within the preload"),
+        ("about: 4 mm", "about: 0.1 rad", "is an angle, and a lever_arm is given"),
+        ("preload: [2 mm, 8 mm]", "preload: [2 mm, 3 deg]", "different units"),
+        ("preload: [2 mm, 8 mm]", "preload: [0 mm, 8 mm]", "must be positive"),
+        ("preload: [2 mm, 8 mm]", "preload: [8 mm, 2 mm]", "not within the preload"),
+        ("preload: [2 mm, 8 mm]", "preload: 2 mm", "preload"),
+        ("range: [1.1, 1.3]", "range: [0.9, 1.3]", "not between 1 and 3"),
+        ("range: [1.1, 1.3]", "range: [1.25, 1.3]", "not within the range"),
+        ("nominal: 1.2,", "nominal: 1.2001,", "finer than 1/1000"),
+        ("    exponent: {nominal: 1.2, range: [1.1, 1.3]}\n", "", "exponent"),
+        ("switching: arbitrary", "switching: {dwell_time: 1 s}", "its parameters may move"),
+    ],
+)
+def test_what_makes_no_sense_is_refused(old, new, message):
+    assert message in str(refusal(spoiled(TEXT, old, new)))
+
+
+@pytest.mark.parametrize(
+    ("end", "message"),
+    [
+        (
+            "contact: losable\n",
+            "loss of contact is not modelled: 'soft' is known within its preload only",
+        ),
+        ("disturbances: {command: 8 deg/s}\n", "bounds from rest are not modelled"),
+        ("coordinates: force\n", "its deflection does not jump"),
+    ],
+)
+def test_what_is_not_modelled_is_refused(end, message):
+    assert message in refusal(TEXT + end).message

@@ -43,7 +43,7 @@ def coverage(session: nox.Session) -> None:
 
 @nox.session
 def mutation(session: nox.Session) -> None:
-    """Make every small error in what decides, and run its tests: half an hour of a processor."""
+    """Make every small error in what decides, and run its tests: a quarter of an hour."""
     session.install(".[test]", *CONSTRAINTS)
     session.run("python", "-m", "tests.mutation", *session.posargs)
 

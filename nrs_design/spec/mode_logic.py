@@ -73,7 +73,7 @@ def check_kept(
     kept = rules_of(logic, controllers, environments)
     if rules.names_contacts != kept.names_contacts and not rules.is_arbitrary:
         raise fault("the rules are not about what the mode logic decides", _REMEDY, "switching")
-    for name in {end for pair in kept.transitions or () for end in pair}:
+    for name in dict.fromkeys(end for pair in kept.transitions or () for end in pair):
         _check_stay(name, rules, kept)
     for pair in kept.transitions or ():
         if rules.transitions is not None and pair not in rules.transitions:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
+from decimal import ROUND_CEILING, ROUND_FLOOR, Context, Decimal
 from fractions import Fraction
 from pathlib import Path
 
@@ -22,7 +23,9 @@ from nrs_design.search.certify import certify
 from nrs_design.search.margin import find_margin
 
 # For each of the proofs by which a safe range is looked for.
-MARGIN_BUDGET = 5.0
+MARGIN_BUDGET = 2.0
+# Of the ends of a range that was looked for.
+DIGITS = 3
 _STATUS = {
     "proved": Status.PROVED,
     "refuted": Status.REFUTED,
@@ -129,12 +132,13 @@ class _Asker:
         known: Certification,
         unit: str,
     ) -> str:
-        """Say up to which stiffness there is a proof."""
+        """Say up to which stiffness there is a proof, and from where on a refutation."""
         low, high = met
         if low == high:
             return ""
 
-        limits = replace(self.limits, budget=min(MARGIN_BUDGET, self.limits.budget))
+        quick = min(MARGIN_BUDGET, self.limits.budget)
+        limits = replace(self.limits, budget=quick, optimize_rate=False)
         margin = find_margin(
             lambda scale: close_axis(law, axis, around.up_to(low + scale * (high - low))),
             lambda system: certify(system, limits=limits),
@@ -143,7 +147,11 @@ class _Asker:
         if margin.proved is None:
             return f"; no proof even for {nearly(low, unit)} alone"
         safe = low + margin.proved * (high - low)
-        return f"; proved for {lower(low)} to {lower(safe, 4)} {unit}"
+        said = f"; proved for {lower(low)} to {_digits(safe, ROUND_FLOOR)} {unit}"
+        if margin.refuted is not None and margin.refuted < 1:
+            worse = low + margin.refuted * (high - low)
+            said += f", refuted for {lower(low)} to {_digits(worse, ROUND_CEILING)} {unit}"
+        return said
 
 
 def check_file(
@@ -261,6 +269,12 @@ def _readable(path: Path, node: RosNode) -> Obligation:
     return Obligation(
         ROS_PARAMETERS, path, node.name, Status.MET, message, place.line, place.column
     )
+
+
+def _digits(number: Fraction, rounding: str) -> str:
+    """Write a number with few digits, on the side that stays true."""
+    few = Context(DIGITS, rounding).divide(Decimal(number.numerator), Decimal(number.denominator))
+    return f"{few:f}"
 
 
 def _range(met: tuple[Fraction, Fraction], unit: str) -> str:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from functools import partial
 from typing import Annotated, Literal
 
@@ -38,6 +38,8 @@ from nrs_design.spec.sensor import SensorSpec
 from nrs_design.spec.switching import MODE_LOGIC, DwellTime, LogicalRule, check_names
 
 MAX_ENTRIES = 64
+# The contact in the names of the modes of free motion.
+FREE = "free"
 
 
 class DesignSpec(SpecModel):
@@ -142,6 +144,7 @@ class InteractionDesignSpec(SpecModel):
                 self.controllers, self.environments, self.idle_states, self.coordinates
             ),
             partial(self._check_each, _check_references),
+            lambda: _check_free(self.environments),
             lambda: all_of(
                 *(
                     partial(check_applicable, c.goals, {c.type}, "controllers", name, "goals")
@@ -265,8 +268,21 @@ class InteractionDesignSpec(SpecModel):
                 "coordinates",
             )
 
+    @property
+    def flies_like_a_mode(self) -> bool:
+        """Whether free motion is a mode like others, which no rule of switching is about."""
+        return self.contact == "losable" and any(
+            "Kt" in c.gains() for c in self.controllers.values()
+        )
+
     def find_dwell_obstacle(self) -> DwellObstacle | None:
         """Say why no dwell time can be claimed for this spec, or None."""
+        if self.flies_like_a_mode:
+            return DwellObstacle(
+                "a dwell time and loss of contact exclude each other where an admittance has a "
+                "spring Kt: contact is lost and made again during the dwell time",
+                "use `contact: kept`",
+            )
         return find_changing_contact(
             self.actuator,
             self.controllers,
@@ -352,6 +368,13 @@ def _check_contact_names(spec: InteractionDesignSpec) -> None:
     """Refuse rules about single contacts where modes are not made one by one."""
     if not spec.switching.names_contacts:
         return
+    if spec.flies_like_a_mode:
+        raise fault(
+            "rules of switching about controllers in one contact each say nothing of free motion, "
+            "which is a mode of its own where an admittance has a spring Kt",
+            "name controllers alone in the rules, or use `contact: kept`",
+            "switching",
+        )
     offset = None if spec.offset == "none" else spec.offset
     beside = (("idle_states", spec.idle_states), ("sampling", spec.sampling), ("offset", offset))
     for at, what in beside:
@@ -362,6 +385,17 @@ def _check_contact_names(spec: InteractionDesignSpec) -> None:
                 f"name controllers alone in the rules, or leave {at} out",
                 "switching",
             )
+
+
+def _check_free(environments: Mapping[str, EnvironmentSpec]) -> None:
+    """Refuse the name that the modes of free motion have."""
+    if FREE in environments:
+        raise fault(
+            f"an environment cannot be called {FREE!r}: so are the modes without contact",
+            "call it by what it is, such as `tissue`",
+            "environments",
+            FREE,
+        )
 
 
 def _check_references(

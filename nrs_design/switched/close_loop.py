@@ -103,6 +103,8 @@ def close_loop(
     state = _shared_state(plant, loop, design, coordinates, idle, offset)
     sprung = any(controller.law.spring for controller in design.controllers)
     free = sprung and _adds_free_motion(state, design, contact)
+    if free:
+        _check_rules_of_flight(rules)
     losable = None if sprung or contact == "kept" else _lost_contact(state, design, boxes, contact)
     parts = {
         controller.name: (
@@ -142,6 +144,17 @@ def close_loop(
         assemble_switching(rules, groups, resets),
         losable,
     )
+
+
+def _check_rules_of_flight(rules: SwitchingSpec) -> None:
+    """Refuse rules that would forbid free motion to come and go while a controller is active."""
+    if rules.names_contacts or next(rules.dwell_times(), None) is not None:
+        raise AssemblyError(
+            "where an admittance has a spring Kt, free motion is a mode like others, and contact "
+            "is lost whatever the rules of switching say",
+            remedy="use `contact: kept`, or rules with transitions between controllers alone",
+            at=("switching",),
+        )
 
 
 def _by_contact(modes: Iterable[Mode]) -> dict[str, tuple[Mode, ...]]:

@@ -1,17 +1,21 @@
+import re
 from fractions import Fraction
 
 import pytest
 from pydantic import ValidationError
 
+from nrs_design.errors import SpecError
 from nrs_design.spec import (
     ElasticSpec,
     ForceControllerSpec,
     ImpedanceControllerSpec,
     KelvinVoigtSpec,
     PositionControllerSpec,
+    parse_spec,
 )
 from nrs_design.spec.controllers import contact_names, touched_in
 from nrs_design.spec.environment import KelvinBoltzmannSpec, MaxwellSpec
+from tests.support import SOFT_TISSUE
 
 from .samples import FORCE, IMPEDANCE, interaction, place_of, refusal, spoiled
 
@@ -510,3 +514,34 @@ def test_mixture_refusals(changes: tuple[tuple[str, str], ...], place: str, reas
     assert any(reason in f"{fault.message}; {fault.remedy}" for fault in faults), faults
     lines = text.splitlines()
     assert any(place in lines[(fault.line or 0) - 1] for fault in faults), faults
+
+
+SPRUNG = "Bt: 1.04 N*m*s/rad, Kt: 5 N*m/rad"
+
+
+def test_with_a_spring_that_is_lost_no_rule_holds_back_free_motion():
+    """Contact kept for 20 s, or in one contact each, would be proved; lost in 45 ms it grows.
+
+    soft 74 N*m/rad, Bt 1.04, Kt 5: 45.17 ms in contact and 36.38 ms free have a radius of 1.159.
+    """
+    text = SOFT_TISSUE.read_text()
+    head, _, _ = text.partition("controllers:")
+    one = f"i: {{type: impedance, environment: soft, Mt: 0.01 kg*m^2, {SPRUNG}}}"
+    springs = re.sub(r"stiffness: \{.*\}\n.*\n", "stiffness: 74 N*m/rad\n", head)
+    base = f"{springs}controllers:\n  {one}\ncontact: losable\n"
+    assert parse_spec(base + "switching: arbitrary\n").flies_like_a_mode
+    with pytest.raises(SpecError, match="lost and made again during the dwell time"):
+        parse_spec(base + "switching: {dwell_time: 20 s}\n")
+    kept = base.replace("losable", "kept")
+    assert not parse_spec(kept + "switching: {dwell_time: 20 s}\n").flies_like_a_mode
+    two = base.replace("contact:", "  j" + one[1:] + "\ncontact:")
+    with pytest.raises(SpecError, match="say nothing of free motion"):
+        parse_spec(two + "switching: {transitions: [[i/soft, j/soft], [j/soft, i/soft]]}\n")
+
+
+def test_no_environment_is_called_like_free_motion():
+    text = SOFT_TISSUE.read_text()
+    with pytest.raises(SpecError, match="cannot be called 'free'"):
+        parse_spec(
+            re.sub(r"\bsoft:", "free:", text.replace("environment: soft", "environment: free"))
+        )

@@ -96,11 +96,14 @@ class SpecReference(_Frozen):
 
 
 class DecayRate(_Frozen):
-    """The certified rate: exactly, and as a short decimal on its safe side."""
+    """The certified rate: exactly, and as a short decimal on its safe side.
+
+    In continuous time alpha in 1/s, in discrete time rho per step.
+    """
 
     exact: str
     rounded: str
-    unit: Literal["1/s"] = "1/s"
+    unit: Literal["1/s", "1 per step"] = "1/s"
 
 
 class Proof(_Frozen):
@@ -167,6 +170,7 @@ def build_record(
     rate = None if evidence is None else evidence.proved_rate(certificate.system)
     if fault is not None or evidence is None or rate is None:
         raise CertificateError(f"the certificate {fault}")
+    time = certificate.system.time
     return ExportRecord(
         package=Package(version=__version__),
         spec=SpecReference(name=certificate.spec_name, sha256=certificate.spec_sha256),
@@ -190,7 +194,11 @@ def build_record(
             {
                 "claim": evidence.claim(certificate.system),
                 "certificate_id": certificate.id,
-                "decay_rate": DecayRate(exact=str(rate), rounded=rate_text(rate, Time.CONTINUOUS)),
+                "decay_rate": DecayRate(
+                    exact=str(rate),
+                    rounded=rate_text(rate, time),
+                    unit="1/s" if time is Time.CONTINUOUS else "1 per step",
+                ),
                 "coordinates": certificate.coordinates,
                 "assumptions": certificate.system.assumptions,
             }

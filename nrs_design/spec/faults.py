@@ -23,7 +23,9 @@ _T = TypeVar("_T")
 MAX_LISTED = 20
 _FAULT = "spec_fault"
 # Below a choice between models, validation inserts the tag of the chosen one.
-_CHOICES = {"environments": "model", "controllers": "type"}
+_CHOICES = {"environments": "model", "controllers": "type", "mode_logic": "type"}
+# How deep that tag is: below a name, or at once.
+_DEPTH = {"environments": 2, "controllers": 2, "mode_logic": 1}
 _MAPPINGS = ("model_type", "model_attributes_type", "dict_type")
 
 
@@ -187,8 +189,9 @@ def _resolve_one(
 
 
 def _without_tag(location: Location) -> Location:
-    if len(location) > 2 and location[0] in _CHOICES and location[2] != "[key]":
-        return location[:2] + location[3:]
+    depth = _DEPTH.get(str(location[0]), len(location)) if location else 0
+    if len(location) > depth and location[depth] != "[key]":
+        return location[:depth] + location[depth + 1 :]
     return location
 
 
@@ -292,10 +295,12 @@ def fields_at(model: type[BaseModel], location: Location) -> dict[str, str]:
     rest = location[1:]
     if location[0] in _CHOICES:
         key = _CHOICES[str(location[0])]
-        if len(rest) < 2:
+        depth = _DEPTH[str(location[0])]
+        if len(rest) < depth:
             return {key: ""}
-        arms = [arm for arm in arms if rest[1] in get_args(arm.model_fields[key].annotation)]
-        rest = rest[2:]
+        tag = rest[depth - 1]
+        arms = [arm for arm in arms if tag in get_args(arm.model_fields[key].annotation)]
+        rest = rest[depth:]
     elif field and get_origin(field.annotation) is dict:
         rest = rest[1:]
     while rest and isinstance(rest[0], int):

@@ -14,7 +14,7 @@ from nrs_design.errors import CertificateError, DesignError
 from nrs_design.exporters.export import export_design
 from nrs_design.exporters.record import ExportRecord, Gain, build_record, dump_record
 from nrs_design.pipeline import run_certification
-from nrs_design.spec import parse_spec, read_spec
+from nrs_design.spec import LoadedSpec, parse_spec, read_spec
 
 SPECS = Path(__file__).parents[2] / "specs"
 
@@ -86,6 +86,17 @@ def test_proof_is_that_of_the_certificate(record, result):
     assert Fraction(proof.decay_rate.exact) == result.certificate.evidence.rate
     assert Fraction(proof.decay_rate.rounded) <= result.certificate.evidence.rate
     assert proof.coordinates == "deflection"
+
+
+def test_the_rate_of_a_sampled_proof_is_one_per_step():
+    """A factor per step holds for every larger one: it is rounded up."""
+    text = (SPECS / "neuroboscope/soft-tissue.nrs.yaml").read_text()
+    head, _, _ = text.partition("  withdrawal:")
+    text = f"{head}switching: arbitrary\nsampling: {{period: 2 ms, delay: 0}}\n"
+    found = run_certification(LoadedSpec(Path("late.nrs.yaml"), 64 * "0", text, parse_spec(text)))
+    rate = build_record(found.design, found.certificate, None).proof.decay_rate
+    assert rate.unit == "1 per step"
+    assert 0.9 < Fraction(rate.exact) <= Fraction(rate.rounded) < 1
 
 
 def test_json_is_the_dump_of_the_record(record):

@@ -128,6 +128,33 @@ def test_what_is_refused(old, new, message):
         parse_spec(text(old, new))
 
 
+@pytest.mark.parametrize(
+    ("old", "new", "message", "remedy"),
+    [
+        ("type: thresholds", "type: treshold", "mode_logic.type: 'treshold' is not", "thresholds?"),
+        ("  type: thresholds\n", "", "`mode_logic.type` is missing", "add type"),
+        (
+            "torque: {above: 0.1",
+            "torque: {abvoe: 0.1",
+            "unknown key `mode_logic.switches[0].torque.abvoe`",
+            "did you mean above?",
+        ),
+    ],
+)
+def test_slips_of_the_pen_are_told_at_their_place(old, new, message, remedy):
+    """The tag of the logic that is chosen is no key of the file."""
+    written = text(old, new)
+    with pytest.raises(SpecError) as caught:
+        parse_spec(written)
+    assert message in caught.value.message
+    assert remedy in caught.value.remedy
+    if new:
+        assert (
+            new.split(":")[-2].rpartition("{")[2].strip()
+            in written.splitlines()[caught.value.line - 1]
+        )
+
+
 def test_no_logic_to_take_rules_from():
     written = FORCE_LIMIT.read_text().replace("switching: arbitrary", "switching: mode-logic")
     with pytest.raises(SpecError, match="no mode_logic to take"):

@@ -47,10 +47,10 @@ def delay(
     """Find how late a measured signal follows a command, in seconds and in samples.
 
     Cross-correlation first, then a fit of the delay beside what it must not be mistaken for: a
-    copy, a lag of first or second order, a lag with an integrator; the least BIC decides. The
-    interval is at 95 %; parts of the record show whether the delay varies. --write is for two
-    forces, the one that the sensor measured and the one that the law used: its age is the delay of
-    sampling.
+    copy, a lag of first or second order, a lag with an integrator; the simplest decides that no
+    other beats by 10 in BIC. The interval is at 95 %; parts of the record show whether the delay
+    varies. --write is for two forces, the one that the sensor measured and the one that the law
+    used: its age is the delay of sampling.
 
     Example: nrs-design identify delay run.csv --command force_raw --measured force_used
     """

@@ -145,7 +145,7 @@ def identify_delay(record: SignalRecord) -> DelayIdentification:
     ends = max(min(e.low for e in held), 0.0), max(*(e.high for e in held), 0.0)
     return DelayIdentification(
         record, fits, chosen, samples.scaled(step), samples, peak, parts, ends,
-        tuple(_doubts(record, chosen, value, half, parts)),
+        (*_doubts(record, chosen, value, half, parts), *_rivals(record, fits, chosen, half)),
     )  # fmt: skip
 
 
@@ -269,6 +269,20 @@ def _own_delay(
         error = record.seen[rows] - fit.output(record, own * record.step)[rows]
         own += float(np.clip(slope @ error / power, -2.0, 2.0))
     return own, power
+
+
+def _rivals(
+    record: SignalRecord, fits: Sequence[DelayFit], chosen: DelayFit, half: float
+) -> Iterator[str]:
+    """Yield what explains the record nearly as well with quite another delay."""
+    for fit in fits:
+        samples = (fit.delay - chosen.delay) / record.step
+        if fit.bic <= chosen.bic + _CLEARLY and abs(samples) > half + 1:
+            yield (
+                f"{fit.follower.name} with a delay of {max(fit.delay / record.step, 0.0):.3g} "
+                "samples explains it nearly as well: a motion of one frequency does not tell a "
+                "delay from a lag"
+            )
 
 
 def _doubts(

@@ -6,9 +6,11 @@ import numpy as np
 import pytest
 
 from nrs_design.errors import DataError
+from nrs_design.identification.datasets import read_signals
 from nrs_design.identification.delay import identify_delay
 from nrs_design.identification.delay.identify import correlation_peak
 from tests.identification import motors, signals
+from tests.support import ROOT
 
 SEEDS = 200
 LATE = motors.DELAY * signals.RATE
@@ -82,6 +84,13 @@ def test_a_delay_that_varies_is_said():
     low, high = found.whole_samples
     assert low <= 1
     assert high >= 4
+
+
+def test_a_sine_does_not_tell_a_delay_from_a_lag():
+    """A motor behind a sine of 2 Hz: a copy 78 samples late is nearly as good as an integrator."""
+    record = read_signals(ROOT / "specs" / "data" / "actuator-2hz.csv")
+    found = identify_delay(record)
+    assert any("nearly as well" in doubt for doubt in found.doubts)
 
 
 def test_opposite_signs_are_said():

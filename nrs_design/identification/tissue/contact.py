@@ -39,7 +39,6 @@ _EXPLAINED = 0.1
 # A smoothed force beyond so many of its standard deviations from the air is one of contact.
 _CLEAR = 5.0
 _SMOOTH = 5
-_ENDS = _SMOOTH // 2 + 1
 
 
 @dataclass(frozen=True, slots=True)
@@ -89,9 +88,7 @@ class Contact:
         edges = np.flatnonzero(padded[1:] != padded[:-1]).reshape(-1, 2).tolist()
         found = []
         for first, end in edges:
-            # Smoothing carries a force by half its width into the air; noise that made the last
-            # mean clear is not fitted either.
-            clear = np.flatnonzero(self.clear[first:end])[_ENDS:-_ENDS]
+            clear = np.flatnonzero(self.clear[first:end])
             if len(clear):
                 rows = first, first + int(clear[0]), first + int(clear[-1]) + 1, end
                 found.append(Touch(*rows))

@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from nrs_design.proof.evidence import InvariantEllipsoid, Shows
+from nrs_design.proof.evidence import CommonQuadratic, InvariantEllipsoid, Shows
 from nrs_design.proof.evidence.fields import MAX_INTEGER_BITS
 from nrs_design.proof.second_opinion import agrees
 from nrs_design.proof.steps import Steps
@@ -116,6 +116,21 @@ def test_the_claim_says_the_weaker_number():
     assert level.find_fault(system) is None
     assert "|push| <= 0.142857 N (rounded down)" in claim
     assert "never exceeds 0.666667 N (rounded up)" in claim
+
+
+def test_the_bound_in_numbers():
+    """Its output and disturbance are those of the system, by name."""
+    system = pushed(bouncing())
+    bound = BOUNCE.bound(system)
+    assert bound.output == system.outputs[0]
+    assert bound.channels == system.channels
+    assert (bound.level, bound.share) == (BOUNCE.level, sum(BOUNCE.shares))
+    others = (replace(system.outputs[0], name="other"), *system.outputs)
+    assert BOUNCE.bound(replace(system, outputs=others)) == bound
+
+
+def test_a_function_that_decreases_bounds_no_output():
+    assert CommonQuadratic(((1,),), 0, Fraction(1)).bound(family([[-2]])) is None
 
 
 def test_a_limit_that_is_not_kept_is_not_said_to_be():

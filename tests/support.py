@@ -7,9 +7,10 @@ import os
 import subprocess
 import sys
 import warnings
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from fractions import Fraction
 from pathlib import Path
+from time import process_time
 from unittest.mock import patch
 
 from flint import fmpq, fmpq_mat
@@ -29,9 +30,19 @@ COMMUTING = ROOT / "specs" / "examples" / "commuting.nrs.yaml"
 PRINT_ERROR = ROOT / "docs" / "examples" / "thesis-print-error.nrs.yaml"
 
 
+# Processor seconds: several times what a slow machine needs, a small part of what a hang takes.
+SOON = 20.0
 Entry = int | str | Fraction
 # Dayawansa and Martin 1999, a = 11.2: stable, but only a polynomial of about degree 40 shows it.
 HARD = ([[-1, -1], [1, -1]], [[-1, "-11.2"], ["5/56", -1]])
+
+
+@contextlib.contextmanager
+def ends_soon() -> Iterator[None]:
+    """Fail if the block takes a hang's time: nothing here measures how fast a machine is."""
+    start = process_time()
+    yield
+    assert process_time() - start < SOON
 
 
 def exact(rows: Sequence[Sequence[Entry]]) -> list[list[Fraction]]:

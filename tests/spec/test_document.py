@@ -21,6 +21,7 @@ from nrs_design.spec.document import (
     read_source,
     to_data,
 )
+from tests.support import ends_soon
 
 from .samples import assert_inside
 
@@ -125,9 +126,8 @@ def test_deep_nesting_is_refused_before_the_stack_is_used_up(opening: str) -> No
 
 def test_billion_laughs_are_refused_at_the_first_anchor() -> None:
     laughs = "".join(f"a{i}: &a{i} [{', '.join([f'*a{i - 1}'] * 9)}]\n" for i in range(1, 20))
-    start = time.perf_counter()
-    assert "anchors" in refused("a0: &a0 lol\n" + laughs).message
-    assert time.perf_counter() - start < 1
+    with ends_soon():
+        assert "anchors" in refused("a0: &a0 lol\n" + laughs).message
 
 
 @given(st.text(max_size=200) | st.text("ab:-[]{}#&*!|>'\"%@`,? \n\t\r\\0123.", max_size=200))

@@ -3,7 +3,6 @@
 from dataclasses import replace
 from fractions import Fraction
 from math import comb
-from time import process_time
 
 import pytest
 
@@ -21,6 +20,7 @@ from tests.proof.systems import (
     robot,
 )
 from tests.proof.truth import holds
+from tests.support import ends_soon
 
 
 def by_polynomial(system, degree):
@@ -113,9 +113,8 @@ def test_it_covers_fewer_signals_than_all(switching):
 def test_degrees_out_of_range_are_rejected_at_once(degree):
     system, evidence = genuine("common-polynomial")
     fields = {"kind": evidence.kind, **evidence.to_fields(), "degree": degree}
-    start = process_time()
-    assert read_evidence(fields, system).find_fault(system) is not None
-    assert process_time() - start < 0.5
+    with ends_soon():
+        assert read_evidence(fields, system).find_fault(system) is not None
 
 
 def test_odd_degrees_do_not_exist():
@@ -128,17 +127,15 @@ def test_odd_degrees_do_not_exist():
 def test_lifts_that_nobody_can_check_are_rejected_at_once(n, degree):
     system = family([[-(i == j) for j in range(n)] for i in range(n)])
     evidence = CommonPolynomial(degree, ((1,),), 0, (((0,),),), Fraction(1, 2))
-    start = process_time()
-    assert "monomials" in str(evidence.find_fault(system))
-    assert process_time() - start < 0.5
+    with ends_soon():
+        assert "monomials" in str(evidence.find_fault(system))
 
 
 def test_giant_integers_do_not_hang():
     system, evidence = genuine("common-polynomial")
     giant = tuple(tuple(q * 10**4000 for q in row) for row in evidence.Q)
-    start = process_time()
-    replace(evidence, Q=giant).find_fault(system)
-    assert process_time() - start < 1
+    with ends_soon():
+        replace(evidence, Q=giant).find_fault(system)
 
 
 def test_numbers_that_would_take_minutes_are_refused():

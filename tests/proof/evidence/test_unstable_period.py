@@ -3,7 +3,6 @@
 from dataclasses import replace
 from fractions import Fraction
 from math import log
-from time import process_time
 
 import numpy as np
 import pytest
@@ -30,6 +29,7 @@ from tests.proof.systems import (
     two_ways,
 )
 from tests.proof.truth import exponential, holds
+from tests.support import ends_soon
 
 WIDE = [("1", "2.15"), ("200", "2.15")]
 
@@ -210,9 +210,8 @@ def test_steps_are_whole_in_discrete_time():
 @pytest.mark.parametrize("time", list(Time))
 def test_signals_out_of_range_are_rejected_at_once(evidence, time):
     system = replace(family([[5, 1], [0, 5]], [[5, 0], [1, 5]]), time=time)
-    start = process_time()
-    assert evidence.find_fault(system) is not None
-    assert process_time() - start < 1
+    with ends_soon():
+        assert evidence.find_fault(system) is not None
 
 
 @pytest.mark.parametrize("time", list(Time))
@@ -220,17 +219,15 @@ def test_long_signals_of_many_states_do_not_hang(time):
     n = 64
     A = [[(i * 7 + j * 3) % 5 - 2 - 9 * (i == j) for j in range(n)] for i in range(n)]
     system = family(A, time=time)
-    start = process_time()
-    assert signal(*[(0, 4000 - k) for k in range(500)]).find_fault(system) is not None
-    assert process_time() - start < 1
+    with ends_soon():
+        assert signal(*[(0, 4000 - k) for k in range(500)]).find_fault(system) is not None
 
 
 def test_enormous_modes_do_not_hang_or_overflow():
     for time in Time:
         system = family([[-(10**200), 10**200], [-(10**200), -1]], time=time)
-        start = process_time()
-        signal((0, 4096), doublings=60).find_fault(system)
-        assert process_time() - start < 1
+        with ends_soon():
+            signal((0, 4096), doublings=60).find_fault(system)
 
 
 def test_the_precision_of_flint_is_left_as_it_was():

@@ -257,7 +257,7 @@ OTHERS = {
         "2 groups",
         None,
     ),
-    "no torque": (read_poses, rows(POSE.replace(",tx_Nm,ty_Nm,tz_Nm", ""), *[swing] * 5), "missing", 1),
+    "no torque": (read_poses, rows(POSE.partition(",tx")[0], *[swing] * 5), "missing", 1),
     "half a quaternion": (
         read_poses,
         rows(POSE.replace("roll_rad,pitch_rad", "qw,qx"), *[swing] * 8),

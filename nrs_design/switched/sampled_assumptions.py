@@ -20,6 +20,7 @@ from nrs_design.switched.assumptions import (
     LOST_CONTACT,
     REST,
     SPRING,
+    command_texts,
     rule_texts,
 )
 from nrs_design.switched.joint import motor_text
@@ -113,6 +114,7 @@ def assume_sampled(
         switched,
         *rule_texts(rules, "controller"),
         f"The coefficients are these single-precision numbers: {_coefficients(motion, laws)}.",
+        *command_texts(design.command),
         _ARITHMETIC.format(", ".join(f"{name} {count}" for name, count in counts.items())),
         _angle_text(spec),
         _beside(spec, _NOT_MODELLED if spec.sensor is None else _SENSED),

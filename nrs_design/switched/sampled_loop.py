@@ -270,9 +270,7 @@ def close_sampled_loop(
     sampled = {c.name: c.law.sampled(period, sampling.admittance) for c in design.controllers}
     _check_modelled(spec, plant, design, sampled)
     laws = {name: law for name, law in sampled.items() if law is not None}
-    ranges = plant.actuator_ranges or ActuatorRanges(
-        Interval.point(plant.actuator.gain), Interval.point(plant.actuator.time_constant)
-    )
+    ranges = plant.actuator_ranges or ActuatorRanges.point(plant.actuator)
     has_inertia = _have_inertia(laws.values())
     low_pass = design.sensor.filter
     tau = ranges.time_constant

@@ -61,6 +61,17 @@ def is_positive_multiple(form, wanted: Rows) -> bool:
     return scale > 0 and all(a == scale * b for a, b in pairs)
 
 
+def is_in_other_units(form, wanted: Rows) -> bool:
+    """Tell whether a matrix is ``D W D`` for a diagonal D > 0; no W_ii is zero."""
+    n = len(wanted)
+    squares = [Fraction(form[i][i]) / wanted[i][i] for i in range(n)]
+    return len(form) == n and all(square > 0 for square in squares) and all(
+        form[i][j] * wanted[i][j] >= 0
+        and form[i][j] ** 2 == squares[i] * squares[j] * wanted[i][j] ** 2
+        for i in range(n) for j in range(n)
+    )  # fmt: skip
+
+
 def is_definite(M: Rows, *, strictly: bool = True) -> bool:
     """Gaussian elimination in fractions; singular matrices by all their principal minors."""
     M = [list(row) for row in M]

@@ -17,6 +17,7 @@ MAX_MEBIBYTES = 300.0
 # Far beyond what is allowed: only so that a hang ends.
 PATIENCE = 120
 
+
 @dataclass(frozen=True)
 class Run:
     """What came of a command."""

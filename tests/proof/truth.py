@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from fractions import Fraction
 from itertools import combinations_with_replacement, product
-from math import prod
+from math import lcm, prod
 from random import Random
 
 import numpy as np
@@ -121,9 +121,11 @@ def _mode_polynomials_decrease(system: SwitchedSystem, evidence: ModePolynomial)
         return False
 
     def value(name: str, x: Sequence[Fraction]) -> Fraction:
-        z = [prod(powers) for powers in combinations_with_replacement(x, d)]
-        Q = functions[name]
-        return sum((a * Q[i][j] * b for i, a in enumerate(z) for j, b in enumerate(z)), Fraction(0))
+        # In integers over one denominator, which take a tenth of the time of fractions.
+        whole, Q = lcm(*(entry.denominator for entry in x)), functions[name]
+        z = [prod(p) for p in combinations_with_replacement([int(whole * e) for e in x], d)]
+        form = sum(a * Q[i][j] * b for i, a in enumerate(z) for j, b in enumerate(z))
+        return Fraction(form, whole ** (2 * d))
 
     def image(A: RationalMatrix, x: Sequence[Fraction]) -> list[Fraction]:
         rows = A.fractions()

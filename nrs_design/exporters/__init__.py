@@ -10,7 +10,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
 
-from nrs_design.output import EXPORT
+from nrs_design.output import EXPORT, MAT
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,6 +49,12 @@ FORMATS: Mapping[str, Format] = MappingProxyType(
             "gains with what is proved of them; the record that every format holds",
             DESIGN,
             {".export.json": EXPORT},
+        ),
+        "mat": Format(
+            "matlab",
+            "modes, gains and certificate for MATLAB, GNU Octave and SciPy",
+            DESIGN,
+            {".mat": MAT},
         ),
     }
 )

@@ -13,7 +13,7 @@ from nrs_design.cli.options import Json, Quiet
 from nrs_design.cli.printing import note, print_json, progress, say
 from nrs_design.cli.tables import print_table
 from nrs_design.errors import NrsDesignError, OutputError
-from nrs_design.exporters import FORMATS, Format
+from nrs_design.exporters import FORMATS, ROBOT_FORMATS, Format
 
 if TYPE_CHECKING:
     from nrs_design.exporters.export import Execution, Export
@@ -79,7 +79,7 @@ def _list(*, as_json: bool) -> None:
             "needs": item.needs,
             "files": [f"NAME{ending}" for ending in item.files],
         }
-        for name, item in FORMATS.items()
+        for name, item in (*FORMATS.items(), *ROBOT_FORMATS.items())
     ]
     if as_json:
         print_json("export", {"formats": entries})

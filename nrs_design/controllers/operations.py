@@ -292,7 +292,5 @@ def check_range(law: StepLaw) -> None:
 def term_counts(law: StepLaw) -> dict[str, int]:
     """Return how often each term of a law is rounded, by its name."""
     given: dict[str, Sequence[Fraction]] = {value.name: [Fraction(0)] for value in law.values}
-    kept = rounded_terms(law, 0, given)
-    return {
-        term.name: term.roundings for found in kept.values() for term in found if term.roundings
-    }
+    terms = chain.from_iterable(rounded_terms(law, 0, given).values())
+    return {term.name: term.roundings for term in terms if term.roundings}

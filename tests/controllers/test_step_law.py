@@ -143,12 +143,7 @@ def test_a_list_that_does_not_fit_is_refused():
         {"following": {}},
         {"outputs": {"command": "nothing"}},
         {"modes": ("one", "two", "three")},
-        {
-            "coefficients": (
-                replace(law.coefficients[0], values=(Fraction(1, 3),)),
-                *law.coefficients[1:],
-            )
-        },
+        {"coefficients": (third, *law.coefficients[1:])},
     ):
         with pytest.raises(ValueError, match=r"\w"):
             replace(law, **change)

@@ -50,6 +50,8 @@ class Value:
         In words.
     rounding : {"none", "term", "angle"}
         Whether it is rounded when it is read, and how that counts.
+    starts_at_angle : bool
+        Whether a state is the measured angle at first; others are zero.
     """
 
     name: str
@@ -58,6 +60,7 @@ class Value:
     limit: Fraction
     meaning: str
     rounding: Rounding = "none"
+    starts_at_angle: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -127,9 +130,9 @@ class StepLaw:
     operations : tuple of Operation
         In the order in which they are computed.
     outputs : mapping of str to str
-        Outputs, and the values that they are; ``units`` has their units.
+        Outputs, and the results that they are; ``units`` has their units.
     following : mapping of str to str
-        Every state, and the value that it has after the step.
+        Every state, and the result that it has after the step.
     units : mapping of str to str
         Of the outputs.
 
@@ -161,7 +164,8 @@ class StepLaw:
             raise ValueError("a name occurs twice")
         if set(self.following) != {state.name for state in self.states}:
             raise ValueError("every state needs the value that follows it, and nothing else")
-        if not {*self.outputs.values(), *self.following.values()} <= set(known):
+        results = {operation.name for operation in self.operations}
+        if not {*self.outputs.values(), *self.following.values()} <= results:
             raise ValueError("an output, or the next state, is not computed")
         numbers = [
             *(n for c in self.coefficients for n in c.values),

@@ -86,14 +86,16 @@ def _inputs(limits: StepLimits) -> tuple[Value, ...]:
 
 def _states(limits: StepLimits, order: int, *, inert: bool, sprung: bool) -> Iterator[Value]:
     angle = limits.angle
-    yield Value("reference", "xref", "rad", angle, "reference of the motion controller")
+    meaning = "reference of the motion controller"
+    yield Value("reference", "xref", "rad", angle, meaning, starts_at_angle=True)
     yield Value("error_before", "e before", "rad", 2 * angle, "its error a sample ago")
     if inert:
         yield Value("velocity", "vm", "rad/s", BEYOND, "velocity of the admittance")
     for i in range(1, order + 1):
         yield Value(f"filtered_{i}", f"x{i}", "N*m", BEYOND, f"torque behind lag {i} of the filter")
     if sprung:
-        yield Value("commanded", "xcom", "rad", angle, "reference that the command alone gives")
+        meaning = "reference that the command alone gives"
+        yield Value("commanded", "xcom", "rad", angle, meaning, starts_at_angle=True)
 
 
 def _coefficients(

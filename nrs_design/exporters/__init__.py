@@ -50,5 +50,24 @@ FORMATS: Mapping[str, Format] = MappingProxyType(
             DESIGN,
             {".export.json": EXPORT},
         ),
+        "c": Format(
+            "c",
+            "C99 for a processor: init and step in single precision, no heap, no libm",
+            SAMPLED,
+            {".h": b"/* nrs-design C header\n", ".c": b"/* nrs-design C source\n"},
+            executable=True,
+        ),
+        "vectors": Format(
+            "vectors",
+            "inputs and exact outputs that any implementation of the law must give, with tests",
+            SAMPLED,
+            {
+                ".vectors.json": b'{\n  "schema": "nrs-design/vectors/',
+                ".vectors.csv": b"# nrs-design vectors\n",
+                "_test.c": b"/* nrs-design C test\n",
+                "_test.py": b'"""nrs-design test of conformance vectors',
+            },
+            executable=True,
+        ),
     }
 )

@@ -10,7 +10,16 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
 
-from nrs_design.output import EXPORT
+from nrs_design.output import (
+    C_HEADER,
+    C_SOURCE,
+    C_TEST,
+    EXPORT,
+    MAT,
+    VECTOR_TABLE,
+    VECTOR_TEST,
+    VECTORS,
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,7 +63,7 @@ FORMATS: Mapping[str, Format] = MappingProxyType(
             "c",
             "C99 for a processor: init and step in single precision, no heap, no libm",
             SAMPLED,
-            {".h": b"/* nrs-design C header\n", ".c": b"/* nrs-design C source\n"},
+            {".h": C_HEADER, ".c": C_SOURCE},
             executable=True,
         ),
         "vectors": Format(
@@ -62,12 +71,18 @@ FORMATS: Mapping[str, Format] = MappingProxyType(
             "inputs and exact outputs that any implementation of the law must give, with tests",
             SAMPLED,
             {
-                ".vectors.json": b'{\n  "schema": "nrs-design/vectors/',
-                ".vectors.csv": b"# nrs-design vectors\n",
-                "_test.c": b"/* nrs-design C test\n",
-                "_test.py": b'"""nrs-design test of conformance vectors',
+                ".vectors.json": VECTORS,
+                ".vectors.csv": VECTOR_TABLE,
+                "_test.c": C_TEST,
+                "_test.py": VECTOR_TEST,
             },
             executable=True,
+        ),
+        "mat": Format(
+            "matlab",
+            "modes, gains and certificate for MATLAB, GNU Octave and SciPy",
+            DESIGN,
+            {".mat": MAT},
         ),
     }
 )

@@ -11,11 +11,12 @@ from collections.abc import Iterator
 from nrs_design.controllers.float32 import exact_decimal
 from nrs_design.controllers.operations import Operation, StepLaw, Value
 from nrs_design.controllers.step_law import BEYOND
-from nrs_design.exporters.c_names import HEADER, SOURCE, CNames, comment, literal
+from nrs_design.exporters.c_names import CNames, comment, literal
 from nrs_design.exporters.export import Export
 from nrs_design.exporters.header import header_lines
 from nrs_design.exporters.record import ExportRecord
 from nrs_design.exporters.shipped import law_of
+from nrs_design.output import C_HEADER, C_SOURCE
 
 SIGN = {"add": "+", "subtract": "-", "multiply": "*"}
 FLAGS = (
@@ -58,7 +59,7 @@ def header_text(record: ExportRecord, law: StepLaw, names: CNames) -> str:
     """
     guard = f"{names.upper}_H"
     lines = [
-        comment(_header_lines(record, law, names), HEADER),
+        comment(_header_lines(record, law, names), C_HEADER),
         f"#ifndef {guard}\n#define {guard}\n",
         "#include <stdbool.h>\n#include <stdint.h>\n",
         "".join(_macros(law, names)),
@@ -85,7 +86,7 @@ def source_text(record: ExportRecord, law: StepLaw, names: CNames) -> str:
     """
     init, step = _prototypes(names)
     lines = [
-        comment((f"See {record.spec.name}.h for what is proved, and of what.",), SOURCE),
+        comment((*header_lines(record), f"More is in {record.spec.name}.h."), C_SOURCE),
         f'#include "{record.spec.name}.h"\n\n#include <float.h>\n',
         _REFUSALS,
         _WITHIN,

@@ -13,8 +13,6 @@ from nrs_design.errors import DesignError
 from nrs_design.printable import printable
 
 WIDTH = 100
-# Begins the two files, so that nothing else is overwritten.
-HEADER, SOURCE = "/* nrs-design C header\n", "/* nrs-design C source\n"
 
 
 @dataclass(frozen=True, slots=True)
@@ -98,14 +96,14 @@ def literal(value: Fraction) -> str:
     return f"({text})" if value < 0 else text
 
 
-def comment(lines: Iterable[str], first: str) -> str:
+def comment(lines: Iterable[str], first: bytes) -> str:
     """Return a block comment that its lines cannot end.
 
     Parameters
     ----------
     lines : iterable of str
         Each wrapped for itself.
-    first : str
+    first : bytes
         How it begins, with the line break.
     """
     wrapped = (
@@ -113,7 +111,7 @@ def comment(lines: Iterable[str], first: str) -> str:
         for line in lines
         for part in textwrap.wrap(harmless(line), WIDTH - 5, subsequent_indent="  ") or [""]
     )
-    return first + "".join(f" * {part}".rstrip() + "\n" for part in wrapped) + " */\n"
+    return first.decode() + "".join(f" * {part}".rstrip() + "\n" for part in wrapped) + " */\n"
 
 
 def harmless(text: str) -> str:

@@ -309,6 +309,16 @@ def _sample_time(period: Fraction | None) -> SampleTime | None:
     return None if period is None else SampleTime(exact=exact_text(period))
 
 
+def schema_text() -> str:
+    """Return the JSON Schema (draft 2020-12) that every record keeps, as the text of a file."""
+    described = ExportRecord.model_json_schema(mode="serialization")
+    head = {
+        "$schema": "https://json-schema.org/draft/2020-12/schema",
+        "title": "nrs-design export",
+    }
+    return json.dumps(head | described | head, indent=2) + "\n"
+
+
 def _idle_states(idle: IdleStatesSpec) -> IdleStates:
     return IdleStates(decay=_gain("decay", "1/s", idle_decay(idle)), reset=idle.reset)
 

@@ -16,18 +16,14 @@ from numpy.typing import NDArray
 
 from nrs_design.controllers.operations import StepLaw
 from nrs_design.controllers.replica import Single, step
-from nrs_design.exporters.c_names import CNames, comment
+from nrs_design.exporters.c_names import CNames, comment, harmless
 from nrs_design.exporters.export import Export
 from nrs_design.exporters.header import header_lines
 from nrs_design.exporters.shipped import law_of
+from nrs_design.output import C_TEST, VECTOR_TABLE
 
 COUNT, SEED = 1000, 2026
 SCHEMA = "nrs-design/vectors/1"
-# How the files begin, so that nothing else is overwritten.
-JSON = b'{\n  "schema": "nrs-design/vectors/'
-CSV = b"# nrs-design vectors\n"
-C_TEST = b"/* nrs-design C test\n"
-PYTEST = b'"""nrs-design test of conformance vectors'
 # Zeros, the smallest and the largest numbers, one, infinities, not a number (quiet and signalling).
 SPECIAL = (0, 1, 0x007FFFFF, 0x00800000, 0x7F7FFFFF, 0x3F800000, 0x7F800000, 0x7FC00000, 0x7F800001)
 
@@ -67,7 +63,7 @@ def render(export: Export) -> dict[str, bytes]:
         ".vectors.json": json_text(law, vectors, lines).encode(),
         ".vectors.csv": csv_text(vectors, lines).encode(),
         "_test.c": c_test(law, vectors, names, lines).encode(),
-        "_test.py": pytest_text(names).encode(),
+        "_test.py": pytest_text(names, lines).encode(),
     }
 
 
@@ -159,7 +155,11 @@ def csv_text(vectors: Vectors, about: tuple[str, ...]) -> str:
     about : tuple of str
         What every exported file says of itself.
     """
-    lines = [CSV.decode().rstrip(), *(f"# {line}" for line in about), ",".join(vectors.columns)]
+    lines = [
+        VECTOR_TABLE.decode().rstrip(),
+        *(f"# {line}" for line in about),
+        ",".join(vectors.columns),
+    ]
     return "\n".join([*lines, *(",".join(map(str, row)) for row in _rows(vectors))]) + "\n"
 
 
@@ -200,7 +200,7 @@ def c_test(law: StepLaw, vectors: Vectors, names: CNames, about: tuple[str, ...]
         for v in law.states
     ]
     return f"""\
-{comment(about, C_TEST.decode())}
+{comment(about, C_TEST)}
 #include "{names.spec}.h"
 
 #include <stdbool.h>
@@ -263,15 +263,18 @@ def _all(conditions: list[str]) -> str:
     return " &&\n            ".join(conditions)
 
 
-def pytest_text(names: CNames) -> str:
+def pytest_text(names: CNames, about: tuple[str, ...]) -> str:
     """Return a test for pytest: of the exported C, and of any implementation in Python.
 
     Parameters
     ----------
     names : CNames
         Of the spec.
+    about : tuple of str
+        What every exported file says of itself.
     """
-    return _PYTEST.replace("SPEC_NAME", names.spec)
+    comments = "\n".join(f"# {harmless(line)}" for line in about)
+    return _PYTEST.replace("SPEC_NAME", names.spec).replace("# ABOUT", comments)
 
 
 _PYTEST = '''\
@@ -281,6 +284,7 @@ The C beside this file is compiled with cc and tested where it is there. An impl
 is tested where NRS_STEP=module:function names one: it is called as
 function(mode, inputs, states) with dictionaries of floats, and returns (outputs, valid, states).
 """
+# ABOUT
 
 import importlib
 import json

@@ -177,7 +177,7 @@ def test_literals_are_exact(value):
 @given(st.text())
 def test_no_text_ends_a_comment(text):
     """Nor begins one, nor is more than ASCII, nor a trigraph."""
-    block = comment([text], "/* first\n")
+    block = comment([text], b"/* first\n")
     assert block.count("*/") == 1
     assert block.endswith(" */\n")
     assert block.count("/*") == 1

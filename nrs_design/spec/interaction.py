@@ -27,6 +27,7 @@ from nrs_design.spec.mode_logic import ModeLogicSpec, check_kept, rules_of
 from nrs_design.spec.model import SpecModel
 from nrs_design.spec.motion import ActuatorSpec, LimitsSpec, MotionLoopSpec
 from nrs_design.spec.provenance import IdentifiedSpec
+from nrs_design.spec.sampled_loop import check_sampled
 from nrs_design.spec.sampling import (
     DisturbancesSpec,
     SamplingSpec,
@@ -161,6 +162,7 @@ class InteractionDesignSpec(SpecModel):
                 self.controllers,
                 given_loop=self.motion_loop.transfer_function is not None,
             ),
+            partial(check_sampled, self),
             lambda: _check_memories(self.controllers, self.environments, self.coordinates),
             lambda: _check_offsets(self.controllers, self.idle_states),
             lambda: all_of(

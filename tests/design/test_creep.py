@@ -12,7 +12,7 @@ from nrs_design.design.transfer import white_noise_power
 from nrs_design.errors import DesignError
 from nrs_design.pipeline import run_analysis, run_design
 from nrs_design.spec import read_spec
-from nrs_design.switched.sampled_loop import INPUTS, Frame
+from nrs_design.switched.sampled_frame import INPUTS, Frame
 from tests.support import SOFT_TISSUE
 
 TEXT = SOFT_TISSUE.read_text(encoding="utf-8")

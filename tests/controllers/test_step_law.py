@@ -13,7 +13,7 @@ from nrs_design.controllers.sampled import ROUNDINGS, ROUNDINGS_WITHOUT_INERTIA,
 from nrs_design.controllers.sensor import LowPass
 from nrs_design.controllers.step_law import StepLimits, build_step_law
 from nrs_design.models.linear_form import combine, coordinates, zero
-from nrs_design.switched.sampled_loop import INPUTS, Frame
+from nrs_design.switched.sampled_frame import INPUTS, Frame
 
 ONE = Fraction(1)
 E, TAU, KM = Fraction("0.9446"), Fraction("0.0351"), Fraction("4.8417e-4")

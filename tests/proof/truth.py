@@ -63,13 +63,14 @@ def is_positive_multiple(form, wanted: Rows) -> bool:
 
 def is_in_other_units(form, wanted: Rows) -> bool:
     """Tell whether a matrix is ``D W D`` for a diagonal D > 0; no W_ii is zero."""
-    n = len(wanted)
-    squares = [Fraction(form[i][i]) / wanted[i][i] for i in range(n)]
-    return len(form) == n and all(square > 0 for square in squares) and all(
+    if len(form) != len(wanted):
+        return False
+    squares = [Fraction(row[i]) / wanted[i][i] for i, row in enumerate(form)]
+    return all(square > 0 for square in squares) and all(
         form[i][j] * wanted[i][j] >= 0
         and form[i][j] ** 2 == squares[i] * squares[j] * wanted[i][j] ** 2
-        for i in range(n) for j in range(n)
-    )  # fmt: skip
+        for i, j in product(range(len(form)), repeat=2)
+    )
 
 
 def is_definite(M: Rows, *, strictly: bool = True) -> bool:

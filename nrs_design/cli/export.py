@@ -19,6 +19,15 @@ if TYPE_CHECKING:
     from nrs_design.exporters.export import Execution, Export
 
 
+# A command of its own writes it, since it proves another law.
+ROS2: dict[str, Any] = {
+    "name": "ros2",
+    "purpose": "impedance controllers as parameters of admittance_controller of ROS 2",
+    "needs": "a proof of that controller's law (ros2 export)",
+    "files": ["NAME.CONTROLLER.ros2.yaml"],
+}
+
+
 def export(
     spec: Annotated[
         Path | None, typer.Argument(metavar="SPEC", help="Spec file (*.nrs.yaml).")
@@ -72,7 +81,7 @@ def export(
 
 
 def _list(*, as_json: bool) -> None:
-    entries = [
+    entries: list[dict[str, Any]] = [
         {
             "name": name,
             "purpose": item.purpose,
@@ -81,10 +90,11 @@ def _list(*, as_json: bool) -> None:
         }
         for name, item in (*FORMATS.items(), *ROBOT_FORMATS.items())
     ]
+    entries.append(ROS2)
     if as_json:
         print_json("export", {"formats": entries})
         return
-    rows = [(str(e["name"]), str(e["purpose"]), str(e["needs"])) for e in entries]
+    rows = [(entry["name"], entry["purpose"], entry["needs"]) for entry in entries]
     print_table("", ("format", "what for", "needs"), rows)
 
 

@@ -183,10 +183,10 @@ def test_outputs_that_cannot_be(export, capsys):
 def test_list(export, capsys):
     assert export("--list") == 0
     text = capsys.readouterr().out
-    assert all(name in text for name in [*FORMATS, *ROBOT_FORMATS])
+    assert all(name in text for name in [*FORMATS, *ROBOT_FORMATS, "ros2"])
     assert export("--list", "--json") == 0
     formats = json.loads(capsys.readouterr().out)["formats"]
-    assert [entry["name"] for entry in formats] == [*FORMATS, *ROBOT_FORMATS]
+    assert [entry["name"] for entry in formats] == [*FORMATS, *ROBOT_FORMATS, "ros2"]
     assert formats[0]["files"] == ["NAME.export.json"]
     assert export() == 2
     assert "--list" in capsys.readouterr().err

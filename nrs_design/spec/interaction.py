@@ -31,6 +31,7 @@ from nrs_design.spec.sampled_loop import check_sampled
 from nrs_design.spec.sampling import (
     DisturbancesSpec,
     SamplingSpec,
+    check_delay,
     check_disturbances,
     check_motor,
     check_peak,
@@ -156,6 +157,7 @@ class InteractionDesignSpec(SpecModel):
             lambda: check_disturbances(self.disturbances, self.sampling),
             partial(_check_sensor, self),
             lambda: check_peak(self.goals, self.disturbances),
+            lambda: check_delay(self.goals, self.sampling),
             lambda: check_motor(
                 self.actuator,
                 self.sampling,

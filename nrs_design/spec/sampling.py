@@ -63,6 +63,11 @@ class SamplingSpec(IdentifiedSpec):
         "period, or one step of Euler's method",
     )
 
+    @property
+    def oldest(self) -> Fraction:
+        """Age of the oldest force sample that the law uses, in s."""
+        return self.delay[1] * self.period.exact
+
 
 class DisturbancesSpec(SpecModel):
     """Bounds on what acts on the loop from outside; what is left out is zero."""
@@ -131,6 +136,17 @@ def check_peak(goals: GoalsSpec | None, disturbances: DisturbancesSpec | None) -
             "add `disturbances: {command: 8 deg/s}`",
             "goals",
             "peak_torque",
+        )
+
+
+def check_delay(goals: GoalsSpec | None, sampling: SamplingSpec | None) -> None:
+    """Refuse a goal for the delay where no force sample has an age."""
+    if goals is not None and goals.delay is not None and sampling is None:
+        raise fault(
+            "a proof up to a delay is wanted, but the spec has no samples",
+            "add `sampling: {period: 2 ms, delay: [0, 2]}`, or use min_delay_margin",
+            "goals",
+            "delay",
         )
 
 

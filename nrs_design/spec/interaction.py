@@ -31,6 +31,7 @@ from nrs_design.spec.sampled_loop import check_sampled
 from nrs_design.spec.sampling import (
     DisturbancesSpec,
     SamplingSpec,
+    check_delay,
     check_disturbances,
     check_motor,
     check_peak,
@@ -158,6 +159,7 @@ class InteractionDesignSpec(SpecModel):
             partial(_check_sensor, self),
             lambda: check_peak(self.goals, self.disturbances),
             partial(_check_commands, self),
+            lambda: check_delay(self.goals, self.sampling),
             lambda: check_motor(
                 self.actuator,
                 self.sampling,

@@ -90,6 +90,7 @@ def source_text(record: ExportRecord, law: StepLaw, names: CNames) -> str:
         f'#include "{record.spec.name}.h"\n\n#include <float.h>\n',
         _REFUSALS,
         _WITHIN,
+        *([_SATURATED] if any(o.kind == "saturate" for o in law.operations) else []),
         f"{init}\n{{\n{''.join(_start(law))}}}\n",
         f"{step}\n{{\n{''.join(_step(law, names))}}}\n",
     ]
@@ -116,7 +117,8 @@ static bool is_within(float value, float limit)
 {
     return (value >= -limit) && (value <= limit);
 }
-
+"""
+_SATURATED = """\
 static float saturated(float value, float limit)
 {
     return (value > limit) ? limit : ((value < -limit) ? -limit : value);
@@ -142,7 +144,8 @@ def _header_lines(record: ExportRecord, law: StepLaw, names: CNames) -> Iterator
         if "command_limit" in law.coefficient
         else "The command of the motor does not saturate: the spec has no `limits: command`."
     )
-    yield "The velocity command saturates at VELOCITY_LIMIT before the law takes it."
+    if "velocity_limit" in law.coefficient:
+        yield "The velocity command saturates at VELOCITY_LIMIT before the law takes it."
     if record.proof is not None:
         yield ""
         yield "Taken for granted by the proof:"
@@ -190,6 +193,8 @@ def _prototypes(names: CNames, end: str = "") -> tuple[str, str]:
 
 def _start(law: StepLaw) -> Iterator[str]:
     """Yield the start: at rest where the joint is."""
+    if not any(state.starts_at_angle for state in law.states):
+        yield "    (void)angle;\n"
     for state in law.states:
         begins = "angle" if state.starts_at_angle else "0.0F"
         yield f"    state->{state.name} = {begins};\n"

@@ -101,9 +101,10 @@ def make_vectors(law: StepLaw, count: int = COUNT, seed: int = SEED) -> Vectors:
 def _draw(
     bits: NDArray[np.uint64], kinds: NDArray[np.uint64], wild: NDArray[np.bool_], scale: np.float32
 ) -> Single:
-    """Return ordinary numbers up to a scale; a quarter of the wild ones are no such."""
+    """Return numbers of many sizes up to a scale; a quarter of the wild ones are no such."""
     centered = (bits >> np.uint64(40)).astype(np.float32) - np.float32(2**23)
-    plain = centered * np.float32(2.0**-23) * scale
+    smaller = np.ldexp(np.float32(1), -(kinds >> np.uint64(60)).astype(np.int32))
+    plain = centered * np.float32(2.0**-23) * scale * smaller
     low = bits.astype(np.uint32)
     special = np.array(SPECIAL, np.uint32)[low % len(SPECIAL)] | (low & np.uint32(1 << 31))
     subnormal = low & np.uint32(0x807FFFFF)

@@ -9,9 +9,14 @@ import pytest
 from nrs_design.controllers.float32 import to_float32
 from nrs_design.controllers.laws import Admittance, ProportionalDerivative
 from nrs_design.controllers.operations import linear_forms, rounded_terms, term_counts
-from nrs_design.controllers.sampled import ROUNDINGS, ROUNDINGS_WITHOUT_INERTIA, SampledMotion
+from nrs_design.controllers.sampled import (
+    ROUNDINGS,
+    ROUNDINGS_WITHOUT_INERTIA,
+    SampledForce,
+    SampledMotion,
+)
 from nrs_design.controllers.sensor import LowPass
-from nrs_design.controllers.step_law import StepLimits, build_step_law
+from nrs_design.controllers.step_law import StepLimits, build_placed_law, build_step_law
 from nrs_design.models.linear_form import combine, coordinates, zero
 from nrs_design.switched.sampled_frame import INPUTS, Frame
 
@@ -135,11 +140,12 @@ def test_every_term_of_a_sum_adds_up_to_it():
 def test_a_list_that_does_not_fit_is_refused():
     _, _, law = next(cases(35))
     first, *others = law.operations
+    sums = [operation for operation in law.operations if operation.kind == "subtract"]
     third = replace(law.coefficients[0], values=(Fraction(1, 3),))
     for change in (
         {"operations": (*others, first)},
         {"operations": (first, *law.operations)},
-        {"operations": (replace(first, kind="multiply"), *others)},
+        {"operations": (*law.operations, replace(sums[0], name="more", kind="multiply"))},
         {"following": {}},
         {"outputs": {"command": "nothing"}},
         {"modes": ("one", "two", "three")},
@@ -158,3 +164,68 @@ def test_a_saturation_changes_no_map_and_no_rounding():
         linear_forms(limited, 0, given)["limited_command"] == linear_forms(law, 0, given)["command"]
     )
     assert term_counts(limited) == term_counts(law)
+
+
+def placed_cases(seed, count=40):
+    """Yield frames of position and force control, their laws, and the same as operations."""
+    rng = np.random.default_rng(seed)
+    for _ in range(count):
+        period = Fraction(int(rng.integers(1, 21)), 1000)
+        order, longest = int(rng.integers(0, 3)), int(rng.integers(0, 4))
+        motion = SampledMotion(number(rng, 1e3, 2e5), number(rng, 1e3, 1e6))
+        low_pass = LowPass(order, number(rng, 50, 500)).sampled(period) if order else None
+        laws = {
+            "position": SampledForce(Fraction(0)),
+            "force": SampledForce(number(rng, 0.001, 0.1)),
+        }
+        frame = Frame(
+            period, motion, False, longest, TAU, low_pass, integrates=False, takes_force=True
+        )
+        yield frame, laws, build_placed_law(motion, laws, low_pass)
+
+
+def test_the_map_of_force_and_position_control_is_that_of_the_certificate():
+    for frame, laws, law in placed_cases(37):
+        delay, size = frame.longest_delay, len(frame.states)
+        unit = coordinates(size + len(INPUTS) + len(frame.roundings))
+        names = [name.split(" [")[0] for name in frame.states]
+        state = dict(zip(names, unit, strict=False))
+        _, friction, encoder, sensor, reference, angle = unit[size : size + len(INPUTS)]
+        felt = combine(
+            (Fraction(700), state["delta"]), (Fraction(3), state["omega"]), (ONE, sensor)
+        )
+        ages = [felt, *(state[f"F {j} before"] for j in range(1, delay + 1))]
+        lags = {
+            f"filtered_{i + 1}": state[f"filtered {i + 1} before"]
+            for i in range(len(law.states) - 1)
+        }
+        given = {
+            "angle": combine((ONE, state["delta"]), (ONE, encoder), (ONE, angle)),
+            "torque": ages[delay],
+            "position": reference,
+            "wanted_torque": zero(len(felt)),
+            "error_before": state["e before"],
+            **lags,
+        }
+        values = {"Km": KM, "E": E, "k": Fraction(700), "b": Fraction(3)}
+        s = TAU * (1 - E)
+        for mode, placed in enumerate(laws.values()):
+            expected = [without_roundings(frame, r) for r in frame.rows(placed, delay, values)]
+            forms = linear_forms(law, mode, given)
+            drive = combine((ONE, forms["command"]), (ONE, friction))
+            moved = combine((s, state["omega"]), (KM * (frame.period - s), drive))
+            found = [combine((E, state["omega"]), (KM * (1 - E), drive))]
+            found += [forms[law.following[name]] for name in ("error_before", *lags)]
+            assert [without_roundings(frame, row) for row in found] == expected[: len(found)]
+            delta = combine((ONE, state["delta"]), (ONE, moved))
+            assert without_roundings(frame, delta) == expected[size - 1]
+
+
+def test_no_term_of_force_control_is_rounded_more_often_than_is_proved():
+    """Besides, what is proved adds the rounding of the error to that of all of its terms."""
+    for frame, _, law in placed_cases(38):
+        counted = term_counts(law)
+        angles = {"X", "theta", "Kp Fd"}
+        assert {*counted} - angles == {*frame.counts} - {"e"}
+        assert all(counted[name] <= frame.counts[name] for name in {*counted} - angles)
+        assert (counted["X"], counted["theta"]) == (1, 1)

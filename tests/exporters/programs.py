@@ -10,9 +10,9 @@ import pytest
 from nrs_design.controllers.float32 import to_float32
 from nrs_design.controllers.laws import Admittance, ProportionalDerivative
 from nrs_design.controllers.operations import StepLaw
-from nrs_design.controllers.sampled import SampledMotion
+from nrs_design.controllers.sampled import SampledForce, SampledMotion
 from nrs_design.controllers.sensor import LowPass
-from nrs_design.controllers.step_law import StepLimits, build_step_law
+from nrs_design.controllers.step_law import StepLimits, build_placed_law, build_step_law
 
 PERIOD = Fraction(1, 500)
 MOTION = ProportionalDerivative(to_float32(Fraction("117359.43")), Fraction(2060))
@@ -41,7 +41,14 @@ def law(*, Mt="0.01", Kt=("0", "0"), order=0, method="exact", limits=None) -> St
     return build_step_law(SampledMotion.of(MOTION, PERIOD), laws, low_pass, limits)
 
 
+PLACED = {
+    "position": SampledForce(Fraction(0)),
+    "force": SampledForce(to_float32(Fraction("0.02"))),
+}
 LAWS = {
+    "force and position": build_placed_law(
+        SampledMotion.of(MOTION, PERIOD), PLACED, LowPass(1, Fraction(200)).sampled(PERIOD)
+    ),
     "inertia": law(),
     "static": law(Mt="0"),
     "filter and spring": law(order=2, Kt=("0.5", "0")),

@@ -53,7 +53,9 @@ def test_host_compilers_agree_with_the_replica(tmp_path, sampled_export, shape):
         assert (done.returncode, done.stdout) == (0, f"0 of {COUNT} cases differ\n")
 
 
-@pytest.mark.parametrize("shape", LAWS)
+@pytest.mark.parametrize(
+    "shape", ["limits", *(pytest.param(s, marks=pytest.mark.slow) for s in LAWS if s != "limits")]
+)
 def test_an_emulated_cortex_agrees_with_the_replica(tmp_path, sampled_export, shape):
     """The same states on an emulated STM32F405, compiled as for the robot."""
     gcc, emulator = compiler("arm-none-eabi-gcc"), compiler("qemu-system-arm")
@@ -96,6 +98,7 @@ def test_cppcheck_with_misra_is_content(tmp_path, sampled_export):
     assert (done.returncode, done.stderr) == (0, "")
 
 
+@pytest.mark.slow
 def test_every_slip_in_the_code_is_noticed(tmp_path, sampled_export):
     """One line at a time: another operation, another operand or another bit fails the vectors."""
     gcc = compiler()

@@ -18,6 +18,7 @@ from nrs_design.spec.controllers import (
     names_in,
     touched_in,
 )
+from nrs_design.spec.coupling import CouplingSpec, check_coupling
 from nrs_design.spec.dwell import DwellObstacle, find_changing_contact
 from nrs_design.spec.environment import EnvironmentSpec
 from nrs_design.spec.faults import all_of, did_you_mean, fault
@@ -84,6 +85,11 @@ class InteractionDesignSpec(SpecModel):
         default=None,
         description="what acts on the loop from outside; its effect on force and velocity is "
         "bounded",
+    )
+    coupling: CouplingSpec | None = Field(
+        default=None,
+        description="what the axes do to each other through their links, for a proof about all "
+        "axes at once; without it they are taken not to act on each other",
     )
     sensor: SensorSpec | None = Field(
         default=None,
@@ -160,6 +166,14 @@ class InteractionDesignSpec(SpecModel):
                 self.sampling,
                 self.controllers,
                 given_loop=self.motion_loop.transfer_function is not None,
+            ),
+            lambda: check_coupling(
+                self.coupling,
+                loaded=self.actuator.load_inertia is not None,
+                others=tuple(
+                    name for name in ("sampling", "disturbances") if getattr(self, name) is not None
+                ),
+                deflection=self.coordinates == "deflection",
             ),
             lambda: _check_memories(self.controllers, self.environments, self.coordinates),
             lambda: _check_offsets(self.controllers, self.idle_states),

@@ -20,6 +20,7 @@ from nrs_design.switched.assumptions import (
     LOST_CONTACT,
     REST,
     SPRING,
+    UNCOUPLED,
     rule_texts,
 )
 from nrs_design.switched.joint import motor_text
@@ -102,7 +103,7 @@ def assume_sampled(
         *(_DISTURBED if spec.disturbances is not None else ()),
         _beside(spec, _INPUTS + REST[loss == "on the surface"]),
         *((SPRING, _AT_SAMPLE) if any(law.Kt for law in laws.values()) else ()),
-        "The axes of the robot do not act on each other.",
+        UNCOUPLED,
         *(
             f"While {c.name} is active, nothing but {' or '.join(c.contacts)} is touched."
             for c in design.controllers

@@ -33,7 +33,7 @@ class CouplingSpec(SpecModel):
     gravity_gradient: RotationalStiffness | None = Field(
         default=None,
         description="largest norm of the gradient of the torques of gravity in N*m/rad, for kept "
-        "contact; default: gravity is the same in all poses",
+        "contact; default: gravity is compensated, or the same, in all poses",
     )
 
     @model_validator(mode="after")

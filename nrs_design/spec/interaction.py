@@ -257,7 +257,9 @@ class InteractionDesignSpec(SpecModel):
 
     @property
     def has_ranges(self) -> bool:
-        """Whether the actuator, a touched environment or a gain has a range."""
+        """Whether the actuator, a touched environment, a gain or the links have a range."""
+        if self.coupling is not None:
+            return True
         if not (self.actuator.gain.fixed and self.actuator.time_constant.fixed):
             return True
         return any(not self.environments[name].fixed for name in self.touched) or any(

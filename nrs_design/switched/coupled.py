@@ -212,7 +212,7 @@ def _texts(coupling: AxesCoupling) -> Iterator[str]:
             f"{coupling.speed}, which is not shown."
         )
     if coupling.gravity_gradient is None:
-        yield "The torque of gravity is the same in all poses that are used."
+        yield "Gravity is compensated, or the same, in all poses that are used."
     else:
         yield (
             "From the pose of rest, in which all deflections are zero, the torque of gravity "

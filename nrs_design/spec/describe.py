@@ -152,6 +152,7 @@ def _interaction(spec: InteractionDesignSpec) -> Iterator[Line]:
         yield from _provenance("sampling", spec.sampling)
     if spec.disturbances is not None:
         yield from describe_model(spec.disturbances, "disturbances")
+    yield from describe_model(spec.coupling, "coupling")
     yield from describe_model(spec.sensor, "sensor")
     if spec.mode_logic is not None:
         yield from describe_model(spec.mode_logic, "mode_logic")

@@ -21,6 +21,7 @@ from nrs_design.switched.assumptions import (
     REST,
     SPRING,
     SPRING_BESIDE,
+    UNCOUPLED,
     command_texts,
     rule_texts,
 )
@@ -120,7 +121,7 @@ def assume_sampled(
         _beside(spec, inputs + REST[loss == "on the surface"]),
         *_spring_texts(frame),
         *_placed_texts(frame, design, reset=reset),
-        "The axes of the robot do not act on each other.",
+        UNCOUPLED,
         *(
             f"While {c.name} is active, nothing but {' or '.join(c.contacts)} is touched."
             for c in design.controllers

@@ -31,6 +31,7 @@ COMMANDS = (
     "certify-switching",
     "compare-methods",
     "verify",
+    "diff",
     "audit",
     "check-lyapunov",
     "report",

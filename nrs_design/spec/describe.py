@@ -133,6 +133,8 @@ def _interaction(spec: InteractionDesignSpec) -> Iterator[Line]:
     yield _row("limits.velocity", spec.limits.velocity, kinds.ANGULAR_VELOCITY)
     yield _row("limits.torque", spec.limits.torque, kinds.TORQUE)
     yield _row("limits.bandwidth", spec.limits.bandwidth, kinds.BANDWIDTH)
+    if spec.limits.command is not None:
+        yield _row("limits.command", spec.limits.command, kinds.COMMAND)
     for name, environment in spec.environments.items():
         yield from _environment(f"environments.{name}", environment)
     for name, controller in spec.controllers.items():
@@ -150,6 +152,7 @@ def _interaction(spec: InteractionDesignSpec) -> Iterator[Line]:
         yield from _provenance("sampling", spec.sampling)
     if spec.disturbances is not None:
         yield from describe_model(spec.disturbances, "disturbances")
+    yield from describe_model(spec.coupling, "coupling")
     yield from describe_model(spec.sensor, "sensor")
     if spec.mode_logic is not None:
         yield from describe_model(spec.mode_logic, "mode_logic")

@@ -18,6 +18,7 @@ from nrs_design.spec.controllers import (
     names_in,
     touched_in,
 )
+from nrs_design.spec.coupling import CouplingSpec, check_coupling
 from nrs_design.spec.dwell import DwellObstacle, find_changing_contact
 from nrs_design.spec.environment import EnvironmentSpec
 from nrs_design.spec.faults import all_of, did_you_mean, fault
@@ -27,9 +28,11 @@ from nrs_design.spec.mode_logic import ModeLogicSpec, check_kept, rules_of
 from nrs_design.spec.model import SpecModel
 from nrs_design.spec.motion import ActuatorSpec, LimitsSpec, MotionLoopSpec, check_commands
 from nrs_design.spec.provenance import IdentifiedSpec
+from nrs_design.spec.sampled_loop import check_sampled
 from nrs_design.spec.sampling import (
     DisturbancesSpec,
     SamplingSpec,
+    check_delay,
     check_disturbances,
     check_motor,
     check_peak,
@@ -85,6 +88,11 @@ class InteractionDesignSpec(SpecModel):
         default=None,
         description="what acts on the loop from outside; its effect on force and velocity is "
         "bounded",
+    )
+    coupling: CouplingSpec | None = Field(
+        default=None,
+        description="what the axes do to each other through their links, for a proof about all "
+        "axes at once; without it they are taken not to act on each other",
     )
     sensor: SensorSpec | None = Field(
         default=None,
@@ -157,11 +165,21 @@ class InteractionDesignSpec(SpecModel):
             partial(_check_sensor, self),
             lambda: check_peak(self.goals, self.disturbances),
             partial(_check_commands, self),
+            lambda: check_delay(self.goals, self.sampling),
             lambda: check_motor(
                 self.actuator,
                 self.sampling,
                 self.controllers,
                 given_loop=self.motion_loop.transfer_function is not None,
+            ),
+            partial(check_sampled, self),
+            lambda: check_coupling(
+                self.coupling,
+                loaded=self.actuator.load_inertia is not None,
+                others=tuple(
+                    name for name in ("sampling", "disturbances") if getattr(self, name) is not None
+                ),
+                deflection=self.coordinates == "deflection",
             ),
             lambda: _check_memories(self.controllers, self.environments, self.coordinates),
             lambda: _check_offsets(self.controllers, self.idle_states),
@@ -252,7 +270,9 @@ class InteractionDesignSpec(SpecModel):
 
     @property
     def has_ranges(self) -> bool:
-        """Whether the actuator, a touched environment or a gain has a range."""
+        """Whether the actuator, a touched environment, a gain or the links have a range."""
+        if self.coupling is not None:
+            return True
         if not (self.actuator.gain.fixed and self.actuator.time_constant.fixed):
             return True
         return any(not self.environments[name].fixed for name in self.touched) or any(

@@ -20,6 +20,7 @@ from nrs_design.spec.quantity_fields import (
     Bandwidth,
     DerivativeGain,
     Duration,
+    LargestCommand,
     RangedActuatorGain,
     RangedDuration,
     RotorInertia,
@@ -182,3 +183,8 @@ class LimitsSpec(SpecModel):
     velocity: AngularVelocity = Field(description="largest commanded angular velocity in rad/s")
     torque: Torque = Field(description="largest interaction torque in N*m")
     bandwidth: Bandwidth = Field(description="highest frequency of the operator's motion, Hz")
+    command: LargestCommand | None = Field(
+        default=None,
+        description="largest speed command in rpm that the motor's driver takes: exported code "
+        "saturates there, which no proof covers",
+    )

@@ -5,10 +5,11 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from fractions import Fraction
 
 from nrs_design.errors import SpecError
+from nrs_design.proof.noun import dataclass
 from nrs_design.proof.text import quoted
 from nrs_design.spec.exact import DECIMAL_PATTERN, MAX_LENGTH, RATIO_PATTERN, parse_exact
 from nrs_design.spec.units import MAX_UNIT_LENGTH, Unit, parse_unit
@@ -100,7 +101,7 @@ class Quantity:
         return float(self.rational_part) * math.pi**self.pi_power
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, slots=True)
 class QuantityKind:
     """What a field measures, and in which units it may be written.
 

@@ -64,6 +64,11 @@ class SamplingSpec(IdentifiedSpec):
         "period, or one step of Euler's method",
     )
 
+    @property
+    def oldest(self) -> Fraction:
+        """Age of the oldest force sample that the law uses, in s."""
+        return self.delay[1] * self.period.exact
+
 
 class DisturbancesSpec(SpecModel):
     """Bounds on what acts on the loop from outside; what is left out is zero."""
@@ -148,6 +153,17 @@ def takes_motor_ranges(
     """
     driven = all(c.commands == "velocity" for c in controllers.values())
     return not given_loop and (sampling is not None or driven)
+
+
+def check_delay(goals: GoalsSpec | None, sampling: SamplingSpec | None) -> None:
+    """Refuse a goal for the delay where no force sample has an age."""
+    if goals is not None and goals.delay is not None and sampling is None:
+        raise fault(
+            "a proof up to a delay is wanted, but the spec has no samples",
+            "add `sampling: {period: 2 ms, delay: [0, 2]}`, or use min_delay_margin",
+            "goals",
+            "delay",
+        )
 
 
 def check_motor(

@@ -42,6 +42,7 @@ LOST_ANYWHERE = (
     "which the spring draws the axis back, is one of the modes. The surface is back in its place "
     "at once."
 )
+UNCOUPLED = "The axes of the robot do not act on each other."
 CONTINUOUS = "continuous at a switch (identity resets)"
 _STAYS = {
     "dwell_time": "stays active for at least",

@@ -20,6 +20,7 @@ from nrs_design.switched.assumptions import (
     REST,
     SPRING,
     SPRING_BESIDE,
+    UNCOUPLED,
     at_once_texts,
     command_texts,
     rule_texts,
@@ -133,7 +134,7 @@ def assume_loop(loop: Assumed) -> tuple[str, ...]:
     return (
         *_loop_texts(loop),
         *_input_texts(loop),
-        "The axes of the robot do not act on each other.",
+        UNCOUPLED,
         *_contact_texts(loop),
         *chain.from_iterable(
             environment.law.memory_texts(environment.name, alone=len(loop.touched) == 1)

@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 from fractions import Fraction
+from functools import cache
 
 import numpy as np
 import pytest
@@ -27,18 +28,36 @@ def silicone():
         record(Elastic(k), quick(i), noise, i, synthetic.COUNT)
         for i, (k, noise) in enumerate(synthetic.SOFT)
     ]
-    return identify_tissue(data)
+    return identify_tissue(data, "elastic")
 
 
 @pytest.fixture(scope="module")
 def voigt():
     data = [record(KelvinVoigt(43.0, 1.0), slow(i), 0.1, i, rotational=True) for i in range(3)]
-    return identify_tissue(data)
+    return identify_tissue(data, "kelvin-voigt")
 
 
 @pytest.fixture(scope="module")
 def motor():
     return identify_actuator(sinusoids(2, (1.2, 2.0, 4.0, 8.0, 14.0)), MOTOR)
+
+
+@pytest.fixture(scope="module")
+def nose():
+    """Thesis table 2.4: k1 = 0.233, k2 = 0.972, b = 23.631, here in a linear motion."""
+    data = [record(synthetic.NOSE, slow(i), 0.01, i) for i in range(2)]
+    return identify_tissue(data, "kelvin-boltzmann")
+
+
+@pytest.fixture(scope="module")
+def late():
+    """A motor with a dead time, behind a command that tells it."""
+    return identify_actuator([motors.record("PRBS", 1)], MOTOR)
+
+
+@cache
+def delayed(delay):
+    return identify_delay(signals.copy(1, delay=delay))
 
 
 def merged(tmp_path, text):
@@ -173,12 +192,11 @@ def test_intervals_where_no_proof_covers_ranges(tmp_path, motor, old, new):
 
 
 @pytest.mark.parametrize("spec", [SOFT_TISSUE, SAMPLED])
-def test_a_dead_time_is_a_doubt_and_no_age_of_the_force(spec):
+def test_a_dead_time_is_a_doubt_and_no_age_of_the_force(spec, late):
     """It acts in the motion loop, which no proof here delays."""
-    found = identify_actuator([motors.record("PRBS", 1)], MOTOR)
     loaded = read_spec(spec)
-    written = parse_spec(merge_actuator(loaded, found))
-    assert found.doubts == ()
+    written = parse_spec(merge_actuator(loaded, late))
+    assert late.doubts == ()
     (doubt,) = written.actuator.doubts
     assert "dead time of 0.007" in doubt
     assert written.sampling == loaded.spec.sampling
@@ -195,7 +213,7 @@ def test_doubts_about_the_actuator_are_noted():
 
 def test_delay_in_periods_of_the_processor():
     """1.84 to 3.06 samples of 2 ms are 3.69 to 6.13 periods of 1 ms."""
-    found = identify_delay(signals.copy(1))
+    found = delayed(signals.DELAY)
     loaded = read_spec(SAMPLED)
     assert parse_spec(merge_delay(loaded, found)).sampling.delay == (1, 4)
     faster = parse_spec(loaded.text.replace("period: 2 ms", "period: 1 ms"))
@@ -216,24 +234,27 @@ def test_a_varying_delay_is_noted_as_a_doubt():
 
 
 @pytest.mark.parametrize(
-    ("spec", "pair", "error", "message"),
+    ("spec", "delay", "error", "message"),
     [
-        (SOFT_TISSUE, signals.copy(1), SpecError, "has no sampling"),
-        (COMMUTING, signals.copy(1), SpecError, "no place"),
-        (SAMPLED, signals.lag(1), DataError, "by a first-order lag"),
-        (SAMPLED, signals.copy(1, delay=30.0), DataError, "31 periods"),
+        (SOFT_TISSUE, signals.DELAY, SpecError, "has no sampling"),
+        (COMMUTING, signals.DELAY, SpecError, "no place"),
+        (SAMPLED, 30.0, DataError, "31 periods"),
     ],
 )
-def test_what_is_no_age_of_the_force(spec, pair, error, message):
+def test_what_is_no_age_of_the_force(spec, delay, error, message):
     with pytest.raises(error, match=message) as caught:
-        merge_delay(read_spec(spec), identify_delay(pair))
+        merge_delay(read_spec(spec), delayed(delay))
     assert caught.value.remedy
 
 
-def test_what_is_chosen_for_the_nose(tmp_path, silicone):
-    """Thesis table 2.4: k1 = 0.233, k2 = 0.972, b = 23.631, here in a linear motion."""
-    data = [record(synthetic.NOSE, slow(i), 0.01, i) for i in range(2)]
-    text = merge_tissue(read_spec(SOFT_TISSUE), identify_tissue(data), None, None)
+def test_a_lag_is_no_age_of_the_force():
+    with pytest.raises(DataError, match="by a first-order lag") as caught:
+        merge_delay(read_spec(SAMPLED), identify_delay(signals.lag(1)))
+    assert caught.value.remedy
+
+
+def test_the_law_of_the_nose_has_a_place(tmp_path, silicone, nose):
+    text = merge_tissue(read_spec(SOFT_TISSUE), nose, None, None)
     soft = merged(tmp_path, text).spec.environments["soft"]
     assert isinstance(soft, KelvinBoltzmannSpec)
     written = (soft.parallel_stiffness, soft.series_stiffness, soft.damping)

@@ -271,6 +271,8 @@ IMPEDANCE_FAULTS = [
     ("  soft:", "  1:", "1:", "not text"),
     ("  soft:", "  'so ft':", "'so ft'", "not a name"),
     ("  hand:", "  soft:", "soft:\n    model: kelvin", "there twice"),
+    ("type: impedance", "type: admittance", "admittance", "write impedance: it is called"),
+    ("type: impedance", "type: [impedance]", "[impedance]", "write one of impedance"),
     ("type: impedance", "type: impedence", "impedence", "did you mean impedance?"),
     ("environment: soft", "environment: sofd", "sofd", "did you mean soft?"),
     ("environment: soft", "environment: soft\n    contacts: []", "[]", "must not be empty"),

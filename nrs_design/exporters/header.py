@@ -19,7 +19,8 @@ def header_lines(record: ExportRecord) -> tuple[str, ...]:
         f"verdict: {_verdict(record)}",
         *(() if proof is None else (f"claim: {proof.claim}",)),
         f"sample time: {_sample_time(record)}",
-        "units: SI, angles in rad, motor commands in rpm; each gain has its unit beside it",
+        f"units: SI, angles in rad, motor commands in {record.motion.command_unit}; each gain has "
+        "its unit beside it",
         *(f"outside the proof: {text}" for text in record.outside),
     )
 

@@ -61,6 +61,11 @@ class MotionController(_Frozen):
     law: Literal["motion"] = "motion"
     gains: tuple[Gain, ...]
 
+    @property
+    def command_unit(self) -> str:
+        """The unit of the commands that it makes: its first gain is per radian."""
+        return self.gains[0].unit.removesuffix("/rad")
+
 
 class CompliantController(_Frozen):
     """One controller, with what it was designed for and what it may touch."""

@@ -63,7 +63,7 @@ def shipped_law(spec: InteractionDesignSpec, design: ControllerDesign, period: F
         None if low_pass is None else low_pass.sampled(period),
     )
     check_range(law)
-    return law
+    return law.in_commands(design.command)
 
 
 def _step_law(

@@ -213,7 +213,11 @@ def merge_actuator(loaded: LoadedSpec, found: ActuatorIdentification) -> str:
 def _check_commands(spec: InteractionDesignSpec, unit: str, path: Path) -> None:
     """Refuse a motor for which gains in the spec would be in the wrong unit."""
     friction = None if spec.disturbances is None else spec.disturbances.friction
-    written = {"derivative_gain": spec.motion_loop.derivative_gain, "friction": friction}
+    written = {
+        "derivative_gain": spec.motion_loop.derivative_gain,
+        "the largest command": spec.limits.command,
+        "friction": friction,
+    }
     for name, quantity in written.items():
         if quantity is not None and spec.actuator.command != unit:
             raise SpecError(

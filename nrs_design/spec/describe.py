@@ -134,7 +134,8 @@ def _interaction(spec: InteractionDesignSpec) -> Iterator[Line]:
     yield _row("limits.torque", spec.limits.torque, kinds.TORQUE)
     yield _row("limits.bandwidth", spec.limits.bandwidth, kinds.BANDWIDTH)
     if spec.limits.command is not None:
-        yield _row("limits.command", spec.limits.command, kinds.COMMAND)
+        unit = kinds.COMMAND.unit_in(spec.limits.command.dimension)
+        yield _quantity("limits.command", spec.limits.command, unit)
     for name, environment in spec.environments.items():
         yield from _environment(f"environments.{name}", environment)
     for name, controller in spec.controllers.items():

@@ -325,6 +325,7 @@ def _check_commands(spec: InteractionDesignSpec) -> None:
     loop, disturbances = spec.motion_loop, spec.disturbances
     written = {
         ("motion_loop", "derivative_gain"): loop.derivative_gain,
+        ("limits", "command"): spec.limits.command,
         ("disturbances", "friction"): None if disturbances is None else disturbances.friction,
     }
     check_commands(

@@ -185,6 +185,6 @@ class LimitsSpec(SpecModel):
     bandwidth: Bandwidth = Field(description="highest frequency of the operator's motion, Hz")
     command: LargestCommand | None = Field(
         default=None,
-        description="largest speed command in rpm that the motor's driver takes: exported code "
+        description="largest command that the motor's driver takes, such as rpm: exported code "
         "saturates there, which no proof covers",
     )

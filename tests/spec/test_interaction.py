@@ -576,6 +576,7 @@ def test_a_motor_that_takes_volts():
         ("0.1404 s", "0.1404 s\n  derivative_gain: 2060 rpm*s/rad", "2060"),
         ("0.1404 s", "0.1404 s\n  derivative_gain: 7 A*s/rad", "7 A"),
         ("switching:", FRICTION + "switching:", "55 counts"),
+        ("bandwidth: 2 Hz}", "bandwidth: 2 Hz, command: 4000 rpm}", "4000 rpm"),
     ],
 )
 def test_everything_about_commands_is_in_the_unit_of_the_motor(old, new, at):

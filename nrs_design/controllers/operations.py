@@ -11,7 +11,7 @@ once; a saturation does not round. The linear map is that of a step in which not
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from fractions import Fraction
 from itertools import chain
 from typing import Literal
@@ -181,23 +181,10 @@ class StepLaw:
         """Inputs and states, in this order."""
         return (*self.inputs, *self.states)
 
-    def in_commands(self, command: str) -> StepLaw:
-        """Return the law for a motor that takes commands in that unit instead of rpm.
-
-        The numbers are those of that motor already: only the units are named.
-        """
-        coefficients = tuple(replace(c, unit=_named(c.unit, command)) for c in self.coefficients)
-        units = {name: _named(unit, command) for name, unit in self.units.items()}
-        return replace(self, coefficients=coefficients, units=units)
-
     @property
     def coefficient(self) -> Mapping[str, Coefficient]:
         """The coefficients by name."""
         return {c.name: c for c in self.coefficients}
-
-
-def _named(unit: str, command: str) -> str:
-    return command + unit.removeprefix("rpm") if unit.startswith("rpm") else unit
 
 
 def linear_forms(law: StepLaw, mode: int, given: Mapping[str, LinearForm]) -> dict[str, LinearForm]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from fractions import Fraction
 
 from nrs_design.controllers.controller_design import ControllerDesign
@@ -63,7 +64,7 @@ def shipped_law(spec: InteractionDesignSpec, design: ControllerDesign, period: F
         None if low_pass is None else low_pass.sampled(period),
     )
     check_range(law)
-    return law.in_commands(design.command)
+    return _in_commands(law, design.command)
 
 
 def _step_law(
@@ -91,6 +92,17 @@ def _step_law(
             at=("controllers",),
         )
     return build_step_law(motion, moving, low_pass, limits)
+
+
+def _in_commands(law: StepLaw, command: str) -> StepLaw:
+    """Name the unit that the motor takes, where the law says rpm; its numbers are in it already."""
+    units = {name: _renamed(unit, command) for name, unit in law.units.items()}
+    coefficients = tuple(replace(c, unit=_renamed(c.unit, command)) for c in law.coefficients)
+    return replace(law, units=units, coefficients=coefficients)
+
+
+def _renamed(unit: str, command: str) -> str:
+    return command + unit.removeprefix("rpm") if unit.startswith("rpm") else unit
 
 
 def _without_program(what: str, controller: str) -> DesignError:

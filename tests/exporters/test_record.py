@@ -13,17 +13,8 @@ from pydantic import ValidationError
 from nrs_design.controllers.float32 import exact_decimal
 from nrs_design.errors import CertificateError, DesignError
 from nrs_design.exporters.export import Execution, export_design
-from nrs_design.exporters.header import header_lines
-from nrs_design.exporters.record import (
-    ExportRecord,
-    Gain,
-    build_record,
-    build_unproved,
-    dump_record,
-    schema_text,
-)
-from nrs_design.exporters.shipped import shipped_law
-from nrs_design.pipeline import run_certification, run_design
+from nrs_design.exporters.record import ExportRecord, Gain, build_record, dump_record, schema_text
+from nrs_design.pipeline import run_certification
 from nrs_design.spec import LoadedSpec, parse_spec, read_spec
 
 SPECS = Path(__file__).parents[2] / "specs"
@@ -103,21 +94,6 @@ def test_the_same_motor_in_volts(result):
     Kp, Kd = build_record(found.design, found.certificate, None).motion.gains
     assert (Kd.name, Kd.exact, Kd.unit) == ("Kd", "8.046875", "V*s/rad")
     assert (Kp.exact, Kp.unit) == (exact_decimal(Fraction(117359.4375) / 256), "V/rad")
-
-
-def test_exported_code_names_volts():
-    """In the list of coefficients, of the output, and in the lines that every file begins with."""
-    text = (SPECS / "neuroboscope/soft-tissue.nrs.yaml").read_text()
-    text = text.replace("gain: 4.8417e-4 rad/s/rpm", "gain: 0.145 rad/s/V\n  command: V")
-    text = text.replace("2060 rpm*s/rad", "6.9 V*s/rad")
-    loaded = LoadedSpec(Path("volts.nrs.yaml"), 64 * "0", text, parse_spec(text))
-    designed = run_design(loaded)
-    law = shipped_law(designed.spec, designed.design, Fraction("0.002"))
-    assert law.units == {"command": "V"}
-    assert {law.coefficient[name].unit for name in ("Kp", "Kd_over_T")} == {"V/rad"}
-    assert law.coefficient["b"].unit == "rad/(s*N*m)"
-    record = build_unproved(loaded, designed.design, "a trial", Fraction("0.002"), None)
-    assert any("motor commands in V;" in line for line in header_lines(record))
 
 
 def test_proof_is_that_of_the_certificate(record, result):

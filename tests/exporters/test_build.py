@@ -60,14 +60,10 @@ def test_certificate_of_other_gains_is_refused(continuous_export):
     design, certificate = continuous_export.design, continuous_export.certificate
     gains = {**certificate.gains, "insertion": {"Mt": "0.5", "Bt": "2"}}
     with pytest.raises(CertificateError, match="other gains of insertion"):
-        build_record(
-            continuous_export.design, replace(continuous_export.certificate, gains=gains), None
-        )
+        build_record(design, replace(certificate, gains=gains), None)
     fewer = {"motion": certificate.gains["motion"]}
     with pytest.raises(CertificateError, match="other gains"):
-        build_record(
-            continuous_export.design, replace(continuous_export.certificate, gains=fewer), None
-        )
+        build_record(design, replace(certificate, gains=fewer), None)
 
 
 def test_certificate_that_refutes_is_refused(continuous_export):

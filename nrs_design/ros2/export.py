@@ -19,7 +19,6 @@ from nrs_design.certificates.certificate import Certificate
 from nrs_design.controllers.controller_design import Controller
 from nrs_design.errors import DesignError
 from nrs_design.exporters.outside import OUTSIDE
-from nrs_design.models.contact.elastic import Elastic
 from nrs_design.pipeline import Designed
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.proof.text import exact_text
@@ -116,7 +115,7 @@ def _sampling(designed: Designed) -> SamplingSpec:
         )
     for controller in designed.design.controllers:
         gains = controller.law.gains
-        if controller.law.name != "impedance" or controller.law.spring or not gains["Mt"]:
+        if gains.keys() != {"Mt", "Bt"} or not gains["Mt"]:
             raise DesignError(
                 f"admittance_controller cannot run {controller.name}: it is written for impedance "
                 "controllers with inertia and without a spring",
@@ -168,7 +167,7 @@ def _filter_share(designed: Designed, sampling: SamplingSpec) -> Fraction:
 def _met(designed: Designed, controller: Controller) -> tuple[Fraction, Fraction]:
     """Return the stiffness that a controller may touch, in N m/rad."""
     touched = designed.plant.among(controller.contacts)
-    soft = next((item for item in touched if item.law is not Elastic), None)
+    soft = next((item for item in touched if item.parameters.keys() != {"k"}), None)
     if soft is not None:
         raise DesignError(
             f"{soft.name} is more than a spring, which is not modelled with admittance_controller",

@@ -10,7 +10,16 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
 
-from nrs_design.output import EXPORT, MAT
+from nrs_design.output import (
+    C_HEADER,
+    C_SOURCE,
+    C_TEST,
+    EXPORT,
+    MAT,
+    VECTOR_TABLE,
+    VECTOR_TEST,
+    VECTORS,
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,6 +58,25 @@ FORMATS: Mapping[str, Format] = MappingProxyType(
             "gains with what is proved of them; the record that every format holds",
             DESIGN,
             {".export.json": EXPORT},
+        ),
+        "c": Format(
+            "c",
+            "C99 for a processor: init and step in single precision, no heap, no libm",
+            SAMPLED,
+            {".h": C_HEADER, ".c": C_SOURCE},
+            executable=True,
+        ),
+        "vectors": Format(
+            "vectors",
+            "inputs and exact outputs that any implementation of the law must give, with tests",
+            SAMPLED,
+            {
+                ".vectors.json": VECTORS,
+                ".vectors.csv": VECTOR_TABLE,
+                "_test.c": C_TEST,
+                "_test.py": VECTOR_TEST,
+            },
+            executable=True,
         ),
         "mat": Format(
             "matlab",

@@ -34,6 +34,8 @@ class Export:
         Why it is not proved; empty if it is.
     design : ControllerDesign or None
         The gains of the record.
+    spec : InteractionDesignSpec or None
+        What the record is of.
     """
 
     verdict: str
@@ -41,6 +43,7 @@ class Export:
     certificate: Certificate | None
     reason: str = ""
     design: ControllerDesign | None = None
+    spec: InteractionDesignSpec | None = None
 
     def shipped(self) -> ExportRecord:
         """Return the record.
@@ -110,6 +113,7 @@ def export_design(
         if certificate is None
         else _certified_by(loaded, certificate, progress)
     )
+    export = replace(export, spec=loaded.spec)
     if execution is None or period is None or export.verdict == "rejected":
         return export
     return _executable(loaded, export, period, unproved=execution.unproved)

@@ -220,3 +220,45 @@ def test_options_of_programs(export, capsys, monkeypatch):
     assert files() == ["reports/soft-tissue.cert.json", "reports/soft-tissue.export.json"]
     assert export(*arguments, "--json") == 3
     assert json.loads(capsys.readouterr().out)["record"]["verdict"] == "unproved"
+
+
+SLOW = SPECS.parent / "docs/examples/slow-processor.nrs.yaml"
+
+
+def sampled_spec():
+    """Insertion alone, every 2 ms: proved in a moment."""
+    head, _, _ = SPEC.read_text().partition("  withdrawal:")
+    sampling = "switching: arbitrary\nsampling: {period: 2 ms, delay: 0}\n"
+    text = head.replace("name: soft-tissue", "name: every-2-ms") + sampling
+    Path("every-2-ms.nrs.yaml").write_text(text)
+    return "every-2-ms.nrs.yaml"
+
+
+def test_programs_with_a_proof_of_the_sampled_loop(export, capsys):
+    spec = sampled_spec()
+    assert export(spec, "--out", "out", "--format", "c") == 0
+    assert "every-2-ms: PROVED" in capsys.readouterr().out
+    proved = (spec, "--out", "out", "--certificate", "out/every-2-ms.cert.json")
+    assert export(*proved, "--format", "vectors", "--quiet") == 0
+    endings = (".c", ".cert.json", ".h", ".vectors.csv", ".vectors.json", "_test.c", "_test.py")
+    assert files() == [spec, *(f"out/every-2-ms{ending}" for ending in endings)]
+    before = {name: Path(name).read_bytes() for name in files()}
+    assert export(*proved, "--format", "c") == 0
+    assert export(*proved, "--format", "vectors") == 0
+    assert {name: Path(name).read_bytes() for name in files()} == before
+    Path("out/every-2-ms.c").write_text("int main(void) { return 0; }")
+    before = {name: Path(name).read_bytes() for name in files()}
+    assert export(*proved, "--format", "c") == 2
+    assert {name: Path(name).read_bytes() for name in files()} == before
+
+
+def test_a_refuted_program_says_so_in_every_file(export, capsys):
+    assert export(SLOW, "--format", "c") == 1
+    assert files() == []
+    assert "not exported" in capsys.readouterr().err
+    assert export(SLOW, "--format", "c", "--unproved") == 1
+    programs = [name for name in files() if not name.endswith(".json")]
+    assert programs == ["reports/slow-processor.c", "reports/slow-processor.h"]
+    for name in programs:
+        assert "verdict: UNPROVED: the design is not proved: refuted" in Path(name).read_text()
+        assert "0.01 s" in Path(name).read_text()

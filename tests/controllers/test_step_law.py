@@ -8,7 +8,13 @@ import pytest
 
 from nrs_design.controllers.float32 import to_float32
 from nrs_design.controllers.laws import Admittance, ProportionalDerivative
-from nrs_design.controllers.operations import linear_forms, rounded_terms, term_counts
+from nrs_design.controllers.operations import (
+    check_range,
+    linear_forms,
+    rounded_terms,
+    term_counts,
+)
+from nrs_design.controllers.replica import step
 from nrs_design.controllers.sampled import (
     ROUNDINGS,
     ROUNDINGS_WITHOUT_INERTIA,
@@ -17,6 +23,7 @@ from nrs_design.controllers.sampled import (
 )
 from nrs_design.controllers.sensor import LowPass
 from nrs_design.controllers.step_law import StepLimits, build_placed_law, build_step_law
+from nrs_design.errors import DesignError
 from nrs_design.models.linear_form import combine, coordinates, zero
 from nrs_design.switched.sampled_frame import INPUTS, Frame
 
@@ -229,3 +236,31 @@ def test_no_term_of_force_control_is_rounded_more_often_than_is_proved():
         assert {*counted} - angles == {*frame.counts} - {"e"}
         assert all(counted[name] <= frame.counts[name] for name in {*counted} - angles)
         assert (counted["X"], counted["theta"]) == (1, 1)
+
+
+@pytest.mark.parametrize(("exponent", "fits"), [(106, True), (107, False), (127, False)])
+def test_a_law_that_could_leave_single_precision_is_refused(exponent, fits):
+    """An error of up to 2e6 rad, just below 2^21, times a gain has to stay below 2^127."""
+    _, _, law = next(cases(39))
+    Kp, *others = law.coefficients
+    large = replace(law, coefficients=(replace(Kp, values=(Fraction(2**exponent),)), *others))
+    if fits:
+        check_range(large)
+        return
+    with pytest.raises(DesignError, match="beyond single precision"):
+        check_range(large)
+
+
+def test_single_precision_stays_finite_within_the_limits():
+    """At every corner of the inputs and states of 20 laws."""
+    for _, _, law in cases(40, 20):
+        check_range(law)
+        rng = np.random.default_rng(41)
+        given = {
+            v.name: np.float32(float(v.limit)) * rng.choice([-1, 1], 200).astype(np.float32)
+            for v in law.values
+        }
+        result = step(law, rng.integers(0, 2, 200).astype(np.uint32), given)
+        assert result.valid.all()
+        for numbers in (*result.outputs.values(), *result.states.values()):
+            assert np.isfinite(numbers).all()

@@ -13,10 +13,19 @@ from nrs_design.cli.options import Json, Quiet
 from nrs_design.cli.printing import note, print_json, progress, say
 from nrs_design.cli.tables import print_table
 from nrs_design.errors import NrsDesignError, OutputError
-from nrs_design.exporters import FORMATS, Format
+from nrs_design.exporters import FORMATS, ROBOT_FORMATS, Format
 
 if TYPE_CHECKING:
     from nrs_design.exporters.export import Execution, Export
+
+
+# A command of its own writes it, since it proves another law.
+ROS2: dict[str, Any] = {
+    "name": "ros2",
+    "purpose": "impedance controllers as parameters of admittance_controller of ROS 2",
+    "needs": "a proof of that controller's law (ros2 export)",
+    "files": ["NAME.CONTROLLER.ros2.yaml"],
+}
 
 
 def export(
@@ -72,19 +81,20 @@ def export(
 
 
 def _list(*, as_json: bool) -> None:
-    entries = [
+    entries: list[dict[str, Any]] = [
         {
             "name": name,
             "purpose": item.purpose,
             "needs": item.needs,
             "files": [f"NAME{ending}" for ending in item.files],
         }
-        for name, item in FORMATS.items()
+        for name, item in (*FORMATS.items(), *ROBOT_FORMATS.items())
     ]
+    entries.append(ROS2)
     if as_json:
         print_json("export", {"formats": entries})
         return
-    rows = [(str(e["name"]), str(e["purpose"]), str(e["needs"])) for e in entries]
+    rows = [(entry["name"], entry["purpose"], entry["needs"]) for entry in entries]
     print_table("", ("format", "what for", "needs"), rows)
 
 

@@ -86,3 +86,20 @@ FORMATS: Mapping[str, Format] = MappingProxyType(
         ),
     }
 )
+# Of specs of kind robot, by `nrs-design robot export`.
+ROBOT_FORMATS: Mapping[str, Format] = MappingProxyType(
+    {
+        "mjcf": Format(
+            "mjcf",
+            "the robot with its closed loops for MuJoCo",
+            "a robot spec (robot export)",
+            {".mjcf.xml": b"<!-- nrs-design mjcf of "},
+        ),
+        "urdf": Format(
+            "urdf",
+            "the spanning tree of the robot, without its loops",
+            "a robot spec (robot export)",
+            {".urdf": b'<?xml version="1.0"?>\n<!-- nrs-design urdf of '},
+        ),
+    }
+)

@@ -14,7 +14,6 @@ from nrs_design.certificates.certificate import Certificate
 from nrs_design.controllers.controller_design import ControllerDesign
 from nrs_design.controllers.float32 import exact_decimal
 from nrs_design.controllers.gains import gains_of, idle_decay
-from nrs_design.controllers.laws import AbstractLaw
 from nrs_design.controllers.sensor import LowPass
 from nrs_design.errors import CertificateError
 from nrs_design.exporters.outside import outside_of
@@ -251,7 +250,7 @@ def _contents(
     """Return what ships, whatever is known of it."""
     return {
         "package": Package(version=__version__),
-        "motion": MotionController(gains=_gains(design.motion)),
+        "motion": MotionController(gains=_gains(design, design.motion.name)),
         "controllers": tuple(
             CompliantController.model_validate(
                 {
@@ -259,7 +258,7 @@ def _contents(
                     "law": controller.law.name,
                     "environment": controller.environment,
                     "contacts": controller.contacts,
-                    "gains": _gains(controller.law),
+                    "gains": _gains(design, controller.name),
                 }
             )
             for controller in design.controllers
@@ -329,8 +328,9 @@ def _force_filter(low_pass: LowPass | None) -> ForceFilter | None:
     return ForceFilter(order=low_pass.order, pole=_gain("pole", "rad/s", low_pass.pole))
 
 
-def _gains(law: AbstractLaw) -> tuple[Gain, ...]:
-    return tuple(_gain(name, law.units[name], value) for name, value in law.gains.items())
+def _gains(design: ControllerDesign, name: str) -> tuple[Gain, ...]:
+    units = design.units[name]
+    return tuple(_gain(key, units[key], value) for key, value in design.laws[name].gains.items())
 
 
 def _gain(name: str, unit: str, value: Fraction) -> Gain:

@@ -8,7 +8,7 @@ import pytest
 from nrs_design.certificates.certificate import content_id, dump
 from nrs_design.certificates.verify import verify
 from nrs_design.cli import main
-from nrs_design.exporters import FORMATS
+from nrs_design.exporters import FORMATS, ROBOT_FORMATS
 from nrs_design.exporters.record import ExportRecord
 from nrs_design.pipeline import run_certification
 from nrs_design.spec import read_spec
@@ -183,10 +183,10 @@ def test_outputs_that_cannot_be(export, capsys):
 def test_list(export, capsys):
     assert export("--list") == 0
     text = capsys.readouterr().out
-    assert all(name in text for name in FORMATS)
+    assert all(name in text for name in [*FORMATS, *ROBOT_FORMATS, "ros2"])
     assert export("--list", "--json") == 0
     formats = json.loads(capsys.readouterr().out)["formats"]
-    assert [entry["name"] for entry in formats] == list(FORMATS)
+    assert [entry["name"] for entry in formats] == [*FORMATS, *ROBOT_FORMATS, "ros2"]
     assert formats[0]["files"] == ["NAME.export.json"]
     assert export() == 2
     assert "--list" in capsys.readouterr().err

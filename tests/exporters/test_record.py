@@ -80,6 +80,22 @@ def test_published_gains_as_single_precision_numbers(record):
     assert Kp.float32 == pytest.approx(117359.43, rel=1e-7)
 
 
+def test_the_same_motor_in_volts(result):
+    """256 rpm for a volt: the loop is the same to the last digit, and only the gains are others."""
+    text = (SPECS / "neuroboscope/soft-tissue.nrs.yaml").read_text()
+    text = text.replace("gain: 4.8417e-4 rad/s/rpm", "gain: 0.123947520 rad/s/V\n  command: V")
+    text = text.replace("2060 rpm*s/rad", "8046.875 mV*s/rad")
+    found = run_certification(LoadedSpec(Path("volts.nrs.yaml"), 64 * "0", text, parse_spec(text)))
+    system, before = found.certificate.system, result.certificate.system
+    assert [mode.A for mode in system.modes] == [mode.A for mode in before.modes]
+    assert set(system.assumptions) - set(before.assumptions) == {
+        "The motor takes commands in V: Kp of the motion controller is in V/rad, Kd in V*s/rad."
+    }
+    Kp, Kd = build_record(found.design, found.certificate, None).motion.gains
+    assert (Kd.name, Kd.exact, Kd.unit) == ("Kd", "8.046875", "V*s/rad")
+    assert (Kp.exact, Kp.unit) == (exact_decimal(Fraction(117359.4375) / 256), "V/rad")
+
+
 def test_proof_is_that_of_the_certificate(record, result):
     proof = record.proof
     assert proof.certificate_id == result.certificate.id

@@ -1,11 +1,14 @@
 """Which law ships: no limit is above what is written, and what has no program is refused."""
 
+from dataclasses import replace
 from fractions import Fraction
 
 import pytest
 
 from nrs_design.controllers.float32 import is_float32
-from nrs_design.controllers.step_law import BEYOND
+from nrs_design.controllers.gains import idle_share
+from nrs_design.controllers.laws import Admittance
+from nrs_design.controllers.step_parts import BEYOND
 from nrs_design.errors import DesignError
 from nrs_design.exporters.shipped import limits_of, shipped_law
 from nrs_design.pipeline import run_design
@@ -87,7 +90,6 @@ def test_force_control_ships_with_its_gain():
     ("file", "said"),
     [
         (PARALLEL, "parallel controller, of which there is no program"),
-        (MIXED, "beside impedance controllers"),
         (ROBOT / "force-limit-offset.nrs.yaml", "offset"),
     ],
 )
@@ -96,6 +98,52 @@ def test_what_has_no_program_is_refused(file, said):
         law_of(run_design(read_spec(file)))
     assert "--format json" in caught.value.remedy
     assert caught.value.at[0] == "controllers"
+
+
+def test_all_kinds_of_controllers_in_one_law():
+    found = run_design(read_spec(MIXED))
+    law = law_of(found)
+    assert law.modes == tuple(found.spec.controllers)
+    idle = idle_share(found.spec.idle_states, PERIOD)
+    moves = [controller.law.commands == "velocity" for controller in found.design.controllers]
+    assert law.coefficient["d"].values == tuple(Fraction(1) if m else idle for m in moves)
+    assert law.coefficient["takes_offset"].values == tuple(map(Fraction, map(int, moves)))
+    gains = [controller.law.gains.get("Kp", 0) for controller in found.design.controllers]
+    assert list(law.coefficient["Kf"].values) == gains
+    assert any(gains)
+    assert {*moves} == {True, False}
+
+
+@pytest.mark.parametrize(
+    ("changes", "said"),
+    [
+        ((("idle_states: {decay: 20 1/s}", "idle_states: {decay: 20 1/s, reset: true}"),), "reset"),
+        (
+            (
+                (
+                    "switching: arbitrary",
+                    "switching: arbitrary\nsampling: {period: 2 ms, delay: 0}\n"
+                    "disturbances: {largest_angle: 20 deg}",
+                ),
+            ),
+            "rounding of angles",
+        ),
+    ],
+)
+def test_what_a_mixed_law_would_not_do_as_it_is_proved_is_refused(tmp_path, changes, said):
+    found = designed(tmp_path, MIXED.read_text(), *changes)
+    with pytest.raises(DesignError, match=said):
+        law_of(found)
+
+
+def test_a_spring_beside_other_controllers_is_refused():
+    found = run_design(read_spec(MIXED))
+    controllers = tuple(
+        replace(c, law=replace(c.law, Kt=Fraction(1))) if isinstance(c.law, Admittance) else c
+        for c in found.design.controllers
+    )
+    with pytest.raises(DesignError, match="a spring"):
+        shipped_law(found.spec, replace(found.design, controllers=controllers), PERIOD)
 
 
 def test_inertia_of_some_controllers_is_refused(tmp_path):

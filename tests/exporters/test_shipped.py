@@ -5,7 +5,7 @@ from fractions import Fraction
 
 import pytest
 
-from nrs_design.controllers.float32 import is_float32
+from nrs_design.controllers.float32 import exact_decimal, is_float32
 from nrs_design.controllers.gains import idle_share
 from nrs_design.controllers.laws import Admittance
 from nrs_design.controllers.step_parts import BEYOND
@@ -76,6 +76,15 @@ def test_coefficients_are_those_of_the_sampled_design():
         wanted = controller.law.sampled(PERIOD, "exact").coefficients
         assert {name: law.coefficient[name].of(k) for name in wanted} == wanted
     assert law_of(found, 2 * PERIOD) != law
+
+
+def test_every_coefficient_is_in_what_the_proof_takes_for_granted(sampled, sampled_export):
+    """To the last digit, as the certificate lists them."""
+    texts = " ".join(sampled_export.certificate.system.assumptions)
+    law = shipped_law(sampled.spec, sampled_export.design, PERIOD)
+    numbers = [n for c in law.coefficients for n in c.values if not c.name.endswith("_limit")]
+    assert len(numbers) == 5
+    assert all(f"= {exact_decimal(number)}" in texts for number in numbers)
 
 
 def test_force_control_ships_with_its_gain():

@@ -9,8 +9,7 @@ from functools import partial
 from itertools import chain
 
 from nrs_design.controllers.controller_design import Controller, ControllerDesign
-from nrs_design.controllers.float32 import to_float32
-from nrs_design.controllers.gains import idle_decay
+from nrs_design.controllers.gains import idle_share
 from nrs_design.controllers.sampled import (
     SampledAdmittance,
     SampledForce,
@@ -24,7 +23,6 @@ from nrs_design.models.linear_form import LinearForm, coordinates, zero
 from nrs_design.models.plant import Plant
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.system import Contact, SwitchedSystem, Time
-from nrs_design.proof.taylor import exponential_between
 from nrs_design.spec import IdleStatesSpec, InteractionDesignSpec
 from nrs_design.spec.interval import Interval
 from nrs_design.spec.sampling import SamplingSpec
@@ -132,9 +130,7 @@ def _frame(
 ) -> Frame:
     period, tau, low_pass = sampling.period.exact, ranges.time_constant, design.sensor.filter
     admittances = [law for law in laws if isinstance(law, SampledAdmittance)]
-    idle = None
-    if spec.idle_states is not None:
-        idle = to_float32(exponential_between(-idle_decay(spec.idle_states) * period)[0])
+    idle = None if spec.idle_states is None else idle_share(spec.idle_states, period)
     return Frame(
         period,
         SampledMotion.of(design.motion, period),

@@ -88,9 +88,12 @@ def close_sampled_loop(
     parts = {c.name: loop.in_contact(c, laws[c.name], plant) for c in design.controllers}
     touched = plant.among(design.contacts)
     loss = _loss_of_contact(spec, touched, [item.law for item in laws.values()])
-    air = {name: loop.in_the_air(name, item) for name, item in laws.items()} if _flies(loss) else {}
-    if loss == "anywhere":
-        parts = {name: (*part, *air[name]) for name, part in parts.items()}
+    air: dict[str, tuple[Motion, ...]] = {}
+    if loss == "on the surface" or loss.startswith("anywhere"):
+        touching = (c.name for c in design.controllers if c.contacts)
+        air = {name: loop.in_the_air(name, laws[name]) for name in touching}
+    if loss.startswith("anywhere"):
+        parts = {name: (*part, *air.get(name, ())) for name, part in parts.items()}
     free = tuple(chain.from_iterable(air.values())) if loss == "on the surface" else ()
     groups = {key: tuple(Corner(item.mode.name) for item in part) for key, part in parts.items()}
     motions = tuple(chain.from_iterable(parts.values()))
@@ -216,17 +219,15 @@ def _loss_of_contact(
     sprung = set[bool]()
     for law in laws:
         if isinstance(law, SampledForce):
-            return "where force is controlled"
+            # Force control rests in the air where it does in contact: at what is commanded.
+            lost = spec.contact == "losable"
+            return "anywhere under force control" if lost else "not under force control"
         sprung.add(law.Kt != 0)
     if spec.contact == "kept" or (True in sprung and spec.contact is None):
         return "never"
     if not all(_is_zero(damping_of(e)) and not e.preloaded for e in touched):
         return "not modelled"
     return "anywhere" if sprung == {True} else "on the surface"
-
-
-def _flies(loss: Loss) -> bool:
-    return loss in ("anywhere", "on the surface")
 
 
 def _resets(

@@ -159,6 +159,27 @@ def test_position_and_force_control_share_the_motion(tmp_path):
     assert "Kp F 5" in texts
 
 
+def test_contact_lost_under_force_control_is_a_mode_without_force(tmp_path):
+    """What unilateral contact does to the sample, max(0, k delta), lies between the two."""
+    system = system_of(tmp_path, "{period: 2 ms, delay: [0, 1]}\ncontact: losable", text=FORCE)
+    assert system.contact is None
+    modes = {mode.name: mode.A.fractions() for mode in system.modes}
+    free = {name for name in modes if name.startswith("force/free/")}
+    assert len(free) == 4
+    assert len(modes) == 2 + 8 + 4
+    # With the sample of the moment, it is position control; with an older one, that still acts.
+    assert modes["force/free/delay-0/E-min"] == modes["position/E-min"]
+    late, pushed = modes["force/free/delay-1/E-min"], modes["position/E-min"]
+    assert [row[2] for row in late] != [row[2] for row in pushed]
+    assert [row[:2] + row[3:] for row in late] == [row[:2] + row[3:] for row in pushed]
+    texts = " ".join(system.assumptions)
+    assert "free motion under force control, whose sample is zero then" in texts
+    assert "environment would pull" not in texts
+    found = certify(system)
+    assert found.verdict is Verdict.PROVED
+    assert found.evidence.roundings
+
+
 def test_an_admittance_beside_others_leaves_its_states_idle(tmp_path):
     system = system_of(tmp_path, "{period: 2 ms, delay: 0}", text=MIXED)
     assert system.states[0] == "reference [rad]"
@@ -206,11 +227,11 @@ def test_gains_in_a_range_are_corners_of_their_coefficients(tmp_path):
 def test_runs_of_position_and_force_control_keep_the_certified_bound(tmp_path):
     """200 runs in single precision, half of them greedy, under friction: none is beyond, some near.
 
-    Law and motor step by step, without the model: controller, age of the sample, stiffness and
+    Law and motor step by step, without the model; half of them lose contact. Controller, age of the sample, stiffness and
     friction are chosen anew at every sample; a greedy run takes the sign of friction that goes on.
     """
     sampling = "{period: 2 ms, delay: [0, 1]}\ndisturbances: {friction: 55.3 rpm}"
-    system = system_of(tmp_path, sampling, text=FORCE)
+    system = system_of(tmp_path, f"{sampling}\ncontact: losable", text=FORCE)
     found = certify(system)
     bound = bound_on(system, found.statements, "force")
     rng, single, runs, steps = np.random.default_rng(17), np.float32, 200, 400
@@ -219,11 +240,11 @@ def test_runs_of_position_and_force_control_keep_the_certified_bound(tmp_path):
     E, low, high = np.exp(-T / tau), 720.56 * 0.24**2, 768.17 * 0.24**2
     theta, omega = np.zeros(runs), np.zeros(runs)
     before, old, worst = np.zeros(runs, single), np.zeros(runs, single), np.zeros(runs)
-    greedy = np.arange(runs) < runs // 2
+    greedy, loses = np.arange(runs) < runs // 2, np.arange(runs) % 2 == 0
     for _ in range(steps):
         lasting = rng.uniform(size=runs) < 0.9
         k = np.where(greedy & lasting, high, rng.uniform(low, high, runs))
-        force = (k * theta).astype(single)
+        force = (k * np.where(loses, np.maximum(theta, 0), theta)).astype(single)
         felt = np.where(rng.integers(0, 2, runs) == 0, force, old)
         controls_force = rng.uniform(size=runs) < np.where(greedy, 0.05, 0.5)
         reference = np.where(controls_force, Kf * (single(0) - felt), single(0))

@@ -38,6 +38,10 @@ _PLACED = (
     "At a switch the reference may jump, and the error of the sample before is kept: the PD "
     "differentiates the jump."
 )
+_IN_POSITION = (
+    "In position control any of the environments may be touched, or nothing: the force is sampled, "
+    "and used no earlier than by the next controller that takes it."
+)
 _RETUNED = (
     "The coefficients of retuned gains are those of the formulas, each rounded once; where gains "
     "change, the admittance keeps its states."
@@ -159,6 +163,8 @@ def _placed_texts(frame: Frame, design: ControllerDesign, *, reset: bool) -> Ite
     if all(c.law.commands == "velocity" for c in design.controllers):
         return
     yield _PLACED
+    if not all(c.contacts for c in design.controllers):
+        yield _IN_POSITION
     if frame.idle is None:
         return
     what = "velocity vm and reference" if frame.has_inertia else "the reference"

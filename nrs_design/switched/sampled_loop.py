@@ -85,8 +85,13 @@ def close_sampled_loop(
     )
     frame = _frame(spec, sampling, design, [item.law for item in laws.values()], ranges)
     loop = _Loop(frame, sampling.delay, motor_box(ranges, frame.period))
-    parts = {c.name: loop.in_contact(c, laws[c.name], plant) for c in design.controllers}
     touched = plant.among(design.contacts)
+    parts = {
+        c.name: loop.in_contact(
+            c, laws[c.name], map(plant.environment, c.contacts) if c.contacts else touched
+        )
+        for c in design.controllers
+    }
     loss = _loss_of_contact(spec, touched, [item.law for item in laws.values()])
     air: dict[str, tuple[Motion, ...]] = {}
     if loss == "on the surface" or loss.startswith("anywhere"):
@@ -163,13 +168,18 @@ class _Loop:
     motor: Box
 
     def in_contact(
-        self, controller: Controller, gains: SampledGains, plant: Plant
+        self, controller: Controller, gains: SampledGains, touched: Iterable[Environment]
     ) -> tuple[Motion, ...]:
-        """Return the motions of a controller in all its contacts, or in the air if it has none."""
-        if not controller.contacts:
-            return tuple(self._corners(gains, self.motor, controller.name))
+        """Return the motions of a controller in all contacts, and in the air if it has none.
+
+        Position control takes no force, but what it touches is sampled, and may be used by the
+        controller after it.
+        """
         found: list[Motion] = []
-        for environment in map(plant.environment, controller.contacts):
+        if not controller.contacts:
+            found += self._corners(gains, self.motor, controller.name)
+            touched = touched if self.frame.remembers else ()
+        for environment in touched:
             own = Box({"k": environment.stiffness, "b": damping_of(environment)})
             name = f"{controller.name}/{environment.name}"
             found += self._corners(gains, own.beside(self.motor), name)
@@ -183,7 +193,7 @@ class _Loop:
         """Yield the motions in one contact, at every delay that makes a difference."""
         law = gains.law
         ages = range(self.delays[0], self.delays[1] + 1)
-        if isinstance(law, SampledForce) and not law.Kp:
+        if isinstance(law, SampledForce) and not law.Kp and self.frame.low_pass is None:
             ages = ages[:1]
         for delay in ages:
             late = f"{name}/delay-{delay}" if len(ages) > 1 else name

@@ -150,8 +150,8 @@ def test_position_and_force_control_share_the_motion(tmp_path):
         "F 1 before [N*m]",
         "delta [rad]",
     )
-    # Two ends of exp(-T/tau), for force control two delays and two ends of k besides.
-    assert len(system.modes) == 2 + 8
+    # Two ends of exp(-T/tau); in contact two ends of k, for force control two delays besides.
+    assert len(system.modes) == 2 + 4 + 8
     assert system.contact is None
     assert system.find_contradiction() is None
     texts = " ".join(system.assumptions)
@@ -161,6 +161,24 @@ def test_position_and_force_control_share_the_motion(tmp_path):
     assert "Kp F 5" in texts
 
 
+def test_what_position_control_touches_is_sampled(tmp_path):
+    """With the sample of the moment nobody uses it; an older one acts after a switch to force."""
+    system = system_of(tmp_path, "{period: 2 ms, delay: 1}", text=FORCE)
+    modes = {mode.name: mode.A.fractions() for mode in system.modes}
+    touching, free = modes["position/soft/k-max/E-min"], modes["position/E-min"]
+    assert [row for i, row in enumerate(touching) if i != 2] == [
+        row for i, row in enumerate(free) if i != 2
+    ]
+    assert free[2] == [0] * 4
+    assert touching[2] == [0, 0, 0, Fraction("768.17") * Fraction("0.24") ** 2]
+    assert "any of the environments may be touched" in " ".join(system.assumptions)
+    at_once = system_of(tmp_path, "{period: 2 ms, delay: 0}", text=FORCE)
+    assert [m.name for m in at_once.modes if "position" in m.name] == [
+        "position/E-min",
+        "position/E-max",
+    ]
+
+
 def test_contact_lost_under_force_control_is_a_mode_without_force(tmp_path):
     """What unilateral contact does to the sample, max(0, k delta), lies between the two."""
     system = system_of(tmp_path, "{period: 2 ms, delay: [0, 1]}\ncontact: losable", text=FORCE)
@@ -168,7 +186,7 @@ def test_contact_lost_under_force_control_is_a_mode_without_force(tmp_path):
     modes = {mode.name: mode.A.fractions() for mode in system.modes}
     free = {name for name in modes if name.startswith("force/free/")}
     assert len(free) == 4
-    assert len(modes) == 2 + 8 + 4
+    assert len(modes) == 2 + 4 + 8 + 4
     # With the sample of the moment, it is position control; with an older one, that still acts.
     assert modes["force/free/delay-0/E-min"] == modes["position/E-min"]
     late, pushed = modes["force/free/delay-1/E-min"], modes["position/E-min"]

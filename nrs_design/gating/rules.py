@@ -221,7 +221,7 @@ INTERNAL = Rule(
     "The program works as intended",
     "Two independent computations disagree, or the program met a case that it was not written "
     "for. This is a defect of nrs-design and says nothing about the spec: it is not a verdict.",
-    "Report it with the spec and the output of the single command with -v.",
+    "Report it with the spec and what `nrs-design -v certify-switching SPEC` prints.",
 )
 
 RULES: Mapping[str, Rule] = MappingProxyType(

@@ -21,6 +21,8 @@ from nrs_design.switched.assumptions import (
     REST,
     SPRING,
     SPRING_BESIDE,
+    UNCOUPLED,
+    command_texts,
     rule_texts,
 )
 from nrs_design.switched.joint import motor_text
@@ -133,7 +135,7 @@ def assume_sampled(
         _beside(spec, inputs + REST[loss == "on the surface"]),
         *_spring_texts(frame),
         *_placed_texts(frame, design, reset=reset),
-        "The axes of the robot do not act on each other.",
+        UNCOUPLED,
         *(
             f"While {c.name} is active, nothing but {' or '.join(c.contacts)} is touched."
             for c in design.controllers
@@ -145,6 +147,7 @@ def assume_sampled(
         f"{states} {CONTINUOUS}; a switch happens at a sample.",
         *rule_texts(rules, "controller"),
         f"The coefficients are these single-precision numbers: {_coefficients(frame, gains)}.",
+        *command_texts(design.command),
         *_retuned_texts(gains),
         _ARITHMETIC.format(", ".join(f"{name} {count}" for name, count in frame.counts.items())),
         _angle_text(spec),

@@ -80,9 +80,7 @@ def close_sampled_loop(
         If the modes do not share one state, or single precision loses a coefficient.
     """
     laws = {c.name: _sampled(c, sampling, boxes[c.name]) for c in design.controllers}
-    ranges = plant.actuator_ranges or ActuatorRanges(
-        Interval.point(plant.actuator.gain), Interval.point(plant.actuator.time_constant)
-    )
+    ranges = plant.actuator_ranges or ActuatorRanges.point(plant.actuator)
     frame = _frame(spec, sampling, design, [item.law for item in laws.values()], ranges)
     loop = _Loop(frame, sampling.delay, motor_box(ranges, frame.period))
     touched = plant.among(design.contacts)

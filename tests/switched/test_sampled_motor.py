@@ -14,7 +14,7 @@ PERIOD, TAU, KM = Fraction(1, 500), Fraction("0.0351"), Fraction("4.8417e-4")
 def test_bounds_of_the_motor_hold_what_lies_between():
     """E and s at any time constant of the range lie within their axes."""
     tau = Interval(TAU, TAU * Fraction(9, 10), TAU * Fraction(11, 10))
-    box = motor_box(ActuatorRanges(Interval.point(KM), tau), PERIOD).ranges
+    box = motor_box(ActuatorRanges(Interval.point(KM), tau, "rpm"), PERIOD).ranges
     Km, E, s = (box[symbol] for symbol in ("Km", "E", "s"))
     assert Km == Interval.point(KM)
     for share in np.linspace(0, 1, 50):

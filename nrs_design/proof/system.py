@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from enum import StrEnum
 from fractions import Fraction
 
 from nrs_design.proof.matrix import RationalMatrix, exact_fraction
+from nrs_design.proof.noun import dataclass
 
 
 class Time(StrEnum):

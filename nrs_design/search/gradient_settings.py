@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from enum import StrEnum
 from math import isfinite
 
 from nrs_design.errors import DesignError
+from nrs_design.proof.noun import dataclass
 
 
 class Coordinates(StrEnum):

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
 from functools import partial
 from itertools import islice, zip_longest
 from math import inf
@@ -12,6 +11,7 @@ from typing import Any
 from nrs_design.proof.evidence import AbstractEvidence
 from nrs_design.proof.evidence.unstable_mode import affordable, is_stable
 from nrs_design.proof.late import late_function
+from nrs_design.proof.noun import dataclass
 from nrs_design.proof.system import SwitchedSystem, Time
 from nrs_design.search.allowance import Allowance, Cost
 from nrs_design.search.candidates import Candidates, Search
@@ -27,7 +27,7 @@ QUICK = 0.5
 Step = tuple[str, Search]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, slots=True)
 class Facts:
     """What decides which rungs apply.
 
@@ -113,7 +113,7 @@ def _always(facts: Facts) -> bool:
     return True
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, slots=True)
 class Rung:
     """One row of the ladder.
 

@@ -26,14 +26,17 @@ from nrs_design.spec.fields import Digits, Label, Name, Title
 from nrs_design.spec.goals import GoalsSpec, check_applicable
 from nrs_design.spec.mode_logic import ModeLogicSpec, check_kept, rules_of
 from nrs_design.spec.model import SpecModel
-from nrs_design.spec.motion import ActuatorSpec, LimitsSpec, MotionLoopSpec
+from nrs_design.spec.motion import ActuatorSpec, LimitsSpec, MotionLoopSpec, check_commands
 from nrs_design.spec.provenance import IdentifiedSpec
+from nrs_design.spec.sampled_loop import check_sampled
 from nrs_design.spec.sampling import (
     DisturbancesSpec,
     SamplingSpec,
+    check_delay,
     check_disturbances,
     check_motor,
     check_peak,
+    takes_motor_ranges,
 )
 from nrs_design.spec.sensor import SensorSpec
 from nrs_design.spec.switching import MODE_LOGIC, DwellTime, LogicalRule, check_names
@@ -161,12 +164,15 @@ class InteractionDesignSpec(SpecModel):
             lambda: check_disturbances(self.disturbances, self.sampling),
             partial(_check_sensor, self),
             lambda: check_peak(self.goals, self.disturbances),
+            partial(_check_commands, self),
+            lambda: check_delay(self.goals, self.sampling),
             lambda: check_motor(
                 self.actuator,
                 self.sampling,
                 self.controllers,
                 given_loop=self.motion_loop.transfer_function is not None,
             ),
+            partial(check_sampled, self),
             lambda: check_coupling(
                 self.coupling,
                 loaded=self.actuator.load_inertia is not None,
@@ -256,6 +262,13 @@ class InteractionDesignSpec(SpecModel):
         return next(offsets, "none")
 
     @property
+    def takes_motor_ranges(self) -> bool:
+        """Whether a proof can be about ranges of the actuator."""
+        given = self.motion_loop.transfer_function is not None
+        dwells = any(True for _ in self.switching.dwell_times())
+        return not dwells and takes_motor_ranges(self.sampling, self.controllers, given_loop=given)
+
+    @property
     def has_ranges(self) -> bool:
         """Whether the actuator, a touched environment, a gain or the links have a range."""
         if self.coupling is not None:
@@ -305,6 +318,18 @@ class InteractionDesignSpec(SpecModel):
             self.environments,
             by_contact=self.switching.names_contacts,
         )
+
+
+def _check_commands(spec: InteractionDesignSpec) -> None:
+    """Refuse a gain or a friction about commands that the motor does not take."""
+    loop, disturbances = spec.motion_loop, spec.disturbances
+    written = {
+        ("motion_loop", "derivative_gain"): loop.derivative_gain,
+        ("disturbances", "friction"): None if disturbances is None else disturbances.friction,
+    }
+    check_commands(
+        spec.actuator.command, {at: item for at, item in written.items() if item is not None}
+    )
 
 
 def _check_mixture(

@@ -314,6 +314,7 @@ AngularAcceleration = Annotated[
     Quantity, _quantity(kinds.ANGULAR_ACCELERATION), _schema(kinds.ANGULAR_ACCELERATION)
 ]
 Command = Annotated[Quantity, _quantity(kinds.COMMAND, positive=False), _schema(kinds.COMMAND)]
+LargestCommand = Annotated[Quantity, _quantity(kinds.COMMAND), _schema(kinds.COMMAND)]
 TorqueGradient = Annotated[
     Quantity, _quantity(kinds.TORQUE_GRADIENT), _schema(kinds.TORQUE_GRADIENT)
 ]

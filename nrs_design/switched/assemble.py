@@ -201,9 +201,11 @@ def _assemble_sampled(
             f"coordinates {coordinates!r} do not apply to the sampled loop",
             remedy="use coordinates: deflection",
         )
+    from nrs_design.switched.gain_box import gain_boxes
     from nrs_design.switched.sampled_loop import close_sampled_loop
 
-    return close_sampled_loop(spec, sampling, plant.scaled(scale, spec.touched), design)
+    scaled, boxes = plant.scaled(scale, spec.touched), gain_boxes(spec, design, scale)
+    return close_sampled_loop(spec, sampling, scaled, design, boxes)
 
 
 def _check_scale(scale: Fraction) -> None:

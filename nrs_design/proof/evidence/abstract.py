@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass
 from enum import StrEnum
 from fractions import Fraction
 from typing import Any, ClassVar, Self
@@ -17,6 +16,7 @@ from nrs_design.proof.exact import (
     is_symmetric,
     is_too_large,
 )
+from nrs_design.proof.noun import dataclass
 from nrs_design.proof.system import Channel, Output, SwitchedSystem, Switching
 from nrs_design.proof.text import exact_text
 

@@ -328,35 +328,3 @@ def test_resets_are_not_covered():
     assert "kind of switching" in GENUINE.find_fault(
         replace(SYSTEM, switching=Switching(resets=resets))
     )
-
-
-def odd(**changes):
-    return replace(SYSTEM, couplings=(replace(SYSTEM.couplings[0], **changes),))
-
-
-COLUMN, ROW = SYSTEM.couplings[0].columns, SYSTEM.couplings[0].rows
-
-
-@pytest.mark.parametrize(
-    ("system", "words"),
-    [
-        (odd(columns=COLUMN[:-1]), "not one column and row for every mode"),
-        (odd(rows=ROW[:-1]), "not one column and row for every mode"),
-        (odd(columns=(matrix([[1]]), *COLUMN[1:])), "the size of the state"),
-        (odd(rows=(matrix([[1]]), *ROW[1:])), "the size of the state"),
-        (odd(rows=(*ROW[:-1], matrix([[1, 1]]))), "depends on the deflection in free motion"),
-        (replace(SYSTEM, couplings=SYSTEM.couplings * 2), "two couplings have one name"),
-        (replace(SYSTEM, time=Time.DISCRETE, contact=None), "in discrete time"),
-    ],
-)
-def test_a_coupling_that_makes_no_sense_is_refused(system, words):
-    assert words in GENUINE.find_fault(system)
-
-
-def test_the_last_mode_in_contact_may_depend_on_the_deflection():
-    """Free rows alone must not: the first of them comes right after the modes in contact."""
-    count = len(SYSTEM.modes)
-    assert ROW[count - 1].numerators[0][-1] != 0
-    assert SYSTEM.find_contradiction() is None
-    contact = Contact(SYSTEM.contact.free, SYSTEM.contact.pulls)
-    assert replace(SYSTEM, contact=contact).find_contradiction() is None

@@ -129,5 +129,6 @@ def library_page() -> str:
     """Describe what ``import nrs_design as nrs`` offers."""
     lines = ["# Library", "", "`import nrs_design as nrs` offers:", ""]
     for name in nrs_design.__all__:
-        lines += [f"::: nrs_design.api.{name}", ""]
+        # Where it is defined: what is documented by another name loses its parameters.
+        lines += [f"::: {getattr(nrs_design, name).__module__}.{name}", ""]
     return "\n".join(lines)

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 from numpy.typing import NDArray
 
+from nrs_design.identification.datasets.checks import doubt_step
 from nrs_design.identification.rounding import rounding_of_velocity
 from nrs_design.identification.statistics import Uncertainty, student_quantile
 from nrs_design.identification.tissue.residuals import doubt_residuals
@@ -22,9 +23,8 @@ _NEAR = 1e-3
 # Part of the power of the velocity that may be rounding of the deflection.
 _ROUNDING = 0.1
 _LOADED = 0.1
-# Deflections of soft tissue, in m and rad, and a step that shows no motion of a hand, in s.
+# Deflections of soft tissue, in m and rad.
 _TRAVELS = (1e-5, 0.5), (1e-4, np.pi)
-_SLOWEST = 1.0
 
 
 def doubts(
@@ -69,9 +69,7 @@ def _units(trial: Trial) -> Iterator[str]:
     travel = float(np.ptp(trial.motion.deflection))
     if not least < travel < most:
         yield f"the deflection spans {travel:.3g} {unit}: is that its unit? (--map names another)"
-    step = float(np.median(trial.motion.steps))
-    if step >= _SLOWEST:
-        yield f"the steps of time are {step:.3g} s: is that their unit? (--map names another)"
+    yield from doubt_step(float(np.median(trial.motion.steps)))
 
 
 def _bounds(law: AbstractContactLaw, bounds: tuple[Array, Array]) -> Iterator[str]:

@@ -45,6 +45,8 @@ def test_milliseconds_that_pass_for_seconds():
     late = Motion(1e3 * motion.time, motion.deflection)
     said = doubts(Elastic, Elastic(750.0), late)
     assert "the steps of time are 10 s: is that their unit?" in said
+    soon = Motion(1e-3 * motion.time, motion.deflection)
+    assert "1e-05 s: is that their unit?" in doubts(Elastic, Elastic(750.0), soon)
 
 
 def test_coarse_encoder():

@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from enum import StrEnum
 from math import isfinite
 
 from nrs_design.errors import DesignError
-from nrs_design.proof.noun import dataclass
 
 
 class Coordinates(StrEnum):

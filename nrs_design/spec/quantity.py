@@ -52,7 +52,7 @@ class Quantity:
 
     @property
     def dimension(self) -> tuple[int, ...]:
-        """Exponents of kg, m, s, rad and rpm."""
+        """Exponents of the base units."""
         return self._scale.dimension
 
     @property
@@ -135,6 +135,10 @@ class QuantityKind:
         """Whether a quantity of this dimension is of this kind."""
         return any(parse_unit(unit).dimension == dimension for unit in self.units)
 
+    def unit_in(self, dimension: tuple[int, ...]) -> str:
+        """Return the unit of a dimension that is accepted."""
+        return next(unit for unit in self.units if parse_unit(unit).dimension == dimension)
+
     def advice(self, value: str, dimension: tuple[int, ...]) -> str:
         """Say what to write instead of a quantity with the wrong dimension."""
         for unit, advice in self.confusions.items():
@@ -196,7 +200,7 @@ def checked_kind(quantity: Quantity, kind: QuantityKind) -> Quantity:
 
 
 def _irrational(quantity: Quantity, kind: QuantityKind) -> SpecError:
-    unit = next(u for u in kind.units if parse_unit(u).dimension == quantity.dimension)
+    unit = kind.unit_in(quantity.dimension)
     return SpecError(
         f"the unit of {quoted(quantity.text)} holds a factor of pi: not exact in SI",
         remedy=f"{kind.name} enters the proof: write it in {unit}, "

@@ -213,6 +213,7 @@ def test_margin_of_the_oscillator(tmp_path):
     assert f"scaled by {rounded_up(refuted)} they are refuted" in plain.stdout
 
 
+@pytest.mark.slow
 def test_margin_of_gains_that_are_retuned(tmp_path):
     # With Mt = 0.01 and k = 43.0356 the loop is unstable below Bt of about 0.63: the range
     # [1.5, 2.5] about 2 reaches that when it is stretched to 2.7 times its width.

@@ -214,6 +214,7 @@ def test_only_the_pipeline_calls_the_stages():
         "nrs_design.switched.assemble",
         "nrs_design.reproduction.switching",
         "nrs_design.ros2.check",
+        "nrs_design.ros2.export",
     }
 
 

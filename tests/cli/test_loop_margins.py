@@ -61,5 +61,8 @@ def test_margins_of_a_sampled_loop(tmp_path):
     path.write_text(f"{head}switching: arbitrary\nsampling: {{period: 10 ms, delay: 0}}\n")
     result = run("certify-switching", path.name, "--margin", cwd=tmp_path)
     assert result.returncode == 0, result.stderr
+    told = result.stderr.splitlines()
+    written = next(i for i, line in enumerate(told) if "certificate written to" in line)
+    assert written < next(i for i, line in enumerate(told) if "delay 1" in line)
     assert re.search(r"longest delay of the force sample: \d+ samples is proved", result.stdout)
     assert re.search(r"period: \S+ s is proved, \S+ s is refuted \(each for", result.stdout)

@@ -157,11 +157,12 @@ def test_actuator(motor):
     assert len(spec.actuator.provenance) == 5
 
 
-def test_ranges_of_the_actuator_where_the_proof_covers_them(tmp_path, motor):
+@pytest.mark.parametrize("file", [SAMPLED, SOFT_TISSUE])
+def test_ranges_of_the_actuator_where_the_proof_covers_them(tmp_path, motor, file):
     """Both ranges hold together with 95 %, so that each is wider than its own interval."""
-    text = merge_actuator(read_spec(SAMPLED), motor)
+    text = merge_actuator(read_spec(file), motor)
     spec = parse_spec(text)
-    assert spec.actuator.intervals is None
+    assert (spec.actuator.intervals, spec.actuator.range_covers) == (None, "confidence")
     for written, own in (
         (spec.actuator.gain, motor.chosen.gain),
         (spec.actuator.time_constant, motor.chosen.time_constant),
@@ -171,11 +172,23 @@ def test_ranges_of_the_actuator_where_the_proof_covers_them(tmp_path, motor):
     assert merge_actuator(merged(tmp_path, text), motor) == text
 
 
-def test_intervals_give_way_to_ranges(tmp_path, motor):
-    text = merge_actuator(read_spec(SOFT_TISSUE), motor)
-    assert "intervals" in text
-    sampled = merged(tmp_path, text + "\nsampling: {period: 2 ms, delay: 1}\n")
-    assert "intervals" not in merge_actuator(sampled, motor)
+DWELL = "switching: {dwell_time: 2 s}"
+STATED = """  zero: 56.9706 1/s
+  transfer_function: {numerator: [28.416, 1618.80], denominator: [1, 56.89, 1618.80]}"""
+
+
+@pytest.mark.parametrize(
+    ("old", "new"), [("switching: arbitrary", DWELL), ("  zero: 56.9706 1/s", STATED)]
+)
+def test_intervals_where_no_proof_covers_ranges(tmp_path, motor, old, new):
+    """A motor may not change during a dwell time, and is no part of a loop that is stated."""
+    plain = SOFT_TISSUE.read_text().replace(", range: [720.56 N/m, 768.17 N/m]", "")
+    assert old in plain
+    text = merge_actuator(merged(tmp_path, plain.replace(old, new)), motor)
+    assert ("intervals" in text, "range_covers" in text) == (True, False)
+    # Once a proof does, they give way to ranges.
+    again = merge_actuator(merged(tmp_path, text.replace(new, old)), motor)
+    assert ("intervals" in again, "range_covers: confidence" in again) == (False, True)
 
 
 @pytest.mark.parametrize("spec", [SOFT_TISSUE, SAMPLED])
@@ -309,10 +322,37 @@ def test_what_the_range_holds_is_noted():
     assert "95 % of all such specimens" in found.covers
 
 
-@pytest.mark.parametrize(("kind", "unit"), [("PRBS", "V"), ("PRBS", "rpm")])
-def test_what_a_spec_has_no_place_for(kind, unit):
-    """A gain in rad/s/V must never be written as one in rad/s/rpm."""
-    made = motors.record(kind, 1, second=0.02 * (unit == "rpm"))
-    found = identify_actuator([replace(made, unit=unit)], MOTOR)
-    with pytest.raises(DataError, match="has no place for"):
+def test_a_motor_of_second_order_has_no_place():
+    found = identify_actuator([motors.record("PRBS", 1, second=0.02)], MOTOR)
+    with pytest.raises(DataError, match="has no place for a motor of second order"):
         merge_actuator(read_spec(SOFT_TISSUE), found)
+
+
+@pytest.fixture(scope="module")
+def volts():
+    return identify_actuator([replace(motors.record("PRBS", 1), unit="V")], MOTOR)
+
+
+def test_a_gain_per_volt_is_never_written_beside_one_in_rpm(volts):
+    with pytest.raises(SpecError, match="commands in V, and derivative_gain is 2060 rpm") as error:
+        merge_actuator(read_spec(SOFT_TISSUE), volts)
+    assert "remove derivative_gain" in error.value.remedy
+
+
+def test_a_motor_that_takes_volts(tmp_path, volts, motor):
+    plain = SOFT_TISSUE.read_text().replace("  derivative_gain: 2060 rpm*s/rad\n", "")
+    text = merge_actuator(merged(tmp_path, plain), volts)
+    spec = parse_spec(text)
+    assert spec.actuator.command == "V"
+    assert all(end.unit == "rad/s/V" for end in spec.actuator.gain.range)
+    assert spec.actuator.gain.nominal.si == pytest.approx(volts.chosen.gain.value, rel=1e-5)
+    # And back to rpm.
+    back = parse_spec(merge_actuator(merged(tmp_path, text), motor))
+    assert (back.actuator.command, back.actuator.gain.nominal.unit) == ("rpm", "rad/s/rpm")
+
+
+def test_friction_in_another_unit(tmp_path, volts):
+    text = SAMPLED.read_text().replace("  derivative_gain: 2060 rpm*s/rad\n", "")
+    text = text.partition("\ndisturbances:")[0] + "\ndisturbances: {friction: 55 rpm}\n"
+    with pytest.raises(SpecError, match="friction is 55 rpm"):
+        merge_actuator(merged(tmp_path, text), volts)

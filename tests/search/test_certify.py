@@ -359,7 +359,7 @@ class TestMethods:
         "method",
         sorted(
             set(Method)
-            - {Method.MODE_POLYNOMIAL}
+            - {Method.MODE_POLYNOMIAL, Method.COUPLED_AXES}
             - {method for method in Method if method.startswith("conewise")}
         ),
     )

@@ -24,7 +24,9 @@ def test_sinusoids_and_a_ready_response(tmp_path):
     ):
         assert fit[key]["low"] < value < fit[key]["high"]
     assert document["resistance_ohm"]["value"] == pytest.approx(3.7454, rel=1e-3)
-    assert "intervals: {gain: [4.84" in spec.read_text()
+    assert document["range_covers"] == "confidence"
+    assert "gain: {nominal: 4.84" in spec.read_text()
+    assert "range_covers: confidence" in spec.read_text()
     text = run("identify", "actuator", DATA / "actuator-response.csv", cwd=tmp_path).stdout
     assert text.startswith("SYNTHETIC data")
     assert "ready frequency response" in text

@@ -11,7 +11,8 @@ nox.options.default_venv_backend = "venv"
 TWO_PROCESSES = ("-n", "2", "--dist", "worksteal")
 CONSTRAINTS = ("-c", "constraints.txt")
 CHECK_ELSEWHERE = "docs/certificates/check_elsewhere.py"
-SOURCES = ("nrs_design", "tests", "benchmarks", CHECK_ELSEWHERE, "noxfile.py")
+PAGES_MADE = "docs/reference/generate.py"
+SOURCES = ("nrs_design", "tests", "benchmarks", CHECK_ELSEWHERE, PAGES_MADE, "noxfile.py")
 
 
 @nox.session
@@ -53,6 +54,13 @@ def slow(session: nox.Session) -> None:
     """Run the exhaustive tests that the default session leaves out."""
     session.install(".[test]", *CONSTRAINTS)
     session.run("pytest", *TWO_PROCESSES, "-m", "slow", *session.posargs)
+
+
+@nox.session
+def docs(session: nox.Session) -> None:
+    """Build the documentation as plain files in site/; a broken link fails."""
+    session.install(".[docs]", *CONSTRAINTS)
+    session.run("python", "-m", "mkdocs", "build", *session.posargs)
 
 
 @nox.session

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from html import escape
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from nrs_design import pipeline
 from nrs_design.certificates.certificate import dump
@@ -38,6 +38,7 @@ if TYPE_CHECKING:
 
     from nrs_design.controllers.controller_design import ControllerDesign
     from nrs_design.exporters.export import Export
+    from nrs_design.exporters.state_space import StateSpaces
     from nrs_design.proof.evidence import AbstractEvidence
     from nrs_design.reporting import Report
 
@@ -93,6 +94,16 @@ class Decision:
     def attempts(self) -> tuple[Attempt, ...]:
         """Every step of the search: what was tried, how it ended, and its time in s."""
         return self.result.certification.attempts
+
+    def state_spaces(self) -> dict[str, Any]:
+        """Return every mode by name, as a ``StateSpace`` of python-control.
+
+        Inputs are the disturbances of the spec, if it names any, outputs the states; dt is the
+        sample time in s. Entries are the doubles next to the exact numbers of the proof.
+        """
+        from nrs_design.exporters.state_space import mode_state_spaces
+
+        return mode_state_spaces(self.result.certification.system)
 
     def plot(self, name: str | None = None) -> Figure:
         """Return a figure of the report: the run beside its bound, or another one by name.
@@ -217,6 +228,35 @@ class Study:
         """
         designed = pipeline.run_design(self.loaded)
         return None if designed is None else designed.design
+
+    def state_spaces(self) -> StateSpaces:
+        """Design, and return actuator, motion loop and controllers for python-control.
+
+        In continuous time, at nominal values, in SI units; the closed loops are those of
+        `Decision.state_spaces`.
+
+        Raises
+        ------
+        DesignError
+            If the spec gives matrices, which have no parts, or a requirement cannot be met.
+
+        Examples
+        --------
+        >>> import nrs_design as nrs
+        >>> parts = nrs.load("specs/neuroboscope/soft-tissue.nrs.yaml").state_spaces()
+        >>> float(round(-parts.controllers["insertion"].dcgain(), 4))  # 1/Bt
+        0.4651
+        """
+        designed = pipeline.run_design(self.loaded)
+        if designed is None:
+            raise pipeline.wrong_kind(
+                self.loaded,
+                f"a spec of kind {self.loaded.spec.kind} has no actuator and no controllers",
+                "use a spec of kind interaction-design; certify() has the state spaces of modes",
+            )
+        from nrs_design.exporters.state_space import design_state_spaces
+
+        return design_state_spaces(designed)
 
     def certify(
         self,

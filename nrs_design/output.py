@@ -12,10 +12,18 @@ from nrs_design.files import is_device_name
 # How the files begin that are replaced by new ones of their kind.
 CERTIFICATE = b'{\n  "schema": "nrs-design/certificate/'
 EXPORT = b'{\n  "schema": "nrs-design/export/'
+MAT = b"MATLAB 5.0 MAT-file, nrs-design export of "
+C_HEADER, C_SOURCE = b"/* nrs-design C header\n", b"/* nrs-design C source\n"
+C_TEST = b"/* nrs-design C test\n"
+VECTORS = b'{\n  "schema": "nrs-design/vectors/'
+VECTOR_TABLE = b"# nrs-design vectors\n"
+VECTOR_TEST = b'"""nrs-design test of conformance vectors'
 LOCK = b'{\n  "schema": "nrs-design/lock/'
 PAGE = b'<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta name="generator" content="nrs-design">\n'
 SCHEMA = (
-    b'{\n  "$schema": "http://json-schema.org/draft-07/schema#",\n  "title": "nrs-design spec",\n'
+    b'{\n  "$schema": "http://json-schema.org/draft-07/schema#",\n  "title": "nrs-design spec",\n',
+    b'{\n  "$schema": "https://json-schema.org/draft/2020-12/schema",\n'
+    b'  "title": "nrs-design export",\n',
 )
 TABLE = b"theta4_deg,K1,K2,K3,"
 GATE = (

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from fractions import Fraction
 from functools import partial
 from pathlib import Path
@@ -14,6 +14,7 @@ from nrs_design import __version__
 from nrs_design.certificates.certificate import Certificate, Gains, Verdict
 from nrs_design.errors import AssemblyError, DesignError, NrsDesignError
 from nrs_design.proof.bounds import nearly
+from nrs_design.proof.noun import dataclass
 from nrs_design.proof.system import SwitchedSystem, Time
 from nrs_design.search.allowance import GIGABYTE
 from nrs_design.search.certification import Certification, Limits
@@ -42,7 +43,7 @@ def _silent(step: str) -> None:
     """Report no progress."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, slots=True)
 class Designed:
     """An interaction design with all that follows from its spec alone.
 
@@ -64,7 +65,7 @@ class Designed:
     design: ControllerDesign
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, slots=True)
 class Result:
     """One spec, all the way through.
 

@@ -136,14 +136,6 @@ def test_saving_overwrites_no_other_spec(tmp_path, monkeypatch):
     assert spec.read_text() == text
 
 
-def test_a_page_overwrites_pages_only(tmp_path):
-    other = tmp_path / "thesis.html"
-    other.write_text("mine")
-    with pytest.raises(OutputError, match="not overwritten"):
-        nrs.certify(pair(5)).report(other)
-    assert other.read_text() == "mine"
-
-
 def test_nothing_shown_is_not_saved(tmp_path):
     inconclusive = nrs.certify(pair(6), method="lmi")
     assert inconclusive.verdict == "inconclusive"
@@ -157,10 +149,16 @@ def test_figures_and_page(tmp_path):
     assert decision.plot().axes
     with pytest.raises(DesignError, match="no figure 'nope'"):
         decision.plot("nope")
+    other = tmp_path / "thesis.html"
+    other.write_text("mine")
+    with pytest.raises(OutputError, match="not overwritten"):
+        decision.report(other)
+    assert other.read_text() == "mine"
     page = decision.report(tmp_path / "page.html")
     assert (tmp_path / "page.html").read_text() == page
-    assert "PROVED" in decision._repr_html_()
-    assert "<script" not in decision._repr_html_()
+    shown = decision._repr_html_()
+    assert "PROVED" in shown
+    assert "<script" not in shown
 
 
 @pytest.mark.parametrize(
@@ -183,6 +181,12 @@ def test_wrong_input_is_told_in_words(arguments, said):
 def test_wrong_options():
     with pytest.raises(SpecError, match="two ends"):
         nrs.certify([[["k"]]], parameters={"k": 3})
+    with pytest.raises(SpecError) as caught:
+        nrs.certify([[["-1 - k"]]])
+    assert caught.value.remedy == "name what is uncertain: parameters={'k': (lowest, highest)}"
+    with pytest.raises(SpecError, match="comma") as caught:
+        nrs.certify([[["1,5"]]])
+    assert "parameters" not in str(caught.value.remedy)
     with pytest.raises(SpecError, match="time"):
         nrs.certify([[[-1]]], time="now")
     with pytest.raises(SpecError, match="there is no mode"):

@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-import os
 import re
 import shutil
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
 
-ROOT = Path(__file__).parents[1]
+from tests.support import ROOT, run
+
 README = (ROOT / "README.md").read_text()
 SESSION = re.compile(r"^\$ nrs-design (.*)\n((?:(?!\$ |```).*\n)*)", re.MULTILINE)
 SESSIONS = SESSION.findall(README)
@@ -39,14 +37,7 @@ def test_the_readme_shows_sessions() -> None:
 
 @pytest.mark.parametrize(("command", "shown"), SESSIONS)
 def test_output(command: str, shown: str, checkout: Path) -> None:
-    result = subprocess.run(
-        [sys.executable, "-m", "nrs_design", *command.split()],
-        capture_output=True,
-        text=True,
-        cwd=checkout,
-        check=False,
-        env=os.environ | {"PYTHONPATH": str(ROOT), "PYTHONWARNINGS": "default"},
-    )
+    result = run(*command.split(), cwd=checkout)
     assert squeeze(result.stdout) == squeeze(shown), result.stderr
 
 

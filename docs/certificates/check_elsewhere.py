@@ -110,7 +110,7 @@ for mode in certificate["modes"]:
         sys.exit("two modes have one name, or one is not square")
     modes[mode["name"]] = [[F(entry, q) for entry in row] for row in rows], q
 free, discrete = certificate["switching"] == "arbitrary", certificate["time"] == "discrete"
-free = free and not certificate.get("contact", {}).get("required")  # kept contact is less
+free = free and not (certificate.get("contact", {}).get("required") or "couplings" in certificate)
 results, verdict = [], "inconclusive"
 for statement in certificate["statements"]:
     results.append(holds(statement, modes, free and "roundings" not in statement, discrete))

@@ -31,6 +31,7 @@ COMMANDS = (
     "certify-switching",
     "compare-methods",
     "verify",
+    "diff",
     "audit",
     "check-lyapunov",
     "report",
@@ -92,6 +93,9 @@ def _root(
         bool,
         typer.Option("--version", callback=_show_version, is_eager=True, help="Print the version."),
     ] = False,
+    verbose: Annotated[
+        bool, typer.Option("--verbose", "-v", help="Show where an internal error arose.")
+    ] = False,
 ) -> None:
     """Hold the options of the program itself."""
 
@@ -134,6 +138,6 @@ def main() -> None:
                 note(line)
         note(
             f"internal error: {type(error).__name__}: {error} (a defect of nrs-design, not a "
-            "verdict; run again with -v and report what it prints)"
+            "verdict; run it again as `nrs-design -v ...` and report what that prints)"
         )
         sys.exit(exit_codes.INTERNAL)

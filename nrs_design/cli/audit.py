@@ -1,4 +1,4 @@
-"""``nrs-design audit``: hold a log of the running robot against what was proved."""
+"""``nrs-design audit``: hold a log of the running robot against its spec, proved or not."""
 
 from __future__ import annotations
 
@@ -145,7 +145,8 @@ def _print(found: RunJudgement, name: str, reason: str) -> None:
     print_table("", ["check", "outcome", "measured", "allowed", "which is", "first at s"], rows)
     for check in found.checks:
         if check.status == "not modelled":
-            say(f"not covered: the proof takes for granted that there is no {check.name}")
+            who = found.bounds.source
+            say(f"not covered: {who} takes for granted that there is no {check.name}")
         if check.status == "not judged":
             say(f"not judged: {check.name}: {check.measured}")
 
@@ -160,7 +161,7 @@ def _summary(
     first = found.first
     return {
         "verdict": found.verdict,
-        "proved": found.proved,
+        "proved": found.bounds.proved,
         "unproved_because": reason or None,
         "synthetic": found.log.source.synthetic,
         "log": sources([found.log.source]),

@@ -117,13 +117,17 @@ def certify_switching(
             limits=limits,
             progress=step,
         )
+    # What is shown is kept before the margins: those take minutes.
+    if result.certificate is not None:
+        write_output(path, dump(result.certificate, origin_of(spec, path)), replaces=CERTIFICATE)
+    written = None if result.certificate is None else path
+    if written is not None:
+        note(f"certificate written to {written}", quiet=quiet or as_json)
+    with progress(f"margins of {loaded.spec.name}", quiet=quiet, lines=True) as step:
         loop = run_loop_margins(result, limits, step) if margin else None
         ranged = loop is None or loaded.spec.has_ranges
         box = run_margin(result, limits, step) if margin and ranged else None
         dwell = run_shortest_dwell(result, limits, step) if shortest_dwell else None
-    if result.certificate is not None:
-        write_output(path, dump(result.certificate, origin_of(spec, path)), replaces=CERTIFICATE)
-    written = None if result.certificate is None else path
     if as_json:
         told: dict[str, Any] = {"gradient_history": history} if history else {}
         told["relief"] = list(find_relief(result))
@@ -131,7 +135,7 @@ def certify_switching(
         content |= {} if loop is None else {"loop_margins": loop_summary(loop)}
         print_json("certify-switching", content)
     elif not quiet:
-        _print(result, written, verbose=verbose)
+        _print(result, verbose=verbose)
         for relief in find_relief(result):
             say(f"  {relief}")
         _print_margin(box)
@@ -253,7 +257,7 @@ def _print_dwell(dwell: DwellMargin | None) -> None:
     say(f"  shortest dwell time: {proved}{refuted}")
 
 
-def _print(result: Result, path: Path | None, *, verbose: bool) -> None:
+def _print(result: Result, *, verbose: bool) -> None:
     certification = result.certification
     name = result.loaded.spec.name
     verdict = str(certification.verdict)
@@ -270,8 +274,6 @@ def _print(result: Result, path: Path | None, *, verbose: bool) -> None:
     say("  taken for granted:")
     for assumption in certification.system.assumptions:
         say(f"    - {assumption}")
-    if path is not None:
-        note(f"certificate written to {path}")
 
 
 def _shortened(names: list[str], limit: int = 12) -> list[str]:

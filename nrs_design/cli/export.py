@@ -2,97 +2,213 @@
 
 from __future__ import annotations
 
-from enum import StrEnum
+from fractions import Fraction
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 from nrs_design.cli import exit_codes
-from nrs_design.cli.options import Json, Quiet, SpecFile
+from nrs_design.cli.options import Json, Quiet
 from nrs_design.cli.printing import note, print_json, progress, say
-from nrs_design.errors import OutputError
+from nrs_design.cli.tables import print_table
+from nrs_design.errors import NrsDesignError, OutputError
+from nrs_design.exporters import FORMATS, ROBOT_FORMATS, Format
 
 if TYPE_CHECKING:
-    from nrs_design.exporters.export import Export
+    from nrs_design.exporters.export import Execution, Export
 
 
-class ExportFormat(StrEnum):
-    """Formats by name."""
-
-    JSON = "json"
+# A command of its own writes it, since it proves another law.
+ROS2: dict[str, Any] = {
+    "name": "ros2",
+    "purpose": "impedance controllers as parameters of admittance_controller of ROS 2",
+    "needs": "a proof of that controller's law (ros2 export)",
+    "files": ["NAME.CONTROLLER.ros2.yaml"],
+}
 
 
 def export(
-    spec: SpecFile,
+    spec: Annotated[
+        Path | None, typer.Argument(metavar="SPEC", help="Spec file (*.nrs.yaml).")
+    ] = None,
     format_: Annotated[
-        ExportFormat, typer.Option("--format", help="Format of the file.")
-    ] = ExportFormat.JSON,
+        str, typer.Option("--format", help=f"Format: {', '.join(FORMATS)}; see --list.")
+    ] = "json",
+    list_: Annotated[
+        bool, typer.Option("--list", help="List the formats, what each is for and what it needs.")
+    ] = False,
     certificate: Annotated[
         Path | None,
         typer.Option(help="Certificate of this design; without it, the design is certified."),
     ] = None,
     out: Annotated[
-        Path | None, typer.Option(help="File; default reports/NAME.export.json.")
+        Path,
+        typer.Option(help="Folder; for a format of one file also that file, with its ending."),
+    ] = Path("reports"),
+    sample_time: Annotated[
+        str | None,
+        typer.Option(help="Sample time of a program, such as '2 ms', where the spec says none."),
     ] = None,
+    unproved: Annotated[
+        bool,
+        typer.Option(
+            "--unproved",
+            help="Export a program, too, whose sampled loop is not proved; its files say so, and "
+            "the exit code stays that of the verdict.",
+        ),
+    ] = False,
     as_json: Json = False,
     quiet: Quiet = False,
 ) -> None:
     """Export the designed gains, exactly and as float32, together with what is proved of them.
 
-    A design that is refuted (exit code 1) or inconclusive (3) is not exported.
+    A design that is refuted (exit code 1) or inconclusive (3) is not exported. A program that a
+    processor runs needs a proof of the sampled loop at its sample time.
 
     Example: nrs-design export specs/neuroboscope/soft-tissue.nrs.yaml --format json
+
+    Example: nrs-design export --list
     """
+    if list_:
+        _list(as_json=as_json)
+        return
+    if spec is None:
+        raise NrsDesignError("no spec is named", remedy="name one, or list the formats with --list")
+    chosen = _format(format_)
+    execution = _execution(chosen, sample_time, unproved=unproved)
+    _export_design(spec, chosen, certificate, out, execution, as_json=as_json, quiet=quiet)
+
+
+def _list(*, as_json: bool) -> None:
+    entries: list[dict[str, Any]] = [
+        {
+            "name": name,
+            "purpose": item.purpose,
+            "needs": item.needs,
+            "files": [f"NAME{ending}" for ending in item.files],
+        }
+        for name, item in (*FORMATS.items(), *ROBOT_FORMATS.items())
+    ]
+    entries.append(ROS2)
+    if as_json:
+        print_json("export", {"formats": entries})
+        return
+    rows = [(entry["name"], entry["purpose"], entry["needs"]) for entry in entries]
+    print_table("", ("format", "what for", "needs"), rows)
+
+
+def _format(name: str) -> Format:
+    if name not in FORMATS:
+        raise NrsDesignError(
+            f"there is no format {name!r}",
+            remedy=f"one of {', '.join(FORMATS)}; `nrs-design export --list` explains them",
+        )
+    return FORMATS[name]
+
+
+def _execution(chosen: Format, sample_time: str | None, *, unproved: bool) -> Execution | None:
+    """Return how a program is run; other formats have no such options."""
+    from nrs_design.exporters.export import Execution
+
+    if chosen.executable:
+        period = None if sample_time is None else _seconds(sample_time)
+        return Execution(period, unproved)
+    if unproved or sample_time is not None:
+        raise NrsDesignError(
+            "--unproved and --sample-time are for programs, and this format is none",
+            remedy="leave them out; `nrs-design export --list` lists the formats",
+        )
+    return None
+
+
+def _seconds(text: str) -> Fraction:
+    from nrs_design.spec import kinds
+    from nrs_design.spec.quantity import parse_quantity
+
+    seconds = parse_quantity(text, kinds.DURATION).exact
+    if seconds <= 0:
+        raise NrsDesignError(f"the sample time {text!r} is not positive", remedy="such as '2 ms'")
+    return seconds
+
+
+def _export_design(
+    spec: Path,
+    chosen: Format,
+    certificate: Path | None,
+    out: Path,
+    execution: Execution | None,
+    *,
+    as_json: bool,
+    quiet: bool,
+) -> None:
     from nrs_design.exporters.export import export_design
-    from nrs_design.output import EXPORT, check_replaceable
+    from nrs_design.exporters.write import check_places, places
     from nrs_design.ownership import check_certificate
     from nrs_design.spec import read_spec
 
     loaded = read_spec(spec)
     name = loaded.spec.name
-    file = out or Path("reports") / f"{name}.export.{format_}"
-    proof = certificate or file.parent / f"{name}.cert.json"
-    if file.resolve() == proof.resolve():
-        raise OutputError("is the certificate file", path=file, remedy="choose another --out")
-    check_replaceable(file, EXPORT)
-    check_certificate(spec, file.parent / f"{name}.cert.json")
+    files = places(chosen, name, out)
+    beside = next(iter(files.values())).parent / f"{name}.cert.json"
+    proof = certificate or beside
+    for file in files.values():
+        if file.resolve() == proof.resolve():
+            raise OutputError("is the certificate file", path=file, remedy="choose another --out")
+    check_places(chosen, files)
+    check_certificate(spec, beside)
     with progress(f"exporting {name}", quiet=quiet) as step:
-        result = export_design(loaded, certificate, step)
-    _write(result, file, None if certificate else proof, spec)
+        result = export_design(loaded, certificate, step, execution)
+    if result.record is not None:
+        _write(result, chosen, files, None if certificate else proof, spec)
+    written = list(files.values()) if result.record else []
     if as_json:
-        print_json("export", _summary(name, result, file, proof))
+        print_json("export", _summary(name, result, written, proof))
     elif result.record is None:
         # Nothing was written, which is an error of its own.
         note(f"{name}: not exported: {result.reason}")
     elif not quiet:
-        say(f"{name}: PROVED, exported to {file}", verdict="proved")
-        note(f"certificate: {proof}")
+        _say(name, result, written, proof)
     raise typer.Exit(exit_codes.OF_VERDICT.get(result.verdict, exit_codes.REFUTED))
 
 
-def _write(result: Export, file: Path, proof: Path | None, spec: Path) -> None:
+def _say(name: str, result: Export, written: list[Path], proof: Path) -> None:
+    where = ", ".join(map(str, written))
+    if result.verdict == "proved":
+        say(f"{name}: PROVED, exported to {where}", verdict="proved")
+    else:
+        say(f"{name}: UNPROVED ({result.reason}), exported to {where}")
+    if result.certificate is not None:
+        note(f"certificate: {proof}")
+
+
+def _write(
+    result: Export, chosen: Format, files: dict[str, Path], proof: Path | None, spec: Path
+) -> None:
     """Write the certificate first: there is never an export without its proof."""
+    from importlib import import_module
+
     from nrs_design.certificates.certificate import dump
-    from nrs_design.exporters.record import dump_record
-    from nrs_design.output import CERTIFICATE, EXPORT, write_output
+    from nrs_design.exporters.write import write_files
+    from nrs_design.output import CERTIFICATE, write_output
     from nrs_design.ownership import origin_of
 
-    if result.record is None or result.certificate is None:
-        return
-    if proof is not None:
+    contents = import_module(f"nrs_design.exporters.{chosen.module}").render(result)
+    if proof is not None and result.certificate is not None:
         text = dump(result.certificate, origin_of(spec, proof))
         write_output(proof, text, replaces=CERTIFICATE)
-    write_output(file, dump_record(result.record), replaces=EXPORT)
+    write_files(chosen, files, contents)
 
 
-def _summary(name: str, result: Export, file: Path, proof: Path) -> dict[str, Any]:
+def _summary(name: str, result: Export, written: list[Path], proof: Path) -> dict[str, Any]:
     record = result.record
+    certified = record is not None and result.certificate is not None
     return {
         "spec": name,
         "verdict": result.verdict,
         "reason": result.reason or None,
-        "file": str(file) if record else None,
-        "certificate": str(proof) if record else None,
+        "file": str(written[0]) if written else None,
+        "files": list(map(str, written)),
+        "certificate": str(proof) if certified else None,
         "record": record.model_dump(mode="json", by_alias=True) if record else None,
     }

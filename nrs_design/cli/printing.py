@@ -87,8 +87,19 @@ def wrapped(line: str, stream: TextIO, hanging: int = 2) -> str:
 
 
 @contextmanager
-def progress(title: str, *, quiet: bool = False) -> Iterator[Callable[[str], None]]:
+def progress(
+    title: str, *, quiet: bool = False, lines: bool = False
+) -> Iterator[Callable[[str], None]]:
     """Show a spinner with the current step on stderr, on a terminal only.
+
+    Parameters
+    ----------
+    title : str
+        What is done.
+    quiet : bool
+        Whether to show nothing.
+    lines : bool
+        Whether to write a line for each step where there is no terminal: for what takes minutes.
 
     Yields
     ------
@@ -96,7 +107,7 @@ def progress(title: str, *, quiet: bool = False) -> Iterator[Callable[[str], Non
         Tell it the name of the step that begins.
     """
     if quiet or not sys.stderr.isatty():
-        yield lambda step: None
+        yield lambda step: note(f"{title}: {step}", quiet=quiet or not lines)
         return
     from rich.console import Console
     from rich.markup import escape

@@ -1,8 +1,9 @@
-"""``nrs-design schema``: the JSON Schema of spec files, for editors."""
+"""``nrs-design schema``: the JSON Schema of spec files, for editors, and of export records."""
 
 from __future__ import annotations
 
 import sys
+from enum import StrEnum
 from pathlib import Path
 from typing import Annotated
 
@@ -12,20 +13,41 @@ from nrs_design.cli.options import Quiet
 from nrs_design.cli.printing import note
 
 
+class Described(StrEnum):
+    """What a schema is of."""
+
+    SPEC = "spec"
+    EXPORT = "export"
+
+
 def schema(
+    of: Annotated[
+        Described, typer.Option(help="Of spec files (draft-07), or of export records (2020-12).")
+    ] = Described.SPEC,
     out: Annotated[Path | None, typer.Option(help="Write to a file instead of stdout.")] = None,
     quiet: Quiet = False,
 ) -> None:
-    """Print the JSON Schema (draft-07) of spec files.
+    """Print the JSON Schema of spec files, or of what `export` writes.
 
     Example: nrs-design schema --out nrs.schema.json
+
+    Example: nrs-design schema --of export
     """
     from nrs_design.output import SCHEMA, write_output
-    from nrs_design.spec.schema import schema_text
 
-    text = schema_text()
+    text = _text(of)
     if out is None:
         sys.stdout.write(text)
         return
     write_output(out, text, replaces=SCHEMA)
     note(f"schema written to {out}", quiet=quiet)
+
+
+def _text(of: Described) -> str:
+    if of is Described.EXPORT:
+        from nrs_design.exporters.record import schema_text
+
+        return schema_text()
+    from nrs_design.spec.schema import schema_text as spec_schema_text
+
+    return spec_schema_text()

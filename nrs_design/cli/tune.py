@@ -17,15 +17,6 @@ if TYPE_CHECKING:
     from nrs_design.controllers.controller_design import ControllerDesign
     from nrs_design.design.analysis import DesignAnalysis, ForceAnalysis
 
-MOTION_COLUMNS = (
-    "motion PD",
-    "Kd\nrpm s/rad",
-    "zero\n1/s",
-    "Kp\nrpm/rad",
-    "poles\n1/s",
-    "damping\nratio",
-    "overshoot",
-)
 FORCE_COLUMNS = (
     "controller",
     "k\nN m/rad",
@@ -90,7 +81,7 @@ def _summary(design: ControllerDesign, analysis: DesignAnalysis) -> dict[str, An
             "damping_ratio": reached.damping_ratio,
             "natural_frequency": reached.natural_frequency,
             "overshoot_percent": 100 * reached.overshoot,
-            "units": {"Kp": "rpm/rad", "Kd": "rpm*s/rad", "poles": "1/s", "zero": "1/s"},
+            "units": {**design.units["motion"], "poles": "1/s", "zero": "1/s"},
         },
         "force": [
             {
@@ -129,7 +120,8 @@ def _summary(design: ControllerDesign, analysis: DesignAnalysis) -> dict[str, An
 
 
 def _print(name: str, design: ControllerDesign, analysis: DesignAnalysis) -> None:
-    print_table(f"{name}: motion loop", MOTION_COLUMNS, _motion_rows(design, analysis))
+    columns = _motion_columns(design.command)
+    print_table(f"{name}: motion loop", columns, _motion_rows(design, analysis))
     if analysis.motion_source == "given":
         say("The spec states G itself: the poles are those of that G, not of the PD gains.")
     if analysis.force:
@@ -139,6 +131,11 @@ def _print(name: str, design: ControllerDesign, analysis: DesignAnalysis) -> Non
                 say(_offset_text(item))
     if analysis.parallel:
         print_table(f"{name}: parallel control", PARALLEL_COLUMNS, _parallel_rows(analysis))
+
+
+def _motion_columns(command: str) -> tuple[str, ...]:
+    gains = f"Kd\n{command} s/rad", "zero\n1/s", f"Kp\n{command}/rad"
+    return ("motion PD", *gains, "poles\n1/s", "damping\nratio", "overshoot")
 
 
 def _motion_rows(design: ControllerDesign, analysis: DesignAnalysis) -> list[list[str]]:

@@ -14,7 +14,7 @@ from nrs_design.cli.printing import print_json, say
 
 if TYPE_CHECKING:
     from nrs_design.certificates.certificate import Certificate
-    from nrs_design.spec import Spec
+    from nrs_design.spec import LoadedSpec, Spec
 
 
 def verify(
@@ -31,6 +31,14 @@ def verify(
         CoordinatesOption | None,
         typer.Option(help="Coordinates that the certificate is about, if not those of the spec."),
     ] = None,
+    deployed: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="FILE",
+            help="Exported C header or JSON record whose numbers must be those of the certificate, "
+            "bit for bit.",
+        ),
+    ] = None,
     as_json: Json = False,
     quiet: Quiet = False,
 ) -> None:
@@ -39,8 +47,11 @@ def verify(
     No solver runs. Without a spec, the proof is checked for the modes that the certificate holds,
     and the answer says so: whose modes they are is then not known.
 
-    Exit code 0: the proof holds. 1: the certificate is rejected, or it holds and refutes. 3: it
-    holds, but decides nothing.
+    With --deployed, the numbers in an exported file are compared with the certificate: the gains of
+    a record; coefficients, limits and modes of a header. Code and comments are not compared.
+
+    Exit code 0: the proof holds. 1: the certificate is rejected, or it holds and refutes, or the
+    deployed numbers are others. 3: it holds, but decides nothing.
 
     Example: nrs-design verify reports/soft-tissue.cert.json specs/neuroboscope/soft-tissue.nrs.yaml
     """
@@ -49,10 +60,13 @@ def verify(
 
     if spec is None and coordinates is not None:
         raise typer.BadParameter("needs a SPEC to compare with", param_hint="--coordinates")
+    if spec is None and deployed is not None:
+        raise typer.BadParameter("needs a SPEC, whose law it is", param_hint="--deployed")
     loaded = None if spec is None else read_spec(spec)
     outcome = verify_file(certificate, loaded, None if coordinates is None else str(coordinates))
     checked = outcome.certificate if outcome.fault is None else None
     verdict = checked.verdict if checked else "rejected"
+    differences = _differences(deployed, loaded, checked)
     claims = [item.claim(checked.system) for item in checked.statements] if checked else None
     if as_json:
         print_json(
@@ -66,13 +80,43 @@ def verify(
                 "certificate": str(certificate),
                 "certificate_id": checked.id if checked else None,
                 "spec": None if spec is None else str(spec),
+                "deployed": None if deployed is None else str(deployed),
+                "differences": differences,
             },
         )
     elif checked is None:
         say(f"REJECTED: {outcome.fault}", verdict="rejected")
     elif not quiet:
         _print(checked, None if loaded is None else loaded.spec)
-    raise typer.Exit(exit_codes.OF_VERDICT.get(verdict, exit_codes.REFUTED))
+    if differences is not None and not as_json:
+        _print_deployed(deployed, differences, quiet=quiet)
+    code = exit_codes.OF_VERDICT.get(verdict, exit_codes.REFUTED)
+    raise typer.Exit(exit_codes.REFUTED if differences else code)
+
+
+def _differences(
+    deployed: Path | None, loaded: LoadedSpec | None, checked: Certificate | None
+) -> list[str] | None:
+    """Compare what was deployed with a certificate that holds; None if there is nothing to do."""
+    if deployed is None or loaded is None or checked is None:
+        return None
+    from nrs_design.exporters.deployed import find_differences
+    from nrs_design.pipeline import wrong_kind
+    from nrs_design.spec import InteractionDesignSpec
+
+    if not isinstance(loaded.spec, InteractionDesignSpec):
+        what = f"a spec of kind {loaded.spec.kind} has no gains that could be deployed"
+        raise wrong_kind(loaded, what, "leave --deployed out")
+    return find_differences(deployed, loaded.spec, checked)
+
+
+def _print_deployed(file: Path | None, differences: list[str], *, quiet: bool) -> None:
+    if differences:
+        say(f"REJECTED: {file} does not hold the numbers of the certificate", verdict="rejected")
+        for line in differences:
+            say(f"  {line}")
+    elif not quiet:
+        say(f"  deployed: {file} holds the numbers of the certificate, bit for bit")
 
 
 def _print(certificate: Certificate, spec: Spec | None) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from nrs_design.controllers.laws import AbstractLaw, CompliantLaw, ProportionalDerivative
@@ -68,11 +69,14 @@ class ControllerDesign:
         In the order of the spec.
     sensor : Sensor
         Of the force that they act on.
+    command : str
+        Unit of the commands that the motor takes.
     """
 
     motion: ProportionalDerivative
     controllers: tuple[Controller, ...]
     sensor: Sensor = field(default_factory=Sensor)
+    command: str = "rpm"
 
     @property
     def contacts(self) -> frozenset[str]:
@@ -83,3 +87,9 @@ class ControllerDesign:
     def laws(self) -> dict[str, AbstractLaw]:
         """Every law by the name of its controller, the motion controller first."""
         return {self.motion.name: self.motion} | {c.name: c.law for c in self.controllers}
+
+    @property
+    def units(self) -> dict[str, Mapping[str, str]]:
+        """The units of all gains, by the names of `laws`; the motion gains make commands."""
+        motion = self.motion.units_in(self.command)
+        return {name: law.units for name, law in self.laws.items()} | {self.motion.name: motion}

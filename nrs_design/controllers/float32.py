@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import struct
 from fractions import Fraction
 
 from nrs_design.errors import DesignError
@@ -32,6 +33,22 @@ def to_float32(value: Fraction) -> Fraction:
             remedy="choose smaller gains, or other units",
         )
     return rounded
+
+
+def float32_not_above(value: Fraction) -> Fraction:
+    """Return the largest single-precision number that is not above a positive value.
+
+    Raises
+    ------
+    DesignError
+        If the value is beyond the range of single precision.
+    """
+    rounded = to_float32(value)
+    if rounded <= value:
+        return rounded
+    (bits,) = struct.unpack("<I", struct.pack("<f", float(rounded)))
+    below: float = struct.unpack("<f", struct.pack("<I", bits - 1))[0]
+    return Fraction(below)
 
 
 def is_float32(value: Fraction) -> bool:

@@ -47,7 +47,8 @@ def design_from_gains(
     controllers = tuple(
         _controller(name, controller, gains) for name, controller in spec.controllers.items()
     )
-    return ControllerDesign(motion, controllers, build_sensor(spec.sensor))
+    sensor = build_sensor(spec.sensor)
+    return ControllerDesign(motion, controllers, sensor, spec.actuator.command)
 
 
 def idle_decay(idle: IdleStatesSpec) -> Fraction:

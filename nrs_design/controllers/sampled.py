@@ -2,14 +2,18 @@
 
 Every coefficient is a single-precision number, and so is every result of these operations:
 
+    x1 = p x1 + q F              (where the force is filtered; then x2 = p x2 + q x1, ...)
     e = xref - theta
     u = Kp e + D (e - e_before)
-    x1 = p x1 + q F              (where the force is filtered; then x2 = p x2 + q x1, ...)
     F = x1 + Kt (xref - xcom)    (with a spring; x1 is the last lag, or the force sample)
     xref = xref + T (v - vm)
     vm = a vm + b F              (without inertia vm = b F, before it is used)
 
-where xcom is what the command alone makes of the reference.
+where xcom is what the command alone makes of the reference. Force and position control have the
+other half of it, which comes before the error and not after it:
+
+    xref = X + Kp (Fd - x1)      (its own Kp; without it, position control; X is commanded)
+    vm = d vm,  r = d r          (idle: the velocity and the reference of impedance controllers)
 
 Rounding to nearest changes a result by at most 2^-24 of its size, so a term that takes part in n
 roundings changes by at most `rounding_share` of n of its own. A fused product and sum rounds once
@@ -34,6 +38,9 @@ UNIT = Fraction(1, 2**PRECISION)
 # How many roundings a term takes part in, in the order of the operations above. The force sample
 # is rounded once, when it is read; the difference of two errors once, before its product.
 ROUNDINGS = {"e": 1, "Kp e": 2, "D (e - e before)": 3, "a vm": 2, "b F": 3, "T (v - vm)": 2}
+# In how many roundings of force control the force takes part: its difference from Fd, the product,
+# the sum with X and the difference from theta.
+FORCE_ROUNDINGS = 4
 ROUNDINGS_WITHOUT_INERTIA = {"e": 1, "Kp e": 2, "D (e - e before)": 3, "b F": 2, "T (v - vm)": 2}
 
 
@@ -159,3 +166,24 @@ class SampledAdmittance:
         first = {} if self.a is None else {"a": self.a}
         last = {"Kt": self.Kt} if self.Kt else {}
         return {**first, "b": self.b, "T": self.T, **last}
+
+
+@dataclass(frozen=True, slots=True)
+class SampledForce:
+    """``xref = X + Kp (Fd - F)``, before the error is formed; without Kp, position control.
+
+    Parameters
+    ----------
+    Kp : Fraction
+        In rad/(N m); zero takes no force.
+    """
+
+    Kp: Fraction
+
+    @property
+    def coefficients(self) -> dict[str, Fraction]:
+        """The coefficient by name, if there is one."""
+        return {"Kp": self.Kp} if self.Kp else {}
+
+
+SampledLaw = SampledAdmittance | SampledForce

@@ -16,6 +16,8 @@ import numpy as np
 
 from nrs_design.controllers.controller_design import Controller
 from nrs_design.controllers.gain_range import gain_interval
+from nrs_design.controllers.sampled import SampledAdmittance
+from nrs_design.controllers.sampled_range import coefficient_ranges
 from nrs_design.controllers.sensor import Sensor, build_sensor
 from nrs_design.design.goals import Achieved
 from nrs_design.design.measures import CREEP, CREEP_ANGLE
@@ -66,7 +68,8 @@ def creep_of(
         With the gains that ship.
     """
     gains, sensor = controller.law.gains, build_sensor(spec.sensor)
-    lowest = {name: gain_interval(gain, gains[name]).low for name, gain in given.gains().items()}
+    ranges = {name: gain_interval(gain, gains[name]) for name, gain in given.gains().items()}
+    lowest = {name: interval.low for name, interval in ranges.items()}
     followed = abs(loop.numerator[-1] / loop.denominator[-1])
     error, noise = sensor.lasting * followed, _noise(sensor, gains)
     sampling = spec.sampling
@@ -77,8 +80,10 @@ def creep_of(
         if sensor.filter is not None:
             error *= sensor.filter.sampled(period).lasting_gain
         law = controller.law.sampled(period, sampling.admittance)
-        assert law is not None
-        gain = law.lasting_gain * law.T / period
+        assert isinstance(law, SampledAdmittance)
+        retuned = coefficient_ranges(controller.law, ranges, period, sampling.admittance)
+        lasting = retuned["c"].high if retuned else law.lasting_gain
+        gain = lasting * law.T / period
     if "Kt" in lowest:
         return Creep(Fraction(0), error / lowest["Kt"], noise)
     return Creep(error * gain, None, noise)

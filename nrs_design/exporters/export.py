@@ -2,14 +2,22 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from fractions import Fraction
 from pathlib import Path
 
 from nrs_design.certificates.certificate import Certificate
 from nrs_design.certificates.verify import verify
 from nrs_design.controllers.controller_design import ControllerDesign
-from nrs_design.exporters.record import ExportRecord, build_record, find_mismatch
+from nrs_design.errors import DesignError
+from nrs_design.exporters.record import (
+    ExportRecord,
+    build_record,
+    build_unproved,
+    find_mismatch,
+)
 from nrs_design.pipeline import Designed, Progress, run_certification, run_design, wrong_kind
+from nrs_design.proof.text import exact_text
 from nrs_design.spec import InteractionDesignSpec, LoadedSpec
 
 
@@ -20,23 +28,61 @@ class Export:
     Parameters
     ----------
     verdict : {"proved", "refuted", "inconclusive", "rejected"}
-        Rejected: the given certificate does not hold, or does not cover the design.
+        Of what the files are for. Rejected: the given certificate does not hold, or does not cover
+        the design.
     record : ExportRecord or None
-        Only with the verdict proved.
+        With the verdict proved, or where an unproved one was asked for.
     certificate : Certificate or None
-        The proof of the record.
+        The proof of the record, or what refutes it.
     reason : str
-        Why there is no record; empty if there is one.
+        Why it is not proved; empty if it is.
+    design : ControllerDesign or None
+        The gains of the record.
+    spec : InteractionDesignSpec or None
+        What the record is of.
     """
 
     verdict: str
     record: ExportRecord | None
     certificate: Certificate | None
     reason: str = ""
+    design: ControllerDesign | None = None
+    spec: InteractionDesignSpec | None = None
+
+    def shipped(self) -> ExportRecord:
+        """Return the record.
+
+        Raises
+        ------
+        DesignError
+            If nothing may be exported.
+        """
+        if self.record is None:
+            raise DesignError(f"not exported: {self.reason}", remedy="export a proved design")
+        return self.record
+
+
+@dataclass(frozen=True, slots=True)
+class Execution:
+    """That a processor will run the export.
+
+    Parameters
+    ----------
+    sample_time : Fraction or None
+        In s; None takes that of the spec.
+    unproved : bool
+        Export what is not proved, too, and say so in it.
+    """
+
+    sample_time: Fraction | None = None
+    unproved: bool = False
 
 
 def export_design(
-    loaded: LoadedSpec, certificate: Path | None = None, progress: Progress = lambda step: None
+    loaded: LoadedSpec,
+    certificate: Path | None = None,
+    progress: Progress = lambda step: None,
+    execution: Execution | None = None,
 ) -> Export:
     """Design a spec and return its export record, if the design is proved.
 
@@ -48,11 +94,14 @@ def export_design(
         A certificate to be re-checked; without it the design is certified afresh.
     progress : callable
         Told the name of each step.
+    execution : Execution, optional
+        For files that a processor runs: then the proof must be about the sampled loop.
 
     Raises
     ------
     DesignError
-        If the spec gives matrices, which have no gains, or the design has no answer.
+        If the spec gives matrices, which have no gains, or the design has no answer, or nothing
+        says when a processor runs it.
     CertificateError
         If the given file is not a certificate at all.
     """
@@ -62,42 +111,86 @@ def export_design(
             f"a spec of kind {loaded.spec.kind} has no gains to export",
             "use a spec of kind interaction-design",
         )
-    if certificate is None:
-        return _certified_afresh(loaded, progress)
-    progress("design")
-    designed = run_design(loaded)
-    assert designed is not None
-    progress("re-check")
-    return _certified_by(certificate, designed)
+    period = None if execution is None else _period(loaded, loaded.spec, execution.sample_time)
+    export = (
+        _certified_afresh(loaded, progress)
+        if certificate is None
+        else _certified_by(loaded, certificate, progress)
+    )
+    export = replace(export, spec=loaded.spec)
+    if execution is None or period is None or export.verdict == "rejected":
+        return export
+    return _executable(loaded, export, period, unproved=execution.unproved)
 
 
 def _certified_afresh(loaded: LoadedSpec, progress: Progress) -> Export:
     result = run_certification(loaded, progress=progress)
     verdict = str(result.certification.verdict)
-    if result.design is None or result.certificate is None or verdict != "proved":
-        return Export(verdict, None, None, f"the design is not proved: {verdict}")
-    spec = loaded.spec
-    assert isinstance(spec, InteractionDesignSpec)
-    return _proved(spec, result.design, result.certificate)
+    assert result.designed is not None, "an interaction design"
+    if result.certificate is None or verdict != "proved":
+        reason = f"the design is not proved: {verdict}"
+        return Export(verdict, None, result.certificate, reason, result.design)
+    return _proved(result.designed, result.certificate)
 
 
-def _certified_by(file: Path, designed: Designed) -> Export:
+def _certified_by(loaded: LoadedSpec, file: Path, progress: Progress) -> Export:
+    progress("design")
+    designed = run_design(loaded)
+    assert designed is not None, "an interaction design"
+    progress("re-check")
     checked = verify(file, designed.loaded, plant=designed.plant)
     if checked.certificate is None or checked.fault is not None:
         return Export("rejected", None, None, f"{file} is rejected: {checked.fault}")
-    found = checked.certificate
+    found, design = checked.certificate, designed.design
     if found.verdict == "refuted":
-        return Export("refuted", None, None, f"{file} refutes the design")
-    fault = find_mismatch(designed.design, found)
+        return Export("refuted", None, found, f"{file} refutes the design", design)
+    fault = find_mismatch(design, found)
     if fault is None and found.coordinates != designed.spec.coordinates:
         fault = f"is about {found.coordinates} coordinates, not those of the spec"
     if fault is not None:
         return Export("rejected", None, None, f"{file} {fault}")
-    return _proved(designed.spec, designed.design, found)
+    return _proved(designed, found)
 
 
-def _proved(
-    spec: InteractionDesignSpec, design: ControllerDesign, certificate: Certificate
-) -> Export:
-    record = build_record(design, certificate, spec.idle_states, spec.offset)
-    return Export("proved", record, certificate)
+def _proved(designed: Designed, certificate: Certificate) -> Export:
+    spec, design = designed.spec, designed.design
+    delay = None if spec.sampling is None else spec.sampling.delay
+    record = build_record(design, certificate, spec.idle_states, spec.offset, delay)
+    return Export("proved", record, certificate, design=design)
+
+
+def _period(loaded: LoadedSpec, spec: InteractionDesignSpec, asked: Fraction | None) -> Fraction:
+    """Return when a processor runs the law, in s: as the spec says, or as is asked for."""
+    said = None if spec.sampling is None else spec.sampling.period.exact
+    if asked is not None and said is not None and asked != said:
+        raise DesignError(
+            f"the spec samples every {exact_text(said)} s, not every {exact_text(asked)} s",
+            path=loaded.path,
+            remedy="leave --sample-time out, or change `sampling` in the spec",
+        )
+    period = said or asked
+    if period is None:
+        raise DesignError(
+            "nothing says when a processor runs the law",
+            path=loaded.path,
+            remedy="add `sampling: {period: 2 ms, delay: 1}` to the spec; unproved, --sample-time",
+        )
+    return period
+
+
+def _executable(loaded: LoadedSpec, export: Export, period: Fraction, *, unproved: bool) -> Export:
+    """Return an export for a processor: the proof must be about its sampled loop."""
+    record, design = export.record, export.design
+    if record is not None and record.sample_time is not None:
+        return export
+    if record is not None:
+        reason = (
+            "the certificate is about continuous time; nothing is proved of a law that runs every "
+            f"{exact_text(period)} s"
+        )
+        export = replace(export, verdict="inconclusive", record=None, reason=reason)
+    if not unproved or design is None:
+        return export
+    proof = None if record is None else record.proof
+    found = build_unproved(loaded, design, export.reason, period, proof)
+    return replace(export, record=found)

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from nrs_design.certificates.bounds import bound_on
-from nrs_design.certificates.certificate import Certificate
+from nrs_design.certificates.certificate import Certificate, Verdict
 from nrs_design.errors import DesignError
 from nrs_design.gating.obligations import Caution, Obligation, SpecOutcome, Status
 from nrs_design.gating.places import Places
@@ -198,11 +198,11 @@ class Examiner:
                 yield self.obligation(GOAL, f"{item.name}: {measure.goal}", status, message, place)
 
     def certified_goals(self, certificate: Certificate | None) -> Iterator[Obligation]:
-        """Yield NRS108 for the torque and the rate that the spec wants to be proved."""
+        """Yield NRS108 for torque, rate and delay that the spec wants to be proved."""
         spec = self.loaded.spec
-        goals = spec.goals if spec.kind == "interaction-design" else None
-        if goals is None:
+        if spec.kind != "interaction-design" or spec.goals is None:
             return
+        goals = spec.goals
         if goals.peak_torque is not None:
             wanted = goals.peak_torque
             level = None
@@ -221,6 +221,14 @@ class Examiner:
                 said = f"the proved decay rate is {rounded_down(rate, '1/s')}"
             met = rate is not None and rate >= wanted.exact
             yield self._certified("decay_rate", f"{said}; {wanted.text} is wanted", met=met)
+        if goals.delay is not None and spec.sampling is not None:
+            oldest = spec.sampling.oldest
+            proved = certificate is not None and certificate.verdict == Verdict.PROVED
+            said = "nothing was proved"
+            if proved:
+                said = f"the loop is proved for force samples up to {rounded_down(oldest, 's')} old"
+            met = proved and oldest >= goals.delay.exact
+            yield self._certified("delay", f"{said}; {goals.delay.text} is wanted", met=met)
 
     def _certified(self, key: str, message: str, *, met: bool) -> Obligation:
         status = Status.PROVED if met else Status.INCONCLUSIVE

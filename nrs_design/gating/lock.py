@@ -14,6 +14,7 @@ from nrs_design.errors import CertificateError
 from nrs_design.files import open_regular, read_json_text
 from nrs_design.gating.rules import (
     CERTIFICATE_HOLDS,
+    CERTIFIED_GOAL,
     LOCKED,
     MODE_STABLE,
     NOT_DOUBTED,
@@ -27,7 +28,15 @@ MAX_BYTES = 32 * 2**20
 MAX_SPECS = 10_000
 # What --locked decides itself; every other obligation is locked as it ended.
 DECIDED_AGAIN = frozenset(
-    {SPEC, MODE_STABLE, SWITCHING_STABLE, CERTIFICATE_HOLDS, LOCKED, NOT_DOUBTED}
+    {
+        SPEC,
+        MODE_STABLE,
+        SWITCHING_STABLE,
+        CERTIFIED_GOAL,
+        CERTIFICATE_HOLDS,
+        LOCKED,
+        NOT_DOUBTED,
+    }
 )
 
 

@@ -158,12 +158,14 @@ GOAL = Rule(
 CERTIFIED_GOAL = Rule(
     "NRS108",
     "The certificate shows the goal",
-    "The goals `peak_torque` and `decay_rate` are held against what is proved: the bound on the "
-    "force in contact under all disturbances of the spec at once, and the decay rate. Decided in "
-    "exact arithmetic. A bound that is above the goal does not say that the goal is missed: the "
-    "largest value that occurs may be smaller, above all where contact may be lost.",
+    "The goals `peak_torque`, `decay_rate` and `delay` are held against what is proved: the bound "
+    "on the force in contact under all disturbances of the spec at once, the decay rate, and the "
+    "age of the oldest force sample that the proof covers. Decided in exact arithmetic. A bound "
+    "that is above the goal does not say that the goal is missed: the largest value that occurs "
+    "may be smaller, above all where contact may be lost.",
     "Lower the disturbance (the claim says down to which one the limit is kept), choose gains with "
-    "more damping, raise --budget, or relax the goal.",
+    "more damping, raise --budget, or relax the goal; for the delay, let `sampling.delay` reach "
+    "that far.",
 )
 NOT_DOUBTED = Rule(
     "NRS107",
@@ -219,7 +221,7 @@ INTERNAL = Rule(
     "The program works as intended",
     "Two independent computations disagree, or the program met a case that it was not written "
     "for. This is a defect of nrs-design and says nothing about the spec: it is not a verdict.",
-    "Report it with the spec and the output of the single command with -v.",
+    "Report it with the spec and what `nrs-design -v certify-switching SPEC` prints.",
 )
 
 RULES: Mapping[str, Rule] = MappingProxyType(

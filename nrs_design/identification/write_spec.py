@@ -167,30 +167,32 @@ def _one_line(text: str) -> str:
 def merge_actuator(loaded: LoadedSpec, found: ActuatorIdentification) -> str:
     """Return the text of a spec with the identified actuator and its intervals.
 
-    Where the proof covers ranges of the actuator, which is so in the sampled loop, these are
-    written; else the intervals stand beside the nominal values, for the record.
+    Where the proof can cover ranges of the actuator, these are written; else the intervals stand
+    beside the nominal values, for the record.
 
     Raises
     ------
     SpecError
-        If the spec is no interaction design.
+        If the spec is no interaction design, or holds gains about commands in another unit.
     DataError
-        If an interval is unlimited, or a spec has no place for such a motor or command.
+        If an interval is unlimited, or a spec has no place for such a motor.
     """
     spec = _interaction(loaded)
-    if found.unit != "rpm" or found.chosen.order != 1:
-        what = f"commands in {found.unit}" if found.unit != "rpm" else "a motor of second order"
+    if found.chosen.order != 1:
         raise DataError(
-            f"a spec has no place for {what}",
-            remedy="leave --write out, or record commands in rpm that a first order describes",
+            "a spec has no place for a motor of second order",
+            remedy="leave --write out, or record commands that a first order describes",
         )
+    _check_commands(spec, found.unit, loaded.path)
     document = _Document(loaded)
     node = document.root["actuator"]
-    covered = spec.sampling is not None and spec.motion_loop.transfer_function is None
+    if found.unit != spec.actuator.command:
+        document.put(node, "command", found.unit)
+    covered = spec.takes_motor_ranges
     intervals = {}
-    for name, estimate, unit in zip(
-        ("gain", "time_constant"), found.chosen.ranges, ("rad/s/rpm", "s"), strict=True
-    ):
+    units = f"rad/s/{found.unit}", "s"
+    ranges = found.ranges if covered else found.chosen.ranges
+    for name, estimate, unit in zip(("gain", "time_constant"), ranges, units, strict=True):
         written = _ranged(estimate, unit, name)
         if covered:
             _put_range(document, node, name, written)
@@ -199,11 +201,27 @@ def merge_actuator(loaded: LoadedSpec, found: ActuatorIdentification) -> str:
             intervals[name] = written["range"]
     if covered:
         document.drop(node, "intervals")
+        document.put(node, "range_covers", found.coverage)
     else:
+        document.drop(node, "range_covers")
         document.put(node, "intervals", intervals)
     document.put(node, "provenance", [_provenance(source) for source in found.sources])
     _put_doubts(document, node, found.caveats)
     return document.text()
+
+
+def _check_commands(spec: InteractionDesignSpec, unit: str, path: Path) -> None:
+    """Refuse a motor for which gains in the spec would be in the wrong unit."""
+    friction = None if spec.disturbances is None else spec.disturbances.friction
+    written = {"derivative_gain": spec.motion_loop.derivative_gain, "friction": friction}
+    for name, quantity in written.items():
+        if quantity is not None and spec.actuator.command != unit:
+            raise SpecError(
+                f"the records are about commands in {unit}, and {name} is {quantity.text}",
+                path=path,
+                remedy=f"remove {name} before, and give it in {unit} afterwards; without "
+                "derivative_gain the root locus chooses it",
+            )
 
 
 def merge_delay(loaded: LoadedSpec, found: DelayIdentification) -> str:

@@ -17,26 +17,47 @@ class Actuator:
     Parameters
     ----------
     gain : Fraction
-        In (rad/s)/rpm: gearhead speed over the speed command of the motor driver.
+        In (rad/s)/rpm: gearhead speed over the speed command of the motor driver; or per
+        whatever it takes instead.
     time_constant : Fraction
         In s.
+    command : str
+        Unit of the commands that it takes.
     """
 
     gain: Fraction
     time_constant: Fraction
+    command: str = "rpm"
 
 
 @dataclass(frozen=True, slots=True)
 class ActuatorRanges:
-    """Where gain and time constant of the actuator may be, in (rad/s)/rpm and s."""
+    """Where the actuator may be.
+
+    Parameters
+    ----------
+    gain : Interval
+        In rad/s per unit of the command.
+    time_constant : Interval
+        In s.
+    command : str
+        That unit.
+    """
 
     gain: Interval
     time_constant: Interval
+    command: str
+
+    @classmethod
+    def point(cls, actuator: Actuator) -> ActuatorRanges:
+        """Return the ranges of an actuator that is known."""
+        gain, time_constant = Interval.point(actuator.gain), Interval.point(actuator.time_constant)
+        return cls(gain, time_constant, actuator.command)
 
     @property
     def nominal(self) -> Actuator:
         """The actuator that the design uses."""
-        return Actuator(self.gain.nominal, self.time_constant.nominal)
+        return Actuator(self.gain.nominal, self.time_constant.nominal, self.command)
 
     @property
     def fixed(self) -> bool:
@@ -51,7 +72,8 @@ class ActuatorRanges:
         AssemblyError
             If one would not stay positive.
         """
-        ranges = ActuatorRanges(self.gain.scaled(scale), self.time_constant.scaled(scale))
+        gain, time_constant = self.gain.scaled(scale), self.time_constant.scaled(scale)
+        ranges = ActuatorRanges(gain, time_constant, self.command)
         if min(ranges.gain.low, ranges.time_constant.low) <= 0:
             raise AssemblyError(
                 f"with its ranges scaled by {float(scale):.6g}, the actuator does not stay "

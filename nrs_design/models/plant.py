@@ -45,7 +45,7 @@ class Plant:
         Parameters
         ----------
         Kp, Kd : Fraction
-            In rpm/rad and rpm s/rad.
+            In rpm/rad and rpm s/rad, or whatever the actuator takes instead of rpm.
         """
         return self.given_loop or close_motion_loop(self.actuator, Kp, Kd)
 
@@ -78,7 +78,8 @@ class Plant:
 
 def build_plant(spec: InteractionDesignSpec) -> Plant:
     """Convert the plant of a spec to exact SI numbers, environments as the pivot sees them."""
-    ranges = ActuatorRanges(_interval(spec.actuator.gain), _interval(spec.actuator.time_constant))
+    gain, time_constant = map(_interval, (spec.actuator.gain, spec.actuator.time_constant))
+    ranges = ActuatorRanges(gain, time_constant, spec.actuator.command)
     stated = spec.motion_loop.transfer_function
     loop = None
     if stated is not None:

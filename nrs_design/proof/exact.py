@@ -112,8 +112,11 @@ def is_positive_definite(M: IntegerMatrix) -> bool:
     """
     if not M or not is_symmetric(M):
         raise ValueError("a definiteness test needs a symmetric matrix")
+    # In any order of the states; the least entries first keep the many products at first short.
+    states = sorted(range(len(M)), key=lambda i: M[i][i])
     # The rows one after the other, each from its diagonal on.
-    entries, order, previous = [entry for i, row in enumerate(M) for entry in row[i:]], len(M), 1
+    entries = [M[i][j] for k, i in enumerate(states) for j in states[k:]]
+    order, previous = len(M), 1
     while order:
         pivot, row, rest = entries[0], entries[1:order], entries[order:]
         if pivot <= 0:

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 from bisect import bisect_left
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
 from fractions import Fraction
 from operator import mul
 
@@ -24,6 +23,7 @@ from nrs_design.proof.exact import (
     stein_decrease,
 )
 from nrs_design.proof.matrix import RationalMatrix
+from nrs_design.proof.noun import dataclass
 from nrs_design.proof.system import Mode, Time
 
 # A rate is sharpened to one part in two to this power of the range that it may lie in.

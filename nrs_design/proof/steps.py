@@ -10,22 +10,42 @@ for every error within its limit (S-procedure). Where contact may be lost, befor
 ``y' Q_yy y`` free and ``x' Q x`` in contact; where a step loses it, ``delta`` is positive and its
 next value, the last row times (x, d, r), is not, so that twice lambda >= 0 times their product is
 added. One lambda and one tau_i for all modes keep the forms concave in the maps.
+
+The forms are written in integers: every entry of (x, d, r) is counted in a unit of its own, the
+least in which what multiplies it in [A, B, C] and in the q_i is an integer. With these units on the
+diagonal of D, a form F becomes ``D F D``, which is positive definite iff F is. One denominator for
+all of them would make the integers several times as long.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from fractions import Fraction
-from math import lcm
+from math import gcd, isqrt, lcm
 
-from nrs_design.proof.exact import IntegerMatrix, congruence
+from nrs_design.proof.exact import IntegerMatrix, add, congruence, transpose
 from nrs_design.proof.matrix import RationalMatrix, leading, with_crossing
-from nrs_design.proof.system import Rounding, SwitchedSystem
+from nrs_design.proof.noun import dataclass
+from nrs_design.proof.system import SwitchedSystem
 
-# A row, and a matrix, of integers over a denominator.
-Row = tuple[Sequence[int], int]
-Map = tuple[list[list[int]], int]
+
+@dataclass(frozen=True, slots=True)
+class _Motion:
+    """What one mode does, in units in which all of it is integer.
+
+    Parameters
+    ----------
+    units : sequence of int
+        One for each entry of (x, d, r).
+    rows : sequence of sequence of int
+        The rows of ``[A, B, C]``.
+    errors : sequence of sequence of int
+        The q_i, with zeros for r.
+    """
+
+    units: Sequence[int]
+    rows: IntegerMatrix
+    errors: IntegerMatrix
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,83 +79,88 @@ class Steps:
     weights: tuple[Fraction, ...] = ()
 
     def forms(self, system: SwitchedSystem) -> Iterator[tuple[str, IntegerMatrix]]:
-        """Yield the form of every motion, times a positive number, with where it is."""
+        """Yield the form of every motion, in units of its own, with where it is."""
         n, inner = len(self.Q), leading(self.Q)
         for k, mode in enumerate(system.modes):
-            map_, rows = self._map(system, k, mode.A), self._rows(system, k)
-            yield f"in mode {mode.name}", self._form(self.Q, map_, self.Q, rows)
+            motion = self._motion(system, k, mode.A)
+            left, (*others, last) = self._left(self.Q, motion), motion.rows
+            yield f"in mode {mode.name}", _less(left, motion.rows, self.Q)
             if system.contact is None:
                 continue
-            (*others, last), d = map_
-            lost = self._form(self.Q, (others, d), inner, rows)
-            factor = self.crossing * self._clearing(rows) * d
-            lost = with_crossing(lost, n - 1, [factor * entry for entry in last])
+            factor = self.crossing * motion.units[n - 1]
+            crossing = [factor * entry for entry in last]
+            lost = with_crossing(_less(left, others, inner), n - 1, crossing)
             yield f"where contact is lost in mode {mode.name}", lost
-        for k, mode in enumerate(system.contact.free if system.contact is not None else ()):
-            N, d = self._map(system, len(system.modes) + k, mode.A)
-            rows = [(_without(q, n - 1), e) for q, e in self._rows(system, len(system.modes) + k)]
-            moved = [_without(row, n - 1) for row in N]
-            kept = self._form(inner, (moved[:-1], d), inner, rows)
-            yield f"in free motion, mode {mode.name}", kept
-            made = self._form(inner, (moved, d), self.Q, rows)
-            yield f"where contact is made, mode {mode.name}", made
+        free = () if system.contact is None else system.contact.free
+        for k, mode in enumerate(free, len(system.modes)):
+            motion = _undeflected(self._motion(system, k, mode.A), n - 1)
+            left, (*others, _) = self._left(inner, motion), motion.rows
+            yield f"in free motion, mode {mode.name}", _less(left, others, inner)
+            yield f"where contact is made, mode {mode.name}", _less(left, motion.rows, self.Q)
 
-    def _map(self, system: SwitchedSystem, k: int, A: RationalMatrix) -> Map:
-        """Return ``[A, B, C]`` of the k-th mode over one denominator."""
-        columns = [system.channels[i].columns[k] for i in self.channels]
-        columns += [item.columns[k] for item in self._covered(system)]
-        parts = (A, *columns)
-        d = lcm(*(part.denominator for part in parts))
-        scaled = [
-            [[d // part.denominator * entry for entry in row] for row in part.numerators]
-            for part in parts
+    def _motion(self, system: SwitchedSystem, k: int, A: RationalMatrix) -> _Motion:
+        """Return the k-th mode in the least units that make it integer."""
+        covered = system.roundings[: len(self.roundings)]
+        parts = [A, *(system.channels[i].columns[k] for i in self.channels)]
+        parts += [item.columns[k] for item in covered]
+        columns = [(column, M.denominator) for M in parts for column in transpose(M.numerators)]
+        errors = [self._error(item.rows[k]) for item in covered]
+        least = [_root(self.keeps.denominator)] * len(self.Q)
+        least += [*(weight.denominator for weight in self.weights), *(1 for _ in covered)]
+        units = [
+            lcm(unit, d // gcd(d, *column), *(e // gcd(e, q[j]) for q, e in errors))
+            for j, (unit, (column, d)) in enumerate(zip(least, columns, strict=True))
         ]
-        return [[entry for row in rows for entry in row] for rows in zip(*scaled, strict=True)], d
+        counted = [
+            [unit * entry // d for entry in column]
+            for unit, (column, d) in zip(units, columns, strict=True)
+        ]
+        sizes = [
+            [unit * entry // e for unit, entry in zip(units, q, strict=True)] for q, e in errors
+        ]
+        return _Motion(units, transpose(counted), sizes)
 
-    def _rows(self, system: SwitchedSystem, k: int) -> list[Row]:
-        """Return the rows q over the state and the disturbances that act."""
-        n = len(self.Q)
-        rows: list[Row] = []
-        for item in self._covered(system):
-            (entries,), denominator = item.rows[k].numerators, item.rows[k].denominator
-            rows.append(([*entries[:n], *(entries[n + i] for i in self.channels)], denominator))
-        return rows
+    def _error(self, row: RationalMatrix) -> tuple[list[int], int]:
+        """Return a q over the state, the disturbances that act and the errors, and below it."""
+        (entries,), n = row.numerators, len(self.Q)
+        acting = [entries[n + i] for i in self.channels]
+        return [*entries[:n], *acting, *(0 for _ in self.roundings)], row.denominator
 
-    def _covered(self, system: SwitchedSystem) -> tuple[Rounding, ...]:
-        return system.roundings[: len(self.roundings)]
-
-    def _clearing(self, rows: Sequence[Row]) -> int:
-        """Return the factor that clears all denominators but those of Q and of the map."""
-        squares = (denominator**2 for _, denominator in rows)
-        return lcm(self.keeps.denominator, *(w.denominator for w in self.weights), *squares)
-
-    def _form(
-        self,
-        before: IntegerMatrix,
-        map_: tuple[IntegerMatrix, int],
-        after: IntegerMatrix,
-        rows: Sequence[Row],
-    ) -> list[list[int]]:
-        """Return the form of one motion, times the square of its denominator and the rest."""
-        N, d = map_
-        n, clearing = len(before), self._clearing(rows)
-        form = [[-clearing * entry for entry in row] for row in congruence(N, after)]
-        whole = clearing * d**2
-        kept = int(whole * self.keeps)
+    def _left(self, before: IntegerMatrix, motion: _Motion) -> list[list[int]]:
+        """Return the form of one motion without what comes after it."""
+        n, units = len(before), motion.units
+        form = [[0] * len(units) for _ in units]
+        p, q = self.keeps.as_integer_ratio()
         for i, row in enumerate(before):
             for j, entry in enumerate(row):
-                form[i][j] += kept * entry
+                form[i][j] = units[i] * units[j] // q * p * entry
         for i, weight in enumerate(self.weights, n):
-            form[i][i] += int(whole * weight) << self.denominator_log2
-        for i, (tau, (q, denominator)) in enumerate(
-            zip(self.roundings, rows, strict=True), n + len(self.weights)
-        ):
-            form[i][i] += whole * tau
-            factor = tau * (whole // denominator**2)
-            for a, left in enumerate(q):
-                for b, right in enumerate(q):
-                    form[a][b] -= factor * left * right
+            form[i][i] = int(weight * units[i] ** 2) << self.denominator_log2
+        for i, tau in enumerate(self.roundings, n + len(self.weights)):
+            form[i][i] = tau * units[i] ** 2
+        for tau, error in zip(self.roundings, motion.errors, strict=True):
+            entries = [(i, entry) for i, entry in enumerate(error) if entry]
+            for a, left in entries:
+                for b, right in entries:
+                    form[a][b] -= tau * left * right
         return form
+
+
+def _root(number: int) -> int:
+    """Return a natural number with a square that is a multiple of another."""
+    root = isqrt(number)
+    return root if root * root == number else number
+
+
+def _less(left: IntegerMatrix, rows: IntegerMatrix, after: IntegerMatrix) -> list[list[int]]:
+    """Subtract the function after a step from what may be left of it."""
+    return add(left, congruence(rows, after), -1)
+
+
+def _undeflected(motion: _Motion, k: int) -> _Motion:
+    """Return a motion where the k-th state is zero."""
+    rows, errors = ([_without(row, k) for row in M] for M in (motion.rows, motion.errors))
+    return _Motion(_without(motion.units, k), rows, errors)
 
 
 def _without(row: Sequence[int], k: int) -> list[int]:

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from enum import StrEnum
 from fractions import Fraction
 
 from nrs_design.proof.matrix import RationalMatrix, exact_fraction
+from nrs_design.proof.noun import dataclass
 
 
 class Time(StrEnum):
@@ -210,6 +211,28 @@ class Rounding:
 
 
 @dataclass(frozen=True, slots=True)
+class Coupling:
+    """What the axes of a robot do to each other: ``x_i' = A_i x_i + B_i w_i`` for the axis i.
+
+    Of any number of axes each is in a mode of its own, and ``sum |w_i|^2 <= sum |q_i x_i|^2`` over
+    all of them, with the B_i and q_i of their modes.
+
+    Parameters
+    ----------
+    name : str
+        What acts, such as ``inertia of the links``.
+    columns : tuple of RationalMatrix, each of shape (n, 1)
+        The B of every mode, and after them those of the free modes.
+    rows : tuple of RationalMatrix, each of shape (1, n)
+        The q in the same order; in free motion nothing in them stands for the deflection.
+    """
+
+    name: str
+    columns: tuple[RationalMatrix, ...]
+    rows: tuple[RationalMatrix, ...]
+
+
+@dataclass(frozen=True, slots=True)
 class Output:
     """A quantity that is one of some rows times the state, and within a range any mixture of them.
 
@@ -257,6 +280,9 @@ class SwitchedSystem:
         What bounds can be stated for.
     roundings : tuple of Rounding
         Errors of the arithmetic, in discrete time; a statement says whether it covers them.
+    couplings : tuple of Coupling
+        What axes like this one do to each other, in continuous time. Without any, every statement
+        is about one axis; with them, statements of stability are about all axes at once.
     """
 
     name: str
@@ -270,6 +296,7 @@ class SwitchedSystem:
     channels: tuple[Channel, ...] = ()
     outputs: tuple[Output, ...] = ()
     roundings: tuple[Rounding, ...] = ()
+    couplings: tuple[Coupling, ...] = ()
 
     def with_modes(
         self, modes: tuple[Mode, ...], states: tuple[str, ...], switching: Switching
@@ -339,6 +366,7 @@ class SwitchedSystem:
             or self._find_odd_sample_time()
             or self._find_odd_channel()
             or self._find_odd_rounding()
+            or self._find_odd_coupling()
         )
 
     def _find_odd_stay(self, names: set[str]) -> str | None:
@@ -409,22 +437,39 @@ class SwitchedSystem:
         return "two disturbances or outputs have one name" if len(set(names)) < len(names) else None
 
     def _find_odd_rounding(self) -> str | None:
-        n, free = self.order, () if self.contact is None else self.contact.free
         if self.roundings and self.time is Time.CONTINUOUS:
             return "the arithmetic rounds, but there are no steps"
         if self.roundings and not self.is_uniform:
             return "the arithmetic rounds, but the modes are not of one size"
-        count, width = len(self.modes) + len(free), n + len(self.channels)
+        width = self.order + len(self.channels)
         for item in self.roundings:
-            sized = [*((M, (n, 1)) for M in item.columns), *((M, (1, width)) for M in item.rows)]
-            if not all(M.is_well_formed and M.shape == shape for M, shape in sized):
-                return f"the rounding of {item.name} does not have the size of the state"
-            if not len(item.columns) == len(item.rows) == count:
-                return f"the rounding of {item.name} has not one column and row for every mode"
-            if any(row.numerators[0][n - 1] for row in item.rows[len(self.modes) :]):
-                return f"the rounding of {item.name} depends on the deflection in free motion"
+            if (odd := self._find_odd_parts(item, width)) is not None:
+                return f"the rounding of {item.name} {odd}"
         names = [item.name for item in self.roundings]
         return "two roundings have one name" if len(set(names)) < len(names) else None
+
+    def _find_odd_coupling(self) -> str | None:
+        if self.couplings and self.time is Time.DISCRETE:
+            return "axes act on each other in discrete time"
+        if self.couplings and not self.is_uniform:
+            return "axes act on each other, but their modes are not of one size"
+        for item in self.couplings:
+            if (odd := self._find_odd_parts(item, self.order)) is not None:
+                return f"the coupling by {item.name} {odd}"
+        names = [item.name for item in self.couplings]
+        return "two couplings have one name" if len(set(names)) < len(names) else None
+
+    def _find_odd_parts(self, item: Rounding | Coupling, width: int) -> str | None:
+        """Say why columns and rows are not those of every mode and free mode, or None."""
+        n, free = self.order, () if self.contact is None else self.contact.free
+        sized = [*((M, (n, 1)) for M in item.columns), *((M, (1, width)) for M in item.rows)]
+        if not all(M.is_well_formed and M.shape == shape for M, shape in sized):
+            return "does not have the size of the state"
+        if not len(item.columns) == len(item.rows) == len(self.modes) + len(free):
+            return "has not one column and row for every mode"
+        if any(row.numerators[0][n - 1] for row in item.rows[len(self.modes) :]):
+            return "depends on the deflection in free motion"
+        return None
 
 
 def _is_motion(A: RationalMatrix, order: int, time: Time) -> bool:

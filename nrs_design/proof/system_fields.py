@@ -18,6 +18,7 @@ from nrs_design.proof.system import (
     ARBITRARY,
     Channel,
     Contact,
+    Coupling,
     FixedParameter,
     Mode,
     Output,
@@ -107,14 +108,8 @@ def read_system(name: str, fields: Mapping[str, Any]) -> SwitchedSystem:
             for item in _read_list(fields.get("outputs", []))
         ),
         sample_time=read_ratio(fields["sample_time"]) if "sample_time" in fields else None,
-        roundings=tuple(
-            Rounding(
-                read_text(item["name"]),
-                tuple(_read_matrix(column) for column in _read_list(item["columns"])),
-                tuple(_read_matrix(row) for row in _read_list(item["rows"])),
-            )
-            for item in _read_list(fields.get("roundings", []))
-        ),
+        roundings=tuple(Rounding(*part) for part in _read_parts(fields, "roundings")),
+        couplings=tuple(Coupling(*part) for part in _read_parts(fields, "couplings")),
     )
 
 
@@ -144,7 +139,7 @@ def _read_modes(value: object) -> tuple[Mode, ...]:
 
 
 def _channel_fields(system: SwitchedSystem) -> Fields:
-    """Return disturbances, outputs and roundings, if there are any."""
+    """Return disturbances, outputs, roundings and couplings, if there are any."""
     channels = [
         {
             "name": channel.name,
@@ -163,16 +158,32 @@ def _channel_fields(system: SwitchedSystem) -> Fields:
         }
         for item in system.outputs
     ]
-    roundings = [
+    every = {
+        "channels": channels,
+        "outputs": outputs,
+        "roundings": _part_fields(system.roundings),
+        "couplings": _part_fields(system.couplings),
+    }
+    return {key: value for key, value in every.items() if value}
+
+
+def _part_fields(parts: Sequence[Rounding | Coupling]) -> list[Fields]:
+    return [
         {
             "name": item.name,
             "columns": [_matrix_fields(column) for column in item.columns],
             "rows": [_matrix_fields(row) for row in item.rows],
         }
-        for item in system.roundings
+        for item in parts
     ]
-    every = {"channels": channels, "outputs": outputs, "roundings": roundings}
-    return {key: value for key, value in every.items() if value}
+
+
+def _read_parts(
+    fields: Mapping[str, Any], key: str
+) -> Iterable[tuple[str, tuple[RationalMatrix, ...], tuple[RationalMatrix, ...]]]:
+    for item in _read_list(fields.get(key, [])):
+        columns = tuple(_read_matrix(column) for column in _read_list(item["columns"]))
+        yield read_text(item["name"]), columns, tuple(map(_read_matrix, _read_list(item["rows"])))
 
 
 def _contact_fields(contact: Contact) -> Fields:

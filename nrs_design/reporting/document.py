@@ -90,8 +90,10 @@ class Report:
     ----------
     name, title : str
         Of the spec; the title may be empty.
-    verdict : {"proved", "refuted", "inconclusive", "identified", "inside", "outside"}
-        Of the certification, or that this is an identification.
+    verdict : {"proved", "refuted", "inconclusive", "identified", "inside", "outside", "same", \
+"different"}
+        Of the certification, the judgement of a run or a comparison, or that this is an
+        identification.
     claim : str
         What the certificate states about stability, or that nothing is known.
     remarks : tuple of str

@@ -98,7 +98,7 @@ def actuator_report(found: ActuatorIdentification) -> Report:
         remarks=tuple(f"Doubt: {doubt}." for doubt in found.doubts),
         facts=facts_of(found.sources),
         sections=(
-            Section("Fits", (_fits(found), *_derived(found))),
+            Section("Fits", (_fits(found), *_ranges(found), *_derived(found))),
             *_bode(found),
             *_actuator_records(found),
             source_section(found.sources),
@@ -262,6 +262,16 @@ def _fits(found: ActuatorIdentification) -> Table:
         "Dead time [s]",
     )
     return Table("Estimates [95 % interval]", columns, rows)
+
+
+def _ranges(found: ActuatorIdentification) -> tuple[Block, ...]:
+    """Say what a proof covers that takes the range from here."""
+    if found.chosen.order != 1:
+        return ()
+    names = (f"Gain [(rad/s)/{found.unit}]", "Time constant [s]")
+    row = (found.coverage, *map(_interval, found.ranges))
+    text = f"The range holds {found.covers}. A proof over that range is about these motors."
+    return Table("Range for a spec", ("It holds", *names), (row,)), Bullets("", (text,))
 
 
 def _derived(found: ActuatorIdentification) -> Iterator[Table]:

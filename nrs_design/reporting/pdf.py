@@ -17,6 +17,8 @@ _TINT = {
     "refuted": "#a63603",
     "inconclusive": "#6b5b00",
     "identified": "#005a8c",
+    "same": "#005a8c",
+    "different": "#005a8c",
     "inside": "#00664b",
     "outside": "#a63603",
 }

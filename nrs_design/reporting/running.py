@@ -13,13 +13,17 @@ if TYPE_CHECKING:
     from nrs_design.identification.running import RunJudgement
 
 _FOOTER = "Page of nrs-design. A run is one run, not a proof."
+_PROVED = "A run inside its bounds is one run; the proof is about all of them."
+_DECLARED = (
+    "A run inside its bounds is one run, and nothing is proved about others: name a certificate by "
+    "--certificate."
+)
 _MEANING = (
     "A violation of the stiffness is claimed only where a whole interval lies outside the range. "
     "Intervals hold at 95 % for all windows together, with noise in force and deflection.",
     "Undecided: an interval lies across the end of the range, or too little moved.",
-    "Not judged: the log lacks a column, or a bound is not known. Not modelled: the proof takes "
+    "Not judged: the log lacks a column, or a bound is not known. Not modelled: the model takes "
     "for granted that there is none of it.",
-    "A run inside its bounds is one run; the proof is about all of them.",
 )
 
 
@@ -35,7 +39,7 @@ def run_report(found: RunJudgement, name: str, reason: str) -> Report:
     reason : str
         Why the spec is not proved; empty if it is.
     """
-    log = found.log
+    log, limit = found.log, _PROVED if found.bounds.proved else _DECLARED
     loud = (f"UNPROVED SPEC: {reason}; its ranges are only declared.",) if reason else ()
     return Report(
         name=f"run-{name}",
@@ -47,7 +51,7 @@ def run_report(found: RunJudgement, name: str, reason: str) -> Report:
         sections=(
             Section("Checks", tuple(_tables(found))),
             Section("Figures", tuple(_figures(found))),
-            Section("How to read this", (Bullets("", _MEANING),), boxed=True),
+            Section("How to read this", (Bullets("", (*_MEANING, limit)),), boxed=True),
             source_section([log.source]),
         ),
         footer=_FOOTER,

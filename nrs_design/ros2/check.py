@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from decimal import ROUND_CEILING, ROUND_FLOOR, Context, Decimal
 from fractions import Fraction
@@ -15,7 +15,7 @@ from nrs_design.proof.bounds import lower, nearly
 from nrs_design.proof.evidence.fields import rate_text
 from nrs_design.proof.system import Time
 from nrs_design.ros2.axis import Surroundings, assumptions, close_axis
-from nrs_design.ros2.law import AdmittanceLaw, Axis, is_admittance, read_law
+from nrs_design.ros2.law import TYPE, AdmittanceLaw, Axis, is_admittance, read_law
 from nrs_design.ros2.parameters import RosNode, read_integer, read_nodes, texts
 from nrs_design.ros2.traps import find_traps, has_chain
 from nrs_design.search.certification import Certification, Limits
@@ -200,6 +200,7 @@ def check_file(
         obligations.append(_readable(path, node))
         obligations += [asker.obligation(law, axis, around) for axis in law.axes]
         cautions += find_traps(law, path)
+    cautions += _absent(path, nodes, types, manager)
     verdicts = {item.status for item in obligations if item.rule is ROS_AXIS}
     worst = next((status for status in _ORDER if status in verdicts), None)
     verdict = None if worst is None else str(worst)
@@ -218,6 +219,18 @@ def _managed(nodes: tuple[RosNode, ...]) -> tuple[dict[str, str], RosNode | None
         if name.endswith(".type") and listed:
             types[name.removesuffix(".type")] = listed[0].text
     return types, manager
+
+
+def _absent(
+    path: Path, nodes: tuple[RosNode, ...], types: Mapping[str, str], manager: RosNode | None
+) -> Iterator[Caution]:
+    """Yield the admittance controllers that the manager runs, and this file says nothing of."""
+    named = {node.name.rpartition("/")[2] for node in nodes}
+    for name, kind in types.items():
+        if manager is not None and kind == TYPE and not named & {name, "**"}:
+            place = manager.place(f"{name}.type")
+            message = f"{name}: runs as an admittance controller, but no node of this name is here"
+            yield Caution(path, message, place.line, place.column)
 
 
 def _rate(

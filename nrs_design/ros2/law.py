@@ -6,8 +6,9 @@ Names, types and bounds are those of the parameters that it declares
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from difflib import get_close_matches
 from fractions import Fraction
 from types import MappingProxyType
 
@@ -197,7 +198,9 @@ def _read(
     if name not in node.values:
         if parameter.default is not None:
             return (parameter.default,), []
-        return (), [node.fault(name, "is missing", f"add {name}: the controller needs it")]
+        near = get_close_matches(name, unknown_names(node), n=1, cutoff=0.8)
+        remedy = f"write {name} for {near[0]}" if near else f"add {name}: the controller needs it"
+        return (), [node.fault(name, "is missing", remedy)]
     listed = texts(node.values[name])
     if listed is None or len(listed) != parameter.count:
         wanted = "one value" if parameter.count == 1 else f"a list of {parameter.count} values"
@@ -226,7 +229,7 @@ def _bounded(item: Scalar, parameter: Parameter) -> Fraction:
     return value
 
 
-def unknown_names(node: RosNode) -> Iterable[str]:
+def unknown_names(node: RosNode) -> list[str]:
     """Return the parameters that the controller passes over without a word."""
     known = {*LAW, *OTHERS}
     return [n for n in node.values if n not in known and not n.startswith(f"{CHAIN}.")]

@@ -79,6 +79,24 @@ def read_nodes(path: Path) -> tuple[RosNode, ...]:
         If it is no YAML, or holds no parameters of ROS 2.
     """
     _, text = read_source(path)
+    return parse_nodes(text, path)
+
+
+def parse_nodes(text: str, path: Path) -> tuple[RosNode, ...]:
+    """Read the text of a parameter file.
+
+    Parameters
+    ----------
+    text : str
+        YAML with nodes that hold ``ros__parameters``.
+    path : Path
+        What messages call it.
+
+    Raises
+    ------
+    SpecError
+        If it is no YAML, or holds no parameters of ROS 2.
+    """
     root = parse_document(text, path)
     found = tuple(_nodes(root, ()))
     if not found:

@@ -7,9 +7,10 @@ is the same on every machine that is not slower. The clock only stops what takes
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from math import inf
 from time import perf_counter
+
+from nrs_design.proof.noun import dataclass
 
 GIGABYTE = 1e9
 

@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Generator
-from dataclasses import dataclass
 from typing import Generic, TypeVar
 
 from nrs_design.proof.evidence import AbstractEvidence
+from nrs_design.proof.noun import dataclass
 from nrs_design.search.family import Family
 
 E = TypeVar("E", bound=AbstractEvidence, covariant=True)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, slots=True)
 class Candidate(Generic[E]):
     """Evidence as a search proposes it, and in words how the search ends if it is accepted."""
 

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import field
 
 from nrs_design.certificates.certificate import CommonQuadraticStatus, Verdict, deciding
 from nrs_design.proof.evidence import AbstractEvidence
+from nrs_design.proof.noun import dataclass
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.search.allowance import GIGABYTE
 from nrs_design.search.gradient_settings import Gradient

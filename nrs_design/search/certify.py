@@ -83,8 +83,8 @@ def certify(
     simple = system.switching.is_arbitrary and system.is_uniform
     merged = merge_equal_modes(system) if simple else system
     limits = _limits_for(merged, system, limits)
-    # A contact that is lost, and what the arithmetic rounds, are matters of the whole state.
-    simple = simple and system.contact is None and not system.roundings
+    # Lost contact, what the arithmetic rounds and other axes are matters of the whole state.
+    simple = simple and system.contact is None and not (system.roundings or system.couplings)
     blocks = triangular_blocks(merged) if simple else (tuple(range(system.order)),)
     if len(blocks) == 1:
         result = _climb(merged, method, limits, allowance, progress)

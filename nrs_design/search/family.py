@@ -5,13 +5,14 @@ from __future__ import annotations
 import warnings
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass, field
+from dataclasses import field
 from itertools import chain
 
 import numpy as np
 from numpy.typing import NDArray
 
 from nrs_design.proof.matrix import RationalMatrix
+from nrs_design.proof.noun import dataclass
 from nrs_design.proof.system import SwitchedSystem, Time
 from nrs_design.search.allowance import Allowance
 from nrs_design.search.balance import balance, scale
@@ -22,7 +23,7 @@ from nrs_design.search.gradient_settings import Gradient
 NEARLY = 1e-12
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, slots=True)
 class Family:
     """The modes in floating point, scaled by powers of two.
 

@@ -9,12 +9,12 @@ Todd with the predictor and corrector of Mehrotra (Toh, Todd, Tütüncü 1999; V
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from nrs_design.proof.noun import dataclass
 from nrs_design.search.allowance import Cost
 from nrs_design.search.sdp import pack, unpack
 
@@ -33,7 +33,7 @@ PER_STEP = 1e-3
 PER_ENTRY = 32
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, slots=True)
 class Cones:
     """Matrices ``X_j(y) = constant_j + sum_k y_k images_jk`` that must be positive semidefinite.
 

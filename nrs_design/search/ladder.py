@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
 from functools import partial
 from itertools import islice, zip_longest
 from math import inf
@@ -12,6 +11,7 @@ from typing import Any
 from nrs_design.proof.evidence import AbstractEvidence
 from nrs_design.proof.evidence.unstable_mode import affordable, is_stable
 from nrs_design.proof.late import late_function
+from nrs_design.proof.noun import dataclass
 from nrs_design.proof.system import SwitchedSystem, Time
 from nrs_design.search.allowance import Allowance, Cost
 from nrs_design.search.candidates import Candidates, Search
@@ -27,7 +27,7 @@ QUICK = 0.5
 Step = tuple[str, Search]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, slots=True)
 class Facts:
     """What decides which rungs apply.
 
@@ -81,6 +81,11 @@ class Facts:
         return bool(self.system.roundings)
 
     @property
+    def is_coupled(self) -> bool:
+        """Whether the system says what axes do to each other."""
+        return bool(self.system.couplings)
+
+    @property
     def may_bounce(self) -> bool:
         """Whether functions could be for lost contact with springs."""
         contact = self.system.contact
@@ -108,7 +113,7 @@ def _always(facts: Facts) -> bool:
     return True
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, slots=True)
 class Rung:
     """One row of the ladder.
 
@@ -130,6 +135,9 @@ class Rung:
         Left out once it is known that there is no common quadratic function.
     first : float
         A degree that is predicted to take more seconds is tried with the higher ones, at last.
+    coupled : bool
+        What it finds of one axis says something about all axes that act on each other; other rungs
+        are not tried where they do.
     """
 
     name: str
@@ -140,6 +148,7 @@ class Rung:
     in_auto: Callable[[Facts], bool] = _always
     only_quadratic: bool = False
     first: float = inf
+    coupled: bool = False
 
     def count_first(self, system: SwitchedSystem) -> int:
         """Return how many steps are made before the rungs below: of the first degrees, the quick.
@@ -157,7 +166,17 @@ class Rung:
     def is_wanted(self, facts: Facts, method: Method) -> bool:
         """Tell whether to try it, given what was asked for."""
         asked = self.in_auto(facts) if method is Method.AUTO else self.method in {None, method}
-        return asked and self.applies(facts)
+        return asked and self.can_decide(facts)
+
+    def can_decide(self, facts: Facts) -> bool:
+        """Tell whether it can decide a system.
+
+        Parameters
+        ----------
+        facts : Facts
+            Of the system.
+        """
+        return (self.coupled or not facts.is_coupled) and self.applies(facts)
 
     def steps(self, system: SwitchedSystem, limits: Limits, allowance: Allowance) -> Iterator[Step]:
         """Yield itself, or searches of rising degree and the reason why there is no higher one.
@@ -215,6 +234,14 @@ LADDER: tuple[Rung, ...] = (
         None,
         lambda f: f.system.is_uniform,
         _in("unstable_mode", "examine_suspicious_modes"),
+        coupled=True,
+    ),
+    Rung(
+        "coupled axes",
+        Method.COUPLED_AXES,
+        lambda f: f.is_coupled and f.may_share_an_ellipsoid,
+        _in("coupled_axes", "search_coupled_axes"),
+        coupled=True,
     ),
     Rung(
         "one state",
@@ -290,7 +317,7 @@ LADDER: tuple[Rung, ...] = (
         _in("common_quadratic", "search_by_gradient"),
         only_quadratic=True,
     ),
-    Rung("every mode", None, _always, _in("unstable_mode", "examine_every_mode")),
+    Rung("every mode", None, _always, _in("unstable_mode", "examine_every_mode"), coupled=True),
     Rung(
         "constant values",
         Method.VALUE,
@@ -316,6 +343,7 @@ LADDER: tuple[Rung, ...] = (
         Method.MIXTURE,
         lambda f: f.is_arbitrary and f.is_continuous,
         _in("mixture", "search_mixture"),
+        coupled=True,
     ),
     Rung(
         "polynomial",
@@ -331,7 +359,13 @@ LADDER: tuple[Rung, ...] = (
         _in("mode_quadratic", "search_mode_functions"),
         cost=_in("mode_quadratic", "functions_cost"),
     ),
-    Rung("period", Method.PERIOD, lambda f: f.system.is_uniform, _in("period", "search_period")),
+    Rung(
+        "period",
+        Method.PERIOD,
+        lambda f: f.system.is_uniform,
+        _in("period", "search_period"),
+        coupled=True,
+    ),
     Rung(
         "switching at constant values",
         Method.VALUE,
@@ -344,7 +378,7 @@ LADDER: tuple[Rung, ...] = (
 def applicable_methods(system: SwitchedSystem) -> set[Method]:
     """Return what can be asked for, given the system's kind of switching and time."""
     facts = Facts.of(system)
-    return {rung.method for rung in LADDER if rung.method is not None and rung.applies(facts)}
+    return {rung.method for rung in LADDER if rung.method is not None and rung.can_decide(facts)}
 
 
 def steps(

@@ -88,6 +88,8 @@ class AbstractControllerSpec(SpecModel):
 
     # The motion loop integrates a velocity, and follows a position.
     commands: ClassVar[Command]
+    # Whether it is modelled as a processor computes it.
+    sampled: ClassVar[bool] = True
 
     def gains(self) -> dict[str, GainSpec]:
         """Return the gains that the design may choose, or that may be retuned, by name."""
@@ -220,6 +222,7 @@ class ParallelControllerSpec(AbstractControllerSpec):
     """Position command and a PI of the force error in parallel (thesis 2.2.6.4)."""
 
     commands: ClassVar[Command] = "position"
+    sampled: ClassVar[bool] = False
     goals: ClassVar[GoalsSpec | None] = None
 
     type: Literal["parallel"] = Field(

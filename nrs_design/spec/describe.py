@@ -20,7 +20,7 @@ from nrs_design.spec.interaction import InteractionDesignSpec
 from nrs_design.spec.model import SpecModel
 from nrs_design.spec.motion import LimitsSpec
 from nrs_design.spec.parameters import ParameterSpec
-from nrs_design.spec.provenance import COVERS, IdentifiedSpec
+from nrs_design.spec.provenance import COVERS, MOTOR_COVERS, IdentifiedSpec
 from nrs_design.spec.quantity import Quantity, QuantityKind
 from nrs_design.spec.quantity_fields import RangedQuantity
 from nrs_design.spec.robot import RobotSpec
@@ -110,12 +110,18 @@ def _switching(switching: SwitchingSpec) -> Iterator[Line]:
 
 
 def _interaction(spec: InteractionDesignSpec) -> Iterator[Line]:
+    if spec.actuator.command != "rpm":
+        yield Line("actuator.command", spec.actuator.command, "", "")
     for name, kind in (("gain", kinds.ACTUATOR_GAIN), ("time_constant", kinds.DURATION)):
         written = getattr(spec.actuator, name)
-        yield _row(f"actuator.{name}", written.nominal, kind)
+        unit = kind.unit_in(written.nominal.dimension)
+        yield _quantity(f"actuator.{name}", written.nominal, unit)
         if not written.fixed:
             low, high = written.range
             yield Line(f"actuator.{name}.range", f"[{low.text}, {high.text}]", "", "")
+    if spec.actuator.range_covers is not None:
+        covered = MOTOR_COVERS[spec.actuator.range_covers]
+        yield Line("actuator.range_covers", spec.actuator.range_covers, covered, "")
     if spec.actuator.load_inertia is not None:
         yield _row("actuator.load_inertia", spec.actuator.load_inertia, kinds.INERTIA)
     if spec.actuator.intervals is not None:
@@ -127,6 +133,8 @@ def _interaction(spec: InteractionDesignSpec) -> Iterator[Line]:
     yield _row("limits.velocity", spec.limits.velocity, kinds.ANGULAR_VELOCITY)
     yield _row("limits.torque", spec.limits.torque, kinds.TORQUE)
     yield _row("limits.bandwidth", spec.limits.bandwidth, kinds.BANDWIDTH)
+    if spec.limits.command is not None:
+        yield _row("limits.command", spec.limits.command, kinds.COMMAND)
     for name, environment in spec.environments.items():
         yield from _environment(f"environments.{name}", environment)
     for name, controller in spec.controllers.items():
@@ -144,6 +152,7 @@ def _interaction(spec: InteractionDesignSpec) -> Iterator[Line]:
         yield from _provenance("sampling", spec.sampling)
     if spec.disturbances is not None:
         yield from describe_model(spec.disturbances, "disturbances")
+    yield from describe_model(spec.coupling, "coupling")
     yield from describe_model(spec.sensor, "sensor")
     if spec.mode_logic is not None:
         yield from describe_model(spec.mode_logic, "mode_logic")
@@ -157,7 +166,8 @@ def _motion_loop(spec: InteractionDesignSpec) -> Iterator[Line]:
     yield _number("motion_loop.damping_ratio", loop.damping_ratio)
     yield _row("motion_loop.settling_time", loop.settling_time, kinds.DURATION)
     if loop.derivative_gain is not None:
-        yield _row("motion_loop.derivative_gain", loop.derivative_gain, kinds.DERIVATIVE_GAIN)
+        unit = kinds.DERIVATIVE_GAIN.unit_in(loop.derivative_gain.dimension)
+        yield _quantity("motion_loop.derivative_gain", loop.derivative_gain, unit)
     if loop.zero is not None:
         yield _row("motion_loop.zero", loop.zero, kinds.ZERO)
     if loop.transfer_function is not None:

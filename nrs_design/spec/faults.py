@@ -24,6 +24,13 @@ MAX_LISTED = 20
 _FAULT = "spec_fault"
 # Below a choice between models, validation inserts the tag of the chosen one.
 _CHOICES = {"environments": "model", "controllers": "type", "mode_logic": "type"}
+# What others call these.
+_OTHER_NAMES = {
+    "admittance": "impedance",
+    "spring": "elastic",
+    "voigt": "kelvin-voigt",
+    "standard-linear-solid": "kelvin-boltzmann",
+}
 # How deep that tag is: below a name, or at once.
 _DEPTH = {"environments": 2, "controllers": 2, "mode_logic": 1}
 _MAPPINGS = ("model_type", "model_attributes_type", "dict_type")
@@ -236,7 +243,7 @@ def _words(details: ErrorDetails, location: Location, model: type[BaseModel]) ->
         fields = fields_at(model, details["loc"][:-1])
         return f"unknown key `{where}`", did_you_mean(str(location[-1]), fields, "keys here are")
     if kind in ("union_tag_not_found", "union_tag_invalid"):
-        return _tag_words(where, _CHOICES[str(location[0])], context)
+        return _tag_words(where, _CHOICES[str(location[0])], details)
     value, where = details["input"], where or "the file"
     if kind == "literal_error":
         if not isinstance(value, str):
@@ -268,12 +275,18 @@ def _shape(value: object) -> str:
     return "a list" if isinstance(value, tuple | list) else quoted(str(value))
 
 
-def _tag_words(where: str, key: str, context: dict[str, Any]) -> tuple[str, str]:
+def _tag_words(where: str, key: str, details: ErrorDetails) -> tuple[str, str]:
+    context = details["ctx"]
     if "tag" not in context:
         return f"`{where}.{key}` is missing", f"add {key}"
     expected = [tag.strip(" '") for tag in context["expected_tags"].split(",")]
-    remedy = did_you_mean(str(context["tag"]), expected)
-    return f"{where}.{key}: {quoted(str(context['tag']))} is not known", remedy
+    tag = details["input"][key]
+    if not isinstance(tag, str):
+        remedy = f"write one of {', '.join(expected)}"
+        return f"{where}.{key}: expected a single value, not {_shape(tag)}", remedy
+    if (usual := _OTHER_NAMES.get(tag)) in expected:
+        return f"{where}.{key}: {quoted(tag)} is not known", f"write {usual}: it is called so here"
+    return f"{where}.{key}: {quoted(tag)} is not known", did_you_mean(tag, expected)
 
 
 def dotted(location: Iterable[int | str]) -> str:

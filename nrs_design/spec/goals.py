@@ -32,7 +32,7 @@ ONLY_FOR = {
     "max_force_error": "force",
 }
 # What a certificate must show, for all controllers together.
-OF_THE_CERTIFICATE = frozenset({"peak_torque", "decay_rate"})
+OF_THE_CERTIFICATE = frozenset({"peak_torque", "decay_rate", "delay"})
 
 
 def _below_half_turn(angle: Quantity) -> Quantity:
@@ -98,6 +98,11 @@ class GoalsSpec(SpecModel):
     decay_rate: DecayRate | None = Field(
         default=None,
         description="smallest proved decay rate in 1/s; for the whole spec, not for one controller",
+    )
+    delay: Duration | None = Field(
+        default=None,
+        description="age of a force sample up to which the sampled loop must be proved, such as "
+        "4 ms; for the whole spec, and with sampling",
     )
 
     @model_validator(mode="after")

@@ -18,6 +18,7 @@ from nrs_design.spec.controllers import (
     names_in,
     touched_in,
 )
+from nrs_design.spec.coupling import CouplingSpec, check_coupling
 from nrs_design.spec.dwell import DwellObstacle, find_changing_contact
 from nrs_design.spec.environment import EnvironmentSpec
 from nrs_design.spec.faults import all_of, did_you_mean, fault
@@ -25,14 +26,17 @@ from nrs_design.spec.fields import Digits, Label, Name, Title
 from nrs_design.spec.goals import GoalsSpec, check_applicable
 from nrs_design.spec.mode_logic import ModeLogicSpec, check_kept, rules_of
 from nrs_design.spec.model import SpecModel
-from nrs_design.spec.motion import ActuatorSpec, LimitsSpec, MotionLoopSpec
+from nrs_design.spec.motion import ActuatorSpec, LimitsSpec, MotionLoopSpec, check_commands
 from nrs_design.spec.provenance import IdentifiedSpec
+from nrs_design.spec.sampled_loop import check_sampled
 from nrs_design.spec.sampling import (
     DisturbancesSpec,
     SamplingSpec,
+    check_delay,
     check_disturbances,
     check_motor,
     check_peak,
+    takes_motor_ranges,
 )
 from nrs_design.spec.sensor import SensorSpec
 from nrs_design.spec.switching import MODE_LOGIC, DwellTime, LogicalRule, check_names
@@ -84,6 +88,11 @@ class InteractionDesignSpec(SpecModel):
         default=None,
         description="what acts on the loop from outside; its effect on force and velocity is "
         "bounded",
+    )
+    coupling: CouplingSpec | None = Field(
+        default=None,
+        description="what the axes do to each other through their links, for a proof about all "
+        "axes at once; without it they are taken not to act on each other",
     )
     sensor: SensorSpec | None = Field(
         default=None,
@@ -155,11 +164,22 @@ class InteractionDesignSpec(SpecModel):
             lambda: check_disturbances(self.disturbances, self.sampling),
             partial(_check_sensor, self),
             lambda: check_peak(self.goals, self.disturbances),
+            partial(_check_commands, self),
+            lambda: check_delay(self.goals, self.sampling),
             lambda: check_motor(
                 self.actuator,
                 self.sampling,
                 self.controllers,
                 given_loop=self.motion_loop.transfer_function is not None,
+            ),
+            partial(check_sampled, self),
+            lambda: check_coupling(
+                self.coupling,
+                loaded=self.actuator.load_inertia is not None,
+                others=tuple(
+                    name for name in ("sampling", "disturbances") if getattr(self, name) is not None
+                ),
+                deflection=self.coordinates == "deflection",
             ),
             lambda: _check_memories(self.controllers, self.environments, self.coordinates),
             lambda: _check_offsets(self.controllers, self.idle_states),
@@ -242,8 +262,17 @@ class InteractionDesignSpec(SpecModel):
         return next(offsets, "none")
 
     @property
+    def takes_motor_ranges(self) -> bool:
+        """Whether a proof can be about ranges of the actuator."""
+        given = self.motion_loop.transfer_function is not None
+        dwells = any(True for _ in self.switching.dwell_times())
+        return not dwells and takes_motor_ranges(self.sampling, self.controllers, given_loop=given)
+
+    @property
     def has_ranges(self) -> bool:
-        """Whether the actuator, a touched environment or a gain has a range."""
+        """Whether the actuator, a touched environment, a gain or the links have a range."""
+        if self.coupling is not None:
+            return True
         if not (self.actuator.gain.fixed and self.actuator.time_constant.fixed):
             return True
         return any(not self.environments[name].fixed for name in self.touched) or any(
@@ -289,6 +318,18 @@ class InteractionDesignSpec(SpecModel):
             self.environments,
             by_contact=self.switching.names_contacts,
         )
+
+
+def _check_commands(spec: InteractionDesignSpec) -> None:
+    """Refuse a gain or a friction about commands that the motor does not take."""
+    loop, disturbances = spec.motion_loop, spec.disturbances
+    written = {
+        ("motion_loop", "derivative_gain"): loop.derivative_gain,
+        ("disturbances", "friction"): None if disturbances is None else disturbances.friction,
+    }
+    check_commands(
+        spec.actuator.command, {at: item for at, item in written.items() if item is not None}
+    )
 
 
 def _check_mixture(

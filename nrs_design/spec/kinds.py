@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from nrs_design.spec.quantity import QuantityKind
+from nrs_design.spec.units import COMMAND_UNITS
 
 _FREQUENCY = "{value} 1/s names no angle: write '{value} Hz' or '{value} rad/s'"
 _STIFFNESS = "that is a torque: a rotational stiffness is per radian, write '{value} N*m/rad'"
 
 ACTUATOR_GAIN = QuantityKind(
     "an actuator gain",
-    ("rad/s/rpm",),
+    tuple(f"rad/s/{command}" for command in COMMAND_UNITS),
     "4.8417e-4 rad/s/rpm",
     {"rad/s": "the gain is per command unit: write '{value} rad/s/rpm'"},
 )
@@ -18,7 +19,7 @@ SEARCH_BUDGET = QuantityKind("a budget of time", ("s",), "60 s")
 DWELL_TIME = QuantityKind("a dwell time", ("s",), "2.76 s")
 DERIVATIVE_GAIN = QuantityKind(
     "a derivative gain",
-    ("rpm*s/rad",),
+    tuple(f"{command}*s/rad" for command in COMMAND_UNITS),
     "2060 rpm*s/rad",
     {
         "rpm": "the gain acts on an angular velocity: write '{value} rpm*s/rad'",
@@ -164,8 +165,8 @@ ANGULAR_ACCELERATION = QuantityKind(
     rational=False,
 )
 COMMAND = QuantityKind(
-    "a speed command of the motor driver",
-    ("rpm",),
+    "a command of the motor",
+    COMMAND_UNITS,
     "276.575 rpm",
     {"rad/s": "the driver's command is in rpm, a unit of its own that is never converted"},
 )

@@ -5,13 +5,14 @@ from __future__ import annotations
 import hashlib
 import json
 import os
-from dataclasses import dataclass, field
+from dataclasses import field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from pydantic import TypeAdapter, ValidationError
 
 from nrs_design.errors import Fault, SpecError
+from nrs_design.proof.noun import dataclass
 from nrs_design.proof.text import quoted
 from nrs_design.spec.document import (
     Data,
@@ -43,7 +44,7 @@ if TYPE_CHECKING:
 SPEC_KINDS = ("interaction-design", "switched-system", "robot")
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, slots=True)
 class LoadedSpec:
     """A spec together with the file that it came from.
 

@@ -2,29 +2,36 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from collections.abc import Mapping
+from functools import partial
+from typing import Annotated, Literal
 
 from pydantic import Field, model_validator
 
-from nrs_design.spec.faults import fault
+from nrs_design.proof.text import quoted
+from nrs_design.spec.faults import all_of, fault
 from nrs_design.spec.fields import Exact, UnitFraction
 from nrs_design.spec.model import SpecModel
-from nrs_design.spec.provenance import IdentifiedSpec
-from nrs_design.spec.quantity import is_less
+from nrs_design.spec.provenance import Coverage, IdentifiedSpec
+from nrs_design.spec.quantity import Quantity, is_less
 from nrs_design.spec.quantity_fields import (
     ActuatorGain,
     AngularVelocity,
     Bandwidth,
     DerivativeGain,
     Duration,
+    LargestCommand,
     RangedActuatorGain,
     RangedDuration,
     RotorInertia,
     Torque,
     Zero,
 )
+from nrs_design.spec.units import command_unit
 
 MAX_COEFFICIENTS = 10
+# As in `nrs_design.spec.units.COMMAND_UNITS`.
+CommandUnit = Literal["rpm", "V", "A", "counts"]
 Coefficients = Annotated[tuple[Exact, ...], Field(min_length=1, max_length=MAX_COEFFICIENTS)]
 
 
@@ -35,7 +42,7 @@ class ActuatorIntervals(SpecModel):
     """
 
     gain: tuple[ActuatorGain, ActuatorGain] = Field(
-        description="[lowest, highest] gain in rad/s/rpm, 95 % interval"
+        description="[lowest, highest] gain in rad/s per command unit, 95 % interval"
     )
     time_constant: tuple[Duration, Duration] = Field(
         description="[lowest, highest] time constant in s, 95 % interval"
@@ -45,9 +52,14 @@ class ActuatorIntervals(SpecModel):
 class ActuatorSpec(IdentifiedSpec):
     """Velocity actuator ``theta_m/delta = Km/(s (tau s + 1))`` (thesis 4.1)."""
 
+    command: CommandUnit = Field(
+        default="rpm",
+        description="unit of the commands delta that the motor takes: rpm, V, A or counts; gain, "
+        "derivative_gain and friction are written in it",
+    )
     gain: RangedActuatorGain = Field(
-        description="Km, motor speed per command unit in rad/s/rpm, as in theta_m/delta = "
-        "Km/(s (tau s + 1))"
+        description="Km, motor speed per command unit, such as rad/s/rpm or rad/s/V, as in "
+        "theta_m/delta = Km/(s (tau s + 1))"
     )
     time_constant: RangedDuration = Field(description="tau, mechanical time constant in s")
     load_inertia: RotorInertia | None = Field(
@@ -55,11 +67,24 @@ class ActuatorSpec(IdentifiedSpec):
         description="inertia at the joint in kg*m^2 against which the torque of an environment "
         "works; without it that torque does not slow the motor",
     )
+    range_covers: Coverage | None = Field(
+        default=None,
+        description="what the identified ranges hold: confidence (the recorded motor), tolerance "
+        "(95 % of all records of such motors) or prediction (the next record), each with 95 %",
+    )
     intervals: ActuatorIntervals | None = Field(
         default=None,
         description="95 % intervals of gain and time constant, for the record: the proof is for "
         "the nominal values",
     )
+
+    @model_validator(mode="after")
+    def _check_commands(self) -> ActuatorSpec:
+        written: dict[tuple[int | str, ...], Quantity] = {("gain",): self.gain.nominal}
+        if self.intervals is not None:
+            written |= {("intervals", "gain", i): end for i, end in enumerate(self.intervals.gain)}
+        check_commands(self.command, written)
+        return self
 
     @model_validator(mode="after")
     def _check_intervals(self) -> ActuatorSpec:
@@ -76,6 +101,30 @@ class ActuatorSpec(IdentifiedSpec):
                     name,
                 )
         return self
+
+
+def check_commands(command: CommandUnit, written: Mapping[tuple[int | str, ...], Quantity]) -> None:
+    """Refuse quantities about commands in another unit than that of the motor.
+
+    Parameters
+    ----------
+    command : {"rpm", "V", "A", "counts"}
+        The unit of the motor.
+    written : mapping
+        Quantities that hold a unit of commands once, by their places.
+    """
+    all_of(*(partial(_check_command, command, quantity, at) for at, quantity in written.items()))
+
+
+def _check_command(command: CommandUnit, quantity: Quantity, at: tuple[int | str, ...]) -> None:
+    held = command_unit(quantity.dimension)
+    if held != command:
+        raise fault(
+            f"{quoted(quantity.text)} is about commands in {held}, and the motor takes {command}",
+            f"write it in {command}; a spec of kind interaction-design may say `command: {held}` "
+            f"in its actuator, and then writes all that is about commands in {held}",
+            *at,
+        )
 
 
 class TransferFunctionSpec(SpecModel):
@@ -114,7 +163,8 @@ class MotionLoopSpec(SpecModel):
     settling_time: Duration = Field(description="wanted settling time 4/(zeta wn) in s")
     derivative_gain: DerivativeGain | None = Field(
         default=None,
-        description="derivative gain really used, in rpm*s/rad; default: from the root locus",
+        description="derivative gain really used, such as rpm*s/rad, in the unit of the commands; "
+        "default: from the root locus",
     )
     zero: Zero | None = Field(
         default=None,
@@ -133,3 +183,8 @@ class LimitsSpec(SpecModel):
     velocity: AngularVelocity = Field(description="largest commanded angular velocity in rad/s")
     torque: Torque = Field(description="largest interaction torque in N*m")
     bandwidth: Bandwidth = Field(description="highest frequency of the operator's motion, Hz")
+    command: LargestCommand | None = Field(
+        default=None,
+        description="largest speed command in rpm that the motor's driver takes: exported code "
+        "saturates there, which no proof covers",
+    )

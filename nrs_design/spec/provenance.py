@@ -24,6 +24,16 @@ COVERS: Mapping[Coverage, str] = MappingProxyType(
     }
 )
 
+# Of a motor, all whose records are fitted at once.
+MOTOR_COVERS: Mapping[Coverage, str] = MappingProxyType(
+    {
+        "confidence": "gain and time constant of the recorded motor, both at once with 95 % "
+        "confidence",
+        "tolerance": "95 % of all records of such motors with 95 % confidence",
+        "prediction": "the next record with 95 % probability",
+    }
+)
+
 
 class ProvenanceSpec(SpecModel):
     """A file of measured data, as `nrs-design identify --write` notes it down."""

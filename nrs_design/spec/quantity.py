@@ -5,10 +5,11 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from fractions import Fraction
 
 from nrs_design.errors import SpecError
+from nrs_design.proof.noun import dataclass
 from nrs_design.proof.text import quoted
 from nrs_design.spec.exact import DECIMAL_PATTERN, MAX_LENGTH, RATIO_PATTERN, parse_exact
 from nrs_design.spec.units import MAX_UNIT_LENGTH, Unit, parse_unit
@@ -51,7 +52,7 @@ class Quantity:
 
     @property
     def dimension(self) -> tuple[int, ...]:
-        """Exponents of kg, m, s, rad and rpm."""
+        """Exponents of the base units."""
         return self._scale.dimension
 
     @property
@@ -100,7 +101,7 @@ class Quantity:
         return float(self.rational_part) * math.pi**self.pi_power
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, slots=True)
 class QuantityKind:
     """What a field measures, and in which units it may be written.
 
@@ -133,6 +134,10 @@ class QuantityKind:
     def accepts(self, dimension: tuple[int, ...]) -> bool:
         """Whether a quantity of this dimension is of this kind."""
         return any(parse_unit(unit).dimension == dimension for unit in self.units)
+
+    def unit_in(self, dimension: tuple[int, ...]) -> str:
+        """Return the unit of a dimension that is accepted."""
+        return next(unit for unit in self.units if parse_unit(unit).dimension == dimension)
 
     def advice(self, value: str, dimension: tuple[int, ...]) -> str:
         """Say what to write instead of a quantity with the wrong dimension."""
@@ -195,7 +200,7 @@ def checked_kind(quantity: Quantity, kind: QuantityKind) -> Quantity:
 
 
 def _irrational(quantity: Quantity, kind: QuantityKind) -> SpecError:
-    unit = next(u for u in kind.units if parse_unit(u).dimension == quantity.dimension)
+    unit = kind.unit_in(quantity.dimension)
     return SpecError(
         f"the unit of {quoted(quantity.text)} holds a factor of pi: not exact in SI",
         remedy=f"{kind.name} enters the proof: write it in {unit}, "

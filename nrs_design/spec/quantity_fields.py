@@ -267,6 +267,7 @@ SignedTorque = Annotated[Quantity, _quantity(kinds.TORQUE, signed=True), _schema
 TorqueRate = Annotated[Quantity, _quantity(kinds.TORQUE_RATE), _schema(kinds.TORQUE_RATE)]
 Bandwidth = Annotated[Quantity, _quantity(kinds.BANDWIDTH), _schema(kinds.BANDWIDTH)]
 LeverArm = Annotated[Quantity, _quantity(kinds.LEVER_ARM), _schema(kinds.LEVER_ARM)]
+RotationalStiffness = Annotated[Quantity, _quantity(kinds.SPRING), _schema(kinds.SPRING)]
 Impedance = Annotated[Quantity, _quantity(kinds.IMPEDANCE), _schema(kinds.IMPEDANCE)]
 IntegralForceGain = Annotated[
     Quantity, _quantity(kinds.INTEGRAL_FORCE_GAIN), _schema(kinds.INTEGRAL_FORCE_GAIN)
@@ -313,6 +314,7 @@ AngularAcceleration = Annotated[
     Quantity, _quantity(kinds.ANGULAR_ACCELERATION), _schema(kinds.ANGULAR_ACCELERATION)
 ]
 Command = Annotated[Quantity, _quantity(kinds.COMMAND, positive=False), _schema(kinds.COMMAND)]
+LargestCommand = Annotated[Quantity, _quantity(kinds.COMMAND), _schema(kinds.COMMAND)]
 TorqueGradient = Annotated[
     Quantity, _quantity(kinds.TORQUE_GRADIENT), _schema(kinds.TORQUE_GRADIENT)
 ]

@@ -9,7 +9,7 @@ from pydantic import Field, WithJsonSchema, model_validator
 from nrs_design.spec.faults import fault
 from nrs_design.spec.fields import Name, Positive, Title, read_exact
 from nrs_design.spec.model import ReadBy, SpecModel
-from nrs_design.spec.motion import MotionLoopSpec
+from nrs_design.spec.motion import CommandUnit, MotionLoopSpec, check_commands
 from nrs_design.spec.quantity_fields import (
     ActuatorGain,
     Angle,
@@ -31,6 +31,8 @@ from nrs_design.spec.quantity_fields import (
 )
 
 MAX_COUNTS = 1 << 24
+# The gradient of speed over torque is about such commands (thesis 4.10).
+_DRIVEN_BY: CommandUnit = "rpm"
 
 
 def _read_elbow_sign(value: object) -> int:
@@ -215,12 +217,26 @@ class DriveSpec(SpecModel):
         description="counts of the encoder per turn of the gearhead's output"
     )
 
+    @model_validator(mode="after")
+    def _check_commands(self) -> DriveSpec:
+        check_commands(
+            _DRIVEN_BY, {("gain",): self.gain, ("coulomb_friction",): self.coulomb_friction}
+        )
+        return self
+
 
 class RobotControlSpec(SpecModel):
     """Motion control of the joints (thesis 4.2 and 4.3)."""
 
     motion_loop: MotionLoopSpec = Field(description="the position loop around each motor")
     sample_period: Duration = Field(description="time between two control ticks, in s")
+
+    @model_validator(mode="after")
+    def _check_commands(self) -> RobotControlSpec:
+        Kd = self.motion_loop.derivative_gain
+        if Kd is not None:
+            check_commands(_DRIVEN_BY, {("motion_loop", "derivative_gain"): Kd})
+        return self
 
 
 class BalancedLegSpec(SpecModel):

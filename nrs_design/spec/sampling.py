@@ -16,6 +16,7 @@ from nrs_design.spec.model import ReadBy, SpecModel
 from nrs_design.spec.motion import ActuatorSpec
 from nrs_design.spec.provenance import IdentifiedSpec
 from nrs_design.spec.quantity_fields import Angle, AngularVelocity, Command, Duration, Torque
+from nrs_design.spec.units import command_unit
 
 # Every sample of delay is a state more.
 LONGEST_DELAY = 10
@@ -63,6 +64,11 @@ class SamplingSpec(IdentifiedSpec):
         "period, or one step of Euler's method",
     )
 
+    @property
+    def oldest(self) -> Fraction:
+        """Age of the oldest force sample that the law uses, in s."""
+        return self.delay[1] * self.period.exact
+
 
 class DisturbancesSpec(SpecModel):
     """Bounds on what acts on the loop from outside; what is left out is zero."""
@@ -72,8 +78,8 @@ class DisturbancesSpec(SpecModel):
     )
     friction: Command | None = Field(
         default=None,
-        description="largest Coulomb friction of the motor, as the speed command in rpm that it "
-        "takes",
+        description="largest Coulomb friction of the motor, as the command that it takes, in the "
+        "unit of the commands, such as rpm",
     )
     encoder_step: Angle | None = Field(
         default=None,
@@ -93,9 +99,10 @@ class DisturbancesSpec(SpecModel):
     def bounds(self) -> dict[str, tuple[Fraction, str]]:
         """Return the bounds by the names of what disturbs, with their units; none too small."""
         half = Fraction(1, 2)
+        command = "" if self.friction is None else command_unit(self.friction.dimension)
         written = (
             ("velocity command", self.command, Fraction(1), "rad/s"),
-            ("friction", self.friction, Fraction(1), "rpm"),
+            ("friction", self.friction, Fraction(1), command),
             ("encoder error", self.encoder_step, half, "rad"),
             ("force error", self.force_step, half, "N*m"),
         )
@@ -131,6 +138,31 @@ def check_peak(goals: GoalsSpec | None, disturbances: DisturbancesSpec | None) -
             "add `disturbances: {command: 8 deg/s}`",
             "goals",
             "peak_torque",
+        )
+
+
+def takes_motor_ranges(
+    sampling: SamplingSpec | None, controllers: Mapping[str, ControllerSpec], *, given_loop: bool
+) -> bool:
+    """Tell whether the modes take up ranges of the actuator.
+
+    Parameters
+    ----------
+    sampling, controllers, given_loop
+        As in `check_motor`.
+    """
+    driven = all(c.commands == "velocity" for c in controllers.values())
+    return not given_loop and (sampling is not None or driven)
+
+
+def check_delay(goals: GoalsSpec | None, sampling: SamplingSpec | None) -> None:
+    """Refuse a goal for the delay where no force sample has an age."""
+    if goals is not None and goals.delay is not None and sampling is None:
+        raise fault(
+            "a proof up to a delay is wanted, but the spec has no samples",
+            "add `sampling: {period: 2 ms, delay: [0, 2]}`, or use min_delay_margin",
+            "goals",
+            "delay",
         )
 
 

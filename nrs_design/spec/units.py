@@ -2,8 +2,8 @@
 
 A table of our own, because pint takes the radian for dimensionless (so that a rotational stiffness
 passes as a torque) and turns 10 Hz into 10 rad/s, and takes 0.4 s to load. Here ``rad`` is a base
-dimension and ``Hz`` is 2 pi rad/s. ``rpm`` is the motor driver's command unit: a base unit of its
-own that is never converted.
+dimension and ``Hz`` is 2 pi rad/s. What a motor driver takes as its command (``rpm``, ``V``, ``A``
+or ``counts``) is a base unit of its own each time: no gain passes for one of another driver.
 """
 
 from __future__ import annotations
@@ -12,13 +12,14 @@ import difflib
 import functools
 import math
 import re
-from dataclasses import dataclass
 from fractions import Fraction
 
 from nrs_design.errors import SpecError
+from nrs_design.proof.noun import dataclass
 from nrs_design.proof.text import quoted
 
-BASE_UNITS = ("kg", "m", "s", "rad", "rpm")
+COMMAND_UNITS = ("rpm", "V", "A", "counts")
+BASE_UNITS = ("kg", "m", "s", "rad", *COMMAND_UNITS)
 MAX_UNIT_LENGTH = 60
 MAX_UNIT_EXPONENT = 9
 
@@ -49,6 +50,9 @@ _LIKELY = {
     "newton": "N",
     "meter": "m",
     "RPM": "rpm",
+    "volt": "V",
+    "ampere": "A",
+    "PWM": "counts",
 }
 
 
@@ -63,7 +67,7 @@ class Unit:
     pi_power : int
         Power of pi in the factor: 1 for ``deg`` and ``Hz``.
     dimension : tuple of int
-        Exponents of kg, m, s, rad and rpm.
+        Exponents of the base units.
     """
 
     factor: Fraction
@@ -92,9 +96,10 @@ def _unit(
     m: int = 0,
     s: int = 0,
     rad: int = 0,
-    rpm: int = 0,
+    command: str = "",
 ) -> Unit:
-    return Unit(Fraction(factor), pi_power, (kg, m, s, rad, rpm))
+    commands = (int(unit == command) for unit in COMMAND_UNITS)
+    return Unit(Fraction(factor), pi_power, (kg, m, s, rad, *commands))
 
 
 ONE = _unit()
@@ -115,8 +120,19 @@ UNITS = {
     "kN": _unit(1000, kg=1, m=1, s=-2),
     "Hz": _unit(2, 1, rad=1, s=-1),
     "kHz": _unit(2000, 1, rad=1, s=-1),
-    "rpm": _unit(rpm=1),
+    "rpm": _unit(command="rpm"),
+    "V": _unit(command="V"),
+    "mV": _unit(Fraction(1, 1000), command="V"),
+    "A": _unit(command="A"),
+    "mA": _unit(Fraction(1, 1000), command="A"),
+    "counts": _unit(command="counts"),
 }
+
+
+def command_unit(dimension: tuple[int, ...]) -> str:
+    """Return the unit of commands in a dimension that holds one."""
+    powers = zip(BASE_UNITS, dimension, strict=True)
+    return next(unit for unit, power in powers if unit in COMMAND_UNITS and power)
 
 
 @functools.lru_cache(maxsize=256)

@@ -135,6 +135,7 @@ def assemble(
     """
     from nrs_design.switched.close_loop import close_loop
     from nrs_design.switched.commanded import with_command
+    from nrs_design.switched.coupled import AxesCoupling, couple_axes
     from nrs_design.switched.gain_box import gain_boxes
     from nrs_design.switched.joint import Joint
     from nrs_design.switched.logic_assumptions import logic_texts
@@ -167,6 +168,9 @@ def assemble(
                 )
             joint = Joint.of(plant, design.motion)
             system = with_command(system, spec, spec.disturbances, loop, joint, touched)
+        if spec.coupling is not None and plant.load_inertia is not None:
+            declared = AxesCoupling.of(spec.coupling, plant.load_inertia)
+            system = couple_axes(system, declared.scaled(scale))
     else:
         raise AssemblyError(f"unknown coordinates {coordinates!r}: deflection or force")
     period = None if spec.sampling is None else spec.sampling.period.exact
@@ -197,9 +201,11 @@ def _assemble_sampled(
             f"coordinates {coordinates!r} do not apply to the sampled loop",
             remedy="use coordinates: deflection",
         )
+    from nrs_design.switched.gain_box import gain_boxes
     from nrs_design.switched.sampled_loop import close_sampled_loop
 
-    return close_sampled_loop(spec, sampling, plant.scaled(scale, spec.touched), design)
+    scaled, boxes = plant.scaled(scale, spec.touched), gain_boxes(spec, design, scale)
+    return close_sampled_loop(spec, sampling, scaled, design, boxes)
 
 
 def _check_scale(scale: Fraction) -> None:

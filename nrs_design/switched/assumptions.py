@@ -42,6 +42,7 @@ LOST_ANYWHERE = (
     "which the spring draws the axis back, is one of the modes. The surface is back in its place "
     "at once."
 )
+UNCOUPLED = "The axes of the robot do not act on each other."
 CONTINUOUS = "continuous at a switch (identity resets)"
 _STAYS = {
     "dwell_time": "stays active for at least",
@@ -143,10 +144,28 @@ def scale_texts(scale: Fraction) -> tuple[str, ...]:
     return (f"All ranges of the spec are scaled about their nominal values by {scale}.",)
 
 
+def command_texts(command: str) -> Iterator[str]:
+    """Say in which unit the motor is commanded, where it is not the rpm of the thesis.
+
+    Parameters
+    ----------
+    command : str
+        That unit.
+    """
+    if command != "rpm":
+        yield (
+            f"The motor takes commands in {command}: Kp of the motion controller is in "
+            f"{command}/rad, Kd in {command}*s/rad."
+        )
+
+
 def identified_texts(spec: InteractionDesignSpec) -> Iterator[str]:
     """Say what identified ranges hold, and what is doubtful about identified values."""
-    from nrs_design.spec.provenance import COVERS
+    from nrs_design.spec.provenance import COVERS, MOTOR_COVERS
 
+    if spec.actuator.range_covers is not None:
+        covered = MOTOR_COVERS[spec.actuator.range_covers]
+        yield f"The range of the actuator was identified to hold {covered}."
     for name, environment in spec.environments.items():
         if environment.range_covers is not None:
             covered = COVERS[environment.range_covers]

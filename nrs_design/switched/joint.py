@@ -38,10 +38,8 @@ class Joint:
         """Return the joint of a plant, or None where its motor is a point and carries no load."""
         if plant.actuator_ranges is None and plant.load_inertia is None:
             return None
-        known = ActuatorRanges(
-            Interval.point(plant.actuator.gain), Interval.point(plant.actuator.time_constant)
-        )
-        return cls(motion, plant.actuator_ranges or known, plant.load_inertia)
+        ranges = plant.actuator_ranges or ActuatorRanges.point(plant.actuator)
+        return cls(motion, ranges, plant.load_inertia)
 
     @property
     def box(self) -> Box:
@@ -86,7 +84,7 @@ def motor_text(ranges: ActuatorRanges) -> str:
     texts = (
         f"its {name} {_interval_text(interval)} {unit}"
         for name, interval, unit in (
-            ("gain", ranges.gain, "rad/s/rpm"),
+            ("gain", ranges.gain, f"rad/s/{ranges.command}"),
             ("time constant", ranges.time_constant, "s"),
         )
     )

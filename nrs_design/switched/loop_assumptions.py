@@ -20,7 +20,9 @@ from nrs_design.switched.assumptions import (
     REST,
     SPRING,
     SPRING_BESIDE,
+    UNCOUPLED,
     at_once_texts,
+    command_texts,
     rule_texts,
 )
 from nrs_design.switched.gain_box import GainBox
@@ -132,7 +134,7 @@ def assume_loop(loop: Assumed) -> tuple[str, ...]:
     return (
         *_loop_texts(loop),
         *_input_texts(loop),
-        "The axes of the robot do not act on each other.",
+        UNCOUPLED,
         *_contact_texts(loop),
         *chain.from_iterable(
             environment.law.memory_texts(environment.name, alone=len(loop.touched) == 1)
@@ -145,7 +147,7 @@ def assume_loop(loop: Assumed) -> tuple[str, ...]:
             reset=(loop.idle is not None and loop.idle.reset) or loop.offset == "measured",
         ),
         _NOT_MODELLED,
-        *_gain_texts(loop.boxes),
+        *_gain_texts(loop.boxes, loop.design.command),
     )
 
 
@@ -243,10 +245,11 @@ def _switch_texts(rules: SwitchingSpec, *, reset: bool) -> tuple[str, ...]:
     return (f"{states} {CONTINUOUS}.", *rule_texts(rules, "controller"), *contacts)
 
 
-def _gain_texts(boxes: Mapping[str, GainBox]) -> Iterator[str]:
+def _gain_texts(boxes: Mapping[str, GainBox], command: str) -> Iterator[str]:
     ranged = {name: box for name, box in boxes.items() if not box.fixed}
     where = ", or anywhere in their ranges" if ranged else ""
     yield f"The gains are the single-precision numbers listed here{where}."
+    yield from command_texts(command)
     for name, box in ranged.items():
         yield from box.range_texts(name)
     yield from dict.fromkeys(box.law.retuned_text for box in ranged.values())

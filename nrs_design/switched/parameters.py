@@ -7,12 +7,12 @@ corners. What decreases in all corners in continuous time therefore decreases in
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from fractions import Fraction
 from itertools import product
 
 from nrs_design.errors import InternalError
 from nrs_design.proof.matrix import RationalMatrix
+from nrs_design.proof.noun import dataclass
 from nrs_design.proof.system import FixedParameter, Mode
 from nrs_design.spec import ModeSpec, SwitchedSystemSpec
 from nrs_design.spec.interval import Interval

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from types import MappingProxyType
 from typing import Literal
 
 from nrs_design.controllers.controller_design import ControllerDesign
 from nrs_design.controllers.float32 import exact_decimal
-from nrs_design.controllers.sampled import SampledAdmittance, SampledMotion
+from nrs_design.controllers.laws import LAWS
 from nrs_design.models.actuator import ActuatorRanges
 from nrs_design.proof.bounds import rounded_down
 from nrs_design.proof.text import exact_text
@@ -20,11 +20,30 @@ from nrs_design.switched.assumptions import (
     LOST_CONTACT,
     REST,
     SPRING,
+    SPRING_BESIDE,
+    UNCOUPLED,
+    command_texts,
     rule_texts,
 )
 from nrs_design.switched.joint import motor_text
+from nrs_design.switched.sampled_frame import Frame
+from nrs_design.switched.sampled_gains import SampledGains
 
 _INPUTS = "All inputs are zero (velocity command, motion of the environment); "
+_PLACED_INPUTS = (
+    "All inputs are zero (commands, wanted force, motion of the environment), and the commanded "
+    "position is that at which the contact carries no force; "
+)
+_PLACED = (
+    "Position and force controllers set the reference before the error is formed, to the commanded "
+    "position; a force controller adds Kp times the difference of the wanted force and its sample. "
+    "At a switch the reference may jump, and the error of the sample before is kept: the PD "
+    "differentiates the jump."
+)
+_RETUNED = (
+    "The coefficients of retuned gains are those of the formulas, each rounded once; where gains "
+    "change, the admittance keeps its states."
+)
 _NOT_MODELLED = (
     "The quantization of encoder and force sensor, friction and saturation are not modelled."
 )
@@ -48,8 +67,8 @@ _DISTURBED = (
     "A bound on the force holds at the samples; what happens in between is not claimed.",
 )
 # Where contact is lost: only where the spring of the tissue ends, or whatever the deflection.
-Loss = Literal["never", "not modelled", "anywhere", "on the surface"]
-_LOST: Mapping[Loss, str] = MappingProxyType(
+Loss = Literal["never", "not modelled", "where force is controlled", "anywhere", "on the surface"]
+_LOST: Mapping[str, str] = MappingProxyType(
     {
         "never": "Contact is not lost: free motion is not one of the modes.",
         "not modelled": "Contact is not lost: that an environment with damping lags behind is not "
@@ -64,11 +83,10 @@ def assume_sampled(
     spec: InteractionDesignSpec,
     sampling: SamplingSpec,
     ranges: ActuatorRanges,
-    motion: SampledMotion,
-    laws: Mapping[str, SampledAdmittance],
+    frame: Frame,
+    gains: Mapping[str, SampledGains],
     design: ControllerDesign,
     loss: Loss,
-    counts: Mapping[str, int],
 ) -> tuple[str, ...]:
     """Say what holds for the sampled loop of an interaction design.
 
@@ -80,19 +98,19 @@ def assume_sampled(
         Its processor.
     ranges : ActuatorRanges
         Where the actuator may be.
-    motion : SampledMotion
-        With its coefficients.
-    laws : mapping
-        The admittances by the names of their controllers.
+    frame : Frame
+        Of all modes.
+    gains : mapping
+        The laws by the names of their controllers.
     design : ControllerDesign
         With the contacts.
-    loss : {"never", "not modelled", "anywhere", "on the surface"}
+    loss : {"never", "not modelled", "where force is controlled", "anywhere", "on the surface"}
         Where contact is lost.
-    counts : mapping of str to int
-        How often each term of the law is rounded.
     """
     rules = spec.switching
-    switched = f"States are {CONTINUOUS}; a switch happens at a sample."
+    reset = spec.idle_states is not None and spec.idle_states.reset
+    states = "All other states are" if reset else "States are"
+    inputs = _INPUTS if loss != "where force is controlled" else _PLACED_INPUTS
     return (
         f"The law runs every {exact_text(sampling.period.exact)} s, without jitter; its command is "
         "held in between.",
@@ -100,23 +118,66 @@ def assume_sampled(
         f"The motor follows the linear actuator model of the spec; {_actuator_text(ranges)}.",
         "The tissue does not load the motor: it acts through the force sensor alone.",
         *(_DISTURBED if spec.disturbances is not None else ()),
-        _beside(spec, _INPUTS + REST[loss == "on the surface"]),
-        *((SPRING, _AT_SAMPLE) if any(law.Kt for law in laws.values()) else ()),
-        "The axes of the robot do not act on each other.",
+        _beside(spec, inputs + REST[loss == "on the surface"]),
+        *_spring_texts(frame),
+        *_placed_texts(frame, design, reset=reset),
+        UNCOUPLED,
         *(
             f"While {c.name} is active, nothing but {' or '.join(c.contacts)} is touched."
             for c in design.controllers
+            if c.contacts
         ),
         "In contact, the environment follows its linear model; its parameters stay in the declared "
         "ranges and may change arbitrarily fast.",
-        _LOST[loss],
-        switched,
+        *_loss_texts(loss, design, frame),
+        f"{states} {CONTINUOUS}; a switch happens at a sample.",
         *rule_texts(rules, "controller"),
-        f"The coefficients are these single-precision numbers: {_coefficients(motion, laws)}.",
-        _ARITHMETIC.format(", ".join(f"{name} {count}" for name, count in counts.items())),
+        f"The coefficients are these single-precision numbers: {_coefficients(frame, gains)}.",
+        *command_texts(design.command),
+        *_retuned_texts(gains),
+        _ARITHMETIC.format(", ".join(f"{name} {count}" for name, count in frame.counts.items())),
         _angle_text(spec),
         _beside(spec, _NOT_MODELLED if spec.sensor is None else _SENSED),
     )
+
+
+def _spring_texts(frame: Frame) -> tuple[str, ...]:
+    if not frame.sprung:
+        return ()
+    return SPRING if frame.idle is None else SPRING_BESIDE, _AT_SAMPLE
+
+
+def _placed_texts(frame: Frame, design: ControllerDesign, *, reset: bool) -> Iterator[str]:
+    """Say what position and force controllers do, and what the others do meanwhile."""
+    if all(c.law.commands == "velocity" for c in design.controllers):
+        return
+    yield _PLACED
+    if frame.idle is None:
+        return
+    what = "velocity vm and reference" if frame.has_inertia else "the reference"
+    yield (
+        f"While a position or force controller is active, {what} of the impedance controllers act "
+        f"on nothing, and a sample leaves d = {exact_decimal(frame.idle)} of them."
+    )
+    if reset:
+        yield "When an impedance controller is left for one of these, they are set to zero first."
+
+
+def _loss_texts(loss: Loss, design: ControllerDesign, frame: Frame) -> Iterator[str]:
+    if loss != "where force is controlled":
+        yield _LOST[loss]
+        return
+    used = {c.law.name for c in design.controllers}
+    texts = (law.contact_text(alone=frame.idle is None) for n, law in LAWS.items() if n in used)
+    yield from (text for text in texts if text is not None)
+
+
+def _retuned_texts(gains: Mapping[str, SampledGains]) -> Iterator[str]:
+    ranged = {name: item for name, item in gains.items() if item.box.ranges}
+    for name, item in ranged.items():
+        yield from item.texts(name)
+    if ranged:
+        yield _RETUNED
 
 
 def _angle_text(spec: InteractionDesignSpec) -> str:
@@ -151,8 +212,10 @@ def _actuator_text(ranges: ActuatorRanges) -> str:
     return motor_text(ranges) + ("" if ranges.fixed else ", and may change at every sample")
 
 
-def _coefficients(motion: SampledMotion, laws: Mapping[str, SampledAdmittance]) -> str:
+def _coefficients(frame: Frame, gains: Mapping[str, SampledGains]) -> str:
+    motion = frame.motion
     texts = [f"Kp = {exact_decimal(motion.Kp)}", f"Kd/T = {exact_decimal(motion.D)}"]
-    for name, law in laws.items():
-        texts += [f"{key} of {name} = {exact_decimal(c)}" for key, c in law.coefficients.items()]
+    for name, item in gains.items():
+        coefficients = item.law.coefficients.items()
+        texts += [f"{key} of {name} = {exact_decimal(c)}" for key, c in coefficients]
     return ", ".join(texts)

@@ -83,6 +83,10 @@ def test_a_function_for_kept_contact_is_not_enough_where_its_loss_must_be_covere
         assert judge({**document, "contact": contact}).returncode == code
 
 
+def test_a_function_for_one_axis_is_not_enough_where_others_act_on_it(judge):
+    assert judge({**shipped(QUADRATIC), "couplings": []}).returncode == 3
+
+
 def first(document):
     return document["statements"][0]
 

@@ -138,7 +138,7 @@ def test_settings_of_libraries_are_defaults_only(tmp_path):
     assert facts["OPENBLAS_NUM_THREADS"] == "3"
 
 
-def crash(tmp_path, *options):
+def crash(tmp_path, *arguments):
     program = (
         "import sys, nrs_design.spec as s\n"
         "def fail(path): raise ZeroDivisionError('boom')\n"
@@ -146,7 +146,7 @@ def crash(tmp_path, *options):
         "from nrs_design.cli import main; main()"
     )
     return subprocess.run(
-        [sys.executable, "-c", program, "certify-switching", str(COMMUTING), *options],
+        [sys.executable, "-c", program, *arguments],
         capture_output=True,
         text=True,
         cwd=tmp_path,
@@ -155,12 +155,20 @@ def crash(tmp_path, *options):
 
 
 def test_a_defect_is_exit_code_4(tmp_path):
-    result = crash(tmp_path)
+    result = crash(tmp_path, "certify-switching", COMMUTING)
     assert result.returncode == 4
     assert "internal error: ZeroDivisionError: boom" in result.stderr
     assert "Traceback" not in result.stderr
     assert result.stdout == ""
-    assert "Traceback" in crash(tmp_path, "-v").stderr
+    assert "Traceback" in crash(tmp_path, "certify-switching", COMMUTING, "-v").stderr
+
+
+@pytest.mark.parametrize("command", ["tune", "check", "report"])
+def test_what_a_defect_asks_for_works_with_every_command(tmp_path, command):
+    """The message says how to show more, also where the command itself has no -v."""
+    assert "run it again as `nrs-design -v ...`" in crash(tmp_path, "tune", COMMUTING).stderr
+    result = crash(tmp_path, "-v", command, COMMUTING)
+    assert (result.returncode, "Traceback" in result.stderr) == (4, True)
 
 
 def test_as_a_module_and_as_a_program():

@@ -1,6 +1,7 @@
 """`nrs-design audit` and `identify delay`, as a user types them."""
 
 import json
+import re
 import shutil
 
 import numpy as np
@@ -79,6 +80,18 @@ def test_an_unproved_spec_is_said_loudly(tmp_path):
     assert done.returncode == 3
     assert "UNPROVED SPEC: no certificate is named" in done.stdout
     assert "not judged: saturation" in done.stdout
+
+
+def test_without_a_certificate_nothing_speaks_of_a_proof(tmp_path):
+    """Not in the text, not in JSON, not on the page: only that the spec is not proved."""
+    page = tmp_path / "run.html"
+    log = write(tmp_path)
+    done = run("audit", log, SOFT_TISSUE, *LIMIT, "--report", page, cwd=tmp_path)
+    document = run("audit", log, SOFT_TISSUE, *LIMIT, "--json", cwd=tmp_path).stdout
+    page_text = page.read_text().partition("<footer")[0]
+    for text in (done.stdout, document, page_text):
+        assert "the spec, which is not proved" in text
+        assert re.search(r"\bproof|covered by|stayed inside what was proved", text) is None
 
 
 def test_a_foreign_certificate_is_rejected(tmp_path, proof):

@@ -585,21 +585,30 @@ class TestGradientOptions:
         assert "PROVED" in done.stdout
 
 
-def test_bounds_in_json_and_what_keeps_the_limit(tmp_path):
+COMMANDED = f"{SOFT_TISSUE.read_text(encoding='utf-8')}\ndisturbances: {{command: 8 deg/s}}\n"
+
+
+def test_bounds_in_json(tmp_path):
     """In continuous time, with a command: force and velocity; the limit is 0.3 N*m."""
-    path = tmp_path / "commanded.nrs.yaml"
-    text = SOFT_TISSUE.read_text(encoding="utf-8")
-    path.write_text(f"{text}\ndisturbances: {{command: 8 deg/s}}\n")
-    result = run("certify-switching", path.name, "--json", "--margin", cwd=tmp_path)
+    (tmp_path / "commanded.nrs.yaml").write_text(COMMANDED)
+    result = run("certify-switching", "commanded.nrs.yaml", "--json", cwd=tmp_path)
     assert result.returncode == 0, result.stderr
-    printed = json.loads(result.stdout)
-    force, velocity = printed["bounds"]
+    force, velocity = json.loads(result.stdout)["bounds"]
     assert (force["output"], force["unit"], force["limit"]) == ("force", "N*m", 0.3)
     assert 1.0 < force["level"] < 1.2
     (command,) = force["under"]
     assert command["bound"] == pytest.approx(0.1396263)
     assert velocity["output"] == "velocity"
     assert velocity["limit"] is None
+
+
+@pytest.mark.slow
+def test_what_keeps_the_limit_in_json(tmp_path):
+    (tmp_path / "commanded.nrs.yaml").write_text(COMMANDED)
+    result = run("certify-switching", "commanded.nrs.yaml", "--json", "--margin", cwd=tmp_path)
+    assert result.returncode == 0, result.stderr
+    printed = json.loads(result.stdout)
+    force, _ = printed["bounds"]
     (kept,) = printed["loop_margins"]["force_limit"]["disturbances"]
     assert kept["kept_up_to"] == pytest.approx(0.1396263 * 0.3 / force["level"])
     assert kept["broken_in_simulation_at"] > kept["kept_up_to"]
@@ -615,6 +624,9 @@ def test_margins_of_a_sampled_loop(tmp_path):
     path.write_text(f"{head}switching: arbitrary\nsampling: {{period: 10 ms, delay: 0}}\n")
     result = run("certify-switching", path.name, "--margin", cwd=tmp_path)
     assert result.returncode == 0, result.stderr
+    told = result.stderr.splitlines()
+    written = next(i for i, line in enumerate(told) if "certificate written to" in line)
+    assert written < next(i for i, line in enumerate(told) if "delay 1" in line)
     assert re.search(r"longest delay of the force sample: \d+ samples is proved", result.stdout)
     assert re.search(r"period: \S+ s is proved, \S+ s is refuted \(each for", result.stdout)
 

@@ -1,5 +1,6 @@
 import json
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -7,6 +8,7 @@ import pytest
 from nrs_design.certificates.certificate import content_id, dump
 from nrs_design.certificates.verify import verify
 from nrs_design.cli import main
+from nrs_design.exporters import FORMATS, ROBOT_FORMATS
 from nrs_design.exporters.record import ExportRecord
 from nrs_design.pipeline import run_certification
 from nrs_design.spec import read_spec
@@ -107,8 +109,6 @@ def test_certificate_that_does_not_cover_the_design(export, certificate, capsys,
 
 def test_valid_certificate_of_other_gains(export, tmp_path, capsys):
     """A certificate that verifies, since the gains are within the bounds of the spec."""
-    from dataclasses import replace
-
     from nrs_design.search.certify import certify
     from nrs_design.switched.assemble import assemble_from_text
 
@@ -178,3 +178,87 @@ def test_outputs_that_cannot_be(export, capsys):
     assert "is the certificate file" in capsys.readouterr().err
     assert export(SPEC, "--format", "fortran") == 2
     assert files() == ["file"]
+
+
+def test_list(export, capsys):
+    assert export("--list") == 0
+    text = capsys.readouterr().out
+    assert all(name in text for name in [*FORMATS, *ROBOT_FORMATS, "ros2"])
+    assert export("--list", "--json") == 0
+    formats = json.loads(capsys.readouterr().out)["formats"]
+    assert [entry["name"] for entry in formats] == [*FORMATS, *ROBOT_FORMATS, "ros2"]
+    assert formats[0]["files"] == ["NAME.export.json"]
+    assert export() == 2
+    assert "--list" in capsys.readouterr().err
+
+
+def test_a_folder_may_be_named(export):
+    assert export(SPEC, "--out", "there") == 0
+    assert files() == ["there/soft-tissue.cert.json", "there/soft-tissue.export.json"]
+
+
+def test_the_same_bytes_each_time(export):
+    assert export(SPEC) == 0
+    before = {name: Path(name).read_bytes() for name in files()}
+    assert export(SPEC) == 0
+    assert {name: Path(name).read_bytes() for name in files()} == before
+
+
+def test_options_of_programs(export, capsys, monkeypatch):
+    for option in (["--unproved"], ["--sample-time", "2 ms"]):
+        assert export(SPEC, *option) == 2
+        assert "for programs" in capsys.readouterr().err
+    program = replace(FORMATS["json"], executable=True)
+    monkeypatch.setattr("nrs_design.cli.export.FORMATS", {"program": program})
+    for wrong in ("2", "0 s", "-1 ms", "2 Hz"):
+        assert export(SPEC, "--format", "program", "--sample-time", wrong) == 2
+    assert export(SPEC, "--format", "program", "--sample-time", "2 ms") == 3
+    assert files() == []
+    arguments = (SPEC, "--format", "program", "--sample-time", "2 ms", "--unproved")
+    assert export(*arguments) == 3
+    assert "soft-tissue: UNPROVED (the certificate is about cont" in capsys.readouterr().out
+    assert files() == ["reports/soft-tissue.cert.json", "reports/soft-tissue.export.json"]
+    assert export(*arguments, "--json") == 3
+    assert json.loads(capsys.readouterr().out)["record"]["verdict"] == "unproved"
+
+
+SLOW = SPECS.parent / "docs/examples/slow-processor.nrs.yaml"
+
+
+def sampled_spec():
+    """Insertion alone, every 2 ms: proved in a moment."""
+    head, _, _ = SPEC.read_text().partition("  withdrawal:")
+    sampling = "switching: arbitrary\nsampling: {period: 2 ms, delay: 0}\n"
+    text = head.replace("name: soft-tissue", "name: every-2-ms") + sampling
+    Path("every-2-ms.nrs.yaml").write_text(text)
+    return "every-2-ms.nrs.yaml"
+
+
+def test_programs_with_a_proof_of_the_sampled_loop(export, capsys):
+    spec = sampled_spec()
+    assert export(spec, "--out", "out", "--format", "c") == 0
+    assert "every-2-ms: PROVED" in capsys.readouterr().out
+    proved = (spec, "--out", "out", "--certificate", "out/every-2-ms.cert.json")
+    assert export(*proved, "--format", "vectors", "--quiet") == 0
+    endings = (".c", ".cert.json", ".h", ".vectors.csv", ".vectors.json", "_test.c", "_test.py")
+    assert files() == [spec, *(f"out/every-2-ms{ending}" for ending in endings)]
+    before = {name: Path(name).read_bytes() for name in files()}
+    assert export(*proved, "--format", "c") == 0
+    assert export(*proved, "--format", "vectors") == 0
+    assert {name: Path(name).read_bytes() for name in files()} == before
+    Path("out/every-2-ms.c").write_text("int main(void) { return 0; }")
+    before = {name: Path(name).read_bytes() for name in files()}
+    assert export(*proved, "--format", "c") == 2
+    assert {name: Path(name).read_bytes() for name in files()} == before
+
+
+def test_a_refuted_program_says_so_in_every_file(export, capsys):
+    assert export(SLOW, "--format", "c") == 1
+    assert files() == []
+    assert "not exported" in capsys.readouterr().err
+    assert export(SLOW, "--format", "c", "--unproved") == 1
+    programs = [name for name in files() if not name.endswith(".json")]
+    assert programs == ["reports/slow-processor.c", "reports/slow-processor.h"]
+    for name in programs:
+        assert "verdict: UNPROVED: the design is not proved: refuted" in Path(name).read_text()
+        assert "0.01 s" in Path(name).read_text()

@@ -42,6 +42,7 @@ def gate(monkeypatch, tmp_path):
     return run
 
 
+@pytest.mark.slow
 def test_shipped_specs_pass_locked_and_unlocked(gate, capsys):
     assert gate(ROOT / "specs", "--no-reports") == 0
     assert "all fulfilled" in capsys.readouterr().out

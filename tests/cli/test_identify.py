@@ -75,7 +75,9 @@ def test_actuator(tmp_path):
     ):
         assert fit[key]["low"] < value < fit[key]["high"]
     assert document["resistance_ohm"]["value"] == pytest.approx(3.7454, rel=1e-3)
-    assert "intervals: {gain: [4.84" in spec.read_text()
+    assert document["range_covers"] == "confidence"
+    assert "gain: {nominal: 4.84" in spec.read_text()
+    assert "range_covers: confidence" in spec.read_text()
     text = run("identify", "actuator", DATA / "actuator-response.csv", cwd=tmp_path).stdout
     assert text.startswith("SYNTHETIC data")
     assert "ready frequency response" in text

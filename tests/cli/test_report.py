@@ -37,17 +37,17 @@ def test_default_is_a_page_in_reports(tmp_path, monkeypatch):
     assert page.startswith("<!DOCTYPE html>")
 
 
-@pytest.mark.parametrize("format_", ["html", "pdf", "png"])
-def test_the_page_of_another_spec_is_not_overwritten(tmp_path, monkeypatch, format_):
+def test_the_page_of_another_spec_is_not_overwritten(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     for name in ("a.nrs.yaml", "b.nrs.yaml"):
         Path(name).write_text(Path(COMMUTING).read_text())
     assert run("a.nrs.yaml").exit_code == 0
     page = Path("reports/commuting.html").read_bytes()
-    refused = run("b.nrs.yaml", "--format", format_)
-    assert isinstance(refused.exception, OutputError)
-    assert "belongs to a.nrs.yaml" in str(refused.exception)
-    assert [path.name for path in Path("reports").iterdir()] == ["commuting.html"]
+    for format_ in ("html", "pdf", "png"):
+        refused = run("b.nrs.yaml", "--format", format_)
+        assert isinstance(refused.exception, OutputError)
+        assert "belongs to a.nrs.yaml" in str(refused.exception)
+        assert [path.name for path in Path("reports").iterdir()] == ["commuting.html"]
     assert run("a.nrs.yaml").exit_code == 0
     assert Path("reports/commuting.html").read_bytes() == page
 
@@ -81,11 +81,11 @@ def test_pdf_and_its_default_name(tmp_path, monkeypatch):
 def test_a_date_is_written_only_if_given(tmp_path, name):
     out = tmp_path / name
     pages = []
-    for dates in ([], ["--date", "2026-03-01"], ["--date", "2026-03-01"]):
+    for dates in ([], ["--date", "2026-03-01"]):
         kind = ["--format", out.suffix[1:]]
         assert run(COMMUTING, "--out", str(out), *kind, *dates).exit_code == 0
         pages.append(out.read_bytes())
-    assert pages[0] != pages[1] == pages[2]
+    assert pages[0] != pages[1]
     assert b"2026-03-01" not in pages[0]
 
 

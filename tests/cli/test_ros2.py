@@ -5,7 +5,7 @@ import json
 import pytest
 
 from tests.ros2.support import EXAMPLE, changed
-from tests.support import run, typed
+from tests.support import ROOT, run, typed
 
 SOFT = ("--stiffness", "200..2000 N/m")
 
@@ -59,3 +59,66 @@ def test_wrong_options(tmp_path, options, message):
     assert done.returncode == 2
     assert message in done.stderr
     assert done.stdout == ""
+
+
+@pytest.fixture
+def spec(tmp_path):
+    """Soft tissue with a force of one age, so that lost contact is modelled."""
+    text = (ROOT / "specs/neuroboscope/soft-tissue-sampled.nrs.yaml").read_text()
+    file = tmp_path / "one-age.nrs.yaml"
+    file.write_text(text.replace("delay: [0, 1]", "delay: 1"))
+    return file
+
+
+EXPORT = ("ros2", "export", "one-age.nrs.yaml", "--axis", "ry", "--lag", "5..20 ms", "--out", "out")
+
+
+def test_export(spec, tmp_path):
+    done = run(*EXPORT, cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    assert "PROVED, exported to out/soft-tissue-sampled.insertion.ros2.yaml" in done.stdout
+    names = ["soft-tissue-sampled.insertion.ros2", "soft-tissue-sampled.withdrawal.ros2"]
+    files = sorted(path.name for path in (tmp_path / "out").iterdir())
+    assert files == [f"{name}.{ending}" for name in names for ending in ("cert.json", "yaml")]
+    before = {path: path.read_bytes() for path in (tmp_path / "out").iterdir()}
+    proof = "out/soft-tissue-sampled.insertion.ros2.cert.json"
+    assert run("verify", proof, cwd=tmp_path).returncode == 0
+    met = ("--rotational-stiffness", "41.51..44.24 N*m/rad", "--age", "1", "--lag", "5..20 ms")
+    checked = run(
+        "ros2", "check", "out/soft-tissue-sampled.insertion.ros2.yaml", *met, cwd=tmp_path
+    )
+    assert checked.returncode == 0
+    again = run(*EXPORT, "--json", cwd=tmp_path)
+    assert json.loads(again.stdout)["controllers"] == {
+        "insertion": "proved",
+        "withdrawal": "proved",
+    }
+    assert {path: path.read_bytes() for path in before} == before
+
+
+def test_export_overwrites_nothing_foreign(spec, tmp_path):
+    (tmp_path / "out").mkdir()
+    mine = tmp_path / "out/soft-tissue-sampled.withdrawal.ros2.yaml"
+    mine.write_text("controller_manager: {}\n")
+    done = run(*EXPORT, cwd=tmp_path)
+    assert done.returncode == 2
+    assert "not overwritten" in done.stderr
+    assert [path.name for path in (tmp_path / "out").iterdir()] == [mine.name]
+
+
+def test_nothing_is_exported_where_one_controller_is_refuted(spec, tmp_path):
+    spec.write_text(spec.read_text().replace("period: 2 ms", "period: 10 ms"))
+    done = run(*EXPORT, cwd=tmp_path)
+    assert done.returncode == 1
+    assert "insertion: refuted with admittance_controller" in done.stderr
+    assert "not exported" in done.stderr
+    assert [path.name for path in tmp_path.iterdir()] == [spec.name]
+
+
+def test_export_asks_for_the_axis_and_the_lag(spec, tmp_path):
+    for options in (("--axis", "ry"), ("--lag", "0 ms"), ("--axis", "x", "--lag", "0 ms")):
+        assert run("ros2", "export", spec.name, *options, cwd=tmp_path).returncode == 2
+    matrices = ROOT / "specs/examples/ando-shih.nrs.yaml"
+    done = run("ros2", "export", matrices, "--axis", "ry", "--lag", "0 ms", cwd=tmp_path)
+    assert done.returncode == 2
+    assert "no controllers to export" in done.stderr

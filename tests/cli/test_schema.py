@@ -24,3 +24,11 @@ def test_schema_is_draft_07(tmp_path: Path) -> None:
     schema = json.loads((tmp_path / "nrs.schema.json").read_text())
     assert schema["$schema"] == "http://json-schema.org/draft-07/schema#"
     jsonschema.Draft7Validator.check_schema(schema)
+
+
+def test_schema_of_exports(tmp_path: Path) -> None:
+    for of in ("spec", "export", "export"):
+        assert run("schema", "--of", of, "--out", "x.json", cwd=tmp_path).returncode == 0
+    schema = json.loads((tmp_path / "x.json").read_text())
+    assert (schema["title"], schema["additionalProperties"]) == ("nrs-design export", False)
+    assert schema["properties"]["schema"]["const"] == "nrs-design/export/1"

@@ -227,3 +227,39 @@ def test_example_of_the_help_is_a_real_spec():
     result = run("verify", "--help", cwd=ROOT)
     assert "soft-tissue" in result.stdout
     assert SOFT_TISSUE.is_file()
+
+
+def test_deployed_numbers_are_those_of_the_certificate(tmp_path):
+    """A header as exported; with one bit changed; and what cannot be compared."""
+    head, _, _ = SOFT_TISSUE.read_text().partition("  withdrawal:")
+    sampling = "switching: arbitrary\nsampling: {period: 2 ms, delay: 0}\n"
+    (tmp_path / "x.nrs.yaml").write_text(head.replace("name: soft-tissue", "name: x") + sampling)
+    export = ("export", "x.nrs.yaml", "--out", ".", "-q")
+    assert run(*export, "--format", "c", cwd=tmp_path).returncode == 0
+    assert run(*export, "--format", "json", cwd=tmp_path).returncode == 0
+    check = ("verify", "x.cert.json", "x.nrs.yaml", "--deployed")
+    for name in ("x.h", "x.export.json"):
+        result = run(*check, name, cwd=tmp_path)
+        assert result.returncode == 0, result.stderr
+        assert f"deployed: {name} holds the numbers of the certificate" in result.stdout
+    text = (tmp_path / "x.h").read_text()
+    assert text.count("0x1.f6eep+19F") == 1
+    (tmp_path / "x.h").write_text(text.replace("0x1.f6eep+19F", "0x1.f6ee02p+19F"))
+    result = run(*check, "x.h", cwd=tmp_path)
+    assert result.returncode == 1
+    assert "NRS_X_KD_OVER_T is 0x1.f6ee02p+19F, and the certificate has 1030000" in result.stdout
+    document = json.loads(run(*check, "x.h", "--json", cwd=tmp_path).stdout)
+    assert (document["verdict"], document["deployed"]) == ("proved", "x.h")
+    assert len(document["differences"]) == 1
+    assert run("verify", "x.cert.json", "--deployed", "x.h", cwd=tmp_path).returncode == 2
+    assert run(*check, "nothing.h", cwd=tmp_path).returncode == 2
+    result = run("verify", "x.cert.json", COMMUTING, "--deployed", "x.h", cwd=tmp_path)
+    assert result.returncode == 1
+    assert "another spec" in result.stdout
+
+
+def test_given_matrices_have_nothing_to_deploy(certified, tmp_path):
+    proof = certified / "commuting.json"
+    result = run("verify", proof, COMMUTING, "--deployed", "x.h", cwd=tmp_path)
+    assert result.returncode == 2
+    assert "no gains that could be deployed" in result.stderr

@@ -8,6 +8,7 @@ from hypothesis import strategies as st
 
 from nrs_design.controllers.float32 import (
     exact_decimal,
+    float32_not_above,
     is_float32,
     neighbors,
     round_significant,
@@ -128,3 +129,14 @@ def test_round_significant(value, digits, rounded):
 )
 def test_neighbors_are_one_step_of_the_last_digit_away(value, digits, expected):
     assert neighbors(value, digits) == pytest.approx(expected)
+
+
+@given(st.floats(2**-149, 2**127, width=32), st.fractions(0, 1))
+def test_the_number_below(value, share):
+    """Between a number and the next one there is no other."""
+    low, high = (
+        Fraction(value),
+        Fraction(float(np.nextafter(np.float32(value), np.float32(np.inf)))),
+    )
+    between = low + share * (high - low)
+    assert float32_not_above(between) == (high if share == 1 else low)

@@ -1,5 +1,6 @@
 """Creep in free motion: bounds against a simulation, and what the design makes of them."""
 
+from dataclasses import replace
 from fractions import Fraction
 
 import numpy as np
@@ -12,7 +13,7 @@ from nrs_design.design.transfer import white_noise_power
 from nrs_design.errors import DesignError
 from nrs_design.pipeline import run_analysis, run_design
 from nrs_design.spec import read_spec
-from nrs_design.switched.sampled_loop import INPUTS, Frame
+from nrs_design.switched.sampled_frame import INPUTS, Frame
 from tests.support import SOFT_TISSUE
 
 TEXT = SOFT_TISSUE.read_text(encoding="utf-8")
@@ -79,6 +80,23 @@ def test_worst_gains_of_a_range_count(tmp_path):
     )
     for item in run_analysis(designed(tmp_path, "", ranged)).impedance:
         assert float(item.creep.velocity) == pytest.approx(ERROR / 0.9, rel=1e-6)
+
+
+def test_worst_gains_of_a_range_count_in_steps(tmp_path):
+    """Of all coefficients in the box, the largest b/(1 - a): 1/Bt at 0.9, rounded outwards."""
+    ranged = (
+        BT,
+        "Bt: {min: 0.1 N*m*s/rad, max: 20 N*m*s/rad, range: [0.9 N*m*s/rad, 3 N*m*s/rad]}",
+    )
+    sampling = "sampling: {period: 2 ms, delay: 1}"
+    found = designed(tmp_path, sampling, ranged)
+    for item, controller in zip(
+        run_analysis(found).impedance, found.design.controllers, strict=True
+    ):
+        law = replace(controller.law, Bt=Fraction(np.float32(0.9).item()))
+        at_worst = law.sampled(Fraction(1, 500), "exact")
+        least = ERROR * float(at_worst.lasting_gain * at_worst.T * 500)
+        assert least * (1 - 1e-12) <= float(item.creep.velocity) <= least * (1 + 1e-5)
 
 
 FILTER = "\n  filter: {order: 2, cutoff: 60 Hz}\n"

@@ -7,12 +7,13 @@ from pathlib import Path
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from jsonschema import Draft202012Validator
 from pydantic import ValidationError
 
 from nrs_design.controllers.float32 import exact_decimal
 from nrs_design.errors import CertificateError, DesignError
-from nrs_design.exporters.export import export_design
-from nrs_design.exporters.record import ExportRecord, Gain, build_record, dump_record
+from nrs_design.exporters.export import Execution, export_design
+from nrs_design.exporters.record import ExportRecord, Gain, build_record, dump_record, schema_text
 from nrs_design.pipeline import run_certification
 from nrs_design.spec import LoadedSpec, parse_spec, read_spec
 
@@ -77,6 +78,22 @@ def test_published_gains_as_single_precision_numbers(record):
     Kp, Kd = record.motion.gains
     assert (Kd.name, Kd.exact, Kd.unit) == ("Kd", "2060", "rpm*s/rad")
     assert Kp.float32 == pytest.approx(117359.43, rel=1e-7)
+
+
+def test_the_same_motor_in_volts(result):
+    """256 rpm for a volt: the loop is the same to the last digit, and only the gains are others."""
+    text = (SPECS / "neuroboscope/soft-tissue.nrs.yaml").read_text()
+    text = text.replace("gain: 4.8417e-4 rad/s/rpm", "gain: 0.123947520 rad/s/V\n  command: V")
+    text = text.replace("2060 rpm*s/rad", "8046.875 mV*s/rad")
+    found = run_certification(LoadedSpec(Path("volts.nrs.yaml"), 64 * "0", text, parse_spec(text)))
+    system, before = found.certificate.system, result.certificate.system
+    assert [mode.A for mode in system.modes] == [mode.A for mode in before.modes]
+    assert set(system.assumptions) - set(before.assumptions) == {
+        "The motor takes commands in V: Kp of the motion controller is in V/rad, Kd in V*s/rad."
+    }
+    Kp, Kd = build_record(found.design, found.certificate, None).motion.gains
+    assert (Kd.name, Kd.exact, Kd.unit) == ("Kd", "8.046875", "V*s/rad")
+    assert (Kp.exact, Kp.unit) == (exact_decimal(Fraction(117359.4375) / 256), "V/rad")
 
 
 def test_proof_is_that_of_the_certificate(record, result):
@@ -179,3 +196,48 @@ def test_offset_is_written_where_force_controllers_have_one():
 
 def test_without_offset_there_is_none(record):
     assert json.loads(dump_record(record))["offset"] is None
+
+
+@pytest.mark.parametrize("name", ["soft-tissue", "force-limit", "force-limit-offset"])
+def test_every_record_keeps_the_published_schema(name):
+    schema = json.loads(schema_text())
+    Draft202012Validator.check_schema(schema)
+    record = export_design(read_spec(SPECS / f"neuroboscope/{name}.nrs.yaml")).record
+    Draft202012Validator(schema).validate(json.loads(dump_record(record)))
+
+
+def test_the_records_of_programs_keep_the_schema(sampled_export, continuous):
+    execution = Execution(Fraction(2, 1000), unproved=True)
+    unproved = export_design(continuous, execution=execution).record
+    for record in (sampled_export.record, unproved):
+        assert record.sample_time is not None
+        Draft202012Validator(json.loads(schema_text())).validate(json.loads(dump_record(record)))
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        {"extra": 1},
+        {"schema": "nrs-design/export/2"},
+        {"controllers": []},
+        {"verdict": "refuted"},
+        {"sample_time": 0.002},
+        {"delay": [0, 1, 2]},
+        {"spec": {"name": "x", "sha256": "0"}},
+    ],
+    ids=str,
+)
+def test_the_schema_refuses_what_the_record_refuses(record, change):
+    document = {**json.loads(dump_record(record)), **change}
+    assert not Draft202012Validator(json.loads(schema_text())).is_valid(document)
+    with pytest.raises(ValidationError):
+        ExportRecord.model_validate_json(json.dumps(document))
+
+
+@pytest.mark.parametrize(
+    "change", [{"unproved": "why"}, {"verdict": "unproved"}, {"proof": None}], ids=str
+)
+def test_a_verdict_needs_its_proof_or_its_reason(record, change):
+    document = {**json.loads(dump_record(record)), **change}
+    with pytest.raises(ValidationError, match="verdict"):
+        ExportRecord.model_validate_json(json.dumps(document))

@@ -14,6 +14,7 @@ from nrs_design.errors import DesignError
 from nrs_design.gating.examine import Examiner, certified_rate
 from nrs_design.gating.obligations import Status
 from nrs_design.proof.evidence import CommonQuadratic
+from nrs_design.proof.evidence.unstable_mode import UnstableMode
 from nrs_design.proof.system import ARBITRARY, Stay, Switching, Time
 from nrs_design.search.certify import certify
 from nrs_design.spec import read_spec
@@ -185,6 +186,36 @@ def test_a_rate_per_step_counts_in_seconds(tmp_path):
         certificate = Certificate("s", "0", None, {}, bouncing_in_steps(), (proof,), "0")
         examiner = wanting(tmp_path, f"{{decay_rate: {goal}}}")
         assert [item.status for item in examiner.certified_goals(certificate)] == [status]
+
+
+@pytest.mark.parametrize(
+    ("delay", "wanted", "status"),
+    [
+        ("[0, 2]", "4 ms", Status.PROVED),
+        ("[0, 2]", "4.001 ms", Status.INCONCLUSIVE),
+        ("1", "2 ms", Status.PROVED),
+        ("0", "1e-6 s", Status.INCONCLUSIVE),
+    ],
+)
+def test_a_delay_that_a_certificate_must_show(tmp_path, delay, wanted, status):
+    path = tmp_path / "wanting.nrs.yaml"
+    text = SOFT_TISSUE.read_text(encoding="utf-8")
+    path.write_text(
+        f"{text}\nsampling: {{period: 2 ms, delay: {delay}}}\ngoals: {{delay: {wanted}}}\n"
+    )
+    examiner = Examiner.of(read_spec(path))
+    proof = CommonQuadratic(((1, 0), (0, 1)), 0, Fraction("0.95"))
+    from tests.proof.systems import bouncing_in_steps
+
+    certificate = Certificate("s", "0", None, {}, bouncing_in_steps(), (proof,), "0")
+    (found,) = examiner.certified_goals(certificate)
+    assert (found.rule.id, found.status) == ("NRS108", status)
+    assert f"{wanted} is wanted" in found.message
+    (nothing,) = examiner.certified_goals(None)
+    assert nothing.status is Status.INCONCLUSIVE
+    refuted = replace(certificate, statements=(UnstableMode("a", "1.1"),))
+    (found,) = examiner.certified_goals(refuted)
+    assert found.status is Status.INCONCLUSIVE
 
 
 @pytest.mark.parametrize(

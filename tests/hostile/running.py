@@ -3,9 +3,12 @@
 import hashlib
 import json
 import os
+import select
+import signal
 import subprocess
 import sys
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
 
 from tests.support import ROOT, SOON
@@ -13,20 +16,6 @@ from tests.support import ROOT, SOON
 MAX_MEBIBYTES = 300.0
 # Far beyond what is allowed: only so that a hang ends.
 PATIENCE = 120
-
-PROGRAM = """
-import json, re, sys, time
-from nrs_design.cli import main
-try:
-    main()
-finally:
-    status = open("/proc/self/status").read()
-    peak = int(re.search(r"VmHWM:\\s+(\\d+)", status)[1]) / 1024
-    with open(sys.argv.pop(), "w") as file:
-        json.dump({"seconds": time.process_time(), "mebibytes": peak}, file)
-""".replace("    main()\n", "    measured = sys.argv.pop(1)\n    main()\n").replace(
-    "sys.argv.pop(), ", "measured, "
-)
 
 
 @dataclass(frozen=True)
@@ -39,25 +28,42 @@ class Run:
     mebibytes: float
 
 
+@cache
+def server() -> subprocess.Popen[str]:
+    """Start the process that copies itself; it ends with this one, which holds its stdin."""
+    return subprocess.Popen(
+        [sys.executable, "-m", "tests.hostile.server"],
+        stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        text=True,
+        cwd=ROOT,
+        start_new_session=True,
+    )
+
+
 def run(folder: Path, *arguments: str) -> Run:
     """Run a command in ``folder/work``; its needs are noted down in ``folder/scratch``."""
     scratch = folder / "scratch"
     scratch.mkdir(exist_ok=True)
-    needs = scratch / "needs.json"
-    result = subprocess.run(
-        [sys.executable, "-c", PROGRAM, str(needs), *arguments],
-        capture_output=True,
-        cwd=folder / "work",
-        check=False,
-        stdin=subprocess.DEVNULL,
-        timeout=PATIENCE,
-        env=os.environ
-        | {"PYTHONPATH": str(ROOT), "HOME": str(folder / "home"), "TMPDIR": str(scratch)}
-        | {"MPLCONFIGDIR": str(scratch)},
-    )
-    measured = json.loads(needs.read_text())
-    text = (result.stdout + result.stderr).decode("utf-8", "surrogateescape")
-    return Run(result.returncode, text, measured["seconds"], measured["mebibytes"])
+    places = {name: str(scratch / name) for name in ("needs", "out", "err")}
+    environment = {"HOME": folder / "home", "TMPDIR": scratch, "MPLCONFIGDIR": scratch}
+    order = {
+        "folder": str(folder / "work"),
+        "environment": {name: str(path) for name, path in environment.items()},
+        "arguments": arguments,
+        **places,
+    }
+    process = server()
+    print(json.dumps(order), file=process.stdin, flush=True)
+    if not select.select([process.stdout], [], [], PATIENCE)[0]:
+        os.killpg(process.pid, signal.SIGKILL)
+        server.cache_clear()
+        raise TimeoutError(f"no end within {PATIENCE} s")
+    code = int(process.stdout.readline())
+    measured = json.loads(Path(places["needs"]).read_text())
+    written = (Path(places[name]).read_bytes() for name in ("out", "err"))
+    text = b"".join(written).decode("utf-8", "surrogateescape")
+    return Run(code, text, measured["seconds"], measured["mebibytes"])
 
 
 def tree(folder: Path) -> dict[str, str]:

@@ -38,7 +38,8 @@ SPEC_COMMANDS = (
 )
 
 # What takes seconds to read and is refused then, by one reader for all commands: one that prints
-# the fault, one that lists it, and one that goes on to the next file show what there is to see.
+# the fault, one that lists it, and one that goes on to the next file show what there is to see, and
+# only when everything is looked at.
 LONG = ("list of 80,000", "unknown keys", "many words", "spaces")
 READERS = (SPEC_COMMANDS[0], SPEC_COMMANDS[1], SPEC_COMMANDS[9])
 
@@ -52,13 +53,13 @@ def place(tmp_path, monkeypatch):
     return tmp_path
 
 
-@pytest.mark.parametrize("case", SPECS)
+@pytest.mark.parametrize("case", [case for case in SPECS if case not in LONG])
 def test_a_spec_is_checked(place, case):
     write(place / "work/spec.nrs.yaml", SPECS[case]())
     check(place, "check", "spec.nrs.yaml")
 
 
-@pytest.mark.parametrize("case", ["coprime 12", "coprime 30", "digits 12", "digits 24"])
+@pytest.mark.parametrize("case", ["coprime 12", "coprime 30", "digits 12"])
 def test_the_decision_about_a_mode_is_bounded(place, case):
     write(place / "work/spec.nrs.yaml", SPECS[case]())
     check(place, "gate", "--no-reports", "spec.nrs.yaml")

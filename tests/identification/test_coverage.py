@@ -23,7 +23,7 @@ def off_grid(seed):
 
 SINGLE = [
     (Elastic(768.17), off_grid, 0.0969, synthetic.COUNT),
-    (KelvinVoigt(0.574, 0.957), slow, 0.0114, 0.0),
+    pytest.param(KelvinVoigt(0.574, 0.957), slow, 0.0114, 0.0, marks=pytest.mark.slow),
     pytest.param(Maxwell(1.129, 20.0), slow, 0.0135, 0.0, marks=pytest.mark.slow),
     pytest.param(synthetic.NOSE, slow, 0.0165, 1e-4, marks=pytest.mark.slow),
     pytest.param(synthetic.CONCHA, slow, 0.0085, 1e-4, marks=pytest.mark.slow),
@@ -66,6 +66,7 @@ def test_every_law_under_options(tissue, option):
     assert beyond == BEYOND.get((tissue, option), set())
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("spread", [0.0, 0.03])
 def test_pooled_over_three_records(spread):
     """With spread: specimens differ by 3 %, as in thesis 6.1; the interval is for their mean."""

@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 from fractions import Fraction
+from functools import cache
 
 import numpy as np
 import pytest
@@ -27,18 +28,36 @@ def silicone():
         record(Elastic(k), quick(i), noise, i, synthetic.COUNT)
         for i, (k, noise) in enumerate(synthetic.SOFT)
     ]
-    return identify_tissue(data)
+    return identify_tissue(data, "elastic")
 
 
 @pytest.fixture(scope="module")
 def voigt():
     data = [record(KelvinVoigt(43.0, 1.0), slow(i), 0.1, i, rotational=True) for i in range(3)]
-    return identify_tissue(data)
+    return identify_tissue(data, "kelvin-voigt")
 
 
 @pytest.fixture(scope="module")
 def motor():
     return identify_actuator(sinusoids(2, (1.2, 2.0, 4.0, 8.0, 14.0)), MOTOR)
+
+
+@pytest.fixture(scope="module")
+def nose():
+    """Thesis table 2.4: k1 = 0.233, k2 = 0.972, b = 23.631, here in a linear motion."""
+    data = [record(synthetic.NOSE, slow(i), 0.01, i) for i in range(2)]
+    return identify_tissue(data, "kelvin-boltzmann")
+
+
+@pytest.fixture(scope="module")
+def late():
+    """A motor with a dead time, behind a command that tells it."""
+    return identify_actuator([motors.record("PRBS", 1)], MOTOR)
+
+
+@cache
+def delayed(delay):
+    return identify_delay(signals.copy(1, delay=delay))
 
 
 def merged(tmp_path, text):
@@ -138,11 +157,12 @@ def test_actuator(motor):
     assert len(spec.actuator.provenance) == 5
 
 
-def test_ranges_of_the_actuator_where_the_proof_covers_them(tmp_path, motor):
+@pytest.mark.parametrize("file", [SAMPLED, SOFT_TISSUE])
+def test_ranges_of_the_actuator_where_the_proof_covers_them(tmp_path, motor, file):
     """Both ranges hold together with 95 %, so that each is wider than its own interval."""
-    text = merge_actuator(read_spec(SAMPLED), motor)
+    text = merge_actuator(read_spec(file), motor)
     spec = parse_spec(text)
-    assert spec.actuator.intervals is None
+    assert (spec.actuator.intervals, spec.actuator.range_covers) == (None, "confidence")
     for written, own in (
         (spec.actuator.gain, motor.chosen.gain),
         (spec.actuator.time_constant, motor.chosen.time_constant),
@@ -152,20 +172,31 @@ def test_ranges_of_the_actuator_where_the_proof_covers_them(tmp_path, motor):
     assert merge_actuator(merged(tmp_path, text), motor) == text
 
 
-def test_intervals_give_way_to_ranges(tmp_path, motor):
-    text = merge_actuator(read_spec(SOFT_TISSUE), motor)
-    assert "intervals" in text
-    sampled = merged(tmp_path, text + "\nsampling: {period: 2 ms, delay: 1}\n")
-    assert "intervals" not in merge_actuator(sampled, motor)
+DWELL = "switching: {dwell_time: 2 s}"
+STATED = """  zero: 56.9706 1/s
+  transfer_function: {numerator: [28.416, 1618.80], denominator: [1, 56.89, 1618.80]}"""
+
+
+@pytest.mark.parametrize(
+    ("old", "new"), [("switching: arbitrary", DWELL), ("  zero: 56.9706 1/s", STATED)]
+)
+def test_intervals_where_no_proof_covers_ranges(tmp_path, motor, old, new):
+    """A motor may not change during a dwell time, and is no part of a loop that is stated."""
+    plain = SOFT_TISSUE.read_text().replace(", range: [720.56 N/m, 768.17 N/m]", "")
+    assert old in plain
+    text = merge_actuator(merged(tmp_path, plain.replace(old, new)), motor)
+    assert ("intervals" in text, "range_covers" in text) == (True, False)
+    # Once a proof does, they give way to ranges.
+    again = merge_actuator(merged(tmp_path, text.replace(new, old)), motor)
+    assert ("intervals" in again, "range_covers: confidence" in again) == (False, True)
 
 
 @pytest.mark.parametrize("spec", [SOFT_TISSUE, SAMPLED])
-def test_a_dead_time_is_a_doubt_and_no_age_of_the_force(spec):
+def test_a_dead_time_is_a_doubt_and_no_age_of_the_force(spec, late):
     """It acts in the motion loop, which no proof here delays."""
-    found = identify_actuator([motors.record("PRBS", 1)], MOTOR)
     loaded = read_spec(spec)
-    written = parse_spec(merge_actuator(loaded, found))
-    assert found.doubts == ()
+    written = parse_spec(merge_actuator(loaded, late))
+    assert late.doubts == ()
     (doubt,) = written.actuator.doubts
     assert "dead time of 0.007" in doubt
     assert written.sampling == loaded.spec.sampling
@@ -182,7 +213,7 @@ def test_doubts_about_the_actuator_are_noted():
 
 def test_delay_in_periods_of_the_processor():
     """1.84 to 3.06 samples of 2 ms are 3.69 to 6.13 periods of 1 ms."""
-    found = identify_delay(signals.copy(1))
+    found = delayed(signals.DELAY)
     loaded = read_spec(SAMPLED)
     assert parse_spec(merge_delay(loaded, found)).sampling.delay == (1, 4)
     faster = parse_spec(loaded.text.replace("period: 2 ms", "period: 1 ms"))
@@ -203,24 +234,27 @@ def test_a_varying_delay_is_noted_as_a_doubt():
 
 
 @pytest.mark.parametrize(
-    ("spec", "pair", "error", "message"),
+    ("spec", "delay", "error", "message"),
     [
-        (SOFT_TISSUE, signals.copy(1), SpecError, "has no sampling"),
-        (COMMUTING, signals.copy(1), SpecError, "no place"),
-        (SAMPLED, signals.lag(1), DataError, "by a first-order lag"),
-        (SAMPLED, signals.copy(1, delay=30.0), DataError, "31 periods"),
+        (SOFT_TISSUE, signals.DELAY, SpecError, "has no sampling"),
+        (COMMUTING, signals.DELAY, SpecError, "no place"),
+        (SAMPLED, 30.0, DataError, "31 periods"),
     ],
 )
-def test_what_is_no_age_of_the_force(spec, pair, error, message):
+def test_what_is_no_age_of_the_force(spec, delay, error, message):
     with pytest.raises(error, match=message) as caught:
-        merge_delay(read_spec(spec), identify_delay(pair))
+        merge_delay(read_spec(spec), delayed(delay))
     assert caught.value.remedy
 
 
-def test_what_is_chosen_for_the_nose(tmp_path, silicone):
-    """Thesis table 2.4: k1 = 0.233, k2 = 0.972, b = 23.631, here in a linear motion."""
-    data = [record(synthetic.NOSE, slow(i), 0.01, i) for i in range(2)]
-    text = merge_tissue(read_spec(SOFT_TISSUE), identify_tissue(data), None, None)
+def test_a_lag_is_no_age_of_the_force():
+    with pytest.raises(DataError, match="by a first-order lag") as caught:
+        merge_delay(read_spec(SAMPLED), identify_delay(signals.lag(1)))
+    assert caught.value.remedy
+
+
+def test_the_law_of_the_nose_has_a_place(tmp_path, silicone, nose):
+    text = merge_tissue(read_spec(SOFT_TISSUE), nose, None, None)
     soft = merged(tmp_path, text).spec.environments["soft"]
     assert isinstance(soft, KelvinBoltzmannSpec)
     written = (soft.parallel_stiffness, soft.series_stiffness, soft.damping)
@@ -288,10 +322,37 @@ def test_what_the_range_holds_is_noted():
     assert "95 % of all such specimens" in found.covers
 
 
-@pytest.mark.parametrize(("kind", "unit"), [("PRBS", "V"), ("PRBS", "rpm")])
-def test_what_a_spec_has_no_place_for(kind, unit):
-    """A gain in rad/s/V must never be written as one in rad/s/rpm."""
-    made = motors.record(kind, 1, second=0.02 * (unit == "rpm"))
-    found = identify_actuator([replace(made, unit=unit)], MOTOR)
-    with pytest.raises(DataError, match="has no place for"):
+def test_a_motor_of_second_order_has_no_place():
+    found = identify_actuator([motors.record("PRBS", 1, second=0.02)], MOTOR)
+    with pytest.raises(DataError, match="has no place for a motor of second order"):
         merge_actuator(read_spec(SOFT_TISSUE), found)
+
+
+@pytest.fixture(scope="module")
+def volts():
+    return identify_actuator([replace(motors.record("PRBS", 1), unit="V")], MOTOR)
+
+
+def test_a_gain_per_volt_is_never_written_beside_one_in_rpm(volts):
+    with pytest.raises(SpecError, match="commands in V, and derivative_gain is 2060 rpm") as error:
+        merge_actuator(read_spec(SOFT_TISSUE), volts)
+    assert "remove derivative_gain" in error.value.remedy
+
+
+def test_a_motor_that_takes_volts(tmp_path, volts, motor):
+    plain = SOFT_TISSUE.read_text().replace("  derivative_gain: 2060 rpm*s/rad\n", "")
+    text = merge_actuator(merged(tmp_path, plain), volts)
+    spec = parse_spec(text)
+    assert spec.actuator.command == "V"
+    assert all(end.unit == "rad/s/V" for end in spec.actuator.gain.range)
+    assert spec.actuator.gain.nominal.si == pytest.approx(volts.chosen.gain.value, rel=1e-5)
+    # And back to rpm.
+    back = parse_spec(merge_actuator(merged(tmp_path, text), motor))
+    assert (back.actuator.command, back.actuator.gain.nominal.unit) == ("rpm", "rad/s/rpm")
+
+
+def test_friction_in_another_unit(tmp_path, volts):
+    text = SAMPLED.read_text().replace("  derivative_gain: 2060 rpm*s/rad\n", "")
+    text = text.partition("\ndisturbances:")[0] + "\ndisturbances: {friction: 55 rpm}\n"
+    with pytest.raises(SpecError, match="friction is 55 rpm"):
+        merge_actuator(merged(tmp_path, text), volts)

@@ -10,7 +10,9 @@ def test_known_answer(name):
     settle(name)
 
 
-@pytest.mark.parametrize("coordinates", ["deflection", "force"])
+@pytest.mark.parametrize(
+    "coordinates", ["deflection", pytest.param("force", marks=pytest.mark.slow)]
+)
 @pytest.mark.parametrize("name", names("robot"))
 def test_known_answer_of_the_robot(name, coordinates):
     settle(name, coordinates=coordinates)

@@ -14,6 +14,7 @@ from nrs_design.proof.system import (
     ARBITRARY,
     Channel,
     Contact,
+    Coupling,
     Mode,
     Output,
     Reset,
@@ -234,6 +235,24 @@ def pushed(system: SwitchedSystem, push: Entry = "1/4") -> SwitchedSystem:
     )
 
 
+def leaning(system: SwitchedSystem, *shares: Entry) -> SwitchedSystem:
+    """Masses that bounce, and speed each other up by a share of what each would do by itself.
+
+    A second share is that of the speeds. In free motion, as in contact.
+    """
+    free = () if system.contact is None else system.contact.free
+    every = [mode.A.fractions() for mode in (*system.modes, *free)]
+    column, sizes = matrix([[1], [0]]), [Fraction(share) for share in shares]
+    rows = [tuple(matrix([[sizes[0] * entry for entry in A[0]]]) for A in every)]
+    rows += [(matrix([[share, 0]]),) * len(every) for share in sizes[1:]]
+    names = ("acceleration", "speed")
+    couplings = (
+        Coupling(name, (column,) * len(every), part)
+        for name, part in zip(names, rows, strict=False)
+    )
+    return replace(system, couplings=tuple(couplings))
+
+
 SYSTEMS = {
     "mode-polynomial": lossy_network,
     "common-quadratic": lambda: dayawansa_martin(5),
@@ -244,6 +263,9 @@ SYSTEMS = {
     "conewise-quadratic": bouncing,
     "conewise-quadratic, pulling": lambda: bouncing(1),
     "conewise-quadratic, discrete": bouncing_in_steps,
+    "coupled-axes": lambda: leaning(bouncing(), "1/8"),
+    "coupled-axes, kept": lambda: leaning(replace(bouncing(), contact=None), "1/8", "1/8"),
+    "coupled-axes, pulling": lambda: leaning(bouncing(1), "1/8"),
     "invariant-ellipsoid": lambda: pushed(bouncing()),
     "invariant-ellipsoid, kept": lambda: pushed(replace(bouncing(), contact=None)),
     "invariant-ellipsoid, pulling": lambda: pushed(bouncing(1)),

@@ -21,7 +21,7 @@ from nrs_design.proof.system import (
     Time,
 )
 from tests.proof.systems import Entry, bouncing_in_steps, family, matrix
-from tests.proof.truth import combine, holds, is_positive_multiple, times, transpose
+from tests.proof.truth import combine, holds, is_in_other_units, times, transpose
 
 ONE = Fraction(1)
 
@@ -226,7 +226,7 @@ SIZES3 = (
         [[1, "1/7", 0, 2, "1/2", "-1/3"]],
     ],
 )
-KEEPS, WEIGHTS = Fraction(5, 7), (Fraction(2, 3), Fraction(3, 5))
+WEIGHTS = (Fraction(2, 3), Fraction(3, 5))
 
 
 def three_states(*, contact: bool) -> SwitchedSystem:
@@ -247,7 +247,7 @@ def three_states(*, contact: bool) -> SwitchedSystem:
     )
 
 
-def by_hand(k, before, after, acting, roundings, crossing=None, *, lands=True, flies=False):
+def by_hand(k, before, after, *, keeps, acting, roundings, crossing=None, lands=True, flies=False):
     """The form of the module, in fractions, over the state, what acts, and the errors."""
     exact, covered = [matrix(A).fractions() for A in MAPS3], range(len(roundings))
     moved = [list(row) for row in exact[k]]
@@ -263,7 +263,7 @@ def by_hand(k, before, after, acting, roundings, crossing=None, *, lands=True, f
     form = combine((-1, times(transpose(image), times(after, image))))
     for i, row in enumerate(before):
         for j, entry in enumerate(row):
-            form[i][j] += KEEPS * entry
+            form[i][j] += keeps * entry
     n = len(before)
     for i in range(len(acting)):
         form[n + i][n + i] += WEIGHTS[i]
@@ -283,10 +283,11 @@ INNER = [row[:2] for row in QUARTERS[:2]]
 
 @pytest.mark.parametrize("acting", [(), (1,), (2, 0)])
 @pytest.mark.parametrize("roundings", [(), (4, 9), (0, 1)])
-def test_every_form_by_hand(acting, roundings):
+@pytest.mark.parametrize("keeps", [Fraction(5, 7), Fraction(25, 49)])
+def test_every_form_by_hand(keeps, acting, roundings):
     weights = WEIGHTS[: len(acting)]
-    steps = Steps(Q3, 2, KEEPS, 5, roundings, acting, weights)
-    numbers = {"acting": acting, "roundings": roundings}
+    steps = Steps(Q3, 2, keeps, 5, roundings, acting, weights)
+    numbers = {"keeps": keeps, "acting": acting, "roundings": roundings}
     wanted = [
         ("in mode m0", by_hand(0, QUARTERS, QUARTERS, **numbers)),
         (
@@ -311,7 +312,7 @@ def test_every_form_by_hand(acting, roundings):
         found = list(steps.forms(given_system))
         assert [where for where, _ in found] == [where for where, _ in true]
         for (_, form), (_, form_by_hand) in zip(found, true, strict=True):
-            assert is_positive_multiple(form, form_by_hand)
+            assert is_in_other_units(form, form_by_hand)
 
 
 @pytest.mark.parametrize(

@@ -44,7 +44,8 @@ def test_tissue_page(tissue):
 
 def test_actuator_page(actuator):
     page = render_html(actuator)
-    for text in ("Velocity over command", "Armature resistance", "Slowest and fastest"):
+    held = "The range holds gain and time constant of the recorded motor, both at once with 95 %"
+    for text in ("Velocity over command", "Armature resistance", "Slowest and fastest", held):
         assert text in page
     names = [item.name for item in actuator.illustrations]
     assert names == ["bode", "angle-actuator-2hz", "angle-actuator-15hz"]

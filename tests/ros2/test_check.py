@@ -81,3 +81,14 @@ def test_no_admittance_controller(tmp_path):
     file.write_text("arm:\n  ros__parameters: {joints: [a]}\n")
     with pytest.raises(SpecError, match="no admittance controller is among its nodes"):
         statuses(file, Question((0, 0), SOFT, None))
+
+
+def test_a_controller_that_runs_without_a_node_of_its_name(tmp_path):
+    other = ("    admittance_controller:", "    admittance:")
+    renamed = changed(tmp_path, other)
+    found, _, _ = statuses(renamed, Question((0, 2), SOFT, None))
+    (caution,) = [item for item in found.cautions if "no node of this name" in item.message]
+    assert caution.message.startswith("admittance: runs as")
+    anyone = changed(tmp_path, other, ("\nadmittance_controller:", "\n/**:"))
+    found, _, _ = statuses(anyone, Question((0, 2), SOFT, None))
+    assert not any("no node" in item.message for item in found.cautions)

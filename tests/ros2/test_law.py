@@ -51,6 +51,12 @@ def test_what_keeps_the_controller_from_starting(tmp_path, old, new, message):
     assert caught.value.line is not None
 
 
+def test_a_misspelt_name_is_told(tmp_path):
+    with pytest.raises(SpecError) as caught:
+        read_law(controller(changed(tmp_path, ("damping_ratio:", "damping_ratios:"))))
+    assert caught.value.remedy == "write admittance.damping_ratio for admittance.damping_ratios"
+
+
 def test_which_nodes_are_admittance_controllers():
     manager, node = read_nodes(EXAMPLE)
     assert not is_admittance(manager, {})

@@ -160,7 +160,7 @@ def test_threshold_of_dayawansa_and_martin(bits):
     assert decide(above) is CommonQuadraticStatus.IMPOSSIBLE
 
 
-@pytest.mark.parametrize("bits", [30, 60, 200])
+@pytest.mark.parametrize("bits", [30, pytest.param(60, marks=pytest.mark.slow), 200])
 def test_never_wrong_beyond_the_digits_of_floating_point(bits):
     below, above = (family(*dayawansa_martin_at(root)) for root in near_root_of_two(bits))
     for system, wrong in (

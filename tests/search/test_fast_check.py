@@ -3,6 +3,7 @@
 import json
 from dataclasses import replace
 from fractions import Fraction
+from itertools import islice
 
 import pytest
 from hypothesis import given, settings
@@ -111,13 +112,14 @@ def test_nothing_is_clear_that_the_plain_check_would_not_accept(M):
     assert not is_clearly_positive_definite(M)
 
 
+@pytest.mark.parametrize("every", [5, pytest.param(1, marks=pytest.mark.slow)])
 @pytest.mark.parametrize("example", SYSTEMS)
-def test_genuine_and_forged_evidence_meets_the_same_answer(example, monkeypatch):
+def test_genuine_and_forged_evidence_meets_the_same_answer(example, every, monkeypatch):
     monkeypatch.setattr(fast_check, "PACKED_ORDER", 1)
     system, evidence = genuine(example)
     assert find_fault(evidence, system) is None
     stored = json.loads(json.dumps({"kind": evidence.kind, **evidence.to_fields()}))
-    for words, fields in mutations(stored):
+    for words, fields in islice(mutations(stored), None, None, every):
         try:
             forged = read_evidence(fields, system)
         except REJECTIONS:

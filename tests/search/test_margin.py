@@ -253,6 +253,7 @@ class TestDwell:
 
 
 class TestOfSpecs:
+    @pytest.mark.slow
     def test_box_of_the_robot(self):
         """The design is kept: the box is about the gains that ship."""
         result = run_certification(read_spec(SOFT_TISSUE), limits=QUICK)

@@ -1,5 +1,7 @@
 """Goals in a spec: what is read, and what is refused with its place."""
 
+from fractions import Fraction
+
 import pytest
 
 from nrs_design.spec.describe import describe
@@ -81,7 +83,7 @@ def test_goals_without_a_controller_in_contact_are_refused():
     assert "no controller that a goal applies to" in error.message
 
 
-@pytest.mark.parametrize("goal", ["peak_torque: 0.3 N*m", "decay_rate: 1 1/s"])
+@pytest.mark.parametrize("goal", ["peak_torque: 0.3 N*m", "decay_rate: 1 1/s", "delay: 4 ms"])
 def test_a_goal_for_all_controllers_together_is_none_of_one(goal):
     error = refusal(own(f"goals: {{{goal}}}"))
     assert "for all controllers together" in error.message
@@ -97,3 +99,12 @@ def test_a_torque_is_wanted_only_where_something_causes_one():
     assert float(spec.goals.peak_torque.exact) == 0.3
     rows = {row.name: row for row in describe(spec)}
     assert rows["goals.peak_torque"].written == "0.3 N*m"
+
+
+def test_a_delay_is_wanted_only_of_a_sampled_loop():
+    error = refusal(with_goals("goals: {delay: 4 ms}\n"))
+    assert "has no samples" in error.message
+    assert "min_delay_margin" in error.remedy
+    spec = interaction(with_goals("goals: {delay: 4 ms}\nsampling: {period: 2 ms, delay: 1}\n"))
+    assert spec.goals.delay.exact == Fraction(4, 1000)
+    assert spec.sampling.oldest == Fraction(2, 1000)

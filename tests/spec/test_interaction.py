@@ -14,6 +14,7 @@ from nrs_design.spec import (
     parse_spec,
 )
 from nrs_design.spec.controllers import contact_names, touched_in
+from nrs_design.spec.describe import describe
 from nrs_design.spec.environment import KelvinBoltzmannSpec, MaxwellSpec
 from tests.support import SOFT_TISSUE
 
@@ -230,6 +231,8 @@ IMPEDANCE_FAULTS = [
     ("name: sample", "name: a\ntitle: " + "t" * 201, "ttt", "201 characters"),
     ("  gain: 4.8417e-4 rad/s/rpm\n", "", "actuator", "`actuator.gain` is missing"),
     ("4.8417e-4 rad/s/rpm", "4.8417e-4 rad/s", "4.8417e-4", "write '4.8417e-4 rad/s/rpm'"),
+    ("4.8417e-4 rad/s/rpm", "0.145 rad/s/V", "0.145", "commands in V, and the motor takes rpm"),
+    ("  gain: 4.8417e-4 rad/s/rpm\n", "  command: W\n  gain: 1 rad/s/V\n", "W", "'rpm', 'V', 'A'"),
     ("0.0351 s", "0 s", "0 s", "must be positive"),
     ("0.0351 s", "-0.0351 s", "-0.0351", "must be positive"),
     ("0.0351 s", "0.0351", "0.0351", "has no unit"),
@@ -268,6 +271,8 @@ IMPEDANCE_FAULTS = [
     ("  soft:", "  1:", "1:", "not text"),
     ("  soft:", "  'so ft':", "'so ft'", "not a name"),
     ("  hand:", "  soft:", "soft:\n    model: kelvin", "there twice"),
+    ("type: impedance", "type: admittance", "admittance", "write impedance: it is called"),
+    ("type: impedance", "type: [impedance]", "[impedance]", "write one of impedance"),
     ("type: impedance", "type: impedence", "impedence", "did you mean impedance?"),
     ("environment: soft", "environment: sofd", "sofd", "did you mean soft?"),
     ("environment: soft", "environment: soft\n    contacts: []", "[]", "must not be empty"),
@@ -545,3 +550,36 @@ def test_no_environment_is_called_like_free_motion():
         parse_spec(
             re.sub(r"\bsoft:", "free:", text.replace("environment: soft", "environment: free"))
         )
+
+
+FRICTION = "sampling: {period: 2 ms, delay: 0}\ndisturbances: {friction: 55 counts}\n"
+INTERVALS = (
+    "time_constant: 0.0351 s\n  intervals: "
+    "{gain: [145 rad/s/mV, 146 rad/s/rpm], time_constant: [35 ms, 36 ms]}"
+)
+VOLTS = spoiled(IMPEDANCE, "gain: 4.8417e-4 rad/s/rpm", "command: V\n  gain: 145.2 rad/s/mV")
+
+
+def test_a_motor_that_takes_volts():
+    spec = interaction(VOLTS)
+    assert (spec.actuator.command, spec.actuator.gain.nominal.si) == ("V", 145200.0)
+    rows = {row.name: row for row in describe(spec)}
+    assert rows["actuator.gain"][1:] == ("145.2 rad/s/mV", "145200", "rad/s/V")
+    assert rows["actuator.command"].written == "V"
+    assert interaction(IMPEDANCE).actuator.command == "rpm"
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "at"),
+    [
+        ("time_constant: 0.0351 s", INTERVALS, "{gain: [145"),
+        ("0.1404 s", "0.1404 s\n  derivative_gain: 2060 rpm*s/rad", "2060"),
+        ("0.1404 s", "0.1404 s\n  derivative_gain: 7 A*s/rad", "7 A"),
+        ("switching:", FRICTION + "switching:", "55 counts"),
+    ],
+)
+def test_everything_about_commands_is_in_the_unit_of_the_motor(old, new, at):
+    error = refusal(spoiled(VOLTS, old, new))
+    assert "the motor takes V" in error.message
+    place = place_of(spoiled(VOLTS, old, new), at)
+    assert error.line == place[0]

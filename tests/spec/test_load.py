@@ -143,7 +143,7 @@ def _mutated(sample: str, seed: int) -> str:
 
 
 @given(st.sampled_from([IMPEDANCE, FORCE, SWITCHED]), st.integers(0, 2**32))
-@settings(max_examples=300, deadline=None)
+@settings(max_examples=120, deadline=None)
 def test_spoiled_specs_load_or_are_refused_inside_the_file(sample: str, seed: int) -> None:
     text = _mutated(sample, seed)
     try:

@@ -87,6 +87,14 @@ def test_tensor_instead_of_rod() -> None:
         ("encoder_counts: 8192", "encoder_counts: 8192.5", "integer", "8192.5"),
         ("encoder_counts: 8192", "encoder_counts: 1", "integer", None),
         ("coulomb_friction: 276.575 rpm", "coulomb_friction: 29 rad/s", "never converted", "29 "),
+        ("4.8417e-4 rad/s/rpm", "0.145 rad/s/V", "the motor takes rpm", "0.145"),
+        ("2060 rpm*s/rad", "6.9 V*s/rad", "the motor takes rpm", "6.9 V"),
+        (
+            "coulomb_friction: 276.575 rpm",
+            "coulomb_friction: 0.9 V",
+            "the motor takes rpm",
+            "0.9 V",
+        ),
         ("{min: 150 mm, max: 250 mm}", "{min: 250 mm, max: 150 mm}", "below min", None),
         ("base_tilt: 0 deg", "base_tilt: 0 rad/s", "angular velocity", "0 rad/s"),
         ("  left:\n    # Rec", "  lift:\n    # Rec", "unknown key `legs.lift`", "lift"),
@@ -126,6 +134,6 @@ def test_description_lists_every_quantity() -> None:
 
 
 def test_units_of_a_dimension() -> None:
-    assert si_unit((0, 0, 0, 0, 0)) == "1"
-    assert si_unit((0, 0, -1, 0, 0)) == "1/s"
-    assert si_unit((1, 2, -2, -1, 0)) == "kg*m^2/s^2/rad"
+    assert si_unit((0,) * 8) == "1"
+    assert si_unit((0, 0, -1, 0, 0, 0, 0, 0)) == "1/s"
+    assert si_unit((1, 2, -2, -1, 0, 0, 0, 0)) == "kg*m^2/s^2/rad"

@@ -1,5 +1,6 @@
 import json
 from collections.abc import Iterator
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -33,9 +34,14 @@ DWELL = spoiled(SWITCHED, "switching: arbitrary", "switching: {dwell_time: 2.76 
 STEPS = SWITCHED.replace("continuous", "discrete").replace("arbitrary", "{dwell_time: 3 steps}")
 
 
+@cache
+def validator() -> Draft7Validator:
+    return Draft7Validator(json_schema())
+
+
 def faults(text: str) -> list[str]:
     data = YAML(typ="safe", pure=True).load(text)
-    return [error.message for error in Draft7Validator(json_schema()).iter_errors(data)]
+    return [error.message for error in validator().iter_errors(data)]
 
 
 def test_the_schema_is_draft_7() -> None:

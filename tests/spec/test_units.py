@@ -68,6 +68,10 @@ def test_same_dimension(a: str, b: str) -> None:
         ("rpm", "rad/s"),
         ("rad/s/rpm", "1"),
         ("rad/s*rpm", "rad/s/rpm"),
+        ("rad/s/V", "rad/s/rpm"),
+        ("rad/s/V", "rad/s/A"),
+        ("V", "counts"),
+        ("V*A", "N*m/s"),
     ],
 )
 def test_different_dimension(a: str, b: str) -> None:

@@ -9,7 +9,7 @@ from nrs_design.models.contact import HuntCrossley
 from nrs_design.models.motion_loop import realize
 from nrs_design.models.plant import build_plant
 from nrs_design.pipeline import run_certification, run_design
-from nrs_design.spec import parse_spec, read_spec
+from nrs_design.spec import LoadedSpec, parse_spec, read_spec
 from nrs_design.switched.assemble import assemble
 from tests.support import ROBOT
 
@@ -22,6 +22,16 @@ def proved():
     result = run_certification(read_spec(CONCHA))
     assert result.certification.verdict == "proved"
     return result
+
+
+def test_what_the_range_of_a_motor_holds_is_assumed():
+    text = (ROBOT / "soft-tissue.nrs.yaml").read_text()
+    gain = "gain: {nominal: 4.8e-4 rad/s/rpm, range: [4.7e-4 rad/s/rpm, 4.9e-4 rad/s/rpm]}"
+    text = text.replace("gain: 4.8417e-4 rad/s/rpm", f"{gain}\n  range_covers: prediction")
+    designed = run_design(LoadedSpec(ROBOT, "", text, parse_spec(text)))
+    system = assemble(designed.spec, designed.plant, designed.design, "deflection")
+    said = "The range of the actuator was identified to hold the next record with 95 % probability."
+    assert said in system.assumptions
 
 
 def hunt_crossley(rng):

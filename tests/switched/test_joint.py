@@ -5,6 +5,7 @@ The verdicts and rates were found by an independent program.
 
 from dataclasses import replace
 from fractions import Fraction
+from functools import cache
 
 import pytest
 from hypothesis import given
@@ -95,11 +96,16 @@ def _trace(A, power):
     return sum(M[i][i] for i in range(len(M)))
 
 
+@cache
+def corners_of_the_motor():
+    system = thesis_robot(SOFT, INSERTION, "0.01", "0.1", contact="kept")
+    return {m.name.split("/", 3)[3]: m.A.fractions() for m in system.modes if "k-min" in m.name}
+
+
 @given(*[st.fractions(0, 1, max_denominator=20)] * 2)
 def test_every_motor_of_the_ranges_is_an_average_of_corners(gain, share):
     """Affine in Km, and in one over tau: weights are products."""
-    system = thesis_robot(SOFT, INSERTION, "0.01", "0.1", contact="kept")
-    corners = {m.name.split("/", 3)[3]: m.A.fractions() for m in system.modes if "k-min" in m.name}
+    corners = corners_of_the_motor()
     low, high = (Fraction("0.0351") * (1 + Fraction(s, 10)) for s in (-1, 1))
     tau = 1 / ((1 - share) / low + share / high)
     Km = Fraction("4.8417e-4") * (Fraction(9, 10) + gain / 5)

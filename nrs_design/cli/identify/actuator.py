@@ -9,6 +9,7 @@ import typer
 from nrs_design.cli.identify.common import (
     SYNTHETIC,
     ColumnMap,
+    CoversOption,
     DataFiles,
     Outputs,
     ReportTo,
@@ -35,6 +36,10 @@ def actuator(
         float, typer.Option(min=1e-15, help="At the motor shaft, in kg m^2.")
     ] = 14.81e-7,
     reduction: Annotated[float, typer.Option(min=1e-9, help="Gearhead ratio N.")] = 181.0,
+    covers: Annotated[
+        CoversOption,
+        typer.Option(help="What the range holds: this motor, 95 % of records, or the next one."),
+    ] = CoversOption.CONFIDENCE,
     write: WriteTo = None,
     report: ReportTo = None,
     date: Date = None,
@@ -59,7 +64,8 @@ def actuator(
     items = read_all(data, read_actuator, columns or [], quiet=quiet)
     series = [(item,) if isinstance(item, FrequencyResponse) else item for item in items]
     with progress("fitting", quiet=quiet) as step:
-        found = identify_actuator([item for group in series for item in group], motor, step)
+        items_of_all = [item for group in series for item in group]
+        found = identify_actuator(items_of_all, motor, covers.value, step)
     outputs.deliver(
         "identify-actuator",
         summary=lambda: _summary(found),
@@ -99,6 +105,10 @@ def _print(found: ActuatorIdentification) -> None:
     motor = found.chosen.motor
     if motor is not None and motor.damping is not None:
         say(f"second order: damping ratio {motor.damping:.4g}; time constants add up")
+    if found.chosen.order == 1:
+        gain, time_constant = found.ranges
+        say(f"range: gain {gain} (rad/s)/{unit}, time constant {time_constant} s")
+        say(f"the range holds {found.covers}")
     if found.figures is not None:
         say(f"R = {found.figures.resistance} ohm")
         say(f"speed over torque = {found.figures.gradient} rpm/(N m)")
@@ -117,6 +127,12 @@ def _summary(found: ActuatorIdentification) -> dict[str, Any]:
         "reason": found.reason,
         "doubts": list(found.doubts),
         "fits": [_fit(fit, found) for fit in found.fits],
+        "range": {
+            f"gain_rad_s_{found.unit}": numbers(found.ranges[0]),
+            "time_constant_s": numbers(found.ranges[1]),
+        },
+        "range_covers": found.coverage,
+        "range_covers_words": found.covers,
         "resistance_ohm": numbers(figures.resistance) if figures else None,
         "speed_torque_gradient_rpm_per_Nm": numbers(figures.gradient) if figures else None,
         "response": [

@@ -7,6 +7,7 @@ import sys
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
+from enum import StrEnum
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Self, TypeVar
 
@@ -37,6 +38,16 @@ ReportTo = Annotated[
     Path | None,
     typer.Option("--report", metavar="FILE", help="Write a page with figures (.html or .pdf)."),
 ]
+
+
+class CoversOption(StrEnum):
+    """What the range in a spec holds."""
+
+    CONFIDENCE = "confidence"
+    TOLERANCE = "tolerance"
+    PREDICTION = "prediction"
+
+
 SYNTHETIC = "SYNTHETIC data: made by a simulation, not measured."
 
 T = TypeVar("T")

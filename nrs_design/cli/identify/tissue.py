@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 from nrs_design.cli.identify.common import (
     SYNTHETIC,
     ColumnMap,
+    CoversOption,
     DataFiles,
     Outputs,
     ReportTo,
@@ -19,7 +20,6 @@ from nrs_design.cli.identify.tissue_options import (
     Contact,
     ContactOption,
     Covers,
-    CoversOption,
     Drift,
     DriftOption,
     End,

@@ -7,6 +7,8 @@ from typing import Annotated
 
 import typer
 
+from nrs_design.cli.identify.common import CoversOption
+
 
 class ModelOption(StrEnum):
     """Laws by name."""
@@ -32,14 +34,6 @@ class DriftOption(StrEnum):
     AUTO = "auto"
     FIT = "fit"
     NONE = "none"
-
-
-class CoversOption(StrEnum):
-    """What the range in a spec holds."""
-
-    CONFIDENCE = "confidence"
-    TOLERANCE = "tolerance"
-    PREDICTION = "prediction"
 
 
 Model = Annotated[ModelOption, typer.Option(help="Law to choose; auto compares them all.")]

@@ -9,6 +9,7 @@ from nrs_design.cli.robot.balance import balance
 from nrs_design.cli.robot.check import check
 from nrs_design.cli.robot.correction import correction
 from nrs_design.cli.robot.dynamics import dynamics
+from nrs_design.cli.robot.export import export
 from nrs_design.cli.robot.kinematics import kinematics
 from nrs_design.cli.robot.track import track
 
@@ -25,5 +26,6 @@ robot.command("dynamics")(dynamics)
 robot.command("correction")(correction)
 robot.command("balance")(balance)
 robot.command("track")(track)
+robot.command("export")(export)
 
 __all__ = ["robot"]

@@ -6,19 +6,15 @@ import typer
 
 from nrs_design.cli.groups import CommandGroup
 from nrs_design.cli.ros2.check import check
+from nrs_design.cli.ros2.export import export
 
 ros2 = typer.Typer(
     name="ros2",
     cls=CommandGroup,
     no_args_is_help=True,
-    help="Check the parameters of controllers of ROS 2; no ROS is needed.",
+    help="Check and write the parameters of controllers of ROS 2; no ROS is needed.",
 )
 ros2.command("check")(check)
-
-
-@ros2.callback()
-def _group() -> None:
-    """Hold the commands: without it, Typer takes a single command for the group."""
-
+ros2.command("export")(export)
 
 __all__ = ["ros2"]

@@ -12,8 +12,9 @@ import typer
 from nrs_design.cli.gate import OF_SEVERITY, GateFormat, format_of
 from nrs_design.cli.options import Json, Quiet
 from nrs_design.cli.printing import note, progress, say, say_failure
+from nrs_design.cli.ros2.options import Lag, range_of, read_lag
 from nrs_design.errors import NrsDesignError, SpecError
-from nrs_design.spec.quantity import QuantityKind, parse_quantity
+from nrs_design.spec.quantity import QuantityKind
 
 if TYPE_CHECKING:
     from nrs_design.gating.obligations import GateOutcome, SpecOutcome
@@ -21,7 +22,6 @@ if TYPE_CHECKING:
 LONGEST_AGE = 20
 STIFFNESS = QuantityKind("a stiffness for translations", ("N/m",), "200..2000 N/m")
 ROTATIONAL = QuantityKind("a stiffness for rotations", ("N*m/rad",), "5..40 N*m/rad")
-LAG = QuantityKind("a time", ("s",), "5..20 ms")
 
 
 def check(
@@ -40,12 +40,7 @@ def check(
         str,
         typer.Option(metavar="RANGE", help="Age of the measured pose and force in periods: 1..3."),
     ] = "0",
-    lag: Annotated[
-        str,
-        typer.Option(
-            metavar="RANGE", help="Time constant with which the robot follows, such as '5..20 ms'."
-        ),
-    ] = "0 ms",
+    lag: Lag = "0 ms",
     rate: Annotated[
         str | None,
         typer.Option(metavar="HZ", help="Of the control loop; default: update_rate in the file."),
@@ -79,10 +74,10 @@ def check(
     chosen = format_of(format_, as_json=as_json)
     question = Question(
         _ages(age),
-        _range_of("--stiffness", stiffness, STIFFNESS),
-        _range_of("--rotational-stiffness", rotational_stiffness, ROTATIONAL),
+        range_of("--stiffness", stiffness, STIFFNESS),
+        range_of("--rotational-stiffness", rotational_stiffness, ROTATIONAL),
         None if rate is None else _rate(rate),
-        _range_of("--lag", lag, LAG) or (Fraction(0), Fraction(0)),
+        read_lag(lag),
     )
     with progress("checking", quiet=quiet) as step:
         outcome = check_file(file, question, Limits(budget=budget), step)
@@ -128,25 +123,6 @@ def _ages(text: str) -> tuple[int, int]:
             remedy="write --age 0..2",
         )
     return ages
-
-
-def _range_of(
-    option: str, text: str | None, kind: QuantityKind
-) -> tuple[Fraction, Fraction] | None:
-    if text is None:
-        return None
-    numbers, _, unit = text.partition(" ")
-    low, _, high = numbers.partition("..")
-    try:
-        ends = [parse_quantity(f"{n} {unit}".strip(), kind).exact for n in (low, high or low)]
-    except SpecError as error:
-        raise NrsDesignError(f"{option}: {error.message}", remedy=error.remedy) from None
-    if not 0 <= ends[0] <= ends[1]:
-        raise NrsDesignError(
-            f"{option}: {text!r} is not a rising range from zero or above",
-            remedy=f"write '{kind.example}'",
-        )
-    return ends[0], ends[1]
 
 
 def _rate(text: str) -> Fraction:

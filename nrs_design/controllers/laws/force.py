@@ -10,6 +10,7 @@ from typing import ClassVar
 
 from nrs_design.controllers.float32 import to_float32
 from nrs_design.controllers.laws.law import AbstractCompliantLaw, Response
+from nrs_design.controllers.sampled import SampledForce
 from nrs_design.models.linear_form import LinearForm, combine
 from nrs_design.spec.controllers import Command, ForceControllerSpec
 
@@ -33,6 +34,10 @@ class ProportionalForce(AbstractCompliantLaw[ForceControllerSpec]):
     def respond(self, force: LinearForm, states: Sequence[LinearForm]) -> Response:
         """Return ``-Kp F``: in contact with a spring ``A = Ap - Bp Kp k Cp`` (thesis 6.46)."""
         return combine((-self.Kp, force)), []
+
+    def sampled(self, period: Fraction, method: str) -> SampledForce:
+        """Return the gain: the law has no memory."""
+        return SampledForce(self.Kp)
 
     def find_fault(self, given: ForceControllerSpec) -> str | None:
         """Say if the gain is negative, or another one than the spec fixes."""

@@ -12,7 +12,7 @@ from dataclasses import dataclass, fields
 from fractions import Fraction
 from typing import ClassVar, Generic, Self, TypeVar
 
-from nrs_design.controllers.sampled import SampledAdmittance
+from nrs_design.controllers.sampled import SampledLaw
 from nrs_design.models.linear_form import LinearForm
 from nrs_design.spec.controllers import AbstractControllerSpec, Command
 
@@ -85,7 +85,7 @@ class AbstractCompliantLaw(AbstractLaw, Generic[S]):
             Those named in `states`.
         """
 
-    def sampled(self, period: Fraction, method: str) -> SampledAdmittance | None:
+    def sampled(self, period: Fraction, method: str) -> SampledLaw | None:
         """Return what a processor computes once a period in s, or None where that is not modelled.
 
         Raises

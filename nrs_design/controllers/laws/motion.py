@@ -13,14 +13,14 @@ from nrs_design.controllers.laws.law import AbstractLaw
 
 @dataclass(frozen=True, slots=True)
 class ProportionalDerivative(AbstractLaw):
-    """Motion control ``delta = Kp e + Kd e'`` (thesis 4.3), e in rad, delta in rpm.
+    """Motion control ``delta = Kp e + Kd e'`` (thesis 4.3), e in rad, delta a command.
 
     Parameters
     ----------
     Kp : Fraction
-        In rpm/rad.
+        In rpm/rad, or whatever the motor takes instead of rpm.
     Kd : Fraction
-        In rpm s/rad.
+        In rpm s/rad, likewise.
     """
 
     name: ClassVar[str] = "motion"
@@ -28,6 +28,11 @@ class ProportionalDerivative(AbstractLaw):
 
     Kp: Fraction
     Kd: Fraction
+
+    @staticmethod
+    def units_in(command: str) -> Mapping[str, str]:
+        """Return the units of the gains where commands are in that unit."""
+        return {"Kp": f"{command}/rad", "Kd": f"{command}*s/rad"}
 
     @property
     def zero(self) -> Fraction:

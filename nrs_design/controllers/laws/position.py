@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from fractions import Fraction
 from types import MappingProxyType
 from typing import ClassVar
 
 from nrs_design.controllers.laws.law import AbstractCompliantLaw, Response
+from nrs_design.controllers.sampled import SampledForce
 from nrs_design.models.linear_form import LinearForm, zero
 from nrs_design.spec.controllers import Command, PositionControllerSpec
 
@@ -23,6 +25,10 @@ class PositionControl(AbstractCompliantLaw[PositionControllerSpec]):
     def respond(self, force: LinearForm, states: Sequence[LinearForm]) -> Response:
         """Return no correction."""
         return zero(len(force)), []
+
+    def sampled(self, period: Fraction, method: str) -> SampledForce:
+        """Return the law that takes no force."""
+        return SampledForce(Fraction(0))
 
     @classmethod
     def contact_text(cls, *, alone: bool) -> None:

@@ -16,8 +16,10 @@ from nrs_design.identification.actuator.phasors import Phasors, phasors_of
 from nrs_design.identification.actuator.scan import scan_motor
 from nrs_design.identification.actuator.time_fit import TimeFit, fit_in_time
 from nrs_design.identification.datasets import ActuatorRecord, FrequencyResponse, Source
-from nrs_design.identification.statistics import WHITE
+from nrs_design.identification.statistics import WHITE, Estimate
+from nrs_design.identification.tissue.ranges import check_spread, spread_ranges
 from nrs_design.models.actuator import MotorConstants
+from nrs_design.spec.provenance import MOTOR_COVERS, Coverage
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -59,6 +61,10 @@ class ActuatorIdentification:
         Of the command.
     step : float or None
         Usual time between samples in s; None for a ready response.
+    coverage : {"confidence", "tolerance", "prediction"}
+        What the ranges hold.
+    ranges : tuple of Estimate
+        Of gain and time constant, for a spec.
     """
 
     sources: tuple[Source, ...]
@@ -73,6 +79,13 @@ class ActuatorIdentification:
     doubts: tuple[str, ...] = ()
     unit: str = "rpm"
     step: float | None = None
+    coverage: Coverage = "confidence"
+    ranges: tuple[Estimate, ...] = ()
+
+    @property
+    def covers(self) -> str:
+        """What the ranges hold, in words."""
+        return MOTOR_COVERS[self.coverage]
 
     @property
     def caveats(self) -> tuple[str, ...]:
@@ -96,6 +109,7 @@ class ActuatorIdentification:
 def identify_actuator(
     data: Sequence[ActuatorRecord | FrequencyResponse],
     motor: MotorConstants,
+    coverage: Coverage = "confidence",
     progress: Callable[[str], None] = lambda step: None,
 ) -> ActuatorIdentification:
     """Fit gain, time constant, friction and dead time.
@@ -106,14 +120,19 @@ def identify_actuator(
         Records of any commands that move the motor, or one ready frequency response.
     motor : MotorConstants
         Data sheet, for resistance and speed-torque gradient.
+    coverage : {"confidence", "tolerance", "prediction"}
+        What the ranges for a spec hold: the recorded motor, or other records too.
     progress : callable
         Told the name of each step.
 
     Raises
     ------
     DataError
-        If there are no data, both kinds are mixed, or they do not determine the model.
+        If there are no data, both kinds are mixed, or they do not determine the model; or if a
+        range for other records is wanted, and there is one record only.
     """
+    if coverage != "confidence":
+        check_spread(coverage, len(data))
     responses = [item for item in data if isinstance(item, FrequencyResponse)]
     records = [item for item in data if isinstance(item, ActuatorRecord)]
     if not data or (responses and records) or len(responses) > 1:
@@ -134,7 +153,30 @@ def identify_actuator(
     progress("complex response")
     if responses:
         return _from_response(responses[0], motor)
-    return _from_records(records, motor, progress)
+    found = _from_records(records, motor, progress)
+    if coverage == "confidence":
+        return found
+    progress("each record by itself")
+    return replace(found, coverage=coverage, ranges=_spread(records, coverage))
+
+
+def _spread(records: Sequence[ActuatorRecord], coverage: Coverage) -> tuple[Estimate, ...]:
+    """Return ranges that hold other records, from a fit to each of these by itself."""
+    fits = [fit_of(record.name, _alone(record)) for record in records]
+    single = [(fit.gain, fit.time_constant) for fit in fits]
+    logarithms = np.log([[estimate.value for estimate in row] for row in single])
+    return spread_ranges(coverage, logarithms, single)
+
+
+def _alone(record: ActuatorRecord) -> TimeFit:
+    try:
+        return _first_order([record])
+    except DataError as error:
+        raise DataError(
+            f"{record.name} alone does not determine the motor: {error.message}",
+            path=record.source.path,
+            remedy="give records that each do, such as steps or chirps; or leave --covers out",
+        ) from None
 
 
 def _from_response(data: FrequencyResponse, motor: MotorConstants) -> ActuatorIdentification:
@@ -147,6 +189,7 @@ def _from_response(data: FrequencyResponse, motor: MotorConstants) -> ActuatorId
         chosen=fit,
         reason="A ready response allows nothing else; friction cannot be told from it.",
         figures=fit.figures(motor),
+        ranges=fit.ranges,
         frequency=data.frequency,
         response=data.response,
     )
@@ -179,6 +222,7 @@ def _from_records(
         response=_response(phasors, chosen),
         doubts=tuple(find_doubts(records, found, failed=_has_failed(records, found))),
         unit=records[0].unit,
+        ranges=chosen.ranges,
         step=min(record.step for record in records),
     )
 

@@ -50,6 +50,8 @@ class RunBounds:
         Of the processor that the proof is about, in s; None for a proof in continuous time.
     losable : bool
         Whether the spec asks for a proof that holds while contact is lost.
+    proved : bool
+        Whether a valid certificate proves the spec; else it is only declared.
     """
 
     stiffness: Mapping[str, Stiffness | None]
@@ -60,6 +62,12 @@ class RunBounds:
     lever_arm: float | None
     period: float | None
     losable: bool
+    proved: bool = False
+
+    @property
+    def source(self) -> str:
+        """Who says so, in words: nobody who has no certificate reads of a proof."""
+        return "the proof" if self.proved else "the spec, which is not proved"
 
     def stiffness_in(self, mode: str | None) -> Stiffness | None:
         """Return what a controller may meet; for None, what any of them may."""

@@ -29,7 +29,7 @@ class _Judged:
 
 
 def judge_contact(
-    log: RunLog, bounds: RunBounds, length: float, *, proved: bool, losable: bool
+    log: RunLog, bounds: RunBounds, length: float, *, losable: bool
 ) -> tuple[Check, Check, list[Window]]:
     """Judge stiffness and contact; a violation is claimed only where a whole interval is outside.
 
@@ -41,12 +41,10 @@ def judge_contact(
         What the spec promises.
     length : float
         Of a window, in s.
-    proved : bool
-        Whether that is proved.
     losable : bool
         Whether contact may be lost.
     """
-    basis = "proved range" if proved else "range of the spec, not proved"
+    basis = "proved range" if bounds.proved else "range of the spec, not proved"
     reason = _missing(log, bounds)
     if reason:
         return _not_judged("stiffness", reason), _not_judged("contact", reason), []
@@ -65,7 +63,7 @@ def judge_contact(
     if told and sum(w.high < 0 for w in told) > _OPPOSED * len(told):
         reason = "force and deflection have opposite signs; turn one with another column"
         return _not_judged("stiffness", reason), _not_judged("contact", reason), windows
-    contact = _losable(judged, proved=proved) if losable else _contact(log, judged, windows)
+    contact = _losable(bounds, judged) if losable else _contact(log, bounds, judged, windows)
     return _stiffness(log, judged, basis), contact, windows
 
 
@@ -138,15 +136,15 @@ def _stiffness(log: RunLog, judged: list[_Judged], basis: str) -> Check:
     return Check("stiffness", status, measured, allowed, basis)
 
 
-def _losable(judged: list[_Judged], *, proved: bool) -> Check:
+def _losable(bounds: RunBounds, judged: list[_Judged]) -> Check:
     free = sum(item.free for item in judged)
     measured = f"{free} of {len(judged)} windows without contact"
-    basis = "covered by the proof" if proved else "asked for by the spec, not proved"
+    basis = "covered by the proof" if bounds.proved else "asked for by the spec, not proved"
     return Check("contact", Status.INSIDE, measured, "lost and made again at any time", basis)
 
 
-def _contact(log: RunLog, judged: list[_Judged], windows: list[Window]) -> Check:
-    allowed, basis = "kept all the time", "assumption of the proof"
+def _contact(log: RunLog, bounds: RunBounds, judged: list[_Judged], windows: list[Window]) -> Check:
+    allowed, basis = "kept all the time", f"assumption of {bounds.source}"
     free = [item for item in judged if item.free]
     if not free:
         status = Status.INSIDE if judged and len(judged) == len(windows) else Status.UNDECIDED

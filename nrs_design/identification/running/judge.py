@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from nrs_design.identification.running.bounds import RunBounds
 from nrs_design.identification.running.check import Check, Status
@@ -31,8 +31,6 @@ class RunJudgement:
         The data.
     bounds : RunBounds
         What the spec promises.
-    proved : bool
-        Whether a valid certificate for this spec proves it; otherwise bounds are only declared.
     checks : tuple of Check
         One for each bound.
     windows : tuple of Window
@@ -41,7 +39,6 @@ class RunJudgement:
 
     log: RunLog
     bounds: RunBounds
-    proved: bool
     checks: tuple[Check, ...]
     windows: tuple[Window, ...]
 
@@ -58,7 +55,7 @@ class RunJudgement:
         if Status.OUTSIDE in statuses:
             return "outside"
         open_ends = {Status.UNDECIDED, Status.NOT_JUDGED} & statuses
-        return "inside" if self.proved and not open_ends else "inconclusive"
+        return "inside" if self.bounds.proved and not open_ends else "inconclusive"
 
 
 def judge_run(
@@ -87,8 +84,9 @@ def judge_run(
     command_limit : float, optional
         Where the driver saturates, in units of the command.
     """
+    bounds = replace(bounds, proved=proved)
     stiffness, contact, windows = judge_contact(
-        log, bounds, window, proved=proved, losable=losable if proved else bounds.losable
+        log, bounds, window, losable=losable if proved else bounds.losable
     )
     checks = (
         stiffness,
@@ -96,7 +94,7 @@ def judge_run(
         judge_stays(log, bounds),
         judge_delay(log, bounds),
         judge_jitter(log, bounds),
-        judge_saturation(log, command_limit),
+        judge_saturation(log, bounds, command_limit),
         judge_force(log, bounds),
     )
-    return RunJudgement(log, bounds, proved, checks, tuple(windows))
+    return RunJudgement(log, bounds, checks, tuple(windows))

@@ -13,7 +13,9 @@ from nrs_design.identification.running.log import RunLog
 from nrs_design.identification.running.stiffness import noise_variance
 from nrs_design.identification.statistics import CONFIDENCE, student_quantile
 
-_ASSUMED = "taken for granted by the proof"
+
+def _assumed(bounds: RunBounds) -> str:
+    return f"taken for granted by {bounds.source}"
 
 
 def judge_delay(log: RunLog, bounds: RunBounds) -> Check:
@@ -40,7 +42,7 @@ def judge_delay(log: RunLog, bounds: RunBounds) -> Check:
     if found.doubts:
         return Check("delay", Status.NOT_JUDGED, f"{words}, in doubt: {found.doubts[0]}", "", "")
     if bounds.delay is None:
-        return Check("delay", Status.NOT_MODELLED, words, _time_of(bounds), _ASSUMED)
+        return Check("delay", Status.NOT_MODELLED, words, _time_of(bounds), _assumed(bounds))
     status = Status.UNDECIDED if high >= bounds.delay else Status.INSIDE
     first = None
     if low > bounds.delay:
@@ -61,25 +63,29 @@ def judge_jitter(log: RunLog, bounds: RunBounds) -> Check:
     """
     steps = np.diff(log.time)
     words = f"steps from {steps.min():.4g} to {steps.max():.4g} s, usually {log.step:.4g} s"
-    return Check("jitter", Status.NOT_MODELLED, words, _time_of(bounds), _ASSUMED)
+    return Check("jitter", Status.NOT_MODELLED, words, _time_of(bounds), _assumed(bounds))
 
 
 def _time_of(bounds: RunBounds) -> str:
-    """Say what time the proof knows; there is no dead time of the motion in either."""
+    """Say what time the model knows; there is no dead time of the motion in either."""
+    model = "proof" if bounds.proved else "spec"
     if bounds.period is None:
-        return "none: the proof is in continuous time"
+        return f"none: the {model} is in continuous time"
     return (
-        f"none: the proof is about a motion that follows at once, sampled every {bounds.period:g} s"
+        f"none: the {model} is about a motion that follows at once, sampled every "
+        f"{bounds.period:g} s"
     )
 
 
-def judge_saturation(log: RunLog, limit: float | None) -> Check:
+def judge_saturation(log: RunLog, bounds: RunBounds, limit: float | None) -> Check:
     """Judge whether the command met its limit.
 
     Parameters
     ----------
     log : RunLog
         The data.
+    bounds : RunBounds
+        What the spec promises.
     limit : float or None
         Of the driver, in units of the command.
     """
@@ -93,10 +99,10 @@ def judge_saturation(log: RunLog, limit: float | None) -> Check:
     allowed = f"below {limit:g} {log.command_unit}"
     met = np.flatnonzero(size >= limit)
     if not len(met):
-        return Check("saturation", Status.INSIDE, largest, allowed, _ASSUMED)
+        return Check("saturation", Status.INSIDE, largest, allowed, _assumed(bounds))
     words = f"the command is {log.columns['command'][met[0]]:.5g} {log.command_unit}"
     first = Violation(log.begin + float(log.time[met[0]]), words)
-    return Check("saturation", Status.OUTSIDE, largest, allowed, _ASSUMED, first)
+    return Check("saturation", Status.OUTSIDE, largest, allowed, _assumed(bounds), first)
 
 
 def judge_force(log: RunLog, bounds: RunBounds) -> Check:
@@ -109,7 +115,9 @@ def judge_force(log: RunLog, bounds: RunBounds) -> Check:
     bounds : RunBounds
         What the spec promises.
     """
-    allowed, basis = f"up to {bounds.torque:g} N m", "limit of the spec, not of the proof"
+    allowed, basis = f"up to {bounds.torque:g} N m", "limit of the spec"
+    if bounds.proved:
+        basis += ", not of the proof"
     torque = log.columns.get("torque")
     if torque is None and "force" in log.columns and bounds.lever_arm is not None:
         torque = log.columns["force"] * bounds.lever_arm

@@ -13,7 +13,7 @@ from nrs_design.identification.running.bounds import RunBounds
 from nrs_design.identification.running.check import Check, Status, Violation
 from nrs_design.identification.running.log import RunLog
 
-_NAME, _BASIS = "dwell times", "switching rules of the proof"
+_NAME = "dwell times"
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,20 +36,20 @@ def judge_stays(log: RunLog, bounds: RunBounds) -> Check:
     bounds : RunBounds
         What the spec promises.
     """
-    allowed = _allowed(bounds)
+    allowed, basis = _allowed(bounds), f"switching rules of {bounds.source}"
     if log.modes is None:
         if not allowed:
-            return Check(_NAME, Status.INSIDE, "any switching is covered", "arbitrary", _BASIS)
-        return Check(_NAME, Status.NOT_JUDGED, "no column for mode", allowed, _BASIS)
+            return Check(_NAME, Status.INSIDE, "any switching is allowed", "arbitrary", basis)
+        return Check(_NAME, Status.NOT_JUDGED, "no column for mode", allowed, basis)
     stays = list(_stays(log))
     unknown = [stay.mode for stay in stays if stay.mode not in bounds.stays]
     if unknown:
         reason = f"{unknown[0]!r} is no controller of the spec"
-        return Check(_NAME, Status.NOT_JUDGED, reason, allowed, _BASIS)
+        return Check(_NAME, Status.NOT_JUDGED, reason, allowed, basis)
     measured = f"{len(stays) - 1} switches"
     first = next(_violations(stays, bounds), None)
     status = Status.INSIDE if first is None else Status.OUTSIDE
-    return Check(_NAME, status, measured, allowed or "arbitrary", _BASIS, first)
+    return Check(_NAME, status, measured, allowed or "arbitrary", basis, first)
 
 
 def _allowed(bounds: RunBounds) -> str:

@@ -235,12 +235,11 @@ def _errors(curve: int, w: Array, velocity: Array, force: Array) -> Array:
 def _left(curve: int, w: Array, velocity: Array, force: Array) -> Array:
     """Return what such curves leave of the force, of the shape of w."""
     terms = [np.ones_like(w), w, w**2, velocity * (w > 0), velocity * w]
-    X = np.stack(terms[:curve], axis=-1)
-    size = np.maximum(np.sqrt(np.einsum("...ni,...ni->...i", X, X)), np.finfo(float).tiny)
-    X /= size[..., None, :]
-    gram = np.einsum("...ni,...nj->...ij", X, X) + _RIDGE * np.eye(curve)
-    found = np.linalg.solve(gram, np.einsum("...ni,n->...i", X, force)[..., None])
-    return np.asarray(force - np.einsum("...ni,...i->...n", X, found[..., 0]))
+    X = np.stack(terms[:curve], axis=-2)
+    X /= np.maximum(np.linalg.norm(X, axis=-1, keepdims=True), np.finfo(float).tiny)
+    gram = X @ X.swapaxes(-1, -2) + _RIDGE * np.eye(curve)
+    found = np.linalg.solve(gram, (X @ force)[..., None])
+    return np.asarray(force - (found.swapaxes(-1, -2) @ X)[..., 0, :])
 
 
 def _is_flat(u: Array, force: Array, corner: float) -> bool:

@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from nrs_design.proof.evidence.conewise_mode_quadratic import ConewiseModeQuadratic
     from nrs_design.proof.evidence.conewise_polynomial import ConewisePolynomial
     from nrs_design.proof.evidence.conewise_quadratic import ConewiseQuadratic
+    from nrs_design.proof.evidence.coupled_axes import CoupledAxes
     from nrs_design.proof.evidence.invariant_ellipsoid import InvariantEllipsoid
     from nrs_design.proof.evidence.mode_polynomial import ModePolynomial
     from nrs_design.proof.evidence.mode_quadratic import ModeQuadratic
@@ -39,6 +40,7 @@ __all__ = [
     "ConewiseModeQuadratic",
     "ConewisePolynomial",
     "ConewiseQuadratic",
+    "CoupledAxes",
     "InvariantEllipsoid",
     "ModePolynomial",
     "ModeQuadratic",
@@ -61,6 +63,7 @@ KINDS: Mapping[str, str] = {
     "conewise-mode-quadratic": "ConewiseModeQuadratic",
     "conewise-polynomial": "ConewisePolynomial",
     "conewise-quadratic": "ConewiseQuadratic",
+    "coupled-axes": "CoupledAxes",
     "invariant-ellipsoid": "InvariantEllipsoid",
     "mode-polynomial": "ModePolynomial",
     "mode-quadratic": "ModeQuadratic",

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass
 from enum import StrEnum
 from fractions import Fraction
 from typing import Any, ClassVar, Self
@@ -17,6 +16,7 @@ from nrs_design.proof.exact import (
     is_symmetric,
     is_too_large,
 )
+from nrs_design.proof.noun import dataclass
 from nrs_design.proof.system import Channel, Output, SwitchedSystem, Switching
 from nrs_design.proof.text import exact_text
 
@@ -24,6 +24,10 @@ WHILE_KEPT = "This holds as long as contact is kept, the environment pulling as 
 ROUNDED = "What single-precision arithmetic rounds in the law is included."
 NOT_ROUNDED = "This holds for the law computed without rounding."
 GROWN_WITHOUT_ROUNDING = "This growth is that of the law computed without rounding."
+GROWN_ALONE = (
+    "This growth is that of one axis on which the others do not act, which is within what is said "
+    "of them."
+)
 GROWN_IN_CONTACT = "This growth is that in kept contact, the environment pulling as it pushes."
 
 
@@ -89,6 +93,8 @@ class AbstractEvidence(ABC):
     covers_mixtures: ClassVar[bool] = False
     # It holds while contact is lost and made again, where the system says how that happens.
     covers_lost_contact: ClassVar[bool] = False
+    # It holds for all axes at once, where the system says what they do to each other.
+    covers_coupling: ClassVar[bool] = False
 
     @property
     @abstractmethod
@@ -140,6 +146,8 @@ class AbstractEvidence(ABC):
             said += _IN_CONTACT.get(self.shows, ())
         if system.roundings:
             said += (ROUNDED,) if self.covers_rounding else _EXACT.get(self.shows, ())
+        if system.couplings and self.shows is Shows.INSTABILITY:
+            said.append(GROWN_ALONE)
         return " ".join(said)
 
     @abstractmethod
@@ -208,11 +216,16 @@ class AbstractEvidence(ABC):
             return f"evidence of kind {self.kind} needs modes of equal size"
         if system.contact is not None and system.contact.required and self._takes_contact():
             return f"evidence of kind {self.kind} does not cover the loss of contact"
+        if system.couplings and self._is_good() and not self.covers_coupling:
+            return f"evidence of kind {self.kind} does not cover what axes do to each other"
         return self.find_misfit(system)
 
     def _takes_contact(self) -> bool:
         """Tell whether it shows something good of kept contact only."""
-        return self.shows in (Shows.STABILITY, Shows.BOUND) and not self.covers_lost_contact
+        return self._is_good() and not self.covers_lost_contact
+
+    def _is_good(self) -> bool:
+        return self.shows in (Shows.STABILITY, Shows.BOUND)
 
 
 def _in_seconds(rate: Fraction, step: Fraction) -> str:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from fractions import Fraction
 from math import comb
 from typing import Any, ClassVar, Self
@@ -29,6 +29,7 @@ from nrs_design.proof.exact import (
     stein_factor,
 )
 from nrs_design.proof.lift import derivative_lift, power_lift, vanishes
+from nrs_design.proof.noun import dataclass
 from nrs_design.proof.system import Mode, SwitchedSystem, Time
 
 MAX_DEGREE = 64

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any, ClassVar, Self
 
@@ -26,6 +25,7 @@ from nrs_design.proof.exact import (
     step_decrease,
 )
 from nrs_design.proof.matrix import leading, with_crossing
+from nrs_design.proof.noun import dataclass
 from nrs_design.proof.system import Contact, Mode, SwitchedSystem, Time
 
 Functions = tuple[tuple[str, Matrix], ...]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from fractions import Fraction
 from typing import Any, ClassVar, Self
 
@@ -14,6 +14,7 @@ from nrs_design.proof.evidence.fields import Matrix, rate_words, read_integers
 from nrs_design.proof.exact import IntegerMatrix
 from nrs_design.proof.lift import monomials
 from nrs_design.proof.matrix import RationalMatrix, leading
+from nrs_design.proof.noun import dataclass
 from nrs_design.proof.system import Contact, Mode, SwitchedSystem, Time
 
 

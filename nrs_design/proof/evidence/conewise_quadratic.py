@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
 from fractions import Fraction
 from itertools import product
 from typing import Any, ClassVar, Self
@@ -26,6 +25,7 @@ from nrs_design.proof.exact import (
     scaled,
 )
 from nrs_design.proof.matrix import RationalMatrix, leading, with_crossing
+from nrs_design.proof.noun import dataclass
 from nrs_design.proof.steps import Steps, find_odd_roundings
 from nrs_design.proof.system import Contact, Mode, SwitchedSystem, Time
 

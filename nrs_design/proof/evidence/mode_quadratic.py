@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from fractions import Fraction
 from typing import Any, ClassVar, Self
 
@@ -33,6 +33,7 @@ from nrs_design.proof.exact import (
     step_decrease,
 )
 from nrs_design.proof.matrix import RationalMatrix, multiply
+from nrs_design.proof.noun import dataclass
 from nrs_design.proof.system import Edge, Mode, Stay, SwitchedSystem, Switching, Time
 
 MAX_DWELL_STEPS = 4096

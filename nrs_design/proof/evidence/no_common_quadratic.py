@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
 from operator import mul
 from typing import Any, ClassVar, Self
 
 from nrs_design.proof.evidence.abstract import AbstractEvidence, Shows
 from nrs_design.proof.evidence.fields import Matrix, read_integers, read_text
 from nrs_design.proof.exact import IntegerMatrix, add, common_denominator
+from nrs_design.proof.noun import dataclass
 from nrs_design.proof.system import Mode, SwitchedSystem, Switching, Time
 
 

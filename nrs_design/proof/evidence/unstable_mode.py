@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass
 from typing import Any, ClassVar, Self
 
 from nrs_design.proof.enclosure import eigenvalues
@@ -19,6 +18,7 @@ from nrs_design.proof.exact import (
     spectrum_work,
 )
 from nrs_design.proof.matrix import RationalMatrix
+from nrs_design.proof.noun import dataclass
 from nrs_design.proof.system import Mode, SwitchedSystem, Switching, Time
 
 

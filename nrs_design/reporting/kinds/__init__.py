@@ -13,6 +13,7 @@ from nrs_design.proof.evidence import (
     ConewiseModeQuadratic,
     ConewisePolynomial,
     ConewiseQuadratic,
+    CoupledAxes,
     InvariantEllipsoid,
     ModePolynomial,
     ModeQuadratic,
@@ -31,6 +32,7 @@ from nrs_design.reporting.kinds.common_quadratic import CommonQuadraticPage
 from nrs_design.reporting.kinds.conewise_mode_quadratic import ConewiseModeQuadraticPage
 from nrs_design.reporting.kinds.conewise_polynomial import ConewisePolynomialPage
 from nrs_design.reporting.kinds.conewise_quadratic import ConewiseQuadraticPage
+from nrs_design.reporting.kinds.coupled_axes import CoupledAxesPage
 from nrs_design.reporting.kinds.invariant_ellipsoid import InvariantEllipsoidPage
 from nrs_design.reporting.kinds.mode_polynomial import ModePolynomialPage
 from nrs_design.reporting.kinds.mode_quadratic import ModeQuadraticPage
@@ -48,6 +50,7 @@ KINDS: Mapping[type[AbstractEvidence], type[AbstractKindPage[Any]]] = {
     ConewiseModeQuadratic: ConewiseModeQuadraticPage,
     ConewisePolynomial: ConewisePolynomialPage,
     ConewiseQuadratic: ConewiseQuadraticPage,
+    CoupledAxes: CoupledAxesPage,
     InvariantEllipsoid: InvariantEllipsoidPage,
     ModePolynomial: ModePolynomialPage,
     ModeQuadratic: ModeQuadraticPage,

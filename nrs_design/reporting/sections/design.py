@@ -107,7 +107,7 @@ def _gain_table(design: ControllerDesign) -> Table:
     rows = []
     for name, law in design.laws.items():
         for gain, value in law.gains.items():
-            unit = law.units[gain].replace("*", "·").replace("^2", "²")
+            unit = design.units[name][gain].replace("*", "·").replace("^2", "²")
             rows.append((name, gain, number(float(value), 6), unit, exact_decimal(value)))
         if not law.gains:
             rows.append((name, "no gain: the motion loop alone", "", "", ""))
@@ -166,10 +166,14 @@ def _motion_table(design: ControllerDesign, analysis: DesignAnalysis) -> Table:
     damping = -wanted.wanted_poles[0].real / wanted.natural_frequency
     wanted_Kp = wanted.derivative_gain * wanted.zero
     rows = (
-        ("Kd [rpm·s/rad]", number(wanted.derivative_gain, 6), number(float(motion.Kd), 6)),
+        (
+            f"Kd [{design.command}·s/rad]",
+            number(wanted.derivative_gain, 6),
+            number(float(motion.Kd), 6),
+        ),
         ("Zero Kp/Kd [1/s]", number(wanted.zero, 6), number(float(motion.zero), 6)),
         (
-            "Kp [rpm/rad]",
+            f"Kp [{design.command}/rad]",
             number(wanted_Kp, 6),
             number(float(motion.Kp), 6),
         ),

@@ -12,7 +12,7 @@ from nrs_design.proof.evidence import AbstractEvidence, Shows
 from nrs_design.proof.system import SwitchedSystem, Time
 from nrs_design.reporting.formatting import plural, shortened
 from nrs_design.spec import InteractionDesignSpec, RobotSpec
-from nrs_design.spec.provenance import COVERS
+from nrs_design.spec.provenance import COVERS, MOTOR_COVERS
 
 if TYPE_CHECKING:
     from nrs_design.pipeline import Result
@@ -127,6 +127,8 @@ def _provenance(result: Result) -> Iterator[tuple[str, str]]:
         if item.doubts:
             accepted = f"accepted: {item.accept_doubt}" if item.accept_doubt else "NOT accepted"
             yield (f"Doubts about {name}", f"{shortened(list(item.doubts), 3)} ({accepted})")
+    if spec.actuator.range_covers is not None:
+        yield ("Range of actuator holds", MOTOR_COVERS[spec.actuator.range_covers])
     for name, environment in spec.environments.items():
         if environment.range_covers is not None:
             yield (f"Range of {name} holds", COVERS[environment.range_covers])

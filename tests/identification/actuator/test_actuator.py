@@ -11,7 +11,7 @@ from nrs_design.identification.actuator.friction import friction_shape
 from nrs_design.identification.actuator.phasors import phasors_of
 from nrs_design.identification.datasets import FrequencyResponse
 from nrs_design.identification.held import Held
-from tests.identification import synthetic
+from tests.identification import motors, synthetic
 from tests.identification.support import MOTOR, sinusoids, source
 
 FEW = (1.2, 2.0, 3.0, 5.0, 8.0, 14.0)
@@ -137,3 +137,43 @@ def test_thesis_constants_of_the_generator():
         0.0351,
         276.575,
     )
+
+
+@pytest.fixture(scope="module")
+def runs():
+    """Three short runs of a motor whose gain differs by 5 % from one to the next."""
+    return [
+        replace(
+            made, time=made.time[:400], command=made.command[:400], output=f * made.output[:400]
+        )
+        for made, f in ((motors.record("PRBS", i), 0.9 + 0.05 * i) for i in (1, 2, 3))
+    ]
+
+
+@pytest.mark.parametrize(
+    "coverage", ["prediction", pytest.param("tolerance", marks=pytest.mark.slow)]
+)
+def test_a_range_for_other_records_is_wider_than_their_spread(runs, coverage):
+    """With two degrees of freedom, Student's t at 97.5 % on both sides is 6.205."""
+    found = identify_actuator(runs, MOTOR, coverage)
+    gain = found.ranges[0]
+    half = {"prediction": 6.205 * np.sqrt(4 / 3), "tolerance": 20.0}[coverage]
+    spread = np.std(np.log([0.95, 1.0, 1.05]), ddof=1)
+    assert np.log(gain.high / gain.value) > 0.9 * half * spread
+    assert (found.coverage, found.chosen.gain.high < gain.high) == (coverage, True)
+    assert identify_actuator(runs[:1], MOTOR).coverage == "confidence"
+
+
+@pytest.mark.parametrize(
+    ("data", "said"),
+    [
+        ("one", "needs several records, and there is one"),
+        ("response", "needs several records, and there is one"),
+        ("at rest", "PRBS-4 alone does not determine the motor"),
+    ],
+)
+def test_no_range_for_other_records(runs, data, said):
+    still = replace(motors.record("PRBS", 4), output=np.zeros(2000))
+    given = {"one": runs[:1], "response": [response()], "at rest": [*runs, still]}[data]
+    with pytest.raises(DataError, match=said):
+        identify_actuator(given, MOTOR, "prediction")

@@ -8,7 +8,12 @@ from scipy.io import savemat
 from scipy.io.matlab import MatlabOpaque
 
 from nrs_design.errors import DataError
-from nrs_design.identification.datasets import read_actuator, read_tissue
+from nrs_design.identification.datasets import (
+    read_actuator,
+    read_poses,
+    read_signals,
+    read_tissue,
+)
 from tests.support import run
 
 HEAD = "time_s,deflection_m,force_N\n"
@@ -166,6 +171,130 @@ def test_one_message(tmp_path, case):
     assert error.remedy
     assert line is None or error.line == line
     assert "\n" not in str(error)
+    assert len(str(error)) < 500
+
+
+def rows(head, *columns):
+    """A file of 60 rows; a column is a number, or a function of the row."""
+    lines = (",".join(f"{c(i) if callable(c) else c}" for c in columns) for i in range(60))
+    return (head + "\n" + "\n".join(lines) + "\n").encode()
+
+
+def clock(i):
+    return f"{0.01 * i:.2f}"
+
+
+def swing(i):
+    return i % 7
+
+
+POSE = "roll_rad,pitch_rad,fx_N,fy_N,fz_N,tx_Nm,ty_Nm,tz_Nm"
+# Reader, content, what is said, and the line.
+OTHERS = {
+    "no output": (read_actuator, rows("time_s,command_V", clock, swing), "angle_rad", 1),
+    "no command": (read_actuator, rows("time_s,angle_rad", clock, swing), "command", 1),
+    "a command in ohm": (
+        read_actuator,
+        rows("time_s,command_ohm,angle_rad", clock, swing, swing),
+        "'ohm'",
+        1,
+    ),
+    "a velocity without unit": (
+        read_actuator,
+        rows("time_s,command_V,velocity", clock, swing, swing),
+        "velocity.*has no unit",
+        1,
+    ),
+    "a command that never changes": (
+        read_actuator,
+        rows("time_s,command_rpm,angle_rad", clock, 3000, swing),
+        "command never changes",
+        2,
+    ),
+    "a motor at rest": (
+        read_actuator,
+        rows("time_s,command_rpm,angle_rad", clock, swing, 0.5),
+        "angle never changes",
+        2,
+    ),
+    "an angle that wraps": (
+        read_actuator,
+        rows("time_s,command_rpm,angle_rad", clock, swing, lambda i: (0.3 * i) % 6.2831853),
+        "turn",
+        None,
+    ),
+    "two angles": (
+        read_actuator,
+        rows("time_s,command_V,angle_rad,angle_deg", clock, swing, swing, swing),
+        "there twice",
+        1,
+    ),
+    "two frequencies": (
+        read_actuator,
+        b"frequency_hz,magnitude_db,phase_deg\n1,0,-5\n2,0,-9\n",
+        "2 frequencies are too few",
+        3,
+    ),
+    "a frequency of zero": (
+        read_actuator,
+        b"frequency_hz,magnitude_db,phase_deg\n1,0,-5\n0,0,-9\n3,0,-9\n",
+        "not positive",
+        3,
+    ),
+    "nothing measured": (read_signals, rows("time_s,command_V", clock, swing), "missing", 1),
+    "a signal that never changes": (
+        read_signals,
+        rows("time_s,command_V,angle_rad", clock, swing, 1),
+        "never changes",
+        2,
+    ),
+    "two records": (
+        read_signals,
+        rows(
+            "time_s_1,command_V_1,angle_rad_1,time_s_2,command_V_2,angle_rad_2",
+            *[clock, swing, swing] * 2,
+        ),
+        "2 groups",
+        None,
+    ),
+    "no torque": (read_poses, rows(POSE.partition(",tx")[0], *[swing] * 5), "missing", 1),
+    "half a quaternion": (
+        read_poses,
+        rows(POSE.replace("roll_rad,pitch_rad", "qw,qx"), *[swing] * 8),
+        "missing",
+        1,
+    ),
+    "no rotation": (
+        read_poses,
+        rows(POSE.replace("roll_rad,pitch_rad", "qw,qx,qy,qz"), 1, 1, *[0] * 8),
+        "quaternion has the length",
+        2,
+    ),
+    "an angle in grad": (
+        read_poses,
+        rows(POSE.replace("roll_rad", "roll_grad"), *[swing] * 8),
+        "'grad'",
+        1,
+    ),
+    "a pose without a number": (
+        read_poses,
+        rows(POSE, swing, lambda i: "?" if i == 4 else i, *[swing] * 6),
+        "not a number",
+        6,
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("case", OTHERS)
+def test_one_message_of_the_other_readers(tmp_path, case):
+    read, content, message, line = OTHERS[case]
+    path = write(tmp_path, "a.csv", content)
+    with pytest.raises(DataError, match=message) as caught:
+        read(path)
+    error = caught.value
+    assert error.path == path
+    assert error.remedy
+    assert line is None or error.line == line
     assert len(str(error)) < 500
 
 

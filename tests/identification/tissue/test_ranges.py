@@ -5,7 +5,7 @@ import pytest
 
 from nrs_design.errors import DataError
 from nrs_design.identification.statistics import Estimate, joint_level, tolerance_factor
-from nrs_design.identification.tissue import identify_tissue
+from nrs_design.identification.tissue import fit_model, identify_tissue
 from nrs_design.identification.tissue.ranges import box_remark, spread_ranges
 from nrs_design.models.contact import Elastic
 from tests.identification.support import quick, record
@@ -63,7 +63,7 @@ def specimens(count):
 def test_each_kind_of_range_is_wider_than_the_last():
     data = specimens(5)
     mean, next_, most = (
-        identify_tissue(data, "elastic", coverage=name).chosen.ranges[0]
+        fit_model(Elastic, data, name).ranges[0]
         for name in ("confidence", "prediction", "tolerance")
     )
     assert most.low < next_.low < mean.low < mean.high < next_.high < most.high

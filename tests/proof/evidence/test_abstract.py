@@ -279,18 +279,24 @@ def test_the_rate_is_one_of_decay_or_there_is_none(example):
     assert rate is None or rate > 0
 
 
-BOUNCING = {"conewise-mode-quadratic", "conewise-polynomial", "conewise-quadratic"}
+BOUNCING = {
+    "conewise-mode-quadratic",
+    "conewise-polynomial",
+    "conewise-quadratic",
+    "coupled-axes",
+}
 FREE = {"common-quadratic", "common-polynomial", "parameter-quadratic"} | BOUNCING
-SETS = {"common-quadratic", "conewise-quadratic", "invariant-ellipsoid"}
+SETS = {"common-quadratic", "conewise-quadratic", "coupled-axes", "invariant-ellipsoid"}
 RULED = {"mode-quadratic", "mode-polynomial"}
 FACTS = {
     # The careful answer is no; these kinds show more.
     "allows_unequal_modes": RULED | {"unstable-mode"},
     "attains_rate": FREE | RULED,
     "bounds_at_once": FREE,
+    "covers_coupling": {"coupled-axes"},
     "covers_lost_contact": BOUNCING | {"invariant-ellipsoid", "no-common-quadratic"},
     "covers_mixtures": SETS | BOUNCING | {"common-polynomial", "block-triangular"},
-    "is_common_quadratic": {"common-quadratic", "conewise-quadratic"},
+    "is_common_quadratic": {"common-quadratic", "conewise-quadratic", "coupled-axes"},
     # The blocks of the example have polynomials.
     "keeps_bound_in_mixtures": SETS | {"parameter-quadratic", "conewise-mode-quadratic"} | RULED,
     "names_unstable_mode": {"unstable-mode"},

@@ -40,6 +40,7 @@ def bouncing_run(
     initial: Array,
     rate: float,
     label: str,
+    note: str = "",
 ) -> Section:
     """Let the greedy adversary run, and draw it below its bound, and when contact is lost.
 
@@ -55,6 +56,8 @@ def bouncing_run(
         The proved one.
     label : str
         Which norm it is, such as ``in the norm of Q``.
+    note : str
+        A sentence of the caption about the run, with a blank before it.
     """
     initial = initial if initial[-1] > 0 else -initial
     step, steps = horizon(with_free_modes(hardest), rate)
@@ -66,7 +69,7 @@ def bouncing_run(
         Illustration(
             "run",
             AGAINST,
-            f"{_RUN}{freely(system)}{some_modes(system, hardest)}",
+            f"{_RUN}{note}{freely(system)}{some_modes(system, hardest)}",
             draw_run(
                 response,
                 norms(response, norm),

@@ -1,0 +1,99 @@
+"""``nrs-design diff``: two specs or certificates beside each other."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from nrs_design.cli import exit_codes
+from nrs_design.cli.identify.common import Outputs, ReportTo
+from nrs_design.cli.options import Date, Json, Quiet
+from nrs_design.cli.printing import progress, say
+from nrs_design.cli.tables import print_table
+
+if TYPE_CHECKING:
+    from nrs_design.comparison import Comparison, Difference, Side
+    from nrs_design.reporting import Report
+
+
+def diff(
+    before: Annotated[Path, typer.Argument(metavar="A", help="Spec, or certificate (.json).")],
+    after: Annotated[Path, typer.Argument(metavar="B", help="Spec, or certificate (.json).")],
+    report: ReportTo = None,
+    date: Date = None,
+    as_json: Json = False,
+    quiet: Quiet = False,
+) -> None:
+    """Compare two specs or certificates: what they say, gains, margins, verdicts, assumptions.
+
+    Specs are designed and certified afresh. Certificates are re-checked by themselves; they have no
+    margins, and do not repeat their specs, so a comparison with one leaves both out and says so.
+
+    Exit code 0: no difference. 1: there are some.
+
+    Example: nrs-design diff specs/neuroboscope/soft-tissue.nrs.yaml reports/soft-tissue.cert.json
+    """
+    from nrs_design.comparison import compare
+
+    outputs = Outputs.checked(None, report, date, as_json=as_json, quiet=quiet)
+    with progress("comparing", quiet=quiet) as step:
+        found = compare(before, after, step)
+    outputs.deliver(
+        "diff",
+        summary=lambda: _summary(found),
+        show=lambda: _print(found),
+        page=lambda: _page(found),
+    )
+    raise typer.Exit(exit_codes.REFUTED if found.differences else exit_codes.PROVED)
+
+
+def _page(found: Comparison) -> Report:
+    from nrs_design.reporting.comparison import comparison_report
+
+    return comparison_report(found)
+
+
+def _summary(found: Comparison) -> dict[str, Any]:
+    return {
+        "a": _side(found.before),
+        "b": _side(found.after),
+        "differences": [
+            {"part": str(item.part), "what": item.what, "a": item.before, "b": item.after}
+            for item in found.differences
+        ],
+        "same": list(map(str, found.same)),
+        "not_compared": list(map(str, found.not_compared)),
+    }
+
+
+def _side(side: Side) -> dict[str, str]:
+    return {"file": str(side.path), "name": side.name}
+
+
+def _print(found: Comparison) -> None:
+    say(f"A: {found.before.name} ({found.before.path})")
+    say(f"B: {found.after.name} ({found.after.path})")
+    for part in found.compared:
+        items = [item for item in found.differences if item.part is part]
+        rows = [_row(item) for item in items if not item.is_text]
+        if rows:
+            print_table(str(part), ["", "A", "B"], rows)
+        for item in (item for item in items if item.is_text):
+            _print_text(item)
+    if found.same:
+        say(f"the same: {', '.join(found.same)}")
+    if found.not_compared:
+        say(f"not compared, since not both files tell it: {', '.join(found.not_compared)}")
+
+
+def _print_text(item: Difference) -> None:
+    """Print what would be too long for a cell, side by side."""
+    for side, text in (("A", item.before), ("B", item.after)):
+        if text is not None:
+            say(f"{item.part}, {side}: {text}")
+
+
+def _row(item: Difference) -> list[str]:
+    return [item.what, item.before or "-", item.after or "-"]

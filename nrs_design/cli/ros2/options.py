@@ -1,0 +1,57 @@
+"""Options that several ROS 2 commands share, and how ranges are read."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from typing import Annotated
+
+import typer
+
+from nrs_design.errors import NrsDesignError, SpecError
+from nrs_design.spec.quantity import QuantityKind, parse_quantity
+
+LAG = QuantityKind("a time", ("s",), "5..20 ms")
+Lag = Annotated[
+    str,
+    typer.Option(
+        metavar="RANGE", help="Time constant with which the robot follows, such as '5..20 ms'."
+    ),
+]
+
+
+def read_lag(text: str) -> tuple[Fraction, Fraction]:
+    """Return the ends of a range of time constants in s."""
+    return range_of("--lag", text, LAG) or (Fraction(0), Fraction(0))
+
+
+def range_of(option: str, text: str | None, kind: QuantityKind) -> tuple[Fraction, Fraction] | None:
+    """Read one quantity, or two with ``..`` between them; None where there is no text.
+
+    Parameters
+    ----------
+    option : str
+        As messages call it.
+    text : str or None
+        Such as ``200..2000 N/m``.
+    kind : QuantityKind
+        What it measures.
+
+    Raises
+    ------
+    NrsDesignError
+        If it is no such range, or does not rise.
+    """
+    if text is None:
+        return None
+    numbers, _, unit = text.partition(" ")
+    low, _, high = numbers.partition("..")
+    try:
+        ends = [parse_quantity(f"{n} {unit}".strip(), kind).exact for n in (low, high or low)]
+    except SpecError as error:
+        raise NrsDesignError(f"{option}: {error.message}", remedy=error.remedy) from None
+    if not 0 <= ends[0] <= ends[1]:
+        raise NrsDesignError(
+            f"{option}: {text!r} is not a rising range from zero or above",
+            remedy=f"write '{kind.example}'",
+        )
+    return ends[0], ends[1]

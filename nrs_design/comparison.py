@@ -1,0 +1,211 @@
+"""Two specs or certificates beside each other: what they say, and what is proved about them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from enum import StrEnum
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from nrs_design.errors import DesignError
+from nrs_design.pipeline import Progress, run_analysis, run_certification
+from nrs_design.proof.evidence.fields import rate_text
+from nrs_design.proof.system import Time
+from nrs_design.spec import read_spec
+from nrs_design.spec.document import Data, to_data
+
+if TYPE_CHECKING:
+    from nrs_design.certificates.certificate import Certificate
+    from nrs_design.pipeline import Designed
+
+CERTIFICATE_SUFFIX = ".json"
+# What is longer is a sentence, not a value.
+LONGEST_CELL = 60
+
+
+class Part(StrEnum):
+    """What a difference is about."""
+
+    SPEC = "spec"
+    GAINS = "gains"
+    MARGINS = "margins"
+    VERDICT = "verdict"
+    ASSUMPTIONS = "assumptions"
+
+
+@dataclass(frozen=True, slots=True)
+class Side:
+    """One of two things that are compared.
+
+    Parameters
+    ----------
+    path : Path
+        Of the spec or certificate.
+    name : str
+        Of the spec.
+    parts : mapping of Part to mapping of str to str
+        What there is to compare, by its name. A part that a file cannot tell is left out: a
+        certificate has no margins, and does not repeat its spec.
+    """
+
+    path: Path
+    name: str
+    parts: Mapping[Part, Mapping[str, str]]
+
+
+@dataclass(frozen=True, slots=True)
+class Difference:
+    """One thing that is not the same on both sides; None where a side does not have it."""
+
+    part: Part
+    what: str
+    before: str | None
+    after: str | None
+
+    @property
+    def is_text(self) -> bool:
+        """Whether it is told in sentences."""
+        longest = max(len(self.before or ""), len(self.after or ""))
+        return self.part is Part.ASSUMPTIONS or longest > LONGEST_CELL
+
+
+@dataclass(frozen=True, slots=True)
+class Comparison:
+    """Two sides, and where they differ.
+
+    Parameters
+    ----------
+    before, after : Side
+        What was compared.
+    differences : tuple of Difference
+        In the order of `Part`.
+    compared : tuple of Part
+        Those that both sides tell.
+    """
+
+    before: Side
+    after: Side
+    differences: tuple[Difference, ...]
+    compared: tuple[Part, ...] = field(default=())
+
+    @property
+    def same(self) -> tuple[Part, ...]:
+        """The parts without a difference."""
+        differing = {item.part for item in self.differences}
+        return tuple(part for part in self.compared if part not in differing)
+
+    @property
+    def not_compared(self) -> tuple[Part, ...]:
+        """The parts that only one side tells, or none."""
+        return tuple(part for part in Part if part not in self.compared)
+
+
+def compare(before: Path, after: Path, progress: Progress = lambda step: None) -> Comparison:
+    """Compare two specs, two certificates, or one of each.
+
+    Specs are designed and certified afresh; certificates are re-checked without their specs.
+
+    Parameters
+    ----------
+    before, after : Path
+        A file that ends in .json is a certificate, any other a spec.
+    progress : callable
+        Told the name of each step.
+
+    Raises
+    ------
+    SpecError, DesignError
+        If a spec cannot be read or designed.
+    CertificateError
+        If a file is not a certificate at all.
+    """
+    sides = []
+    for path in (before, after):
+        progress(str(path))
+        certified = path.suffix == CERTIFICATE_SUFFIX
+        sides.append(_side_of_certificate(path) if certified else _side_of_spec(path))
+    return compare_sides(*sides)
+
+
+def compare_sides(before: Side, after: Side) -> Comparison:
+    """Find the differences in what both sides tell."""
+    compared = tuple(part for part in Part if part in before.parts and part in after.parts)
+    differences = tuple(
+        Difference(part, what, old.get(what), new.get(what))
+        for part in compared
+        for old, new in ((before.parts[part], after.parts[part]),)
+        for what in {**old, **new}
+        if old.get(what) != new.get(what)
+    )
+    return Comparison(before, after, differences, compared)
+
+
+def _side_of_certificate(path: Path) -> Side:
+    from nrs_design.certificates.verify import verify
+
+    checked = verify(path)
+    certificate = checked.certificate
+    if certificate is None or checked.fault is not None:
+        rejected = {"verdict": "rejected", "fault": str(checked.fault)}
+        return Side(path, path.stem, {Part.VERDICT: rejected})
+    return Side(path, certificate.spec_name, _proof_parts(certificate))
+
+
+def _side_of_spec(path: Path) -> Side:
+    loaded = read_spec(path)
+    result = run_certification(loaded)
+    parts: dict[Part, Mapping[str, str]] = {Part.SPEC: dict(_flat(to_data(loaded.root)))}
+    if result.certificate is None:
+        parts[Part.VERDICT] = {"verdict": str(result.certification.verdict)}
+    else:
+        parts |= _proof_parts(result.certificate)
+    if result.designed is not None:
+        margins = _margins(result.designed)
+        if margins is not None:
+            parts[Part.MARGINS] = margins
+    return Side(path, loaded.spec.name, parts)
+
+
+def _proof_parts(certificate: Certificate) -> dict[Part, Mapping[str, str]]:
+    system, evidence = certificate.system, certificate.evidence
+    rate = None if evidence is None else evidence.proved_rate(system)
+    verdict = {"verdict": certificate.verdict, "modes": str(len(system.modes))}
+    if rate is not None:
+        unit = "1/s" if system.time is Time.CONTINUOUS else "per step"
+        verdict["decay rate"] = f"{rate_text(rate, system.time)} {unit}"
+    for number, statement in enumerate(certificate.statements, 1):
+        verdict[f"statement {number}"] = statement.claim(system)
+    gains = {
+        f"{name}.{gain}": value
+        for name, values in certificate.gains.items()
+        for gain, value in values.items()
+    }
+    # Each assumption is its own name: it is there or it is not.
+    assumptions = {text: text for text in system.assumptions}
+    return {Part.GAINS: gains, Part.VERDICT: verdict, Part.ASSUMPTIONS: assumptions}
+
+
+def _margins(designed: Designed) -> dict[str, str] | None:
+    """Return what the design achieves; None if a nominal loop is unstable, so that it has none."""
+    try:
+        analysis = run_analysis(designed)
+    except DesignError:
+        return None
+    return {
+        f"{item.name}: {found.measure.title}": found.measure.text(found.value)
+        for item in analysis.measured
+        for found in item.achieved
+    }
+
+
+def _flat(said: Data, where: str = "") -> Iterator[tuple[str, str]]:
+    """Yield each value of a spec with its place, such as ``controllers.soft.Bt``."""
+    if isinstance(said, str):
+        yield where, said
+    elif isinstance(said, tuple):
+        for index, item in enumerate(said):
+            yield from _flat(item, f"{where}[{index}]")
+    else:
+        for key, value in said.items():
+            yield from _flat(value, f"{where}.{key}" if where else key)

@@ -1,0 +1,120 @@
+"""Names and numbers of exported C: identifiers from the spec's names, exact literals, comments."""
+
+from __future__ import annotations
+
+import re
+import textwrap
+from collections.abc import Iterable
+from dataclasses import dataclass
+from fractions import Fraction
+
+from nrs_design.controllers.operations import Coefficient, StepLaw, Value
+from nrs_design.errors import DesignError
+from nrs_design.printable import printable
+
+WIDTH = 100
+
+
+@dataclass(frozen=True, slots=True)
+class CNames:
+    """What belongs to one law begins with its name.
+
+    Parameters
+    ----------
+    spec : str
+        Name of the spec.
+    """
+
+    spec: str
+
+    @property
+    def lower(self) -> str:
+        """Beginning of functions and types."""
+        return f"nrs_{_identifier(self.spec).lower()}"
+
+    @property
+    def upper(self) -> str:
+        """Beginning of macros."""
+        return self.lower.upper()
+
+    def mode(self, controller: str) -> str:
+        """Return the macro of a mode."""
+        return f"{self.upper}_MODE_{_identifier(controller).upper()}"
+
+    def limit(self, value: Value) -> str:
+        """Return the macro of the limit of an input or a state."""
+        return f"{self.upper}_MAX_{value.name.upper()}"
+
+    def coefficient(self, coefficient: Coefficient, controller: str = "") -> str:
+        """Return the macro of a coefficient; of one that each mode has, with a controller."""
+        of = f"_OF_{_identifier(controller).upper()}" if controller else ""
+        return f"{self.upper}_{coefficient.name.upper()}{of}"
+
+    @property
+    def modes(self) -> str:
+        """The macro of how many modes there are."""
+        return f"{self.upper}_MODES"
+
+    def numbers(self, law: StepLaw) -> dict[str, int | Fraction]:
+        """Return every macro of the header with its number: modes, coefficients and limits."""
+        modes = {self.mode(mode): k for k, mode in enumerate(law.modes)}
+        coefficients = {name: value for name, (_, value) in self.coefficients(law).items()}
+        limits = {self.limit(value): value.limit for value in law.values}
+        return {self.modes: len(law.modes), **modes, **coefficients, **limits}
+
+    def coefficients(self, law: StepLaw) -> dict[str, tuple[Coefficient, Fraction]]:
+        """Return every coefficient of a law by its macro.
+
+        Raises
+        ------
+        DesignError
+            If two controllers have one name in C.
+        """
+        found: dict[str, tuple[Coefficient, Fraction]] = {}
+        for coefficient in law.coefficients:
+            several = len(coefficient.values) > 1
+            for mode, value in zip(law.modes, coefficient.values, strict=False):
+                found[self.coefficient(coefficient, mode if several else "")] = coefficient, value
+        if len({self.mode(name) for name in law.modes}) < len(law.modes):
+            raise DesignError(
+                "two controllers have the same name in C",
+                remedy="let their names differ in letters or digits",
+                at=("controllers",),
+            )
+        return found
+
+
+def _identifier(name: str) -> str:
+    return re.sub("[^A-Za-z0-9]", "_", name)
+
+
+def literal(value: Fraction) -> str:
+    """Return the hexadecimal literal of a single-precision number, without any rounding."""
+    mantissa, _, exponent = float(value).hex().partition("p")
+    digits = mantissa.rstrip("0") if "." in mantissa else mantissa
+    text = f"{digits}{'0' * digits.endswith('.')}p{exponent}F"
+    return f"({text})" if value < 0 else text
+
+
+def comment(lines: Iterable[str], first: bytes) -> str:
+    """Return a block comment that its lines cannot end.
+
+    Parameters
+    ----------
+    lines : iterable of str
+        Each wrapped for itself.
+    first : bytes
+        How it begins, with the line break.
+    """
+    wrapped = (
+        part
+        for line in lines
+        for part in textwrap.wrap(harmless(line), WIDTH - 5, subsequent_indent="  ") or [""]
+    )
+    return first.decode() + "".join(f" * {part}".rstrip() + "\n" for part in wrapped) + " */\n"
+
+
+def harmless(text: str) -> str:
+    """Return a text that neither ends a comment nor begins one: printable ASCII, no trigraphs."""
+    plain = printable(" ".join(text.split())).encode("ascii", "backslashreplace").decode()
+    return re.sub(r"\?(?=\?)", "? ", plain.replace("*/", "* /").replace("/*", "/ *"))

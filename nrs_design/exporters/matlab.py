@@ -1,0 +1,144 @@
+"""Modes, gains and certificate as a MAT-file (level 5), for MATLAB, GNU Octave and SciPy.
+
+Numbers are the doubles next to the exact ones. What decides is the exact certificate, which is in
+the file as text: `nrs-design verify` checks it.
+"""
+
+from __future__ import annotations
+
+import io
+import re
+from collections.abc import Iterable, Mapping
+from fractions import Fraction
+from typing import Any
+
+import numpy as np
+import scipy.io
+
+from nrs_design.certificates.certificate import Certificate, dump
+from nrs_design.exporters.export import Export
+from nrs_design.exporters.header import header_lines
+from nrs_design.exporters.record import ExportRecord, Gain
+from nrs_design.output import MAT
+from nrs_design.proof.bounds import lower_float, upper_float
+from nrs_design.proof.matrix import RationalMatrix
+from nrs_design.proof.system import Mode, SwitchedSystem, Time
+
+# The text at the beginning of a MAT-file; SciPy writes the time and the system into it.
+_TEXT_BYTES = 116
+# Names that may be fields of a structure.
+_FIELD = re.compile("[A-Za-z][A-Za-z0-9_]*")
+_RATIO = re.compile("-?[0-9]+(/[0-9]+)?")
+
+
+def render(export: Export) -> dict[str, bytes]:
+    """Return the file of an export, by its ending."""
+    record, certificate = export.shipped(), export.certificate
+    assert certificate is not None, "what is proved has a certificate"
+    variables = {
+        "info": _info(record, certificate),
+        "states": _cells(certificate.system.states),
+        "modes": _modes(certificate.system.modes),
+        "free_modes": _modes(certificate.system.contact.free if certificate.system.contact else ()),
+        "gains": _structs(_gains(record), ("controller", "name", "unit", "value")),
+        "statements": _cells(
+            {
+                "kind": item.kind,
+                "claim": item.claim(certificate.system),
+                "numbers": _value(item.to_fields()),
+            }
+            for item in certificate.statements
+        ),
+        "certificate_json": dump(certificate),
+    }
+    # A file-like object is as good as a path, whatever the type information says.
+    file: Any = io.BytesIO()
+    scipy.io.savemat(file, variables, long_field_names=True, oned_as="column")
+    text = (MAT + record.spec.name.encode()).ljust(_TEXT_BYTES)
+    return {".mat": text + file.getvalue()[_TEXT_BYTES:]}
+
+
+def _info(record: ExportRecord, certificate: Certificate) -> dict[str, Any]:
+    proof, system = record.proof, certificate.system
+    assert proof is not None, "only what is proved has a certificate of it"
+    period = system.sample_time
+    return {
+        "header": _cells(header_lines(record)),
+        "spec": record.spec.name,
+        "spec_sha256": record.spec.sha256,
+        "certificate": proof.certificate_id,
+        "verdict": record.verdict,
+        "claim": proof.claim,
+        "time": str(system.time),
+        "rate": _safe_rate(Fraction(proof.decay_rate.exact), system),
+        "rate_unit": proof.decay_rate.unit,
+        "sample_time": np.empty((0, 0)) if period is None else float(period),
+        "assumptions": _cells(proof.assumptions),
+        "outside": _cells(record.outside),
+    }
+
+
+def _safe_rate(rate: Fraction, system: SwitchedSystem) -> float:
+    """Return a double that is proved too: no faster than the exact rate."""
+    return lower_float(rate) if system.time is Time.CONTINUOUS else upper_float(rate)
+
+
+def _modes(modes: Iterable[Mode]) -> Any:
+    return _structs([{"name": mode.name, "A": _matrix(mode.A)} for mode in modes], ("name", "A"))
+
+
+def _gains(record: ExportRecord) -> list[dict[str, Any]]:
+    rows = [_gain("motion", gain) for gain in record.motion.gains]
+    return rows + [_gain(item.name, gain) for item in record.controllers for gain in item.gains]
+
+
+def _gain(controller: str, gain: Gain) -> dict[str, Any]:
+    # Every single-precision number is a double, too.
+    return {"controller": controller, "name": gain.name, "unit": gain.unit, "value": gain.float32}
+
+
+def _matrix(A: RationalMatrix) -> Any:
+    return np.array([[float(entry) for entry in row] for row in A.fractions()])
+
+
+def _structs(rows: list[dict[str, Any]], fields: tuple[str, ...]) -> Any:
+    """Return a structure array, of one column."""
+    found = np.empty((len(rows), 1), dtype=[(name, object) for name in fields])
+    for index, row in enumerate(rows):
+        found[index, 0] = tuple(row[name] for name in fields)
+    return found
+
+
+def _cells(items: Iterable[Any]) -> Any:
+    """Return a cell array, of one column."""
+    values = list(items)
+    found = np.empty((len(values), 1), dtype=object)
+    for index, value in enumerate(values):
+        found[index, 0] = value
+    return found
+
+
+def _value(value: Any) -> Any:
+    """Return a field of a certificate as MATLAB has it."""
+    match value:
+        case {"numerators": rows, "denominator_log2": exponent}:
+            scale = 2**exponent
+            return np.array([[float(Fraction(n, scale)) for n in row] for row in rows])
+        case Mapping():
+            return {name: _value(item) for name, item in value.items() if _FIELD.fullmatch(name)}
+        case list() | tuple():
+            return _cells(map(_value, value))
+        case str() if _RATIO.fullmatch(value):
+            return _double(Fraction(value))
+        case int():
+            return _double(Fraction(value))
+        case _:
+            return value
+
+
+def _double(number: Fraction) -> Any:
+    """Return the double next to a number, or its digits where it is larger than any double."""
+    try:
+        return float(number)
+    except OverflowError:
+        return str(number)

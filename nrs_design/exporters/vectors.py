@@ -1,0 +1,342 @@
+"""Conformance vectors: states and inputs, and exactly what a step of the law makes of them.
+
+As JSON and as CSV, with a test in C and one for pytest. All numbers are bits of single precision in
+hexadecimal. A part of the inputs is what no sensor should give: not a number, infinities, subnormal
+and random bits, modes that there are not.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from nrs_design.controllers.operations import StepLaw
+from nrs_design.controllers.replica import Single, step
+from nrs_design.exporters.c_names import CNames, comment, harmless
+from nrs_design.exporters.export import Export
+from nrs_design.exporters.header import header_lines
+from nrs_design.exporters.shipped import law_of
+from nrs_design.output import C_TEST, VECTOR_TABLE
+
+COUNT, SEED = 1000, 2026
+SCHEMA = "nrs-design/vectors/1"
+# Zeros, the smallest and the largest numbers, one, infinities, not a number (quiet and signalling).
+SPECIAL = (0, 1, 0x007FFFFF, 0x00800000, 0x7F7FFFFF, 0x3F800000, 0x7F800000, 0x7FC00000, 0x7F800001)
+
+
+@dataclass(frozen=True, slots=True)
+class Vectors:
+    """Cases as bits.
+
+    Parameters
+    ----------
+    columns : tuple of str
+        Mode, inputs, states before, outputs, whether the step is valid, states after.
+    rows : ndarray of uint32
+        Shape (n, columns).
+    """
+
+    columns: tuple[str, ...]
+    rows: NDArray[np.uint32]
+
+
+def render(export: Export) -> dict[str, bytes]:
+    """Return vectors and tests, by their endings.
+
+    Parameters
+    ----------
+    export : Export
+        With a record, proved or not.
+
+    Raises
+    ------
+    DesignError
+        If there is no program of a controller yet.
+    """
+    record, law = export.shipped(), law_of(export)
+    names, vectors, lines = CNames(record.spec.name), make_vectors(law), header_lines(record)
+    return {
+        ".vectors.json": json_text(law, vectors, lines).encode(),
+        ".vectors.csv": csv_text(vectors, lines).encode(),
+        "_test.c": c_test(law, vectors, names, lines).encode(),
+        "_test.py": pytest_text(names, lines).encode(),
+    }
+
+
+def make_vectors(law: StepLaw, count: int = COUNT, seed: int = SEED) -> Vectors:
+    """Draw inputs and states, and compute a step of each.
+
+    Parameters
+    ----------
+    law : StepLaw
+        The law.
+    count : int
+        How many cases.
+    seed : int
+        The same seed gives the same cases, with every version of NumPy.
+    """
+    # The bits of this generator are fixed; what NumPy makes of them may change.
+    draw = np.random.PCG64(seed).random_raw
+    wild = draw(count) % 4 == 0
+    modes = len(law.modes)
+    mode = (draw(count) % (modes + wild)).astype(np.uint32)
+    given: dict[str, Single] = {}
+    for value in law.values:
+        scale = np.float32(min(float(value.limit), 1.0))
+        given[value.name] = _draw(draw(count), draw(count), wild, scale)
+    result = step(law, mode, given)
+    parts: dict[str, NDArray[np.uint32]] = {"mode": mode}
+    parts |= {v.name: _bits(given[v.name]) for v in law.inputs}
+    parts |= {f"before.{v.name}": _bits(given[v.name]) for v in law.states}
+    parts |= {name: _bits(values) for name, values in result.outputs.items()}
+    parts["valid"] = result.valid.astype(np.uint32)
+    parts |= {f"after.{v.name}": _bits(result.states[v.name]) for v in law.states}
+    return Vectors(tuple(parts), np.stack(list(parts.values()), axis=1))
+
+
+def _draw(
+    bits: NDArray[np.uint64], kinds: NDArray[np.uint64], wild: NDArray[np.bool_], scale: np.float32
+) -> Single:
+    """Return numbers of many sizes up to a scale; a quarter of the wild ones are no such."""
+    centered = (bits >> np.uint64(40)).astype(np.float32) - np.float32(2**23)
+    smaller = np.ldexp(np.float32(1), -(kinds >> np.uint64(60)).astype(np.int32))
+    plain = centered * np.float32(2.0**-23) * scale * smaller
+    low = bits.astype(np.uint32)
+    special = np.array(SPECIAL, np.uint32)[low % len(SPECIAL)] | (low & np.uint32(1 << 31))
+    subnormal = low & np.uint32(0x807FFFFF)
+    kind = np.where(wild, kinds % 12, 12)
+    odd = np.select([kind == 0, kind == 1, kind == 2], [low, special, subnormal], _bits(plain))
+    return odd.astype(np.uint32).view(np.float32)
+
+
+def _bits(values: Single) -> NDArray[np.uint32]:
+    return np.ascontiguousarray(values, np.float32).view(np.uint32)
+
+
+def json_text(law: StepLaw, vectors: Vectors, about: tuple[str, ...]) -> str:
+    """Return the JSON document.
+
+    Parameters
+    ----------
+    law : StepLaw
+        The law.
+    vectors : Vectors
+        Its cases.
+    about : tuple of str
+        What every exported file says of itself.
+    """
+    head = {
+        "schema": SCHEMA,
+        "about": list(about),
+        "numbers": "mode and valid as integers, all others as bits of IEEE 754 single precision, "
+        "big end first, in hexadecimal",
+        "modes": list(law.modes),
+        "inputs": [value.name for value in law.inputs],
+        "states": [value.name for value in law.states],
+        "outputs": list(law.outputs),
+        "units": _units(law),
+        "columns": list(vectors.columns),
+    }
+    text = json.dumps(head, indent=2).removesuffix("\n}")
+    rows = ",\n".join(f"    {json.dumps(row)}" for row in _rows(vectors))
+    return f'{text},\n  "cases": [\n{rows}\n  ]\n}}\n'
+
+
+def csv_text(vectors: Vectors, about: tuple[str, ...]) -> str:
+    """Return the same cases as CSV, below comments that begin with ``#``.
+
+    Parameters
+    ----------
+    vectors : Vectors
+        Of a law.
+    about : tuple of str
+        What every exported file says of itself.
+    """
+    lines = [
+        VECTOR_TABLE.decode().rstrip(),
+        *(f"# {line}" for line in about),
+        ",".join(vectors.columns),
+    ]
+    return "\n".join([*lines, *(",".join(map(str, row)) for row in _rows(vectors))]) + "\n"
+
+
+def _rows(vectors: Vectors) -> Iterator[list[int | str]]:
+    whole = [name in ("mode", "valid") for name in vectors.columns]
+    for row in vectors.rows.tolist():
+        yield [n if plain else f"{n:08x}" for n, plain in zip(row, whole, strict=True)]
+
+
+def _units(law: StepLaw) -> Mapping[str, str]:
+    return {value.name: value.unit for value in law.values} | dict(law.units)
+
+
+def c_test(law: StepLaw, vectors: Vectors, names: CNames, about: tuple[str, ...]) -> str:
+    """Return a program that runs all cases and fails if one bit is another.
+
+    Parameters
+    ----------
+    law : StepLaw
+        The law.
+    vectors : Vectors
+        Its cases.
+    names : CNames
+        Of its spec.
+    about : tuple of str
+        What every exported file says of itself.
+    """
+    own, column = names.lower, {name: i for i, name in enumerate(vectors.columns)}
+    table = ",\n".join(
+        "    {" + ", ".join(f"0x{n:x}U" for n in row) + "}" for row in vectors.rows.tolist()
+    )
+    reads = [f"in.{v.name} = from_bits(row[{column[v.name]}]);" for v in law.inputs]
+    reads += [f"state.{v.name} = from_bits(row[{column[f'before.{v.name}']}]);" for v in law.states]
+    checks = [f"(to_bits(out.{name}) == row[{column[name]}])" for name in law.outputs]
+    checks += [f"(to_bits(state.{v.name}) == row[{column[f'after.{v.name}']}])" for v in law.states]
+    starts = [
+        f"(to_bits(state.{v.name}) == to_bits({'in.angle' if v.starts_at_angle else '0.0F'}))"
+        for v in law.states
+    ]
+    return f"""\
+{comment(about, C_TEST)}
+#include "{names.spec}.h"
+
+#include <stdbool.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <string.h>
+
+static const uint32_t cases[{len(vectors.rows)}][{len(vectors.columns)}] = {{
+{table}
+}};
+
+static float from_bits(uint32_t bits)
+{{
+    float value;
+    (void)memcpy(&value, &bits, sizeof value);
+    return value;
+}}
+
+static uint32_t to_bits(float value)
+{{
+    uint32_t bits;
+    (void)memcpy(&bits, &value, sizeof bits);
+    return bits;
+}}
+
+int main(void)
+{{
+    unsigned long wrong = 0UL;
+    unsigned long k;
+    for (k = 0UL; k < {len(vectors.rows)}UL; k++) {{
+        const uint32_t *row = cases[k];
+        {own}_input_t in;
+        {own}_state_t state;
+        {own}_output_t out;
+        bool same;
+        in.mode = row[0];
+        {_lines(reads)}
+        {own}_step(&in, &state, &out);
+        same = ((out.valid ? 1U : 0U) == row[{column["valid"]}]) &&
+            {_all(checks)};
+        {own}_init(&state, in.angle);
+        same = same &&
+            {_all(starts)};
+        if (!same) {{
+            (void)printf("case %lu differs\\n", k);
+            wrong++;
+        }}
+    }}
+    (void)printf("%lu of {len(vectors.rows)} cases differ\\n", wrong);
+    return (wrong == 0UL) ? 0 : 1;
+}}
+"""
+
+
+def _lines(statements: list[str]) -> str:
+    return "\n        ".join(statements)
+
+
+def _all(conditions: list[str]) -> str:
+    return " &&\n            ".join(conditions)
+
+
+def pytest_text(names: CNames, about: tuple[str, ...]) -> str:
+    """Return a test for pytest: of the exported C, and of any implementation in Python.
+
+    Parameters
+    ----------
+    names : CNames
+        Of the spec.
+    about : tuple of str
+        What every exported file says of itself.
+    """
+    comments = "\n".join(f"# {harmless(line)}" for line in about)
+    return _PYTEST.replace("SPEC_NAME", names.spec).replace("# ABOUT", comments)
+
+
+_PYTEST = '''\
+"""nrs-design test of conformance vectors: pytest SPEC_NAME_test.py
+
+The C beside this file is compiled with cc and tested where it is there. An implementation in Python
+is tested where NRS_STEP=module:function names one: it is called as
+function(mode, inputs, states) with dictionaries of floats, and returns (outputs, valid, states).
+"""
+# ABOUT
+
+import importlib
+import json
+import os
+import shutil
+import struct
+import subprocess
+from pathlib import Path
+
+import pytest
+
+HERE = Path(__file__).resolve().parent
+DOCUMENT = json.loads((HERE / "SPEC_NAME.vectors.json").read_text(encoding="utf-8"))
+
+
+def number(bits):
+    return struct.unpack(">f", bytes.fromhex(bits))[0]
+
+
+def same(value, bits):
+    """One that is not a number is as good as another: Python does not keep its bits."""
+    wanted = number(bits)
+    try:
+        packed = struct.pack(">f", value)
+    except OverflowError:
+        return False
+    return packed.hex() == bits or (value != value and wanted != wanted)
+
+
+@pytest.mark.skipif("NRS_STEP" not in os.environ, reason="NRS_STEP names no implementation")
+def test_an_implementation_in_python():
+    module, _, name = os.environ["NRS_STEP"].partition(":")
+    step = getattr(importlib.import_module(module), name)
+    for case in DOCUMENT["cases"]:
+        row = dict(zip(DOCUMENT["columns"], case))
+        before = {k[7:]: number(v) for k, v in row.items() if k.startswith("before.")}
+        after = {k[6:]: v for k, v in row.items() if k.startswith("after.")}
+        inputs = {k: number(row[k]) for k in DOCUMENT["inputs"]}
+        outputs, valid, states = step(row["mode"], inputs, before)
+        assert bool(valid) == bool(row["valid"]), row
+        assert all(same(outputs[k], row[k]) for k in DOCUMENT["outputs"]), row
+        assert all(same(states[k], bits) for k, bits in after.items()), row
+
+
+@pytest.mark.skipif(not (HERE / "SPEC_NAME.c").exists(), reason="there is no SPEC_NAME.c")
+@pytest.mark.skipif(shutil.which("cc") is None, reason="there is no compiler cc")
+@pytest.mark.parametrize("level", ["-O0", "-O2", "-O3"])
+def test_the_exported_c(tmp_path, level):
+    program = tmp_path / "test"
+    files = [str(HERE / "SPEC_NAME.c"), str(HERE / "SPEC_NAME_test.c")]
+    flags = ["-std=c99", "-ffp-contract=off", level, "-I", str(HERE)]
+    subprocess.run(["cc", *flags, *files, "-o", str(program)], check=True)
+    subprocess.run([str(program)], check=True)
+'''

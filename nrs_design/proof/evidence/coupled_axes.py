@@ -1,0 +1,221 @@
+"""One quadratic function for all axes of a robot at once, while they act on each other."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from itertools import product
+from math import lcm
+from typing import Any, ClassVar, Self
+
+from nrs_design.proof.evidence.fields import (
+    Matrix,
+    matrix_fields,
+    rate_words,
+    read_dyadic,
+    read_integer,
+    read_ratio,
+)
+from nrs_design.proof.evidence.function import AbstractFunction, is_square
+from nrs_design.proof.exact import (
+    IntegerMatrix,
+    lyapunov_decrease,
+    lyapunov_factor,
+    multiply,
+    scaled,
+)
+from nrs_design.proof.matrix import RationalMatrix, leading, with_crossing
+from nrs_design.proof.system import Contact, SwitchedSystem
+
+Forms = Iterator[tuple[str, IntegerMatrix]]
+NO_COUPLING = "the system does not say what axes do to each other"
+
+
+@dataclass(frozen=True, slots=True)
+class CoupledAxes(AbstractFunction):
+    """``V = sum w_i' Q w_i`` over all axes decreases, ``w_i = (y_i, max(delta_i, 0))``.
+
+    Every axis is in a mode of its own, in contact or free, with ``x' = A x + B d`` and, over all
+    axes, ``sum d_ik^2 <= sum (q_k x_i)^2`` for every coupling k. With one tau_k for all modes, V
+    decreases at the rate alpha if these are positive definite (S-procedure, axis by axis):
+
+    - Q, and in contact, for every mode, the form
+      ``[[-(A'Q + QA + 2 alpha Q) - sum tau_k q_k' q_k, -Q B], [-B'Q, diag(tau)]]``;
+    - free: the same for the block of y of every free mode, of its B and q, and of Q;
+    - deflected without force, where an environment could pull: for every free mode and every force
+      f, the form of the free mode in all states, plus ``lambda (e f + f' e')`` with a lambda >= 0
+      of its own.
+
+    Where the system has no contact to lose, the first is all there is, and w_i is x_i.
+
+    Parameters
+    ----------
+    Q : tuple of tuple of int, shape (n, n)
+        Numerators of the symmetric matrix.
+    denominator_log2 : int
+        Q, tau and lambda are these numerators over two to this power.
+    rate : Fraction
+        The alpha in 1/s.
+    taus : tuple of int
+        One for each coupling of the system.
+    multipliers : tuple of int
+        The lambdas, for each free mode and each force in turn.
+    """
+
+    kind: ClassVar[str] = "coupled-axes"
+    bounds_at_once: ClassVar[bool] = True
+    covers_mixtures: ClassVar[bool] = True
+    covers_lost_contact: ClassVar[bool] = True
+    covers_coupling: ClassVar[bool] = True
+
+    Q: Matrix
+    denominator_log2: int
+    rate: Fraction
+    taus: tuple[int, ...]
+    multipliers: tuple[int, ...] = ()
+
+    @property
+    def is_common_quadratic(self) -> bool:
+        """True: for one axis alone in contact, it is one for all modes."""
+        return True
+
+    @property
+    def keeps_bound_in_mixtures(self) -> bool:
+        """True: the conditions are concave in the modes."""
+        return True
+
+    def find_misfit(self, system: SwitchedSystem) -> str | None:
+        """Check that there is a coupling, shapes, the rate, and the signs of the lambdas."""
+        if not system.couplings:
+            return NO_COUPLING
+        if not is_square(self.Q, system.order):
+            return f"Q is not a {system.order} x {system.order} matrix"
+        if len(self.taus) != len(system.couplings):
+            return "there is not one multiplier for each coupling"
+        if len(self.multipliers) != pair_count(system.contact):
+            return "there is not one multiplier for each condition that needs it"
+        if any(entry < 0 for entry in self.multipliers):
+            return "a multiplier is negative"
+        return self.find_rate_misfit(system.time)
+
+    def forms(self, system: SwitchedSystem) -> Forms:
+        """Yield Q and the decreases in contact, free, and while an environment lags."""
+        yield "Q is not symmetric and positive definite", self.Q
+        for k, mode in enumerate(system.modes):
+            form, _ = self._form(self.Q, mode.A, *_parts(system, k))
+            yield _failure(f"in mode {mode.name}"), form
+        free = () if system.contact is None else system.contact.free
+        for k, mode in enumerate(free, len(system.modes)):
+            inner = RationalMatrix(tuple(leading(mode.A.numerators)), mode.A.denominator)
+            columns, rows = _parts(system, k)
+            moved = [RationalMatrix(B.numerators[:-1], B.denominator) for B in columns]
+            seen = [RationalMatrix((q.numerators[0][:-1],), q.denominator) for q in rows]
+            form, _ = self._form(leading(self.Q), inner, moved, seen)
+            yield _failure(f"in free motion, mode {mode.name}"), form
+        pulls = () if system.contact is None else system.contact.pulls
+        pairs = product(enumerate(free, len(system.modes)), pulls)
+        for ((k, mode), f), multiplier in zip(pairs, self.multipliers, strict=True):
+            form, factor = self._form(self.Q, mode.A, *_parts(system, k), clear=f.denominator)
+            pull = [factor // f.denominator * multiplier * entry for entry in f.numerators[0]]
+            lagging = with_crossing(form, len(self.Q) - 1, pull)
+            yield _failure(f"while the environment lags, mode {mode.name}"), lagging
+
+    def _form(
+        self,
+        Q: IntegerMatrix,
+        A: RationalMatrix,
+        columns: Sequence[RationalMatrix],
+        rows: Sequence[RationalMatrix],
+        clear: int = 1,
+    ) -> tuple[list[list[int]], int]:
+        """Return the form of one motion, times a positive number, and that number.
+
+        Parameters
+        ----------
+        Q : integer matrix, shape (n, n)
+            Of the states that move.
+        A : RationalMatrix, shape (n, n)
+            How they move.
+        columns, rows : sequence of RationalMatrix, shapes (n, 1) and (1, n)
+            The B and the q, one for each tau.
+        clear : int
+            The number is a multiple of this one.
+        """
+        own = lyapunov_factor(A.denominator, self.rate)
+        squares = (q.denominator**2 for q in rows)
+        factor = lcm(own, clear, *squares, *(B.denominator for B in columns))
+        form = scaled(lyapunov_decrease(A.numerators, A.denominator, Q, self.rate), factor // own)
+        for tau, q in zip(self.taus, rows, strict=True):
+            weight = tau * (factor // q.denominator**2)
+            for i, left in enumerate(q.numerators[0]):
+                for j, right in enumerate(q.numerators[0]):
+                    form[i][j] -= weight * left * right
+        for B in columns:
+            sides = multiply(Q, scaled(B.numerators, -(factor // B.denominator)))
+            form = [[*row, *side] for row, side in zip(form, sides, strict=True)]
+        across = [list(column) for column in zip(*form, strict=True)][len(Q) :]
+        for i, (tau, side) in enumerate(zip(self.taus, across, strict=True)):
+            form.append([*side, *(factor * tau * (i == j) for j in range(len(self.taus)))])
+        return form, factor
+
+    def claim_in_scope(self, system: SwitchedSystem) -> str:
+        """State the bound on every solution of all axes."""
+        names = ", ".join(item.name for item in system.couplings)
+        modes = _count(len(system.modes), "mode")
+        if system.contact is None:
+            moves, w = f"{modes}, switching arbitrarily", "where w_i is the state of an axis,"
+        else:
+            free = _count(len(system.contact.free), "mode")
+            moves = (
+                f"{modes} in contact and {free} of free motion, switching arbitrarily, with "
+                "contact lost and made again at any time"
+            )
+            w = (
+                "where w_i holds the states of an axis other than its deflection, and the "
+                "deflection where it is positive,"
+            )
+        end = "" if system.contact is None else " Where free motion ends is not claimed."
+        return (
+            "For any number of axes that act on each other within the stated bounds "
+            f"({names}), each by itself in any of {moves}, every solution satisfies "
+            f"|w(t)| <= exp(-alpha t) |w(0)| with {rate_words(self.rate, system.time)}, {w} "
+            f"in the norm |w|^2 = sum of w_i' Q w_i over the axes.{end}"
+        )
+
+    def to_fields(self) -> dict[str, Any]:
+        """Return Q, the rate and the multipliers."""
+        return {
+            "Q": matrix_fields(self.Q, self.denominator_log2),
+            "rate": str(self.rate),
+            "taus": list(self.taus),
+            "multipliers": list(self.multipliers),
+        }
+
+    @classmethod
+    def from_fields(cls, fields: Mapping[str, Any], system: SwitchedSystem) -> Self:
+        """Read Q, the rate and the multipliers."""
+        Q, denominator_log2 = read_dyadic(fields["Q"])
+        taus, multipliers = (
+            tuple(read_integer(entry) for entry in fields[key]) for key in ("taus", "multipliers")
+        )
+        return cls(Q, denominator_log2, read_ratio(fields["rate"]), taus, multipliers)
+
+
+def pair_count(contact: Contact | None) -> int:
+    """Return how many pairs there are of a free mode and a force that could pull."""
+    return 0 if contact is None else len(contact.free) * len(contact.pulls)
+
+
+def _failure(where: str) -> str:
+    return f"V does not decrease at the claimed rate {where}"
+
+
+def _count(number: int, noun: str) -> str:
+    return f"{number} {noun}{'s' * (number != 1)}"
+
+
+def _parts(system: SwitchedSystem, k: int) -> tuple[list[RationalMatrix], list[RationalMatrix]]:
+    """Return the B and the q of the k-th mode; free modes come after those in contact."""
+    couplings = system.couplings
+    return [item.columns[k] for item in couplings], [item.rows[k] for item in couplings]

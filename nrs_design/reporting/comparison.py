@@ -1,0 +1,59 @@
+"""The page of two specs or certificates beside each other."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from typing import TYPE_CHECKING
+
+from nrs_design.comparison import Part
+from nrs_design.reporting.document import Block, Bullets, Paragraph, Report, Section, Table
+from nrs_design.reporting.formatting import plural
+
+if TYPE_CHECKING:
+    from nrs_design.comparison import Comparison, Difference
+
+_TITLES = {
+    Part.SPEC: "What the specs say",
+    Part.GAINS: "Gains that ship, in SI units",
+    Part.MARGINS: "Margins (computed, not proved)",
+    Part.VERDICT: "Verdict",
+    Part.ASSUMPTIONS: "Taken for granted",
+}
+
+
+def comparison_report(found: Comparison) -> Report:
+    """Say everything about a comparison."""
+    count = len(found.differences)
+    return Report(
+        name="comparison",
+        title=f"{found.before.name} and {found.after.name}",
+        verdict="different" if count else "same",
+        claim=f"{plural(count, 'difference')}." if count else "No difference in what was compared.",
+        remarks=tuple(_remarks(found)),
+        facts=(("A", str(found.before.path)), ("B", str(found.after.path))),
+        sections=tuple(_sections(found)),
+        footer="Specs were designed and certified afresh, certificates re-checked.",
+    )
+
+
+def _remarks(found: Comparison) -> Iterator[str]:
+    if found.not_compared:
+        parts = ", ".join(found.not_compared)
+        yield f"Not compared, since not both files tell it: {parts}."
+
+
+def _sections(found: Comparison) -> Iterator[Section]:
+    for part in found.compared:
+        items = [item for item in found.differences if item.part is part]
+        blocks = tuple(_blocks(items)) if items else (Paragraph("The same in both."),)
+        yield Section(_TITLES[part], blocks)
+
+
+def _blocks(items: Sequence[Difference]) -> Iterator[Block]:
+    rows = [(i.what, i.before or "–", i.after or "–") for i in items if not i.is_text]
+    if rows:
+        yield Table("", ("", "A", "B"), tuple(rows))
+    texts = [item for item in items if item.is_text]
+    for side, held in (("A", [i.before for i in texts]), ("B", [i.after for i in texts])):
+        if said := tuple(text for text in held if text is not None):
+            yield Bullets(f"Only {side}", said)

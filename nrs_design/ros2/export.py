@@ -1,0 +1,255 @@
+"""Impedance controllers of a design as parameters of ``admittance_controller``, if that is proved.
+
+That controller computes another law than the robot of the spec: one step of symplectic Euler in
+each period, and no motion loop of its own (`nrs_design.ros2.axis`). So it is proved anew, from the
+numbers as they are written, and nothing is written without that proof. With stiffness 0 its law is
+``v' = f/M - d v``: ``Mt v' + Bt v = F`` with ``M = Mt`` and ``d = Bt/Mt``.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
+from decimal import Decimal
+from fractions import Fraction
+from pathlib import Path
+
+from nrs_design import __version__
+from nrs_design.certificates.certificate import Certificate
+from nrs_design.controllers.controller_design import Controller
+from nrs_design.errors import DesignError
+from nrs_design.exporters.outside import OUTSIDE
+from nrs_design.models.contact.elastic import Elastic
+from nrs_design.pipeline import Designed
+from nrs_design.proof.system import SwitchedSystem
+from nrs_design.proof.text import exact_text
+from nrs_design.ros2.axis import Surroundings, close_axis
+from nrs_design.ros2.law import AXES, AdmittanceLaw, read_law
+from nrs_design.ros2.parameters import parse_nodes
+from nrs_design.search.certification import Limits
+from nrs_design.search.certify import certify
+from nrs_design.spec.sampling import SamplingSpec
+
+BEGINNING = b"# nrs-design ros2 of "
+# What the controller needs besides, which no design knows.
+BESIDE = (
+    "joints, command_interfaces, state_interfaces, chainable_command_interfaces, kinematics, "
+    "ft_sensor.name, frames, gravity_compensation"
+)
+
+
+@dataclass(frozen=True, slots=True)
+class RosExport:
+    """One controller as a parameter file, or why there is none.
+
+    Parameters
+    ----------
+    controller : str
+        Its name in the spec.
+    verdict : {"proved", "refuted", "inconclusive"}
+        Of the law that ROS 2 computes with these parameters.
+    text : str
+        The file; empty without a proof.
+    certificate : Certificate or None
+        Its modes, and what is shown of them.
+    """
+
+    controller: str
+    verdict: str
+    text: str
+    certificate: Certificate | None
+
+
+def export_controllers(
+    designed: Designed, axis: str, lag: tuple[Fraction, Fraction], limits: Limits
+) -> Iterator[RosExport]:
+    """Yield every controller of a design with its proof.
+
+    Parameters
+    ----------
+    designed : Designed
+        Of a spec with impedance controllers in a sampled loop.
+    axis : {"rx", "ry", "rz"}
+        The axis of the control frame that the axis of the spec is.
+    lag : tuple of Fraction
+        Smallest and largest time constant in s with which the robot follows its command.
+    limits : Limits
+        Of each search.
+
+    Raises
+    ------
+    DesignError
+        If `admittance_controller` cannot run one of them.
+    """
+    sampling = _sampling(designed)
+    for controller in designed.design.controllers:
+        body = _body(controller, axis, _filter_share(designed, sampling), _rate(sampling))
+        law = _law_in(body)
+        met = _met(designed, controller)
+        around = Surroundings(sampling.period.exact, sampling.delay, None, met, lag)
+        chosen = law.axes[AXES.index(axis)]
+        system = _with_contact(designed, close_axis(law, chosen, around))
+        found = certify(system, limits=limits)
+        certificate = None
+        if found.statements:
+            certificate = Certificate(
+                spec_name=designed.spec.name,
+                spec_sha256=designed.loaded.sha256,
+                coordinates=None,
+                gains={},
+                system=system,
+                statements=found.statements,
+                version=__version__,
+            )
+        text = ""
+        if str(found.verdict) == "proved" and certificate is not None:
+            text = _header(designed, controller, sampling, met, certificate) + body
+        yield RosExport(controller.name, str(found.verdict), text, certificate)
+
+
+def _sampling(designed: Designed) -> SamplingSpec:
+    """Return the processor of a spec whose controllers can be written."""
+    if designed.spec.sampling is None:
+        raise DesignError(
+            "the spec does not say when its law runs and how old its force is",
+            remedy="add `sampling: {period: 2 ms, delay: [0, 1]}`",
+        )
+    for controller in designed.design.controllers:
+        gains = controller.law.gains
+        if controller.law.name != "impedance" or controller.law.spring or not gains["Mt"]:
+            raise DesignError(
+                f"admittance_controller cannot run {controller.name}: it is written for impedance "
+                "controllers with inertia and without a spring",
+                remedy="use type impedance with Mt > 0 and without Kt",
+                at=("controllers", controller.name),
+            )
+    return designed.spec.sampling
+
+
+def _with_contact(designed: Designed, system: SwitchedSystem) -> SwitchedSystem:
+    """Ask for a proof through any loss of contact where the spec does."""
+    if designed.spec.contact != "losable":
+        return system
+    if system.contact is None:
+        raise DesignError(
+            "with admittance_controller, loss of contact is modelled for one age of the force only",
+            remedy="give `delay` as one number, or `contact: kept`",
+            at=("sampling", "delay"),
+        )
+    return replace(system, contact=replace(system.contact, required=True))
+
+
+def _rate(sampling: SamplingSpec) -> int:
+    rate = 1 / sampling.period.exact
+    if rate.denominator != 1:
+        raise DesignError(
+            f"a period of {sampling.period.text} is no whole number of periods in a second",
+            remedy="choose one that is, such as 2 ms: update_rate is an integer",
+            at=("sampling", "period"),
+        )
+    return int(rate)
+
+
+def _filter_share(designed: Designed, sampling: SamplingSpec) -> Fraction:
+    """Return the share of the new sample in the smoothed force; 1 without a filter."""
+    low_pass = designed.design.sensor.filter
+    if low_pass is None:
+        return Fraction(1)
+    if low_pass.order != 1:
+        raise DesignError(
+            f"the filter of the force has order {low_pass.order}, and that of "
+            "admittance_controller has order 1",
+            remedy="give a filter of order 1",
+            at=("sensor", "filter"),
+        )
+    return 1 - low_pass.sampled(sampling.period.exact).p
+
+
+def _met(designed: Designed, controller: Controller) -> tuple[Fraction, Fraction]:
+    """Return the stiffness that a controller may touch, in N m/rad."""
+    touched = designed.plant.among(controller.contacts)
+    soft = next((item for item in touched if item.law is not Elastic), None)
+    if soft is not None:
+        raise DesignError(
+            f"{soft.name} is more than a spring, which is not modelled with admittance_controller",
+            remedy="give it the model elastic",
+            at=("environments", soft.name),
+        )
+    return min(i.stiffness.low for i in touched), max(i.stiffness.high for i in touched)
+
+
+def _body(controller: Controller, axis: str, share: Fraction, rate: int) -> str:
+    Mt, Bt = controller.law.gains["Mt"], controller.law.gains["Bt"]
+    values: Mapping[str, str] = {
+        "selected_axes": _list("true" if name == axis else "false" for name in AXES),
+        "mass": _list(_double(Mt) for _ in AXES),
+        # Without stiffness it has no effect; anything else would look as if it had.
+        "damping_ratio": _list("0.0" for _ in AXES),
+        "stiffness": _list("0.0" for _ in AXES),
+        "joint_damping": _double(Bt / Mt),
+    }
+    return "".join(
+        (
+            "controller_manager:\n  ros__parameters:\n",
+            f"    update_rate: {rate}\n\n",
+            "admittance_controller:\n  ros__parameters:\n",
+            f"    ft_sensor:\n      filter_coefficient: {_double(share)}\n",
+            "    admittance:\n",
+            *(f"      {name}: {value}\n" for name, value in values.items()),
+            "    enable_parameter_update_without_reactivation: false\n",
+        )
+    )
+
+
+def _law_in(body: str) -> AdmittanceLaw:
+    """Read the parameters back, as ROS 2 does: names, types and bounds."""
+    nodes = parse_nodes(body, Path("exported parameters"))
+    return read_law(next(node for node in nodes if node.name == "admittance_controller"))
+
+
+def _header(
+    designed: Designed,
+    controller: Controller,
+    sampling: SamplingSpec,
+    met: tuple[Fraction, Fraction],
+    certificate: Certificate,
+) -> str:
+    system, evidence = certificate.system, certificate.evidence
+    assert evidence is not None, "proved by something"
+    least, most = sampling.delay
+    lines = [
+        f"nrs-design ros2 of {designed.spec.name}, controller {controller.name}, "
+        f"nrs-design {__version__}",
+        f"spec: {designed.spec.name}, sha256 {designed.loaded.sha256}",
+        f"certificate: {certificate.id}",
+        "verdict: PROVED, of the law as admittance_controller computes it with these numbers",
+        f"claim: {evidence.claim(system)}",
+        f"sample time: {exact_text(sampling.period.exact)} s, measurements {least} to {most} "
+        "samples old",
+        f"touched: {float(met[0])!r} to {float(met[1])!r} N*m/rad",
+        "units: kg*m^2, N*m/rad, joint_damping in 1/s",
+        *(f"taken for granted: {text}" for text in (*system.assumptions, *_kept(certificate))),
+        *(f"outside the proof: {text}" for text in OUTSIDE),
+        "outside the proof: switching to another controller; the same joint_damping acts on all "
+        "axes, and no force on those that are not selected",
+        f"to be given beside this file: {BESIDE}",
+    ]
+    return "".join(f"# {line}\n" for line in lines)
+
+
+def _kept(certificate: Certificate) -> tuple[str, ...]:
+    """Say that contact is kept, where it is; a claim says so only where its loss is modelled."""
+    return ("contact is not lost",) if certificate.system.contact is None else ()
+
+
+def _list(items: Iterator[str]) -> str:
+    return f"[{', '.join(items)}]"
+
+
+def _double(number: Fraction) -> str:
+    """Write the double next to a number with all its digits, so that what is proved is what runs.
+
+    There is always a point and never an exponent, as ROS 2 wants it.
+    """
+    text = format(Decimal(float(number)), "f")
+    return text if "." in text else f"{text}.0"

@@ -1,0 +1,80 @@
+"""What the sampled loop does not model yet: said while a spec is read, at its place."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from functools import partial
+from typing import TYPE_CHECKING
+
+from nrs_design.spec.faults import all_of, fault
+
+if TYPE_CHECKING:
+    from nrs_design.spec.interaction import InteractionDesignSpec
+
+# Place, what is not modelled, and what to do.
+Refusal = tuple[tuple[str, ...], str, str]
+
+
+def check_sampled(spec: InteractionDesignSpec) -> None:
+    """Refuse what is not modelled beside `sampling`, all of it at once."""
+    if spec.sampling is not None:
+        all_of(*(partial(_refuse, *refusal) for refusal in _not_modelled(spec)))
+
+
+def _refuse(at: tuple[str, ...], what: str, remedy: str) -> None:
+    raise fault(f"in the sampled loop, {what}: not modelled", remedy, *at)
+
+
+def _not_modelled(spec: InteractionDesignSpec) -> Iterator[Refusal]:
+    yield from _controllers(spec)
+    for name in sorted(spec.touched & spec.environments.keys()):
+        if spec.environments[name].remembers:
+            remedy = "use elastic or kelvin-voigt environments, or leave sampling out"
+            yield ("environments", name, "model"), f"{name} remembers", remedy
+    if spec.motion_loop.transfer_function is not None:
+        what = "the spec states the closed motion loop in continuous time"
+        yield ("motion_loop", "transfer_function"), what, "leave transfer_function or sampling out"
+    if spec.coordinates == "force":
+        yield ("coordinates",), "force coordinates", "use `coordinates: deflection`"
+    yield from _loss_of_contact(spec)
+    # Rules about controllers in one contact each are refused as a whole elsewhere.
+    times = () if spec.switching.names_contacts else spec.switching.dwell_times()
+    for at, _ in times:
+        what = "the rules of switching have dwell times in s"
+        yield ("switching", *at), what, "leave them out, or sampling"
+
+
+def _controllers(spec: InteractionDesignSpec) -> Iterator[Refusal]:
+    commanded = spec.disturbances is not None and spec.disturbances.command is not None
+    for name, controller in spec.controllers.items():
+        at = ("controllers", name)
+        if not controller.sampled:
+            remedy = "use impedance, position and force controllers, or leave sampling out"
+            yield (*at, "type"), f"{name} is a {controller.type} controller", remedy
+        if spec.offset != "none" and "offset" in type(controller).model_fields:
+            what = f"the offset of {name}, which leaves a mode at rest anywhere"
+            yield (*at, "offset"), what, "use `offset: none`, or leave sampling out"
+        if commanded and controller.commands == "position":
+            what = f"the velocity command beside {name}, which is given a position"
+            yield ("disturbances", "command"), what, "leave command out"
+        if commanded and "Kt" in controller.gains():
+            what = f"a velocity command moves the position that the spring Kt of {name} draws to"
+            yield ("disturbances", "command"), what, "leave command out, or Kt"
+
+
+def _loss_of_contact(spec: InteractionDesignSpec) -> Iterator[Refusal]:
+    if spec.contact != "losable":
+        return
+    for name, controller in spec.controllers.items():
+        if controller.commands == "position":
+            what = f"loss of contact beside {name}, which is given a position"
+            yield ("contact",), what, "use `contact: kept`, or impedance controllers alone"
+            return
+    for name in sorted(spec.touched & spec.environments.keys()):
+        environment = spec.environments[name]
+        if not (environment.is_spring or environment.remembers):
+            what = f"loss of contact with {name}, which has damping"
+            yield ("contact",), what, "use `contact: kept`, or leave sampling out"
+    if len({"Kt" in controller.gains() for controller in spec.controllers.values()}) > 1:
+        what = "loss of contact where some controllers have a spring Kt and some have none"
+        yield ("contact",), what, "use `contact: kept`, or give all of them a spring"

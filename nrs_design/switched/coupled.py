@@ -1,0 +1,222 @@
+"""All axes of a robot at once: what the inertia of the links does to the modes of one axis.
+
+The numbers of a coupling are declared; docs/certificates/coupled-axes.md derives what is made of
+them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from fractions import Fraction
+
+from nrs_design.errors import AssemblyError
+from nrs_design.proof.matrix import RationalMatrix
+from nrs_design.proof.system import Coupling, Mode, SwitchedSystem
+from nrs_design.proof.text import exact_text
+from nrs_design.spec.coupling import CouplingSpec
+from nrs_design.switched.assumptions import UNCOUPLED
+
+OMEGA, DELTA = "omega [rad/s]", "delta [rad]"
+Row = list[Fraction]
+
+
+@dataclass(frozen=True, slots=True)
+class AxesCoupling:
+    """What is declared about the links of a robot, in SI units.
+
+    Parameters
+    ----------
+    drive : Fraction
+        J, the inertia of each drive at its joint.
+    lightest, heaviest : Fraction
+        Every eigenvalue of the matrix of inertia M(q) of the links is between them.
+    coriolis : Fraction or None
+        Coriolis and centrifugal torques are at most this times the speed; None leaves them out.
+    speed : str or None
+        As long as the speed is at most this, with its unit.
+    gravity_gradient : Fraction or None
+        The torque of gravity changes by at most this times the way from the pose of rest; None
+        leaves it out.
+    """
+
+    drive: Fraction
+    lightest: Fraction
+    heaviest: Fraction
+    coriolis: Fraction | None = None
+    speed: str | None = None
+    gravity_gradient: Fraction | None = None
+
+    @classmethod
+    def of(cls, spec: CouplingSpec, drive: Fraction) -> AxesCoupling:
+        """Read what a spec declares.
+
+        Parameters
+        ----------
+        spec : CouplingSpec
+            The declaration.
+        drive : Fraction
+            The J.
+        """
+        (lightest, heaviest), coriolis = spec.inertia, spec.coriolis
+        gradient = spec.gravity_gradient
+        return cls(
+            drive,
+            lightest.exact,
+            heaviest.exact,
+            None if coriolis is None else coriolis.exact,
+            None if spec.speed is None else spec.speed.text,
+            None if gradient is None else gradient.exact,
+        )
+
+    @property
+    def shares(self) -> tuple[Fraction, Fraction]:
+        """The smallest and the largest eigenvalue of ``(I + M/J)^-1``."""
+        return self.drive / (self.drive + self.heaviest), self.drive / (self.drive + self.lightest)
+
+    def scaled(self, scale: Fraction) -> AxesCoupling:
+        """Return it with the range of inertia stretched about its middle, but not below zero.
+
+        The other bounds are multiplied.
+
+        Parameters
+        ----------
+        scale : Fraction
+            Not negative.
+        """
+        middle = (self.lightest + self.heaviest) / 2
+        half = scale * (self.heaviest - self.lightest) / 2
+        return AxesCoupling(
+            self.drive,
+            max(middle - half, Fraction(0)),
+            middle + half,
+            None if self.coriolis is None else scale * self.coriolis,
+            self.speed,
+            None if self.gravity_gradient is None else scale * self.gravity_gradient,
+        )
+
+
+def couple_axes(system: SwitchedSystem, coupling: AxesCoupling) -> SwitchedSystem:
+    """Return the modes of an axis among others that act on it, and in which bounds they do.
+
+    Parameters
+    ----------
+    system : SwitchedSystem
+        One axis in the physical states of its motion loop, in continuous time.
+    coupling : AxesCoupling
+        What is declared.
+
+    Raises
+    ------
+    AssemblyError
+        If the states do not tell the speed, or for gravity the deflection, or contact may be lost
+        where gravity changes.
+    """
+    omega = _index(system, OMEGA)
+    low, high = coupling.shares
+    mean, radius = (low + high) / 2, (high - low) / 2
+    free = () if system.contact is None else system.contact.free
+    every = (*system.modes, *free)
+    rows = [mode.A.fractions()[omega] for mode in every]
+    unit = [Fraction(int(i == omega)) for i in range(system.order)]
+    parts = [("the inertia of the links", [[radius * a for a in row] for row in rows])]
+    if coupling.coriolis is not None:
+        size = high * coupling.coriolis / coupling.drive
+        parts.append(("Coriolis torques", [[size * a for a in unit]] * len(every)))
+    if coupling.gravity_gradient is not None:
+        size = high * coupling.gravity_gradient / coupling.drive
+        parts.append(("gravity", [_deflection(system, unit, size)] * len(every)))
+    column = RationalMatrix.from_rows([[entry] for entry in unit])
+    couplings = (
+        Coupling(
+            name,
+            (column,) * len(every),
+            tuple(RationalMatrix.from_rows([row]) for row in bounds),
+        )
+        for name, bounds in parts
+    )
+    contact = system.contact
+    if contact is not None:
+        contact = replace(contact, free=_slowed(contact.free, omega, mean))
+    assumptions = [
+        text
+        for known in system.assumptions
+        for text in (_texts(coupling) if known == UNCOUPLED else (known,))
+    ]
+    return replace(
+        system,
+        modes=_slowed(system.modes, omega, mean),
+        contact=contact,
+        couplings=tuple(couplings),
+        assumptions=tuple(assumptions),
+    )
+
+
+def _slowed(modes: tuple[Mode, ...], omega: int, mean: Fraction) -> tuple[Mode, ...]:
+    """Return the modes with the middle of the range of inertia on their axis."""
+    slowed = []
+    for mode in modes:
+        A = mode.A.fractions()
+        A[omega] = [mean * entry for entry in A[omega]]
+        slowed.append(Mode(mode.name, RationalMatrix.from_rows(A)))
+    return tuple(slowed)
+
+
+def _index(system: SwitchedSystem, state: str) -> int:
+    if state not in system.states:
+        raise AssemblyError(
+            f"axes that act on each other are not modelled without a state {state}",
+            remedy="remove coupling, or give impedance controllers and an actuator with "
+            "load_inertia",
+            at=("coupling",),
+        )
+    return system.states.index(state)
+
+
+def _deflection(system: SwitchedSystem, omega: Row, size: Fraction) -> Row:
+    """Return the row of the bound on gravity: the deflection is how far the axis is from rest."""
+    delta = _index(system, DELTA)
+    if system.contact is not None or any(m.A.fractions()[delta] != omega for m in system.modes):
+        raise AssemblyError(
+            "that gravity changes is modelled where contact is kept, and has a position of rest",
+            remedy="use `contact: kept`, or remove gravity_gradient",
+            at=("coupling", "gravity_gradient"),
+        )
+    return [size * int(i == delta) for i in range(system.order)]
+
+
+def _texts(coupling: AxesCoupling) -> Iterator[str]:
+    """Say what is taken for granted about the axes, and that it is declared."""
+    low, high = (exact_text(m) for m in (coupling.lightest, coupling.heaviest))
+    yield (
+        "The axes act on each other through their links. Every axis is one of this spec: its "
+        "motor, gains, controllers and environments, each at values of its own within their "
+        f"ranges, with a drive of {exact_text(coupling.drive)} kg*m^2 at its joint; gain and time "
+        "constant of the motor are those of a drive without links."
+    )
+    yield (
+        "What is touched acts on every axis by itself: the torque on an axis depends on the "
+        "deflection of that axis alone."
+    )
+    yield (
+        f"Every eigenvalue of the matrix of inertia of the links is in [{low}, {high}] kg*m^2, in "
+        "all poses that are used (declared, not computed from a robot)."
+    )
+    if coupling.coriolis is None:
+        yield "Coriolis and centrifugal torques are left out."
+    else:
+        yield (
+            "Coriolis and centrifugal torques are, over all axes together (root of the sum of "
+            f"squares), at most {exact_text(coupling.coriolis)} N*m*s/rad times the speed "
+            "(declared, not computed from a robot), and the speed stays below "
+            f"{coupling.speed}, which is not shown."
+        )
+    if coupling.gravity_gradient is None:
+        yield "Gravity is compensated, or the same, in all poses that are used."
+    else:
+        yield (
+            "From the pose of rest, in which all deflections are zero, the torque of gravity "
+            "changes, over all axes together, by at most "
+            f"{exact_text(coupling.gravity_gradient)} N*m/rad times the deflections (declared, "
+            "not computed from a robot)."
+        )

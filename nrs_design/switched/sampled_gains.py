@@ -1,0 +1,75 @@
+"""Where the coefficients of a sampled law lie while its gains are anywhere in their ranges."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
+from fractions import Fraction
+
+from nrs_design.controllers.sampled import SampledAdmittance, SampledLaw
+from nrs_design.controllers.sampled_range import coefficient_ranges
+from nrs_design.proof.bounds import rounded_down, rounded_up
+from nrs_design.switched.gain_box import GainBox
+from nrs_design.switched.parameter_box import Box
+
+
+@dataclass(frozen=True, slots=True)
+class SampledGains:
+    """A law, and the box of what its coefficients are made of.
+
+    Where Mt or Bt has a range, that is a and ``c = b/(1 - a)``, which is 1/Bt but for rounding;
+    without inertia it is ``c = b`` alone. The map of a period is affine in each of them.
+
+    Parameters
+    ----------
+    law : SampledAdmittance or SampledForce
+        With the coefficients that ship.
+    box : Box
+        Of ``a`` and ``c``, and of ``Kt``, as far as they have ranges.
+    """
+
+    law: SampledLaw
+    box: Box
+
+    @classmethod
+    def of(cls, law: SampledLaw, gains: GainBox, period: Fraction, method: str) -> SampledGains:
+        """Enclose the coefficients of all gains in a box.
+
+        Parameters
+        ----------
+        law : SampledAdmittance or SampledForce
+            With the coefficients that ship.
+        gains : GainBox
+            Where the gains may be.
+        period : Fraction
+            In s.
+        method : {"exact", "euler"}
+            By which the law is discretized.
+
+        Raises
+        ------
+        DesignError
+            If single precision loses a coefficient.
+        """
+        if gains.fixed or not isinstance(law, SampledAdmittance):
+            return cls(law, Box({}))
+        ranges = coefficient_ranges(gains.law, gains.ranges, period, method)
+        ranges |= {"Kt": gains.ranges["Kt"]} if "Kt" in gains.ranges else {}
+        return cls(law, Box({symbol: r for symbol, r in ranges.items() if r.low != r.high}))
+
+    def at(self, values: Mapping[str, Fraction]) -> SampledLaw:
+        """Return the law at values of the box; other names are left alone."""
+        law = self.law
+        if not isinstance(law, SampledAdmittance) or not self.box.ranges:
+            return law
+        a, b = values["a"] if "a" in self.box.ranges else law.a, law.b
+        if "c" in self.box.ranges:
+            b = values["c"] * (1 if a is None else 1 - a)
+        return replace(law, a=a, b=b, Kt=values.get("Kt", law.Kt))
+
+    def texts(self, name: str) -> Iterator[str]:
+        """Say where the coefficients of a controller of that name may be."""
+        said = {"a": "a", "c": "b/(1 - a)" if "a" in self.box.ranges else "b", "Kt": "Kt"}
+        for symbol, interval in self.box.ranges.items():
+            ends = f"[{rounded_down(interval.low)}, {rounded_up(interval.high)}]"
+            yield f"{said[symbol]} of {name} stays in {ends} and may change at every sample."

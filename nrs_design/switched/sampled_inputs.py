@@ -1,0 +1,131 @@
+"""What acts on a sampled loop from outside and from within, and what bounds are stated for."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+
+from nrs_design.controllers.sampled import rounding_share
+from nrs_design.models.contact.environment import Environment
+from nrs_design.models.linear_form import LinearForm, coordinates, zero
+from nrs_design.proof.matrix import RationalMatrix
+from nrs_design.proof.system import Channel, Mode, Output, Rounding
+from nrs_design.spec import InteractionDesignSpec
+from nrs_design.spec.interval import Interval
+from nrs_design.spec.sampling import DisturbancesSpec
+from nrs_design.switched.parameter_box import Box
+from nrs_design.switched.sampled_frame import INPUTS, Frame
+
+
+@dataclass(frozen=True, slots=True)
+class Motion:
+    """One mode, the columns of inputs and roundings, and the rows that bound the roundings."""
+
+    mode: Mode
+    columns: tuple[RationalMatrix, ...]
+    sizes: tuple[LinearForm, ...]
+
+    @classmethod
+    def of(cls, name: str, rows: Sequence[LinearForm], n: int) -> Motion:
+        """Take apart the rows of a frame.
+
+        Parameters
+        ----------
+        name : str
+            Of the mode.
+        rows : sequence of LinearForm
+            As `Frame.rows` gives them.
+        n : int
+            Number of states.
+        """
+        moves, width = rows[:n], len(rows[0])
+        columns = ([[row[i]] for row in moves] for i in range(n, width))
+        mode = Mode(name, RationalMatrix.from_rows([row[:n] for row in moves]))
+        return cls(mode, tuple(map(RationalMatrix.from_rows, columns)), tuple(rows[n:]))
+
+
+def channels_of(
+    spec: InteractionDesignSpec, off: Fraction, motions: Sequence[Motion]
+) -> Iterator[Channel]:
+    """Yield the disturbances of the spec, and the errors of its sensor, with their columns.
+
+    Parameters
+    ----------
+    spec : InteractionDesignSpec
+        With the disturbances, if it declares any.
+    off : Fraction
+        How far the force signal may be off for long, in N m.
+    motions : sequence of Motion
+        All modes, those of free motion last.
+    """
+    if spec.disturbances is None:
+        return
+    bounds = spec.disturbances.bounds() | _angle_bounds(spec.disturbances)
+    if off:
+        bounds["force error"] = (off, "N*m")
+    for i, name in enumerate(INPUTS):
+        if name in bounds:
+            bound, unit = bounds[name]
+            yield Channel(name, unit, bound, tuple(motion.columns[i] for motion in motions))
+
+
+def _angle_bounds(disturbances: DisturbancesSpec) -> dict[str, tuple[Fraction, str]]:
+    """Return how far angles of the law are off; one is read from a count, times a coefficient."""
+    if disturbances.largest_angle is None:
+        return {}
+    largest = disturbances.largest_angle.not_below
+    counts = {"rounding of the reference": 1, "rounding of the angle": 3}
+    return {name: (rounding_share(n) * largest, "rad") for name, n in counts.items()}
+
+
+def roundings_of(
+    frame: Frame, channels: Sequence[Channel], motions: Sequence[Motion]
+) -> Iterator[Rounding]:
+    """Yield what the arithmetic adds, with rows over the states and the declared disturbances.
+
+    Parameters
+    ----------
+    frame : Frame
+        Of all modes.
+    channels : sequence of Channel
+        The disturbances.
+    motions : sequence of Motion
+        All modes, those of free motion last.
+    """
+    n, named = len(frame.states), [channel.name for channel in channels]
+    kept = [*range(n), *(n + i for i, name in enumerate(INPUTS) if name in named)]
+    for j, name in enumerate(frame.roundings):
+        rows = ([[motion.sizes[j][i] for i in kept]] for motion in motions)
+        columns = (motion.columns[len(INPUTS) + j] for motion in motions)
+        yield Rounding(name, tuple(columns), tuple(map(RationalMatrix.from_rows, rows)))
+
+
+def outputs_of(frame: Frame, touched: Sequence[Environment], limit: Fraction) -> tuple[Output, ...]:
+    """Return the force at the corners of its ranges, with what it is meant to keep, and omega.
+
+    Parameters
+    ----------
+    frame : Frame
+        Of all modes.
+    touched : sequence of Environment
+        What pushes.
+    limit : Fraction
+        Of the force, in N m.
+    """
+    size, rows = len(frame.states), []
+    speed = frame.states.index("omega [rad/s]")
+    for environment in touched:
+        box = Box({"k": environment.stiffness, "b": damping_of(environment)})
+        for values in box.values():
+            row = zero(size)
+            row[speed], row[-1] = values["b"], values["k"]
+            rows.append(RationalMatrix.from_rows([row]))
+    omega = RationalMatrix.from_rows([coordinates(size)[speed]])
+    force = (Output("force", "N*m", tuple(rows), limit),) if rows else ()
+    return (*force, Output("velocity", "rad/s", (omega,)))
+
+
+def damping_of(environment: Environment) -> Interval:
+    """Return the range of the damping beside the spring; zero for a spring."""
+    return environment.parameters.get("b", Interval.point(Fraction(0)))

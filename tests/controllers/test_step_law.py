@@ -1,0 +1,231 @@
+"""The list of operations is the law of the certificate: its map and its roundings."""
+
+from dataclasses import replace
+from fractions import Fraction
+
+import numpy as np
+import pytest
+
+from nrs_design.controllers.float32 import to_float32
+from nrs_design.controllers.laws import Admittance, ProportionalDerivative
+from nrs_design.controllers.operations import linear_forms, rounded_terms, term_counts
+from nrs_design.controllers.sampled import (
+    ROUNDINGS,
+    ROUNDINGS_WITHOUT_INERTIA,
+    SampledForce,
+    SampledMotion,
+)
+from nrs_design.controllers.sensor import LowPass
+from nrs_design.controllers.step_law import StepLimits, build_placed_law, build_step_law
+from nrs_design.models.linear_form import combine, coordinates, zero
+from nrs_design.switched.sampled_frame import INPUTS, Frame
+
+ONE = Fraction(1)
+E, TAU, KM = Fraction("0.9446"), Fraction("0.0351"), Fraction("4.8417e-4")
+
+
+def number(rng, low, high):
+    return to_float32(Fraction(rng.uniform(low, high)))
+
+
+def cases(seed, count=60):
+    """Yield frames, sampled laws and the operations of the same law."""
+    rng = np.random.default_rng(seed)
+    for _ in range(count):
+        period = Fraction(int(rng.integers(1, 21)), 1000)
+        method = str(rng.choice(["exact", "euler"]))
+        inert, sprung = bool(rng.integers(0, 2)), bool(rng.integers(0, 2))
+        order, longest = int(rng.integers(0, 3)), int(rng.integers(0, 4))
+        motion = SampledMotion.of(
+            ProportionalDerivative(number(rng, 1e3, 2e5), number(rng, 1, 4e3)), period
+        )
+        laws = {
+            name: Admittance(
+                number(rng, 0.1, 1) if inert else Fraction(0),
+                number(rng, 0.1, 5),
+                number(rng, 0.1, 9) if sprung else Fraction(0),
+            ).sampled(period, method)
+            for name in ("insertion", "withdrawal")
+        }
+        low_pass = LowPass(order, number(rng, 50, 500)).sampled(period) if order else None
+        frame = Frame(period, motion, inert, longest, TAU, low_pass, sprung)
+        yield frame, laws, build_step_law(motion, laws, low_pass)
+
+
+def coordinates_of(frame, delay):
+    """Inputs and states of the law in the coordinates of the frame, `INPUTS` at the end."""
+    size, order = len(frame.states), 0 if frame.low_pass is None else frame.low_pass.order
+    unit = coordinates(size + len(INPUTS) + len(frame.roundings))
+    names = [name.split(" [")[0] for name in frame.states]
+    state = dict(zip(names, unit, strict=False))
+    command, _, encoder, sensor, _, angle = unit[size : size + len(INPUTS)]
+    k, b = Fraction(700), Fraction(3)
+    felt = combine((k, state["delta"]), (b, state["omega"]), (ONE, sensor))
+    samples = [felt, *(state[f"F {j} before"] for j in range(1, frame.longest_delay + 1))]
+    lags = {f"filtered_{i}": state[f"filtered {i} before"] for i in range(1, order + 1)}
+    return {
+        "angle": combine((ONE, state["delta"]), (ONE, encoder), (ONE, angle)),
+        "torque": samples[delay],
+        "velocity_command": command,
+        "reference": combine((ONE, state["e"]), (ONE, state["delta"])),
+        "error_before": state["e before"],
+        "velocity": state.get("vm", zero(len(unit[0]))),
+        "commanded": zero(len(unit[0])),
+        **lags,
+    }
+
+
+def without_roundings(frame, row):
+    return list(row[: len(frame.states) + len(INPUTS)])
+
+
+def test_the_map_is_that_of_the_certificate():
+    """The law and the motor after it are the rows of the sampled loop, in every entry."""
+    for frame, laws, law in cases(31):
+        delay = frame.longest_delay
+        given = coordinates_of(frame, delay)
+        size, period = len(frame.states), frame.period
+        unit = coordinates(len(given["angle"]))
+        omega, delta = unit[1], unit[size - 1]
+        friction, reference_error = unit[size + 1], unit[size + 4]
+        s = TAU * (1 - E)
+        for mode, admittance in enumerate(laws.values()):
+            values = {"Km": KM, "E": E, "k": Fraction(700), "b": Fraction(3)}
+            expected = [without_roundings(frame, r) for r in frame.rows(admittance, delay, values)]
+            forms = linear_forms(law, mode, given)
+            drive = combine((ONE, forms["command"]), (ONE, friction))
+            moved = combine((s, omega), (KM * (period - s), drive))
+            angle = combine((ONE, delta), (ONE, moved))
+            reference = combine((ONE, forms["next_reference"]), (ONE, reference_error))
+            found = [
+                combine((ONE, reference), (-ONE, angle)),
+                combine((E, omega), (KM * (1 - E), drive)),
+                forms[law.following["error_before"]],
+            ]
+            names = ["velocity"] * frame.has_inertia
+            names += [f"filtered_{i + 1}" for i in range(len(given) - 7)]
+            found += [forms[law.following[name]] for name in names]
+            n = len(found)
+            assert [without_roundings(frame, row) for row in found] == expected[:n]
+            assert without_roundings(frame, angle) == expected[size - 1]
+
+
+def test_the_roundings_are_those_of_the_certificate():
+    for frame, _, law in cases(32):
+        counted = term_counts(law)
+        # A command beside a spring is not modelled in the sampled loop.
+        assert counted.pop("T v", 1) == 1
+        assert counted == frame.counts
+
+
+def test_the_table_of_roundings():
+    """The numbers that docs/certificates/rounding.md explains."""
+    found = {frame.has_inertia: term_counts(law) for frame, _, law in cases(33) if plain(frame)}
+    assert found == {True: ROUNDINGS, False: ROUNDINGS_WITHOUT_INERTIA}
+
+
+def plain(frame):
+    return frame.low_pass is None and not frame.sprung
+
+
+def test_every_term_of_a_sum_adds_up_to_it():
+    """What a result is a sum of is, without roundings, that result."""
+    for frame, _, law in cases(34, 40):
+        given = coordinates_of(frame, 0)
+        forms = linear_forms(law, 1, given)
+        for name, terms in rounded_terms(law, 1, given).items():
+            assert combine(*((ONE, term.form) for term in terms)) == list(forms[name])
+
+
+def test_a_list_that_does_not_fit_is_refused():
+    _, _, law = next(cases(35))
+    first, *others = law.operations
+    sums = [operation for operation in law.operations if operation.kind == "subtract"]
+    third = replace(law.coefficients[0], values=(Fraction(1, 3),))
+    for change in (
+        {"operations": (*others, first)},
+        {"operations": (first, *law.operations)},
+        {"operations": (*law.operations, replace(sums[0], name="more", kind="multiply"))},
+        {"following": {}},
+        {"outputs": {"command": "nothing"}},
+        {"modes": ("one", "two", "three")},
+        {"coefficients": (third, *law.coefficients[1:])},
+    ):
+        with pytest.raises(ValueError, match=r"\w"):
+            replace(law, **change)
+
+
+def test_a_saturation_changes_no_map_and_no_rounding():
+    frame, laws, law = next(cases(36))
+    limits = StepLimits(velocity=Fraction(1, 8), command=Fraction(4000))
+    limited = build_step_law(frame.motion, laws, frame.low_pass, limits)
+    given = coordinates_of(frame, 0)
+    assert (
+        linear_forms(limited, 0, given)["limited_command"] == linear_forms(law, 0, given)["command"]
+    )
+    assert term_counts(limited) == term_counts(law)
+
+
+def placed_cases(seed, count=40):
+    """Yield frames of position and force control, their laws, and the same as operations."""
+    rng = np.random.default_rng(seed)
+    for _ in range(count):
+        period = Fraction(int(rng.integers(1, 21)), 1000)
+        order, longest = int(rng.integers(0, 3)), int(rng.integers(0, 4))
+        motion = SampledMotion(number(rng, 1e3, 2e5), number(rng, 1e3, 1e6))
+        low_pass = LowPass(order, number(rng, 50, 500)).sampled(period) if order else None
+        laws = {
+            "position": SampledForce(Fraction(0)),
+            "force": SampledForce(number(rng, 0.001, 0.1)),
+        }
+        frame = Frame(
+            period, motion, False, longest, TAU, low_pass, integrates=False, takes_force=True
+        )
+        yield frame, laws, build_placed_law(motion, laws, low_pass)
+
+
+def test_the_map_of_force_and_position_control_is_that_of_the_certificate():
+    for frame, laws, law in placed_cases(37):
+        delay, size = frame.longest_delay, len(frame.states)
+        unit = coordinates(size + len(INPUTS) + len(frame.roundings))
+        names = [name.split(" [")[0] for name in frame.states]
+        state = dict(zip(names, unit, strict=False))
+        _, friction, encoder, sensor, reference, angle = unit[size : size + len(INPUTS)]
+        felt = combine(
+            (Fraction(700), state["delta"]), (Fraction(3), state["omega"]), (ONE, sensor)
+        )
+        ages = [felt, *(state[f"F {j} before"] for j in range(1, delay + 1))]
+        lags = {
+            f"filtered_{i + 1}": state[f"filtered {i + 1} before"]
+            for i in range(len(law.states) - 1)
+        }
+        given = {
+            "angle": combine((ONE, state["delta"]), (ONE, encoder), (ONE, angle)),
+            "torque": ages[delay],
+            "position": reference,
+            "wanted_torque": zero(len(felt)),
+            "error_before": state["e before"],
+            **lags,
+        }
+        values = {"Km": KM, "E": E, "k": Fraction(700), "b": Fraction(3)}
+        s = TAU * (1 - E)
+        for mode, placed in enumerate(laws.values()):
+            expected = [without_roundings(frame, r) for r in frame.rows(placed, delay, values)]
+            forms = linear_forms(law, mode, given)
+            drive = combine((ONE, forms["command"]), (ONE, friction))
+            moved = combine((s, state["omega"]), (KM * (frame.period - s), drive))
+            found = [combine((E, state["omega"]), (KM * (1 - E), drive))]
+            found += [forms[law.following[name]] for name in ("error_before", *lags)]
+            assert [without_roundings(frame, row) for row in found] == expected[: len(found)]
+            delta = combine((ONE, state["delta"]), (ONE, moved))
+            assert without_roundings(frame, delta) == expected[size - 1]
+
+
+def test_no_term_of_force_control_is_rounded_more_often_than_is_proved():
+    """Besides, what is proved adds the rounding of the error to that of all of its terms."""
+    for frame, _, law in placed_cases(38):
+        counted = term_counts(law)
+        angles = {"X", "theta", "Kp Fd"}
+        assert {*counted} - angles == {*frame.counts} - {"e"}
+        assert all(counted[name] <= frame.counts[name] for name in {*counted} - angles)
+        assert (counted["X"], counted["theta"]) == (1, 1)

@@ -1,0 +1,78 @@
+"""Laws of every shape, and the compilers that make programs of them."""
+
+import shutil
+import subprocess
+from fractions import Fraction
+from pathlib import Path
+
+import pytest
+
+from nrs_design.controllers.float32 import to_float32
+from nrs_design.controllers.laws import Admittance, ProportionalDerivative
+from nrs_design.controllers.operations import StepLaw
+from nrs_design.controllers.sampled import SampledForce, SampledMotion
+from nrs_design.controllers.sensor import LowPass
+from nrs_design.controllers.step_law import StepLimits, build_placed_law, build_step_law
+
+PERIOD = Fraction(1, 500)
+MOTION = ProportionalDerivative(to_float32(Fraction("117359.43")), Fraction(2060))
+M4F = Path(__file__).parent / "m4f"
+STRICT = (
+    "-std=c99",
+    *("-Wall", "-Wextra", "-Werror", "-pedantic", "-Wconversion", "-Wdouble-promotion"),
+    *("-Wfloat-equal", "-Wshadow", "-ffp-contract=off"),
+)
+CORTEX = ("-mcpu=cortex-m4", "-mthumb", "-mfpu=fpv4-sp-d16", "-mfloat-abi=hard")
+MACHINE = ("-M", "netduinoplus2", "-nographic", "-monitor", "none", "-serial", "none")
+SEMIHOSTING = ("-semihosting-config", "enable=on,target=native")
+
+
+def law(*, Mt="0.01", Kt=("0", "0"), order=0, method="exact", limits=None) -> StepLaw:
+    """Build two admittances of the thesis robot above its motion controller."""
+    laws = {
+        name: Admittance(*(to_float32(Fraction(gain)) for gain in (Mt, Bt, spring))).sampled(
+            PERIOD, method
+        )
+        for (name, Bt), spring in zip(
+            (("insertion", "2.15"), ("withdrawal", "1.04")), Kt, strict=True
+        )
+    }
+    low_pass = LowPass(order, Fraction(200)).sampled(PERIOD) if order else None
+    return build_step_law(SampledMotion.of(MOTION, PERIOD), laws, low_pass, limits)
+
+
+PLACED = {
+    "position": SampledForce(Fraction(0)),
+    "force": SampledForce(to_float32(Fraction("0.02"))),
+}
+LAWS = {
+    "force and position": build_placed_law(
+        SampledMotion.of(MOTION, PERIOD), PLACED, LowPass(1, Fraction(200)).sampled(PERIOD)
+    ),
+    "inertia": law(),
+    "static": law(Mt="0"),
+    "filter and spring": law(order=2, Kt=("0.5", "0")),
+    "static, filter, spring": law(Mt="0", order=1, Kt=("0.5", "3"), method="euler"),
+    "limits": law(limits=StepLimits(Fraction(1, 2), to_float32(Fraction("0.13")), Fraction(4000))),
+}
+
+
+def compiler(name="gcc"):
+    """Return a program, or skip the test that needs it."""
+    found = shutil.which(name)
+    if found is None:
+        pytest.skip(f"there is no {name} on this machine")
+    return found
+
+
+def run(*command: str | Path) -> subprocess.CompletedProcess[str]:
+    """Run a program; its output comes back, whatever its exit code."""
+    return subprocess.run(
+        [*map(str, command)], capture_output=True, text=True, check=False, stdin=subprocess.DEVNULL
+    )
+
+
+def built(*command: str | Path) -> None:
+    """Run a compiler that must not complain."""
+    done = run(*command)
+    assert (done.returncode, done.stderr) == (0, "")

@@ -1,0 +1,189 @@
+"""Exported C: what real compilers make of it is, bit for bit, what NumPy's float32 makes of it."""
+
+import re
+from dataclasses import replace
+from fractions import Fraction
+
+import pytest
+from hypothesis import example, given
+from hypothesis import strategies as st
+
+from nrs_design.controllers.float32 import to_float32
+from nrs_design.errors import DesignError
+from nrs_design.exporters.c import header_text, render, source_text
+from nrs_design.exporters.c_names import CNames, comment, harmless, literal
+from nrs_design.exporters.header import header_lines
+from nrs_design.exporters.vectors import c_test, make_vectors
+from tests.exporters.programs import (
+    CORTEX,
+    LAWS,
+    M4F,
+    MACHINE,
+    SEMIHOSTING,
+    STRICT,
+    built,
+    compiler,
+    run,
+)
+
+COUNT = 10_000
+
+
+def written(folder, law, export, count=COUNT):
+    """Write header, source and test of a law; the names that its C has come back."""
+    record = export.record
+    names = CNames(record.spec.name)
+    vectors = make_vectors(law, count)
+    (folder / f"{names.spec}.h").write_text(header_text(record, law, names))
+    (folder / "law.c").write_text(source_text(record, law, names))
+    (folder / "test.c").write_text(c_test(law, vectors, names, header_lines(record)))
+    return names
+
+
+@pytest.mark.parametrize("shape", LAWS)
+def test_host_compilers_agree_with_the_replica(tmp_path, sampled_export, shape):
+    """10,000 states, a part of them with NaN, infinities, subnormal numbers and random bits."""
+    gcc = compiler()
+    written(tmp_path, LAWS[shape], sampled_export)
+    built(gcc, *STRICT, "-O0", "-c", tmp_path / "test.c", "-o", tmp_path / "test.o")
+    for level in ("-O0", "-O2", "-O3"):
+        program = tmp_path / f"test{level}"
+        built(gcc, *STRICT, level, tmp_path / "law.c", tmp_path / "test.o", "-o", program)
+        done = run(program)
+        assert (done.returncode, done.stdout) == (0, f"0 of {COUNT} cases differ\n")
+
+
+@pytest.mark.parametrize(
+    "shape", ["limits", *(pytest.param(s, marks=pytest.mark.slow) for s in LAWS if s != "limits")]
+)
+def test_an_emulated_cortex_agrees_with_the_replica(tmp_path, sampled_export, shape):
+    """The same states on an emulated STM32F405, compiled as for the robot."""
+    gcc, emulator = compiler("arm-none-eabi-gcc"), compiler("qemu-system-arm")
+    written(tmp_path, LAWS[shape], sampled_export)
+    compiled, program = tmp_path / "law.o", tmp_path / "test.elf"
+    built(gcc, *CORTEX, *STRICT, "-O2", "-c", tmp_path / "law.c", "-o", compiled)
+    start = (M4F / "startup.c", "-T", M4F / "m4f.ld", "--specs=nosys.specs", "-nostartfiles")
+    sources = (compiled, tmp_path / "test.c", *start)
+    linked = run(gcc, *CORTEX, "-O2", "-std=c99", "-ffp-contract=off", *sources, "-o", program)
+    assert linked.returncode == 0, linked.stderr
+    done = run(emulator, *MACHINE, *SEMIHOSTING, "-kernel", program)
+    # The emulator prints what the program says beside its own messages.
+    assert (done.returncode, done.stderr) == (0, f"0 of {COUNT} cases differ\n")
+
+
+def test_the_law_links_to_nothing(tmp_path, sampled_export):
+    """No heap, no libm, and on the processor no arithmetic of doubles by library."""
+    written(tmp_path, LAWS["limits"], sampled_export, 1)
+    own = CNames(sampled_export.record.spec.name).lower
+    names = [f"{own}_init", f"{own}_step"]
+    for gcc, nm, flags in (("gcc", "nm", ()), ("arm-none-eabi-gcc", "arm-none-eabi-nm", CORTEX)):
+        built(compiler(gcc), *flags, *STRICT, "-O2", "-c", tmp_path / "law.c", "-o", tmp_path / "o")
+        symbols = run(compiler(nm), "-g", tmp_path / "o").stdout.split("\n")
+        assert [line.split()[-2:] for line in symbols if line] == [["T", name] for name in names]
+
+
+def test_cppcheck_with_misra_is_content(tmp_path, sampled_export):
+    """But for macros that the caller uses: rule 2.5 asks for none that this file does not."""
+    cppcheck = compiler("cppcheck")
+    written(tmp_path, LAWS["filter and spring"], sampled_export, 1)
+    limits = ("RADIX=2", "MANT_DIG=24", "MAX_EXP=128", "EVAL_METHOD=0")
+    suppressed = ("missingIncludeSystem", "unusedFunction", "misra-c2012-2.5")
+    done = run(
+        cppcheck,
+        *("--enable=all", "--addon=misra", "--std=c99", "--quiet", "--error-exitcode=1"),
+        *(f"-DFLT_{limit}" for limit in limits),
+        *(f"--suppress={name}" for name in suppressed),
+        tmp_path / "law.c",
+    )
+    assert (done.returncode, done.stderr) == (0, "")
+
+
+@pytest.mark.slow
+def test_every_slip_in_the_code_is_noticed(tmp_path, sampled_export):
+    """One line at a time: another operation, another operand or another bit fails the vectors."""
+    gcc = compiler()
+    written(tmp_path, LAWS["filter and spring"], sampled_export, 300)
+    source = (tmp_path / "law.c").read_text()
+    header = next(tmp_path.glob("*.h")).read_text()
+    built(gcc, *STRICT, "-O0", "-c", tmp_path / "test.c", "-o", tmp_path / "test.o")
+    slips = 0
+    for old, new in slips_of(source):
+        slips += 1
+        (tmp_path / "slip.c").write_text(new)
+        linked = (tmp_path / "slip.c", tmp_path / "test.o", "-o", tmp_path / "slip")
+        assert run(gcc, "-O0", "-std=c99", *linked).returncode == 0, old
+        assert run(tmp_path / "slip").returncode == 1, old
+    assert slips > 30
+    assert header.count("#define") > 15
+
+
+def slips_of(source):
+    """Yield lines, and the source with another in their place."""
+    _, _, body = source.partition("_step(")
+    head = source[: len(source) - len(body)]
+    for line in body.splitlines():
+        swapped = None
+        if re.search(r" (\+|-|\*) ", line) and "const float" in line:
+            for old, new in ((" + ", " - "), (" - ", " + "), (" * ", " + ")):
+                if old in line:
+                    swapped = line.replace(old, new)
+        elif "is_within(" in line:
+            swapped = re.sub(r"is_within\([^)]*\)", "true", line)
+        elif "= 0.0F" in line or "saturated(" in line:
+            swapped = line.replace("0.0F", "1.0F").replace("saturated(", "0.5F * saturated(")
+        elif re.search(r"(state|out)->\w+ = \w+;", line):
+            swapped = "(void)0;"
+        if swapped is not None:
+            yield line, head + body.replace(line, swapped, 1)
+
+
+def test_fast_arithmetic_is_refused_by_the_compiler(tmp_path, sampled_export):
+    gcc = compiler()
+    written(tmp_path, LAWS["inertia"], sampled_export, 1)
+    done = run(gcc, "-std=c99", "-ffast-math", "-c", tmp_path / "law.c", "-o", tmp_path / "o")
+    assert done.returncode != 0
+    assert "-ffast-math" in done.stderr
+
+
+def test_header_says_what_is_proved_and_what_is_not(sampled_export):
+    text = render(sampled_export)[".h"].decode()
+    words = " ".join(text.replace("\n *", " ").split())
+    record = sampled_export.record
+    assert text.startswith("/* nrs-design C header\n")
+    for fact in (record.spec.sha256, record.proof.certificate_id, "verdict: PROVED", "0.002 s"):
+        assert fact in words
+    for fact in (*record.proof.assumptions, *record.outside):
+        assert harmless(fact) in words
+    assert "does not saturate" in words
+    assert "Guards, outside the proof" in words
+
+
+def test_the_same_export_is_the_same_text(sampled_export):
+    assert render(sampled_export) == render(sampled_export)
+
+
+def test_names_that_are_one_in_c_are_refused(sampled_export):
+    twice = replace(LAWS["inertia"], modes=("a-b", "a.b"))
+    with pytest.raises(DesignError, match="same name in C"):
+        header_text(sampled_export.record, twice, CNames("x"))
+
+
+@given(st.floats(width=32, allow_nan=False, allow_infinity=False))
+def test_literals_are_exact(value):
+    text = literal(Fraction(value))
+    assert Fraction(float.fromhex(text.strip("()").removesuffix("F"))) == Fraction(value)
+    assert text.strip("()").endswith("F")
+    assert to_float32(Fraction(value)) == Fraction(value)
+
+
+@example("???/ */*/ /*")
+@given(st.text())
+def test_no_text_ends_a_comment(text):
+    """Nor begins one, nor is more than ASCII, nor a trigraph."""
+    block = comment([text], b"/* first\n")
+    assert block.count("*/") == 1
+    assert block.endswith(" */\n")
+    assert block.count("/*") == 1
+    assert block.isascii()
+    assert "??" not in block
+    assert all(c == "\n" or " " <= c <= "~" for c in block)

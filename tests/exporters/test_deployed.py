@@ -1,0 +1,151 @@
+"""Deployed numbers against a certificate: every bit counts, and nothing hides one."""
+
+import json
+import re
+
+import pytest
+
+from nrs_design.errors import NrsDesignError
+from nrs_design.exporters.c import render as render_c
+from nrs_design.exporters.deployed import find_differences
+from nrs_design.exporters.json_record import render as render_json
+from tests.support import ends_soon
+
+
+@pytest.fixture
+def differences(sampled, sampled_export, tmp_path):
+    """Write a file and compare it with the certificate of the sampled loop."""
+
+    def compare(text, name="law.h"):
+        (tmp_path / name).write_bytes(text if isinstance(text, bytes) else text.encode())
+        return find_differences(tmp_path / name, sampled.spec, sampled_export.certificate)
+
+    return compare
+
+
+@pytest.fixture(scope="module")
+def header(sampled_export):
+    return render_c(sampled_export)[".h"].decode()
+
+
+def test_what_was_exported_has_no_difference(differences, header, sampled_export):
+    assert differences(header) == []
+    assert differences(header.replace("\n", "\r\n")) == []
+    assert differences(render_json(sampled_export)[".export.json"], "x.json") == []
+
+
+def test_comments_and_other_ways_to_write_a_number_are_no_difference(differences, header):
+    for old, new in (
+        ("0x1.f6eep+19F", "1030000.0f"),
+        ("0x1.f6eep+19F", "1.03e6F"),
+        ("0x1.f6eep+19F", "(0x1f6ee.0p+3f)"),
+        ("#define", "  #  define"),
+        ("#endif", "// the end\n#endif /* of it"),
+    ):
+        assert old in header
+        assert differences(header.replace(old, new)) == [], new
+
+
+def test_every_number_counts_to_the_last_bit(differences, header):
+    """Each macro in turn: another number, or none at all."""
+    lines = [line for line in header.splitlines() if re.match(r"#define \w+ \S", line)]
+    assert len(lines) > 12
+    for line in lines:
+        _, name, number, *_ = line.split()
+        if number.endswith("U"):
+            others = [f"{int(number[:-1]) + 1}U", number[:-1]]
+        else:
+            value = float.fromhex(number[:-1])
+            others = [(value * (1 + 2**-23)).hex() + "F", f"-{number}", number[:-1], "0.0F", "x"]
+        for other in others:
+            found = differences(header.replace(line, f"#define {name} {other}"))
+            assert len(found) == 1, (line, other)
+            assert name in found[0]
+        assert differences(header.replace(line, "")) == [f"{name} is missing"]
+
+
+@pytest.mark.parametrize(
+    "addition",
+    [
+        "#undef OWN_KP",
+        "#define OWN_KP 0x1p0F",
+        "#define float double",
+        "#if 0\n#endif",
+        "#ifdef X\n#endif",
+        '#include "other.h"',
+        "#include <math.h>",
+        "#pragma STDC FP_CONTRACT ON",
+        "#define OWN_NEW 1U",
+        "%:define OWN_KP 0x1p0F",
+        "??=define OWN_KP 0x1p0F",
+        "// comment \\\n#define X",
+        'const char *x = "/*";\n#define OWN_KP 0x1p0F\nconst char *y = "*/";',
+        "int a;\x0c#define OWN_KP 0x1p0F",
+    ],
+)
+def test_nothing_hides_another_number(differences, header, addition):
+    own = re.search(r"#define (\w+)_KP ", header)[1]
+    more = addition.replace("OWN", own)
+    assert differences(header.replace("#include <stdint.h>", f"#include <stdint.h>\n{more}"))
+
+
+def test_a_part_that_is_not_compiled_is_noticed(differences, header):
+    assert differences(header.replace("#endif\n", ""))
+    assert differences(header.replace("#ifndef", "#ifdef", 1))
+    assert differences(header + "\n#ifndef X\n#endif\n")
+    assert differences("")
+
+
+def test_every_gain_of_a_record_counts(differences, sampled_export):
+    document = json.loads(render_json(sampled_export)[".export.json"])
+    changed = json.dumps(document | {"spec": {"name": "x", "sha256": 64 * "0"}})
+    assert differences(changed, "x.json") == ["it is of another spec, or of an earlier text of it"]
+    other = {"exact": "0.5", "float32": 0.5, "float32_bits": "0x3f000000"}
+    for place in (document["motion"], document["controllers"][0]):
+        for i, gain in enumerate(place["gains"]):
+            place["gains"][i] = gain | other
+            (found,) = differences(json.dumps(document), "x.json")
+            assert f"{gain['name']} of" in found
+            assert gain["exact"] in found
+            place["gains"][i] = gain
+    document["controllers"][0]["name"] = "other"
+    assert len(differences(json.dumps(document), "x.json")) == 4
+
+
+def test_files_that_are_something_else(differences, header):
+    for text, name in (
+        (header, "law.c"),
+        ("{}", "x.json"),
+        ("[" * 10_000, "x.json"),
+        (b"\xff", "x.json"),
+        ("é", "x.h"),
+        (b" " * (2**22 + 1), "x.h"),
+    ):
+        with pytest.raises(NrsDesignError) as caught:
+            differences(text, name)
+        assert caught.value.remedy
+        assert caught.value.path.name == name
+
+
+def test_what_is_not_there(sampled, sampled_export, tmp_path):
+    for name in ("none.h", "folder.h"):
+        (tmp_path / "folder.h").mkdir(exist_ok=True)
+        with pytest.raises(NrsDesignError, match="cannot be read"):
+            find_differences(tmp_path / name, sampled.spec, sampled_export.certificate)
+
+
+def test_hostile_headers_are_read_in_time(differences):
+    for text in ("/*" * 2**18, "/" * 2**19, '"' * 2**19, "#define A 1\n" * 20_000, "#" * 2**19):
+        with ends_soon():
+            assert differences(text)
+    for number in ("0x" + "f" * 10**6 + "p0F", "9" * 10**6 + ".0F", "1e999999999F", "0x1p99999F"):
+        with ends_soon():
+            assert differences(f"#define A {number}")
+
+
+def test_a_continuous_certificate_says_nothing_of_a_program(
+    continuous, continuous_export, header, tmp_path
+):
+    (tmp_path / "law.h").write_text(header)
+    with pytest.raises(NrsDesignError, match="continuous time"):
+        find_differences(tmp_path / "law.h", continuous.spec, continuous_export.certificate)

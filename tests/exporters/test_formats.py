@@ -1,0 +1,68 @@
+"""What every format of the table keeps."""
+
+from fractions import Fraction
+from importlib import import_module
+from pathlib import Path
+
+import pytest
+
+from nrs_design.exporters import FORMATS
+from nrs_design.exporters.export import Execution, export_design
+from nrs_design.exporters.header import header_lines
+
+
+@pytest.fixture(params=["sampled", "continuous"])
+def design(request):
+    return request.getfixturevalue(request.param)
+
+
+@pytest.fixture
+def proved(request, design):
+    kind = "continuous" if design.spec.sampling is None else "sampled"
+    return request.getfixturevalue(f"{kind}_export")
+
+
+def rendered(name, export):
+    return import_module(f"nrs_design.exporters.{FORMATS[name].module}").render(export)
+
+
+def exported(name, design, proved):
+    """The export of a design, proved or not, as the format takes it."""
+    if not FORMATS[name].executable or proved.record.sample_time is not None:
+        return proved
+    return export_design(design, execution=Execution(Fraction(2, 1000), unproved=True))
+
+
+@pytest.mark.parametrize("name", FORMATS)
+def test_every_file_is_of_the_table_and_the_same_each_time(name, design, proved):
+    export = exported(name, design, proved)
+    files = rendered(name, export)
+    assert set(files) == set(FORMATS[name].files)
+    for ending, content in files.items():
+        beginning = FORMATS[name].files[ending]
+        assert beginning
+        assert content.startswith(beginning)
+        assert Path(f"x{ending}").name == f"x{ending}"
+    assert rendered(name, export) == files
+
+
+@pytest.mark.parametrize("name", FORMATS)
+def test_every_file_says_what_it_is_worth(name, design, proved):
+    export = exported(name, design, proved)
+    record = export.record
+    facts = [record.spec.sha256, record.proof.certificate_id, *record.outside]
+    facts += [record.sample_time.exact] if record.sample_time else []
+    facts += [record.unproved] if record.unproved else []
+    for content in rendered(name, export).values():
+        text = " ".join(content.decode(errors="replace").replace("*", " ").split())
+        assert [fact for fact in facts if fact not in text] == []
+
+
+def test_the_lines_of_a_header(proved):
+    lines = header_lines(proved.record)
+    assert not [line for line in lines if "\n" in line]
+    text = "\n".join(lines)
+    assert "verdict: PROVED" in lines
+    assert f"certificate: {proved.certificate.id}" in lines
+    assert ("about continuous time" in text) == (proved.record.sample_time is None)
+    assert text.count("outside the proof: ") == len(proved.record.outside)

@@ -1,0 +1,48 @@
+from pathlib import Path
+
+import pytest
+
+from nrs_design.errors import OutputError
+from nrs_design.exporters import Format
+from nrs_design.exporters.write import check_places, places, write_files
+
+ONE = Format("one", "", "", {".mat": b"MAT"})
+TWO = Format("two", "", "", {".c": b"/* ours", ".h": b"/* ours"})
+CONTENTS = {".c": b"/* ours */ c", ".h": b"/* ours */ h"}
+
+
+def test_where_files_go(tmp_path):
+    assert places(ONE, "x", Path("a/b.mat")) == {".mat": Path("a/b.mat")}
+    assert places(ONE, "x", Path("a/b")) == {".mat": Path("a/b/x.mat")}
+    assert places(TWO, "x", Path("a/b.c")) == {".c": Path("a/b.c/x.c"), ".h": Path("a/b.c/x.h")}
+    (tmp_path / "b.mat").mkdir()
+    assert places(ONE, "x", tmp_path / "b.mat") == {".mat": tmp_path / "b.mat/x.mat"}
+
+
+def test_files_are_written_and_replaced(tmp_path):
+    files = places(TWO, "x", tmp_path / "new")
+    for _ in range(2):
+        write_files(TWO, files, CONTENTS)
+        assert {path.name: path.read_bytes() for path in (tmp_path / "new").iterdir()} == {
+            "x.c": CONTENTS[".c"],
+            "x.h": CONTENTS[".h"],
+        }
+
+
+def test_nothing_is_written_where_one_file_is_another_s(tmp_path):
+    (tmp_path / "x.h").write_bytes(b"int mine;")
+    with pytest.raises(OutputError, match="not overwritten"):
+        write_files(TWO, places(TWO, "x", tmp_path), CONTENTS)
+    assert [path.name for path in tmp_path.iterdir()] == ["x.h"]
+    assert (tmp_path / "x.h").read_bytes() == b"int mine;"
+
+
+def test_a_file_is_no_folder_and_a_link_is_not_followed(tmp_path):
+    (tmp_path / "file").touch()
+    with pytest.raises(OutputError, match="a file, not a folder"):
+        check_places(TWO, places(TWO, "x", tmp_path / "file"))
+    (tmp_path / "real").mkdir()
+    (tmp_path / "link").symlink_to(tmp_path / "real")
+    with pytest.raises(OutputError, match="behind the symbolic link"):
+        write_files(TWO, places(TWO, "x", tmp_path / "link"), CONTENTS)
+    assert not list((tmp_path / "real").iterdir())

@@ -1,0 +1,309 @@
+"""One function for all axes: known answers, attacks, what each condition bars."""
+
+from dataclasses import replace
+from fractions import Fraction
+from math import exp
+from random import Random
+
+import numpy as np
+import pytest
+
+from nrs_design.proof.evidence import CommonQuadratic, ConewiseQuadratic, CoupledAxes, Shows
+from nrs_design.proof.second_opinion import agrees
+from nrs_design.proof.system import Contact, Coupling, Mode, Reset, SwitchedSystem, Switching, Time
+from tests.proof.systems import bouncing, family, genuine, leaning, matrix
+from tests.proof.truth import holds, is_positive_multiple
+from tests.support import is_definite_by_ldl
+
+ALL = ("coupled-axes", "coupled-axes, kept", "coupled-axes, pulling")
+
+
+def coupled(system: SwitchedSystem, *parts: tuple) -> SwitchedSystem:
+    """Couple a system by columns and rows for every mode."""
+    couplings = (
+        Coupling(f"c{i}", *(tuple(map(matrix, part)) for part in columns_and_rows))
+        for i, columns_and_rows in enumerate(parts)
+    )
+    return replace(system, couplings=tuple(couplings))
+
+
+def scalar(size: str) -> SwitchedSystem:
+    """``x' = -x + w`` with ``|w| <= c |x|`` over all axes: decays iff c < 1, at the rate 1 - c."""
+    return coupled(family([[-1]]), ([[[1]]], [[[size]]]))
+
+
+@pytest.mark.parametrize("example", ALL)
+def test_axes_that_lean_on_each_other_are_proved(example):
+    system, evidence = genuine(example)
+    assert evidence.find_fault(system) is None
+    assert agrees(system, evidence)
+    assert holds(system, evidence)
+    assert evidence.shows is Shows.STABILITY
+    claim = evidence.claim(system)
+    assert "For any number of axes that act on each other within the stated bounds" in claim
+    assert ("contact lost and made again at any time" in claim) == (system.contact is not None)
+    assert ("Where free motion ends is not claimed" in claim) == (system.contact is not None)
+    assert "contact is kept" not in claim
+
+
+@pytest.mark.parametrize(("size", "rate", "tau"), [("1/2", "1/4", 3), ("9/10", "1/20", 1)])
+def test_a_scalar_is_proved_up_to_its_rate(size, rate, tau):
+    """By hand: ``2 (1 - alpha) tau - c^2 tau^2 - 1 > 0`` for some tau iff ``1 - alpha > c``."""
+    system = scalar(size)
+    assert CoupledAxes(((1,),), 0, Fraction(rate), (tau,)).find_fault(system) is None
+    border = 1 - Fraction(size)
+    for numerator in range(1, 200):
+        item = CoupledAxes(((16,),), 4, border, (numerator,))
+        assert "in mode m0" in item.find_fault(system)
+
+
+def test_the_form_by_hand():
+    """A in thirds, q in fifths, B in sevenths, Q and tau in quarters."""
+    system = coupled(
+        family([["-4/3", "1/3"], [0, -1]]), ([[["1/7"], ["2/7"]]], [[["1/5", "-2/5"]]])
+    )
+    item = CoupledAxes(((8, 1), (1, 4)), 2, Fraction(1, 2), (3,))
+    _, (_, form) = item.forms(system)
+    # -(A'Q + QA + Q) - tau q'q, -QB and tau, with Q = [[2, 1/4], [1/4, 1]] and tau = 3/4.
+    F = Fraction
+    upper = [F(16, 3) - 2 - F(3, 100), F(-2, 3) + F(1, 3) + F(1, 4) - F(1, 4) + F(6, 100)]
+    lower = F(-1, 6) + 2 - 1 - F(12, 100)
+    side = [-F(2, 7) - F(1, 14), -F(1, 28) - F(2, 7)]
+    wanted = [[upper[0], upper[1], side[0]], [upper[1], lower, side[1]], [*side, F(3, 4)]]
+    assert is_positive_multiple(form, wanted)
+
+
+def test_one_tau_for_every_mode():
+    """Each mode has a tau of its own, and two axes that take turns in the modes grow.
+
+    One axis is pushed tenfold by a twentieth of its state, the other by a twentieth of tenfold:
+    ``x1' = -x1 + 10 w1`` with w1 all of ``10 x2``, then the other way round.
+    """
+    pair = coupled(family([[-1]], [[-1]]), ([[[10]], [["1/20"]]], [[["1/20"]], [[10]]]))
+    first, second = (
+        replace(
+            pair,
+            modes=(pair.modes[k],),
+            couplings=(Coupling("c", c.columns[k : k + 1], c.rows[k : k + 1]),),
+        )
+        for k, c in enumerate(pair.couplings * 2)
+    )
+    rate, unit = Fraction(1, 4), 1024
+    assert CoupledAxes(((unit,),), 10, rate, (200 * unit,)).find_fault(first) is None
+    assert CoupledAxes(((unit,),), 10, rate, (unit // 128,)).find_fault(second) is None
+    for power in range(24):
+        assert CoupledAxes(((unit,),), 10, rate, (1 << power,)).find_fault(pair) is not None
+    time = 0.1
+    turn = exp(-time) * np.array([[1.0, 10 * 10 * time], [0.0, 1.0]])
+    assert np.abs(np.linalg.eigvals(turn @ turn.T)).max() > 80
+
+
+# Q of the bouncing mass, and couplings of contact and of free motion; the mass speeds up to 2 1/s
+# in contact, or in flight, or V rises while the environment lags.
+BARRED = {
+    "in mode m0": (0, 4, 0),
+    "in free motion, mode free": (0, 0, 4),
+    "while the environment lags, mode free": (1, 0, "7/4"),
+}
+
+
+@pytest.mark.parametrize("where", BARRED)
+def test_each_condition_bars_what_is_false(where):
+    damping, touching, flying = BARRED[where]
+    system = bouncing(damping)
+    system = replace(system, modes=system.modes[:1])
+    free = Mode("free", matrix([[-2, 0], [1, 0]]))
+    system = replace(system, contact=replace(system.contact, free=(free,)))
+    pulls = system.contact.pulls
+    column = [[1], [0]]
+    system = coupled(system, ([column] * 2, [[[touching, 0]], [[flying, 0]]]))
+    unit, found = 64, set()
+    for tau in range(1, 1024, 8):
+        for multiplier in (0, 1, 4, 16, 64, 256) if pulls else (0,):
+            item = CoupledAxes(
+                ((4 * unit, 2 * unit), (2 * unit, 6 * unit)),
+                6,
+                Fraction(1, 100),
+                (tau,),
+                (multiplier,) * len(pulls),
+            )
+            broken = {
+                failure.partition("rate ")[2]
+                for failure, form in item.forms(system)
+                if not is_definite_by_ldl(form)
+            }
+            assert where in broken
+            found.add(frozenset(broken))
+    # With some multipliers nothing else is broken.
+    assert frozenset({where}) in found
+    assert rises(where, touching, flying)
+
+
+def rises(where: str, touching: int, flying: int | str) -> bool:
+    """Tell whether an axis by itself grows, with all that the bound allows against it."""
+    if where == "in mode m0":
+        # [[-2 + q, -1], [1, 0]] has no eigenvalue on the left, and no spiral: it stays in contact.
+        return touching - 2 > 0 and (touching - 2) ** 2 >= 4
+    if where == "in free motion, mode free":
+        return -2 + flying > 0
+    # V = 4 v^2 + 4 v delta + 6 delta^2 just below the surface, on the way out without force.
+    v, delta, w = Fraction(-1), Fraction(1, 1000), -Fraction(flying)
+    assert v + delta < 0
+    return (8 * v + 4 * delta) * (-2 * v + w) + (4 * v + 12 * delta) * v > 0
+
+
+@pytest.mark.parametrize("example", ALL)
+@pytest.mark.parametrize("seed", range(20))
+def test_no_motion_of_three_axes_within_the_bounds_raises_the_function(example, seed):
+    """At random states, each axis in a mode of its own, with all that the bounds allow."""
+    system, item = genuine(example)
+    random = Random(seed)
+    scale = Fraction(1, 2**item.denominator_log2)
+    Q = [[scale * entry for entry in row] for row in item.Q]
+    axes = [situation(system, random) for _ in range(3)]
+    sizes = [
+        sum(dot(part.rows[k].fractions()[0], x) ** 2 for k, _, x, _ in axes)
+        for part in system.couplings
+    ]
+    pushes = [share(size, random) for size in sizes]
+    value = rise = Fraction(0)
+    for i, (k, A, x, kept) in enumerate(axes):
+        moves = [dot(row, x) for row in A]
+        for part, push in zip(system.couplings, pushes, strict=True):
+            column = part.columns[k].fractions()
+            moves = [a + push[i] * b for a, (b,) in zip(moves, column, strict=True)]
+        w, moved = x[:kept], moves[:kept]
+        forces = [dot(row[:kept], w) for row in Q[:kept]]
+        value += dot(forces, w)
+        rise += 2 * dot(forces, moved)
+    assert rise <= -2 * item.rate * value
+
+
+def situation(system: SwitchedSystem, random: Random):
+    """Return a mode, its matrix, a state that it can be in, and how many entries V has of it."""
+    n, contact = system.order, system.contact
+    x = [Fraction(random.randint(-9, 9)) for _ in range(n)]
+    modes, free = system.modes, () if contact is None else contact.free
+    k = random.randrange(len(modes) + len(free))
+    if k < len(modes):
+        x[-1] = abs(x[-1]) if free else x[-1]
+        return k, modes[k].A.fractions(), x, n
+    pulls = contact.pulls
+    A = free[k - len(modes)].A.fractions()
+    if pulls and random.random() < 0.5:
+        x[-1] = abs(x[-1])
+        if dot(random.choice(pulls).fractions()[0], x) <= 0:
+            return k, A, x, n
+    return k, A, [*x[:-1], -abs(x[-1])], n - 1
+
+
+def share(square: Fraction, random: Random) -> list[Fraction]:
+    """Return three numbers of which the squares add up to just below a square."""
+    direction = [random.gauss(0, 1) for _ in range(3)]
+    length = sum(entry**2 for entry in direction) ** 0.5
+    size = float(square) ** 0.5 * (1 - 1e-9)
+    return [Fraction(size * entry / length) for entry in direction]
+
+
+def dot(left, right):
+    return sum((a * b for a, b in zip(left, right, strict=True)), Fraction(0))
+
+
+def test_other_functions_do_not_cover_what_axes_do():
+    system = leaning(bouncing(), "1/8")
+    alone = (
+        ConewiseQuadratic(((4, 2), (2, 6)), 0, Fraction(1, 5), ()),
+        CommonQuadratic(((4, 2), (2, 6)), 0, Fraction(1, 5)),
+    )
+    for item in alone:
+        assert item.find_fault(bouncing()) is None
+        assert "does not cover what axes do to each other" in item.find_fault(system)
+
+
+def test_a_refutation_is_that_of_one_axis():
+    system, evidence = genuine("unstable-mode")
+    among = coupled(system, ([[[1], [0]]], [[[1, 0]]]))
+    assert evidence.find_fault(among) is None
+    assert evidence.claim(among).endswith("which is within what is said of them.")
+    assert "on which the others do not act" not in evidence.claim(system)
+
+
+def test_that_no_common_function_exists_is_said_of_matrices():
+    system, evidence = genuine("no-common-quadratic")
+    among = coupled(system, ([[[1], [0]]] * 2, [[[1, 0]]] * 2))
+    assert evidence.find_fault(among) is None
+    assert evidence.claim(among) == evidence.claim(system)
+
+
+SYSTEM, GENUINE = genuine("coupled-axes, pulling")
+
+
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [
+        ({"taus": ()}, "one multiplier for each coupling"),
+        ({"taus": (*GENUINE.taus, 1)}, "one multiplier for each coupling"),
+        ({"taus": (-GENUINE.taus[0],)}, "does not decrease"),
+        ({"taus": (0,)}, "does not decrease"),
+        ({"multipliers": ()}, "for each condition that needs it"),
+        ({"multipliers": tuple(-entry - 1 for entry in GENUINE.multipliers)}, "is negative"),
+        ({"Q": ((1,),)}, "not a 2 x 2 matrix"),
+        ({"Q": ((4, 1), (2, 6))}, "not symmetric"),
+        ({"Q": tuple(tuple(-e for e in row) for row in GENUINE.Q)}, "not symmetric and positive"),
+        ({"rate": Fraction(0)}, "not one of exponential decay"),
+        ({"rate": Fraction(5)}, "does not decrease"),
+    ],
+)
+def test_numbers_that_do_not_fit_are_refused(changes, words):
+    assert words in replace(GENUINE, **changes).find_fault(SYSTEM)
+
+
+def test_a_larger_bound_is_refused():
+    part = SYSTEM.couplings[0]
+    for k in range(len(part.rows)):
+        larger = matrix([[100 * entry for entry in part.rows[k].fractions()[0]]])
+        rows = (*part.rows[:k], larger, *part.rows[k + 1 :])
+        assert GENUINE.find_fault(replace(SYSTEM, couplings=(replace(part, rows=rows),)))
+
+
+def test_a_system_without_couplings_is_none_of_its():
+    assert "does not say what axes do" in GENUINE.find_fault(replace(SYSTEM, couplings=()))
+
+
+def test_resets_are_not_covered():
+    resets = (Reset("m0", "m1", matrix([[9, 0], [0, 9]])),)
+    assert "kind of switching" in GENUINE.find_fault(
+        replace(SYSTEM, switching=Switching(resets=resets))
+    )
+
+
+def odd(**changes):
+    return replace(SYSTEM, couplings=(replace(SYSTEM.couplings[0], **changes),))
+
+
+COLUMN, ROW = SYSTEM.couplings[0].columns, SYSTEM.couplings[0].rows
+
+
+@pytest.mark.parametrize(
+    ("system", "words"),
+    [
+        (odd(columns=COLUMN[:-1]), "not one column and row for every mode"),
+        (odd(rows=ROW[:-1]), "not one column and row for every mode"),
+        (odd(columns=(matrix([[1]]), *COLUMN[1:])), "the size of the state"),
+        (odd(rows=(matrix([[1]]), *ROW[1:])), "the size of the state"),
+        (odd(rows=(*ROW[:-1], matrix([[1, 1]]))), "depends on the deflection in free motion"),
+        (replace(SYSTEM, couplings=SYSTEM.couplings * 2), "two couplings have one name"),
+        (replace(SYSTEM, time=Time.DISCRETE, contact=None), "in discrete time"),
+    ],
+)
+def test_a_coupling_that_makes_no_sense_is_refused(system, words):
+    assert words in GENUINE.find_fault(system)
+
+
+def test_the_last_mode_in_contact_may_depend_on_the_deflection():
+    """Free rows alone must not: the first of them comes right after the modes in contact."""
+    count = len(SYSTEM.modes)
+    assert ROW[count - 1].numerators[0][-1] != 0
+    assert SYSTEM.find_contradiction() is None
+    contact = Contact(SYSTEM.contact.free, SYSTEM.contact.pulls)
+    assert replace(SYSTEM, contact=contact).find_contradiction() is None

@@ -1,0 +1,177 @@
+"""Impedance controllers of a design, as admittance_controller computes them."""
+
+import json
+from dataclasses import replace
+from fractions import Fraction
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from nrs_design.certificates.certificate import dump
+from nrs_design.certificates.prove import prove
+from nrs_design.errors import DesignError
+from nrs_design.pipeline import run_design
+from nrs_design.ros2.check import Question, check_file
+from nrs_design.ros2.export import export_controllers
+from nrs_design.ros2.law import AXES, read_law
+from nrs_design.ros2.parameters import parse_nodes
+from nrs_design.ros2.traps import find_traps
+from nrs_design.search.certification import Limits
+from nrs_design.spec import parse_spec, read_spec
+from tests.support import ROOT
+
+SPEC = ROOT / "specs/neuroboscope/soft-tissue-sampled.nrs.yaml"
+LAG = (Fraction(5, 1000), Fraction(20, 1000))
+
+
+def designed(*changes):
+    """The soft-tissue design at one age of the force, with some of its text replaced."""
+    loaded = read_spec(SPEC)
+    text = loaded.text.replace("delay: [0, 1]", "delay: 1")
+    for old, new in changes:
+        assert old in text
+        text = text.replace(old, new)
+    return run_design(replace(loaded, text=text, spec=parse_spec(text)))
+
+
+@pytest.fixture(scope="module")
+def design():
+    return designed()
+
+
+def exported(design, lag=LAG, axis="ry"):
+    return list(export_controllers(design, axis, lag, Limits()))
+
+
+@pytest.fixture(scope="module")
+def found(design):
+    return exported(design)
+
+
+def law_in(text):
+    nodes = parse_nodes(text, Path("exported"))
+    return read_law(next(node for node in nodes if node.name == "admittance_controller"))
+
+
+def test_the_law_is_that_of_the_design(design, found):
+    """With stiffness 0: v' = f/M - d v, which is Mt v' + Bt v = F."""
+    assert [(item.controller, item.verdict) for item in found] == [
+        ("insertion", "proved"),
+        ("withdrawal", "proved"),
+    ]
+    for item, controller in zip(found, design.design.controllers, strict=True):
+        law, gains = law_in(item.text), controller.law.gains
+        assert law.filter_coefficient == 1
+        assert [axis.name for axis in law.axes if axis.selected] == ["ry"]
+        assert {axis.mass for axis in law.axes} == {gains["Mt"]}
+        assert {axis.stiffness for axis in law.axes} == {0}
+        # What is proved is the double that the node holds.
+        assert law.joint_damping == Fraction(float(gains["Bt"] / gains["Mt"]))
+        assert not list(find_traps(law, Path("exported")))
+
+
+def test_the_certificate_is_about_the_numbers_as_written(found):
+    for item in found:
+        document = json.loads(dump(item.certificate))
+        checked = prove(document)
+        assert checked.fault is None
+        assert checked.certificate.verdict == "proved"
+        assert f"certificate: {item.certificate.id}" in item.text
+        assert "verdict: PROVED" in item.text
+        # The spec asks for a proof through any loss of contact.
+        assert checked.certificate.system.contact.required
+        assert checked.certificate.evidence.covers_lost_contact
+
+
+def test_a_run_of_the_controller_is_a_step_of_the_proof(found):
+    """One period in floating point, as the source has it, beside the exact map."""
+    item = found[0]
+    law, system = law_in(item.text), item.certificate.system
+    axis = law.axes[AXES.index("ry")]
+    T, M, d = 0.002, float(axis.mass), float(law.joint_damping)
+    k = float(720.56 * 0.24**2)
+    (mode,) = [m for m in system.modes if m.name.endswith("k-min/E-min")]
+    E = np.exp(-T / float(LAG[0]))
+    rng = np.random.default_rng(3)
+    for v, e, step, delta in rng.normal(0, 1, (20, 4)):
+        # delta is where the robot was a period ago, e its distance to the command.
+        new = v + T * (-k * delta / M - d * v)
+        ahead = e + T * new
+        expected = [new, E * ahead, (1 - E) * ahead, delta + step]
+        state = np.array([v, e, step, delta])
+        A = np.array([[float(entry) for entry in row] for row in mode.A.fractions()])
+        assert A @ state == pytest.approx(expected, rel=1e-9, abs=1e-12)
+
+
+def test_the_checker_of_files_agrees(found, tmp_path):
+    file = tmp_path / "exported.ros2.yaml"
+    file.write_text(found[0].text)
+    met = (Fraction(41), Fraction(45))
+    question = Question((1, 1), None, met, None, LAG)
+    outcome = check_file(file, question, Limits(), lambda step: None)
+    assert outcome.specs[0].verdict == "proved"
+    assert not outcome.specs[0].cautions
+
+
+def test_every_file_says_what_it_is_worth(design, found):
+    for item in found:
+        for fact in (
+            design.loaded.sha256,
+            "sample time: 0.002 s",
+            "units: kg*m^2",
+            "outside the proof: Input and output",
+            "5 to 20 ms",
+            "to be given beside this file: joints",
+        ):
+            assert fact in item.text
+        assert exported(design)[found.index(item)] == item
+
+
+def test_kept_contact_is_said(design):
+    kept = designed(("contact: losable", "contact: kept"), ("delay: 1", "delay: [0, 1]"))
+    for item in exported(kept):
+        assert item.verdict == "proved"
+        assert "taken for granted: contact is not lost" in item.text
+
+
+def test_what_is_not_proved_is_not_written():
+    """Euler's method diverges where Bt/Mt T > 2, which is 2.15 for insertion at 10 ms."""
+    found = exported(designed(("period: 2 ms", "period: 10 ms")))
+    assert found[0].verdict == "refuted"
+    assert [item.text == "" for item in found] == [item.verdict != "proved" for item in found]
+
+
+FILTER = "sensor: {filter: {order: 1, cutoff: 100 rad/s}}\n"
+
+
+def test_the_filter_is_written_out():
+    filtered = designed(("contact: losable", f"contact: losable\n{FILTER}"))
+    for item in exported(filtered):
+        share = law_in(item.text).filter_coefficient
+        assert float(share) == pytest.approx(1 - np.exp(-100 * 0.002), rel=1e-6)
+        assert len(item.certificate.system.states) == 5
+
+
+@pytest.mark.parametrize(
+    ("changes", "message"),
+    [
+        ([("sampling: {period: 2 ms, delay: 1}\ncontact: losable\n", "")], "when its law runs"),
+        ([("period: 2 ms", "period: 3 ms")], "no whole number of periods"),
+        ([("delay: 1", "delay: [0, 1]")], "for one age of the force only"),
+        ([("contact: losable", f"{FILTER}contact: losable"), ("order: 1", "order: 2")], "order 2"),
+        (
+            [
+                ("model: elastic", "model: kelvin-voigt\n    damping: 10 N*s/m"),
+                ("contact: losable", "contact: kept"),
+            ],
+            "more than a spring",
+        ),
+        ([("    Bt: {min", "    Kt: {nominal: 1 N*m/rad}\n    Bt: {min")], "a spring"),
+    ],
+    ids=["sampling", "rate", "contact", "filter", "damping", "spring"],
+)
+def test_what_it_cannot_run(changes, message):
+    with pytest.raises(DesignError, match=message) as caught:
+        exported(designed(*changes))
+    assert caught.value.remedy

@@ -1,0 +1,349 @@
+"""One period of the sampled loop: step by step, in single precision, and known answers."""
+
+from dataclasses import replace
+from fractions import Fraction
+
+import numpy as np
+import pytest
+from scipy.linalg import expm
+
+from nrs_design.controllers.sampled import (
+    UNIT,
+    SampledAdmittance,
+    SampledForce,
+    SampledMotion,
+    rounding_share,
+)
+from nrs_design.controllers.sensor import SampledLowPass
+from nrs_design.switched.sampled_frame import Frame
+
+
+@pytest.mark.parametrize(
+    ("Bt", "delay", "limit"),
+    [("1.04", j, k) for j, k in ((0, 59.5), (1, 53.5), (2, 48.8), (5, 39.4))]
+    + [("2.15", j, k) for j, k in ((0, 155), (1, 134), (2, 118), (5, 91))],
+)
+def test_largest_stable_stiffness(Bt, delay, limit):
+    """Where the spectral radius of one mode reaches one, for Mt = 0.01 and T = 2 ms.
+
+    Found by bisection with an independent program; a stiffness of three digits.
+    """
+
+    def radius(k: float) -> float:
+        frame = _frame(delay)
+        n = len(frame.states)
+        A = np.array(frame.rows(_law(Bt), delay, _nominal(k)), dtype=float)[:n, :n]
+        return float(np.abs(np.linalg.eigvals(A)).max())
+
+    assert radius(limit * 0.99) < 1 < radius(limit * 1.01)
+
+
+PERIOD = Fraction(1, 500)
+TAU, KM = Fraction("0.0351"), Fraction("4.8417e-4")
+MOTION = SampledMotion(Fraction("117359.43"), Fraction(1_030_000))
+
+
+def _frame(delay: int, *, inertia: bool = True) -> Frame:
+    return Frame(PERIOD, MOTION, inertia, delay, TAU)
+
+
+def _law(Bt: str) -> SampledAdmittance:
+    a = np.exp(-float(Bt) * 0.002 / 0.01)
+    return SampledAdmittance(Fraction(a), Fraction((1 - a) / float(Bt)), PERIOD)
+
+
+def _nominal(k: float, b: float = 0.0) -> dict[str, Fraction]:
+    E = np.exp(-0.002 / 0.0351)
+    return {"Km": KM, "E": Fraction(float(E)), "k": Fraction(k), "b": Fraction(b)}
+
+
+def test_agrees_with_a_simulation_step_by_step():
+    """The law and the motor one after the other, as a program runs them, at 1,000 random states."""
+    rng = np.random.default_rng(13)
+    for _ in range(1000):
+        Kp, D = rng.uniform(1e3, 1e5), rng.uniform(0, 1e6)
+        tau, Km, T = (
+            rng.uniform(0.005, 0.1),
+            rng.uniform(1e-5, 1e-3),
+            rng.choice([0.001, 0.002, 0.01]),
+        )
+        k, b, a, gain = rng.uniform(0, 100, 4) * [1, 0.1, 0.01, 0.01]
+        longest = int(rng.integers(0, 4))
+        delay = int(rng.integers(0, longest + 1))
+        inertia = bool(rng.integers(0, 2))
+        Kt = float(rng.integers(0, 2) * rng.uniform(0, 10))
+        law = SampledAdmittance(
+            Fraction(a) if inertia else None, Fraction(gain), Fraction(T), Fraction(Kt)
+        )
+        order, p, q = int(rng.integers(0, 3)), rng.uniform(), rng.uniform()
+        low_pass = SampledLowPass(order, Fraction(p), Fraction(q)) if order else None
+        motion = SampledMotion(Fraction(Kp), Fraction(D))
+        frame = Frame(Fraction(T), motion, inertia, longest, Fraction(tau), low_pass, Kt > 0)
+        values = {"Km": Km, "E": float(np.exp(-T / tau)), "k": k, "b": b}
+        rows = frame.rows(law, delay, {key: Fraction(value) for key, value in values.items()})
+        x = rng.normal(size=len(frame.states))
+        e, omega, before, theta = x[0], x[1], x[2], x[-1]
+        forces = [k * theta + b * omega, *x[3 + inertia + order : -1]]
+        filtered, felt = [], forces[delay]
+        for lag in x[3 + inertia : 3 + inertia + order]:
+            felt = p * lag + q * felt
+            filtered.append(felt)
+        felt += Kt * (e + theta)
+        v = x[3] if inertia else gain * felt
+        u = Kp * e + D * (e - before)
+        held = np.zeros((3, 3))
+        held[:2] = [[0, 1, 0], [0, -1 / tau, Km / tau]]
+        moved = (expm(held * T) @ [theta, omega, u])[:2]
+        reference = e + theta - T * v
+        expected = [reference - moved[0], moved[1], e]
+        expected += [a * v + gain * felt] if inertia else []
+        expected += [*filtered, *forces[:longest], moved[0]]
+        got = np.array(rows, dtype=float)[: len(x), : len(x)] @ x
+        assert got == pytest.approx(np.array(expected), rel=1e-9, abs=1e-9)
+
+
+def exactly(number: np.float32) -> Fraction:
+    return Fraction(float(number))
+
+
+def test_single_precision_never_leaves_the_roundings():
+    """1,000 random states and laws, computed in float32: every error is within its row.
+
+    The operations of `nrs_design.controllers.sampled`, in numpy's single precision; what the exact
+    law would have made of the same numbers is computed in fractions. Angles are exact here.
+    """
+    rng = np.random.default_rng(14)
+    single = np.float32
+    largest: dict[str, Fraction] = {}
+    for _ in range(1000):
+        inertia = bool(rng.integers(0, 2))
+        Kp, D, a, b, T = (single(v) for v in rng.uniform(0.1, 2, 5) * [1e5, 1e6, 0.5, 0.2, 2e-3])
+        e, before, v, force, command = (single(x) for x in rng.normal(size=5) * 0.1)
+        true = exactly(force) * (1 + Fraction(rng.uniform(-1, 1)) * UNIT)
+        exact_e = exactly(e) * (1 + Fraction(rng.uniform(-1, 1)) * UNIT)
+        u = Kp * e + D * (e - before)
+        velocity = v if inertia else b * force
+        step = T * (command - velocity)
+        kept = a * v + b * force
+        law = SampledAdmittance(exactly(a) if inertia else None, exactly(b), exactly(T))
+        motion = SampledMotion(exactly(Kp), exactly(D))
+        frame = Frame(PERIOD, motion, inertia, 1, TAU)
+        n = len(frame.states)
+        values = {"Km": KM, "E": Fraction(94, 100), "k": Fraction(0), "b": Fraction(0)}
+        rows = frame.rows(law, 1, values)[n:]
+        state = [exact_e, Fraction(0), exactly(before), *([exactly(v)] * inertia)]
+        state += [true, Fraction(0), exactly(command)]
+        state += [Fraction(0)] * (len(rows[0]) - len(state))
+        sizes = dict(
+            zip(
+                frame.roundings,
+                (abs(sum(q * x for q, x in zip(row, state, strict=True))) for row in rows),
+                strict=True,
+            )
+        )
+        # The law commands what these errors, and these alone, add to the exact one.
+        errors = {"e": exactly(e) - exact_e}
+        drive = exactly(u) - exactly(Kp) * exactly(e)
+        drive -= exactly(D) * (exactly(e) - exactly(before))
+        both = {"u": (drive, sizes["Kp e"] + sizes["D (e - e before)"])}
+        both["e"] = (errors["e"], sizes["e"])
+        if inertia:
+            moved = exactly(kept) - exactly(a) * exactly(v) - exactly(b) * true
+            both["v"] = (moved, sizes["a vm"] + sizes["b F"])
+            exact = exactly(v)
+        else:
+            exact = exactly(b) * true
+        travelled = exactly(step) - exactly(T) * (exactly(command) - exact)
+        allowed = sizes["T (v - vm)"] + (0 if inertia else exactly(T) * sizes["b F"])
+        both["step"] = (travelled, allowed)
+        for name, (error, size) in both.items():
+            assert abs(error) <= size, name
+            largest[name] = max(largest.get(name, Fraction(0)), abs(error) / size)
+    # And they come near: what is allowed is not far too much.
+    assert min(largest[name] for name in ("e", "u", "v", "step")) > Fraction(3, 10)
+
+
+def test_filter_and_spring_in_single_precision_stay_within_the_roundings():
+    """Two lags and a spring, computed in float32: lags and velocity are off by what is allowed.
+
+    From the same numbers, what the exact law makes of them is computed in fractions.
+    """
+    rng = np.random.default_rng(12)
+    single = np.float32
+    nearest = Fraction(0)
+    for _ in range(200):
+        inertia = bool(rng.integers(0, 2))
+        p, q, a, b, Kt = (single(v) for v in rng.uniform(0.1, 1, 5) * [1, 1, 0.5, 0.2, 10])
+        x1, x2, v, force, reference, start = (single(x) for x in rng.normal(size=6) * 0.1)
+        true = exactly(force) * (1 + Fraction(rng.uniform(-1, 1)) * UNIT)
+        moved = exactly(reference) - exactly(start)
+        y1 = p * x1 + q * force
+        y2 = p * x2 + q * y1
+        pushed = b * (y2 + Kt * (reference - start))
+        velocity = a * v + pushed if inertia else pushed
+        step = SampledLowPass(2, exactly(p), exactly(q))
+        law = SampledAdmittance(exactly(a) if inertia else None, exactly(b), PERIOD, exactly(Kt))
+        frame = Frame(PERIOD, MOTION, inertia, 1, TAU, step, sprung=True)
+        n, names = len(frame.states), list(frame.roundings)
+        values = {"Km": KM, "E": Fraction(94, 100), "k": Fraction(0), "b": Fraction(0)}
+        rows = frame.rows(law, 1, values)
+        # The reference is e + delta, and the law takes the force that is one sample old.
+        state = [moved, *[Fraction(0)] * 2, *([exactly(v)] * inertia), exactly(x1), exactly(x2)]
+        state += [true, Fraction(0)]
+        first = 3 + inertia
+        state += [Fraction(0)] * (len(rows[0]) - len(state))
+        sizes = [abs(sum(c * x for c, x in zip(row, state, strict=True))) for row in rows[n:]]
+        exact = [sum(c * x for c, x in zip(row, state, strict=True)) for row in rows[:n]]
+        pairs = [(exactly(y1), first), (exactly(y2), first + 1)]
+        if inertia:
+            pairs.append((exactly(velocity), 3))
+        for found, i in pairs:
+            columns = rows[i][-len(names) :]
+            allowed = sum(abs(c) * size for c, size in zip(columns, sizes, strict=True))
+            assert abs(found - exact[i]) <= allowed
+            nearest = max(nearest, abs(found - exact[i]) / allowed)
+        if not inertia:
+            terms = [j for j, name in enumerate(names) if name.startswith("b ")]
+            wanted = exactly(b) * (
+                exactly(p) * exactly(x2)
+                + exactly(q) * (exactly(p) * exactly(x1) + exactly(q) * true)
+                + exactly(Kt) * moved
+            )
+            assert abs(exactly(velocity) - wanted) <= sum(sizes[j] for j in terms)
+    assert nearest > Fraction(3, 10)
+
+
+def test_the_share_of_many_roundings():
+    """Not below n u / (1 - n u), of which no product of n factors 1 + u has more."""
+    for n in range(1, 16):
+        assert (1 + UNIT) ** n - 1 <= n * UNIT / (1 - n * UNIT) <= rounding_share(n)
+        assert rounding_share(n) < n * UNIT * (1 + Fraction(1, 10**6))
+    for n in (0, 16):
+        with pytest.raises(ValueError, match="not counted"):
+            rounding_share(n)
+
+
+def test_position_and_force_control_agree_with_a_simulation_step_by_step():
+    """The reference comes before the error; what impedance controllers keep, decays meanwhile."""
+    rng = np.random.default_rng(15)
+    for _ in range(1000):
+        Kp, D, tau, Km, T = (
+            rng.uniform(low, high)
+            for low, high in (
+                (1e3, 1e5),
+                (0, 1e6),
+                (0.005, 0.1),
+                (1e-5, 1e-3),
+                (1e-3, 1e-2),
+            )
+        )
+        k, b, Kf, d = rng.uniform(0, 1, 4) * [100, 0.1, 0.05, 1]
+        Kf *= int(rng.integers(0, 2))
+        longest = int(rng.integers(0, 4))
+        delay = int(rng.integers(0, longest + 1))
+        mixed = bool(rng.integers(0, 2))
+        inertia = mixed and bool(rng.integers(0, 2))
+        order, p, q = int(rng.integers(0, 3)), rng.uniform(), rng.uniform()
+        low_pass = SampledLowPass(order, Fraction(p), Fraction(q)) if order else None
+        frame = Frame(
+            Fraction(T),
+            SampledMotion(Fraction(Kp), Fraction(D)),
+            inertia,
+            longest,
+            Fraction(tau),
+            low_pass,
+            integrates=mixed,
+            takes_force=True,
+            idle=Fraction(d) if mixed else None,
+        )
+        values = {"Km": Km, "E": float(np.exp(-T / tau)), "k": k, "b": b}
+        exact_values = {key: Fraction(value) for key, value in values.items()}
+        rows = frame.rows(SampledForce(Fraction(Kf)), delay, exact_values)
+        n = len(frame.states)
+        x = dict(zip(frame.states, rng.normal(size=n), strict=True))
+        theta, omega = x["delta [rad]"], x["omega [rad/s]"]
+        forces = [k * theta + b * omega]
+        forces += [x[f"F {j} before [N*m]"] for j in range(1, longest + 1)]
+        felt, filtered = forces[delay], []
+        for i in range(1, order + 1):
+            felt = p * x[f"filtered {i} before [N*m]"] + q * felt
+            filtered.append(felt)
+        e = -Kf * felt - theta
+        u = Kp * e + D * (e - x["e before [rad]"])
+        held = np.zeros((3, 3))
+        held[:2] = [[0, 1, 0], [0, -1 / tau, Km / tau]]
+        moved = (expm(held * T) @ [theta, omega, u])[:2]
+        expected = [d * x["reference [rad]"]] if mixed else []
+        expected += [moved[1], e]
+        expected += [d * x["vm [rad/s]"]] if inertia else []
+        expected += [*filtered, *forces[:longest], moved[0]]
+        got = np.array(rows, dtype=float)[:n, :n] @ [*x.values()]
+        assert got == pytest.approx(np.array(expected), rel=1e-9, abs=1e-9)
+
+
+def test_an_admittance_beside_others_moves_its_reference_as_alone():
+    """The same step in the coordinates r = e + theta, exactly, inputs and roundings included."""
+    for inertia in (False, True):
+        law = _law("1.04") if inertia else SampledAdmittance(None, Fraction(3, 8), PERIOD)
+        alone = _frame(1, inertia=inertia)
+        beside = replace(alone, idle=Fraction(1, 2), takes_force=True)
+        n, m = len(alone.states), len(alone.roundings)
+        a, b = (frame.rows(law, 1, _nominal(43)) for frame in (alone, beside))
+        names = [*beside.roundings]
+        kept = [*range(n + 6), *(n + 6 + names.index(name) for name in alone.roundings)]
+        assert [[*alone.roundings][i] for i in range(m)] == [
+            names[i - n - 6] for i in kept[n + 6 :]
+        ]
+        b = [*b[:n], *(b[n + names.index(name)] for name in alone.roundings)]
+        b = [[row[i] for i in kept] for row in b]
+        # Into r = e + theta: the rows of e and theta add up, the column of theta loses that of e.
+        a[0] = [p + q for p, q in zip(a[0], a[n - 1], strict=True)]
+        a = [[*row[: n - 1], row[n - 1] - row[0], *row[n:]] for row in a]
+        assert a == b
+
+
+def test_force_control_in_single_precision_stays_within_the_roundings():
+    """Reference, error and command of 500 random samples, with one lag or none, in float32."""
+    rng = np.random.default_rng(16)
+    single = np.float32
+    nearest = dict.fromkeys(("e", "u"), Fraction(0))
+    for i in range(500):
+        Kp, D, Kf, p, q = (
+            single(v) for v in rng.uniform(0.1, 1, 5) * [1e5, 1e6, 0.05 * 10 ** (i % 3), 1, 1]
+        )
+        theta, before, force, lag = (single(v) for v in rng.normal(size=4) * 0.1)
+        true = exactly(force) * (1 + Fraction(rng.uniform(-1, 1)) * UNIT)
+        filtered = bool(rng.integers(0, 2))
+        felt = p * lag + q * force if filtered else force
+        # The wanted force and the commanded position are zero, and are computed with.
+        reference = single(0) + Kf * (single(0) - felt)
+        e = reference - theta
+        u = Kp * e + D * (e - before)
+        low_pass = SampledLowPass(1, exactly(p), exactly(q)) if filtered else None
+        motion = SampledMotion(exactly(Kp), exactly(D))
+        frame = Frame(PERIOD, motion, False, 1, TAU, low_pass, integrates=False, takes_force=True)
+        values = {"Km": KM, "E": Fraction(94, 100), "k": Fraction(0), "b": Fraction(0)}
+        rows, n = frame.rows(SampledForce(exactly(Kf)), 1, values), len(frame.states)
+        state = [Fraction(0), exactly(before), *([exactly(lag)] * filtered), true, exactly(theta)]
+        state += [Fraction(0)] * (len(rows[0]) - n)
+        exact = [sum(c * x for c, x in zip(row, state, strict=True)) for row in rows]
+        speed, seen, sizes = exact[0], exact[1], list(map(abs, exact[n:]))
+        columns = [row[-len(sizes) :] for row in rows[:2]]
+        allowed = [sum(abs(c) * s for c, s in zip(row, sizes, strict=True)) for row in columns]
+        made = (1 - values["E"]) * KM * exactly(u)
+        for name, error, size in (
+            ("u", abs(made - speed), allowed[0]),
+            ("e", abs(exactly(e) - seen), allowed[1]),
+        ):
+            assert error <= size
+            nearest[name] = max(nearest[name], error / size)
+    assert min(nearest.values()) > Fraction(3, 10)
+
+
+def test_what_rounds_an_error_again_is_counted():
+    """The command takes the rounded error, so a rounded reference changes what u rounds, too."""
+    frame = Frame(PERIOD, MOTION, False, 1, TAU, integrates=False, takes_force=True)
+    assert [*frame.counts] == ["e", "Kp e", "D (e - e before)", "Kp F"]
+    assert [*frame.roundings] == [*frame.counts, "u of Kp F"]
+    shares = frame.roundings
+    assert shares["u of Kp F"] >= shares["Kp F"] * rounding_share(3)

@@ -1,0 +1,65 @@
+"""Two specs or certificates beside each other."""
+
+import json
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from nrs_design.comparison import Difference, Part, Side, compare, compare_sides
+from nrs_design.errors import CertificateError
+from tests.support import COMMUTING, ROOT, SOFT_TISSUE
+
+CERTIFICATE = ROOT / "reports" / "commuting.cert.json"
+
+
+def test_a_spec_and_its_certificate_agree():
+    found = compare(COMMUTING, CERTIFICATE)
+    assert found.differences == ()
+    assert set(found.same) == {Part.GAINS, Part.VERDICT, Part.ASSUMPTIONS}
+    assert found.not_compared == (Part.SPEC, Part.MARGINS)
+
+
+def test_a_wider_range_changes_margins_and_rate(tmp_path):
+    wider = tmp_path / "wider.nrs.yaml"
+    wider.write_text(SOFT_TISSUE.read_text().replace(", 768.17 N/m]", ", 868.17 N/m]"))
+    found = compare(SOFT_TISSUE, wider)
+    where = "environments.soft.stiffness.range[1]"
+    assert found.differences[0] == Difference(Part.SPEC, where, "768.17 N/m", "868.17 N/m")
+    margins = {d.what: d for d in found.differences if d.part is Part.MARGINS}
+    peak = margins["withdrawal: sensitivity peak Ms"]
+    assert float(peak.before) < float(peak.after)
+    (rate,) = [d for d in found.differences if d.what == "decay rate"]
+    assert float(rate.before.split()[0]) > float(rate.after.split()[0]) > 0
+    assert Part.ASSUMPTIONS in found.same
+
+
+def test_a_rejected_certificate_is_never_the_same(tmp_path):
+    altered = json.loads(CERTIFICATE.read_text())
+    altered["assumptions"] = []
+    copy = tmp_path / "copy.cert.json"
+    copy.write_text(json.dumps(altered))
+    found = compare(CERTIFICATE, copy)
+    assert found.compared == (Part.VERDICT,)
+    after = {d.what: d.after for d in found.differences}
+    assert after["verdict"] == "rejected"
+    assert after["fault"]
+
+
+def test_what_is_no_certificate(tmp_path):
+    file = tmp_path / "a.json"
+    file.write_text("[")
+    with pytest.raises(CertificateError):
+        compare(file, CERTIFICATE)
+
+
+def test_what_only_one_side_has():
+    before = Side(Path("a"), "a", {Part.GAINS: {"x": "1", "y": "2"}, Part.MARGINS: {}})
+    after = replace(before, parts={Part.GAINS: {"y": "2", "z": "3"}})
+    found = compare_sides(before, after)
+    assert [(d.what, d.before, d.after) for d in found.differences] == [
+        ("x", "1", None),
+        ("z", None, "3"),
+    ]
+    assert Part.MARGINS in found.not_compared
+    assert found.same == ()

@@ -244,6 +244,7 @@ def test_gains_in_a_range_are_corners_of_their_coefficients(tmp_path):
     assert "each rounded once" in texts
 
 
+@pytest.mark.slow
 def test_runs_of_position_and_force_control_keep_the_certified_bound(tmp_path):
     """200 runs in single precision, half of them greedy, under friction: none is beyond, some near.
 
@@ -281,6 +282,7 @@ def test_runs_of_position_and_force_control_keep_the_certified_bound(tmp_path):
     assert worst.max() > 0.5 * float(bound.level)
 
 
+@pytest.mark.slow
 def test_runs_that_retune_their_gains_keep_the_certified_bound(tmp_path):
     """Other gains of the ranges at any sample, in single precision, under commands that go on.
 

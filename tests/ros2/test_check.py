@@ -26,6 +26,7 @@ def test_the_example():
     assert any("spring without damping" in note for note in notes)
 
 
+@pytest.mark.slow
 def test_too_stiff_says_how_stiff_it_may_be():
     stiff = (Fraction(200), Fraction(90_000))
     found, status, _ = statuses(EXAMPLE, Question((0, 0), stiff, None))

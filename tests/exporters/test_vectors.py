@@ -138,7 +138,8 @@ def test_any_implementation_in_python_can_be_tested(tmp_path, sampled_export, mo
     monkeypatch.setenv("NRS_STEP", "mine:step")
     assert "1 passed" in pytest_in(tmp_path, "python")
     numbers["A"] = float(np.nextafter(np.float32(numbers["A"]), np.float32(1)))
-    (tmp_path / "mine.py").write_text(PYTHON.format(numbers=numbers, limits=limits))
+    (tmp_path / "other.py").write_text(PYTHON.format(numbers=numbers, limits=limits))
+    monkeypatch.setenv("NRS_STEP", "other:step")
     assert "1 failed" in pytest_in(tmp_path, "python")
 
 

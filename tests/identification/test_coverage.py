@@ -55,8 +55,11 @@ CELLS = [
     ("maxwell", "`--from`, `--to`"),
     ("kelvin-boltzmann", "`--from`, `--to`"),
 ]
-# The exponent ends at the bounds of the thesis, which are narrower than its interval there.
-BEYOND = {("hunt-crossley", "noise with a memory"): {"rho", "lam", "phi", "zero"}}
+# Wider than it need be: an exponent ends at the bounds of the thesis, and a jackknife errs so.
+BEYOND = {
+    ("hunt-crossley", "noise with a memory"): {"phi"},
+    ("maxwell", "noise with a memory"): {"k"},
+}
 
 
 @pytest.mark.slow
@@ -89,5 +92,5 @@ def test_actuator():
         fit = identify_actuator(sinusoids(seed, (1.2, 2, 3, 4.5, 6, 9, 14)), MOTOR).chosen
         hits.append(holds((fit.gain, fit.time_constant, fit.friction), truth))
     shares = np.mean(hits, axis=0)
-    assert (shares >= 0.92).all(), shares
-    assert (shares <= 0.98).all(), shares
+    assert (shares >= 0.90).all(), shares
+    assert (shares <= 0.99).all(), shares

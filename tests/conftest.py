@@ -5,12 +5,18 @@ deadline for examples of hypothesis: how fast a machine is decides nothing.
 
 Where no bytecode may be kept beside the sources, commands that run in processes of their own keep
 it in the cache of pytest: to compile all modules takes as long as to run them.
+
+What is collected stays until the end, so no search for garbage looks at it again; and the searches
+are as rare as in the program itself.
 """
 
+import gc
 import os
 
 import pytest
 from hypothesis import settings
+
+from nrs_design.cli import COLLECT_AFTER
 
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 settings.register_profile("untimed", deadline=None)
@@ -21,3 +27,9 @@ def pytest_configure(config: pytest.Config) -> None:
     cache = getattr(config, "cache", None)
     if cache is not None and os.environ.pop("PYTHONDONTWRITEBYTECODE", ""):
         os.environ.setdefault("PYTHONPYCACHEPREFIX", str(cache.mkdir("bytecode")))
+
+
+def pytest_collection_finish() -> None:
+    gc.collect()
+    gc.freeze()
+    gc.set_threshold(COLLECT_AFTER)

@@ -1,4 +1,4 @@
-"""`nrs-design audit` and `identify delay`, as a user types them."""
+"""`nrs-design audit`, as a user types it."""
 
 import json
 import re
@@ -7,8 +7,8 @@ import shutil
 import numpy as np
 import pytest
 
-from tests.identification import runs, signals
-from tests.support import ROBOT, ROOT, SOFT_TISSUE, run
+from tests.identification import runs
+from tests.support import ROOT, SOFT_TISSUE, run
 
 LIMIT = ("--command-limit", "3000")
 
@@ -110,62 +110,3 @@ def test_report(tmp_path, ending, stiffness, code):
     done = run("audit", log, SOFT_TISSUE, "--report", page, "-q", cwd=tmp_path)
     assert done.returncode == code, done.stderr
     assert page.read_bytes()[:4] in (b"<!DO", b"%PDF")
-
-
-def test_delay(tmp_path):
-    record = signals.copy(1)
-    rows = np.column_stack([record.time, record.sent, record.seen])
-    np.savetxt(tmp_path / "loop.csv", rows, "%.6f", ",", header="time_s,raw,used", comments="")
-    arguments = ("identify", "delay", "loop.csv", "--command", "raw", "--measured", "used")
-    done = run(*arguments, "--json", "--report", "delay.html", cwd=tmp_path)
-    assert done.returncode == 0, done.stderr
-    document = json.loads(done.stdout)
-    samples = document["delay_samples"]
-    assert samples["low"] < signals.DELAY < samples["high"]
-    assert document["sampling_step_s"] == pytest.approx(0.002)
-    assert document["whole_samples"][1] >= 3
-    assert (tmp_path / "delay.html").exists()
-    text = run(*arguments, cwd=tmp_path).stdout
-    assert "used is most like raw" in text
-    assert "samples of 0.002 s [95 %]" in text
-
-
-def test_delay_into_a_spec(tmp_path):
-    spec = tmp_path / "mine.nrs.yaml"
-    shutil.copy(ROBOT / "soft-tissue-sampled.nrs.yaml", spec)
-    record = signals.copy(1)
-    rows = np.column_stack([record.time, record.sent, record.seen])
-    np.savetxt(tmp_path / "loop.csv", rows, "%.6f", ",", header="time_s,raw,used", comments="")
-    arguments = ("identify", "delay", "loop.csv", "--write", spec)
-    unnamed = run(*arguments, cwd=tmp_path)
-    assert unnamed.returncode == 2
-    assert "as the law used it" in " ".join(unnamed.stderr.replace("│", " ").split())
-    done = run(*arguments, "--command", "raw", "--measured", "used", cwd=tmp_path)
-    assert done.returncode == 0, done.stderr
-    assert "delay: [1, 4]" in spec.read_text()
-
-
-@pytest.mark.parametrize(
-    ("arguments", "message"),
-    [
-        (["loop.csv", "--command", "raw"], "name both columns"),
-        (["loop.csv", "--command", "raw", "--measured", "usd"], "there is no column 'usd' to map"),
-        (["loop.csv", "--command", "raw", "--measured", "raw"], "name two columns"),
-        (["loop.csv", "--command", "time_s", "--measured", "raw"], "the column of --command"),
-        (["loop.csv"], "are missing"),
-        (["none.csv"], "cannot be read"),
-    ],
-)
-def test_wrong_delays(tmp_path, arguments, message):
-    (tmp_path / "loop.csv").write_text("time_s,raw,used\n" + "0,1,2\n" * 60)
-    done = run("identify", "delay", *arguments, cwd=tmp_path)
-    assert done.returncode == 2
-    assert message in done.stderr
-    assert "_any" not in done.stderr
-
-
-def test_help_has_examples(tmp_path):
-    assert "Example: nrs-design audit run.csv" in run("audit", "-h", cwd=tmp_path).stdout
-    assert "Example: nrs-design identify delay" in run(
-        "identify", "delay", "-h", cwd=tmp_path
-    ).stdout  # fmt: skip

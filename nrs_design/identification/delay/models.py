@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import ClassVar
 
 import numpy as np
@@ -76,13 +77,19 @@ class Integrator(AbstractFollower):
     def columns(self, record: SignalRecord, delay: float) -> Array:
         """Return output, constant and the initial state; a drift of the command, too."""
         lags = Lags.first_order(float(np.exp(self.shape[0])))
-        held = Held.of(record.time, record.sent, delay)
+        held = _held(record, delay)
         angle = lags.angle(held, held.command)[held.samples]
         return np.column_stack([angle, lags.free(record.time, angle=True), record.time])
 
 
+@lru_cache(maxsize=32)
+def _held(record: SignalRecord, delay: float) -> Held:
+    """Return what acts so late; several shapes are tried at each delay."""
+    return Held.of(record.time, record.sent, delay)
+
+
 def _following(record: SignalRecord, lags: Lags, delay: float) -> Array:
-    held = Held.of(record.time, record.sent, delay)
+    held = _held(record, delay)
     output = lags.velocity(held, held.command)[held.samples]
     free = lags.free(record.time, angle=False)
     return np.column_stack([output, np.ones_like(output), free])

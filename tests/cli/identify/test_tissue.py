@@ -1,4 +1,4 @@
-"""`nrs-design identify`, as a user types it."""
+"""`nrs-design identify tissue`, as a user types it."""
 
 import json
 import shutil
@@ -6,14 +6,10 @@ import shutil
 import pytest
 
 from nrs_design.models.contact import KelvinVoigt
+from tests.cli.identify.records import NOSE, SOFT
 from tests.identification.support import quick
 from tests.identification.unilateral import robot_record
-from tests.support import COMMUTING, ROOT, SOFT_TISSUE, run
-
-DATA = ROOT / "specs" / "data"
-SOFT = sorted(DATA.glob("silicone-soft-*.csv"))
-NOSE = sorted(DATA.glob("nose-*.csv"))
-SINUSOIDS = sorted(DATA.glob("actuator-*hz.csv"))
+from tests.support import ROOT, SOFT_TISSUE, run
 
 
 def test_end_to_end(tmp_path):
@@ -60,51 +56,6 @@ def test_nose_of_the_thesis(tmp_path):
     assert model["relaxation_time_s"] == pytest.approx(19.6, rel=0.02)
 
 
-def test_actuator(tmp_path):
-    spec = tmp_path / "copy.nrs.yaml"
-    shutil.copy(SOFT_TISSUE, spec)
-    arguments = ("identify", "actuator", *SINUSOIDS, "--json", "--write", spec)
-    result = run(*arguments, cwd=tmp_path)
-    assert result.returncode == 0, result.stderr
-    document = json.loads(result.stdout)
-    fit = document["fits"][-1]
-    for key, value in (
-        ("gain_rad_s_rpm", 4.8417e-4),
-        ("time_constant_s", 0.0351),
-        ("friction_rpm", 276.575),
-    ):
-        assert fit[key]["low"] < value < fit[key]["high"]
-    assert document["resistance_ohm"]["value"] == pytest.approx(3.7454, rel=1e-3)
-    assert document["range_covers"] == "confidence"
-    assert "gain: {nominal: 4.84" in spec.read_text()
-    assert "range_covers: confidence" in spec.read_text()
-    text = run("identify", "actuator", DATA / "actuator-response.csv", cwd=tmp_path).stdout
-    assert text.startswith("SYNTHETIC data")
-    assert "ready frequency response" in text
-
-
-@pytest.mark.parametrize("ending", ["html", "pdf"])
-def test_report(tmp_path, ending):
-    page = tmp_path / f"page.{ending}"
-    result = run("identify", "tissue", *SOFT[:1], "--report", page, "-q", cwd=tmp_path)
-    assert result.returncode == 0, result.stderr
-    assert page.read_bytes()[:4] in (b"<!DO", b"%PDF")
-
-
-@pytest.mark.parametrize(
-    ("command", "data"), [("tissue", SOFT[0]), ("actuator", DATA / "actuator-response.csv")]
-)
-def test_a_report_has_the_date_that_is_given_and_no_other(tmp_path, command, data):
-    pages = []
-    for dates in ([], ["--date", "2026-03-01"]):
-        result = run("identify", command, data, "--report", "p.html", *dates, "-q", cwd=tmp_path)
-        assert result.returncode == 0, result.stderr
-        pages.append((tmp_path / "p.html").read_text())
-    dated = '<time datetime="2026-03-01">2026-03-01</time>'
-    assert [page.count("<time") for page in pages] == [0, 1]
-    assert dated in pages[1]
-
-
 def test_foreign_columns(tmp_path):
     text = SOFT[0].read_text().replace("deflection_m", "x").replace("force_N", "Fz")
     (tmp_path / "foreign.csv").write_text(text)
@@ -114,31 +65,6 @@ def test_foreign_columns(tmp_path):
     assert " --> foreign.csv:2\n" in missing.stderr
     arguments = ("--map", "deflection_m=x", "--map", "force_N=Fz")
     assert run("identify", "tissue", "foreign.csv", *arguments, cwd=tmp_path).returncode == 0
-
-
-@pytest.mark.parametrize(
-    ("arguments", "message"),
-    [
-        (["tissue", "missing.csv"], "missing.csv: cannot be read"),
-        (["tissue", SOFT[0], SOFT[0]], "has the same content"),
-        (["tissue", SOFT[0], NOSE[0]], "linear and rotational records are mixed"),
-        (["tissue", NOSE[0], "--lever-arm", "0.24 m"], "records are rotational"),
-        (["tissue", SOFT[0], "--lever-arm", "24 N"], "is not a length"),
-        (["tissue", SOFT[0], "--lever-arm", "0 m"], "not positive"),
-        (["tissue", SOFT[0], "--map", "Fz"], "is not a pair"),
-        (["tissue", SOFT[0], "--report", "page.docx"], "not a type of report"),
-        (["tissue", SOFT[0], "--write", COMMUTING], "has no place for identified values"),
-        (["tissue", SINUSOIDS[0]], "are missing"),
-        (["actuator", SINUSOIDS[0], SINUSOIDS[0]], "there twice"),
-        (["actuator", SOFT[0]], "are missing"),
-    ],
-)
-def test_bad_input_is_one_message(tmp_path, arguments, message):
-    result = run("identify", *arguments, cwd=tmp_path)
-    assert result.returncode == 2
-    assert message in result.stderr
-    assert result.stderr.count("error[") == 1
-    assert list(tmp_path.iterdir()) == []
 
 
 def test_a_failed_merge_leaves_the_spec(tmp_path):
@@ -229,45 +155,3 @@ def test_wrong_options_of_tissue(tmp_path, option, message):
     result = run("identify", "tissue", SOFT[0], *option, cwd=tmp_path)
     assert result.returncode == 2
     assert message in result.stderr
-
-
-def test_help_has_examples(tmp_path):
-    for command in ("tissue", "actuator"):
-        assert "Example: nrs-design identify" in run("identify", command, "-h", cwd=tmp_path).stdout
-
-
-POSES = DATA / "tool-poses.csv"
-
-
-def test_tool_into_a_spec_that_the_gate_proves(tmp_path):
-    spec = tmp_path / "soft-tissue.nrs.yaml"
-    shutil.copy(SOFT_TISSUE, spec)
-    page = tmp_path / "tool.html"
-    result = run(
-        "identify", "tool", POSES, "--write", spec, "--report", page, "--json", cwd=tmp_path
-    )
-    assert result.returncode == 0, result.stderr
-    document = json.loads(result.stdout)
-    assert document["schema"] == "nrs-design/identify-tool/1"
-    assert document["synthetic"] is True
-    assert document["mass_kg"]["low"] < 0.797 < document["mass_kg"]["high"]
-    for axis, value in zip("xyz", (0.002, -0.004, 0.2), strict=True):
-        assert document["center_of_mass_m"][axis]["low"] < value
-        assert value < document["center_of_mass_m"][axis]["high"]
-    assert "data: synthetic" in spec.read_text()
-    assert "Errors in each pose" in page.read_text(encoding="utf-8")
-    again = run("identify", "tool", POSES, "--write", spec, cwd=tmp_path)
-    assert "center of mass m" in again.stdout
-    optimized = json.loads(run("optimize", spec, "--json", cwd=tmp_path).stdout)
-    assert set(optimized["sensor"]["parts"]) == {"bias", "mass and center of mass of the tool"}
-    assert optimized["controllers"][0]["creep"]["velocity_rad_s"] > 0
-
-
-def test_wrong_poses(tmp_path):
-    result = run("identify", "tool", SOFT[0], cwd=tmp_path)
-    assert result.returncode == 2
-    assert "missing" in result.stderr
-    (tmp_path / "two.csv").write_text("\n".join(POSES.read_text().splitlines()[:4]))
-    result = run("identify", "tool", tmp_path / "two.csv", cwd=tmp_path)
-    assert result.returncode == 2
-    assert "2 poses do not determine a tool" in result.stderr

@@ -1,0 +1,68 @@
+"""What `--margin` says of delay, period and disturbances, beside the box of ranges."""
+
+import json
+import re
+from fractions import Fraction
+
+import pytest
+
+from nrs_design.cli.loop_margins import loop_summary, print_loop_margins
+from nrs_design.search.loop_margin import Bracket, CommandMargin, LoopMargins
+from tests.support import SOFT_TISSUE, run
+
+TEXT = SOFT_TISSUE.read_text(encoding="utf-8")
+THIRD = Fraction(1, 3)
+FOUND = LoopMargins(
+    Bracket(Fraction(2), None),
+    Bracket(None, THIRD),
+    CommandMargin(Fraction(3, 10), {"command": (THIRD, THIRD, "rad/s")}),
+)
+
+
+def test_doubles_stay_on_the_side_that_is_true():
+    summary = loop_summary(FOUND)
+    assert summary["delay"] == {"proved": 2.0, "refuted": None, "unit": "samples"}
+    assert summary["period"]["proved"] is None
+    assert Fraction(summary["period"]["refuted"]) >= THIRD
+    (kept,) = summary["force_limit"]["disturbances"]
+    assert Fraction(kept["kept_up_to"]) < THIRD < Fraction(kept["broken_in_simulation_at"])
+    assert loop_summary(LoopMargins(None, None, None)) == {}
+
+
+def test_what_is_not_found_is_said(capsys):
+    print_loop_margins(None)
+    assert capsys.readouterr().out == ""
+    print_loop_margins(FOUND)
+    delay, period, command = capsys.readouterr().out.splitlines()
+    assert delay.endswith("2 samples is proved, no refutation was found")
+    assert "none is proved, about 0.333" in period
+    assert "rounded down" in command
+
+
+@pytest.mark.slow
+def test_what_keeps_the_limit_in_json(tmp_path):
+    text = f"{TEXT}\ndisturbances: {{command: 8 deg/s}}\n"
+    (tmp_path / "commanded.nrs.yaml").write_text(text)
+    result = run("certify-switching", "commanded.nrs.yaml", "--json", "--margin", cwd=tmp_path)
+    assert result.returncode == 0, result.stderr
+    printed = json.loads(result.stdout)
+    force, _ = printed["bounds"]
+    (kept,) = printed["loop_margins"]["force_limit"]["disturbances"]
+    assert kept["kept_up_to"] == pytest.approx(0.1396263 * 0.3 / force["level"])
+    assert kept["broken_in_simulation_at"] > kept["kept_up_to"]
+    assert "delay" not in printed["loop_margins"]
+
+
+@pytest.mark.slow
+def test_margins_of_a_sampled_loop(tmp_path):
+    """One controller, for speed; delays of one and two samples are proved as well."""
+    path = tmp_path / "late.nrs.yaml"
+    head, _, _ = TEXT.partition("  withdrawal:")
+    path.write_text(f"{head}switching: arbitrary\nsampling: {{period: 10 ms, delay: 0}}\n")
+    result = run("certify-switching", path.name, "--margin", cwd=tmp_path)
+    assert result.returncode == 0, result.stderr
+    told = result.stderr.splitlines()
+    written = next(i for i, line in enumerate(told) if "certificate written to" in line)
+    assert written < next(i for i, line in enumerate(told) if "delay 1" in line)
+    assert re.search(r"longest delay of the force sample: \d+ samples is proved", result.stdout)
+    assert re.search(r"period: \S+ s is proved, \S+ s is refuted \(each for", result.stdout)

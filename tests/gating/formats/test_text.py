@@ -1,0 +1,33 @@
+from nrs_design.gating.formats import to_text
+from tests.gating.formats.support import GAINS, HOSTILE, obligation, outcome_of
+
+
+def test_table_and_failures(mixed):
+    lines = to_text(mixed).split("\n")
+    assert lines[0].split("  ")[0] == "spec"
+    (good,) = (line for line in lines if line.startswith("specs/good"))
+    assert good.split() == [
+        "specs/good.nrs.yaml",
+        *["proved", "exists", "alpha", ">=", "1.5", "1/s", "2", "abcdef012345"],
+    ]
+    assert "specs/a.nrs.yaml:7:3: NRS102 refuted: it grows" in lines
+    assert "specs/c.nrs.yaml: NRS900 error: RuntimeError: unforeseen and long" in lines
+    assert "1 refuted, 1 proved, 1 without verdict; 7 obligations, 5 not" in to_text(mixed)
+
+
+def test_gains_are_shown_by_their_shortest_single_precision_decimals():
+    text = to_text(outcome_of(obligation(), gains=GAINS))
+    assert "specs/a.nrs.yaml: motion Kp 117359.44, Kd 2060; tissue Mt 0.01\n" in text
+    assert "single-precision" in text
+    assert "gains" not in to_text(outcome_of(obligation()))
+
+
+def test_one_of_a_kind():
+    assert "1 spec: " in to_text(outcome_of(obligation()))
+    assert "; 1 obligation, " in to_text(outcome_of(obligation()))
+
+
+def test_hostile_text_steers_no_terminal():
+    text = to_text(outcome_of(obligation(path=f"specs/{HOSTILE}", message=HOSTILE)))
+    assert all(line.isprintable() for line in text.split("\n"))
+    assert text.count("\n") == to_text(outcome_of(obligation())).count("\n")

@@ -1,8 +1,8 @@
 """Whose the files in an output folder are: a spec never overwrites those of another.
 
-Files are named after the ``name:`` of their spec, and a copied spec has the same. Certificates and
-pages therefore say where their spec was, relative to themselves. This is no part of any claim:
-it is not checked, and a certificate holds wherever its spec is.
+Files are named after the ``name:`` of their spec, and a copied spec has the same. Certificates,
+pages and models of robots therefore say where their spec was, relative to themselves. This is no
+part of any claim: it is not checked, and a certificate holds wherever its spec is.
 """
 
 from __future__ import annotations
@@ -14,6 +14,8 @@ from pathlib import Path
 from nrs_design.errors import CertificateError, OutputError
 from nrs_design.output import PAGE
 
+# As exported models of robots write it.
+MARK = "spec file: "
 REMEDY = "give this spec a `name` of its own, choose another place, or remove that file"
 # As the template of the page writes it, near its beginning.
 _PAGE_ORIGIN = re.escape(PAGE) + rb'<meta name="spec" content="([^"]{1,4096})">'
@@ -57,6 +59,15 @@ def check_page(spec: Path, page: Path) -> None:
             found = re.match(_PAGE_ORIGIN, file.read(8192))
         if found:
             _refuse_other(spec, html.unescape(found[1].decode(errors="replace")), page)
+
+
+def check_export(spec: Path, file: Path) -> None:
+    """Refuse to overwrite what was exported for another spec; see `check_owner`."""
+    if file.is_file():
+        with file.open("rb") as opened:
+            found = re.search(MARK.encode() + rb"([^\n]{1,4096})\n", opened.read(8192))
+        if found:
+            _refuse_other(spec, found[1].decode(errors="replace"), file)
 
 
 def check_certificate(spec: Path, file: Path) -> None:

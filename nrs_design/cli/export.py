@@ -145,6 +145,7 @@ def _export_design(
     from nrs_design.exporters.export import export_design
     from nrs_design.exporters.write import check_places, places
     from nrs_design.ownership import check_certificate
+    from nrs_design.pipeline import placed
     from nrs_design.spec import read_spec
 
     loaded = read_spec(spec)
@@ -160,7 +161,9 @@ def _export_design(
     with progress(f"exporting {name}", quiet=quiet) as step:
         result = export_design(loaded, certificate, step, execution)
     if result.record is not None:
-        _write(result, chosen, files, None if certificate else proof, spec)
+        # A design of which there is no program is told at its place in the spec.
+        with placed(loaded):
+            _write(result, chosen, files, None if certificate else proof, spec)
     written = list(files.values()) if result.record else []
     if as_json:
         print_json("export", _summary(name, result, written, proof))

@@ -11,6 +11,7 @@ from nrs_design.controllers.gain_range import faults_of_ranges
 from nrs_design.controllers.laws import LAWS, ProportionalDerivative
 from nrs_design.controllers.sensor import build_sensor
 from nrs_design.errors import CertificateError
+from nrs_design.proof.taylor import exponential_between
 from nrs_design.spec import ControllerSpec, IdleStatesSpec, InteractionDesignSpec, parse_exact
 from nrs_design.spec.controllers import contact_names
 
@@ -54,6 +55,11 @@ def design_from_gains(
 def idle_decay(idle: IdleStatesSpec) -> Fraction:
     """Return the rate in 1/s that the robot holds: a single-precision number, as gains are."""
     return to_float32(idle.decay.exact)
+
+
+def idle_share(idle: IdleStatesSpec, period: Fraction) -> Fraction:
+    """Return what a period in s leaves of idle states: a single-precision number, too."""
+    return to_float32(exponential_between(-idle_decay(idle) * period)[0])
 
 
 def motion_gains_fixed_by(spec: InteractionDesignSpec, motion: ProportionalDerivative) -> bool:

@@ -5,35 +5,34 @@ The order, and every rounding, are those of `nrs_design.controllers.sampled`.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from collections.abc import Collection, Iterator, Mapping
 from fractions import Fraction
 
 from nrs_design.controllers.operations import Coefficient, Operation, StepLaw, Value
-from nrs_design.controllers.sampled import SampledAdmittance, SampledForce, SampledMotion
+from nrs_design.controllers.sampled import (
+    SampledAdmittance,
+    SampledForce,
+    SampledLaw,
+    SampledMotion,
+)
 from nrs_design.controllers.sensor import SampledLowPass
+from nrs_design.controllers.step_parts import (
+    BEYOND,
+    HAND,
+    VELOCITY,
+    StepLimits,
+    admitted,
+    error_before,
+    felt,
+    filtered,
+    lags,
+    motion_coefficients,
+    next_lags,
+)
+from nrs_design.controllers.step_parts import motion as motion_operations
 
-# Where a spec says nothing: no robot gets there, and nothing overflows.
-BEYOND = Fraction(1_000_000)
-
-
-@dataclass(frozen=True, slots=True)
-class StepLimits:
-    """Where inputs are refused and where signals saturate; single-precision numbers.
-
-    Parameters
-    ----------
-    angle : Fraction
-        Joint angle and reference beyond it are refused, rad.
-    velocity : Fraction
-        The velocity command saturates there, rad/s.
-    command : Fraction or None
-        The speed command of the motor saturates there, rpm; None for nowhere.
-    """
-
-    angle: Fraction = BEYOND
-    velocity: Fraction = BEYOND
-    command: Fraction | None = None
+UNITS = {"command": "rpm"}
+ONE, ZERO = Fraction(1), Fraction(0)
 
 
 def build_step_law(
@@ -42,7 +41,7 @@ def build_step_law(
     low_pass: SampledLowPass | None = None,
     limits: StepLimits | None = None,
 ) -> StepLaw:
-    """Write the law out, operation by operation.
+    """Write impedance control out, operation by operation.
 
     Parameters
     ----------
@@ -59,21 +58,23 @@ def build_step_law(
     inert = any(law.a is not None for law in laws.values())
     sprung = any(law.Kt for law in laws.values())
     order = 0 if low_pass is None else low_pass.order
-    admittance = _admittance(_felt(order), inert=inert, sprung=sprung)
-    operations = (*_filter(order), *_motion(limits), *admittance)
-    following = {"reference": "next_reference", "error_before": "error"}
+    following = {"reference": "next_reference", "error_before": "error", **next_lags(order)}
     following |= {"velocity": "next_velocity"} if inert else {}
-    following |= _next_lags(order)
     following |= {"commanded": "next_commanded"} if sprung else {}
+    coefficients = [*motion_coefficients(motion, low_pass), *_admittances(laws), *_hand(limits)]
     return StepLaw(
         tuple(laws),
-        _inputs(limits),
+        (*limits.measured, HAND),
         tuple(_states(limits, order, inert=inert, sprung=sprung)),
-        tuple(_coefficients(motion, laws, low_pass, limits)),
-        operations,
-        _output(limits),
+        (*coefficients, *limits.coefficients),
+        (
+            *filtered(order),
+            *motion_operations(limits),
+            *_moving(felt(order), inert=inert, sprung=sprung),
+        ),
+        limits.output,
         following,
-        {"command": "rpm"},
+        UNITS,
     )
 
 
@@ -98,56 +99,106 @@ def build_placed_law(
     """
     limits = limits or StepLimits()
     order = 0 if low_pass is None else low_pass.order
-    angle, torque, _ = _inputs(limits)
-    position = Value("position", "X", "rad", limits.angle, "commanded position", "angle")
-    wanted = Value("wanted_torque", "Fd", "N*m", BEYOND, "wanted torque of the contact")
-    states = [Value("error_before", "e before", "rad", 2 * BEYOND, "error of a sample ago")]
-    coefficients = [*_motion_coefficients(motion), *_filter_coefficients(low_pass)]
-    coefficients.append(
-        Coefficient("Kf", "Kp", "rad/(N*m)", tuple(law.Kp for law in laws.values()))
-    )
+    coefficients = (*motion_coefficients(motion, low_pass), _force_gains(laws))
+    place = Operation("reference", "add", "position", "correction", "angle")
     return StepLaw(
         tuple(laws),
-        (angle, torque, position, wanted),
-        (*states, *_lags(order)),
-        (*coefficients, *_command_limit(limits)),
-        (*_filter(order), *_placing(_felt(order)), *_motion(limits)),
-        _output(limits),
-        {"error_before": "error"} | _next_lags(order),
-        {"command": "rpm"},
+        (*limits.measured, *limits.commanded),
+        (error_before(2 * BEYOND), *lags(order)),
+        (*coefficients, *limits.coefficients),
+        (*filtered(order), *_correction(felt(order)), place, *motion_operations(limits)),
+        limits.output,
+        {"error_before": "error", **next_lags(order)},
+        UNITS,
     )
 
 
-def _inputs(limits: StepLimits) -> tuple[Value, ...]:
-    return (
-        Value("angle", "theta", "rad", limits.angle, "measured angle of the joint", "angle"),
-        Value("torque", "F", "N*m", BEYOND, "measured torque of the contact", "term"),
-        Value("velocity_command", "v", "rad/s", BEYOND, "velocity that the hand commands"),
+def build_mixed_law(
+    motion: SampledMotion,
+    laws: Mapping[str, SampledLaw],
+    idle: Fraction,
+    low_pass: SampledLowPass | None = None,
+    limits: StepLimits | None = None,
+) -> StepLaw:
+    """Write impedance control beside position and force control out.
+
+    The reference of impedance control is counted from the commanded position. While another
+    controller is active, it and the velocity of the admittances decay. A product with zero or one
+    is exact, and so is a sum with zero: what is absent in a mode rounds nothing there.
+
+    Parameters
+    ----------
+    motion : SampledMotion
+        The motion controller.
+    laws : mapping of str to SampledAdmittance or SampledForce
+        By the names of their controllers; no admittance has a spring, and all have an inertia or
+        none has.
+    idle : Fraction
+        What a sample leaves of the states of idle controllers.
+    low_pass : SampledLowPass or None
+        Through which the force passes on its way to them.
+    limits : StepLimits, optional
+        Without them, nothing saturates and inputs are refused where no robot gets.
+    """
+    limits = limits or StepLimits()
+    order = 0 if low_pass is None else low_pass.order
+    each = {n: law if isinstance(law, SampledAdmittance) else None for n, law in laws.items()}
+    inert = any(law is not None and law.a is not None for law in each.values())
+    offset = Value("offset", "r", "rad", limits.angle, "reference over the commanded position")
+    following = {"offset": "next_offset", "error_before": "error", **next_lags(order)}
+    following |= {"velocity": "next_velocity"} if inert else {}
+    coefficients = [
+        *motion_coefficients(motion, low_pass),
+        _force_gains(laws),
+        *_idle_admittances(each.values(), idle, inert=inert),
+        *_hand(limits),
+    ]
+    return StepLaw(
+        tuple(laws),
+        (*limits.measured, *limits.commanded, HAND),
+        (offset, error_before(2 * BEYOND), *([VELOCITY] if inert else []), *lags(order)),
+        (*coefficients, *limits.coefficients),
+        (
+            *filtered(order),
+            *_mixed_reference(felt(order)),
+            *motion_operations(limits),
+            *admitted(felt(order), inert=inert),
+            Operation("left", "multiply", "d", "offset"),
+            Operation("next_offset", "add", "left", "moved", "angle"),
+        ),
+        limits.output,
+        following,
+        UNITS,
     )
 
 
 def _states(limits: StepLimits, order: int, *, inert: bool, sprung: bool) -> Iterator[Value]:
-    angle = limits.angle
-    meaning = "reference of the motion controller"
+    angle, meaning = limits.angle, "reference of the motion controller"
     yield Value("reference", "xref", "rad", angle, meaning, starts_at_angle=True)
-    yield Value("error_before", "e before", "rad", 2 * angle, "its error a sample ago")
-    if inert:
-        yield Value("velocity", "vm", "rad/s", BEYOND, "velocity of the admittance")
-    yield from _lags(order)
+    yield error_before(2 * angle)
+    yield from [VELOCITY] if inert else []
+    yield from lags(order)
     if sprung:
         meaning = "reference that the command alone gives"
         yield Value("commanded", "xcom", "rad", angle, meaning, starts_at_angle=True)
 
 
-def _coefficients(
-    motion: SampledMotion,
-    laws: Mapping[str, SampledAdmittance],
-    low_pass: SampledLowPass | None,
-    limits: StepLimits,
-) -> Iterator[Coefficient]:
+def _moving(force: str, *, inert: bool, sprung: bool) -> Iterator[Operation]:
+    """Yield admittances with a reference of their own."""
+    if sprung:
+        yield Operation("offset", "subtract", "reference", "commanded", "term", "r")
+        yield Operation("pull", "multiply", "Kt", "offset")
+        yield Operation("felt", "add", force, "pull")
+        force = "felt"
+    yield from admitted(force, inert=inert)
+    yield Operation("next_reference", "add", "reference", "moved", "angle")
+    if sprung:
+        yield Operation("advanced", "multiply", "T", "wanted")
+        yield Operation("next_commanded", "add", "commanded", "advanced", "angle")
+
+
+def _admittances(laws: Mapping[str, SampledAdmittance]) -> Iterator[Coefficient]:
     each = tuple(laws.values())
-    yield from _motion_coefficients(motion)
-    yield from _filter_coefficients(low_pass)
     if any(law.Kt for law in each):
         yield Coefficient("Kt", "Kt", "N*m/rad", tuple(law.Kt for law in each))
     kept = tuple(law.a for law in each if law.a is not None)
@@ -155,84 +206,37 @@ def _coefficients(
         yield Coefficient("a", "a", "1", kept)
     yield Coefficient("b", "b", "rad/(s*N*m)", tuple(law.b for law in each))
     yield Coefficient("T", "T", "s", (each[0].T,))
+
+
+def _hand(limits: StepLimits) -> Iterator[Coefficient]:
     yield Coefficient("velocity_limit", "", "rad/s", (limits.velocity,))
-    yield from _command_limit(limits)
 
 
-def _motion_coefficients(motion: SampledMotion) -> Iterator[Coefficient]:
-    yield Coefficient("Kp", "Kp", "rpm/rad", (motion.Kp,))
-    yield Coefficient("Kd_over_T", "D", "rpm/rad", (motion.D,))
+def _force_gains(laws: Mapping[str, SampledLaw]) -> Coefficient:
+    gains = (law.Kp if isinstance(law, SampledForce) else ZERO for law in laws.values())
+    return Coefficient("Kf", "Kp", "rad/(N*m)", tuple(gains))
 
 
-def _filter_coefficients(low_pass: SampledLowPass | None) -> Iterator[Coefficient]:
-    if low_pass is not None:
-        yield Coefficient("p", "p", "1", (low_pass.p,))
-        yield Coefficient("q", "q", "1", (low_pass.q,))
-
-
-def _command_limit(limits: StepLimits) -> Iterator[Coefficient]:
-    if limits.command is not None:
-        yield Coefficient("command_limit", "", "rpm", (limits.command,))
-
-
-def _output(limits: StepLimits) -> dict[str, str]:
-    return {"command": "command" if limits.command is None else "limited_command"}
-
-
-def _lags(order: int) -> Iterator[Value]:
-    for i in range(1, order + 1):
-        yield Value(f"filtered_{i}", f"x{i}", "N*m", BEYOND, f"torque behind lag {i} of the filter")
-
-
-def _next_lags(order: int) -> dict[str, str]:
-    return {f"filtered_{i}": f"next_filtered_{i}" for i in range(1, order + 1)}
-
-
-def _felt(order: int) -> str:
-    """Return the name of the force that the laws take."""
-    return f"next_filtered_{order}" if order else "torque"
-
-
-def _filter(order: int) -> Iterator[Operation]:
-    for i in range(1, order + 1):
-        yield Operation(f"kept_{i}", "multiply", "p", f"filtered_{i}")
-        yield Operation(f"added_{i}", "multiply", "q", _felt(i - 1))
-        yield Operation(_felt(i), "add", f"kept_{i}", f"added_{i}")
-
-
-def _placing(force: str) -> Iterator[Operation]:
+def _correction(force: str) -> Iterator[Operation]:
     yield Operation("lack", "subtract", "wanted_torque", force)
     yield Operation("correction", "multiply", "Kf", "lack")
-    yield Operation("reference", "add", "position", "correction", "angle")
 
 
-def _motion(limits: StepLimits) -> Iterator[Operation]:
-    yield Operation("error", "subtract", "reference", "angle", "own", "e")
-    yield Operation("proportional", "multiply", "Kp", "error")
-    yield Operation("change", "subtract", "error", "error_before")
-    yield Operation("derivative", "multiply", "Kd_over_T", "change")
-    yield Operation("command", "add", "proportional", "derivative")
-    if limits.command is not None:
-        yield Operation("limited_command", "saturate", "command_limit", "command")
+def _mixed_reference(force: str) -> Iterator[Operation]:
+    yield from _correction(force)
+    yield Operation("taken", "multiply", "takes_offset", "offset")
+    yield Operation("off", "add", "taken", "correction")
+    yield Operation("reference", "add", "position", "off", "angle")
 
 
-def _admittance(force: str, *, inert: bool, sprung: bool) -> Iterator[Operation]:
-    if sprung:
-        yield Operation("offset", "subtract", "reference", "commanded", "term", "r")
-        yield Operation("pull", "multiply", "Kt", "offset")
-        yield Operation("felt", "add", force, "pull")
-        force = "felt"
+def _idle_admittances(
+    laws: Collection[SampledAdmittance | None], idle: Fraction, *, inert: bool
+) -> Iterator[Coefficient]:
+    """Yield coefficients for every mode; None is one in which admittances are idle."""
+    yield Coefficient("takes_offset", "", "1", tuple(ONE if law else ZERO for law in laws))
+    yield Coefficient("d", "d", "1", tuple(ONE if law else idle for law in laws))
     if inert:
-        yield Operation("kept", "multiply", "a", "velocity")
-        yield Operation("pushed", "multiply", "b", force)
-        yield Operation("next_velocity", "add", "kept", "pushed")
-    else:
-        yield Operation("velocity", "multiply", "b", force, "own", "vm")
-    # The reference moves on with the velocity of before this sample, where it is a state.
-    yield Operation("wanted", "saturate", "velocity_limit", "velocity_command")
-    yield Operation("relative", "subtract", "wanted", "velocity")
-    yield Operation("moved", "multiply", "T", "relative")
-    yield Operation("next_reference", "add", "reference", "moved", "angle")
-    if sprung:
-        yield Operation("advanced", "multiply", "T", "wanted")
-        yield Operation("next_commanded", "add", "commanded", "advanced", "angle")
+        kept = (idle if law is None else law.a for law in laws)
+        yield Coefficient("a", "a", "1", tuple(a for a in kept if a is not None))
+    yield Coefficient("b", "b", "rad/(s*N*m)", tuple(law.b if law else ZERO for law in laws))
+    yield Coefficient("T", "T", "s", tuple(law.T if law else ZERO for law in laws))

@@ -10,7 +10,7 @@ from collections.abc import Iterator
 
 from nrs_design.controllers.float32 import exact_decimal
 from nrs_design.controllers.operations import Operation, StepLaw, Value
-from nrs_design.controllers.step_law import BEYOND
+from nrs_design.controllers.step_parts import BEYOND
 from nrs_design.exporters.c_names import CNames, comment, literal
 from nrs_design.exporters.export import Export
 from nrs_design.exporters.header import header_lines
@@ -158,8 +158,8 @@ def _macros(law: StepLaw, names: CNames) -> Iterator[str]:
     yield from (f"#define {names.mode(mode)} {k}U\n" for k, mode in enumerate(law.modes))
     yield "\n/* The numbers of the law, exactly. */\n"
     for macro, (coefficient, value) in names.coefficients(law).items():
-        note = f"/* {exact_decimal(value)} {coefficient.unit} */"
-        yield f"#define {macro} {literal(value)} {note}\n"
+        unit = "without unit" if coefficient.unit == "1" else coefficient.unit
+        yield f"#define {macro} {literal(value)} /* {exact_decimal(value)} {unit} */\n"
     yield "\n/* Beyond these, an input or a state is refused. */\n"
     for given in law.values:
         note = "not from the spec" if given.limit in (BEYOND, 2 * BEYOND) else "from the spec"

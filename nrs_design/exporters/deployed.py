@@ -13,12 +13,13 @@ from pathlib import Path
 
 from nrs_design.certificates.certificate import Certificate
 from nrs_design.controllers.float32 import exact_decimal, to_float32
-from nrs_design.controllers.gains import design_from_gains
+from nrs_design.controllers.gains import design_from_gains, idle_decay
 from nrs_design.errors import DesignError, NrsDesignError
 from nrs_design.exporters.c_names import CNames
-from nrs_design.exporters.record import ExportRecord, Gain
+from nrs_design.exporters.record import ExportRecord
 from nrs_design.exporters.shipped import shipped_law
 from nrs_design.files import open_regular
+from nrs_design.proof.text import exact_text
 from nrs_design.spec import InteractionDesignSpec
 
 LARGEST_BYTES = 2**22
@@ -58,7 +59,7 @@ def find_differences(
     if file.suffix == ".h":
         return [*_of_header(_read(file), spec, certificate, file)]
     if file.suffix == ".json":
-        return [*_of_record(_read(file), certificate, file)]
+        return [*_of_record(_read(file), spec, certificate, file)]
     raise NrsDesignError(
         "is neither an exported header nor an export record",
         path=file,
@@ -163,7 +164,9 @@ def _text(number: int | Fraction) -> str:
     return f"{number}U" if isinstance(number, int) else exact_decimal(number)
 
 
-def _of_record(text: str, certificate: Certificate, file: Path) -> Iterator[str]:
+def _of_record(
+    text: str, spec: InteractionDesignSpec, certificate: Certificate, file: Path
+) -> Iterator[str]:
     from pydantic import ValidationError
 
     try:
@@ -176,8 +179,11 @@ def _of_record(text: str, certificate: Certificate, file: Path) -> Iterator[str]
         ) from error
     if record.spec.sha256 != certificate.spec_sha256:
         yield "it is of another spec, or of an earlier text of it"
-    held = {"motion": _gains(record.motion.gains)}
-    held |= {controller.name: _gains(controller.gains) for controller in record.controllers}
+    parts = [("motion", record.motion.gains), *((c.name, c.gains) for c in record.controllers)]
+    names = [(name, gain.name) for name, gains in parts for gain in gains]
+    if len({*names}) < len(names) or len({name for name, _ in parts}) < len(parts):
+        yield "a controller or a gain is there twice"
+    held = {name: {gain.name: gain.exact for gain in gains} for name, gains in parts}
     for name in sorted(held.keys() | certificate.gains.keys()):
         mine, proved = held.get(name, {}), dict(certificate.gains.get(name, {}))
         for gain in sorted(mine.keys() | proved.keys()):
@@ -185,7 +191,36 @@ def _of_record(text: str, certificate: Certificate, file: Path) -> Iterator[str]
                 has = proved.get(gain, "no such gain")
                 found = mine.get(gain, "missing")
                 yield f"{gain} of {name} is {found}, and the certificate has {has}"
+    proved_rest = _rest_of_design(spec, certificate)
+    for name, found in _rest_of_record(record).items():
+        if found != proved_rest[name]:
+            yield f"{name}: {found}, and the certificate has {proved_rest[name]}"
 
 
-def _gains(gains: tuple[Gain, ...]) -> dict[str, str]:
-    return {gain.name: gain.exact for gain in gains}
+def _rest_of_record(record: ExportRecord) -> dict[str, str]:
+    """Return what runs beside the gains, in words."""
+    low_pass, idle, period = record.force_filter, record.idle_states, record.sample_time
+    return {
+        "lags of the filter and their pole": f"{low_pass.order}, {low_pass.pole.exact}"
+        if low_pass
+        else "none",
+        "decay and reset of idle states": f"{idle.decay.exact}, {idle.reset}" if idle else "none",
+        "offset": record.offset or "none",
+        "sample time in s": period.exact if period else "none",
+    }
+
+
+def _rest_of_design(spec: InteractionDesignSpec, certificate: Certificate) -> dict[str, str]:
+    """Return the same of the design that the certificate is about."""
+    low_pass = design_from_gains(spec, certificate.gains).sensor.filter
+    idle, period = spec.idle_states, certificate.system.sample_time
+    return {
+        "lags of the filter and their pole": f"{low_pass.order}, {exact_decimal(low_pass.pole)}"
+        if low_pass
+        else "none",
+        "decay and reset of idle states": f"{exact_decimal(idle_decay(idle))}, {idle.reset}"
+        if idle
+        else "none",
+        "offset": spec.offset,
+        "sample time in s": exact_text(period) if period else "none",
+    }

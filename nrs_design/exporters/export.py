@@ -10,12 +10,8 @@ from nrs_design.certificates.certificate import Certificate
 from nrs_design.certificates.verify import verify
 from nrs_design.controllers.controller_design import ControllerDesign
 from nrs_design.errors import DesignError
-from nrs_design.exporters.record import (
-    ExportRecord,
-    build_record,
-    build_unproved,
-    find_mismatch,
-)
+from nrs_design.exporters.build import build_record, build_unproved, find_mismatch
+from nrs_design.exporters.record import ExportRecord
 from nrs_design.pipeline import Designed, Progress, run_certification, run_design, wrong_kind
 from nrs_design.proof.text import exact_text
 from nrs_design.spec import InteractionDesignSpec, LoadedSpec
@@ -180,8 +176,8 @@ def _period(loaded: LoadedSpec, spec: InteractionDesignSpec, asked: Fraction | N
 
 def _executable(loaded: LoadedSpec, export: Export, period: Fraction, *, unproved: bool) -> Export:
     """Return an export for a processor: the proof must be about its sampled loop."""
-    record, design = export.record, export.design
-    if record is not None and record.sample_time is not None:
+    record, design, certificate = export.record, export.design, export.certificate
+    if record is not None and certificate is not None and certificate.system.sample_time == period:
         return export
     if record is not None:
         reason = (

@@ -19,7 +19,7 @@ def header_lines(record: ExportRecord) -> tuple[str, ...]:
         f"verdict: {_verdict(record)}",
         *(() if proof is None else (f"claim: {proof.claim}",)),
         f"sample time: {_sample_time(record)}",
-        "units: SI, angles in rad, motor commands in rpm; each gain has its unit beside it",
+        "units: SI, angles in rad; each gain has its unit beside it, which names that of the motor",
         *(f"outside the proof: {text}" for text in record.outside),
     )
 

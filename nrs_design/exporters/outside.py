@@ -2,9 +2,14 @@
 
 from __future__ import annotations
 
+NOTHING = "Everything: nothing is proved."
 CONTINUOUS = (
     "Sampling and delay: the proof is about continuous time, and a program that runs the law in "
     "steps is not covered."
+)
+NOT_ROUNDED = (
+    "Rounding: the proof is about the law computed without it, not about single-precision "
+    "arithmetic."
 )
 OUTSIDE = (
     "Whatever a program does beside the law: clamps, saturation, rate limits, guards against wrong "
@@ -15,12 +20,16 @@ OUTSIDE = (
 )
 
 
-def outside_of(*, sampled: bool) -> tuple[str, ...]:
+def outside_of(*, sampled: bool, rounded: bool) -> tuple[str, ...]:
     """Return what is outside a proof.
 
     Parameters
     ----------
     sampled : bool
         Whether the proof is about the loop as a processor samples it.
+    rounded : bool
+        Whether it covers what the arithmetic rounds; in continuous time there is none.
     """
-    return OUTSIDE if sampled else (CONTINUOUS, *OUTSIDE)
+    if not sampled:
+        return (CONTINUOUS, *OUTSIDE)
+    return OUTSIDE if rounded else (NOT_ROUNDED, *OUTSIDE)

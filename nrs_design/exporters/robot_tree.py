@@ -15,6 +15,8 @@ from numpy.typing import ArrayLike
 
 from nrs_design import __version__
 from nrs_design.models.robot import Leg, Robot, inverse_kinematics, posture
+from nrs_design.ownership import MARK
+from nrs_design.printable import printable
 from nrs_design.spec import LoadedSpec
 
 PARTS = ("crank", "coupler", "arm")
@@ -32,10 +34,13 @@ class RobotExport:
         Where it comes from.
     robot : Robot
         What it says.
+    origin : str
+        Where its spec is, seen from the file; see `nrs_design.ownership`.
     """
 
     loaded: LoadedSpec
     robot: Robot
+    origin: str
 
 
 @dataclass(frozen=True, slots=True)
@@ -137,6 +142,7 @@ def comment(export: RobotExport, format_: str, lines: Sequence[str]) -> str:
     text = [
         f"nrs-design {format_} of {spec.name}, nrs-design {__version__}",
         f"spec: {spec.name}, sha256 {export.loaded.sha256}",
+        f"{MARK}{export.origin}",
         "verdict: none, this is a model of a robot, and nothing is proved of it",
         "units: SI, angles in rad; base frame with its origin in the pivot, x towards the middle "
         "leg, z along the endoscope at phi = psi = 0",
@@ -146,7 +152,7 @@ def comment(export: RobotExport, format_: str, lines: Sequence[str]) -> str:
         *lines,
     ]
     # Two hyphens would end a comment.
-    return "<!-- " + "\n     ".join(text).replace("--", "- -") + " -->\n"
+    return "<!-- " + "\n     ".join(map(printable, text)).replace("--", "- -") + " -->\n"
 
 
 def numbers(*values: float) -> str:

@@ -7,15 +7,17 @@ from fractions import Fraction
 
 from nrs_design.controllers.controller_design import ControllerDesign
 from nrs_design.controllers.float32 import float32_not_above
-from nrs_design.controllers.operations import StepLaw, check_range
+from nrs_design.controllers.gains import idle_share
+from nrs_design.controllers.operations import StepLaw
 from nrs_design.controllers.sampled import (
     SampledAdmittance,
     SampledForce,
     SampledLaw,
     SampledMotion,
 )
-from nrs_design.controllers.sensor import SampledLowPass
-from nrs_design.controllers.step_law import BEYOND, StepLimits, build_placed_law, build_step_law
+from nrs_design.controllers.step_analysis import check_range
+from nrs_design.controllers.step_law import build_mixed_law, build_placed_law, build_step_law
+from nrs_design.controllers.step_parts import BEYOND, StepLimits
 from nrs_design.errors import DesignError
 from nrs_design.exporters.export import Export
 from nrs_design.spec import InteractionDesignSpec
@@ -54,35 +56,31 @@ def shipped_law(spec: InteractionDesignSpec, design: ControllerDesign, period: F
         If a controller has no step yet, or a step could leave single precision.
     """
     method = "exact" if spec.sampling is None else spec.sampling.admittance
-    sampled = {c.name: c.law.sampled(period, method) for c in design.controllers}
-    low_pass = design.sensor.filter
-    law = _step_law(
-        spec,
-        SampledMotion.of(design.motion, period),
-        sampled,
-        None if low_pass is None else low_pass.sampled(period),
-    )
+    laws: dict[str, SampledLaw] = {}
+    for controller in design.controllers:
+        sampled = controller.law.sampled(period, method)
+        if sampled is None:
+            what = f"{controller.name} is a {controller.law.name} controller"
+            raise _without_program(what, controller.name)
+        laws[controller.name] = sampled
+    law = _step_law(spec, design, laws, period)
     check_range(law)
     return law
 
 
 def _step_law(
     spec: InteractionDesignSpec,
-    motion: SampledMotion,
-    laws: Mapping[str, SampledLaw | None],
-    low_pass: SampledLowPass | None,
+    design: ControllerDesign,
+    laws: Mapping[str, SampledLaw],
+    period: Fraction,
 ) -> StepLaw:
-    limits = limits_of(spec)
+    motion, limits = SampledMotion.of(design.motion, period), limits_of(spec)
+    low_pass = None if design.sensor.filter is None else design.sensor.filter.sampled(period)
     moving = {name: law for name, law in laws.items() if isinstance(law, SampledAdmittance)}
     placed = {name: law for name, law in laws.items() if isinstance(law, SampledForce)}
-    for name in laws.keys() - moving.keys() - placed.keys():
-        raise _without_program(f"{name} is a {spec.controllers[name].type} controller", name)
-    if moving and placed:
-        both = f"{next(iter(placed))} stands beside impedance controllers"
-        raise _without_program(both, next(iter(placed)))
     if spec.offset != "none":
         raise _without_program("force control takes an offset", next(iter(placed)))
-    if placed:
+    if placed and not moving:
         return build_placed_law(motion, placed, low_pass, limits)
     if len({law.a is None for law in moving.values()}) > 1:
         raise DesignError(
@@ -90,7 +88,25 @@ def _step_law(
             remedy="give all of them an inertia Mt > 0, or none",
             at=("controllers",),
         )
-    return build_step_law(motion, moving, low_pass, limits)
+    if not placed:
+        return build_step_law(motion, moving, low_pass, limits)
+    _check_mixed(spec, moving, next(iter(placed)))
+    assert spec.idle_states is not None, "a spec with both kinds has them"
+    idle = idle_share(spec.idle_states, period)
+    return build_mixed_law(motion, laws, idle, low_pass, limits)
+
+
+def _check_mixed(
+    spec: InteractionDesignSpec, moving: Mapping[str, SampledAdmittance], other: str
+) -> None:
+    """Refuse what the program of both kinds of controllers would not do as it is proved."""
+    if any(law.Kt for law in moving.values()):
+        raise _without_program(f"a spring of impedance control beside {other}", other)
+    if spec.idle_states is not None and spec.idle_states.reset:
+        raise _without_program(f"a reset of idle states beside {other}", other)
+    if spec.disturbances is not None and spec.disturbances.largest_angle is not None:
+        # The position is added at every sample, which rounds an angle once more than is proved.
+        raise _without_program(f"the rounding of angles of impedance control beside {other}", other)
 
 
 def _without_program(what: str, controller: str) -> DesignError:

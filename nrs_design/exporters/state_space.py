@@ -24,7 +24,7 @@ class StateSpaces:
     Parameters
     ----------
     actuator : control.StateSpace
-        From the speed command in rpm to the position in rad.
+        From the command, in rpm or V as the spec says, to the position in rad.
     motion_loop : control.StateSpace
         From the commanded velocity in rad/s to the velocity, and likewise for positions.
     controllers : mapping of str to control.StateSpace

@@ -83,7 +83,7 @@ def make_vectors(law: StepLaw, count: int = COUNT, seed: int = SEED) -> Vectors:
     draw = np.random.PCG64(seed).random_raw
     wild = draw(count) % 4 == 0
     modes = len(law.modes)
-    mode = (draw(count) % (modes + wild)).astype(np.uint32)
+    mode = (draw(count) % (modes + wild).astype(np.uint64)).astype(np.uint32)
     given: dict[str, Single] = {}
     for value in law.values:
         scale = np.float32(min(float(value.limit), 1.0))

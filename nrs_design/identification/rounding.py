@@ -13,6 +13,8 @@ _MOST = 0.9
 # What is small, in steps; and how many of the changes must be.
 _SMALL = 10.5
 _SHARE = 0.1
+# A probe rests where a reading stays so many times longer than usual.
+_REST = 3.0
 
 
 def resolution(readings: Array) -> float:
@@ -41,7 +43,9 @@ def rounding_of_velocity(time: Array, readings: Array) -> float:
     return noise / float(np.mean(np.gradient(readings, time) ** 2))
 
 
-def rounding_scatter(readings: Array, sensitivities: Array, slope: float) -> Array:
+def rounding_scatter(
+    readings: Array, sensitivities: Array, slope: float, *, returns: bool = False
+) -> Array:
     """Return the covariance of ``J'e`` when e is the error that rounding causes.
 
     As long as the reading does not change, neither does its error: every stretch of equal
@@ -55,13 +59,23 @@ def rounding_scatter(readings: Array, sensitivities: Array, slope: float) -> Arr
         J, derivatives of the output by the logarithms of the parameters.
     slope : float
         Output over position: a stiffness, or 1 where the position is the output.
+    returns : bool
+        Whether a probe that comes back to a reading comes back to the same error, as it does at its
+        rest: what hangs on the place of the rest is not told better by more of them.
 
     Returns
     -------
     ndarray, shape (p, p)
         In squared units of the output.
     """
-    stretches = np.concatenate([[0], np.flatnonzero(np.diff(readings)) + 1])
-    sums = np.add.reduceat(sensitivities, stretches, axis=0)
+    starts = np.concatenate([[0], np.flatnonzero(np.diff(readings)) + 1])
+    sums = np.add.reduceat(sensitivities, starts, axis=0)
+    if returns:
+        lengths = np.diff([*starts, len(readings)])
+        rests = lengths > _REST * np.median(lengths)
+        _, same = np.unique(readings[starts[rests]], return_inverse=True)
+        together = np.zeros((same.max(initial=-1) + 1, sensitivities.shape[1]))
+        np.add.at(together, same, sums[rests])
+        sums = np.concatenate([sums[~rests], together])
     scatter: Array = (sums.T @ sums) * (slope * resolution(readings)) ** 2 / 12
     return scatter

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from nrs_design.errors import DataError
 from nrs_design.identification.datasets import PoseRecord
 from nrs_design.identification.statistics import Estimate, student_quantile
+from nrs_design.identification.tool_causes import likely_cause
 
 Array = NDArray[np.float64]
 
@@ -103,8 +104,10 @@ def identify_tool(records: Sequence[PoseRecord], gravity: float) -> ToolIdentifi
     torques = _fit(np.column_stack([cross.reshape(-1, 3), unit]), torque.reshape(-1))
     mass = forces.estimates()[0]
     if mass.value <= 0:
+        against = f"the forces point against the weight: the mass would be {mass.value:.4g} kg"
+        cause = likely_cause(records, forces.errors)
         raise DataError(
-            f"the forces point against the weight: the mass would be {mass.value:.4g} kg",
+            against if cause is None else f"{against}; {cause}",
             path=records[0].source.path,
             remedy="the sensor measures the force on the tool, or the orientation is that of the "
             "world in the sensor: turn the signs, or the rotation",
@@ -119,7 +122,7 @@ def identify_tool(records: Sequence[PoseRecord], gravity: float) -> ToolIdentifi
         forces.estimates()[1:],
         torques.estimates()[3:],
         *errors,
-        tuple(_doubts(spread, errors, mass.value * gravity, center)),
+        tuple(_doubts(records, spread, errors, mass.value * gravity, center)),
     )
 
 
@@ -185,9 +188,14 @@ def _spread(down: Array, records: Sequence[PoseRecord]) -> Array:
 
 
 def _doubts(
-    spread: Array, errors: tuple[Array, Array], weight: float, center: Sequence[Estimate]
+    records: Sequence[PoseRecord],
+    spread: Array,
+    errors: tuple[Array, Array],
+    weight: float,
+    center: Sequence[Estimate],
 ) -> Iterator[str]:
     count = len(errors[0])
+    cause = likely_cause(records, errors[0])
     if count < _ENOUGH:
         yield f"{count} poses are few: an error in one of them hardly shows"
     if spread[1] < _ALIKE:
@@ -199,10 +207,10 @@ def _doubts(
         rms = float(np.sqrt(np.mean(misses**2)))
         if rms > _MISSED * size:
             part = f"{100 * rms / size:.2g} %" if size else "all"
-            yield (
-                f"the {name} misses the fit by {part} of what the weight does: the orientation is "
-                "off, the tool moved or was touched"
-            )
+            why = "the orientation is off, the tool moved or was touched"
+            if name == "force" and cause is not None:
+                why = cause
+            yield f"the {name} misses the fit by {part} of what the weight does: {why}"
         worst = np.abs(misses).max(axis=1)
         row = int(worst.argmax())
         others = np.delete(misses, row, axis=0)

@@ -5,7 +5,8 @@ proves one thing starts a program for it, which makes half a hundred such classe
 longer than the proof. Here ``__init__`` alone is written for a class. To compare, hash and print is
 one function for all, and what keeps a noun frozen is that each of its fields is set once.
 
-What is loaded for every proof takes its ``dataclass`` from here.
+What is loaded for every proof takes its ``dataclass`` from here, but for what the reference of the
+library describes: that is read from the source, where only the standard decorator is known.
 """
 
 from __future__ import annotations

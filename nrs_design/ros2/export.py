@@ -17,9 +17,8 @@ from pathlib import Path
 from nrs_design import __version__
 from nrs_design.certificates.certificate import Certificate
 from nrs_design.controllers.controller_design import Controller
-from nrs_design.errors import DesignError
+from nrs_design.errors import DesignError, SpecError
 from nrs_design.exporters.outside import OUTSIDE
-from nrs_design.models.contact.elastic import Elastic
 from nrs_design.pipeline import Designed
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.proof.text import exact_text
@@ -84,7 +83,7 @@ def export_controllers(
     sampling = _sampling(designed)
     for controller in designed.design.controllers:
         body = _body(controller, axis, _filter_share(designed, sampling), _rate(sampling))
-        law = _law_in(body)
+        law = _law_in(body, controller.name)
         met = _met(designed, controller)
         around = Surroundings(sampling.period.exact, sampling.delay, None, met, lag)
         chosen = law.axes[AXES.index(axis)]
@@ -116,7 +115,7 @@ def _sampling(designed: Designed) -> SamplingSpec:
         )
     for controller in designed.design.controllers:
         gains = controller.law.gains
-        if controller.law.name != "impedance" or controller.law.spring or not gains["Mt"]:
+        if gains.keys() != {"Mt", "Bt"} or not gains["Mt"]:
             raise DesignError(
                 f"admittance_controller cannot run {controller.name}: it is written for impedance "
                 "controllers with inertia and without a spring",
@@ -168,7 +167,7 @@ def _filter_share(designed: Designed, sampling: SamplingSpec) -> Fraction:
 def _met(designed: Designed, controller: Controller) -> tuple[Fraction, Fraction]:
     """Return the stiffness that a controller may touch, in N m/rad."""
     touched = designed.plant.among(controller.contacts)
-    soft = next((item for item in touched if item.law is not Elastic), None)
+    soft = next((item for item in touched if item.parameters.keys() != {"k"}), None)
     if soft is not None:
         raise DesignError(
             f"{soft.name} is more than a spring, which is not modelled with admittance_controller",
@@ -201,10 +200,18 @@ def _body(controller: Controller, axis: str, share: Fraction, rate: int) -> str:
     )
 
 
-def _law_in(body: str) -> AdmittanceLaw:
+def _law_in(body: str, controller: str) -> AdmittanceLaw:
     """Read the parameters back, as ROS 2 does: names, types and bounds."""
     nodes = parse_nodes(body, Path("exported parameters"))
-    return read_law(next(node for node in nodes if node.name == "admittance_controller"))
+    try:
+        return read_law(next(node for node in nodes if node.name == "admittance_controller"))
+    except SpecError as error:
+        raise DesignError(
+            f"admittance_controller would not start with the gains of {controller}: "
+            f"{error.message}",
+            remedy="choose gains within its bounds, or another controller",
+            at=("controllers", controller),
+        ) from None
 
 
 def _header(

@@ -65,11 +65,9 @@ def _controllers(spec: InteractionDesignSpec) -> Iterator[Refusal]:
 def _loss_of_contact(spec: InteractionDesignSpec) -> Iterator[Refusal]:
     if spec.contact != "losable":
         return
-    for name, controller in spec.controllers.items():
-        if controller.commands == "position":
-            what = f"loss of contact beside {name}, which is given a position"
-            yield ("contact",), what, "use `contact: kept`, or impedance controllers alone"
-            return
+    if spec.idle_states is not None:
+        what = "loss of contact under impedance controllers beside others"
+        yield ("contact",), what, "use `contact: kept`, or one kind of controller"
     for name in sorted(spec.touched & spec.environments.keys()):
         environment = spec.environments[name]
         if not (environment.is_spring or environment.remembers):

@@ -40,6 +40,10 @@ _PLACED = (
     "At a switch the reference may jump, and the error of the sample before is kept: the PD "
     "differentiates the jump."
 )
+_IN_POSITION = (
+    "In position control any of the environments may be touched, or nothing: the force is sampled, "
+    "and used no earlier than by the next controller that takes it."
+)
 _RETUNED = (
     "The coefficients of retuned gains are those of the formulas, each rounded once; where gains "
     "change, the admittance keeps its states."
@@ -67,13 +71,23 @@ _DISTURBED = (
     "A bound on the force holds at the samples; what happens in between is not claimed.",
 )
 # Where contact is lost: only where the spring of the tissue ends, or whatever the deflection.
-Loss = Literal["never", "not modelled", "where force is controlled", "anywhere", "on the surface"]
+Loss = Literal[
+    "never",
+    "not modelled",
+    "not under force control",
+    "anywhere",
+    "anywhere under force control",
+    "on the surface",
+]
 _LOST: Mapping[str, str] = MappingProxyType(
     {
         "never": "Contact is not lost: free motion is not one of the modes.",
         "not modelled": "Contact is not lost: that an environment with damping lags behind is not "
         "modelled in the sampled loop.",
         "anywhere": LOST_ANYWHERE,
+        "anywhere under force control": "Contact may be lost and made again at any moment, "
+        "whatever the deflection: free motion under force control, whose sample is zero then, is "
+        "one of the modes. The surface is back in its place at once.",
         "on the surface": LOST_CONTACT,
     }
 )
@@ -104,13 +118,13 @@ def assume_sampled(
         The laws by the names of their controllers.
     design : ControllerDesign
         With the contacts.
-    loss : {"never", "not modelled", "where force is controlled", "anywhere", "on the surface"}
+    loss : str
         Where contact is lost.
     """
     rules = spec.switching
     reset = spec.idle_states is not None and spec.idle_states.reset
     states = "All other states are" if reset else "States are"
-    inputs = _INPUTS if loss != "where force is controlled" else _PLACED_INPUTS
+    inputs = _PLACED_INPUTS if "under force control" in loss else _INPUTS
     return (
         f"The law runs every {exact_text(sampling.period.exact)} s, without jitter; its command is "
         "held in between.",
@@ -152,6 +166,8 @@ def _placed_texts(frame: Frame, design: ControllerDesign, *, reset: bool) -> Ite
     if all(c.law.commands == "velocity" for c in design.controllers):
         return
     yield _PLACED
+    if not all(c.contacts for c in design.controllers):
+        yield _IN_POSITION
     if frame.idle is None:
         return
     what = "velocity vm and reference" if frame.has_inertia else "the reference"
@@ -164,7 +180,7 @@ def _placed_texts(frame: Frame, design: ControllerDesign, *, reset: bool) -> Ite
 
 
 def _loss_texts(loss: Loss, design: ControllerDesign, frame: Frame) -> Iterator[str]:
-    if loss != "where force is controlled":
+    if loss != "not under force control":
         yield _LOST[loss]
         return
     used = {c.law.name for c in design.controllers}

@@ -113,6 +113,11 @@ class Frame:
         return counts | {term.name: term.roundings for term in self._placing}
 
     @property
+    def remembers(self) -> bool:
+        """Whether a force sample outlasts its period."""
+        return self.longest_delay > 0 or self.low_pass is not None
+
+    @property
     def _order(self) -> int:
         return 0 if self.low_pass is None else self.low_pass.order
 

@@ -8,6 +8,7 @@ from fractions import Fraction
 
 from nrs_design.controllers.sampled import SampledAdmittance, SampledLaw
 from nrs_design.controllers.sampled_range import coefficient_ranges
+from nrs_design.errors import AssemblyError, DesignError
 from nrs_design.proof.bounds import rounded_down, rounded_up
 from nrs_design.switched.gain_box import GainBox
 from nrs_design.switched.parameter_box import Box
@@ -48,12 +49,16 @@ class SampledGains:
 
         Raises
         ------
-        DesignError
+        AssemblyError
             If single precision loses a coefficient.
         """
         if gains.fixed or not isinstance(law, SampledAdmittance):
             return cls(law, Box({}))
-        ranges = coefficient_ranges(gains.law, gains.ranges, period, method)
+        try:
+            ranges = coefficient_ranges(gains.law, gains.ranges, period, method)
+        except DesignError as error:
+            # At another scale of the ranges there may be a loop.
+            raise AssemblyError(error.message, remedy=error.remedy, at=error.at) from error
         ranges |= {"Kt": gains.ranges["Kt"]} if "Kt" in gains.ranges else {}
         return cls(law, Box({symbol: r for symbol, r in ranges.items() if r.low != r.high}))
 

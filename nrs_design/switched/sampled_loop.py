@@ -9,8 +9,7 @@ from functools import partial
 from itertools import chain
 
 from nrs_design.controllers.controller_design import Controller, ControllerDesign
-from nrs_design.controllers.float32 import to_float32
-from nrs_design.controllers.gains import idle_decay
+from nrs_design.controllers.gains import idle_share
 from nrs_design.controllers.sampled import (
     SampledAdmittance,
     SampledForce,
@@ -24,7 +23,6 @@ from nrs_design.models.linear_form import LinearForm, coordinates, zero
 from nrs_design.models.plant import Plant
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.system import Contact, SwitchedSystem, Time
-from nrs_design.proof.taylor import exponential_between
 from nrs_design.spec import IdleStatesSpec, InteractionDesignSpec
 from nrs_design.spec.interval import Interval
 from nrs_design.spec.sampling import SamplingSpec
@@ -83,12 +81,20 @@ def close_sampled_loop(
     ranges = plant.actuator_ranges or ActuatorRanges.point(plant.actuator)
     frame = _frame(spec, sampling, design, [item.law for item in laws.values()], ranges)
     loop = _Loop(frame, sampling.delay, motor_box(ranges, frame.period))
-    parts = {c.name: loop.in_contact(c, laws[c.name], plant) for c in design.controllers}
     touched = plant.among(design.contacts)
+    parts = {
+        c.name: loop.in_contact(
+            c, laws[c.name], map(plant.environment, c.contacts) if c.contacts else touched
+        )
+        for c in design.controllers
+    }
     loss = _loss_of_contact(spec, touched, [item.law for item in laws.values()])
-    air = {name: loop.in_the_air(name, item) for name, item in laws.items()} if _flies(loss) else {}
-    if loss == "anywhere":
-        parts = {name: (*part, *air[name]) for name, part in parts.items()}
+    air: dict[str, tuple[Motion, ...]] = {}
+    if loss == "on the surface" or loss.startswith("anywhere"):
+        touching = (c.name for c in design.controllers if c.contacts)
+        air = {name: loop.in_the_air(name, laws[name]) for name in touching}
+    if loss.startswith("anywhere"):
+        parts = {name: (*part, *air.get(name, ())) for name, part in parts.items()}
     free = tuple(chain.from_iterable(air.values())) if loss == "on the surface" else ()
     groups = {key: tuple(Corner(item.mode.name) for item in part) for key, part in parts.items()}
     motions = tuple(chain.from_iterable(parts.values()))
@@ -132,9 +138,7 @@ def _frame(
 ) -> Frame:
     period, tau, low_pass = sampling.period.exact, ranges.time_constant, design.sensor.filter
     admittances = [law for law in laws if isinstance(law, SampledAdmittance)]
-    idle = None
-    if spec.idle_states is not None:
-        idle = to_float32(exponential_between(-idle_decay(spec.idle_states) * period)[0])
+    idle = None if spec.idle_states is None else idle_share(spec.idle_states, period)
     return Frame(
         period,
         SampledMotion.of(design.motion, period),
@@ -158,13 +162,18 @@ class _Loop:
     motor: Box
 
     def in_contact(
-        self, controller: Controller, gains: SampledGains, plant: Plant
+        self, controller: Controller, gains: SampledGains, touched: Iterable[Environment]
     ) -> tuple[Motion, ...]:
-        """Return the motions of a controller in all its contacts, or in the air if it has none."""
-        if not controller.contacts:
-            return tuple(self._corners(gains, self.motor, controller.name))
+        """Return the motions of a controller in all contacts, and in the air if it has none.
+
+        Position control takes no force, but what it touches is sampled, and may be used by the
+        controller after it.
+        """
         found: list[Motion] = []
-        for environment in map(plant.environment, controller.contacts):
+        if not controller.contacts:
+            found += self._corners(gains, self.motor, controller.name)
+            touched = touched if self.frame.remembers else ()
+        for environment in touched:
             own = Box({"k": environment.stiffness, "b": damping_of(environment)})
             name = f"{controller.name}/{environment.name}"
             found += self._corners(gains, own.beside(self.motor), name)
@@ -178,7 +187,7 @@ class _Loop:
         """Yield the motions in one contact, at every delay that makes a difference."""
         law = gains.law
         ages = range(self.delays[0], self.delays[1] + 1)
-        if isinstance(law, SampledForce) and not law.Kp:
+        if isinstance(law, SampledForce) and not law.Kp and self.frame.low_pass is None:
             ages = ages[:1]
         for delay in ages:
             late = f"{name}/delay-{delay}" if len(ages) > 1 else name
@@ -214,17 +223,15 @@ def _loss_of_contact(
     sprung = set[bool]()
     for law in laws:
         if isinstance(law, SampledForce):
-            return "where force is controlled"
+            # Force control rests in the air where it does in contact: at what is commanded.
+            lost = spec.contact == "losable"
+            return "anywhere under force control" if lost else "not under force control"
         sprung.add(law.Kt != 0)
     if spec.contact == "kept" or (True in sprung and spec.contact is None):
         return "never"
     if not all(_is_zero(damping_of(e)) and not e.preloaded for e in touched):
         return "not modelled"
     return "anywhere" if sprung == {True} else "on the surface"
-
-
-def _flies(loss: Loss) -> bool:
-    return loss in ("anywhere", "on the surface")
 
 
 def _resets(

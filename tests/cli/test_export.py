@@ -1,4 +1,5 @@
 import json
+import re
 import sys
 from dataclasses import replace
 from pathlib import Path
@@ -262,3 +263,11 @@ def test_a_refuted_program_says_so_in_every_file(export, capsys):
     for name in programs:
         assert "verdict: UNPROVED: the design is not proved: refuted" in Path(name).read_text()
         assert "0.01 s" in Path(name).read_text()
+
+
+def test_what_has_no_program_is_told_at_its_place(export, capsys):
+    parallel = SPECS.parent / "docs/examples/parallel.nrs.yaml"
+    options = ("--format", "c", "--sample-time", "2 ms", "--unproved")
+    assert export(parallel, *options) == 2
+    assert files() == []
+    assert re.search(r"parallel\.nrs\.yaml:\d+:\d+", capsys.readouterr().err)

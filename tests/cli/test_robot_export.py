@@ -1,6 +1,7 @@
 """`nrs-design robot export`, as a user types it."""
 
 import json
+from pathlib import Path
 
 import pytest
 
@@ -39,3 +40,17 @@ def test_what_is_no_robot(tmp_path):
     assert done.returncode == 2
     assert "describes no robot" in done.stderr
     assert not list(tmp_path.iterdir())
+
+
+def test_the_model_of_another_spec_is_not_overwritten(tmp_path):
+    for name in ("a.nrs.yaml", "b.nrs.yaml"):
+        (tmp_path / name).write_bytes(Path(SPEC).read_bytes())
+    for format_ in ("mjcf", "urdf"):
+        first = ("robot", "export", "a.nrs.yaml", "--format", format_)
+        assert run(*first, cwd=tmp_path).returncode == 0
+        before = {path: path.read_bytes() for path in (tmp_path / "reports").iterdir()}
+        refused = run("robot", "export", "b.nrs.yaml", "--format", format_, cwd=tmp_path)
+        assert refused.returncode == 2
+        assert "belongs to a.nrs.yaml" in refused.stderr
+        assert {path: path.read_bytes() for path in before} == before
+        assert run(*first, cwd=tmp_path).returncode == 0

@@ -8,7 +8,7 @@ import pytest
 
 from nrs_design.controllers.float32 import to_float32
 from nrs_design.controllers.laws import Admittance, ProportionalDerivative
-from nrs_design.controllers.operations import linear_forms, rounded_terms, term_counts
+from nrs_design.controllers.replica import step
 from nrs_design.controllers.sampled import (
     ROUNDINGS,
     ROUNDINGS_WITHOUT_INERTIA,
@@ -16,7 +16,15 @@ from nrs_design.controllers.sampled import (
     SampledMotion,
 )
 from nrs_design.controllers.sensor import LowPass
-from nrs_design.controllers.step_law import StepLimits, build_placed_law, build_step_law
+from nrs_design.controllers.step_analysis import (
+    check_range,
+    linear_forms,
+    rounded_terms,
+    term_counts,
+)
+from nrs_design.controllers.step_law import build_mixed_law, build_placed_law, build_step_law
+from nrs_design.controllers.step_parts import StepLimits
+from nrs_design.errors import DesignError
 from nrs_design.models.linear_form import combine, coordinates, zero
 from nrs_design.switched.sampled_frame import INPUTS, Frame
 
@@ -224,8 +232,128 @@ def test_the_map_of_force_and_position_control_is_that_of_the_certificate():
 def test_no_term_of_force_control_is_rounded_more_often_than_is_proved():
     """Besides, what is proved adds the rounding of the error to that of all of its terms."""
     for frame, _, law in placed_cases(38):
-        counted = term_counts(law)
         angles = {"X", "theta", "Kp Fd"}
+        counted = term_counts(law, 1)
         assert {*counted} - angles == {*frame.counts} - {"e"}
         assert all(counted[name] <= frame.counts[name] for name in {*counted} - angles)
         assert (counted["X"], counted["theta"]) == (1, 1)
+        # In position control there is no force.
+        assert term_counts(law, 0).items() <= frame.counts.items()
+
+
+def mixed_cases(seed, count=40):
+    """Yield frames of all kinds of control in one, their laws, and the same as operations."""
+    rng = np.random.default_rng(seed)
+    for _ in range(count):
+        period = Fraction(int(rng.integers(1, 21)), 1000)
+        order, longest = int(rng.integers(0, 3)), int(rng.integers(0, 4))
+        inert = bool(rng.integers(0, 2))
+        motion = SampledMotion(number(rng, 1e3, 2e5), number(rng, 1e3, 1e6))
+        low_pass = LowPass(order, number(rng, 50, 500)).sampled(period) if order else None
+        admittance = Admittance(number(rng, 0.1, 1) if inert else Fraction(0), number(rng, 0.1, 5))
+        laws = {
+            "position": SampledForce(Fraction(0)),
+            "insertion": admittance.sampled(period, "exact"),
+            "force": SampledForce(number(rng, 0.001, 0.1)),
+        }
+        idle = number(rng, 0.5, 0.99)
+        frame = Frame(period, motion, inert, longest, TAU, low_pass, takes_force=True, idle=idle)
+        yield frame, laws, build_mixed_law(motion, laws, idle, low_pass)
+
+
+def mixed_coordinates(frame):
+    """Inputs and states in the coordinates of a frame; of the position its rounding alone."""
+    delay, size = frame.longest_delay, len(frame.states)
+    unit = coordinates(size + len(INPUTS) + len(frame.roundings))
+    state = dict(zip((name.split(" [")[0] for name in frame.states), unit, strict=False))
+    command, _, encoder, sensor, reference, angle = unit[size : size + len(INPUTS)]
+    felt = combine((Fraction(700), state["delta"]), (Fraction(3), state["omega"]), (ONE, sensor))
+    ages = [felt, *(state[f"F {j} before"] for j in range(1, delay + 1))]
+    nothing = zero(len(felt))
+    lags = {
+        f"filtered_{i}": state[f"filtered {i} before"]
+        for i in (1, 2)
+        if f"filtered {i} before" in state
+    }
+    given = {
+        "angle": combine((ONE, state["delta"]), (ONE, encoder), (ONE, angle)),
+        "torque": ages[delay],
+        "velocity_command": command,
+        "position": reference,
+        "wanted_torque": nothing,
+        "offset": state["reference"],
+        "error_before": state["e before"],
+        "velocity": state.get("vm", nothing),
+    }
+    return given | lags, state, unit
+
+
+def test_the_map_of_all_kinds_of_control_is_that_of_the_certificate():
+    """Of the mixed law, too: what is idle decays, and what is placed starts from the position."""
+    for frame, laws, law in mixed_cases(42):
+        given, state, unit = mixed_coordinates(frame)
+        size = len(frame.states)
+        friction, reference = unit[size + 1], unit[size + 4]
+        values = {"Km": KM, "E": E, "k": Fraction(700), "b": Fraction(3)}
+        for mode, sampled in enumerate(laws.values()):
+            moves = not isinstance(sampled, SampledForce)
+            # The certificate rounds the next reference of an admittance, and not the sum with X.
+            at = given | {"position": zero(len(unit[0]))} if moves else given
+            forms = linear_forms(law, mode, at)
+            rows = frame.rows(sampled, frame.longest_delay, values)
+            expected = [without_roundings(frame, row) for row in rows]
+            drive = combine((ONE, forms["command"]), (ONE, friction))
+            moved = combine(
+                (TAU * (1 - E), state["omega"]), (KM * (frame.period - TAU * (1 - E)), drive)
+            )
+            found = [
+                combine((ONE, forms["next_offset"]), (Fraction(moves), reference)),
+                combine((E, state["omega"]), (KM * (1 - E), drive)),
+            ]
+            kept = ["error_before", *["velocity"] * frame.has_inertia]
+            kept += [name for name in given if name.startswith("filtered")]
+            found += [forms[law.following[name]] for name in kept]
+            assert [without_roundings(frame, row) for row in found] == expected[: len(found)]
+            delta = combine((ONE, state["delta"]), (ONE, moved))
+            assert without_roundings(frame, delta) == expected[size - 1]
+
+
+def test_no_term_of_a_mixed_law_is_rounded_more_often_than_is_proved():
+    """In the modes that take part in them."""
+    for frame, laws, law in mixed_cases(43):
+        for mode, sampled in enumerate(laws.values()):
+            counted = term_counts(law, mode)
+            for angle in ("X", "theta", "Kp Fd"):
+                assert counted.pop(angle, 1) <= 3
+            if isinstance(sampled, SampledForce) and frame.has_inertia:
+                # The coefficient a of the velocity is d where it is idle.
+                assert counted.pop("a vm") == frame.counts["d vm"]
+            assert all(count <= frame.counts[name] for name, count in counted.items())
+
+
+@pytest.mark.parametrize(("exponent", "fits"), [(106, True), (107, False), (127, False)])
+def test_a_law_that_could_leave_single_precision_is_refused(exponent, fits):
+    """An error of up to 2e6 rad, just below 2^21, times a gain has to stay below 2^127."""
+    _, _, law = next(cases(39))
+    Kp, *others = law.coefficients
+    large = replace(law, coefficients=(replace(Kp, values=(Fraction(2**exponent),)), *others))
+    if fits:
+        check_range(large)
+        return
+    with pytest.raises(DesignError, match="beyond single precision"):
+        check_range(large)
+
+
+def test_single_precision_stays_finite_within_the_limits():
+    """At every corner of the inputs and states of 20 laws."""
+    for _, _, law in cases(40, 20):
+        check_range(law)
+        rng = np.random.default_rng(41)
+        given = {
+            v.name: np.float32(float(v.limit)) * rng.choice([-1, 1], 200).astype(np.float32)
+            for v in law.values
+        }
+        result = step(law, rng.integers(0, 2, 200).astype(np.uint32), given)
+        assert result.valid.all()
+        for numbers in (*result.outputs.values(), *result.states.values()):
+            assert np.isfinite(numbers).all()

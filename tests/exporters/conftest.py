@@ -34,6 +34,11 @@ def continuous_export(continuous):
     return export_design(continuous)
 
 
+@pytest.fixture
+def record(continuous_export):
+    return continuous_export.record
+
+
 @pytest.fixture(scope="session")
 def sampled_export(sampled):
     return export_design(sampled, execution=Execution())

@@ -12,7 +12,8 @@ from nrs_design.controllers.laws import Admittance, ProportionalDerivative
 from nrs_design.controllers.operations import StepLaw
 from nrs_design.controllers.sampled import SampledForce, SampledMotion
 from nrs_design.controllers.sensor import LowPass
-from nrs_design.controllers.step_law import StepLimits, build_placed_law, build_step_law
+from nrs_design.controllers.step_law import build_mixed_law, build_placed_law, build_step_law
+from nrs_design.controllers.step_parts import StepLimits
 
 PERIOD = Fraction(1, 500)
 MOTION = ProportionalDerivative(to_float32(Fraction("117359.43")), Fraction(2060))
@@ -45,6 +46,7 @@ PLACED = {
     "position": SampledForce(Fraction(0)),
     "force": SampledForce(to_float32(Fraction("0.02"))),
 }
+ADMITTANCE = Admittance(to_float32(Fraction("0.01")), to_float32(Fraction("2.15")))
 LAWS = {
     "force and position": build_placed_law(
         SampledMotion.of(MOTION, PERIOD), PLACED, LowPass(1, Fraction(200)).sampled(PERIOD)
@@ -53,6 +55,11 @@ LAWS = {
     "static": law(Mt="0"),
     "filter and spring": law(order=2, Kt=("0.5", "0")),
     "static, filter, spring": law(Mt="0", order=1, Kt=("0.5", "3"), method="euler"),
+    "mixed": build_mixed_law(
+        SampledMotion.of(MOTION, PERIOD),
+        {**PLACED, "insertion": ADMITTANCE.sampled(PERIOD, "exact")},
+        to_float32(Fraction("0.96")),
+    ),
     "limits": law(limits=StepLimits(Fraction(1, 2), to_float32(Fraction("0.13")), Fraction(4000))),
 }
 

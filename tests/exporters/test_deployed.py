@@ -8,8 +8,10 @@ import pytest
 from nrs_design.errors import NrsDesignError
 from nrs_design.exporters.c import render as render_c
 from nrs_design.exporters.deployed import find_differences
+from nrs_design.exporters.export import export_design
 from nrs_design.exporters.json_record import render as render_json
-from tests.support import ends_soon
+from nrs_design.spec import read_spec
+from tests.support import ROBOT, ROOT, SOFT_TISSUE, ends_soon
 
 
 @pytest.fixture
@@ -108,8 +110,50 @@ def test_every_gain_of_a_record_counts(differences, sampled_export):
             assert f"{gain['name']} of" in found
             assert gain["exact"] in found
             place["gains"][i] = gain
+    twice = document["motion"]["gains"] * 2
+    repeated = json.dumps(document | {"motion": {"law": "motion", "gains": twice}})
+    assert differences(repeated, "x.json") == ["a controller or a gain is there twice"]
     document["controllers"][0]["name"] = "other"
     assert len(differences(json.dumps(document), "x.json")) == 4
+
+
+def test_what_runs_beside_the_gains_counts(differences, sampled_export, tmp_path):
+    """The filter, the idle states, the offset and the sample time of a record."""
+    document = json.loads(render_json(sampled_export)[".export.json"])
+    one = {"unit": "1/s", "exact": "0.5", "float32": 0.5, "float32_bits": "0x3f000000"}
+    for field, value, said in (
+        (
+            "force_filter",
+            {"order": 2, "pole": one | {"name": "pole"}},
+            "filter and their pole: 2, 0.5",
+        ),
+        (
+            "idle_states",
+            {"decay": one | {"name": "decay"}, "reset": True},
+            "idle states: 0.5, True",
+        ),
+        ("offset", "measured", "offset: measured"),
+        ("sample_time", {"exact": "0.004", "unit": "s"}, "sample time in s: 0.004"),
+        ("sample_time", None, "sample time in s: none, and the certificate has 0.002"),
+    ):
+        (found,) = differences(json.dumps(document | {field: value}), "x.json")
+        assert said in found
+
+
+def test_records_of_every_kind_agree_with_their_certificates(tmp_path):
+    """With a filter, idle states and an offset, too."""
+    head, _, _ = SOFT_TISSUE.read_text().partition("  withdrawal:")
+    text = head + "switching: arbitrary\nsensor: {filter: {order: 1, cutoff: 100 Hz}}\n"
+    (tmp_path / "filtered.nrs.yaml").write_text(text)
+    for file in (
+        tmp_path / "filtered.nrs.yaml",
+        ROOT / "docs/examples/mixed-controllers.nrs.yaml",
+        ROBOT / "force-limit-offset.nrs.yaml",
+    ):
+        loaded = read_spec(file)
+        export = export_design(loaded)
+        (tmp_path / "x.json").write_bytes(render_json(export)[".export.json"])
+        assert find_differences(tmp_path / "x.json", loaded.spec, export.certificate) == []
 
 
 def test_files_that_are_something_else(differences, header):

@@ -1,5 +1,6 @@
 """The robot in MuJoCo, with closed loops, beside our own dynamics."""
 
+import os
 import xml.etree.ElementTree as ET
 
 import numpy as np
@@ -10,11 +11,13 @@ from nrs_design.exporters.robot_tree import RobotExport, joint_names, tree_angle
 from nrs_design.models.robot import gravity_torque, inverse_kinematics, mass_matrix
 from tests.exporters.robots import POSES
 
+# Nothing is drawn.
+os.environ["MUJOCO_GL"] = "disable"
 mujoco = pytest.importorskip("mujoco", reason="MuJoCo is not installed")
 
 
 def load(robot, loaded):
-    text = render(RobotExport(loaded, robot))[".mjcf.xml"].decode()
+    text = render(RobotExport(loaded, robot, "a.nrs.yaml"))[".mjcf.xml"].decode()
     return mujoco.MjModel.from_xml_string(text)
 
 
@@ -88,7 +91,7 @@ def test_the_loops_hold_while_it_moves(robot, loaded):
 
 
 def test_the_comment(robot, loaded):
-    text = render(RobotExport(loaded, robot))[".mjcf.xml"].decode()
+    text = render(RobotExport(loaded, robot, "a.nrs.yaml"))[".mjcf.xml"].decode()
     head, _, _ = text.partition("-->")
     for fact in (loaded.sha256, "nothing is proved", "units: SI", "theta3 = middle_crank", "home"):
         assert fact in head

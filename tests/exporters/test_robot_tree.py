@@ -24,11 +24,11 @@ from tests.exporters.robots import POSES
 def test_every_format_begins_as_the_table_says(name, robot, loaded):
     format_ = ROBOT_FORMATS[name]
     render = import_module(f"nrs_design.exporters.{format_.module}").render
-    files = render(RobotExport(loaded, robot))
+    files = render(RobotExport(loaded, robot, "a.nrs.yaml"))
     assert set(files) == set(format_.files)
     for ending, content in files.items():
         assert content.startswith(format_.files[ending])
-    assert render(RobotExport(loaded, robot)) == files
+    assert render(RobotExport(loaded, robot, "a.nrs.yaml")) == files
 
 
 def test_driven_joints_are_those_of_the_kinematics(robot):
@@ -52,6 +52,8 @@ def test_a_pose_out_of_reach_has_no_angles(robot):
 
 def test_a_name_does_not_end_the_comment(loaded, robot):
     spec = loaded.spec.model_copy(update={"name": "a--b"})
-    text = comment(RobotExport(replace(loaded, spec=spec), robot), "mjcf", ["x --> y"])
+    text = comment(
+        RobotExport(replace(loaded, spec=spec), robot, "a.nrs.yaml"), "mjcf", ["x --> y"]
+    )
     assert text.count("--") == 2
     assert text.startswith("<!-- nrs-design mjcf of a- -b")

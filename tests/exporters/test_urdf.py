@@ -15,7 +15,7 @@ DRIVEN = ("left_plane", "right_plane", "middle_crank")
 
 
 def text_of(robot, loaded):
-    return render(RobotExport(loaded, robot))[".urdf"].decode()
+    return render(RobotExport(loaded, robot, "a.nrs.yaml"))[".urdf"].decode()
 
 
 def load(robot, loaded):

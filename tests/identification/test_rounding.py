@@ -35,3 +35,11 @@ def test_a_stretch_of_equal_readings_is_one_error():
     readings = np.array([0.0, 0.0, 0.0, 1.0, 1.0, 2.0])
     J = np.ones((6, 1))
     assert rounding_scatter(readings, J, 3.0)[0, 0] == pytest.approx(9 / 12 * (9 + 4 + 1))
+
+
+def test_rests_with_one_reading_are_one_error():
+    readings = np.repeat([0.0, 1.0, 2.0, 1.0, 0.0], [20, 1, 1, 1, 20])
+    J = np.ones((43, 1))
+    apart, together = (rounding_scatter(readings, J, 1.0, returns=r) for r in (False, True))
+    assert 12 * apart[0, 0] == pytest.approx(2 * 20**2 + 3)
+    assert 12 * together[0, 0] == pytest.approx(40**2 + 3)

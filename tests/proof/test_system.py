@@ -8,6 +8,7 @@ from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.system import (
     Channel,
     Contact,
+    Coupling,
     Mode,
     Output,
     Reset,
@@ -369,4 +370,47 @@ def test_roundings_need_steps_of_one_size_and_names():
     unequal = family([["1/2"]], [["1/2", 0], [0, "1/2"]], time=Time.DISCRETE)
     found = replace(unequal, roundings=(first,)).find_contradiction()
     assert found == "the arithmetic rounds, but the modes are not of one size"
+    assert unequal.find_contradiction() is None
+
+
+LEANS = bouncing()
+LEANING = Coupling("links", (COLUMN,) * 3, (matrix([[1, 2]]), matrix([[3, 4]]), matrix([[5, 0]])))
+SIZE, COUNT = (
+    f"the coupling by links {what}"
+    for what in ("does not have the size of the state", "has not one column and row for every mode")
+)
+
+
+@pytest.mark.parametrize(
+    ("changes", "reason"),
+    [
+        ({}, None),
+        ({"columns": (COLUMN, COLUMN, ONE)}, SIZE),
+        ({"rows": (*LEANING.rows[:2], matrix([[7, 0, 8]]))}, SIZE),
+        ({"rows": (*LEANING.rows[:2], RationalMatrix(((7, 0),), 0))}, SIZE),
+        ({"columns": (COLUMN,) * 2}, COUNT),
+        ({"rows": (*LEANING.rows, LEANING.rows[2])}, COUNT),
+        (
+            {"rows": (*LEANING.rows[:2], matrix([[7, 1]]))},
+            "the coupling by links depends on the deflection in free motion",
+        ),
+    ],
+)
+def test_couplings_that_make_sense_and_others(changes, reason):
+    changed, other = replace(LEANING, **changes), replace(LEANING, name="other")
+    for couplings in ((changed,), (other, changed)):
+        assert replace(LEANS, couplings=couplings).find_contradiction() == reason
+
+
+def test_couplings_need_continuous_time_one_size_and_names():
+    twice = replace(LEANS, couplings=(LEANING, LEANING))
+    assert twice.find_contradiction() == "two couplings have one name"
+    first = Coupling("links", (matrix([[1]]),), (ONE,))
+    in_time = replace(family([[-1]]), couplings=(first,))
+    assert in_time.find_contradiction() is None
+    in_steps = replace(in_time, time=Time.DISCRETE)
+    assert in_steps.find_contradiction() == "axes act on each other in discrete time"
+    unequal = family([[-1]], [[-1, 0], [0, -1]])
+    found = replace(unequal, couplings=(first,)).find_contradiction()
+    assert found == "axes act on each other, but their modes are not of one size"
     assert unequal.find_contradiction() is None

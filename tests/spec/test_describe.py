@@ -13,6 +13,12 @@ def test_quantities_are_shown_as_written_and_in_si() -> None:
     assert ("motion_loop.damping_ratio", "0.707", "0.707", "") in rows
 
 
+def test_the_largest_command_is_shown_where_it_is_given() -> None:
+    assert not any(name == "limits.command" for name, *_ in describe(interaction(IMPEDANCE)))
+    text = spoiled(IMPEDANCE, "bandwidth: 2 Hz", "bandwidth: 2 Hz, command: 4000 rpm")
+    assert ("limits.command", "4000 rpm", "4000", "rpm") in describe(interaction(text))
+
+
 def test_lever_arms_are_resolved() -> None:
     # Thesis 6.3.1: 43.0356 N*m/rad.
     rows = describe(interaction(IMPEDANCE))

@@ -9,6 +9,7 @@ from tests.support import FORCE_LIMIT, ROOT, SOFT_TISSUE, typed
 TEXT = SOFT_TISSUE.read_text(encoding="utf-8")
 FORCE = FORCE_LIMIT.read_text(encoding="utf-8")
 OFFSET = (ROOT / "specs/neuroboscope/force-limit-offset.nrs.yaml").read_text(encoding="utf-8")
+MIXED = (ROOT / "docs/examples/mixed-controllers.nrs.yaml").read_text(encoding="utf-8")
 PARALLEL = (ROOT / "docs/examples/parallel.nrs.yaml").read_text(encoding="utf-8")
 SAMPLED = "\nsampling: {period: 2 ms, delay: 0}\n"
 BT = "Bt: {min: 0.1 N*m*s/rad, max: 20 N*m*s/rad"
@@ -49,7 +50,7 @@ def read(text, *changes):
         (TEXT + SAMPLED + "coordinates: force\n", [], "coordinates", "force coord", "deflection"),
         (PARALLEL + SAMPLED, [], ".type", "is a parallel controller", "use impedance"),
         (OFFSET + SAMPLED, [], "controllers.force.offset", "the offset of force", "offset: none"),
-        (FORCE + LOSABLE, [], "contact", "loss of contact beside position", "contact: kept"),
+        (MIXED + LOSABLE, [], "contact", "impedance controllers beside others", "contact: kept"),
         (TEXT + LOSABLE, [DAMPED], "contact", "soft, which has damping", "contact: kept"),
         (FORCE + COMMANDED, [], "disturbances.command", "velocity command", "leave command out"),
         (TEXT + COMMANDED, [SPRUNG], "disturbances.command", "that the spring Kt", "or Kt"),
@@ -78,6 +79,7 @@ def test_without_sampling_none_of_this_is_refused():
 def test_ranges_of_gains_and_force_control_are_read():
     assert read(TEXT + SAMPLED, (f"{BT}}}", f"{BT}, range: [1 N*m*s/rad, 3 N*m*s/rad]}}"))
     assert read(FORCE + SAMPLED)
+    assert read(FORCE + LOSABLE)
 
 
 def test_check_says_it_as_a_user_types_it(tmp_path):

@@ -218,8 +218,8 @@ def _write_spec(path: Path, text: str, *, quiet: bool) -> None:
 
 def numbers(estimate: Estimate) -> dict[str, float | None]:
     """Return an estimate for JSON, which has no infinity; None says unlimited."""
-    high = estimate.high if math.isfinite(estimate.high) else None
-    return {"value": estimate.value, "low": estimate.low, "high": high}
+    low, high = (end if math.isfinite(end) else None for end in (estimate.low, estimate.high))
+    return {"value": estimate.value, "low": low, "high": high}
 
 
 def sources(files: Iterable[Source]) -> list[dict[str, Any]]:

@@ -42,14 +42,18 @@ def export(
     """
     from nrs_design.exporters.robot_tree import RobotExport
     from nrs_design.exporters.write import places, write_files
+    from nrs_design.ownership import check_export, origin_of
     from nrs_design.pipeline import placed, run_robot
 
     loaded, _, robot = run_robot(spec)
     chosen = ROBOT_FORMATS[format_]
+    files = places(chosen, loaded.spec.name, out)
+    for file in files.values():
+        check_export(spec, file)
+    origin = origin_of(spec, next(iter(files.values())))
     module = import_module(f"nrs_design.exporters.{chosen.module}")
     with placed(loaded):
-        contents = module.render(RobotExport(loaded, robot))
-    files = places(chosen, loaded.spec.name, out)
+        contents = module.render(RobotExport(loaded, robot, origin))
     write_files(chosen, files, contents)
     written = list(map(str, files.values()))
     if as_json:

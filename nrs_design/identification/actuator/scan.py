@@ -66,7 +66,11 @@ def tells_friction(records: Sequence[ActuatorRecord], tau: float, delay: float) 
     tau, delay : float
         Time constant and dead time in s.
     """
-    X = np.concatenate([_regressors(record, tau, delay)[0] for record in records])
+    return _differ(np.concatenate([_regressors(record, tau, delay)[0] for record in records]))
+
+
+def _differ(X: Array) -> bool:
+    """Whether the output of the command and that of friction are more than multiples."""
     power = np.einsum("ij,ij->j", X, X)
     if not power.all():
         return False
@@ -88,6 +92,9 @@ def _solve(
     rows = [_regressors(record, tau, delay) for record in records]
     X = np.concatenate([x for x, _ in rows])
     y = np.concatenate([y for _, y in rows])
+    if not _differ(X):
+        # Else a friction above the command would pass for a motor that is wired the other way.
+        X = X * [1.0, 0.0]
     solution = np.linalg.lstsq(X, y, rcond=None)[0]
     rest = y - X @ solution
     power = float(rest @ rest)

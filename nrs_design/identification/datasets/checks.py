@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 import numpy as np
 
 from nrs_design.identification.datasets.table import Array, Table
@@ -12,6 +14,14 @@ GAP = 3.0
 # A sensor is saturated when its extreme reading repeats while this part of the motion passes.
 _FLAT_ROWS = 10
 _FLAT_MOTION = 0.05
+# Between these lie the steps in s of what logs a robot or a test of a material.
+_FASTEST, _SLOWEST = 2e-5, 1.0
+
+
+def doubt_step(step: float) -> Iterator[str]:
+    """Doubt a usual step in s that no logger has: seconds were read as milliseconds, or back."""
+    if not _FASTEST <= step < _SLOWEST:
+        yield f"the steps of time are {step:.3g} s: is that their unit? (--map names another)"
 
 
 def check_time(table: Table, time: Array) -> None:

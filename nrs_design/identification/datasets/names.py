@@ -83,7 +83,7 @@ _SPELLINGS = {
     "kp": "kgf",
 }
 _BRACKETED = re.compile(r"^(?P<what>[^\[\](){}]+?)\s*[\[({](?P<unit>[^\[\](){}]*)[\])}]$")
-_SLASHED = re.compile(r"^(?P<what>[A-Za-z ]+?)\s*/\s*(?P<unit>\S+)$")
+_SLASHED = re.compile(r"^(?P<what>[A-Za-z ]+?)\s*[/,]\s*(?P<unit>\S+)$")
 # Of messages in bags that were turned into text; nanoseconds since 1970.
 _STAMP = re.compile(r"(^%time|(^|[./_])stamp)$")
 _PLOTTED_TIME = "__time"
@@ -132,7 +132,7 @@ def standard_name(quantity: str) -> str:
 
 
 def read_name(text: str) -> Name | None:
-    """Take a name apart, such as ``angle_rad_2``, ``Force [N]``, ``Load (kN)`` or ``Time/s``.
+    """Take a name apart: ``angle_rad_2``, ``Force [N]``, ``Load (kN)``, ``Time/s``, ``Time, s``.
 
     Returns
     -------

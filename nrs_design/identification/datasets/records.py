@@ -249,12 +249,15 @@ class PoseRecord:
         Directions of gravity along the axes of the sensor, of length 1.
     force, torque : ndarray, shape (n, 3)
         Measured along the axes of the sensor, in N and N m.
+    turns : ndarray, shape (n, 3, 3), or None
+        Rotations from the axes of the sensor to those of the world, where they are known.
     """
 
     source: Source
     down: Array
     force: Array
     torque: Array
+    turns: Array | None = None
 
 
 def read_poses(
@@ -288,8 +291,15 @@ def read_poses(
     if len(bad):
         remedy = "write qw, qx, qy, qz of length 1"
         table.fail(f"the quaternion has the length {size[bad[0]]:.4g}", int(bad[0]), remedy)
-    down = [2 * (w * y - x * z), -2 * (w * x + y * z), 2 * (x**2 + y**2) - size**2]
-    return PoseRecord(table.source, np.column_stack(down) / size[:, None] ** 2, force, torque)
+    turns = np.array(
+        [
+            [w**2 + x**2 - y**2 - z**2, 2 * (x * y - w * z), 2 * (x * z + w * y)],
+            [2 * (x * y + w * z), w**2 - x**2 + y**2 - z**2, 2 * (y * z - w * x)],
+            [2 * (x * z - w * y), 2 * (y * z + w * x), w**2 - x**2 - y**2 + z**2],
+        ]
+    ).transpose(2, 0, 1)
+    turns = turns / size[:, None, None] ** 2
+    return PoseRecord(table.source, -turns[:, 2, :], force, torque, turns)
 
 
 def _one_group(table: Table) -> Sequence[dict[str, Array]]:

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from nrs_design.errors import DataError
 from nrs_design.identification.datasets import SignalRecord
+from nrs_design.identification.datasets.checks import doubt_step
 from nrs_design.identification.delay.fit import DelayFit, fit_delay
 from nrs_design.identification.delay.models import (
     AbstractFollower,
@@ -292,6 +293,7 @@ def _doubts(
     half: float,
     parts: Sequence[tuple[float, Estimate]],
 ) -> Iterator[str]:
+    yield from doubt_step(record.step)
     if value + half < 0:
         yield (
             f"{record.names[1]} comes {-value:.3g} samples before {record.names[0]}: the columns "

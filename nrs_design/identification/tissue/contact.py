@@ -36,6 +36,8 @@ _FLAT = 0.3
 # samples, and explain so much.
 _BETTER = 20.0
 _EXPLAINED = 0.1
+# Quantile of chi^2 with one degree of freedom at 99 %.
+_PLAUSIBLE = 6.635
 # A smoothed force beyond so many of its standard deviations from the air is one of contact.
 _CLEAR = 5.0
 _SMOOTH = 5
@@ -68,6 +70,8 @@ class Contact:
     ----------
     zero : float
         Position of contact, m (rad); the deflection is counted from it.
+    ends : tuple of float
+        Of the 99 % interval of the position of contact, from there into the tissue.
     side : int
         1 if the tissue is where positions are larger, else -1.
     beyond : ndarray of bool, shape (n,)
@@ -77,6 +81,7 @@ class Contact:
     """
 
     zero: float
+    ends: tuple[float, float]
     side: int
     beyond: Flags
     clear: Flags
@@ -95,6 +100,16 @@ class Contact:
         return tuple(found)
 
 
+@dataclass(frozen=True, slots=True)
+class _Corner:
+    """Where a force leaves that of the air, with its 99 % interval, and the squared error."""
+
+    at: float
+    low: float
+    high: float
+    error: float
+
+
 def find_contact(record: TissueRecord) -> Contact | None:
     """Find where contact begins; None if no air shows in the record.
 
@@ -106,20 +121,24 @@ def find_contact(record: TissueRecord) -> Contact | None:
     x, force = record.motion.deflection, record.force
     velocity = _smoothed(record.motion.velocity)
     # Later touches may meet a tissue that has not come back, so that the first one tells best.
-    best: tuple[float, float, int] | None = None
-    for cycle in find_cycles(x)[:_CYCLES]:
-        for side in (1, -1):
-            rows = _loading(side * x, side * velocity, cycle)
-            found = _corner(side * x[rows], velocity[rows], force[rows])
-            if found is not None and (best is None or found[1] < best[1]):
-                best = (*found, side)
-        if best is not None:
-            break
-    if best is None:
-        return None
-    corner, _, side = best
-    beyond = side * x > corner
-    return Contact(side * corner, side, beyond, _clear(force, beyond))
+    cycles = find_cycles(x)[:_CYCLES]
+    for count, cycle in enumerate(cycles):
+        found = [
+            (corner, side)
+            for side in (1, -1)
+            if (corner := _corner(*_way_in(record, velocity, side, cycle))) is not None
+        ]
+        if found:
+            corner, side = min(found, key=lambda item: item[0].error)
+            # That there is air is known by now; this touch may have met a tissue that had not come
+            # back from one in which air is less clear.
+            for before in reversed(cycles[:count]):
+                first = _place(*_way_in(record, velocity, side, before))
+                corner = first[0] if first and first[0].at < corner.at else corner
+            beyond = side * x > corner.at
+            ends = corner.low - corner.at, corner.high - corner.at
+            return Contact(side * corner.at, ends, side, beyond, _clear(force, beyond))
+    return None
 
 
 def _loading(u: Array, velocity: Array, cycle: slice) -> NDArray[np.intp]:
@@ -130,8 +149,29 @@ def _loading(u: Array, velocity: Array, cycle: slice) -> NDArray[np.intp]:
     return rows[:: -(-len(rows) // _COARSE)]
 
 
-def _corner(u: Array, velocity: Array, force: Array) -> tuple[float, float] | None:
-    """Return the best corner and its squared error, if it is one."""
+def _way_in(
+    record: TissueRecord, velocity: Array, side: int, cycle: slice
+) -> tuple[Array, Array, Array]:
+    """Return position, velocity and force on the way in, positive towards the side."""
+    x = record.motion.deflection
+    rows = _loading(side * x, side * velocity, cycle)
+    return side * x[rows], velocity[rows], record.force[rows]
+
+
+def _corner(u: Array, velocity: Array, force: Array) -> _Corner | None:
+    """Return the best corner, if it is one."""
+    placed = _place(u, velocity, force)
+    if placed is None:
+        return None
+    corner, gain = placed
+    centered = force - force.mean()
+    if gain < _BETTER or corner.error > (1 - _EXPLAINED) * float(centered @ centered):
+        return None
+    return corner if _is_flat(u, force, corner.at) else None
+
+
+def _place(u: Array, velocity: Array, force: Array) -> tuple[_Corner, float] | None:
+    """Return the best corner, and what n log(SSE) it gains against a smooth curve without one."""
     low, span = float(u.min()), float(np.ptp(u))
     # Between 0 and 1, powers are told apart.
     v, centered = (u - low) / span, force - force.mean()
@@ -140,12 +180,14 @@ def _corner(u: Array, velocity: Array, force: Array) -> tuple[float, float] | No
     if min(air.sum(), (~air).sum()) < _FEWEST or best < _LEAST_AIR:
         return None
     smooth = float(_errors(curve, v[None], velocity, centered)[0])
-    left = _left(curve, np.maximum(v - best, 0.0), velocity, centered)
-    if smooth < error * np.exp(_BETTER / independent(left)):
-        return None
-    if error > (1 - _EXPLAINED) * float(centered @ centered):
-        return None
-    return (low + best * span, error) if _is_flat(u, force, low + best * span) else None
+    count = independent(_left(curve, np.maximum(v - best, 0.0), velocity, centered))
+    grid = np.linspace(0.0, 1.0, 2 * _GRID)
+    errors = _errors(curve, np.maximum(v - grid[:, None], 0.0), velocity, centered)
+    # Likelihood-ratio interval; a step more than what the grid shows.
+    near = grid[errors < error * np.exp(_PLAUSIBLE / count)]
+    reach = [best, *near - grid[1], *near + grid[1]]
+    corner = _Corner(low + best * span, low + min(reach) * span, low + max(reach) * span, error)
+    return corner, count * float(np.log(smooth / error))
 
 
 def _best_corner(v: Array, velocity: Array, force: Array) -> tuple[int, float, float]:
@@ -210,6 +252,17 @@ def _is_flat(u: Array, force: Array, corner: float) -> bool:
     error = float(np.sqrt(np.mean(noise**2) / max(float(centered @ centered), 1e-300)))
     rise = float(np.abs(force[~air] - force[air].mean()).max()) / float(u.max() - corner)
     return abs(slope) + 2 * error < _FLAT * rise
+
+
+def inner(touching: Flags) -> Flags:
+    """Leave out the samples at both ends of every touch, whose noise decided where it ends.
+
+    A touch ends where the mean of some samples is no longer clear of the air: among those samples,
+    errors are not of mean zero, and some may be air.
+    """
+    padded = np.pad(touching, _SMOOTH // 2 + 1)
+    windows = np.lib.stride_tricks.sliding_window_view(padded, 2 * (_SMOOTH // 2 + 1) + 1)
+    return np.asarray(windows.all(axis=1))
 
 
 def _clear(force: Array, beyond: Flags) -> Flags:

@@ -15,7 +15,7 @@ from types import MappingProxyType
 import numpy as np
 from numpy.typing import NDArray
 
-from nrs_design.identification.statistics import Estimate, Uncertainty, student_quantile
+from nrs_design.identification.statistics import Estimate, Uncertainty, quotients, student_quantile
 from nrs_design.identification.tissue.trial import Trial
 from nrs_design.models.contact import AbstractContactLaw, AbstractLinearLaw, Motion
 
@@ -152,6 +152,34 @@ class _Reader:
         middle = reference + self.trial.side * value
         return Estimate(middle, middle - half, middle + half)
 
+    def divided(self, law: AbstractContactLaw, at: int, value: float) -> Estimate:
+        """Return the position where a constant force is balanced by the stiffness at rest.
+
+        The interval is Fieller's (1954): all quotients that the data do not reject. Where the
+        stiffness may be 0, it has no end.
+
+        Parameters
+        ----------
+        law : AbstractContactLaw
+            As fitted.
+        at : int
+            Place of the constant.
+        value : float
+            Of the constant.
+        """
+        stiffness, slopes = _static(law)
+        gradients = np.zeros((2, len(self.known.covariance)))
+        gradients[0, : len(slopes)] = slopes
+        gradients[1, at] = 1.0
+        covariance = gradients @ self.known.covariance @ gradients.T
+        quantile = student_quantile(self.known.degrees)
+        # A push by the constant is a deflection to the other side.
+        side = -self.trial.side
+        ends = (side * end for end in quotients((stiffness, value), covariance, quantile))
+        low, high = sorted(ends)
+        middle = side * value / stiffness
+        return Estimate(*(self.trial.reference + part for part in (middle, low, high)))
+
 
 def _zero(
     law: AbstractContactLaw,
@@ -164,20 +192,16 @@ def _zero(
     wanted, p = trial.preparation, len(law.values)
     if wanted.zero is not None:
         return Offset("zero", Estimate(wanted.zero, wanted.zero, wanted.zero), False)
-    gradient = np.zeros(len(reader.known.covariance))
     if shift is not None:
+        gradient = np.zeros(len(reader.known.covariance))
         gradient[p] = 1.0
         return Offset("zero", reader.combined(shift, gradient, trial.reference), True)
-    stiffness, slopes = _static(law)
     name = CONTACT if CONTACT in at else TARE
-    if not stiffness or name not in at:
+    if not _static(law)[0] or name not in at:
         # A law without rest does not tell.
         return None
-    moved = -value[name] / stiffness
-    gradient[:p] = -moved / stiffness * slopes
-    gradient[at[name]] = -1 / stiffness
     provided = "" if trial.found is not None or wanted.tare is not None else "if the tare is 0"
-    return Offset("zero", reader.combined(moved, gradient, trial.reference), True, provided)
+    return Offset("zero", reader.divided(law, at[name], value[name]), True, provided)
 
 
 def _static(law: AbstractContactLaw) -> tuple[float, Array]:

@@ -166,10 +166,11 @@ def _judge(
     constants, residuals = problem.solve(point)
     J = np.column_stack([problem.sensitivities(point), problem.constants(point)])
     known = _uncertainty(trial, J, residuals)
+    placed = _uncertainty(trial, J, residuals, returns=True)
     p = len(law.values)
     shift = problem.shift(point) if len(point) > p else None
     offsets = estimate_offsets(
-        law, trial, problem.names, constants[: len(problem.names)], shift, known
+        law, trial, problem.names, constants[: len(problem.names)], shift, placed
     )
     own = Uncertainty(known.covariance[:p, :p], known.degrees, known.whiteness)
     said = list(doubts(law, trial, own, bounds, residuals, J))
@@ -189,11 +190,11 @@ def _judge(
     )
 
 
-def _uncertainty(trial: Trial, J: Array, residuals: Array) -> Uncertainty:
+def _uncertainty(trial: Trial, J: Array, residuals: Array, *, returns: bool = False) -> Uncertainty:
     deflection = trial.deflection
     moving = np.linalg.norm(deflection - deflection.mean())
     stiffness = float(np.linalg.norm(trial.measured - trial.measured.mean()) / moving)
-    scatter = rounding_scatter(deflection, J, stiffness)
+    scatter = rounding_scatter(deflection, J, stiffness, returns=returns)
     return uncertainty(J, residuals, scatter=scatter)
 
 

@@ -11,9 +11,9 @@ from numpy.typing import NDArray
 
 from nrs_design.errors import DataError
 from nrs_design.identification.datasets import TissueRecord
-from nrs_design.identification.tissue.contact import Contact, find_contact
+from nrs_design.identification.tissue.contact import Contact, find_contact, inner
 from nrs_design.identification.tissue.cycles import find_cycles
-from nrs_design.identification.tissue.drift import drifts
+from nrs_design.identification.tissue.drift import shows_drift
 from nrs_design.identification.tissue.rupture import find_rupture
 from nrs_design.identification.tissue.surface import surface
 from nrs_design.models.contact import Motion
@@ -24,6 +24,8 @@ Flags = NDArray[np.bool_]
 FEWEST = 50
 # So near to the position of contact, as a part of the travel, a sample may be in air or not.
 _EDGE = 0.02
+# Farther from it, more would be lost by leaving samples out than by a few that are in air.
+_FARTHEST = 0.25
 # A record that begins at this part of its deflection need not begin relaxed.
 _LOADED = 0.1
 
@@ -43,7 +45,7 @@ class Preparation:
     tare : float or None
         Force in air in N (N m); None fits it.
     drift : {"auto", "fit", "none"}
-        Whether the tare moves in proportion to time; ``auto`` asks the air.
+        Whether the tare moves in proportion to time; ``auto`` where the air tells.
     skip_cycles : int
         First loading cycles that are set apart.
     negate : bool
@@ -135,14 +137,15 @@ class Trial:
 
     @property
     def unrested(self) -> tuple[slice, ...]:
-        """Stretches in contact that may not begin at rest: touches, and a loaded start.
+        """Stretches in contact that may not begin at rest: touches, a loaded or a cut start.
 
-        A touch begins where the position of contact is, which is known with an error.
+        A touch begins where the position of contact is, which is known with an error; what was
+        before ``start``, no sample tells.
         """
         padded = np.concatenate([[False], self.touching, [False]])
         edges = np.flatnonzero(padded[1:] != padded[:-1]).reshape(-1, 2).tolist()
         loaded = float(self.motion.deflection[0]) > _LOADED * float(self.motion.deflection.max())
-        if self.found is None and not loaded:
+        if self.found is None and not loaded and not self.preparation.start:
             return ()
         return tuple(slice(a, b) for a, b in edges if self.used[a:b].any())
 
@@ -250,7 +253,8 @@ def _assemble(
     if found is not None:
         width = _EDGE * float(np.ptp(x))
         deflection, touching = surface(time, position, found.touches, width)
-        edge = np.abs(position) < width
+        edge = _edge(position, width, wanted, found)
+        edge |= touching & ~inner(touching)
         free = found.beyond & ~touching & ~edge
         cuts += _runs(time, edge, "at the edge of contact")
         cuts += _runs(time, free, "no contact yet: the tissue has not come back from a touch")
@@ -265,12 +269,24 @@ def _assemble(
         )
     force = side * kept.force
     air = used & ~touching
-    moving = wanted.drift == "fit" or (wanted.drift == "auto" and drifts(time, force, air))
+    moving = wanted.drift == "fit" or (wanted.drift == "auto" and shows_drift(time, air))
     motion = Motion(time, deflection)
     return Trial(
         record, wanted, motion, position, force, used, touching, reference, side, found, moving,
         tuple(cuts), cycles,
     )  # fmt: skip
+
+
+def _edge(position: Array, width: float, wanted: Preparation, found: Contact) -> Flags:
+    """Find samples that may be in air or not.
+
+    They are where the position of contact may lie by the noise, unless it is given, and a width
+    beyond: its curve is none of the laws.
+    """
+    low, high = found.ends if wanted.zero is None else (0.0, 0.0)
+    most = _FARTHEST * float(np.ptp(position))
+    low, high = max(low, -most) - width, min(high, most) + width
+    return np.asarray((position > low) & (position < high))
 
 
 def _window(record: TissueRecord, wanted: Preparation) -> tuple[TissueRecord, list[Cut]]:

@@ -103,21 +103,22 @@ class CoupledAxes(AbstractFunction):
         """Yield Q and the decreases in contact, free, and while an environment lags."""
         yield "Q is not symmetric and positive definite", self.Q
         for k, mode in enumerate(system.modes):
-            form, _ = self._form(self.Q, mode.A, *_parts(system, k))
+            form, _ = self._form(self.Q, mode.A, *_parts(system, k), 1)
             yield _failure(f"in mode {mode.name}"), form
         free = () if system.contact is None else system.contact.free
         for k, mode in enumerate(free, len(system.modes)):
             inner = RationalMatrix(tuple(leading(mode.A.numerators)), mode.A.denominator)
             columns, rows = _parts(system, k)
             moved = [RationalMatrix(B.numerators[:-1], B.denominator) for B in columns]
-            seen = [RationalMatrix((q.numerators[0][:-1],), q.denominator) for q in rows]
-            form, _ = self._form(leading(self.Q), inner, moved, seen)
+            seen = [RationalMatrix((_row(q)[:-1],), q.denominator) for q in rows]
+            form, _ = self._form(leading(self.Q), inner, moved, seen, 1)
             yield _failure(f"in free motion, mode {mode.name}"), form
         pulls = () if system.contact is None else system.contact.pulls
         pairs = product(enumerate(free, len(system.modes)), pulls)
         for ((k, mode), f), multiplier in zip(pairs, self.multipliers, strict=True):
-            form, factor = self._form(self.Q, mode.A, *_parts(system, k), clear=f.denominator)
-            pull = [factor // f.denominator * multiplier * entry for entry in f.numerators[0]]
+            form, factor = self._form(self.Q, mode.A, *_parts(system, k), f.denominator)
+            weight = multiplier * (factor // f.denominator)
+            pull = [weight * entry for entry in _row(f)]
             lagging = with_crossing(form, len(self.Q) - 1, pull)
             yield _failure(f"while the environment lags, mode {mode.name}"), lagging
 
@@ -127,7 +128,7 @@ class CoupledAxes(AbstractFunction):
         A: RationalMatrix,
         columns: Sequence[RationalMatrix],
         rows: Sequence[RationalMatrix],
-        clear: int = 1,
+        clear: int,
     ) -> tuple[list[list[int]], int]:
         """Return the form of one motion, times a positive number, and that number.
 
@@ -148,8 +149,8 @@ class CoupledAxes(AbstractFunction):
         form = scaled(lyapunov_decrease(A.numerators, A.denominator, Q, self.rate), factor // own)
         for tau, q in zip(self.taus, rows, strict=True):
             weight = tau * (factor // q.denominator**2)
-            for i, left in enumerate(q.numerators[0]):
-                for j, right in enumerate(q.numerators[0]):
+            for i, left in enumerate(_row(q)):
+                for j, right in enumerate(_row(q)):
                     form[i][j] -= weight * left * right
         for B in columns:
             sides = multiply(Q, scaled(B.numerators, -(factor // B.denominator)))
@@ -213,6 +214,12 @@ def _failure(where: str) -> str:
 
 def _count(number: int, noun: str) -> str:
     return f"{number} {noun}{'s' * (number != 1)}"
+
+
+def _row(q: RationalMatrix) -> tuple[int, ...]:
+    """Return the numerators of the only row."""
+    (row,) = q.numerators
+    return row
 
 
 def _parts(system: SwitchedSystem, k: int) -> tuple[list[RationalMatrix], list[RationalMatrix]]:

@@ -64,3 +64,16 @@ def test_what_is_not_determined_is_said():
     noise = 3e-3 * np.random.default_rng(0).normal(size=len(angle))
     text = doubts(replace(record, command=slow, output=angle + noise))
     assert "do not determine" in text
+
+
+@pytest.mark.parametrize(("factor", "doubted"), [(1e-3, True), (1.0, False), (1e3, True)])
+def test_another_unit_of_time_is_suspected(factor, doubted):
+    """Seconds that are read as milliseconds give a motor a thousand times too fast."""
+    record = motors.record("PRBS", 1)
+    short = replace(
+        record,
+        time=factor * record.time[:500],
+        command=record.command[:500],
+        output=record.output[:500],
+    )
+    assert ("is that their unit?" in doubts(short)) == doubted

@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from nrs_design.errors import DataError
 from nrs_design.identification.actuator import identify_actuator
 from nrs_design.identification.actuator.motor import Motor
 from nrs_design.identification.actuator.scan import scan_motor
@@ -50,6 +51,14 @@ def test_under_one_step_friction_is_not_told_from_gain():
     assert result.chosen.friction is None
     assert result.chosen.dead_time.covers(motors.DELAY)
     assert "one level only" in result.doubts[0]
+
+
+@pytest.mark.parametrize("is_angle", [True, False])
+def test_one_step_against_the_command_is_refused(is_angle):
+    """Friction above the command would explain it as well, and no motor turns by friction."""
+    record = motors.record("step", 1, is_angle=is_angle)
+    with pytest.raises(DataError, match="their signs are opposite"):
+        scan_motor([replace(record, output=-record.output)])
 
 
 def test_a_motor_without_friction_or_dead_time():

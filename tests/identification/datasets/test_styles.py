@@ -40,6 +40,10 @@ ROS = "%time,/tool.pose.z,/ft_sensor.wrench.force.z\n" + "".join(
 FROM_ROS = ["deflection_m=/tool.pose.z", "force_N=/ft_sensor.wrench.force.z"]
 
 SLASHES = "Time/s;Indentation/mm;Force/gf\n" + rows(";", ".", (1, 1e3, 1e3 / 9.80665))
+# As tables of a testing machine for tissue have it: tabs between, and a comma before the unit.
+COMMAS = "<INFO>\nVelocity, mm/s:\t0.1\n<DATA>\nTime, s\tIndentation, mm\tForce, gf\n" + (
+    rows("\t", ".", (1, 1e3, 1e3 / 9.80665))
+)
 MARKED = "\ufefftime_s,deflection_um,force_kgf\n" + rows(",", ".", (1, 1e6, 1 / 9.80665))
 FOREIGN = "t;x;F\ns;mm;N\n" + rows(";", ",", (1, 1e3, 1))
 FROM_FOREIGN = ["time_s=t", "deflection_mm=x", "force_N=F"]
@@ -60,6 +64,7 @@ STYLES = {
     "a testing machine": (INSTRON, []),
     "LabVIEW": (LABVIEW, []),
     "grams and slashes": (SLASHES, []),
+    "a comma before the unit": (COMMAS, []),
     "a bag": (ROS, FROM_ROS),
     "a byte order mark": (MARKED, []),
     "foreign names above units": (FOREIGN, FROM_FOREIGN),

@@ -77,6 +77,12 @@ def test_a_square_wave_turned_into_an_angle():
     assert found.samples.high - found.samples.low < 1
 
 
+def test_another_unit_of_time_is_suspected():
+    record = signals.copy(1)
+    found = identify_delay(replace(record, time=1e-3 * record.time))
+    assert any("is that their unit?" in doubt for doubt in found.doubts)
+
+
 def test_a_delay_that_varies_is_said():
     delay = np.where(np.arange(signals.COUNT) < 1000, 1.0, 4.0)
     found = identify_delay(signals.copy(2, delay=delay))

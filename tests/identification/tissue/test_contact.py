@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.signal import lfilter
 
-from nrs_design.identification.tissue.contact import find_contact
+from nrs_design.identification.tissue.contact import find_contact, inner
 from nrs_design.models.contact import Elastic, HuntCrossley, KelvinVoigt, Maxwell
 from tests.identification import synthetic
 from tests.identification.support import quick, record, slow
@@ -43,6 +43,32 @@ def test_noise_with_a_memory_is_no_air(law, noise):
         return replace(data, force=data.force + noise * lfilter([0.436], [1, -0.9], error))
 
     assert sum(find_contact(colored(seed)) is not None for seed in range(40)) <= 1
+
+
+@pytest.mark.parametrize("law", [*STIFF, *SOFT], ids=lambda law: law.name)
+def test_the_edge_holds_the_position_of_contact(law):
+    motion, noise = (quick, 0.03) if law in STIFF else (slow, 0.01)
+    held = []
+    for seed in range(20):
+        found = find_contact(robot_record(law, motion(seed), noise, seed))
+        # A curve that is not the law is off by a little more.
+        off = 0.02 * 1.4 * np.ptp(motion(seed).deflection)
+        held.append(found.ends[0] - off < -found.zero < found.ends[1] + off)
+    assert sum(held) >= 18
+
+
+@pytest.mark.parametrize("seed", [36, 79, 113])
+def test_air_that_shows_in_a_later_cycle_only(seed):
+    """The second touch meets a tissue that has not come back, a fifth of the travel deeper."""
+    motion = slow(seed)
+    found = find_contact(robot_record(synthetic.NOSE, motion, 0.0165, seed, tare=-0.04))
+    assert abs(found.zero) < 0.1 * 1.4 * np.ptp(motion.deflection)
+
+
+def test_samples_whose_noise_decides_where_a_touch_ends_are_left_out():
+    touching = np.zeros(30, bool)
+    touching[5:15] = touching[20:23] = True
+    assert np.flatnonzero(inner(touching)).tolist() == [8, 9, 10, 11]
 
 
 def test_a_tissue_that_relaxes_is_lost_early_and_met_late():

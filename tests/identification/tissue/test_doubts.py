@@ -1,6 +1,7 @@
 """When a record does not determine a law, that is said."""
 
 import numpy as np
+import pytest
 
 from nrs_design.identification.tissue import fit_record
 from nrs_design.models.contact import (
@@ -45,6 +46,16 @@ def test_milliseconds_that_pass_for_seconds():
     late = Motion(1e3 * motion.time, motion.deflection)
     said = doubts(Elastic, Elastic(750.0), late)
     assert "the steps of time are 10 s: is that their unit?" in said
+    soon = Motion(1e-3 * motion.time, motion.deflection)
+    assert "1e-05 s: is that their unit?" in doubts(Elastic, Elastic(750.0), soon)
+
+
+@pytest.mark.parametrize(("parts", "said"), [(200, True), (3500, False)])
+def test_rounding_that_moves_a_damping_by_half_its_error(parts, said):
+    """Far less than a tenth of the power of the velocity, but seen in so long a record."""
+    law = KelvinVoigt(0.574, 0.957)
+    text = doubts(KelvinVoigt, law, slow(), 0.0114, 0.35 / parts)
+    assert ("of the power of the velocity is rounding" in text) is said
 
 
 def test_coarse_encoder():

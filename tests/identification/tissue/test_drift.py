@@ -19,14 +19,24 @@ def data(drift, seed=1):
 
 def test_the_air_shows_it():
     fit = fit_record(Elastic, data(0.02))
-    (found,) = (offset for offset in fit.offsets if offset.name == "drift")
-    assert found.estimate.covers(0.02)
+    assert drift_of(fit).covers(0.02)
+    assert not drift_of(fit).covers(0.0)
     assert fit.estimates[0].covers(400.0)
     assert "moving in proportion to time" in "; ".join(fit.trial.remarks)
 
 
-def test_none_is_guessed():
-    assert not any(prepare(data(0.0, seed)).drift for seed in range(20))
+def drift_of(fit):
+    (found,) = (offset.estimate for offset in fit.offsets if offset.name == "drift")
+    return found
+
+
+@pytest.mark.parametrize("true", [0.0, 0.001])
+def test_one_too_small_to_be_seen_is_fitted(true):
+    """Left out, it would move the tare at the start by more than its interval."""
+    fits = [fit_record(Elastic, data(true, seed)) for seed in range(20)]
+    assert sum(drift_of(fit).covers(true) for fit in fits) >= 18
+    tares = [next(o.estimate for o in fit.offsets if o.name == "tare") for fit in fits]
+    assert sum(tare.covers(-1.3) for tare in tares) >= 18
 
 
 @pytest.mark.parametrize(("wanted", "said"), [("fit", True), ("none", False)])

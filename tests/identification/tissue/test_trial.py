@@ -5,8 +5,9 @@ import pytest
 
 from nrs_design.errors import DataError
 from nrs_design.identification.tissue import Preparation, fit_record, identify_tissue, prepare
-from nrs_design.models.contact import Elastic, KelvinVoigt
-from tests.identification.support import quick, record
+from nrs_design.models.contact import Elastic, KelvinVoigt, Maxwell
+from tests.identification import synthetic
+from tests.identification.support import quick, record, slow
 
 DATA = record(Elastic(750.0), quick(1), 0.1, 1)
 
@@ -18,6 +19,17 @@ def test_a_part_of_the_record():
     assert "outside --from and --to" in str(trial.cuts[0])
     assert trial.cuts[0].samples == len(DATA.force) - len(trial.force)
     assert fit_record(Elastic, trial).estimates[0].covers(750.0)
+
+
+@pytest.mark.parametrize("law", [Maxwell(1.129, 20.0), synthetic.CONCHA], ids=lambda x: x.name)
+def test_a_record_cut_while_the_tissue_relaxes(law):
+    """What it holds of the motion before the cut is fitted, too."""
+    trial = prepare(record(law, slow(2), 0.01, 2), Preparation(start=3.0))
+    fit = fit_record(type(law), trial)
+    assert all(e.covers(v) for e, v in zip(fit.estimates, law.values, strict=True))
+    assert fit.uncertainty.whiteness > 0.01
+    assert trial.unrested
+    assert not prepare(trial.record, Preparation(start=0.0)).unrested
 
 
 @pytest.mark.parametrize(

@@ -20,6 +20,7 @@ from tests.proof.systems import (
     bouncing_in_steps,
     family,
     genuine,
+    leaning,
     matrix,
 )
 
@@ -169,6 +170,24 @@ def test_where_contact_may_be_lost_its_loss_must_be_covered(what, is_refused):
     assert Said(what=what).find_fault(kept) is None
     assert Said(what=what).find_fault(replace(kept, contact=None)) is None
     assert SaidOfAllContact(what=what).find_fault(losable) is None
+
+
+ALONE = (
+    "This growth is that of one axis on which the others do not act, which is within what is said "
+    "of them."
+)
+
+
+@pytest.mark.parametrize("what", Shows)
+def test_what_is_good_must_cover_other_axes_and_what_grows_says_that_it_is_one(what):
+    system = leaning(replace(bouncing(), contact=None), "1/8")
+    fault, claim = Said(what=what).find_fault(system), Said(what=what).claim(system)
+    if what in (Shows.STABILITY, Shows.BOUND):
+        assert "does not cover what axes do to each other" in fault
+    else:
+        assert fault is None
+    assert claim == (f"It is so. {ALONE}" if what is Shows.INSTABILITY else "It is so.")
+    assert Said(what=what).find_fault(replace(system, couplings=())) is None
 
 
 def test_unequal_modes_where_they_are_allowed():

@@ -17,6 +17,7 @@ from nrs_design.proof.second_opinion import agrees
 from nrs_design.proof.system import FixedParameter, Switching, Time
 from nrs_design.search.certification import Limits
 from nrs_design.search.certify import certify
+from nrs_design.search.gradient_settings import Gradient
 from tests.proof.systems import (
     PAIR,
     PAIRS,
@@ -31,7 +32,7 @@ from tests.proof.truth import holds
 
 HALF = Fraction(1, 2)
 MIDDLE = UnstableValue(HALF, UnstableMode("m0 to m1", "0.5"))
-FAST = Limits(max_degree=4, budget=5.0, optimize_rate=False)
+FAST = Limits(max_degree=4, budget=600.0, gradient=Gradient(max_updates=100), optimize_rate=False)
 
 
 @pytest.mark.parametrize("time", Time)

@@ -1,0 +1,192 @@
+"""A design and what is proved of it, put together to an export record."""
+
+from __future__ import annotations
+
+import struct
+from fractions import Fraction
+from typing import Any
+
+from nrs_design import __version__
+from nrs_design.certificates.certificate import Certificate
+from nrs_design.controllers.controller_design import ControllerDesign
+from nrs_design.controllers.float32 import exact_decimal
+from nrs_design.controllers.gains import gains_of, idle_decay
+from nrs_design.controllers.sensor import LowPass
+from nrs_design.errors import CertificateError
+from nrs_design.exporters.outside import NOTHING, outside_of
+from nrs_design.exporters.record import (
+    CompliantController,
+    DecayRate,
+    ExportRecord,
+    ForceFilter,
+    Gain,
+    IdleStates,
+    MotionController,
+    Package,
+    Proof,
+    SampleTime,
+    SpecReference,
+)
+from nrs_design.proof.evidence.fields import rate_text
+from nrs_design.proof.system import Time
+from nrs_design.proof.text import exact_text
+from nrs_design.spec import IdleStatesSpec, InteractionDesignSpec, LoadedSpec
+from nrs_design.spec.controllers import Offset
+
+
+def build_record(
+    design: ControllerDesign,
+    certificate: Certificate,
+    idle: IdleStatesSpec | None,
+    offset: Offset = "none",
+    delay: tuple[int, int] | None = None,
+) -> ExportRecord:
+    """Put a design and its proof together.
+
+    Parameters
+    ----------
+    design : ControllerDesign
+        The gains that ship.
+    certificate : Certificate
+        Made or re-checked just now; it must prove stability of exactly these gains.
+    idle : IdleStatesSpec or None
+        Of the spec that the certificate is about.
+    offset : {"none", "reference", "measured"}
+        Where its force controllers take X_i from.
+    delay : (int, int), optional
+        Smallest and largest age of the force sample of that spec.
+
+    Raises
+    ------
+    CertificateError
+        If the certificate proves nothing, or is about other gains.
+    """
+    fault = find_mismatch(design, certificate)
+    if fault is not None:
+        raise CertificateError(f"the certificate {fault}")
+    system, evidence = certificate.system, certificate.evidence
+    rounded = evidence is not None and evidence.covers_rounding
+    return ExportRecord(
+        **_contents(design, idle, offset),
+        spec=SpecReference(name=certificate.spec_name, sha256=certificate.spec_sha256),
+        sample_time=_sample_time(system.sample_time),
+        delay=delay,
+        outside=outside_of(sampled=system.sample_time is not None, rounded=rounded),
+        proof=_proof(certificate),
+    )
+
+
+def build_unproved(
+    loaded: LoadedSpec, design: ControllerDesign, reason: str, period: Fraction, proof: Proof | None
+) -> ExportRecord:
+    """Describe a design that a processor is to run although that is not proved.
+
+    Parameters
+    ----------
+    loaded : LoadedSpec
+        An interaction design.
+    design : ControllerDesign
+        Its gains.
+    reason : str
+        Why it is not proved.
+    period : Fraction
+        Sample time in s.
+    proof : Proof or None
+        What is proved of something else, such as the loop in continuous time.
+    """
+    spec = loaded.spec
+    assert isinstance(spec, InteractionDesignSpec)
+    return ExportRecord(
+        **_contents(design, spec.idle_states, spec.offset),
+        spec=SpecReference(name=spec.name, sha256=loaded.sha256),
+        verdict="unproved",
+        unproved=reason,
+        sample_time=_sample_time(period),
+        delay=None if spec.sampling is None else spec.sampling.delay,
+        outside=outside_of(sampled=False, rounded=False) if proof else (NOTHING,),
+        proof=proof,
+    )
+
+
+def _contents(
+    design: ControllerDesign, idle: IdleStatesSpec | None, offset: Offset
+) -> dict[str, Any]:
+    """Return what ships, whatever is known of it."""
+    return {
+        "package": Package(version=__version__),
+        "motion": MotionController(gains=_gains(design, design.motion.name)),
+        "controllers": tuple(
+            CompliantController.model_validate(
+                {
+                    "name": controller.name,
+                    "law": controller.law.name,
+                    "environment": controller.environment,
+                    "contacts": controller.contacts,
+                    "gains": _gains(design, controller.name),
+                }
+            )
+            for controller in design.controllers
+        ),
+        "idle_states": None if idle is None else _idle_states(idle),
+        "offset": None if offset == "none" else offset,
+        "force_filter": _force_filter(design.sensor.filter),
+    }
+
+
+def _proof(certificate: Certificate) -> Proof:
+    system, evidence = certificate.system, certificate.evidence
+    rate = None if evidence is None else evidence.proved_rate(system)
+    if evidence is None or rate is None:
+        raise CertificateError("the certificate states no rate")
+    unit = "1/s" if system.time is Time.CONTINUOUS else "1 per step"
+    return Proof.model_validate(
+        {
+            "claim": evidence.claim(system),
+            "certificate_id": certificate.id,
+            "decay_rate": DecayRate.model_validate(
+                {"exact": str(rate), "rounded": rate_text(rate, system.time), "unit": unit}
+            ),
+            "coordinates": certificate.coordinates,
+            "assumptions": system.assumptions,
+        }
+    )
+
+
+def find_mismatch(design: ControllerDesign, certificate: Certificate) -> str | None:
+    """Say why a valid certificate does not cover a design; None if it does."""
+    if certificate.verdict != "proved":
+        return "does not prove stability"
+    designed = gains_of(design)
+    for name in designed.keys() | certificate.gains.keys():
+        if dict(certificate.gains.get(name, {})) != designed.get(name):
+            return f"is about other gains of {name} than the designed ones"
+    return None
+
+
+def _sample_time(period: Fraction | None) -> SampleTime | None:
+    return None if period is None else SampleTime(exact=exact_text(period))
+
+
+def _idle_states(idle: IdleStatesSpec) -> IdleStates:
+    return IdleStates(decay=_gain("decay", "1/s", idle_decay(idle)), reset=idle.reset)
+
+
+def _force_filter(low_pass: LowPass | None) -> ForceFilter | None:
+    if low_pass is None:
+        return None
+    return ForceFilter(order=low_pass.order, pole=_gain("pole", "rad/s", low_pass.pole))
+
+
+def _gains(design: ControllerDesign, name: str) -> tuple[Gain, ...]:
+    units = design.units[name]
+    return tuple(_gain(key, units[key], value) for key, value in design.laws[name].gains.items())
+
+
+def _gain(name: str, unit: str, value: Fraction) -> Gain:
+    return Gain(
+        name=name,
+        unit=unit,
+        exact=exact_decimal(value),
+        float32=float(value),
+        float32_bits="0x" + struct.pack(">f", float(value)).hex(),
+    )

@@ -1,0 +1,147 @@
+"""A design and its proof, put together."""
+
+import json
+from dataclasses import replace
+from fractions import Fraction
+from pathlib import Path
+
+import pytest
+
+from nrs_design.controllers.float32 import exact_decimal
+from nrs_design.errors import CertificateError, DesignError
+from nrs_design.exporters.build import build_record
+from nrs_design.exporters.export import export_design
+from nrs_design.exporters.record import dump_record
+from nrs_design.pipeline import run_certification
+from nrs_design.spec import LoadedSpec, parse_spec, read_spec
+from tests.support import ROOT
+
+SPECS = ROOT / "specs"
+
+
+def test_published_gains_as_single_precision_numbers(record):
+    """Thesis 6.3.2.1: Mt = 0.01, Bt = 2.15 and 1.04; thesis 4.3: Kd = 2060, Kp = 117359.43."""
+    shipped = {
+        (controller.name, gain.name): (gain.float32_bits, gain.unit)
+        for controller in record.controllers
+        for gain in controller.gains
+    }
+    assert shipped == {
+        ("insertion", "Mt"): ("0x3c23d70a", "kg*m^2"),
+        ("insertion", "Bt"): ("0x4009999a", "N*m*s/rad"),
+        ("withdrawal", "Mt"): ("0x3c23d70a", "kg*m^2"),
+        ("withdrawal", "Bt"): ("0x3f851eb8", "N*m*s/rad"),
+    }
+    Kp, Kd = record.motion.gains
+    assert (Kd.name, Kd.exact, Kd.unit) == ("Kd", "2060", "rpm*s/rad")
+    assert Kp.float32 == pytest.approx(117359.43, rel=1e-7)
+
+
+def test_the_same_motor_in_volts(continuous_export):
+    """256 rpm for a volt: the loop is the same to the last digit, and only the gains are others."""
+    text = (SPECS / "neuroboscope/soft-tissue.nrs.yaml").read_text()
+    text = text.replace("gain: 4.8417e-4 rad/s/rpm", "gain: 0.123947520 rad/s/V\n  command: V")
+    text = text.replace("2060 rpm*s/rad", "8046.875 mV*s/rad")
+    found = run_certification(LoadedSpec(Path("volts.nrs.yaml"), 64 * "0", text, parse_spec(text)))
+    system, before = found.certificate.system, continuous_export.certificate.system
+    assert [mode.A for mode in system.modes] == [mode.A for mode in before.modes]
+    assert set(system.assumptions) - set(before.assumptions) == {
+        "The motor takes commands in V: Kp of the motion controller is in V/rad, Kd in V*s/rad."
+    }
+    Kp, Kd = build_record(found.design, found.certificate, None).motion.gains
+    assert (Kd.name, Kd.exact, Kd.unit) == ("Kd", "8.046875", "V*s/rad")
+    assert (Kp.exact, Kp.unit) == (exact_decimal(Fraction(117359.4375) / 256), "V/rad")
+
+
+def test_proof_is_that_of_the_certificate(record, continuous_export):
+    proof = record.proof
+    assert proof.certificate_id == continuous_export.certificate.id
+    assert proof.assumptions == continuous_export.certificate.system.assumptions
+    assert Fraction(proof.decay_rate.exact) == continuous_export.certificate.evidence.rate
+    assert Fraction(proof.decay_rate.rounded) <= continuous_export.certificate.evidence.rate
+    assert proof.coordinates == "deflection"
+
+
+def test_the_rate_of_a_sampled_proof_is_one_per_step():
+    """A factor per step holds for every larger one: it is rounded up."""
+    text = (SPECS / "neuroboscope/soft-tissue.nrs.yaml").read_text()
+    head, _, _ = text.partition("  withdrawal:")
+    text = f"{head}switching: arbitrary\nsampling: {{period: 2 ms, delay: 0}}\n"
+    found = run_certification(LoadedSpec(Path("late.nrs.yaml"), 64 * "0", text, parse_spec(text)))
+    rate = build_record(found.design, found.certificate, None).proof.decay_rate
+    assert rate.unit == "1 per step"
+    assert 0.9 < Fraction(rate.exact) <= Fraction(rate.rounded) < 1
+
+
+def test_certificate_of_other_gains_is_refused(continuous_export):
+    design, certificate = continuous_export.design, continuous_export.certificate
+    gains = {**certificate.gains, "insertion": {"Mt": "0.5", "Bt": "2"}}
+    with pytest.raises(CertificateError, match="other gains of insertion"):
+        build_record(design, replace(certificate, gains=gains), None)
+    fewer = {"motion": certificate.gains["motion"]}
+    with pytest.raises(CertificateError, match="other gains"):
+        build_record(design, replace(certificate, gains=fewer), None)
+
+
+def test_certificate_that_refutes_is_refused(continuous_export):
+    from nrs_design.proof.evidence import UnstableMode
+
+    refuting = replace(continuous_export.certificate, statements=(UnstableMode("insertion", "1"),))
+    with pytest.raises(CertificateError, match="does not prove stability"):
+        build_record(continuous_export.design, refuting, None)
+
+
+def test_force_and_position_controllers():
+    loaded = read_spec(SPECS / "neuroboscope/force-limit.nrs.yaml")
+    record = export_design(loaded).record
+    position, force = record.controllers
+    assert (position.law, position.gains, position.contacts) == ("position", (), ())
+    assert (force.law, force.environment, force.gains[0].unit) == ("force", "soft", "rad/(N*m)")
+
+
+def test_given_matrices_have_no_gains():
+    with pytest.raises(DesignError, match="no gains") as caught:
+        export_design(read_spec(SPECS / "examples/commuting.nrs.yaml"))
+    assert caught.value.remedy
+
+
+def test_idle_states_are_exported_as_they_are_proved():
+    """0.1 is no single-precision number: the robot and the proof hold the one next to it."""
+    text = (SPECS.parent / "docs/examples/mixed-controllers.nrs.yaml").read_text()
+    assert "decay: 20 1/s" in text
+    spec = parse_spec(text.replace("decay: 20 1/s", "decay: 0.1 1/s, reset: false"))
+    loaded = replace(
+        read_spec(SPECS.parent / "docs/examples/mixed-controllers.nrs.yaml"), spec=spec
+    )
+    record = export_design(loaded).record
+    assert record is not None
+    idle = record.idle_states
+    assert idle is not None
+    assert not idle.reset
+    assert (idle.decay.name, idle.decay.unit) == ("decay", "1/s")
+    assert idle.decay.float32_bits == "0x3dcccccd"
+    assert f"decay at {idle.decay.exact} 1/s" in " ".join(record.proof.assumptions)
+
+
+def test_one_kind_of_controller_has_no_idle_states(record):
+    assert json.loads(dump_record(record))["idle_states"] is None
+
+
+def test_offset_is_written_where_force_controllers_have_one():
+    """The robot must take X_i as the proof says."""
+    record = export_design(read_spec(SPECS / "neuroboscope/force-limit-offset.nrs.yaml")).record
+    assert json.loads(dump_record(record))["offset"] == "measured"
+
+
+def test_without_offset_there_is_none(record):
+    assert json.loads(dump_record(record))["offset"] is None
+
+
+def test_a_proof_without_rounding_says_so(sampled_export):
+    """The same design at the same samples, by evidence that leaves rounding out."""
+    certificate, design = sampled_export.certificate, sampled_export.design
+    assert certificate.evidence.covers_rounding
+    assert not [text for text in sampled_export.record.outside if "Rounding" in text]
+    bare = replace(certificate.evidence, roundings=())
+    found = build_record(design, replace(certificate, statements=(bare,)), None)
+    assert found.outside[0].startswith("Rounding: the proof is about the law computed without it")

@@ -142,8 +142,14 @@ def test_examples_of_what_must_fail(tmp_path, name):
     assert run("verify", f"reports/{name}.cert.json", path, cwd=tmp_path).returncode == 1
 
 
+def slow_if_sampled(path):
+    """Sampled loops have many modes; the gate's test and the gate itself prove them, too."""
+    marks = [pytest.mark.slow] if "sampled" in path.name else []
+    return pytest.param(path, id=path.stem, marks=marks)
+
+
 @pytest.mark.parametrize(
-    "path", [path for path in SHIPPED if path.parent.name != "robots"], ids=lambda path: path.stem
+    "path", [slow_if_sampled(path) for path in SHIPPED if path.parent.name != "robots"]
 )
 def test_shipped_specs_are_proved(tmp_path, path):
     result = run("certify-switching", path, "--out", "c.json", cwd=tmp_path)

@@ -197,6 +197,7 @@ def _signs(motions: DisturbedMotions, states: np.ndarray, modes: np.ndarray) -> 
     return np.array(found)
 
 
+@pytest.mark.slow
 def test_all_disturbances_at_once():
     """The bound on all is above each alone, and not far above their sum."""
     system = thesis_robot(

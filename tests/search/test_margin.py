@@ -183,6 +183,7 @@ class TestDwell:
         dwell = find_shortest_dwell(family([[1]], other), quick)
         assert dwell == DwellMargin(None, LONGEST_DWELL, None, LONGEST_DWELL)
 
+    @pytest.mark.slow
     def test_slow_modes_need_a_long_one(self):
         """Far beyond 64 times the modes' fastest time, where the search once ended."""
         slow = family([["-0.01", 1], [-1, "-0.01"]], [["-0.01", 10], ["-0.1", "-0.01"]])

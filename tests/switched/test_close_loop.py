@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 from fractions import Fraction
+from functools import cache
 from itertools import product
 from types import MappingProxyType
 
@@ -195,6 +196,7 @@ ENVIRONMENTS = {
 }
 
 
+@cache
 def viscoelastic(*contacts, Mt="0.01", coordinates="deflection", law=None):
     plant = Plant(Actuator(F(1), F(1)), tuple(ENVIRONMENTS.values()))
     law = law or Admittance(F(Mt), F(2))

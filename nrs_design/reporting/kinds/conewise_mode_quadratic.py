@@ -7,54 +7,37 @@ import numpy as np
 from nrs_design.proof.evidence import ConewiseModeQuadratic
 from nrs_design.reporting.document import Block, Illustration, Paragraph, Section
 from nrs_design.reporting.figures.lyapunov import draw_quadratics
-from nrs_design.reporting.kinds.abstract import AbstractKindPage
-from nrs_design.reporting.kinds.conewise_quadratic import MOVED_REST
-from nrs_design.reporting.kinds.shared import words
 from nrs_design.reporting.kinds.shared.bouncing import bouncing_run
+from nrs_design.reporting.kinds.shared.conewise import AbstractConewisePage
 from nrs_design.reporting.kinds.shared.matrix import SCALED, matrix_table
 from nrs_design.reporting.kinds.shared.run import trials_per_step
 from nrs_design.reporting.sections.modes import hardest_modes
 from nrs_design.simulation.norms import Array, Norm, quadratic_norm, scaled_matrices
 from nrs_design.simulation.switched import fine_step, sampled_direction
 
-_DECIDED = (
-    "every matrix holds integers over a power of two, and integer arithmetic decides that each is "
-    "positive definite and that every step, in contact, free, and from one to the other, decreases "
-    "the functions, whatever mode comes next. The solver only proposed them"
-)
 _TABLES = 2
 _DRAWN = 6
 # A run in the largest of many norms tries no more modes.
 _MODES = 32
 
 
-class ConewiseModeQuadraticPage(AbstractKindPage[ConewiseModeQuadratic]):
+class ConewiseModeQuadraticPage(AbstractConewisePage[ConewiseModeQuadratic]):
     """The matrices of the modes in contact, and a run through contact and free motion."""
+
+    function = (
+        "Each mode has a function: x' Q x in contact, y' R y without the deflection in free "
+        "motion. The largest of them decreases in every step."
+    )
+    decided = (
+        "every matrix holds integers over a power of two, and integer arithmetic decides that each "
+        "is positive definite and that every step, in contact, free, and from one to the other, "
+        "decreases the functions, whatever mode comes next. The solver only proposed them"
+    )
 
     @property
     def name(self) -> str:
         """Its kind."""
         return "quadratic function of each mode for contact and free motion"
-
-    def meaning(self) -> tuple[str, ...]:
-        """Say what is measured, and that no rule of switching is needed."""
-        return (
-            "Each mode has a function: x' Q x in contact, y' R y without the deflection in free "
-            "motion. The largest of them decreases in every step. So it measures motion, force and "
-            "penetration, and not how far the axis has moved away from the surface: once it has "
-            "come to rest in the air, it stays there.",
-            words.free_bound(self.system),
-            *words.unneeded_rules(self.system),
-            words.decision(_DECIDED),
-        )
-
-    def between_corners(self) -> tuple[str, ...]:
-        """Say that they are covered."""
-        return (words.all_corners(self.system, self.evidence),)
-
-    def limits(self) -> tuple[str, ...]:
-        """Say what a constant force or command would change."""
-        return (MOVED_REST,)
 
     def sections(self, *, first: bool = True) -> tuple[Section, ...]:
         """Show the matrices of some modes in contact."""

@@ -5,11 +5,9 @@ from __future__ import annotations
 from nrs_design.proof.evidence import ConewisePolynomial
 from nrs_design.reporting.document import Paragraph, Section, Table
 from nrs_design.reporting.formatting import number
-from nrs_design.reporting.kinds.abstract import AbstractKindPage
 from nrs_design.reporting.kinds.common_polynomial import polynomial_rates
-from nrs_design.reporting.kinds.conewise_quadratic import MOVED_REST
-from nrs_design.reporting.kinds.shared import words
 from nrs_design.reporting.kinds.shared.bouncing import bouncing_run
+from nrs_design.reporting.kinds.shared.conewise import AbstractConewisePage
 from nrs_design.reporting.kinds.shared.rates import rate_blocks
 from nrs_design.reporting.kinds.shared.run import trials_per_step
 from nrs_design.reporting.sections.modes import hardest_modes
@@ -17,11 +15,6 @@ from nrs_design.simulation.contact import clipped
 from nrs_design.simulation.norms import polynomial_norm
 from nrs_design.simulation.switched import fine_step, sampled_direction
 
-_DECIDED = (
-    "Q and the forms that vanish hold integers, and integer arithmetic decides that Q is positive "
-    "definite in the monomials and that V decreases in every mode in contact and in every mode of "
-    "free motion. The solver only proposed them"
-)
 _RATES = (
     "How fast the root of V decays at least in each mode in contact, as far as the certificate's "
     "own numbers show it. Free motion has conditions of its own, on the other states."
@@ -30,34 +23,24 @@ _RATES = (
 _MODES = 32
 
 
-class ConewisePolynomialPage(AbstractKindPage[ConewisePolynomial]):
+class ConewisePolynomialPage(AbstractConewisePage[ConewisePolynomial]):
     """The size of V, the rate of every mode in its root, and a run through contact and flight."""
+
+    function = (
+        "The function is a polynomial V of all states in contact; in free motion the deflection is "
+        "zero in it."
+    )
+    decided = (
+        "Q and the forms that vanish hold integers, and integer arithmetic decides that Q is "
+        "positive definite in the monomials and that V decreases in every mode in contact and in "
+        "every mode of free motion. The solver only proposed them"
+    )
 
     @property
     def name(self) -> str:
         """Its kind and degree."""
         degree = 2 * self.evidence.in_contact.degree
         return f"polynomial of degree {degree} for contact and free motion"
-
-    def meaning(self) -> tuple[str, ...]:
-        """Say what is measured, and that no rule of switching is needed."""
-        return (
-            "The function is a polynomial V of all states in contact; in free motion the "
-            "deflection is zero in it. So it measures motion, force and penetration, and not how "
-            "far the axis has moved away from the surface: once it has come to rest in the air, it "
-            "stays there.",
-            words.free_bound(self.system),
-            *words.unneeded_rules(self.system),
-            words.decision(_DECIDED),
-        )
-
-    def between_corners(self) -> tuple[str, ...]:
-        """Say that they are covered."""
-        return (words.all_corners(self.system, self.evidence),)
-
-    def limits(self) -> tuple[str, ...]:
-        """Say what a constant force or command would change."""
-        return (MOVED_REST,)
 
     def sections(self, *, first: bool = True) -> tuple[Section, ...]:
         """Show the size of the function and how every mode in contact decreases it."""

@@ -13,9 +13,9 @@ from nrs_design.reporting.document import Illustration, Paragraph, Section, Tabl
 from nrs_design.reporting.figures.lyapunov import draw_quadratic
 from nrs_design.reporting.formatting import number
 from nrs_design.reporting.kinds.abstract import AbstractKindPage
-from nrs_design.reporting.kinds.conewise_quadratic import MOVED_REST
 from nrs_design.reporting.kinds.shared import words
 from nrs_design.reporting.kinds.shared.bouncing import bouncing_run
+from nrs_design.reporting.kinds.shared.conewise import MOVED_REST
 from nrs_design.reporting.kinds.shared.matrix import SCALED, matrix_table
 from nrs_design.reporting.kinds.shared.run import bounded_run, trials_per_step
 from nrs_design.reporting.sections.modes import hardest_modes

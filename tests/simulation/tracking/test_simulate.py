@@ -54,6 +54,7 @@ def test_lockstep_changes_nothing(tracks, records):
     assert alone.rmse == pytest.approx(records[4].rmse, rel=1e-9)
 
 
+@pytest.mark.slow
 def test_more_steps_change_nothing(tracks, records):
     # Two steps for each tick, and mass and bias anew at every one of them.
     again = simulate([track.only("psi") for track in tracks[:2]], steps=2, held_phase=0.0)
@@ -87,6 +88,7 @@ def test_complete_computed_torque_follows_almost_perfectly(spec, robot):
     assert np.degrees(np.ptp(record.actual[:, 1])) == pytest.approx(40, abs=0.2)
 
 
+@pytest.mark.slow
 def test_tracks_that_differ_in_one_part_are_told_apart(tracks, records):
     # The same law and mechanism, another encoder and another drive.
     track = tracks[1].only("phi")

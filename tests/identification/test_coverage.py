@@ -10,8 +10,9 @@ from nrs_design.identification.actuator import identify_actuator
 from nrs_design.identification.tissue import fit_model, fit_record
 from nrs_design.models.contact import Elastic, HuntCrossley, KelvinVoigt, Maxwell, Motion
 from tests.identification import synthetic
-from tests.identification.coverage import SEEDS, TISSUES, rates
+from tests.identification.coverage import OPTIONS, SEEDS, TISSUES, rates
 from tests.identification.support import MOTOR, quick, record, sinusoids, slow
+from tests.support import ROOT
 
 
 def off_grid(seed):
@@ -60,6 +61,14 @@ BEYOND = {
     ("hunt-crossley", "noise with a memory"): {"phi"},
     ("maxwell", "noise with a memory"): {"k"},
 }
+
+
+def test_the_docs_have_every_law_and_option():
+    text = (ROOT / "docs" / "identification" / "README.md").read_text()
+    rows = [line.strip("| ").split(" | ") for line in text.splitlines()]
+    table = {row[0]: row[1:] for row in rows if len(row) == 1 + len(TISSUES)}
+    assert table["record and option"] == list(TISSUES)
+    assert set(OPTIONS) <= set(table)
 
 
 @pytest.mark.slow

@@ -157,6 +157,8 @@ def _find_foreign(
         return "it belongs to another spec, or the spec has changed since"
     wanted = coordinates or getattr(spec.spec, "coordinates", None)
     if document.get("coordinates") != wanted:
+        if document.get("coordinates") is None:
+            return "it names no coordinates: it is about another law; verify it without the spec"
         return f"it is about other coordinates than {wanted}"
     return None
 

@@ -99,6 +99,11 @@ def _list(*, as_json: bool) -> None:
 
 
 def _format(name: str) -> Format:
+    group = "robot" if name in ROBOT_FORMATS else name
+    if group in ("robot", "ros2"):
+        raise NrsDesignError(
+            f"{name} is not a format of this command", remedy=f"use `nrs-design {group} export`"
+        )
     if name not in FORMATS:
         raise NrsDesignError(
             f"there is no format {name!r}",

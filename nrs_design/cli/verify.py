@@ -86,10 +86,12 @@ def verify(
         )
     elif checked is None:
         say(f"REJECTED: {outcome.fault}", verdict="rejected")
-    elif not quiet:
-        _print(checked, None if loaded is None else loaded.spec)
-    if differences is not None and not as_json:
-        _print_deployed(deployed, differences, quiet=quiet)
+    else:
+        # What was deployed comes first: a proof of other numbers is no good news.
+        if differences is not None:
+            _print_deployed(deployed, differences, quiet=quiet)
+        if not quiet:
+            _print(checked, None if loaded is None else loaded.spec)
     code = exit_codes.OF_VERDICT.get(verdict, exit_codes.REFUTED)
     raise typer.Exit(exit_codes.REFUTED if differences else code)
 
@@ -116,7 +118,7 @@ def _print_deployed(file: Path | None, differences: list[str], *, quiet: bool) -
         for line in differences:
             say(f"  {line}")
     elif not quiet:
-        say(f"  deployed: {file} holds the numbers of the certificate, bit for bit")
+        say(f"deployed: {file} holds the numbers of the certificate, bit for bit")
 
 
 def _print(certificate: Certificate, spec: Spec | None) -> None:

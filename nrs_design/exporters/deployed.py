@@ -103,7 +103,7 @@ def _of_header(
     for name, number in wanted.items():
         if name not in macros:
             yield f"{name} is missing"
-        elif _number(macros[name]) != (number, False):
+        elif (found := _number(macros[name])) != (number, False) or not _same_type(found, number):
             yield f"{name} is {macros[name][:80]}, and the certificate has {_text(number)}"
 
 
@@ -158,6 +158,11 @@ def _number(text: str) -> tuple[int | Fraction, bool] | None:
     except DesignError:
         return None
     return (-held if negative else held), negative and not held
+
+
+def _same_type(found: tuple[int | Fraction, bool] | None, number: int | Fraction) -> bool:
+    """Tell whether both are integers or neither: 3000U is not 3000.0F in an expression."""
+    return found is not None and isinstance(found[0], int) == isinstance(number, int)
 
 
 def _text(number: int | Fraction) -> str:

@@ -105,9 +105,6 @@ def _check_mixed(
         raise _without_program(f"a spring of impedance control beside {other}", other)
     if spec.idle_states is not None and spec.idle_states.reset:
         raise _without_program(f"a reset of idle states beside {other}", other)
-    if spec.disturbances is not None and spec.disturbances.largest_angle is not None:
-        # The position is added at every sample, which rounds an angle once more than is proved.
-        raise _without_program(f"the rounding of angles of impedance control beside {other}", other)
 
 
 def _in_commands(law: StepLaw, command: str) -> StepLaw:

@@ -226,7 +226,9 @@ class Examiner:
             proved = certificate is not None and certificate.verdict == Verdict.PROVED
             said = "nothing was proved"
             if proved:
-                said = f"the loop is proved for force samples up to {rounded_down(oldest, 's')} old"
+                least = spec.sampling.delay[0] * spec.sampling.period.exact
+                ages = f"{rounded_up(least, 's')} to {rounded_down(oldest, 's')} old"
+                said = f"the loop is proved for force samples {ages}"
             met = proved and oldest >= goals.delay.exact
             yield self._certified("delay", f"{said}; {goals.delay.text} is wanted", met=met)
 
@@ -251,6 +253,22 @@ class Examiner:
                 message += f"; accepted because: {item.accept_doubt}"
             place = self.places.at(*at, key)
             yield self.obligation(NOT_DOUBTED, at[-1], status, message, place)
+
+    def contact(self, certificate: Certificate | None) -> Iterator[Caution]:
+        """Yield that contact must be kept, where the spec does not say whether it is."""
+        spec = self.loaded.spec
+        if certificate is None or spec.kind != "interaction-design" or spec.contact is not None:
+            return
+        evidence = certificate.evidence
+        if certificate.verdict == Verdict.PROVED and not (
+            evidence is not None and evidence.covers_lost_contact
+        ):
+            place = self.places.at("kind")
+            message = (
+                "proved for contact that is kept: its loss is not covered; write `contact: kept` "
+                "if it is, or `contact: losable` to insist"
+            )
+            yield Caution(self.loaded.path, message, place.line, place.column)
 
     def cautions(self, analysis: DesignAnalysis | None) -> Iterator[Caution]:
         """Yield what is doubtful about the spec and its design."""

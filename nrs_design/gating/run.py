@@ -227,7 +227,7 @@ def _goals_and_report(
         origin = origin_of(result.loaded.path, page)
         html = render_html(build_report(result, analysis), origin)
         write_output(page, html, replaces=PAGE)
-    cautions = tuple(examiner.cautions(analysis))
+    cautions = (*examiner.contact(result.certificate), *examiner.cautions(analysis))
     if analysis is None:
         return missed, cautions
     return (*examiner.stiffness_ranges(analysis), *examiner.goals(analysis)), cautions

@@ -171,6 +171,11 @@ class InteractionDesignSpec(SpecModel):
                 self.sampling,
                 self.controllers,
                 given_loop=self.motion_loop.transfer_function is not None,
+                preloaded=[
+                    name
+                    for name, environment in self.environments.items()
+                    if environment.preloaded and name in self.touched
+                ],
             ),
             partial(check_sampled, self),
             lambda: check_coupling(

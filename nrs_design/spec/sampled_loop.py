@@ -37,6 +37,11 @@ def _not_modelled(spec: InteractionDesignSpec) -> Iterator[Refusal]:
     if spec.coordinates == "force":
         yield ("coordinates",), "force coordinates", "use `coordinates: deflection`"
     yield from _loss_of_contact(spec)
+    rounds = spec.disturbances is not None and spec.disturbances.largest_angle is not None
+    if rounds and spec.idle_states is not None:
+        # The position is added to the reference at every sample, which rounds an angle once more.
+        what = "the rounding of angles under impedance controllers beside others"
+        yield ("disturbances", "largest_angle"), what, "leave largest_angle out"
     # Rules about controllers in one contact each are refused as a whole elsewhere.
     times = () if spec.switching.names_contacts else spec.switching.dwell_times()
     for at, _ in times:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from fractions import Fraction
 from typing import Annotated, Literal
 
@@ -172,6 +172,7 @@ def check_motor(
     controllers: Mapping[str, ControllerSpec],
     *,
     given_loop: bool,
+    preloaded: Collection[str] = (),
 ) -> None:
     """Refuse ranges and a load of the actuator where the modes do not take them up.
 
@@ -185,6 +186,8 @@ def check_motor(
         By name.
     given_loop : bool
         Whether the spec states the closed motion loop itself.
+    preloaded : collection of str
+        Touched environments with a preload.
     """
     ranged = [n for n in ("gain", "time_constant") if not getattr(actuator, n).fixed]
     loaded = ["load_inertia"] if actuator.load_inertia is not None else []
@@ -203,7 +206,16 @@ def check_motor(
             raise fault(
                 f"{what}, which is modelled for impedance controllers alone, and {others[0]!r} is "
                 "none",
-                f"{drop}, or use impedance controllers",
+                f"{drop}, or use impedance controllers"
+                + (", or prove the sampled loop: add `sampling`" if name in ranged else ""),
+                "actuator",
+                name,
+            )
+        if name in loaded and ranged and preloaded:
+            raise fault(
+                f"a motor that carries what is touched rests elsewhere for every {ranged[0]}: "
+                f"under the preload of {next(iter(preloaded))} there is no rest",
+                f"leave load_inertia out, or give the nominal {ranged[0]} only",
                 "actuator",
                 name,
             )

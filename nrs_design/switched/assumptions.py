@@ -202,7 +202,8 @@ def preload_texts(spec: InteractionDesignSpec, scale: Fraction) -> Iterator[str]
             continue
         yield (
             f"{name} is a Hunt-Crossley law whose deflection stays between {low} and {high}. About "
-            f"a rest anywhere from its surface to {high}, its force is then that at rest, plus k "
+            f"a rest anywhere from its surface to {high}, at which the commands hold every mode "
+            "whatever its parameters, its force is then that at rest, plus k "
             "times the deflection from there, plus b times the velocity, exactly, with k and b "
             "moving in the ranges of the modes: motions need not be small or slow. Nothing is said "
             "once the deflection has left this preload, nor of the difference of two motions of "

@@ -212,11 +212,11 @@ def _texts(coupling: AxesCoupling) -> Iterator[str]:
             f"{coupling.speed}, which is not shown."
         )
     if coupling.gravity_gradient is None:
-        yield "Gravity is compensated, or the same, in all poses that are used."
+        yield "Gravity is compensated in all poses that are used."
     else:
         yield (
-            "From the pose of rest, in which all deflections are zero, the torque of gravity "
-            "changes, over all axes together, by at most "
+            "Gravity is compensated in the pose of rest, in which all deflections are zero; from "
+            "there its torque changes, over all axes together, by at most "
             f"{exact_text(coupling.gravity_gradient)} N*m/rad times the deflections (declared, "
             "not computed from a robot)."
         )

@@ -59,6 +59,8 @@ def test_every_number_counts_to_the_last_bit(differences, header):
         else:
             value = float.fromhex(number[:-1])
             others = [(value * (1 + 2**-23)).hex() + "F", f"-{number}", number[:-1], "0.0F", "x"]
+            # As an unsigned integer it would not be the same in an expression.
+            others += [f"{int(value)}U"] * value.is_integer()
         for other in others:
             found = differences(header.replace(line, f"#define {name} {other}"))
             assert len(found) == 1, (line, other)

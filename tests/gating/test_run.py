@@ -12,6 +12,7 @@ from nrs_design.gating.renew import write_lock
 from nrs_design.gating.run import Files, run_gate
 from nrs_design.spec import read_spec
 from nrs_design.spec.templates import TEMPLATES
+from tests.support import FORCE_LIMIT
 
 from .conftest import BROKEN, SOFT_TISSUE, STABLE, UNSTABLE
 
@@ -282,6 +283,18 @@ def test_what_is_doubtful_breaks_nothing(examine):
     assert messages[0].startswith("environment hand is touched by no controller")
     assert text.split("\n")[cautions[0].line - 1].startswith("  hand:")
     assert any("withdrawal: sensitivity peak Ms 3.753" in message for message in messages)
+
+
+def test_contact_that_must_be_kept_is_told_unless_the_spec_says_so(examine):
+    text, said = FORCE_LIMIT.read_text(), "proved for contact that is kept"
+    (silent,) = examine(text).specs
+    assert [item.message.startswith(said) for item in silent.cautions].count(True) == 1
+    assert silent.cautions[0].line == 2
+    (explicit,) = examine(text + "\ncontact: kept\n").specs
+    assert not any(item.message.startswith(said) for item in explicit.cautions)
+    # Its proof covers the loss of contact.
+    (losable,) = examine(SOFT_TISSUE.read_text()).specs
+    assert not any(item.message.startswith(said) for item in losable.cautions)
 
 
 def test_fixed_gains_that_are_unstable_are_refuted_not_an_error(examine):

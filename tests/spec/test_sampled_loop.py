@@ -17,6 +17,7 @@ RANGED_SOFT = "{nominal: 747.1461 N/m, range: [720.56 N/m, 768.17 N/m]}"
 DAMPED = ("model: elastic", "model: kelvin-voigt\n    damping: 1 N*s/m")
 SPRUNG = (BT, "Kt: 0.5 N*m/rad\n    " + BT)
 LOSABLE = SAMPLED + "contact: losable\n"
+ROUNDED = SAMPLED + "disturbances: {largest_angle: 20 deg}\n"
 COMMANDED = SAMPLED + "disturbances: {command: 8 deg/s}\n"
 
 
@@ -53,6 +54,7 @@ def read(text, *changes):
         (MIXED + LOSABLE, [], "contact", "impedance controllers beside others", "contact: kept"),
         (TEXT + LOSABLE, [DAMPED], "contact", "soft, which has damping", "contact: kept"),
         (FORCE + COMMANDED, [], "disturbances.command", "velocity command", "leave command out"),
+        (MIXED + ROUNDED, [], "disturbances.largest_angle", "rounding of angles", "leave largest"),
         (TEXT + COMMANDED, [SPRUNG], "disturbances.command", "that the spring Kt", "or Kt"),
     ],
 )

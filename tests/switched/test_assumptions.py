@@ -135,7 +135,7 @@ def test_words_of_a_preload(proved):
     assert (
         "concha is a Hunt-Crossley law whose deflection stays between 0.1 rad and 0.3 rad" in texts
     )
-    assert "a rest anywhere from its surface to 0.3 rad" in texts
+    assert "a rest anywhere from its surface to 0.3 rad, at which the commands hold every" in texts
     assert "Contact is not lost" in texts
 
 

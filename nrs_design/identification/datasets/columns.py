@@ -223,11 +223,15 @@ def _missing(
     missing = [_called(quantity) for quantity in nearest if quantity not in present]
     expected = " or ".join(", ".join(map(_called, layout)) for layout in layouts)
     example = missing[0] if missing else "force_N"
+    quantity = example.rpartition("_")[0]
+    others = [f"{quantity}_{key}" for key in UNITS.get(quantity, ())]
+    named = " or ".join(name for name in others if name != example)
+    units = f" ({named} for another unit)" if named else ""
     return DataError(
         f"the columns {', '.join(missing) or 'of one group'} are missing: it has {_listed(header)}",
         path=path,
         line=line,
-        remedy=f"expected {expected}; name foreign columns with --map {example}=NAME",
+        remedy=f"expected {expected}; name foreign columns with --map {example}=NAME{units}",
     )
 
 

@@ -164,6 +164,19 @@ def test_proved_report_says_what_is_not_covered(report):
     assert "nrs-design verify soft-tissue.cert.json soft-tissue.nrs.yaml" in text
 
 
+@pytest.mark.parametrize(
+    ("name", "covered"),
+    [
+        ("soft-tissue-axes", "Coupling between the axes"),
+        ("soft-tissue-sampled", "What the processor rounds"),
+    ],
+)
+def test_what_is_proved_is_not_listed_as_left_out(report, name, covered):
+    result = run_certification(read_spec(ROOT / f"specs/neuroboscope/{name}.nrs.yaml"))
+    assert covered not in words(build_report(result))
+    assert "Coupling between the axes" in words(report("proved"))
+
+
 def test_refuted_report_shows_the_witness_and_no_bound(report):
     refuted = report("refuted")
     assert refuted.verdict == "refuted"

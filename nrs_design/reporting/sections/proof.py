@@ -18,8 +18,9 @@ if TYPE_CHECKING:
     from nrs_design.search.certification import Certification
 
 _CONTINUOUS = "Sampling, delay and quantization of the controller: the proof is in continuous time."
-_SAMPLED = "Jitter of the samples, and what the processor rounds."
+_JITTER, _ROUNDED = "Jitter of the samples.", "What the processor rounds."
 _KEPT = "Loss of contact: no mode describes a compliant controller in free motion."
+_ALONE = "Coupling between the axes of the robot."
 _UNBOUNDED = "The size of velocities and torques: the states decay, but no limit on them is proved."
 _BOUNDED = "Sizes of velocities and torques other than those bounded above."
 _NOT_COVERED_BY_A_DESIGN: tuple[str, ...] = (
@@ -27,7 +28,6 @@ _NOT_COVERED_BY_A_DESIGN: tuple[str, ...] = (
     "Tissue that does not follow the linear law of the spec, such as a creep of another kind or a "
     "stiffness that depends on depth.",
     "Parameter values outside the declared ranges, and motor constants other than those given.",
-    "Coupling between the axes of the robot.",
     "Cost, margins, pole positions and tracking quality: design values in floating point.",
 )
 _ILLUSTRATIONS = (
@@ -89,9 +89,11 @@ def _not_covered_by_design(result: Result) -> tuple[str, ...]:
     certification = result.certification
     system, evidence = certification.system, certification.evidence
     covers = evidence is not None and evidence.covers_lost_contact
+    exact = evidence is None or not evidence.covers_rounding
     return (
-        _CONTINUOUS if system.time is Time.CONTINUOUS else _SAMPLED,
+        *((_CONTINUOUS,) if system.time is Time.CONTINUOUS else (_JITTER, *(_ROUNDED,) * exact)),
         *(() if covers else (_KEPT,)),
+        *(() if evidence is not None and evidence.covers_coupling else (_ALONE,)),
         *_NOT_COVERED_BY_A_DESIGN,
         _BOUNDED if _bounds(certification) else _UNBOUNDED,
     )

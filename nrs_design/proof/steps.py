@@ -9,7 +9,10 @@ with all ``tau_i >= 0``. If it is positive definite, ``after <= keeps before + s
 for every error within its limit (S-procedure). Where contact may be lost, before and after are
 ``y' Q_yy y`` free and ``x' Q x`` in contact; where a step loses it, ``delta`` is positive and its
 next value, the last row times (x, d, r), is not, so that twice lambda >= 0 times their product is
-added. One lambda and one tau_i for all modes keep the forms concave in the maps.
+added. An environment that could pull lags instead: delta is positive and a force ``q x`` is not, a
+free mode rules, and twice mu >= 0 times their product is added, whether delta stays positive or
+not. One lambda and one tau_i for all modes, and one mu for each force, keep the forms
+concave in the maps.
 
 The forms are written in integers: every entry of (x, d, r) is counted in a unit of its own, the
 least in which what multiplies it in [A, B, C] and in the q_i is an integer. With these units on the
@@ -62,12 +65,17 @@ class Steps:
         What a step leaves of the function: rho^2, or one minus the shares of the disturbances.
     crossing : int
         The lambda; it says nothing where contact is kept.
+    lagging : tuple of (int, int, int)
+        For each force that could pull: the mu of steps that leave the deflection positive, and mu
+        and lambda of those that do not. A mu is that of the numerators of the force.
     roundings : tuple of int
         The tau, in the order of the roundings of the system; none if it is to compute exactly.
     channels : tuple of int
         Which disturbances of the system act.
     weights : tuple of Fraction
         One for each of them.
+    after : tuple of tuple of int or None
+        Numerators of the function after a step, over the same power; None for Q.
     """
 
     Q: IntegerMatrix
@@ -77,26 +85,49 @@ class Steps:
     roundings: tuple[int, ...] = ()
     channels: tuple[int, ...] = ()
     weights: tuple[Fraction, ...] = ()
+    lagging: tuple[tuple[int, int, int], ...] = ()
+    after: IntegerMatrix | None = None
 
     def forms(self, system: SwitchedSystem) -> Iterator[tuple[str, IntegerMatrix]]:
         """Yield the form of every motion, in units of its own, with where it is."""
-        n, inner = len(self.Q), leading(self.Q)
+        n, after = len(self.Q), self.Q if self.after is None else self.after
         for k, mode in enumerate(system.modes):
             motion = self._motion(system, k, mode.A)
-            left, (*others, last) = self._left(self.Q, motion), motion.rows
-            yield f"in mode {mode.name}", _less(left, motion.rows, self.Q)
+            left, (*others, _) = self._left(self.Q, motion), motion.rows
+            yield f"in mode {mode.name}", _less(left, motion.rows, after)
             if system.contact is None:
                 continue
-            factor = self.crossing * motion.units[n - 1]
-            crossing = [factor * entry for entry in last]
-            lost = with_crossing(_less(left, others, inner), n - 1, crossing)
+            lost = _less(left, others, leading(after))
+            lost = _with_loss(lost, motion, n, self.crossing)
             yield f"where contact is lost in mode {mode.name}", lost
         free = () if system.contact is None else system.contact.free
         for k, mode in enumerate(free, len(system.modes)):
-            motion = _undeflected(self._motion(system, k, mode.A), n - 1)
-            left, (*others, _) = self._left(inner, motion), motion.rows
-            yield f"in free motion, mode {mode.name}", _less(left, others, inner)
-            yield f"where contact is made, mode {mode.name}", _less(left, motion.rows, self.Q)
+            whole = self._motion(system, k, mode.A)
+            motion = _undeflected(whole, n - 1)
+            left, (*others, _) = self._left(leading(self.Q), motion), motion.rows
+            yield f"in free motion, mode {mode.name}", _less(left, others, leading(after))
+            yield f"where contact is made, mode {mode.name}", _less(left, motion.rows, after)
+            yield from self._lagging(system, mode.name, whole, after)
+
+    def _lagging(
+        self, system: SwitchedSystem, name: str, motion: _Motion, after: IntegerMatrix
+    ) -> Iterator[tuple[str, IntegerMatrix]]:
+        """Yield the forms of a free mode while the deflection is positive."""
+        contact, n = system.contact, len(self.Q)
+        left, (*others, _) = self._left(self.Q, motion), motion.rows
+        pulls = () if contact is None else contact.pulls
+        for q, (stays, leaves, crossing) in zip(pulls, self.lagging, strict=True):
+            force = [
+                motion.units[n - 1] * f * u
+                for f, u in zip(q.numerators[0], motion.units, strict=False)
+            ]
+            still = _less(left, motion.rows, after)
+            pulled = with_crossing(still, n - 1, [stays * entry for entry in force])
+            yield f"while the environment lags, mode {name}", pulled
+            lost = _less(left, others, leading(after))
+            lost = with_crossing(lost, n - 1, [leaves * entry for entry in force])
+            lost = _with_loss(lost, motion, n, crossing)
+            yield f"where a lagging environment is left, mode {name}", lost
 
     def _motion(self, system: SwitchedSystem, k: int, A: RationalMatrix) -> _Motion:
         """Return the k-th mode in the least units that make it integer."""
@@ -155,6 +186,12 @@ def _root(number: int) -> int:
 def _less(left: IntegerMatrix, rows: IntegerMatrix, after: IntegerMatrix) -> list[list[int]]:
     """Subtract the function after a step from what may be left of it."""
     return add(left, congruence(rows, after), -1)
+
+
+def _with_loss(form: IntegerMatrix, motion: _Motion, n: int, crossing: int) -> list[list[int]]:
+    """Add twice lambda times the deflection times its next value."""
+    factor = crossing * motion.units[n - 1]
+    return with_crossing(form, n - 1, [factor * entry for entry in motion.rows[n - 1]])
 
 
 def _undeflected(motion: _Motion, k: int) -> _Motion:

@@ -233,6 +233,22 @@ class Coupling:
 
 
 @dataclass(frozen=True, slots=True)
+class Clock:
+    """Modes that take turns: some at the first step of every round, all others at its other steps.
+
+    Parameters
+    ----------
+    length : int
+        Steps of a round, at least two. Time zero may be any of them.
+    first : tuple of str
+        Names of the modes, in contact and free, that are in force at the first steps.
+    """
+
+    length: int
+    first: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
 class Output:
     """A quantity that is one of some rows times the state, and within a range any mixture of them.
 
@@ -283,6 +299,8 @@ class SwitchedSystem:
     couplings : tuple of Coupling
         What axes like this one do to each other, in continuous time. Without any, every statement
         is about one axis; with them, statements of stability are about all axes at once.
+    clock : Clock or None
+        Which modes take turns, in discrete time; None lets all of them be in force at every step.
     """
 
     name: str
@@ -297,6 +315,7 @@ class SwitchedSystem:
     outputs: tuple[Output, ...] = ()
     roundings: tuple[Rounding, ...] = ()
     couplings: tuple[Coupling, ...] = ()
+    clock: Clock | None = None
 
     def with_modes(
         self, modes: tuple[Mode, ...], states: tuple[str, ...], switching: Switching
@@ -351,7 +370,9 @@ class SwitchedSystem:
         return replace(stay, shortest=Fraction(1))
 
     def lasting_modes(self) -> tuple[Mode, ...]:
-        """Return the modes that need never be left."""
+        """Return the modes that need never be left; none where modes take turns."""
+        if self.clock is not None:
+            return ()
         left = {name for name, stay in self.switching.stays if stay.longest is not None}
         return tuple(mode for mode in self.modes if mode.name not in left)
 
@@ -367,6 +388,7 @@ class SwitchedSystem:
             or self._find_odd_channel()
             or self._find_odd_rounding()
             or self._find_odd_coupling()
+            or self._find_odd_clock()
         )
 
     def _find_odd_stay(self, names: set[str]) -> str | None:
@@ -458,6 +480,21 @@ class SwitchedSystem:
                 return f"the coupling by {item.name} {odd}"
         names = [item.name for item in self.couplings]
         return "two couplings have one name" if len(set(names)) < len(names) else None
+
+    def _find_odd_clock(self) -> str | None:
+        if self.clock is None:
+            return None
+        if self.time is Time.CONTINUOUS or self.clock.length < 2 or not self.is_uniform:
+            return "modes take turns without steps, in rounds of less than two, or of unlike size"
+        if not self.switching.is_arbitrary:
+            return "modes take turns, and have rules of switching besides"
+        first, free = set(self.clock.first), () if self.contact is None else self.contact.free
+        groups = [{mode.name for mode in part} for part in (self.modes, free) if part]
+        if not first <= set().union(*groups):
+            return "a mode that does not exist is to take its turn"
+        if not all(first & group and group - first for group in groups):
+            return "a step of a round has no mode, in contact or free"
+        return None
 
     def _find_odd_parts(self, item: Rounding | Coupling, width: int) -> str | None:
         """Say why columns and rows are not those of every mode and free mode, or None."""

@@ -17,6 +17,7 @@ from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.system import (
     ARBITRARY,
     Channel,
+    Clock,
     Contact,
     Coupling,
     FixedParameter,
@@ -35,6 +36,8 @@ from nrs_design.proof.text import quoted
 WITHOUT_RULES = "arbitrary"
 # Deciding a form for every mode takes about rows^3 steps each on their numbers: a minute at this.
 MAX_FAMILY_WORK = 10**10
+# There is a function for every step of a round.
+MAX_ROUND = 100
 
 Fields = dict[str, Any]
 
@@ -55,6 +58,7 @@ def system_fields(system: SwitchedSystem) -> Fields:
         **({} if system.contact is None else {"contact": _contact_fields(system.contact)}),
         **_channel_fields(system),
         **({} if system.sample_time is None else {"sample_time": str(system.sample_time)}),
+        **({} if system.clock is None else {"clock": _clock_fields(system.clock)}),
         "assumptions": list(system.assumptions),
     }
 
@@ -110,6 +114,7 @@ def read_system(name: str, fields: Mapping[str, Any]) -> SwitchedSystem:
         sample_time=read_ratio(fields["sample_time"]) if "sample_time" in fields else None,
         roundings=tuple(Rounding(*part) for part in _read_parts(fields, "roundings")),
         couplings=tuple(Coupling(*part) for part in _read_parts(fields, "couplings")),
+        clock=_read_clock(fields["clock"]) if "clock" in fields else None,
     )
 
 
@@ -200,6 +205,17 @@ def _read_contact(fields: Mapping[str, Any]) -> Contact:
     if not isinstance(required, bool):
         raise TypeError("whether the loss of contact must be covered is not true or false")
     return Contact(_read_modes(fields["free"]), pulls, required)
+
+
+def _clock_fields(clock: Clock) -> Fields:
+    return {"length": clock.length, "first": list(clock.first)}
+
+
+def _read_clock(fields: Mapping[str, Any]) -> Clock:
+    length = read_integer(fields["length"])
+    if not 2 <= length <= MAX_ROUND:
+        raise ValueError(f"a round has from 2 to {MAX_ROUND} steps")
+    return Clock(length, _read_texts(fields["first"]))
 
 
 def _switching_fields(switching: Switching) -> Fields | str:

@@ -80,7 +80,7 @@ def certify(
             remedy="use --method auto",
         )
     _check_gradient(system, method, limits.gradient)
-    simple = system.switching.is_arbitrary and system.is_uniform
+    simple = system.switching.is_arbitrary and system.is_uniform and system.clock is None
     merged = merge_equal_modes(system) if simple else system
     limits = _limits_for(merged, system, limits)
     # Lost contact, what the arithmetic rounds and other axes are matters of the whole state.

@@ -193,27 +193,54 @@ def _roundings(
 ) -> Iterator[Quadratic]:
     """Yield roundings of a solution in coordinates ``x = T z`` of the family.
 
-    A multiplier belongs to the product of the deflection and a force (in continuous time), or of
-    the deflection and its next value; its scale changes with that of the deflection.
+    A multiplier belongs to the product of the deflection and a force, or of the deflection and its
+    next value; its scale changes with that of the deflection.
     """
     inverse = np.linalg.inv(T)
     Q = inverse.T @ solution.Q @ inverse
     exponent = int(np.frexp(np.abs(Q).max())[1])
-    times = 1 if family.system.time is Time.CONTINUOUS else 2
-    scaled = np.ldexp(solution.multipliers / T[-1, -1] ** times, -exponent)
-    shift, taus = -times * int(family.exponents[-1]), np.zeros(0)
+    contact = family.system.contact or Contact(())
+    times = multiplied(contact, family.system.time)
+    scaled = in_numerators(solution.multipliers / T[-1, -1] ** times, contact, family.system.time)
+    scaled = np.ldexp(scaled, -exponent - times * int(family.exponents[-1]))
+    taus = np.zeros(0)
     if errors is not None:
         taus, claim = errors.allow_for(np.ldexp(Q, -exponent), claim)
     if claim >= 1 and errors is not None:
         return
     for bits in digits() if errors is None else WITH_ERRORS:
         rows, log2 = unscale(np.ldexp(Q, -exponent), family.exponents, bits)
-        multipliers, roundings = numerators(scaled, log2 + shift), numerators(taus, log2)
+        multipliers, roundings = numerators(scaled, log2), numerators(taus, log2)
         log2 = max(log2, 0)
         if family.system.contact is None:
             yield CommonQuadratic(rows, log2, claim, roundings)
         else:
             yield ConewiseQuadratic(rows, log2, claim, multipliers, roundings)
+
+
+def multiplied(contact: Contact, time: Time) -> NDArray[np.int64]:
+    """Return for each multiplier how often the deflection is in its product."""
+    if time is Time.CONTINUOUS:
+        return np.ones(len(contact.free) * len(contact.pulls), dtype=np.int64)
+    return np.array([2, *[1, 1, 2] * len(contact.pulls)])
+
+
+def in_numerators(multipliers: Array, contact: Contact, time: Time) -> Array:
+    """Return multipliers of forces, in discrete time as those of their numerators.
+
+    Parameters
+    ----------
+    multipliers : ndarray
+        As a search finds them.
+    contact : Contact
+        With the forces.
+    time : Time
+        Continuous or discrete.
+    """
+    if time is Time.CONTINUOUS:
+        return multipliers
+    below = [d for q in contact.pulls for d in (q.denominator, q.denominator, 1)]
+    return np.asarray(multipliers / np.array([1, *below][: len(multipliers)], dtype=float))
 
 
 def numerators(multipliers: Array, log2: int) -> tuple[int, ...]:
@@ -335,6 +362,10 @@ def _decreases(motions: Motions, Q: Array, rate: float) -> Array:
     moved[..., -1] = 0.0
     moves = [_stein(Q, A, Q, rate), _stein(Q, others, inner, rate)]
     moves += [_stein(inner, _inner(F), inner, rate), _stein(inner, moved, Q, rate)]
+    landing = F.copy()
+    landing[:, -1] = 0.0
+    stays, leaves = _stein(Q, F, Q, rate), _stein(Q, landing, inner, rate)
+    moves += [np.tile(part, (1, len(motions.pulls), 1, 1)) for part in (stays, leaves)]
     return np.concatenate(moves, axis=1)
 
 
@@ -364,7 +395,7 @@ def _filling(motions: Motions) -> Array:
     counts = (
         (contact, free, free * pulls)
         if motions.time is Time.CONTINUOUS
-        else (2 * contact if free else contact, 2 * free, 0)
+        else (2 * contact if free else contact, 2 * free, 2 * free * pulls)
     )
     filling = np.zeros((sum(counts), n, n))
     filling[counts[0] : counts[0] + counts[1], -1, -1] = 1.0
@@ -377,7 +408,14 @@ def _separations(motions: Motions) -> list[tuple[NDArray[np.int64], Array]]:
     if motions.time is Time.CONTINUOUS:
         forms = _with_last(np.tile(motions.pulls, (f, 1)))
         return [(np.array([m + f + k]), form[None]) for k, form in enumerate(forms)] if p else []
-    return [(np.arange(m, 2 * m), _with_last(motions.contact[:, -1]))] if f else []
+    if not f:
+        return []
+    found = [(np.arange(m, 2 * m), _with_last(motions.contact[:, -1]))]
+    for k, q in enumerate(motions.pulls):
+        stays = 2 * m + 2 * f + k * f + np.arange(f)
+        leaves, pulled = stays + f * p, _with_last(np.tile(q, (f, 1)))
+        found += [(stays, pulled), (leaves, pulled), (leaves, _with_last(motions.free[:, -1]))]
+    return found
 
 
 def _with_last(rows: Array) -> Array:

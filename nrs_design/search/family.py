@@ -101,7 +101,7 @@ def _limit(system: SwitchedSystem, families: list[NDArray[np.float64]]) -> float
         matrices = dict(zip(names, chain.from_iterable(families), strict=True))
         families = [matrices[name][None] for name in names if name in lasting]
         if not families:
-            sizes = [np.abs(np.linalg.eigvals(A)).max() for A in matrices.values()]
+            sizes = [limit_rate(A[None], Time.DISCRETE) for A in matrices.values()]
             return float(max(sizes)) if system.time is Time.CONTINUOUS else 0.0
     limits = [limit_rate(matrices, system.time) for matrices in families]
     return min(limits) if system.time is Time.CONTINUOUS else max(limits)

@@ -7,8 +7,8 @@ little above the best one, and the conditions are satisfied with as much to spar
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from math import isfinite
 
@@ -16,10 +16,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from nrs_design.proof.evidence import InvariantEllipsoid
-from nrs_design.proof.system import Channel, Output, SwitchedSystem, Time
+from nrs_design.proof.system import Channel, Contact, Output, SwitchedSystem, Time
 from nrs_design.search.allowance import Allowance
 from nrs_design.search.candidates import NO_MARGIN, OUT_OF_RANGE, Candidate, Candidates
-from nrs_design.search.conewise_quadratic import Motions, numerators, separating_coordinates
+from nrs_design.search.conewise_quadratic import (
+    Motions,
+    in_numerators,
+    multiplied,
+    numerators,
+    separating_coordinates,
+)
 from nrs_design.search.family import Family, to_floats
 from nrs_design.search.rounding import unscale
 from nrs_design.search.sdp import maximize_margin, pack, program_cost, symmetric_basis
@@ -84,7 +90,9 @@ class Problem:
         """How many multipliers there are for lost contact."""
         if not self.losable:
             return 0
-        return len(self.free) * len(self.pulls) if self.time is Time.CONTINUOUS else 1
+        if self.time is Time.CONTINUOUS:
+            return len(self.free) * len(self.pulls)
+        return 1 + 3 * len(self.pulls)
 
     def without_roundings(self) -> Problem:
         """Return the conditions of exact arithmetic."""
@@ -100,8 +108,9 @@ class Problem:
     def distinct(self) -> Problem:
         """Return the conditions with motions that floating point cannot tell apart left out."""
         touching = _distinct(self.contact, self.contact_sizes)
-        # Of a lagging environment, every free motion has multipliers of its own.
-        flying = slice(None) if len(self.pulls) else _distinct(self.free, self.free_sizes)
+        # In continuous time, every free motion has multipliers of its own for what lags.
+        all_free = self.time is Time.CONTINUOUS and len(self.pulls)
+        flying = slice(None) if all_free else _distinct(self.free, self.free_sizes)
         return replace(
             self,
             contact=self.contact[touching],
@@ -122,17 +131,22 @@ class Problem:
                 yield Condition(_flow(inner, np.delete(A[:-1], n - 1, axis=1), share), n - 1)
             for k, (i, j) in enumerate(np.ndindex(len(self.free), len(self.pulls))):
                 pulled = np.concatenate([self.pulls[j], np.zeros(self.disturbances)])
-                yield Condition(_flow(Q, self.free[i], share), n, _crossing(last, pulled), k)
+                yield Condition(_flow(Q, self.free[i], share), n, {k: _crossing(last, pulled)})
             return
         for A, sizes in zip(self.contact, self.contact_sizes, strict=True):
             yield Condition(_step(Q, A, Q, share), n, sizes=sizes)
             if self.losable:
                 lost = _step(Q, A[:-1], inner, share)
-                yield Condition(lost, n, _crossing(last, A[-1]), 0, sizes)
+                yield Condition(lost, n, {0: _crossing(last, A[-1])}, sizes)
         for A, sizes in zip(self.free, self.free_sizes, strict=True):
             moved, own = np.delete(A, n - 1, axis=1), np.delete(sizes, n - 1, axis=1)
             yield Condition(_step(inner, moved[:-1], inner, share), n - 1, sizes=own)
             yield Condition(_step(inner, moved, Q, share), n - 1, sizes=own)
+            for k, q in enumerate(self.pulls):
+                pulled = _crossing(last, np.pad(q, (0, len(last) - n)))
+                yield Condition(_step(Q, A, Q, share), n, {3 * k + 1: pulled}, sizes)
+                crossings = {3 * k + 2: pulled, 3 * k + 3: _crossing(last, A[-1])}
+                yield Condition(_step(Q, A[:-1], inner, share), n, crossings, sizes)
 
 
 @dataclass(frozen=True)
@@ -145,18 +159,15 @@ class Condition:
         Of every Q.
     order : int
         States in it; disturbances and roundings follow.
-    crossing : ndarray or None, shape (s, s)
-        The image of its multiplier for lost contact.
-    multiplier : int
-        Which one.
+    crossings : mapping of int to ndarray, each of shape (s, s)
+        The images of its multipliers for lost contact, by which they are.
     sizes : ndarray or None, shape (r, s - r)
         Of the roundings.
     """
 
     images: Array
     order: int
-    crossing: Array | None = None
-    multiplier: int = 0
+    crossings: Mapping[int, Array] = field(default_factory=dict)
     sizes: Array | None = None
 
     def stack(self, disturbances: int, multipliers: int) -> Array:
@@ -166,8 +177,8 @@ class Condition:
             np.zeros((multipliers, side, side)),
             np.zeros((disturbances, side, side)),
         )
-        if self.crossing is not None:
-            crossings[self.multiplier] = self.crossing
+        for k, crossing in self.crossings.items():
+            crossings[k] = crossing
         for i in range(disturbances):
             shares[i, n + i, n + i] = 1.0
         sizes = np.zeros((0, side)) if self.sizes is None else self.sizes
@@ -290,8 +301,11 @@ def _roundings(
     """
     inverse = np.linalg.inv(T) / size
     Q = inverse.T @ found.Q @ inverse
-    times = 1 if family.system.time is Time.CONTINUOUS else 2
+    contact = family.system.contact or Contact(())
+    times = multiplied(contact, family.system.time)[: len(found.crossings)]
     multipliers = found.crossings / T[-1, -1] ** times / size**2
+    multipliers = in_numerators(multipliers, contact, family.system.time)
+    multipliers = np.ldexp(multipliers, -times * int(family.exponents[-1]))
     taus = found.taus * units[: len(found.taus)]
     exponent = int(np.frexp(np.abs(Q).max())[1])
     for bits in BITS:
@@ -303,7 +317,7 @@ def _roundings(
             empty,
             Q=rows,
             denominator_log2=log2,
-            multipliers=numerators(multipliers, log2 - times * int(family.exponents[-1])),
+            multipliers=numerators(multipliers, log2),
             roundings=numerators(taus, log2),
         )
 

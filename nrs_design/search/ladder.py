@@ -86,6 +86,11 @@ class Facts:
         return bool(self.system.couplings)
 
     @property
+    def takes_turns(self) -> bool:
+        """Whether its modes take turns."""
+        return self.system.clock is not None
+
+    @property
     def may_bounce(self) -> bool:
         """Whether functions could be for lost contact with springs."""
         contact = self.system.contact
@@ -138,6 +143,8 @@ class Rung:
     coupled : bool
         What it finds of one axis says something about all axes that act on each other; other rungs
         are not tried where they do.
+    clocked : bool
+        It is for modes that take turns, and for no others.
     """
 
     name: str
@@ -149,6 +156,7 @@ class Rung:
     only_quadratic: bool = False
     first: float = inf
     coupled: bool = False
+    clocked: bool = False
 
     def count_first(self, system: SwitchedSystem) -> int:
         """Return how many steps are made before the rungs below: of the first degrees, the quick.
@@ -176,6 +184,8 @@ class Rung:
         facts : Facts
             Of the system.
         """
+        if self.clocked != facts.takes_turns:
+            return False
         return (self.coupled or not facts.is_coupled) and self.applies(facts)
 
     def steps(self, system: SwitchedSystem, limits: Limits, allowance: Allowance) -> Iterator[Step]:
@@ -229,6 +239,14 @@ def _in(module: str, name: str) -> Callable[..., Any]:
 
 # Cheapest first. A rung that rises is tried here with its first degrees, with higher ones at last.
 LADDER: tuple[Rung, ...] = (
+    Rung(
+        "periodic quadratic",
+        Method.PERIODIC_QUADRATIC,
+        _always,
+        _in("periodic_quadratic", "search_periodic_quadratic"),
+        clocked=True,
+    ),
+    Rung("rounds", Method.PERIOD, _always, _in("rounds", "search_rounds"), clocked=True),
     Rung(
         "suspicious modes",
         None,

@@ -19,5 +19,6 @@ class Method(StrEnum):
     MODE_QUADRATIC = "mode-quadratic"
     PARAMETER_QUADRATIC = "parameter-quadratic"
     PERIOD = "period"
+    PERIODIC_QUADRATIC = "periodic-quadratic"
     POLYNOMIAL = "polynomial"
     VALUE = "value"

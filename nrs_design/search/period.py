@@ -51,7 +51,7 @@ def search_period(family: Family) -> Candidates[UnstablePeriod]:
     if system.time is Time.DISCRETE and system.switching.is_arbitrary:
         for word, radius in growing_words(family.matrices, allowance):
             steps = tuple((system.modes[i].name, Fraction(1)) for i in word)
-            yield from _powers(system, UnstablePeriod(steps, 0), radius)
+            yield from powers(system, UnstablePeriod(steps, 0), radius)
     matrices = family.matrices
     if system.switching.resets:
         # The scaled modes of a search do not fit resets.
@@ -181,7 +181,7 @@ def _roundings(
         floats = np.array([float(time) for _, time in steps])
         growth = float(graph.growth(cycle, floats) * floats.sum())
         evidence = UnstablePeriod(steps, 0, edges if has_choice else ())
-        yield from _powers(system, evidence, exp(min(growth, 700.0)))
+        yield from powers(system, evidence, exp(min(growth, 700.0)))
 
 
 def _pairs(graph: Graph) -> list[tuple[int, int]]:
@@ -194,10 +194,20 @@ def _admissible(system: SwitchedSystem, mode: str, time: Fraction) -> Fraction:
     return time if stay.longest is None else min(time, stay.longest)
 
 
-def _powers(
+def powers(
     system: SwitchedSystem, evidence: UnstablePeriod, radius: float
 ) -> Iterator[Candidate[UnstablePeriod]]:
-    """Yield the period with its powers from where the trace should exceed n."""
+    """Yield a period with its powers from where the trace should exceed n.
+
+    Parameters
+    ----------
+    system : SwitchedSystem
+        The modes.
+    evidence : UnstablePeriod
+        The signal.
+    radius : float
+        Spectral radius over the period; nothing is yielded if it is not above one.
+    """
     if not radius > 1 or isinf(radius):
         return
     first = max(0, ceil(log2(log(2 * system.order) / log(radius))))

@@ -19,8 +19,8 @@ MAX_WORK = 30_000_000
 def rate_limit(system: SwitchedSystem) -> float | None:
     """Return a rate that solutions cannot beat, because one of them attains it.
 
-    Modes that must be left are left out of account; None if all are. Continuous time: the slowest
-    mode's ``-max Re``, in 1/s. Discrete time: the largest
+    Modes that must be left are left out of account; None if all are, or if modes take turns.
+    Continuous time: the slowest mode's ``-max Re``, in 1/s. Discrete time: the largest
     ``radius(A_k ... A_1)^(1/k)`` over short products of modes, a lower bound of the joint spectral
     radius; where switching is constrained, of single modes only.
 

@@ -1,10 +1,13 @@
-"""What the axes of a robot do to each other, as declared."""
+"""What the axes of a robot do to each other: as declared, or as computed from a robot."""
 
 from __future__ import annotations
 
-from pydantic import Field, model_validator
+from typing import Literal
+
+from pydantic import Field, PrivateAttr, model_validator
 
 from nrs_design.spec.faults import fault
+from nrs_design.spec.fields import Title
 from nrs_design.spec.model import SpecModel
 from nrs_design.spec.quantity import is_less
 from nrs_design.spec.quantity_fields import (
@@ -13,14 +16,26 @@ from nrs_design.spec.quantity_fields import (
     MomentOfInertia,
     RotationalStiffness,
 )
+from nrs_design.spec.robot_bounds import RobotBounds
 
 
 class CouplingSpec(SpecModel):
-    """Bounds on what the links of the robot do to each axis; declared, so they are assumptions."""
+    """Bounds on what the links of the robot do to each axis: declared, or those of a robot spec."""
 
-    inertia: tuple[MomentOfInertia, MomentOfInertia] = Field(
+    robot: Title | None = Field(
+        default=None,
+        description="spec of the robot, relative to this file; `nrs-design robot bounds` has "
+        "computed the bounds, and they are read instead of inertia, coriolis and gravity_gradient",
+    )
+    gravity_compensated: Literal["everywhere", "at-rest"] | None = Field(
+        default=None,
+        description="with robot: gravity is compensated in every pose (default), or in the pose of "
+        "rest only, for kept contact",
+    )
+    inertia: tuple[MomentOfInertia, MomentOfInertia] | None = Field(
+        default=None,
         description="[lowest, highest] eigenvalue of the matrix of inertia of the links at the "
-        "joints in kg*m^2, over all poses that are used"
+        "joints in kg*m^2, over all poses that are used; required without robot",
     )
     coriolis: Impedance | None = Field(
         default=None,
@@ -28,7 +43,9 @@ class CouplingSpec(SpecModel):
         "over all axes) in N*m*s/rad, up to `speed`; default: they are left out",
     )
     speed: AngularVelocity | None = Field(
-        default=None, description="speed over all axes in rad/s up to which coriolis holds"
+        default=None,
+        description="speed over all axes in rad/s up to which coriolis holds; with robot: up to "
+        "which Coriolis torques are counted in, else they are left out",
     )
     gravity_gradient: RotationalStiffness | None = Field(
         default=None,
@@ -36,8 +53,35 @@ class CouplingSpec(SpecModel):
         "contact; default: gravity is compensated, or the same, in all poses",
     )
 
+    _bounds: RobotBounds | None = PrivateAttr(default=None)
+
+    @property
+    def bounds(self) -> RobotBounds | None:
+        """Those of the robot, as far as the spec has been read from its file."""
+        return self._bounds
+
+    def bounded(self, bounds: RobotBounds) -> CouplingSpec:
+        """Return the same with the bounds of its robot."""
+        copy = self.model_copy()
+        copy._bounds = bounds
+        return copy
+
     @model_validator(mode="after")
     def _check(self) -> CouplingSpec:
+        if self.robot is not None:
+            self._check_computed()
+            return self
+        if self.gravity_compensated is not None:
+            raise fault(
+                "gravity_compensated is for the bounds of a robot",
+                "add robot, or remove gravity_compensated",
+                "gravity_compensated",
+            )
+        if self.inertia is None:
+            raise fault(
+                "neither robot nor inertia is given",
+                "write `robot: arm.nrs.yaml`, or `inertia: [0.003 kg*m^2, 0.3 kg*m^2]`",
+            )
         low, high = self.inertia
         if is_less(high, low):
             raise fault(
@@ -53,6 +97,16 @@ class CouplingSpec(SpecModel):
                 missing,
             )
         return self
+
+    def _check_computed(self) -> None:
+        """Refuse to declare what is computed."""
+        for key in ("inertia", "coriolis", "gravity_gradient"):
+            if getattr(self, key) is not None:
+                raise fault(
+                    f"{key} is computed from the robot, and declared as well",
+                    f"remove {key} or robot",
+                    key,
+                )
 
 
 def check_coupling(

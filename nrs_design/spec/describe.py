@@ -146,6 +146,8 @@ def _interaction(spec: InteractionDesignSpec) -> Iterator[Line]:
     yield Line("design.significant_digits", str(spec.design.significant_digits), "", "")
     if spec.sampling is not None:
         yield _row("sampling.period", spec.sampling.period, kinds.DURATION)
+        if spec.sampling.outer_period is not None:
+            yield _row("sampling.outer_period", spec.sampling.outer_period, kinds.DURATION)
         least, most = spec.sampling.delay
         delay = str(least) if least == most else f"[{least}, {most}]"
         yield Line("sampling.delay", delay, "", "samples")
@@ -157,6 +159,8 @@ def _interaction(spec: InteractionDesignSpec) -> Iterator[Line]:
     yield from describe_model(spec.sensor, "sensor")
     if spec.mode_logic is not None:
         yield from describe_model(spec.mode_logic, "mode_logic")
+    for name, scenario in spec.scenarios.items():
+        yield from describe_model(scenario, f"scenarios.{name}")
     yield Line("contact", spec.contact or "losable where proved", "", "")
     yield Line("coordinates", spec.coordinates, "", "")
     yield from _switching(spec.switching)
@@ -304,6 +308,9 @@ def describe_model(value: object, name: str = "") -> Iterator[Line]:
         for field in type(value).model_fields:
             if name or field not in ("kind", "name", "title"):
                 yield from describe_model(getattr(value, field), f"{name}.{field}".lstrip("."))
+    elif isinstance(value, dict):
+        for key, item in value.items():
+            yield from describe_model(item, f"{name}.{key}")
     elif isinstance(value, tuple):
         for index, item in enumerate(value):
             yield from describe_model(item, f"{name}[{index}]")

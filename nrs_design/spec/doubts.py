@@ -6,8 +6,14 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from nrs_design.proof.bounds import rounded_up
+
 if TYPE_CHECKING:
+    from nrs_design.spec.interaction import InteractionDesignSpec
     from nrs_design.spec.load import Spec
+
+# Beyond a lever arm in m and a time constant in s, another unit was probably meant.
+_LONGEST, _SLOWEST = 2, 1
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,3 +54,58 @@ def doubt_spec(spec: Spec) -> Iterator[Doubt]:
                 f"environment {name} is touched by no controller, so nothing is shown about it "
                 "(list it in the contacts of a controller, or remove it)",
             )
+    yield from _doubt_units(spec)
+    yield from _doubt_thresholds(spec)
+    yield from _doubt_command(spec)
+
+
+def _doubt_units(spec: InteractionDesignSpec) -> Iterator[Doubt]:
+    """Yield what is far beyond the size or slowness of a surgical robot."""
+    slowness = spec.actuator.time_constant
+    if slowness.range[1].exact > _SLOWEST:
+        yield Doubt(
+            ("actuator", "time_constant"),
+            f"the motor needs {slowness.nominal.text} to follow: is that its unit?",
+        )
+    for name, environment in spec.environments.items():
+        arm = environment.lever_arm
+        if arm is not None and arm.exact > _LONGEST:
+            yield Doubt(
+                ("environments", name, "lever_arm"),
+                f"the lever arm of {name} is {arm.text}: is that its unit? Stiffness and damping "
+                "at the pivot grow with its square",
+            )
+
+
+def _doubt_thresholds(spec: InteractionDesignSpec) -> Iterator[Doubt]:
+    """Yield thresholds that the torque reaches only where it is too large already."""
+    logic, limit = spec.mode_logic, spec.limits.torque
+    if logic is None or logic.type != "thresholds":
+        return
+    for index, switch in enumerate(logic.switches, 1):
+        torque = switch.torque
+        if torque is None or torque.above is None:
+            continue
+        if torque.above.not_below > limit.not_above:
+            yield Doubt(
+                ("mode_logic", "switches"),
+                f"switch {index} of the mode logic, from {switch.source} to {switch.target}, waits "
+                f"for a torque of {torque.above.text}, above limits.torque of {limit.text} (lower "
+                "the threshold by noise and by what the torque moves in its age)",
+            )
+
+
+def _doubt_command(spec: InteractionDesignSpec) -> Iterator[Doubt]:
+    """Yield a limit of the command that holds the axis below the speed it has to reach."""
+    limits, gain = spec.limits, spec.actuator.gain
+    if limits.command is None:
+        return
+    reached = gain.range[1].not_above * limits.command.not_above
+    if reached < limits.velocity.not_below:
+        yield Doubt(
+            ("limits", "command"),
+            f"at limits.command of {limits.command.text} the motor turns at "
+            f"{rounded_up(reached)} rad/s at most, below limits.velocity of "
+            f"{limits.velocity.text}: the axis cannot follow a command at that limit (raise "
+            "limits.command, or lower limits.velocity)",
+        )

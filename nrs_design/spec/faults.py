@@ -251,7 +251,9 @@ def _words(details: ErrorDetails, location: Location, model: type[BaseModel]) ->
         remedy = f"write {context['expected']}"
         return f"{where}: {quoted(value)} is not known", remedy
     if kind in _MAPPINGS:
-        keys = fields_at(model, details["loc"]) if kind != "dict_type" else {"name": ""}
+        keys = {"name": ""}
+        if kind != "dict_type":
+            keys = fields_at(model, details["loc"], needed=True)
         listing = ", ".join(f"{key}: ..." for key in keys)
         return (
             f"{where}: expected a mapping, not {_shape(value)}",
@@ -298,10 +300,24 @@ def dotted(location: Iterable[int | str]) -> str:
     return text.removeprefix(".")
 
 
-def fields_at(model: type[BaseModel], location: Location) -> dict[str, str]:
-    """Names and descriptions of the keys at a location as validation reports it, tags included."""
+def fields_at(
+    model: type[BaseModel], location: Location, *, needed: bool = False
+) -> dict[str, str]:
+    """Names and descriptions of the keys at a location as validation reports it, tags included.
+
+    Parameters
+    ----------
+    model : type
+        Of the whole file.
+    location : sequence of int or str
+        Where to look.
+    needed : bool
+        Only those that must be there; all, if none must.
+    """
     if not location:
-        fields = model.model_fields.items()
+        fields = list(model.model_fields.items())
+        if needed:
+            fields = [item for item in fields if item[1].is_required()] or fields
         return {field.alias or name: field.description or "" for name, field in fields}
     field = model.model_fields.get(str(location[0]))
     arms = _models_in(field.annotation) if field else []
@@ -318,7 +334,7 @@ def fields_at(model: type[BaseModel], location: Location) -> dict[str, str]:
         rest = rest[1:]
     while rest and isinstance(rest[0], int):
         rest = rest[1:]
-    return fields_at(arms[0], rest) if arms else {}
+    return fields_at(arms[0], rest, needed=needed) if arms else {}
 
 
 def _models_in(annotation: Any) -> list[type[BaseModel]]:

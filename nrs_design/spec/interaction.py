@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from functools import partial
 from typing import Annotated, Literal
 
@@ -15,15 +15,15 @@ from nrs_design.spec.controllers import (
     IdleStatesSpec,
     Offset,
     contact_name,
-    names_in,
     touched_in,
 )
 from nrs_design.spec.coupling import CouplingSpec, check_coupling
 from nrs_design.spec.dwell import DwellObstacle, find_changing_contact
 from nrs_design.spec.environment import EnvironmentSpec
-from nrs_design.spec.faults import all_of, did_you_mean, fault
+from nrs_design.spec.faults import all_of, fault
 from nrs_design.spec.fields import Digits, Label, Name, Title
 from nrs_design.spec.goals import GoalsSpec, check_applicable
+from nrs_design.spec.mixture import check_mixture, check_offsets
 from nrs_design.spec.mode_logic import ModeLogicSpec, check_kept, rules_of
 from nrs_design.spec.model import SpecModel
 from nrs_design.spec.motion import ActuatorSpec, LimitsSpec, MotionLoopSpec, check_commands
@@ -38,12 +38,19 @@ from nrs_design.spec.sampling import (
     check_peak,
     takes_motor_ranges,
 )
+from nrs_design.spec.scenarios import ScenarioSpec, check_scenario
 from nrs_design.spec.sensor import SensorSpec
 from nrs_design.spec.switching import MODE_LOGIC, DwellTime, LogicalRule, check_names
+from nrs_design.spec.touched import (
+    check_at_once,
+    check_controller_names,
+    check_free,
+    check_memories,
+    check_references,
+    check_springs,
+)
 
 MAX_ENTRIES = 64
-# The contact in the names of the modes of free motion.
-FREE = "free"
 
 
 class DesignSpec(SpecModel):
@@ -119,6 +126,10 @@ class InteractionDesignSpec(SpecModel):
         "with dwell_time and transitions between controllers, or between controllers in one "
         "contact each, such as tissue/soft"
     )
+    scenarios: Annotated[dict[Label, ScenarioSpec], Field(max_length=MAX_ENTRIES)] = Field(
+        default_factory=dict,
+        description="runs for `nrs-design simulate`: name -> scenario; no proof depends on them",
+    )
     # The default is made without validation, for which a validator of its own would be built.
     certification: CertificationSpec = Field(
         default_factory=CertificationSpec.model_construct,
@@ -149,18 +160,19 @@ class InteractionDesignSpec(SpecModel):
     def across(self) -> tuple[Callable[[], object], ...]:
         """Return the checks between parts: contacts, goals, disturbances, the motor, switching."""
         return (
-            lambda: _check_mixture(
+            lambda: check_mixture(
                 self.controllers, self.environments, self.idle_states, self.coordinates
             ),
-            partial(self._check_each, _check_references),
-            lambda: _check_free(self.environments),
+            partial(self._check_each, check_references),
+            lambda: check_free(self.environments),
+            lambda: check_controller_names(self.controllers),
             lambda: all_of(
                 *(
                     partial(check_applicable, c.goals, {c.type}, "controllers", name, "goals")
                     for name, c in self.controllers.items()
                 )
             ),
-            partial(self._check_each, _check_springs),
+            partial(self._check_each, check_springs),
             lambda: check_disturbances(self.disturbances, self.sampling),
             partial(_check_sensor, self),
             lambda: check_peak(self.goals, self.disturbances),
@@ -186,8 +198,8 @@ class InteractionDesignSpec(SpecModel):
                 ),
                 deflection=self.coordinates == "deflection",
             ),
-            lambda: _check_memories(self.controllers, self.environments, self.coordinates),
-            lambda: _check_offsets(self.controllers, self.idle_states),
+            lambda: check_memories(self.controllers, self.environments, self.coordinates),
+            lambda: check_offsets(self.controllers, self.idle_states),
             lambda: all_of(
                 *(
                     partial(self._check_preload, name)
@@ -197,7 +209,7 @@ class InteractionDesignSpec(SpecModel):
             ),
             lambda: all_of(
                 *(
-                    partial(_check_at_once, *item, self.environments, self.contact)
+                    partial(check_at_once, *item, self.environments, self.contact)
                     for item in self.controllers.items()
                 )
             ),
@@ -215,6 +227,7 @@ class InteractionDesignSpec(SpecModel):
             lambda: check_kept(
                 self.mode_logic, self.switching, self.controllers, self.environments
             ),
+            partial(_check_scenarios, self),
             lambda: all_of(
                 *(
                     partial(_check_dwell_time, dwell, self.find_dwell_obstacle, ("switching", *at))
@@ -325,6 +338,26 @@ class InteractionDesignSpec(SpecModel):
         )
 
 
+def _check_scenarios(spec: InteractionDesignSpec) -> None:
+    """Refuse scenarios that do not fit the rest of the spec."""
+    logic = spec.mode_logic is not None and spec.mode_logic.type == "thresholds"
+    given = (spec.controllers, spec.environments, spec.limits.velocity)
+    all_of(
+        *(
+            partial(check_scenario, name, scenario, *given, logic=logic)
+            for name, scenario in spec.scenarios.items()
+        ),
+        lambda: check_commands(
+            spec.actuator.command,
+            {
+                ("scenarios", name, "errors", "friction"): scenario.errors.friction
+                for name, scenario in spec.scenarios.items()
+                if scenario.errors is not None and scenario.errors.friction is not None
+            },
+        ),
+    )
+
+
 def _check_commands(spec: InteractionDesignSpec) -> None:
     """Refuse a gain or a friction about commands that the motor does not take."""
     loop, disturbances = spec.motion_loop, spec.disturbances
@@ -336,79 +369,6 @@ def _check_commands(spec: InteractionDesignSpec) -> None:
     check_commands(
         spec.actuator.command, {at: item for at, item in written.items() if item is not None}
     )
-
-
-def _check_mixture(
-    controllers: dict[str, ControllerSpec],
-    environments: dict[str, EnvironmentSpec],
-    idle: IdleStatesSpec | None,
-    coordinates: str,
-) -> None:
-    """Impedance controllers have states that position and force controllers do not use."""
-    first_name, first = next(iter(controllers.items()))
-    others = (
-        (name, controller.type)
-        for name, controller in controllers.items()
-        if controller.commands != first.commands
-    )
-    name, kind = next(others, (None, None))
-    if idle is None and name is not None:
-        raise fault(
-            f"{kind} is mixed with {first.type} ({first_name!r}), and it is not said what the "
-            "states of impedance controllers do meanwhile",
-            "add `idle_states: {decay: 20 1/s}`, or use one kind of controller",
-            "controllers",
-            name,
-            "type",
-        )
-    if idle is None:
-        return
-    if name is None:
-        raise fault(
-            "idle_states without impedance controllers beside position or force controllers",
-            "remove idle_states",
-            "idle_states",
-        )
-    if coordinates == "force":
-        raise fault(
-            "force coordinates do not apply to impedance controllers beside others",
-            "use `coordinates: deflection`",
-            "coordinates",
-        )
-    for contact, environment in environments.items():
-        if environment.remembers:
-            raise fault(
-                f"{contact!r}, which is {environment.model}, is not modelled for impedance "
-                "controllers beside others",
-                "use elastic or kelvin-voigt environments, or one kind of controller",
-                "environments",
-                contact,
-                "model",
-            )
-
-
-def _check_offsets(controllers: dict[str, ControllerSpec], idle: IdleStatesSpec | None) -> None:
-    """Refuse offsets that differ, and offsets where impedance controllers integrate a reference."""
-    first: tuple[str, Offset] | None = None
-    for name, controller in controllers.items():
-        if controller.type != "force":
-            continue
-        at = ("controllers", name, "offset")
-        if idle is not None and controller.offset != "none":
-            raise fault(
-                f"an offset is not modelled for force controllers beside impedance controllers "
-                f"({name!r} has offset {controller.offset})",
-                "leave offset out, or write a spec without impedance controllers",
-                *at,
-            )
-        first = first or (name, controller.offset)
-        if controller.offset != first[1]:
-            raise fault(
-                f"{name!r} has offset {controller.offset}, {first[0]!r} has {first[1]}: one state "
-                "cannot hold both",
-                f"give all force controllers `offset: {first[1]}`",
-                *at,
-            )
 
 
 def _check_contact_names(spec: InteractionDesignSpec) -> None:
@@ -432,56 +392,6 @@ def _check_contact_names(spec: InteractionDesignSpec) -> None:
                 f"name controllers alone in the rules, or leave {at} out",
                 "switching",
             )
-
-
-def _check_free(environments: Mapping[str, EnvironmentSpec]) -> None:
-    """Refuse the name that the modes of free motion have."""
-    if FREE in environments:
-        raise fault(
-            f"an environment cannot be called {FREE!r}: so are the modes without contact",
-            "call it by what it is, such as `tissue`",
-            "environments",
-            FREE,
-        )
-
-
-def _check_references(
-    name: str,
-    controller: ControllerSpec,
-    environments: dict[str, EnvironmentSpec],
-) -> None:
-    if controller.environment is None:
-        return
-
-    def check(environment: str, *at: int | str) -> None:
-        if environment not in environments:
-            raise fault(
-                f"there is no environment {environment!r}",
-                did_you_mean(environment, environments),
-                "controllers",
-                name,
-                *at,
-            )
-
-    all_of(
-        partial(check, controller.environment, "environment"),
-        # By default the contact is the environment itself.
-        *(
-            partial(check, name, "contacts", index)
-            for index, contact in enumerate(controller.contacts)
-            for name in names_in(contact)
-            if "contacts" in controller.model_fields_set
-        ),
-    )
-    if controller.environment not in touched_in(controller.contacts):
-        raise fault(
-            f"{name!r} is designed for {controller.environment!r}, but that is not among its "
-            "contacts: nothing would be proved about it there",
-            f"add {controller.environment} to contacts, or design it for one of them",
-            "controllers",
-            name,
-            "contacts",
-        )
 
 
 def _check_sensor(spec: InteractionDesignSpec) -> None:
@@ -517,87 +427,6 @@ def _check_sensor(spec: InteractionDesignSpec) -> None:
             "disturbances",
             "force_step",
         )
-
-
-def _check_springs(
-    name: str, controller: ControllerSpec, environments: dict[str, EnvironmentSpec]
-) -> None:
-    """Refuse force control of what is no spring: its force is not that of the position alone."""
-    if controller.commands == "velocity":
-        return
-    for contact in touched_in(controller.contacts):
-        environment = environments.get(contact)
-        if environment is None or environment.is_spring:
-            continue
-        what = "remembers" if environment.remembers else "has damping"
-        raise fault(
-            f"force control in contact with {contact!r} is not modelled: it is "
-            f"{environment.model}, and {what}",
-            "use an elastic environment for force controllers",
-            "controllers",
-            name,
-            "contacts" if "contacts" in controller.model_fields_set else "environment",
-        )
-
-
-def _check_at_once(
-    name: str,
-    controller: ControllerSpec,
-    environments: dict[str, EnvironmentSpec],
-    losable: Literal["losable", "kept"] | None,
-) -> None:
-    """Refuse what is not modelled about several things that are touched at once."""
-    for index, contact in enumerate(controller.contacts):
-        known = [(key, environments[key]) for key in names_in(contact) if key in environments]
-        if len(names_in(contact)) == 1:
-            continue
-        at = ("controllers", name, "contacts", index)
-        for key, environment in known:
-            if environment.remembers:
-                raise fault(
-                    f"{key!r}, which is {environment.model}, remembers: touching it at once with "
-                    "others is not modelled",
-                    "use elastic or kelvin-voigt environments there",
-                    *at,
-                )
-            if losable == "losable" and not environment.is_losable:
-                raise fault(
-                    f"losing {key!r} on its own is not modelled while {contact_name(contact)} are "
-                    "touched at once: it has damping or a preload",
-                    "use `contact: kept`, or elastic environments",
-                    *at,
-                )
-
-
-def _check_memories(
-    controllers: dict[str, ControllerSpec],
-    environments: dict[str, EnvironmentSpec],
-    coordinates: str,
-) -> None:
-    """Refuse what is not modelled about environments that remember."""
-    touched = {
-        contact: environments[contact]
-        for controller in controllers.values()
-        for contact in touched_in(controller.contacts)
-        if contact in environments
-    }
-    for name, environment in touched.items():
-        if not environment.has_rest and len(touched) > 1:
-            others = ", ".join(other for other in touched if other != name)
-            raise fault(
-                f"{environment.model} has no rest position, so {name!r} shares no deflection with "
-                f"{others}",
-                "let the controllers touch no other environment, or write a spec for each",
-                "environments",
-                name,
-                "model",
-            )
-        if environment.remembers and coordinates == "force":
-            raise fault(
-                f"force coordinates do not apply to {name!r}, which is {environment.model}",
-                "use `coordinates: deflection`",
-                "coordinates",
-            )
 
 
 def _check_dwell_time(

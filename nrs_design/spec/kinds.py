@@ -12,9 +12,19 @@ ACTUATOR_GAIN = QuantityKind(
     "an actuator gain",
     tuple(f"rad/s/{command}" for command in COMMAND_UNITS),
     "4.8417e-4 rad/s/rpm",
-    {"rad/s": "the gain is per command unit: write '{value} rad/s/rpm'"},
+    {
+        "rad/s": "the gain is per command unit: write '{value} rad/s/rpm'",
+        "rpm/V": "rpm is the driver's command unit and is never converted: write rad/s/V (1 rpm is "
+        "pi/30 rad/s)",
+        "1/(V*s)": "name the angle: write '{value} rad/s/V'",
+    },
 )
-DURATION = QuantityKind("a duration", ("s",), "0.0351 s")
+DURATION = QuantityKind(
+    "a duration",
+    ("s",),
+    "0.0351 s",
+    dict.fromkeys(("Hz", "1/s"), "that is a frequency: write the time, one over it"),
+)
 SEARCH_BUDGET = QuantityKind("a budget of time", ("s",), "60 s")
 DWELL_TIME = QuantityKind("a dwell time", ("s",), "2.76 s")
 DERIVATIVE_GAIN = QuantityKind(

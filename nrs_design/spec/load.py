@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
-import json
 import os
 from dataclasses import field
 from pathlib import Path
@@ -32,6 +30,7 @@ from nrs_design.spec.faults import (
     file_faults,
     place_of,
 )
+from nrs_design.spec.meaning import hash_meaning
 from nrs_design.spec.model import SpecModel
 
 if TYPE_CHECKING:
@@ -53,7 +52,8 @@ class LoadedSpec:
     path : Path
         The file, as it was named.
     sha256 : str
-        Hash of what the file says, in hexadecimal; see `hash_meaning`.
+        Hash of what the file says, in hexadecimal; see `hash_meaning`. Where it names a robot, the
+        bounds of that are counted in.
     text : str
         The file's text.
     spec : InteractionDesignSpec, SwitchedSystemSpec or RobotSpec
@@ -100,7 +100,16 @@ def read_spec(path: str | os.PathLike[str]) -> LoadedSpec:
     _, text = read_source(file)
     root, syntax = parse_with_faults(text, file)
     spec = _validate(root, syntax, file)
-    return LoadedSpec(file, hash_meaning(to_data(root)), text, spec, root)
+    sha256 = hash_meaning(to_data(root))
+    if spec.kind == "interaction-design" and spec.coupling is not None and spec.coupling.robot:
+        from nrs_design.spec.robot_bounds import bounds_of
+
+        at = place_of(root, ("coupling", "robot"), at_key=True)
+        bounds = bounds_of(file, spec.coupling.robot, at)
+        spec = spec.model_copy(update={"coupling": spec.coupling.bounded(bounds)})
+        # What is said of the robot is a part of what the spec says.
+        sha256 = hash_meaning({"spec": sha256, "bounds": bounds.id})
+    return LoadedSpec(file, sha256, text, spec, root)
 
 
 def load_spec(path: str | os.PathLike[str]) -> Spec:
@@ -139,17 +148,6 @@ def model_of(kind: str) -> type[Spec]:
     from nrs_design.spec.switched_system import SwitchedSystemSpec
 
     return SwitchedSystemSpec
-
-
-def hash_meaning(said: Data) -> str:
-    """Return the SHA-256 of what a document says (as `to_data` gives it), in hexadecimal.
-
-    Two documents share it exactly if they have the same keys in the same order and the same
-    texts: comments, line ends, quotes and layout do not count. A spec is read from these texts and
-    from nothing else. Order counts because modes are numbered in the order of the controllers.
-    """
-    canonical = json.dumps(said, separators=(",", ":"), ensure_ascii=True)
-    return hashlib.sha256(canonical.encode()).hexdigest()
 
 
 def _validate(root: Node, syntax: tuple[Fault, ...], path: Path | None) -> Spec:

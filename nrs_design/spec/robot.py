@@ -10,6 +10,7 @@ from nrs_design.spec.faults import fault
 from nrs_design.spec.fields import Name, Positive, Title, read_exact
 from nrs_design.spec.model import ReadBy, SpecModel
 from nrs_design.spec.motion import CommandUnit, MotionLoopSpec, check_commands
+from nrs_design.spec.quantity import Quantity
 from nrs_design.spec.quantity_fields import (
     ActuatorGain,
     Angle,
@@ -19,6 +20,7 @@ from nrs_design.spec.quantity_fields import (
     Coordinate,
     Duration,
     Gravity,
+    LargestCommand,
     Length,
     LengthBounds,
     LinearAcceleration,
@@ -216,12 +218,21 @@ class DriveSpec(SpecModel):
     encoder_counts: Counts = Field(
         description="counts of the encoder per turn of the gearhead's output"
     )
+    largest_command: LargestCommand | None = Field(
+        default=None,
+        description="largest command that the motor's driver takes, in rpm: exported code "
+        "saturates there",
+    )
 
     @model_validator(mode="after")
     def _check_commands(self) -> DriveSpec:
-        check_commands(
-            _DRIVEN_BY, {("gain",): self.gain, ("coulomb_friction",): self.coulomb_friction}
-        )
+        written: dict[tuple[int | str, ...], Quantity] = {
+            ("gain",): self.gain,
+            ("coulomb_friction",): self.coulomb_friction,
+        }
+        if self.largest_command is not None:
+            written["largest_command",] = self.largest_command
+        check_commands(_DRIVEN_BY, written)
         return self
 
 

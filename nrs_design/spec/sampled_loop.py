@@ -7,6 +7,7 @@ from functools import partial
 from typing import TYPE_CHECKING
 
 from nrs_design.spec.faults import all_of, fault
+from nrs_design.spec.sampling import LARGEST_RATIO
 
 if TYPE_CHECKING:
     from nrs_design.spec.interaction import InteractionDesignSpec
@@ -17,8 +18,12 @@ Refusal = tuple[tuple[str, ...], str, str]
 
 def check_sampled(spec: InteractionDesignSpec) -> None:
     """Refuse what is not modelled beside `sampling`, all of it at once."""
-    if spec.sampling is not None:
-        all_of(*(partial(_refuse, *refusal) for refusal in _not_modelled(spec)))
+    if spec.sampling is None:
+        return
+    if (odd := spec.sampling.find_odd_periods()) is not None:
+        form = f"give 1 to {LARGEST_RATIO} periods of one loop to a period of the other"
+        raise fault(odd, form, "sampling", "outer_period")
+    all_of(*(partial(_refuse, *refusal) for refusal in _not_modelled(spec)))
 
 
 def _refuse(at: tuple[str, ...], what: str, remedy: str) -> None:
@@ -27,6 +32,8 @@ def _refuse(at: tuple[str, ...], what: str, remedy: str) -> None:
 
 def _not_modelled(spec: InteractionDesignSpec) -> Iterator[Refusal]:
     yield from _controllers(spec)
+    if spec.sampling is not None and spec.sampling.round > 1:
+        yield from _two_periods(spec)
     for name in sorted(spec.touched & spec.environments.keys()):
         if spec.environments[name].remembers:
             remedy = "use elastic or kelvin-voigt environments, or leave sampling out"
@@ -47,6 +54,21 @@ def _not_modelled(spec: InteractionDesignSpec) -> Iterator[Refusal]:
     for at, _ in times:
         what = "the rules of switching have dwell times in s"
         yield ("switching", *at), what, "leave them out, or sampling"
+
+
+def _two_periods(spec: InteractionDesignSpec) -> Iterator[Refusal]:
+    """Refuse what is not modelled where the outer loop has a period of its own."""
+    at = ("sampling", "outer_period")
+    others = [name for name, c in spec.controllers.items() if c.commands != "velocity"]
+    if others:
+        what = f"an outer_period beside {others[0]}, which is no impedance controller"
+        yield at, what, "leave outer_period out"
+    if spec.disturbances is not None:
+        what = "disturbances beside an outer_period"
+        yield ("disturbances",), what, "leave disturbances or outer_period out"
+    if not spec.switching.is_arbitrary:
+        what = "rules of switching beside an outer_period"
+        yield ("switching",), what, "use `switching: arbitrary`, which allows for more"
 
 
 def _controllers(spec: InteractionDesignSpec) -> Iterator[Refusal]:
@@ -73,11 +95,6 @@ def _loss_of_contact(spec: InteractionDesignSpec) -> Iterator[Refusal]:
     if spec.idle_states is not None:
         what = "loss of contact under impedance controllers beside others"
         yield ("contact",), what, "use `contact: kept`, or one kind of controller"
-    for name in sorted(spec.touched & spec.environments.keys()):
-        environment = spec.environments[name]
-        if not (environment.is_spring or environment.remembers):
-            what = f"loss of contact with {name}, which has damping"
-            yield ("contact",), what, "use `contact: kept`, or leave sampling out"
     if len({"Kt" in controller.gains() for controller in spec.controllers.values()}) > 1:
         what = "loss of contact where some controllers have a spring Kt and some have none"
         yield ("contact",), what, "use `contact: kept`, or give all of them a spring"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Collection, Mapping
 from fractions import Fraction
 from typing import Annotated, Literal
@@ -20,6 +21,9 @@ from nrs_design.spec.units import command_unit
 
 # Every sample of delay is a state more.
 LONGEST_DELAY = 10
+# There is a function for every sample of the faster loop in a period of the slower one.
+LARGEST_RATIO = 50
+_TIME = re.compile(r"\S+ *[mun]?s")
 _FORM = f"write a number of samples from 0 to {LONGEST_DELAY}, or [smallest, largest]"
 
 
@@ -28,6 +32,11 @@ def _read_delay(value: object) -> tuple[int, int]:
     ends = tuple(value) if isinstance(value, tuple | list) else (value, value)
     if len(ends) != 2:
         raise fault("expected a number of samples, or two of them", _FORM)
+    for end in ends:
+        if isinstance(end, str) and _TIME.fullmatch(end):
+            raise fault(
+                f"{end!r} is a time, and a delay counts samples", f"{_FORM}: age over period"
+            )
     numbers = [read_exact(end) for end in ends]
     if any(n.denominator != 1 or not 0 <= n <= LONGEST_DELAY for n in numbers):
         raise fault("a delay is a whole number of samples", _FORM)
@@ -50,13 +59,19 @@ class SamplingSpec(IdentifiedSpec):
     """The law as a processor runs it: once a period, with float32 coefficients.
 
     The derivative of the motion controller is a backward difference, the command is held between
-    samples, and motion and admittance run with one period.
+    samples, and motion and admittance run with one period, unless the admittance has its own.
     """
 
     period: Duration = Field(description="time between two samples in s")
     delay: Delay = Field(
         description="age of the force sample that the law uses, in samples: one number, or "
         "[smallest, largest] for a delay that may differ at every sample"
+    )
+    outer_period: Duration | None = Field(
+        default=None,
+        description="time between two samples of the outer loop (filter of the force and "
+        "admittance) in s, where it is not that of the motion loop: a whole number of its "
+        "periods, or a whole part of one; `delay` counts samples of the force, so these",
     )
     admittance: Literal["exact", "euler"] = Field(
         default="exact",
@@ -65,9 +80,33 @@ class SamplingSpec(IdentifiedSpec):
     )
 
     @property
+    def outer(self) -> Fraction:
+        """Time between two samples of the force and the admittance, in s."""
+        return (self.outer_period or self.period).exact
+
+    @property
+    def step(self) -> Fraction:
+        """Time from one sample of either loop to the next, in s."""
+        return min(self.period.exact, self.outer)
+
+    @property
+    def round(self) -> int:
+        """Samples of the faster loop in a period of the slower one; one for a common period."""
+        return int(max(self.period.exact, self.outer) / self.step)
+
+    @property
     def oldest(self) -> Fraction:
         """Age of the oldest force sample that the law uses, in s."""
-        return self.delay[1] * self.period.exact
+        return self.delay[1] * self.outer
+
+    def find_odd_periods(self) -> str | None:
+        """Say why the loops do not meet at common samples, or None."""
+        ratio = max(self.period.exact, self.outer) / self.step
+        if ratio.denominator != 1:
+            return "neither period is a whole number of the other"
+        if ratio > LARGEST_RATIO:
+            return f"one period is {ratio} of the other"
+        return None
 
 
 class DisturbancesSpec(SpecModel):

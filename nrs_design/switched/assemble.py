@@ -173,7 +173,7 @@ def assemble(
             system = couple_axes(system, declared.scaled(scale))
     else:
         raise AssemblyError(f"unknown coordinates {coordinates!r}: deflection or force")
-    period = None if spec.sampling is None else spec.sampling.period.exact
+    period = None if spec.sampling is None else spec.sampling.outer
     sensed = sensor_texts(
         design.sensor, period, disturbed=bool(system.channels) and period is not None
     )

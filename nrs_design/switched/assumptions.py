@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Iterator, Sequence
 from fractions import Fraction
 from typing import TYPE_CHECKING
@@ -44,6 +45,7 @@ LOST_ANYWHERE = (
 )
 UNCOUPLED = "The axes of the robot do not act on each other."
 CONTINUOUS = "continuous at a switch (identity resets)"
+_TAKES = "The motor takes commands in "
 _STAYS = {
     "dwell_time": "stays active for at least",
     "longest_dwell_time": "is left after at most",
@@ -154,9 +156,15 @@ def command_texts(command: str) -> Iterator[str]:
     """
     if command != "rpm":
         yield (
-            f"The motor takes commands in {command}: Kp of the motion controller is in "
+            f"{_TAKES}{command}: Kp of the motion controller is in "
             f"{command}/rad, Kd in {command}*s/rad."
         )
+
+
+def command_in(statements: Iterable[str]) -> str:
+    """Return the unit of commands that `command_texts` has put among the assumptions."""
+    found = (re.match(_TAKES + "(.+?):", text) for text in statements)
+    return next((match[1] for match in found if match), "rpm")
 
 
 def identified_texts(spec: InteractionDesignSpec) -> Iterator[str]:

@@ -71,7 +71,6 @@ def with_command(
             remedy="leave command out, or Kt",
             at=("controllers", sprung, "Kt"),
         )
-    n = system.order
     motion = realize(loop) if joint is None else joint.nominal
     free = () if system.contact is None else system.contact.free
     columns = tuple(_column(mode, motion) for mode in (*system.modes, *free))
@@ -80,10 +79,32 @@ def with_command(
         system,
         assumptions=(*system.assumptions, _ASSUMED),
         channels=(Channel(name, unit, bound, columns),),
-        outputs=(
-            Output("force", "N*m", tuple(_forces(motion, n, touched)), spec.limits.torque.exact),
-            Output("velocity", "rad/s", (RationalMatrix.from_rows([motion.output(n)]),)),
-        ),
+        outputs=outputs_of(system.order, motion, spec, touched),
+    )
+
+
+def outputs_of(
+    n: int,
+    motion: Realization | JointMotion,
+    spec: InteractionDesignSpec,
+    touched: Sequence[Environment],
+) -> tuple[Output, Output]:
+    """Return force and velocity of a loop whose last state is the deflection.
+
+    Parameters
+    ----------
+    n : int
+        Number of states.
+    motion : Realization or JointMotion
+        The motion loop, whose states come first.
+    spec : InteractionDesignSpec
+        With the limit of the torque.
+    touched : sequence of Environment
+        All contacts: the force has a row for each of their corners.
+    """
+    return (
+        Output("force", "N*m", tuple(_forces(motion, n, touched)), spec.limits.torque.exact),
+        Output("velocity", "rad/s", (RationalMatrix.from_rows([motion.output(n)]),)),
     )
 
 

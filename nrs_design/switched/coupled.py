@@ -1,7 +1,7 @@
 """All axes of a robot at once: what the inertia of the links does to the modes of one axis.
 
-The numbers of a coupling are declared; docs/certificates/coupled-axes.md derives what is made of
-them.
+The numbers of a coupling are declared, or computed from a robot;
+docs/certificates/coupled-axes.md derives what is made of them.
 """
 
 from __future__ import annotations
@@ -11,19 +11,25 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 
 from nrs_design.errors import AssemblyError
+from nrs_design.proof.bounds import upper
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.system import Coupling, Mode, SwitchedSystem
 from nrs_design.proof.text import exact_text
 from nrs_design.spec.coupling import CouplingSpec
+from nrs_design.spec.exact import parse_exact
+from nrs_design.spec.robot_bounds import COMPUTED
 from nrs_design.switched.assumptions import UNCOUPLED
 
+DECLARED = "declared, not computed from a robot"
+# Of a bound that is multiplied by a speed.
+DIGITS = 6
 OMEGA, DELTA = "omega [rad/s]", "delta [rad]"
 Row = list[Fraction]
 
 
 @dataclass(frozen=True, slots=True)
 class AxesCoupling:
-    """What is declared about the links of a robot, in SI units.
+    """What is known about the links of a robot, in SI units.
 
     Parameters
     ----------
@@ -38,6 +44,10 @@ class AxesCoupling:
     gravity_gradient : Fraction or None
         The torque of gravity changes by at most this times the way from the pose of rest; None
         leaves it out.
+    source : str
+        Where the numbers come from, for the assumptions.
+    poses : str
+        In which poses they hold.
     """
 
     drive: Fraction
@@ -46,10 +56,12 @@ class AxesCoupling:
     coriolis: Fraction | None = None
     speed: str | None = None
     gravity_gradient: Fraction | None = None
+    source: str = DECLARED
+    poses: str = "all poses that are used"
 
     @classmethod
     def of(cls, spec: CouplingSpec, drive: Fraction) -> AxesCoupling:
-        """Read what a spec declares.
+        """Read what a spec declares, or the bounds of the robot that it names.
 
         Parameters
         ----------
@@ -57,7 +69,15 @@ class AxesCoupling:
             The declaration.
         drive : Fraction
             The J.
+
+        Raises
+        ------
+        AssemblyError
+            If it names a robot, and has not been read from its file.
         """
+        if spec.robot is not None:
+            return cls._of_robot(spec, drive)
+        assert spec.inertia is not None
         (lightest, heaviest), coriolis = spec.inertia, spec.coriolis
         gradient = spec.gravity_gradient
         return cls(
@@ -67,6 +87,30 @@ class AxesCoupling:
             None if coriolis is None else coriolis.exact,
             None if spec.speed is None else spec.speed.text,
             None if gradient is None else gradient.exact,
+        )
+
+    @classmethod
+    def _of_robot(cls, spec: CouplingSpec, drive: Fraction) -> AxesCoupling:
+        bounds = spec.bounds
+        if bounds is None:
+            raise AssemblyError(
+                "the bounds of the robot are read with the file of the spec, and this is a text",
+                remedy="read the spec from its file",
+                at=("coupling", "robot"),
+            )
+        speed, at_rest = spec.speed, spec.gravity_compensated == "at-rest"
+        return cls(
+            drive,
+            bounds.lightest,
+            bounds.heaviest,
+            None if speed is None else _short(bounds.velocity_torques * speed.not_below),
+            None if speed is None else speed.text,
+            bounds.gravity_gradient if at_rest else None,
+            f"{COMPUTED} from the spec of robot {bounds.name}, SHA-256 "
+            f"{bounds.sha256}, in the assembly mode of its elbow_sign, with its masses, lengths, "
+            "gravity and base tilt, of rigid links without friction, counter-masses and springs; "
+            "`nrs-design verify --bounds` computes it again",
+            f"all poses with {bounds.workspace}, which are those that are used",
         )
 
     @property
@@ -86,13 +130,16 @@ class AxesCoupling:
         """
         middle = (self.lightest + self.heaviest) / 2
         half = scale * (self.heaviest - self.lightest) / 2
-        return AxesCoupling(
-            self.drive,
-            max(middle - half, Fraction(0)),
-            middle + half,
-            None if self.coriolis is None else scale * self.coriolis,
-            self.speed,
-            None if self.gravity_gradient is None else scale * self.gravity_gradient,
+        gradient, source = self.gravity_gradient, self.source
+        if scale != 1 and source != DECLARED:
+            source = f"stretched by {exact_text(scale)} from what was {source}"
+        return replace(
+            self,
+            source=source,
+            lightest=max(middle - half, Fraction(0)),
+            heaviest=middle + half,
+            coriolis=None if self.coriolis is None else scale * self.coriolis,
+            gravity_gradient=None if gradient is None else scale * gradient,
         )
 
 
@@ -186,7 +233,7 @@ def _deflection(system: SwitchedSystem, omega: Row, size: Fraction) -> Row:
 
 
 def _texts(coupling: AxesCoupling) -> Iterator[str]:
-    """Say what is taken for granted about the axes, and that it is declared."""
+    """Say what is taken for granted about the axes, and where it comes from."""
     low, high = (exact_text(m) for m in (coupling.lightest, coupling.heaviest))
     yield (
         "The axes act on each other through their links. Every axis is one of this spec: its "
@@ -200,7 +247,7 @@ def _texts(coupling: AxesCoupling) -> Iterator[str]:
     )
     yield (
         f"Every eigenvalue of the matrix of inertia of the links is in [{low}, {high}] kg*m^2, in "
-        "all poses that are used (declared, not computed from a robot)."
+        f"{coupling.poses} ({coupling.source})."
     )
     if coupling.coriolis is None:
         yield "Coriolis and centrifugal torques are left out."
@@ -208,8 +255,8 @@ def _texts(coupling: AxesCoupling) -> Iterator[str]:
         yield (
             "Coriolis and centrifugal torques are, over all axes together (root of the sum of "
             f"squares), at most {exact_text(coupling.coriolis)} N*m*s/rad times the speed "
-            "(declared, not computed from a robot), and the speed stays below "
-            f"{coupling.speed}, which is not shown."
+            f"({_shortly(coupling)}), and the speed stays below {coupling.speed}, which is not "
+            "shown."
         )
     if coupling.gravity_gradient is None:
         yield "Gravity is compensated in all poses that are used."
@@ -217,6 +264,21 @@ def _texts(coupling: AxesCoupling) -> Iterator[str]:
         yield (
             "Gravity is compensated in the pose of rest, in which all deflections are zero; from "
             "there its torque changes, over all axes together, by at most "
-            f"{exact_text(coupling.gravity_gradient)} N*m/rad times the deflections (declared, "
-            "not computed from a robot)."
+            f"{exact_text(coupling.gravity_gradient)} N*m/rad times the deflections "
+            f"({_shortly(coupling)})."
         )
+        if coupling.source != DECLARED:
+            yield (
+                "On the straight way of the joint angles from the pose of rest, all poses are "
+                "among those."
+            )
+
+
+def _shortly(coupling: AxesCoupling) -> str:
+    """Say once in full where the numbers come from."""
+    return DECLARED if coupling.source == DECLARED else "computed as the inertia is, in those poses"
+
+
+def _short(number: Fraction) -> Fraction:
+    """Return a number of few digits that is not below."""
+    return parse_exact(upper(number, DIGITS))

@@ -82,8 +82,8 @@ Loss = Literal[
 _LOST: Mapping[str, str] = MappingProxyType(
     {
         "never": "Contact is not lost: free motion is not one of the modes.",
-        "not modelled": "Contact is not lost: that an environment with damping lags behind is not "
-        "modelled in the sampled loop.",
+        "not modelled": "Contact is not lost: that is not modelled for what is known within a "
+        "preload, or has damping and is touched at once with others.",
         "anywhere": LOST_ANYWHERE,
         "anywhere under force control": "Contact may be lost and made again at any moment, "
         "whatever the deflection: free motion under force control, whose sample is zero then, is "
@@ -126,8 +126,7 @@ def assume_sampled(
     states = "All other states are" if reset else "States are"
     inputs = _PLACED_INPUTS if "under force control" in loss else _INPUTS
     return (
-        f"The law runs every {exact_text(sampling.period.exact)} s, without jitter; its command is "
-        "held in between.",
+        *_period_texts(sampling, design),
         _delay_text(*sampling.delay),
         f"The motor follows the linear actuator model of the spec; {_actuator_text(ranges)}.",
         "The tissue does not load the motor: it acts through the force sensor alone.",
@@ -152,6 +151,28 @@ def assume_sampled(
         _ARITHMETIC.format(", ".join(f"{name} {count}" for name, count in frame.counts.items())),
         _angle_text(spec),
         _beside(spec, _NOT_MODELLED if spec.sensor is None else _SENSED),
+    )
+
+
+def _period_texts(sampling: SamplingSpec, design: ControllerDesign) -> Iterator[str]:
+    """Say when what is computed."""
+    if sampling.round == 1:
+        yield (
+            f"The law runs every {exact_text(sampling.period.exact)} s, without jitter; its "
+            "command is held in between."
+        )
+        return
+    filtered = "" if design.sensor.filter is None else ", the filter of the force"
+    yield (
+        f"The motion loop runs every {exact_text(sampling.period.exact)} s; its command is held in "
+        f"between. The force is sampled{filtered} and the admittance runs every "
+        f"{exact_text(sampling.outer)} s; its reference is held in between. Neither has jitter, "
+        "and every sample of the slower loop is one of the faster."
+    )
+    yield (
+        "Where both are due, the motion loop comes first: it takes the reference of before. What "
+        "the admittance makes of a sample is used from the next sample on. The age of a force "
+        "sample is counted in samples of the admittance."
     )
 
 

@@ -6,13 +6,15 @@ will is covered by its ends. State: ``[e, omega, e_before, vm, F_1, ..., F_d, de
 error e of the motion loop, its value a period ago, the velocity vm of the admittance (absent
 without inertia), the lags of a filter, the force samples on their way, and the deflection. Beside
 position and force controllers, the reference of the impedance controllers stands in the place of
-e; without impedance controllers, there is neither it nor vm.
+e; without impedance controllers, there is neither it nor vm. Where the admittance runs more often
+than the motion loop, the command u that is held stands after e_before.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
+from enum import StrEnum
 from fractions import Fraction
 from itertools import chain
 from math import ceil
@@ -47,6 +49,14 @@ INPUTS = (
 )
 
 
+class Turn(StrEnum):
+    """What a processor with two periods computes at a sample."""
+
+    BOTH = "both"
+    MOTION = "motion"
+    ADMITTANCE = "admittance"
+
+
 @dataclass(frozen=True, slots=True)
 class Frame:
     """What all modes of a sampled loop share.
@@ -54,7 +64,7 @@ class Frame:
     Parameters
     ----------
     period : Fraction
-        In s.
+        From one sample to the next in s; of two periods the shorter one.
     motion : SampledMotion
         The motion controller.
     has_inertia : bool
@@ -74,6 +84,9 @@ class Frame:
     idle : Fraction or None
         What a period leaves of reference and velocity of the impedance controllers, where there are
         other controllers, too.
+    holds : bool
+        Whether the command of the motion loop outlasts a sample: there are some at which only the
+        admittance is computed.
     """
 
     period: Fraction
@@ -86,6 +99,7 @@ class Frame:
     integrates: bool = True
     takes_force: bool = False
     idle: Fraction | None = None
+    holds: bool = False
 
     @property
     def roundings(self) -> dict[str, Fraction]:
@@ -150,10 +164,16 @@ class Frame:
         inner = ("vm [rad/s]",) if self.has_inertia else ()
         first = ("e [rad]" if self.idle is None else "reference [rad]",) if self.integrates else ()
         sensed = () if self.low_pass is None else self.low_pass.states
-        motion = ("omega [rad/s]", "e before [rad]")
+        motion = ("omega [rad/s]", "e before [rad]", *(("u held",) if self.holds else ()))
         return (*first, *motion, *inner, *sensed, *ages, "delta [rad]")
 
-    def rows(self, law: SampledLaw, delay: int, values: Mapping[str, Fraction]) -> list[LinearForm]:
+    def rows(
+        self,
+        law: SampledLaw,
+        delay: int,
+        values: Mapping[str, Fraction],
+        turn: Turn = Turn.BOTH,
+    ) -> list[LinearForm]:
         """Return the map of one period, and below it how large each rounding is at most.
 
         The first rows lead from the states, the `INPUTS` and the `roundings` to the next states;
@@ -169,19 +189,30 @@ class Frame:
             The gain ``Km``, ``E = exp(-T/tau)``, and ``s = tau (1 - E)`` unless tau is known; in
             contact the stiffness ``k`` and the damping ``b`` that the force sample shows; other
             names say where the law itself is in a range.
+        turn : Turn
+            What is computed; the rest holds what it had.
         """
         at, shares = _Signals.of(self), self.roundings
         k, b = values.get("k", Fraction(0)), values.get("b", Fraction(0))
         ages = [combine((k, at.delta), (b, at.omega), (ONE, at.sensor)), *at.samples]
         felt = self._felt(ages[delay], at.lags)
-        if isinstance(law, SampledAdmittance):
+        lags = [_sum_of(stage, at.rounded) for stage in felt[1:]]
+        if turn is Turn.MOTION:
+            kept = [at.velocity] if self.has_inertia else []
+            answer = _Answer(at.reference, (), at.reference, kept)
+            felt, lags, ages = [], [*at.lags], [*at.samples]
+        elif isinstance(law, SampledAdmittance):
             answer = self._integrate(law, felt[-1], at, shares, retuned="a" in values)
         else:
             answer = self._place(law, felt[-1], at, shares)
         sizes = answer.sizes | {
             term.name: combine((shares[term.name], term.form)) for term in chain(*felt[1:])
         }
-        seen, speed, moved = self._move(answer, at, values, shares, sizes)
+        if turn is Turn.ADMITTANCE:
+            seen, drive = at.before, at.drive
+        else:
+            seen, drive = self._command(answer, at, shares, sizes)
+        speed, moved = self._move(drive, at, values)
         delta = combine((ONE, at.delta), (ONE, moved))
         first = [answer.reference] if self.integrates else []
         if self.integrates and self.idle is None:
@@ -191,8 +222,9 @@ class Frame:
             *first,
             speed,
             seen,
+            *([drive] if self.holds else []),
             *answer.velocity,
-            *(_sum_of(stage, at.rounded) for stage in felt[1:]),
+            *lags,
             *ages[: self.longest_delay],
             delta,
             *(sizes.get(name, nothing) for name in shares),
@@ -252,23 +284,20 @@ class Frame:
             sizes[IDLE_VELOCITY] = combine((shares[IDLE_VELOCITY] * self.idle, at.velocity))
         return _Answer(placed, terms, left, kept, sizes)
 
-    def _move(
+    def _command(
         self,
         answer: _Answer,
         at: _Signals,
-        values: Mapping[str, Fraction],
         shares: Mapping[str, Fraction],
         sizes: dict[str, LinearForm],
-    ) -> tuple[LinearForm, LinearForm, LinearForm]:
-        """Return the error that is seen, the next speed and the way, and add to the sizes."""
-        Km, E, tau = values["Km"], values["E"], self.time_constant
-        s = values["s"] if tau is None else tau * (1 - E)
+    ) -> tuple[LinearForm, LinearForm]:
+        """Return the error that is seen, and the command, and add to the sizes."""
         Kp, D = self.motion.Kp, self.motion.D
         parts = ((ONE, answer.taken), (-ONE, at.delta), (-ONE, at.encoder), (-ONE, at.angle))
         read = combine(*parts)
         rounded = [at.rounded[ERROR], *(at.rounded[term.name] for term in answer.terms)]
         seen = combine((ONE, read), *((ONE, form) for form in rounded))
-        drive = combine((Kp + D, seen), (-D, at.before), (ONE, at.friction))
+        drive = combine((Kp + D, seen), (-D, at.before))
         added = [KP, KD, *(_again(term.name) for term in answer.terms)]
         drive = combine((ONE, drive), *((ONE, at.rounded[name]) for name in added))
         # Of a sum of two sizes, the part that is of second order counts with another term.
@@ -280,8 +309,17 @@ class Frame:
         for term in answer.terms:
             name = _again(term.name)
             sizes[name] = combine((shares[name] * (Kp + D), term.form))
-        moved = combine((s, at.omega), (Km * (self.period - s), drive))
-        return seen, combine((E, at.omega), (Km * (1 - E), drive)), moved
+        return seen, drive
+
+    def _move(
+        self, drive: LinearForm, at: _Signals, values: Mapping[str, Fraction]
+    ) -> tuple[LinearForm, LinearForm]:
+        """Return the speed and the way of the motor under a command, less friction."""
+        Km, E, tau = values["Km"], values["E"], self.time_constant
+        s = values["s"] if tau is None else tau * (1 - E)
+        taken = combine((ONE, drive), (ONE, at.friction))
+        moved = combine((s, at.omega), (Km * (self.period - s), taken))
+        return combine((E, at.omega), (Km * (1 - E), taken)), moved
 
 
 # The inputs, as their forms are called below.
@@ -295,6 +333,7 @@ class _Signals:
     reference: LinearForm
     omega: LinearForm
     before: LinearForm
+    drive: LinearForm
     velocity: LinearForm
     lags: Sequence[LinearForm]
     samples: Sequence[LinearForm]
@@ -318,6 +357,7 @@ class _Signals:
         if frame.integrates and frame.idle is None:
             reference = combine((ONE, first), (ONE, delta))
         omega, before = next(left), next(left)
+        drive = next(left) if frame.holds else nothing
         velocity = next(left) if frame.has_inertia else nothing
         order = 0 if frame.low_pass is None else frame.low_pass.order
         lags = [next(left) for _ in range(order)]
@@ -325,7 +365,16 @@ class _Signals:
         rounded = dict(zip(shares, unit[size + len(INPUTS) :], strict=True))
         samples = [*left]
         return cls(
-            reference, omega, before, velocity, lags, samples, delta, rounded=rounded, **inputs
+            reference,
+            omega,
+            before,
+            drive,
+            velocity,
+            lags,
+            samples,
+            delta,
+            rounded=rounded,
+            **inputs,
         )
 
 

@@ -20,14 +20,18 @@ from nrs_design.switched.sampled_frame import INPUTS, Frame
 
 @dataclass(frozen=True, slots=True)
 class Motion:
-    """One mode, the columns of inputs and roundings, and the rows that bound the roundings."""
+    """One mode, the columns of inputs and roundings, and the rows that bound the roundings.
+
+    Of two periods, it says whether it is in force where a round begins.
+    """
 
     mode: Mode
     columns: tuple[RationalMatrix, ...]
     sizes: tuple[LinearForm, ...]
+    begins: bool = True
 
     @classmethod
-    def of(cls, name: str, rows: Sequence[LinearForm], n: int) -> Motion:
+    def of(cls, name: str, rows: Sequence[LinearForm], n: int, *, begins: bool = True) -> Motion:
         """Take apart the rows of a frame.
 
         Parameters
@@ -38,11 +42,14 @@ class Motion:
             As `Frame.rows` gives them.
         n : int
             Number of states.
+        begins : bool
+            As for the class.
         """
         moves, width = rows[:n], len(rows[0])
         columns = ([[row[i]] for row in moves] for i in range(n, width))
         mode = Mode(name, RationalMatrix.from_rows([row[:n] for row in moves]))
-        return cls(mode, tuple(map(RationalMatrix.from_rows, columns)), tuple(rows[n:]))
+        parts = tuple(map(RationalMatrix.from_rows, columns)), tuple(rows[n:])
+        return cls(mode, *parts, begins)
 
 
 def channels_of(
@@ -113,17 +120,28 @@ def outputs_of(frame: Frame, touched: Sequence[Environment], limit: Fraction) ->
     limit : Fraction
         Of the force, in N m.
     """
-    size, rows = len(frame.states), []
-    speed = frame.states.index("omega [rad/s]")
-    for environment in touched:
-        box = Box({"k": environment.stiffness, "b": damping_of(environment)})
-        for values in box.values():
-            row = zero(size)
-            row[speed], row[-1] = values["b"], values["k"]
-            rows.append(RationalMatrix.from_rows([row]))
-    omega = RationalMatrix.from_rows([coordinates(size)[speed]])
-    force = (Output("force", "N*m", tuple(rows), limit),) if rows else ()
+    rows = tuple(row for environment in touched for row in force_rows(frame, environment))
+    speed = coordinates(len(frame.states))[frame.states.index("omega [rad/s]")]
+    omega = RationalMatrix.from_rows([speed])
+    force = (Output("force", "N*m", rows, limit),) if rows else ()
     return (*force, Output("velocity", "rad/s", (omega,)))
+
+
+def force_rows(frame: Frame, environment: Environment) -> Iterator[RationalMatrix]:
+    """Yield the force of a spring and damper at the corners of its ranges, as a row on the state.
+
+    Parameters
+    ----------
+    frame : Frame
+        Of all modes.
+    environment : Environment
+        What pushes.
+    """
+    size, speed = len(frame.states), frame.states.index("omega [rad/s]")
+    for values in Box({"k": environment.stiffness, "b": damping_of(environment)}).values():
+        row = zero(size)
+        row[speed], row[-1] = values["b"], values["k"]
+        yield RationalMatrix.from_rows([row])
 
 
 def damping_of(environment: Environment) -> Interval:

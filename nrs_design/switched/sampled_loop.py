@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import partial
-from itertools import chain
+from itertools import chain, product
 
 from nrs_design.controllers.controller_design import Controller, ControllerDesign
 from nrs_design.controllers.gains import idle_share
@@ -22,22 +22,23 @@ from nrs_design.models.contact.environment import Environment
 from nrs_design.models.linear_form import LinearForm, coordinates, zero
 from nrs_design.models.plant import Plant
 from nrs_design.proof.matrix import RationalMatrix
-from nrs_design.proof.system import Contact, SwitchedSystem, Time
+from nrs_design.proof.system import Clock, Contact, SwitchedSystem, Time
 from nrs_design.spec import IdleStatesSpec, InteractionDesignSpec
-from nrs_design.spec.interval import Interval
 from nrs_design.spec.sampling import SamplingSpec
+from nrs_design.spec.touched import FREE
 from nrs_design.switched.assumptions import at_once_texts
 from nrs_design.switched.constraints import assemble_switching
 from nrs_design.switched.gain_box import GainBox
 from nrs_design.switched.parameter_box import Box
 from nrs_design.switched.parameters import Corner
 from nrs_design.switched.sampled_assumptions import Loss, assume_sampled
-from nrs_design.switched.sampled_frame import Frame
+from nrs_design.switched.sampled_frame import Frame, Turn
 from nrs_design.switched.sampled_gains import SampledGains
 from nrs_design.switched.sampled_inputs import (
     Motion,
     channels_of,
     damping_of,
+    force_rows,
     outputs_of,
     roundings_of,
 )
@@ -77,10 +78,12 @@ def close_sampled_loop(
     AssemblyError
         If the modes do not share one state, or single precision loses a coefficient.
     """
+    _check_periods(sampling)
     laws = {c.name: _sampled(c, sampling, boxes[c.name]) for c in design.controllers}
     ranges = plant.actuator_ranges or ActuatorRanges.point(plant.actuator)
     frame = _frame(spec, sampling, design, [item.law for item in laws.values()], ranges)
-    loop = _Loop(frame, sampling.delay, motor_box(ranges, frame.period))
+    turns = _turns(sampling)
+    loop = _Loop(frame, sampling.delay, motor_box(ranges, frame.period), turns)
     touched = plant.among(design.contacts)
     parts = {
         c.name: loop.in_contact(
@@ -96,11 +99,19 @@ def close_sampled_loop(
     if loss.startswith("anywhere"):
         parts = {name: (*part, *air.get(name, ())) for name, part in parts.items()}
     free = tuple(chain.from_iterable(air.values())) if loss == "on the surface" else ()
+    if Turn.MOTION in turns:
+        law = next(iter(laws.values())).law
+        # No controller has a name with a slash.
+        parts[f"/{Turn.MOTION}"] = tuple(loop.between(law, str(Turn.MOTION)))
+        free = (*free, *loop.between(law, f"{Turn.MOTION}/{FREE}")) if free else ()
     groups = {key: tuple(Corner(item.mode.name) for item in part) for key, part in parts.items()}
     motions = tuple(chain.from_iterable(parts.values()))
     flying = tuple(item.mode for item in free)
-    losable = Contact(flying, required=spec.contact == "losable") if free else None
+    damped = (environment for environment in touched if "b" in environment.parameters)
+    pulls = tuple(row for environment in damped for row in force_rows(frame, environment))
+    losable = Contact(flying, pulls, required=spec.contact == "losable") if free else None
     every = (*motions, *free)
+    begins = tuple(item.mode.name for item in every if item.begins)
     channels = tuple(channels_of(spec, design.sensor.lasting, every))
     return SwitchedSystem(
         spec.name,
@@ -117,11 +128,26 @@ def close_sampled_loop(
         channels,
         outputs_of(frame, touched, spec.limits.torque.exact) if channels else (),
         tuple(roundings_of(frame, channels, every)),
+        clock=Clock(sampling.round, begins) if sampling.round > 1 else None,
     )
 
 
+def _check_periods(sampling: SamplingSpec) -> None:
+    """Refuse loops that do not meet, as they may where a period is changed."""
+    if (odd := sampling.find_odd_periods()) is not None:
+        raise AssemblyError(odd, remedy="change both periods", at=("sampling", "outer_period"))
+
+
+def _turns(sampling: SamplingSpec) -> tuple[Turn, ...]:
+    """Return what is computed at a sample, in a round and in between."""
+    if sampling.round == 1:
+        return (Turn.BOTH,)
+    faster = sampling.outer < sampling.period.exact
+    return Turn.BOTH, Turn.ADMITTANCE if faster else Turn.MOTION
+
+
 def _sampled(controller: Controller, sampling: SamplingSpec, box: GainBox) -> SampledGains:
-    period, method = sampling.period.exact, sampling.admittance
+    period, method = sampling.outer, sampling.admittance
     law = controller.law.sampled(period, method)
     if law is None:
         # The spec is read with a check that says so at its place.
@@ -136,20 +162,22 @@ def _frame(
     laws: Sequence[SampledLaw],
     ranges: ActuatorRanges,
 ) -> Frame:
-    period, tau, low_pass = sampling.period.exact, ranges.time_constant, design.sensor.filter
+    tau, low_pass = ranges.time_constant, design.sensor.filter
     admittances = [law for law in laws if isinstance(law, SampledAdmittance)]
-    idle = None if spec.idle_states is None else idle_share(spec.idle_states, period)
+    outer = sampling.outer
+    idle = None if spec.idle_states is None else idle_share(spec.idle_states, outer)
     return Frame(
-        period,
-        SampledMotion.of(design.motion, period),
+        sampling.step,
+        SampledMotion.of(design.motion, sampling.period.exact),
         _have_inertia(admittances),
         sampling.delay[1],
         tau.nominal if tau.low == tau.high else None,
-        None if low_pass is None else low_pass.sampled(period),
+        None if low_pass is None else low_pass.sampled(outer),
         any(law.Kt for law in admittances),
         bool(admittances),
         any(isinstance(law, SampledForce) and law.Kp for law in laws),
         idle,
+        Turn.ADMITTANCE in _turns(sampling),
     )
 
 
@@ -160,6 +188,7 @@ class _Loop:
     frame: Frame
     delays: tuple[int, int]
     motor: Box
+    turns: tuple[Turn, ...]
 
     def in_contact(
         self, controller: Controller, gains: SampledGains, touched: Iterable[Environment]
@@ -181,7 +210,16 @@ class _Loop:
 
     def in_the_air(self, controller: str, gains: SampledGains) -> tuple[Motion, ...]:
         """Return the motions of a controller that touches nothing."""
-        return tuple(self._corners(gains, self.motor, f"{controller}/free"))
+        return tuple(self._corners(gains, self.motor, f"{controller}/{FREE}"))
+
+    def between(self, law: SampledLaw, name: str) -> Iterator[Motion]:
+        """Yield the motions at samples of the motion loop alone, which no force reaches."""
+
+        def rows_at(values: Mapping[str, Fraction]) -> list[LinearForm]:
+            return self.frame.rows(law, 0, values, Turn.MOTION)
+
+        for corner, rows in self.motor.corners(rows_at, name):
+            yield Motion.of(corner, rows, len(self.frame.states), begins=False)
 
     def _corners(self, gains: SampledGains, box: Box, name: str) -> Iterator[Motion]:
         """Yield the motions in one contact, at every delay that makes a difference."""
@@ -189,16 +227,20 @@ class _Loop:
         ages = range(self.delays[0], self.delays[1] + 1)
         if isinstance(law, SampledForce) and not law.Kp and self.frame.low_pass is None:
             ages = ages[:1]
-        for delay in ages:
+        for turn, delay in product(self.turns, ages):
+            if turn is Turn.MOTION:
+                continue
             late = f"{name}/delay-{delay}" if len(ages) > 1 else name
-            rows_at = partial(self._rows, gains, delay)
+            late = f"{late}/{turn}" if turn is Turn.ADMITTANCE else late
+            rows_at = partial(self._rows, gains, delay, turn)
             for corner, rows in box.beside(gains.box).corners(rows_at, late):
-                yield Motion.of(corner, rows, len(self.frame.states))
+                size = len(self.frame.states)
+                yield Motion.of(corner, rows, size, begins=turn is Turn.BOTH)
 
     def _rows(
-        self, gains: SampledGains, delay: int, values: Mapping[str, Fraction]
+        self, gains: SampledGains, delay: int, turn: Turn, values: Mapping[str, Fraction]
     ) -> list[LinearForm]:
-        return self.frame.rows(gains.at(values), delay, values)
+        return self.frame.rows(gains.at(values), delay, values, turn)
 
 
 def _have_inertia(laws: Iterable[SampledAdmittance]) -> bool:
@@ -229,7 +271,7 @@ def _loss_of_contact(
         sprung.add(law.Kt != 0)
     if spec.contact == "kept" or (True in sprung and spec.contact is None):
         return "never"
-    if not all(_is_zero(damping_of(e)) and not e.preloaded for e in touched):
+    if any(e.preloaded or (e.parts and not e.each_losable) for e in touched):
         return "not modelled"
     return "anywhere" if sprung == {True} else "on the surface"
 
@@ -250,7 +292,3 @@ def _resets(
         for target in design.controllers:
             if (source.law.commands, target.law.commands) == ("velocity", "position"):
                 yield source.name, target.name, RationalMatrix.from_rows(rows)
-
-
-def _is_zero(interval: Interval) -> bool:
-    return interval.low == 0 == interval.high

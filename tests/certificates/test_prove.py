@@ -13,6 +13,7 @@ from nrs_design.certificates.certificate import content_id
 from nrs_design.certificates.prove import prove
 from nrs_design.certificates.verify import verify_document
 from tests.certificates.test_verify import (
+    ALL,
     SPECS,
     at,
     changed,
@@ -47,6 +48,7 @@ def test_every_change_is_noticed_by_the_id(pair):
             assert prove(tampered).fault == "its content does not match its id: it was altered"
 
 
+@pytest.mark.parametrize("pair", ALL, indirect=True)
 @pytest.mark.parametrize("field", SYSTEM)
 def test_every_re_signed_change_of_the_system_is_noticed_beside_its_spec(pair, field):
     document, spec = pair
@@ -56,6 +58,7 @@ def test_every_re_signed_change_of_the_system_is_noticed_beside_its_spec(pair, f
             assert verify_document(tampered, spec).fault is not None, (path, value)
 
 
+@pytest.mark.parametrize("pair", ALL, indirect=True)
 @pytest.mark.parametrize("field", ["time", "states", "modes", "switching"])
 def test_every_re_signed_change_of_the_system_is_rejected_or_true(pair, field):
     document, _ = pair

@@ -68,6 +68,9 @@ SPECS = {
     "value": ROOT / "docs" / "examples" / "flutter.nrs.yaml",
     "period": ROOT / "docs" / "examples" / "wide-range.nrs.yaml",
 }
+# Every change to the others, which are larger, is left to the slow tests.
+SMALL = ("given", "force", "unstable", "discrete")
+ALL = [name if name in SMALL else pytest.param(name, marks=pytest.mark.slow) for name in SPECS]
 # For each kind, the fields that may hold other numbers.
 NUMBERS = {
     "common-quadratic": {"Q"},
@@ -195,6 +198,7 @@ def test_untouched_certificates_hold(pair):
     assert is_true(outcome)
 
 
+@pytest.mark.parametrize("pair", ALL, indirect=True)
 def test_every_change_is_noticed_by_the_id(pair):
     document, spec = pair
     count = 0
@@ -212,6 +216,7 @@ def test_every_kind_of_verdict_is_among_the_certificates():
     assert kinds == set(NUMBERS)
 
 
+@pytest.mark.parametrize("pair", ALL, indirect=True)
 def test_every_re_signed_change_is_rejected_or_true(pair):
     """Accepted only where `may_change`, and then what is said is true in exact arithmetic."""
     document, spec = pair

@@ -13,11 +13,13 @@ from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.system import (
     ARBITRARY,
     Channel,
+    Clock,
     Contact,
     Coupling,
     Mode,
     Output,
     Reset,
+    Rounding,
     Stay,
     SwitchedSystem,
     Switching,
@@ -213,12 +215,41 @@ def bouncing(damping: Entry = 0) -> SwitchedSystem:
     return replace(family(*contact), contact=Contact((free,), pulls))
 
 
-def bouncing_in_steps() -> SwitchedSystem:
-    """The same without damping, in steps of a tenth of a second by Euler's method."""
-    contact = [[["4/5", Fraction(-k, 10)], ["1/10", 1]] for k in (1, 2)]
+def bouncing_in_steps(damping: Entry = 0) -> SwitchedSystem:
+    """The same in steps of a tenth of a second by Euler's method."""
+    b = Fraction(damping)
+    contact = [[[(8 - b) / 10, Fraction(-k, 10)], ["1/10", 1]] for k in (1, 2)]
+    pulls = tuple(matrix([[b, k]]) for k in (1, 2)) if b else ()
     free = Mode("free", matrix([["4/5", 0], ["1/10", 1]]))
     system = family(*contact, time=Time.DISCRETE)
-    return replace(system, contact=Contact((free,)), sample_time=Fraction(1, 10))
+    return replace(system, contact=Contact((free,), pulls), sample_time=Fraction(1, 10))
+
+
+def bouncing_in_turns(damping: Entry = 0, *, rounded: bool = False) -> SwitchedSystem:
+    """The same, with a force that acts twice as much at every second step, and then not at all.
+
+    Only at the steps in between the velocity decays.
+    """
+    b, share = Fraction(damping), Fraction(1, 1000)
+    acts = [[[1 - b / 5, Fraction(-k, 5)], ["1/10", 1]] for k in (1, 2)]
+    rest, fall = [["3/5", 0], ["1/10", 1]], [[1, 0], ["1/10", 1]]
+    names = ("push 1", "push 2", "rest")
+    system = family(*acts, rest, time=Time.DISCRETE, names=names)
+    free = Mode("fall", matrix(fall)), Mode("fall on", matrix(rest))
+    pulls = tuple(matrix([[b, k]]) for k in (1, 2)) if b else ()
+    rounding = Rounding("F", (matrix([[1], [0]]),) * 5, (matrix([[share, 0]]),) * 5)
+    return replace(
+        system,
+        contact=Contact(free, pulls),
+        roundings=(rounding,) if rounded else (),
+        clock=Clock(2, ("push 1", "push 2", "fall")),
+    )
+
+
+def doubled_in_turns(length: int, gain: Entry = 2) -> SwitchedSystem:
+    """x doubles at the first step of a round, and is multiplied by three quarters at all others."""
+    system = family([[gain]], [["3/4"]], time=Time.DISCRETE)
+    return replace(system, clock=Clock(length, ("m0",)))
 
 
 def pushed(system: SwitchedSystem, push: Entry = "1/4") -> SwitchedSystem:
@@ -263,6 +294,7 @@ SYSTEMS = {
     "conewise-quadratic": bouncing,
     "conewise-quadratic, pulling": lambda: bouncing(1),
     "conewise-quadratic, discrete": bouncing_in_steps,
+    "conewise-quadratic, pulling in steps": lambda: bouncing_in_steps(1),
     "coupled-axes": lambda: leaning(bouncing(), "1/8"),
     "coupled-axes, kept": lambda: leaning(replace(bouncing(), contact=None), "1/8", "1/8"),
     "coupled-axes, pulling": lambda: leaning(bouncing(1), "1/8"),
@@ -270,6 +302,7 @@ SYSTEMS = {
     "invariant-ellipsoid, kept": lambda: pushed(replace(bouncing(), contact=None)),
     "invariant-ellipsoid, pulling": lambda: pushed(bouncing(1)),
     "invariant-ellipsoid, discrete": lambda: pushed(bouncing_in_steps()),
+    "invariant-ellipsoid, pulling in steps": lambda: pushed(bouncing_in_steps(1)),
     "no-common-quadratic": lambda: dayawansa_martin(6),
     "no-common-quadratic, discrete": lambda: ando_shih("0.99"),
     "block-triangular": degenerate_dual,
@@ -287,6 +320,13 @@ SYSTEMS = {
     "mode-quadratic, two ways": lambda: two_ways(3),
     "unstable-period, left": lambda: must_leave(4),
     "unstable-period, two ways": lambda: two_ways(5),
+    "periodic-quadratic": bouncing_in_turns,
+    "periodic-quadratic, pulling": lambda: bouncing_in_turns(1),
+    "periodic-quadratic, rounding": lambda: bouncing_in_turns(rounded=True),
+    "periodic-quadratic, kept": lambda: replace(
+        bouncing_in_turns(), contact=None, clock=Clock(2, ("push 1", "push 2"))
+    ),
+    "unstable-period, in turns": lambda: doubled_in_turns(3),
     "parameter-quadratic": lambda: oscillator(50, PAIR),
     "unstable-value": lambda: hidden_value(3),
     "unstable-value, discrete": lambda: hidden_value(3, Time.DISCRETE),

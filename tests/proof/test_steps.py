@@ -21,7 +21,7 @@ from nrs_design.proof.system import (
     Time,
 )
 from tests.proof.systems import Entry, bouncing_in_steps, family, matrix
-from tests.proof.truth import combine, holds, is_in_other_units, times, transpose
+from tests.proof.truth import combine, holds, in_steps, is_in_other_units, times, transpose
 
 ONE = Fraction(1)
 
@@ -329,3 +329,34 @@ def test_every_form_by_hand(keeps, acting, roundings):
 )
 def test_multipliers_of_roundings(roundings, fault):
     assert find_odd_roundings(roundings, three_states(contact=True)) == fault
+
+
+def test_forms_of_what_lags_and_of_two_functions():
+    """Two forces, two free modes, an error and a function of its own after the step."""
+    A = [["-1/2", "1/3", "2/3"], [1, "-1/5", "-3/7"], ["1/4", "2/3", "8/9"]]
+    free = [["-1/3", "1/2", 0], ["1/7", "-2/5", 0], ["3/4", "-1/6", 1]]
+    other = [["-1/11", "2/3", 0], ["-1/5", "-2", 0], ["5/4", "1/6", 1]]
+    pulls = matrix([["1/2", "-1/3", 2]]), matrix([["1/5", 4, "3/2"]])
+    columns = tuple(matrix([[k], ["1/3"], [2]]) for k in range(3))
+    rows = matrix([["1/7", 2, 1]]), matrix([["1/9", 1, 0]]), matrix([["1/4", 3, 0]])
+    system = replace(
+        family(A, time=Time.DISCRETE),
+        contact=Contact((Mode("f", matrix(free)), Mode("g", matrix(other))), pulls),
+        roundings=(Rounding("a x", columns, rows),),
+    )
+    assert system.find_contradiction() is None
+    Q, after = ((9, 2, -1), (2, 7, 3), (-1, 3, 8)), ((5, 1, 2), (1, 6, -1), (2, -1, 7))
+    multipliers = (5, 2, 7, 11, 13, 17, 19)
+    lagging = multipliers[1:4], multipliers[4:]
+    steps = Steps(Q, 0, Fraction(36, 49), 5, (3,), lagging=lagging, after=after)
+    found = [*steps.forms(system)]
+    lags = ["while the environment lags", "where a lagging environment is left"] * 2
+    flights = ["in free motion", "where contact is made", *lags]
+    assert [where for where, _ in found] == [
+        "in mode m0",
+        "where contact is lost in mode m0",
+        *(f"{where}, mode {name}" for name in "fg" for where in flights),
+    ]
+    wanted = in_steps(system, (Q, after), Fraction(6, 7), multipliers, (3,))
+    for (_, form), true in zip(found, wanted, strict=True):
+        assert is_in_other_units(form, true)

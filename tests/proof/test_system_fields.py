@@ -9,7 +9,15 @@ import pytest
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.system import FixedParameter, Mode, Reset, Rounding, Stay, Switching
 from nrs_design.proof.system_fields import read_system, system_fields
-from tests.proof.systems import SYSTEMS, bouncing, bouncing_in_steps, family, genuine, matrix
+from tests.proof.systems import (
+    SYSTEMS,
+    bouncing,
+    bouncing_in_steps,
+    doubled_in_turns,
+    family,
+    genuine,
+    matrix,
+)
 
 RESET = Reset("m0", "m1", RationalMatrix(((1, -2), (0, 3)), 4))
 RULES = Switching(
@@ -145,3 +153,26 @@ def test_whether_contact_may_be_lost_is_a_truth_value(value):
     fields["contact"]["required"] = value
     with pytest.raises(TypeError, match="not true or false"):
         read_system("bouncing", fields)
+
+
+@pytest.mark.parametrize(
+    ("clock", "reason"),
+    [
+        ({"length": 1, "first": ["m0"]}, "from 2 to 100 steps"),
+        ({"length": 101, "first": ["m0"]}, "from 2 to 100 steps"),
+        ({"length": "3", "first": ["m0"]}, "expected an integer"),
+        ({"length": 3, "first": "m0"}, "expected a list"),
+        ({"length": 3, "first": [0]}, "expected a text"),
+    ],
+)
+def test_malformed_turns(clock, reason):
+    fields = system_fields(doubled_in_turns(3))
+    assert fields["clock"] == {"length": 3, "first": ["m0"]}
+    with pytest.raises((TypeError, ValueError), match=reason):
+        read_system("x", {**fields, "clock": clock})
+
+
+def test_the_longest_and_the_shortest_round():
+    for length in (2, 100):
+        system = doubled_in_turns(length)
+        assert read_system("family", system_fields(system)) == system

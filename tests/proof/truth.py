@@ -26,6 +26,7 @@ from nrs_design.proof.evidence import (
     ModeQuadratic,
     NoCommonQuadratic,
     ParameterQuadratic,
+    PeriodicQuadratic,
     UnstableMixture,
     UnstableMode,
     UnstablePeriod,
@@ -161,6 +162,8 @@ def _mode_polynomials_decrease(system: SwitchedSystem, evidence: ModePolynomial)
 
 def holds(system: SwitchedSystem, evidence: AbstractEvidence) -> bool:
     """Tell whether what the numbers say is true for this system."""
+    if system.clock is not None and not isinstance(evidence, PeriodicQuadratic | UnstablePeriod):
+        return False
     return _ORACLES[type(evidence)](system, evidence)
 
 
@@ -208,29 +211,92 @@ def _conewise_quadratic(system: SwitchedSystem, item: ConewiseQuadratic) -> bool
             lag = (multiplier, product_), (multiplier, transpose(product_))
             forms.append(combine((1, decrease(F, Q, rate, system.time)), *lag))
         return all(is_definite(form) for form in forms)
-    if contact.pulls or len(item.multipliers) != 1:
-        return False
+    forms = in_steps(system, (Q, Q), rate, item.multipliers, item.roundings)
+    return forms is not None and all(is_definite(form) for form in (Q, *forms))
 
-    errors = _errors(system, (), item.roundings)
-    if errors is None:
-        return False
-    extra = len(item.roundings)
 
-    def shrinks(before: Rows, A: Rows, after: Rows, slack: Rows) -> Rows:
-        moved = times(transpose(A), times(after, A))
+def in_steps(
+    system: SwitchedSystem,
+    functions: tuple[Rows, Rows],
+    rate: Fraction,
+    multipliers: Sequence[int],
+    roundings: Sequence[int],
+) -> list[Rows] | None:
+    """Return what one step does from a function to the next, contact lost; None if they misfit."""
+    (Q, after), contact = functions, system.contact
+    pulls = [] if contact is None else [q.numerators[0] for q in contact.pulls]
+    errors = _errors(system, (), roundings)
+    needed = 0 if contact is None else 1 + 3 * len(pulls)
+    if errors is None or len(multipliers) != needed or min(multipliers, default=0) < 0:
+        return None
+    n, count, extra, forms = len(Q), len(system.modes), len(roundings), list[Rows]()
+    inner, landed = ([row[:-1] for row in M[:-1]] for M in (Q, after))
+    unit = [[Fraction(int(i == n - 1))] for i in range(n + extra)]
+
+    def shrinks(before: Rows, A: Rows, M: Rows, slack: Rows) -> Rows:
+        moved = times(transpose(A), times(M, A))
         return combine((1, _padded(combine((rate**2, before)), extra)), (-1, moved), (1, slack))
 
-    n, count, forms = len(Q), len(system.modes), [Q]
+    def crossing(weight: int, row: Sequence[Fraction | int]) -> list[tuple[int, Rows]]:
+        product_ = times(unit, [[Fraction(entry) for entry in row]])
+        return [(weight, product_), (weight, transpose(product_))]
+
     for A, slack in zip(*(part[:count] for part in errors), strict=True):
-        unit = [*last, *([Fraction(0)] for _ in range(extra))]
-        crossing, weight = times(unit, [A[-1]]), item.multipliers[0]
-        lost = (weight, crossing), (weight, transpose(crossing))
-        forms.append(shrinks(Q, A, Q, slack))
-        forms.append(combine((1, shrinks(Q, A[:-1], inner, slack)), *lost))
+        forms.append(shrinks(Q, A, after, slack))
+        if contact is not None:
+            lost = crossing(multipliers[0], A[-1])
+            forms.append(combine((1, shrinks(Q, A[:-1], landed, slack)), *lost))
     for wide, slack in zip(*(part[count:] for part in errors), strict=True):
         A, S = [[*row[: n - 1], *row[n:]] for row in wide], _cut(slack, n - 1)
-        forms += [shrinks(inner, A[:-1], inner, S), shrinks(inner, A, Q, S)]
-    return all(is_definite(form) for form in forms)
+        forms += [shrinks(inner, A[:-1], landed, S), shrinks(inner, A, after, S)]
+        for k, q in enumerate(pulls):
+            stays, leaves, weight = multipliers[3 * k + 1 : 3 * k + 4]
+            force = [*q, *[0] * extra]
+            forms.append(combine((1, shrinks(Q, wide, after, slack)), *crossing(stays, force)))
+            lost = (*crossing(leaves, force), *crossing(weight, wide[-1]))
+            forms.append(combine((1, shrinks(Q, wide[:-1], landed, slack)), *lost))
+    return forms
+
+
+def _periodic_quadratic(system: SwitchedSystem, item: PeriodicQuadratic) -> bool:
+    """At every step of a round, the modes of that step, from one function to the next."""
+    clock, functions = system.clock, [[list(row) for row in Q] for Q in item.functions]
+    if clock is None or len(functions) != clock.length or not is_rate(item.rate, system.time):
+        return False
+    if any(len(Q) != system.order for Q in functions) or not all(map(is_definite, functions)):
+        return False
+    multipliers = item.multipliers or ((),) * clock.length
+    roundings = item.roundings or ((),) * clock.length
+    if not len(multipliers) == len(roundings) == clock.length:
+        return False
+    free = () if system.contact is None else system.contact.free
+    for step, following in enumerate([*functions[1:], functions[0]]):
+        turn = [(mode.name in clock.first) == (step == 0) for mode in (*system.modes, *free)]
+        count = len(system.modes)
+        part = replace(
+            system,
+            modes=tuple(m for m, b in zip(system.modes, turn[:count], strict=True) if b),
+            contact=None
+            if system.contact is None
+            else replace(
+                system.contact,
+                free=tuple(m for m, b in zip(free, turn[count:], strict=True) if b),
+            ),
+            roundings=tuple(
+                replace(
+                    one,
+                    columns=tuple(c for c, b in zip(one.columns, turn, strict=True) if b),
+                    rows=tuple(q for q, b in zip(one.rows, turn, strict=True) if b),
+                )
+                for one in system.roundings
+            ),
+        )
+        forms = in_steps(
+            part, (functions[step], following), item.rate, multipliers[step], roundings[step]
+        )
+        if forms is None or not all(map(is_definite, forms)):
+            return False
+    return True
 
 
 def _coupled_axes(system: SwitchedSystem, item: CoupledAxes) -> bool:
@@ -362,7 +428,8 @@ def _invariant_ellipsoid(system: SwitchedSystem, item: InvariantEllipsoid) -> bo
     ]
     forms = [Q] + [combine((1, ball(Q)), (-1, rise(Q, A, Q)), (1, S)) for A, S in touching]
     if discrete:
-        if contact is not None and (contact.pulls or len(weights) != 1):
+        pulls = [] if contact is None else [q.numerators[0] for q in contact.pulls]
+        if len(weights) != (0 if contact is None else 1 + 3 * len(pulls)):
             return False
         for A, S in touching if contact is not None else []:
             kept = (1, ball(Q)), (-1, rise(Q, A[:-1], inner)), (1, S)
@@ -370,6 +437,14 @@ def _invariant_ellipsoid(system: SwitchedSystem, item: InvariantEllipsoid) -> bo
         for A, S in blocks:
             forms.append(combine((1, ball(inner)), (-1, rise(inner, A[:-1], inner)), (1, S)))
             forms.append(combine((1, ball(inner)), (-1, rise(inner, A, Q)), (1, S)))
+        lagging = zip(flying, slacks[count:], strict=True)
+        for (A, S), (k, q) in product(lagging, enumerate(pulls)):
+            stays, leaves, weight = weights[3 * k + 1 : 3 * k + 4]
+            row = [*map(Fraction, q), *(Fraction(0) for _ in allowed)]
+            kept = (1, ball(Q)), (-1, rise(Q, A, Q)), (1, S)
+            forms.append(combine(*kept, *crossing(row, stays)))
+            lost = (*crossing(row, leaves), *crossing(A[-1], weight))
+            forms.append(combine((1, ball(Q)), (-1, rise(Q, A[:-1], inner)), (1, S), *lost))
     else:
         for A, _ in blocks:
             forms.append(combine((1, ball(inner)), (-1, rise(inner, A[:-1], inner))))
@@ -676,6 +751,8 @@ def _unstable_period(system: SwitchedSystem, item: UnstablePeriod) -> bool:
     modes = {mode.name: _floats(mode.A.fractions()) for mode in system.modes}
     product_ = np.eye(system.order)
     names = [name for name, _ in item.steps]
+    if system.clock is not None and not _takes_turns(system, item):
+        return False
     for k, (name, dwell) in enumerate(item.steps):
         shortest, longest = bounds_of(system, name)
         following = names[(k + 1) % len(names)]
@@ -694,6 +771,17 @@ def _unstable_period(system: SwitchedSystem, item: UnstablePeriod) -> bool:
                 return False
             product_ = _floats(ways[way]) @ product_
     return bool(np.abs(np.linalg.eigvals(product_)).max() > 1 - 1e-9)
+
+
+def _takes_turns(system: SwitchedSystem, item: UnstablePeriod) -> bool:
+    """Write every step down, and find a step of the round at which the period may begin."""
+    assert system.clock is not None
+    length = system.clock.length
+    every = [name in system.clock.first for name, count in item.steps for _ in range(int(count))]
+    return len(every) % length == 0 and any(
+        all(first == ((start + k) % length == 0) for k, first in enumerate(every))
+        for start in range(length)
+    )
 
 
 def _unstable_value(system: SwitchedSystem, item: UnstableValue) -> bool:
@@ -766,6 +854,7 @@ _ORACLES = {
     CommonPolynomial: _common_polynomial,
     NoCommonQuadratic: _no_common_quadratic,
     ParameterQuadratic: _parameter_quadratic,
+    PeriodicQuadratic: _periodic_quadratic,
     ModePolynomial: _mode_polynomials_decrease,
     ModeQuadratic: _mode_quadratic,
     UnstableMode: _unstable_mode,

@@ -97,15 +97,15 @@ def assert_no_contradiction(system) -> Verdict:
 
 
 def test_random_planar_families():
-    verdicts = [assert_no_contradiction(random_plane(seed)) for seed in range(200)]
-    assert verdicts.count(Verdict.PROVED) > 40
-    assert verdicts.count(Verdict.REFUTED) > 40
-    assert verdicts.count(Verdict.INCONCLUSIVE) < 20
+    verdicts = [assert_no_contradiction(random_plane(seed)) for seed in range(60)]
+    assert verdicts.count(Verdict.PROVED) > 12
+    assert verdicts.count(Verdict.REFUTED) > 12
+    assert verdicts.count(Verdict.INCONCLUSIVE) < 6
 
 
 @pytest.mark.slow
 def test_many_more_random_planar_families():
-    for seed in range(1000, 3000):
+    for seed in range(60, 2060):
         assert_no_contradiction(random_plane(seed))
 
 

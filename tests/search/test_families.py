@@ -18,7 +18,7 @@ from nrs_design.search.certify import certify
 from nrs_design.search.method import Method
 from tests.support import family, holds
 
-FEW, MANY = 60, 400
+FEW, MANY = 30, 400
 SEEDS = [pytest.param(seed, marks=[] if seed < FEW else [pytest.mark.slow]) for seed in range(MANY)]
 # The question is the one about quadratic functions: no higher degree is needed for its answer.
 LIMITS = Limits(max_degree=2, optimize_rate=False)
@@ -110,7 +110,7 @@ def test_a_pair_of_order_30():
 
 
 @pytest.mark.parametrize("factor", ["100000", "1/100000"])
-@pytest.mark.parametrize("seed", SEEDS[:10] + SEEDS[FEW : FEW + 40])
+@pytest.mark.parametrize("seed", SEEDS[:6] + SEEDS[FEW : FEW + 40])
 def test_unit_of_time_changes_nothing(seed, factor):
     modes = draw(seed)
     assert decide(times(modes, Fraction(factor))) is decide(modes)
@@ -131,7 +131,7 @@ def bracket(seed, steps):
 
 
 @pytest.mark.parametrize(
-    "seed", [0, 1, 2, *(pytest.param(s, marks=pytest.mark.slow) for s in range(3, 13))]
+    "seed", [0, 2, *(pytest.param(s, marks=pytest.mark.slow) for s in (1, *range(3, 13)))]
 )
 def test_near_the_threshold(seed):
     """Every shift on the way is decided, down to a millionth of the size of the modes."""
@@ -160,7 +160,9 @@ def test_threshold_of_dayawansa_and_martin(bits):
     assert decide(above) is CommonQuadraticStatus.IMPOSSIBLE
 
 
-@pytest.mark.parametrize("bits", [30, pytest.param(60, marks=pytest.mark.slow), 200])
+@pytest.mark.parametrize(
+    "bits", [30, *(pytest.param(bits, marks=pytest.mark.slow) for bits in (60, 200))]
+)
 def test_never_wrong_beyond_the_digits_of_floating_point(bits):
     below, above = (family(*dayawansa_martin_at(root)) for root in near_root_of_two(bits))
     for system, wrong in (

@@ -233,6 +233,7 @@ class TestDwell:
         dwell = find_shortest_dwell(system, undecided, verdict_at(system, lambda time: verdict))
         assert (dwell.proved, dwell.refuted) == (proved, refuted)
 
+    @pytest.mark.slow
     def test_dwell_times_of_their_own_are_no_proof_for_less(self):
         a, b = (mode.name for mode in GEROMEL_COLANERI.modes)
         own = ((a, Stay(Fraction(3))), (b, Stay(Fraction(4))))

@@ -182,9 +182,9 @@ def check_against_all_short_cycles(seeds):
 
 
 def test_random_rules():
-    refuted, proved, missed = check_against_all_short_cycles(range(40))
-    assert refuted > 10
-    assert proved > 10
+    refuted, proved, missed = check_against_all_short_cycles(range(15))
+    assert refuted > 3
+    assert proved > 3
     # Whatever grows within so few legs is found.
     assert missed == 0
 

@@ -22,3 +22,55 @@ def test_a_contact_is_touched():
 
 def test_given_matrices_have_no_environments():
     assert doubts(SWITCHED) == []
+
+
+LOGIC = """\
+mode_logic:
+  type: thresholds
+  start: position
+  signals:
+    torque: {noise: 0.002 N*m, age: 4 ms, largest_rate: 6.2 N*m/s}
+  switches:
+    - {from: position, to: force, torque: {above: THRESHOLD}}
+    - {from: force, to: position, torque: {below: 0.1 N*m}}
+"""
+
+
+def test_a_threshold_above_the_largest_torque():
+    """At the limit is not above it."""
+    for threshold, count in (("0.3 N*m", 1), ("0.3001 N*m", 2)):
+        logic = LOGIC.replace("THRESHOLD", threshold)
+        found = doubts(FORCE.replace("switching:", f"{logic}switching:"))
+        assert len(found) == count
+    assert found[-1].at == ("mode_logic", "switches")
+    assert "switch 1 of the mode logic" in str(found[-1])
+    assert "0.3001 N*m, above limits.torque of 0.3 N*m" in str(found[-1])
+
+
+def test_a_command_that_cannot_reach_the_speed_limit():
+    """8 deg/s is 0.139626 rad/s, and 288.39 rpm with the gain of the thesis."""
+    for command, count in (("289 rpm", 1), ("288 rpm", 2)):
+        limits = f"bandwidth: 2 Hz, command: {command}"
+        found = doubts(spoiled(IMPEDANCE, "bandwidth: 2 Hz", limits))
+        assert len(found) == count
+    assert found[-1].at == ("limits", "command")
+    assert "0.13944096 rad/s" in str(found[-1])
+
+
+def test_the_largest_gain_of_a_range_counts():
+    text = IMPEDANCE.replace(
+        "gain: 4.8417e-4 rad/s/rpm",
+        "gain: {nominal: 4.8417e-4 rad/s/rpm, range: [4.8e-4 rad/s/rpm, 4.9e-4 rad/s/rpm]}",
+    ).replace("bandwidth: 2 Hz", "bandwidth: 2 Hz, command: 286 rpm")
+    assert len(doubts(text)) == 1
+
+
+def test_a_size_that_no_surgical_robot_has():
+    """A slip of a unit is valid, and is asked about: 24 m for 0.24 m, 35.1 s for 35.1 ms."""
+    for old, new, at in (
+        ("lever_arm: 0.24 m", "lever_arm: 24 m", ("environments", "soft", "lever_arm")),
+        ("time_constant: 0.0351 s", "time_constant: 35.1 s", ("actuator", "time_constant")),
+    ):
+        found = [doubt for doubt in doubts(spoiled(IMPEDANCE, old, new)) if doubt.at == at]
+        assert len(found) == 1
+        assert "is that its unit?" in str(found[0])

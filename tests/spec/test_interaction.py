@@ -544,6 +544,14 @@ def test_with_a_spring_that_is_lost_no_rule_holds_back_free_motion():
         parse_spec(two + "switching: {transitions: [[i/soft, j/soft], [j/soft, i/soft]]}\n")
 
 
+@pytest.mark.parametrize("more", ["", "sampling: {period: 2 ms, outer_period: 4 ms, delay: 0}\n"])
+def test_no_controller_is_called_like_the_motion_loop(more):
+    """Gains are listed by these names, and so are modes in which the motion loop runs alone."""
+    text = SOFT_TISSUE.read_text(encoding="utf-8") + more
+    with pytest.raises(SpecError, match="controller cannot be called 'motion'"):
+        parse_spec(text.replace("  insertion:", "  motion:"))
+
+
 def test_no_environment_is_called_like_free_motion():
     text = SOFT_TISSUE.read_text()
     with pytest.raises(SpecError, match="cannot be called 'free'"):

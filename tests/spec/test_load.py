@@ -20,7 +20,8 @@ from nrs_design.spec import (
     read_spec,
 )
 from nrs_design.spec.document import Node, parse_document, to_data
-from nrs_design.spec.load import SPEC_KINDS, hash_meaning, model_of
+from nrs_design.spec.load import SPEC_KINDS, model_of
+from nrs_design.spec.meaning import hash_meaning
 from tests.support import COMMUTING
 
 from .samples import FORCE, IMPEDANCE, SWITCHED, assert_inside, refusal

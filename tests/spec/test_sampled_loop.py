@@ -1,5 +1,7 @@
 """What the sampled loop does not model is said while a spec is read, at its line."""
 
+from fractions import Fraction
+
 import pytest
 
 from nrs_design.errors import SpecError
@@ -18,6 +20,7 @@ DAMPED = ("model: elastic", "model: kelvin-voigt\n    damping: 1 N*s/m")
 SPRUNG = (BT, "Kt: 0.5 N*m/rad\n    " + BT)
 LOSABLE = SAMPLED + "contact: losable\n"
 ROUNDED = SAMPLED + "disturbances: {largest_angle: 20 deg}\n"
+OUTER = "\nsampling: {period: 2 ms, outer_period: 0.1 ms, delay: 0}\n"
 COMMANDED = SAMPLED + "disturbances: {command: 8 deg/s}\n"
 
 
@@ -52,7 +55,21 @@ def read(text, *changes):
         (PARALLEL + SAMPLED, [], ".type", "is a parallel controller", "use impedance"),
         (OFFSET + SAMPLED, [], "controllers.force.offset", "the offset of force", "offset: none"),
         (MIXED + LOSABLE, [], "contact", "impedance controllers beside others", "contact: kept"),
-        (TEXT + LOSABLE, [DAMPED], "contact", "soft, which has damping", "contact: kept"),
+        (FORCE + OUTER, [], "sampling.outer_period", "beside position", "leave outer_period"),
+        (
+            TEXT + OUTER + "disturbances: {command: 8 deg/s}\n",
+            [],
+            "disturbances",
+            "disturbances beside an outer_period",
+            "or outer_period",
+        ),
+        (
+            TEXT + OUTER,
+            [("switching: arbitrary", "switching: {transitions: [[insertion, withdrawal]]}")],
+            "switching",
+            "rules of switching beside",
+            "switching: arbitrary",
+        ),
         (FORCE + COMMANDED, [], "disturbances.command", "velocity command", "leave command out"),
         (MIXED + ROUNDED, [], "disturbances.largest_angle", "rounding of angles", "leave largest"),
         (TEXT + COMMANDED, [SPRUNG], "disturbances.command", "that the spring Kt", "or Kt"),
@@ -71,6 +88,43 @@ def test_a_spring_in_one_controller_alone_does_not_lose_contact():
     first, second = TEXT.split("  withdrawal:")
     with pytest.raises(SpecError, match="some controllers have a spring Kt and some have none"):
         parse_spec(first.replace(*SPRUNG) + "  withdrawal:" + second + LOSABLE)
+
+
+def test_loss_of_damped_contact_is_read():
+    assert read(TEXT + LOSABLE, DAMPED)
+
+
+@pytest.mark.parametrize(
+    ("outer", "round_", "step"),
+    [
+        ("0.1 ms", 20, "1/10000"),
+        ("2 ms", 1, "1/500"),
+        ("10 ms", 5, "1/500"),
+        ("0.04 ms", 50, "1/25000"),
+    ],
+)
+def test_periods_that_meet(outer, round_, step):
+    sampling = read(TEXT + OUTER.replace("0.1 ms", outer)).sampling
+    assert (sampling.round, sampling.step) == (round_, Fraction(step))
+    assert sampling.outer == sampling.outer_period.exact
+    assert sampling.find_odd_periods() is None
+
+
+@pytest.mark.parametrize(
+    ("outer", "said"),
+    [("0.3 ms", "whole number"), ("3 ms", "whole number"), ("0.02 ms", "is 100 of the other")],
+)
+def test_periods_that_do_not_meet(outer, said):
+    with pytest.raises(SpecError, match=said) as caught:
+        read(TEXT + OUTER.replace("0.1 ms", outer))
+    assert "sampling.outer_period" in str(caught.value)
+    assert "1 to 50 periods" in caught.value.remedy
+
+
+def test_a_delay_counts_samples_of_the_force():
+    text = TEXT + OUTER.replace("delay: 0", "delay: [0, 3]")
+    assert read(text).sampling.oldest == Fraction(3, 10_000)
+    assert read(text, (", outer_period: 0.1 ms", "")).sampling.oldest == Fraction(3, 500)
 
 
 def test_without_sampling_none_of_this_is_refused():

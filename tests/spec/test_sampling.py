@@ -40,7 +40,9 @@ def test_reads_a_delay_or_its_range(written, delay):
         ("{period: 2 ms, delay: 11}", "whole number of samples"),
         ("{period: 2 ms, delay: [2, 0]}", "ends below its start"),
         ("{period: 2 ms, delay: [0, 1, 2]}", "two of them"),
-        ("{period: 2 ms, delay: 2 ms}", "ms"),
+        ("{period: 2 ms, delay: 2 ms}", "'2 ms' is a time, and a delay counts samples"),
+        ("{period: 1 kHz, delay: 1}", "that is a frequency: write the time, one over it"),
+        ("2 ms", "write sampling: {period: ..., delay: ...}"),
         ("{period: 2 ms, delay: 1, admittance: tustin}", "admittance"),
     ],
 )

@@ -15,7 +15,7 @@ from nrs_design.controllers.sampled import (
     rounding_share,
 )
 from nrs_design.controllers.sensor import SampledLowPass
-from nrs_design.switched.sampled_frame import Frame
+from nrs_design.switched.sampled_frame import Frame, Turn
 
 
 @pytest.mark.parametrize(
@@ -100,6 +100,105 @@ def test_agrees_with_a_simulation_step_by_step():
         expected += [*filtered, *forces[:longest], moved[0]]
         got = np.array(rows, dtype=float)[: len(x), : len(x)] @ x
         assert got == pytest.approx(np.array(expected), rel=1e-9, abs=1e-9)
+
+
+@pytest.mark.parametrize(("Bt", "limit"), [("1.04", 67), ("2.15", 187)])
+def test_largest_stable_stiffness_of_a_faster_outer_loop(Bt, limit):
+    """Motion every 2 ms, admittance every 0.1 ms, force of the moment, Mt = 0.01.
+
+    Found by bisection with an independent program; a stiffness of two and three digits.
+    """
+    tick = Fraction(1, 10_000)
+    a = np.exp(-float(Bt) * float(tick) / 0.01)
+    law = SampledAdmittance(Fraction(a), Fraction((1 - a) / float(Bt)), tick)
+    frame = replace(_frame(0), period=tick, holds=True)
+
+    def radius(k: float) -> float:
+        values = {"Km": KM, "E": Fraction(float(np.exp(-0.0001 / 0.0351))), "k": Fraction(k)}
+        n = len(frame.states)
+        both, tick_alone = (
+            np.array(frame.rows(law, 0, values, turn), dtype=float)[:n, :n]
+            for turn in (Turn.BOTH, Turn.ADMITTANCE)
+        )
+        whole = np.linalg.matrix_power(tick_alone, 19) @ both
+        return float(np.abs(np.linalg.eigvals(whole)).max())
+
+    assert radius(limit * 0.99) < 1 < radius(limit * 1.01)
+
+
+@pytest.mark.parametrize("faster", [True, False])
+def test_two_periods_agree_with_a_simulation_step_by_step(faster):
+    """Two loops with clocks of their own, contact lost and lagging, everything else at random.
+
+    The motor is followed from sample to sample by a matrix exponential, and every loop counts its
+    own samples; what the maps say of the same choices is at most 1e-9 off.
+    """
+    rng = np.random.default_rng(17 + faster)
+    situations = set()
+    for _ in range(40):
+        count, tick = int(rng.integers(2, 8)), float(rng.choice([1e-4, 5e-4, 2e-3]))
+        Kp, D = rng.uniform(1e3, 1e5), rng.uniform(0, 1e5)
+        tau, Km, Kt = rng.uniform(0.01, 0.1), rng.uniform(1e-5, 2e-4), rng.choice([0.0, 2.0])
+        longest, inertia = int(rng.integers(0, 4)), bool(rng.integers(0, 2))
+        order, p, q = int(rng.integers(0, 3)), rng.uniform(), rng.uniform()
+        low_pass = SampledLowPass(order, Fraction(p), Fraction(q)) if order else None
+        motion, T = SampledMotion(Fraction(Kp), Fraction(D)), tick * (1 if faster else count)
+        frame = Frame(
+            Fraction(tick), motion, inertia, longest, Fraction(tau), low_pass, Kt > 0, holds=faster
+        )
+        n, E = len(frame.states), float(np.exp(-tick / tau))
+        x = rng.normal(size=n)
+        names = [name.split(" [")[0] for name in frame.states]
+        at = dict(zip(names, x, strict=True))
+        theta, omega, before = at["delta"], at["omega"], at["e before"]
+        reference, held = at["e"] + theta, at.get("u held", 0.0)
+        velocity = at.get("vm", 0.0)
+        lags = [at[f"filtered {i} before"] for i in range(1, order + 1)]
+        samples = [at[f"F {j} before"] for j in range(1, longest + 1)]
+        flow = np.zeros((3, 3))
+        flow[:2] = [[0, 1, 0], [0, -1 / tau, Km / tau]]
+        for t in range(2 * count + 1):
+            k, b = rng.uniform(0, 60), rng.uniform(0, 20)
+            delay, a, gain = int(rng.integers(0, longest + 1)), rng.uniform(), rng.uniform(0, 0.2)
+            push = k * theta + b * omega
+            touches = bool(theta > 0 and push > 0)
+            situations.add((touches, bool(theta > 0)))
+            moves = t % count == 0 if faster else True
+            admits = True if faster else t % count == 0
+            if moves:
+                e = reference - theta
+                held, before = Kp * e + D * (e - before), e
+            if admits:
+                samples = [push if touches else 0.0, *samples]
+                felt = samples[delay]
+                for i, lag in enumerate(lags):
+                    felt = lags[i] = p * lag + q * felt
+                felt += Kt * reference
+                if inertia:
+                    reference, velocity = reference - T * velocity, a * velocity + gain * felt
+                else:
+                    reference -= T * gain * felt
+                samples = samples[:longest]
+            theta, omega = (expm(flow * tick) @ [theta, omega, held])[:2]
+            turn = Turn.BOTH if moves and admits else Turn.MOTION if moves else Turn.ADMITTANCE
+            law = SampledAdmittance(
+                Fraction(a) if inertia else None, Fraction(gain), Fraction(T), Fraction(Kt)
+            )
+            values = {"Km": Km, "E": E} | ({"k": k, "b": b} if touches else {})
+            exact = {key: Fraction(value) for key, value in values.items()}
+            rows = frame.rows(law, delay, exact, turn)
+            x = np.array(rows, dtype=float)[:n, :n] @ x
+            if not moves:
+                assert rows[names.index("u held")][names.index("u held")] == 1
+        found = dict(zip(names, x, strict=True))
+        wanted = {"delta": theta, "omega": omega, "e before": before, "e": reference - theta}
+        wanted |= {"u held": held} if faster else {}
+        wanted |= {"vm": velocity} if inertia else {}
+        wanted |= {f"filtered {i} before": lag for i, lag in enumerate(lags, 1)}
+        wanted |= {f"F {j} before": sample for j, sample in enumerate(samples, 1)}
+        assert found == pytest.approx(wanted, rel=1e-9, abs=1e-9)
+    # Touched, in the air, and deflected without a force.
+    assert situations == {(True, True), (False, False), (False, True)}
 
 
 def exactly(number: np.float32) -> Fraction:

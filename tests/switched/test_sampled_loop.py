@@ -13,7 +13,7 @@ from nrs_design.controllers.sampled import ROUNDINGS, SampledMotion
 from nrs_design.errors import AssemblyError
 from nrs_design.pipeline import run_design
 from nrs_design.proof.system import SwitchedSystem, Time
-from nrs_design.search.certify import certify
+from nrs_design.search.certify import Limits, certify
 from nrs_design.simulation.single_precision import Choices, simulate_single_precision
 from nrs_design.spec import read_spec
 from nrs_design.switched.assemble import assemble
@@ -113,11 +113,137 @@ def test_contact_is_kept_where_the_spec_says_so(tmp_path):
     assert "Contact is not lost" in " ".join(system.assumptions)
 
 
-def test_a_damped_environment_is_kept(tmp_path):
-    damped = ("model: elastic", "model: kelvin-voigt\n    damping: 1 N*s/m")
-    system = system_of(tmp_path, "{period: 2 ms, delay: 0}", damped)
+DAMPED = (
+    "model: elastic",
+    "model: kelvin-voigt\n    damping: {nominal: 1 N*s/m, range: [0 N*s/m, 3 N*s/m]}",
+)
+
+
+def test_a_damped_environment_lags_instead_of_pulling(tmp_path):
+    """Four forces, at the ends of k and b; in the air, and while it lags, no force is sampled."""
+    system = system_of(tmp_path, "{period: 2 ms, delay: 1}", DAMPED)
+    assert system.find_contradiction() is None
+    assert len(system.contact.pulls) == 4
+    speed, last = system.states.index("omega [rad/s]"), system.order - 1
+    corners = set()
+    for q in system.contact.pulls:
+        (row,) = q.fractions()
+        assert {i for i, entry in enumerate(row) if entry} <= {speed, last}
+        corners.add((float(row[last]), float(row[speed])))
+    arm = 0.24**2
+    k, b = (720.56 * arm, 768.17 * arm), (0.0, 3 * arm)
+    assert np.array(sorted(corners)) == pytest.approx(np.array([(x, y) for x in k for y in b]))
+    sample = system.states.index("F 1 before [N*m]")
+    assert all(not any(mode.A.numerators[sample]) for mode in system.contact.free)
+    assert "would have to pull" in " ".join(system.assumptions)
+
+
+def test_a_faster_outer_loop_holds_the_command(tmp_path):
+    sampling = "{period: 2 ms, outer_period: 0.1 ms, delay: [0, 1]}"
+    system = system_of(tmp_path, sampling)
+    assert system.find_contradiction() is None
+    assert system.sample_time == Fraction(1, 10_000)
+    assert "u held" in system.states
+    assert system.clock.length == 20
+    first = {name for name in system.clock.first if "free" not in name}
+    # Two controllers, two delays, two ends of k, two bounds on exp(-h/tau), in and between rounds.
+    assert (len(first), len(system.modes), len(system.contact.free)) == (16, 32, 16)
+    held = system.states.index("u held")
+    for mode in (*system.modes, *system.contact.free):
+        row = mode.A.fractions()[held]
+        keeps = [Fraction(int(i == held)) for i in range(system.order)]
+        assert (
+            (row == keeps) == ("admittance" in mode.name) == (mode.name not in system.clock.first)
+        )
+    texts = " ".join(system.assumptions)
+    assert "The motion loop runs every 0.002 s" in texts
+    assert "the admittance runs every 0.0001 s" in texts
+    assert "counted in samples of the admittance" in texts
+    # The law is discretized with the period that it runs with.
+    assert "Kd/T = 1030000" in texts
+    T = Fraction(float(np.float32(1e-4)))
+    command = system.states.index("vm [rad/s]")
+    assert {mode.A.fractions()[0][command] for mode in system.modes} == {-T}
+
+
+def test_a_slower_outer_loop_holds_the_reference(tmp_path):
+    system = system_of(tmp_path, "{period: 2 ms, outer_period: 6 ms, delay: 1}", DAMPED)
+    assert system.find_contradiction() is None
+    assert (system.clock.length, system.sample_time) == (3, Fraction(1, 500))
+    assert "u held" not in system.states
+    between = [m for m in system.modes if m.name not in system.clock.first]
+    assert [m.name for m in between] == ["motion/E-min", "motion/E-max"]
+    free = [m.name for m in system.contact.free if m.name not in system.clock.first]
+    assert free == ["motion/free/E-min", "motion/free/E-max"]
+    n = system.order
+    for mode in between:
+        A = mode.A.fractions()
+        for state in ("vm [rad/s]", "F 1 before [N*m]"):
+            i = system.states.index(state)
+            assert A[i] == [Fraction(int(i == j)) for j in range(n)]
+        # The reference, e + delta, stays.
+        assert [a + b for a, b in zip(A[0], A[-1], strict=True)] == [1, *[0] * (n - 2), 1]
+
+
+def test_with_a_spring_free_motion_takes_its_turns(tmp_path):
+    sprung = (BT, "Kt: 0.5 N*m/rad\n    " + BT)
+    sampling = "{period: 2 ms, outer_period: 1 ms, delay: 0}\ncontact: losable"
+    system = system_of(tmp_path, sampling, sprung)
     assert system.contact is None
-    assert "lags behind is not modelled" in " ".join(system.assumptions)
+    assert system.find_contradiction() is None
+    assert sum("/free/" in name for name in system.clock.first) == 4
+
+
+def test_one_period_written_twice_is_one(tmp_path):
+    once = system_of(tmp_path, "{period: 2 ms, delay: 1}")
+    assert system_of(tmp_path, "{period: 2 ms, outer_period: 2 ms, delay: 1}") == once
+
+
+@pytest.mark.parametrize(
+    ("sampling", "verdict", "least"),
+    [
+        ("{period: 2 ms, outer_period: 0.1 ms, delay: 0}", Verdict.PROVED, "1"),
+        ("{period: 2 ms, outer_period: 4 ms, delay: 0}", Verdict.PROVED, "0.7"),
+        ("{period: 2 ms, outer_period: 10 ms, delay: 3}", Verdict.REFUTED, None),
+    ],
+)
+def test_two_periods_of_the_thesis_robot(tmp_path, sampling, verdict, least):
+    """Insertion and withdrawal in soft tissue, switched at will, contact losable."""
+    system = system_of(tmp_path, sampling)
+    result = certify(system, limits=Limits(optimize_rate=False))
+    assert result.verdict is verdict
+    evidence = result.evidence
+    assert evidence.find_fault(system) is None
+    if least is None:
+        assert evidence.kind == "unstable-period"
+    else:
+        assert evidence.kind == "periodic-quadratic"
+        assert (1 - evidence.rate) / system.sample_time > Fraction(least)
+
+
+@pytest.mark.parametrize(
+    ("nominal", "ends", "delay", "least"),
+    [("1", ("0", "3"), 0, "2.2"), ("5", ("5", "9"), 1, "1")],
+)
+def test_damped_contact_that_is_lost_is_proved(tmp_path, nominal, ends, delay, least):
+    ranged = f"[{ends[0]} N*s/m, {ends[1]} N*s/m]"
+    damping = f"{{nominal: {nominal} N*s/m, range: {ranged}}}"
+    changed = DAMPED[0], f"model: kelvin-voigt\n    damping: {damping}"
+    system = system_of(tmp_path, f"{{period: 2 ms, delay: {delay}}}\ncontact: losable", changed)
+    result = certify(system, limits=Limits(optimize_rate=delay == 0))
+    assert result.verdict is Verdict.PROVED
+    assert result.evidence.covers_rounding
+    assert (1 - result.evidence.rate) / system.sample_time > Fraction(least)
+
+
+def test_two_damped_things_at_once_are_kept(tmp_path):
+    both = ("environment: soft\n", "environment: soft\n    contacts: [[soft, other]]\n")
+    other = "environments:\n  other:\n    model: kelvin-voigt\n    damping: 1 N*s/m\n"
+    other += "    stiffness: 100 N/m\n    lever_arm: 0.24 m\n"
+    changes = DAMPED, ("environments:\n", other), both
+    system = system_of(tmp_path, "{period: 2 ms, delay: 0}", *changes)
+    assert system.contact is None
+    assert "touched at once with others" in " ".join(system.assumptions)
 
 
 def test_where_free_motion_rests_is_not_said(tmp_path):

@@ -2,6 +2,7 @@
 
 from fractions import Fraction
 
+from nrs_design.controllers.float32 import exact_decimal
 from nrs_design.controllers.sensor import LowPass, Sensor
 from nrs_design.pipeline import run_design
 from nrs_design.spec import read_spec
@@ -34,6 +35,22 @@ def test_bounds_on_disturbances_take_them_up():
     step, errors, _ = sensor_texts(SENSOR, Fraction(1, 500), disturbed=True)
     assert "x+ = p x + q F with the single-precision numbers p = 0.67" in step
     assert "It is the force error of the statements that name one" in errors
+
+
+def test_the_filter_runs_with_the_outer_loop(tmp_path):
+    path = tmp_path / "sensed.nrs.yaml"
+    more = (
+        "sampling: {period: 2 ms, outer_period: 0.5 ms, delay: 0}\n"
+        "contact: kept\nsensor: {filter: {cutoff: 60 Hz}}\n"
+    )
+    path.write_text(SOFT_TISSUE.read_text(encoding="utf-8") + more, encoding="utf-8")
+    designed = run_design(read_spec(path))
+    system = assemble(designed.spec, designed.plant, designed.design, "deflection")
+    step = designed.design.sensor.filter.sampled(Fraction(1, 2000))
+    (text,) = (text for text in system.assumptions if "through one lag" in text)
+    assert f"p = {exact_decimal(step.p)} and" in text
+    kept = {mode.A.fractions()[5][5] for mode in system.modes}
+    assert kept == {step.p}
 
 
 def test_the_sampled_loop_takes_the_errors_for_its_force_error(tmp_path):

@@ -1,4 +1,4 @@
-"""``nrs-design robot export``: a robot for simulators."""
+"""``nrs-design robot export``: a robot for simulators, and its motion control for a processor."""
 
 from __future__ import annotations
 
@@ -9,9 +9,13 @@ from typing import Annotated
 
 import typer
 
+from nrs_design.cli import exit_codes
 from nrs_design.cli.options import Json, Quiet, SpecFile
-from nrs_design.cli.printing import print_json, say
-from nrs_design.exporters import ROBOT_FORMATS
+from nrs_design.cli.printing import note, print_json, progress, say
+from nrs_design.errors import NrsDesignError
+from nrs_design.exporters import ROBOT_FORMATS, Format
+
+INCONCLUSIVE = "inconclusive"
 
 
 class RobotFormat(StrEnum):
@@ -19,6 +23,8 @@ class RobotFormat(StrEnum):
 
     MJCF = "mjcf"
     URDF = "urdf"
+    C = "c"
+    VECTORS = "vectors"
 
 
 def export(
@@ -27,37 +33,71 @@ def export(
         RobotFormat,
         typer.Option(
             "--format",
-            help="mjcf: with closed loops; urdf: the tree without them.",
+            help="mjcf: with closed loops; urdf: the tree without them; c: motion control; "
+            "vectors: tests of it.",
         ),
     ] = RobotFormat.MJCF,
-    out: Annotated[Path, typer.Option(help="Folder, or the file itself with its ending.")] = Path(
-        "reports"
-    ),
+    out: Annotated[
+        Path, typer.Option(help="Folder; for a format of one file also that file, with its ending.")
+    ] = Path("reports"),
+    unproved: Annotated[
+        bool,
+        typer.Option(
+            "--unproved",
+            help="Export a program or its vectors, of which nothing is proved; its files say so, "
+            "and the exit code stays 3.",
+        ),
+    ] = False,
     as_json: Json = False,
     quiet: Quiet = False,
 ) -> None:
-    """Export links, joints and inertias of a robot for MuJoCo, or as URDF.
+    """Export links, joints and inertias of a robot for MuJoCo or as URDF, or its control in C.
+
+    No certificate covers the nonlinear dynamics of three axes: C and vectors are written with
+    --unproved only, and the exit code is 3 with or without it.
 
     Example: nrs-design robot export specs/robots/neuroboscope.nrs.yaml --format mjcf
+
+    Example: nrs-design robot export specs/robots/neuroboscope.nrs.yaml --format c --unproved
     """
+    from nrs_design.exporters.robot_c import UNPROVED
     from nrs_design.exporters.robot_tree import RobotExport
-    from nrs_design.exporters.write import places, write_files
+    from nrs_design.exporters.write import check_places, places, write_files
     from nrs_design.ownership import check_export, origin_of
     from nrs_design.pipeline import placed, run_robot
 
-    loaded, _, robot = run_robot(spec)
     chosen = ROBOT_FORMATS[format_]
+    _check_unproved(chosen, unproved=unproved)
+    loaded, _, robot = run_robot(spec)
     files = places(chosen, loaded.spec.name, out)
+    check_places(chosen, files)
     for file in files.values():
         check_export(spec, file)
     origin = origin_of(spec, next(iter(files.values())))
-    module = import_module(f"nrs_design.exporters.{chosen.module}")
-    with placed(loaded):
-        contents = module.render(RobotExport(loaded, robot, origin))
-    write_files(chosen, files, contents)
-    written = list(map(str, files.values()))
+    written: list[str] = []
+    if unproved or not chosen.executable:
+        module = import_module(f"nrs_design.exporters.{chosen.module}")
+        with progress(f"exporting {loaded.spec.name}", quiet=quiet), placed(loaded):
+            contents = module.render(RobotExport(loaded, robot, origin))
+        write_files(chosen, files, contents)
+        written = list(map(str, files.values()))
     if as_json:
         head = {"spec": loaded.spec.name, "spec_sha256": loaded.sha256}
-        print_json("robot-export", {**head, "format": str(format_), "files": written})
+        verdict = {"verdict": INCONCLUSIVE} if chosen.executable else {}
+        print_json("robot-export", {**head, "format": str(format_), "files": written, **verdict})
+    elif not written:
+        # Nothing was written, which is an error of its own.
+        note(f"{loaded.spec.name}: not exported: {UNPROVED} (--unproved exports it and says so)")
     elif not quiet:
-        say(f"{loaded.spec.name}: exported to {', '.join(written)}")
+        unproved_text = f"UNPROVED ({UNPROVED}), " if chosen.executable else ""
+        say(f"{loaded.spec.name}: {unproved_text}exported to {', '.join(written)}")
+    if chosen.executable:
+        raise typer.Exit(exit_codes.OF_VERDICT[INCONCLUSIVE])
+
+
+def _check_unproved(chosen: Format, *, unproved: bool) -> None:
+    if unproved and not chosen.executable:
+        raise NrsDesignError(
+            "--unproved is for programs, and this format is none",
+            remedy="leave it out; `nrs-design export --list` lists the formats",
+        )

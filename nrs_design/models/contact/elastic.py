@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, ClassVar
 
-from nrs_design.models.contact.law import STIFFNESS, AbstractLinearLaw, Number, Reaction
+from nrs_design.models.contact.law import STIFFNESS, AbstractLinearLaw, Element, Number, Reaction
 from nrs_design.models.linear_form import LinearForm, combine
 
 if TYPE_CHECKING:
@@ -43,6 +43,11 @@ class Elastic(AbstractLinearLaw):
     def impedance(self) -> tuple[tuple[float, ...], tuple[float, ...]]:
         """``k / s``."""
         return (0.0, float(self.k)), (1.0, 0.0)
+
+    @property
+    def element(self) -> Element:
+        """The spring."""
+        return Element(float(self.k))
 
     def react(self, velocity: LinearForm, states: Sequence[LinearForm]) -> Reaction:
         """Return ``F = k delta`` and ``delta' = v``."""

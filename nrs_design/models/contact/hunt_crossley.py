@@ -76,6 +76,26 @@ class HuntCrossley(AbstractNonlinearLaw):
         force, length = ("N*m", "rad") if rotational else ("N", "m")
         return f"{force}/{length}^φ", f"{force}*s/{length}^(φ+1)", ""
 
+    def push(self, deflection: float, velocity: float) -> float:
+        """Return ``(rho + lam v) delta^phi``; 0 without contact."""
+        return 0.0 if deflection <= 0 else (self.rho + self.lam * velocity) * deflection**self.phi
+
+    @classmethod
+    def through(cls, k: float, b: float, phi: float, deflection: float) -> HuntCrossley:
+        """Return the law whose tangent at a deflection has this stiffness and damping.
+
+        Parameters
+        ----------
+        k, b : float
+            In N/m and N s/m (N m/rad, N m s/rad).
+        phi : float
+            Exponent.
+        deflection : float
+            In m (rad), above zero.
+        """
+        rho = k / (phi * deflection ** (phi - 1))
+        return cls(rho, b / deflection**phi, phi)
+
     def tangent(self, deflection: float) -> tuple[float, float]:
         """Return stiffness and damping of small motions about a deflection.
 

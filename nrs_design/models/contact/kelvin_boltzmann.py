@@ -16,6 +16,7 @@ from nrs_design.models.contact.law import (
     DAMPING,
     STIFFNESS,
     AbstractLinearLaw,
+    Element,
     Number,
     Reaction,
 )
@@ -131,6 +132,11 @@ class KelvinBoltzmann(AbstractLinearLaw):
         """``(b k2 s + k1 k2) / (s (b s + k1 + k2))``."""
         k1, k2, b = map(float, self.values)
         return (0.0, b * k2, k1 * k2), (b, k1 + k2, 0.0)
+
+    @property
+    def element(self) -> Element:
+        """The spring k2, and behind it the spring k1 beside the damper."""
+        return Element(float(self.k2), h=float(self.k1), b=float(self.b))
 
     def react(self, velocity: LinearForm, states: Sequence[LinearForm]) -> Reaction:
         """Return ``F = k2 (delta - d)``, ``delta' = v`` and ``b d' = k2 (delta - d) - k1 d``."""

@@ -10,6 +10,7 @@ from nrs_design.models.contact.law import (
     DAMPING,
     STIFFNESS,
     AbstractLinearLaw,
+    Element,
     Number,
     Reaction,
 )
@@ -66,6 +67,11 @@ class KelvinVoigt(AbstractLinearLaw):
     def is_spring(self) -> bool:
         """Whether there is no damping."""
         return self.b == 0
+
+    @property
+    def element(self) -> Element:
+        """The spring and the damper beside it."""
+        return Element(float(self.k), float(self.b))
 
     def react(self, velocity: LinearForm, states: Sequence[LinearForm]) -> Reaction:
         """Return ``F = k delta + b v`` and ``delta' = v``."""

@@ -32,6 +32,26 @@ Number = float | Fraction
 Reaction = tuple[LinearForm, list[LinearForm]]
 
 
+@dataclass(frozen=True, slots=True)
+class Element:
+    """What touches, as springs and dampers: ``F = k (delta - d) + c delta'``, ``b d' = F - h d``.
+
+    A law without memory has ``d = 0`` for ever.
+
+    Parameters
+    ----------
+    k, c : float
+        Stiffness in N/m (N m/rad) and damping in N s/m (N m s/rad).
+    h, b : float
+        Of the spring and the damper behind it, in the same units; b is infinite without memory.
+    """
+
+    k: float
+    c: float = 0.0
+    h: float = 0.0
+    b: float = math.inf
+
+
 @dataclass(frozen=True)
 class AbstractContactLaw(ABC):
     """Reaction force of an environment to its deflection; parameters are positive.
@@ -89,6 +109,10 @@ class AbstractNonlinearLaw(AbstractContactLaw):
         """Return the derivative of `simulate` by the deflection, shape (n,), in N/m (N m/rad)."""
 
     @abstractmethod
+    def push(self, deflection: float, velocity: float) -> float:
+        """Return the reaction at one instant, in N (N m), below zero where it would pull."""
+
+    @abstractmethod
     def tangent(self, deflection: float) -> tuple[float, float]:
         """Return stiffness and damping of small motions about a deflection."""
 
@@ -143,6 +167,11 @@ class AbstractLinearLaw(AbstractContactLaw):
         states : sequence of LinearForm
             Those named in `states`.
         """
+
+    @property
+    @abstractmethod
+    def element(self) -> Element:
+        """The springs and dampers that it consists of."""
 
     @property
     def is_spring(self) -> bool:

@@ -16,6 +16,7 @@ from nrs_design.models.contact.law import (
     DAMPING,
     STIFFNESS,
     AbstractLinearLaw,
+    Element,
     Number,
     Reaction,
 )
@@ -86,6 +87,11 @@ class Maxwell(AbstractLinearLaw):
         """``k b / (b s + k)``."""
         k, b = float(self.k), float(self.b)
         return (0.0, k * b), (b, k)
+
+    @property
+    def element(self) -> Element:
+        """The spring, and the damper behind it."""
+        return Element(float(self.k), b=float(self.b))
 
     def react(self, velocity: LinearForm, states: Sequence[LinearForm]) -> Reaction:
         """Return ``F = k e`` and ``e' = v - (k/b) e`` with the stretch e of the spring."""

@@ -26,6 +26,15 @@ from nrs_design.models.robot.dynamics import (
     mass_matrix,
     potential_energy,
 )
+from nrs_design.models.robot.enclosure.bounds import (
+    Space,
+    bound_text,
+    compute_bounds,
+    confirm_bounds,
+    space_of,
+    to_document,
+)
+from nrs_design.models.robot.enclosure.enclose import Enclosed, values_at
 from nrs_design.models.robot.geometry import is_reachable, posture, reach, reach_margin
 from nrs_design.models.robot.kinematics import (
     JointMotion,
@@ -63,6 +72,7 @@ __all__ = [
     "TABLE_3_5",
     "Balance",
     "Correction",
+    "Enclosed",
     "JointMotion",
     "JointPeaks",
     "Leg",
@@ -71,13 +81,17 @@ __all__ = [
     "SimplifiedDynamics",
     "Sine",
     "SingularityMargins",
+    "Space",
     "TaskLimits",
     "TiltTable",
     "TorqueShares",
     "Workspace",
     "WorkspaceSurvey",
     "balanced_robot",
+    "bound_text",
     "build_robot",
+    "compute_bounds",
+    "confirm_bounds",
     "coriolis_matrix",
     "correct_separately",
     "correction_coefficients",
@@ -107,12 +121,15 @@ __all__ = [
     "simplified_dynamics",
     "simplified_torque",
     "singularity_margins",
+    "space_of",
     "spring_torque",
     "survey_workspace",
     "thesis_grid",
     "thesis_tilts",
     "tilt_table",
     "to_csv",
+    "to_document",
     "torque_shares",
+    "values_at",
     "workspace_grid",
 ]

@@ -182,7 +182,7 @@ def potential_energy(robot: Robot, pose: ArrayLike) -> Array:
             (loads[1], elbow, (leg.cos_kappa, leg.sin_kappa)),
             (loads[2], leg.end, (-leg.sin_gamma, leg.cos_gamma)),
         )
-        fall = _gravity_in_plane(robot, closed, leg)
+        fall = _gravity_in_plane(robot.gravity_vector, closed, leg)
         energy = energy - sum(dot(fall, first_moment(*link)) for link in links)
     return np.asarray(energy, dtype=np.float64)
 
@@ -193,20 +193,40 @@ def _per_unit(torque: Callable[[Array], Array], closed: Posture) -> Array:
     return np.moveaxis(torque(units), 0, -1)
 
 
-def _gravity_in_plane(robot: Robot, closed: Posture, leg: LegPosture) -> Vector:
+def _gravity_in_plane(gravity: Vector, closed: Posture, leg: LegPosture) -> Vector:
     """Gravity in the frame a, b, k of a leg's plane."""
-    gravity = robot.gravity_vector
     along = dot(gravity, leg.leg.axis)
     across = (dot(gravity, closed.W) - leg.cos_gamma * along) / leg.sin_gamma
     return along, across, dot(gravity, leg.normal)
 
 
 def _torque(closed: Posture, motion: RobotMotion, robot: Robot, weight: Scalar = 1.0) -> Array:
-    """Collect what every leg takes, and hand it on to the joints; gravity times `weight`."""
+    torques = joint_torques(closed, motion, robot, robot.gravity_vector, weight)
+    return np.asarray(stacked(torques), dtype=np.float64)
+
+
+def joint_torques(
+    closed: Posture, motion: RobotMotion, robot: Robot, gravity: Vector, weight: Scalar = 1.0
+) -> Vector:
+    """Collect what every leg takes, and hand it on to the joints.
+
+    Parameters
+    ----------
+    closed : Posture
+        The robot at its pose.
+    motion : RobotMotion
+        How it moves.
+    robot : Robot
+        For the masses of its links.
+    gravity : tuple of array
+        In the base frame, in m/s^2.
+    weight : array
+        Times gravity.
+    """
     on_W: Vector = (0.0, 0.0, 0.0)
     on_d: Scalar = 0.0
     for leg, rates, loads in zip(closed.legs, motion.legs, robot.loads, strict=True):
-        fall = scale(weight, _gravity_in_plane(robot, closed, leg))
+        fall = scale(weight, _gravity_in_plane(gravity, closed, leg))
         on_alpha, on_gamma, on_depth = _leg_forces(motion, leg, rates, loads, fall)
         pull = add(scale(on_alpha, leg.normal), scale(-on_gamma, leg.leg.axis))
         on_W = add(on_W, scale(1.0 / leg.sin_gamma, pull))
@@ -217,7 +237,7 @@ def _torque(closed: Posture, motion: RobotMotion, robot: Robot, weight: Scalar =
     on_W = add(on_W, scale(theta3 * middle.beta_gamma / middle.sin_gamma, middle.leg.axis))
     theta1 = left.sin_gamma * dot(closed.u1, on_W)
     theta2 = right.sin_gamma * dot(closed.u2, on_W)
-    return np.asarray(stacked((theta1, theta2, theta3)), dtype=np.float64)
+    return theta1, theta2, theta3
 
 
 def _leg_forces(

@@ -125,39 +125,82 @@ def posture(robot: Robot, pose: ArrayLike) -> Posture:
     PoseError
         If a leg cannot reach one of the poses; it names the leg and what is lacking.
     """
-    W = direction(pose)
-    d = components(pose)[2]
-    left, right, middle = (_leg_posture(leg, W, d) for leg in robot.legs)
-    for item in (left, right, middle):
-        if not np.all(np.abs(item.sin_elbow) > 0):
-            raise unreachable(robot, pose)
+    closed = close_loops(robot, direction(pose), components(pose)[2])
+    if not all(np.all(np.abs(item.sin_elbow) > 0) for item in closed.legs):
+        raise unreachable(robot, pose)
+    return closed
+
+
+@dataclass(frozen=True, slots=True)
+class Driven:
+    """What joint angles say of a pose, so that it need not be computed from the pose again.
+
+    Parameters
+    ----------
+    normals : tuple of Vector
+        Of the planes of the side legs.
+    sin_gamma : tuple of array
+        Of the endoscope in these planes.
+    crank : tuple of array
+        Cosine and sine of the middle leg's crank angle.
+    """
+
+    normals: tuple[Vector, Vector]
+    sin_gamma: tuple[Scalar, Scalar]
+    crank: tuple[Scalar, Scalar]
+
+
+def close_loops(robot: Robot, W: Vector, d: Scalar, driven: Driven | None = None) -> Posture:
+    """Close the loops of all legs, whether they reach that far or not.
+
+    Parameters
+    ----------
+    robot : Robot
+        The robot.
+    W : tuple of array
+        Direction of the endoscope.
+    d : array
+        Depth in m.
+    driven : Driven, optional
+        Where the pose comes from joint angles.
+    """
+    planes: tuple[_Plane | None, ...] = (None, None)
+    if driven is not None:
+        planes = tuple(zip(driven.normals, driven.sin_gamma, strict=True))
+    left, right = (
+        _leg_posture(leg, W, d, plane, None)
+        for leg, plane in zip(robot.legs[:2], planes, strict=True)
+    )
+    crank = None if driven is None else driven.crank
+    middle = _leg_posture(robot.legs[2], W, d, None, crank)
     inverse = 1.0 / dot(W, cross(left.normal, right.normal))
     u1 = scale(inverse, cross(right.normal, W))
     u2 = scale(inverse, cross(W, left.normal))
     return Posture(W, d, (left, right, middle), u1, u2)
 
 
-def _leg_posture(leg: Leg, W: Vector, d: Scalar) -> LegPosture:
+# Normal of the plane of a leg, and the sine of gamma in it.
+_Plane = tuple[Vector, Scalar]
+
+
+def _leg_posture(
+    leg: Leg, W: Vector, d: Scalar, plane: _Plane | None, crank: tuple[Scalar, Scalar] | None
+) -> LegPosture:
     a, l1, l2, l3 = leg.axis, leg.l1, leg.l2, leg.l3
     cos_gamma = dot(a, W)
-    sin_gamma = np.sqrt(1.0 - cos_gamma * cos_gamma)
+    normal, sin_gamma = plane or _plane_of(a, W, cos_gamma)
     end = (d * cos_gamma + l3 * sin_gamma, d * sin_gamma - l3 * cos_gamma)
     end_gamma = (l3 * cos_gamma - d * sin_gamma, l3 * sin_gamma + d * cos_gamma)
     x, y = end[0] - leg.l0, end[1]
-    square = x * x + y * y
-    # The elbow in components along and across the line from base joint to coupler's end.
-    along = (l1 * l1 + square - l2 * l2) / (2 * l1)
-    with np.errstate(invalid="ignore"):
-        across = leg.elbow_sign * np.sqrt(square - along * along)
-    cos_beta = (x * along - y * across) / square
-    sin_beta = (y * along + x * across) / square
+    cos_beta, sin_beta = crank or _crank(leg, x, y)
     cos_kappa, sin_kappa = (x - l1 * cos_beta) / l2, (y - l1 * sin_beta) / l2
     sin_elbow = sin_kappa * cos_beta - cos_kappa * sin_beta
     with np.errstate(divide="ignore", invalid="ignore"):
-        per_l1, per_l2 = 1.0 / (l1 * sin_elbow), -1.0 / (l2 * sin_elbow)
+        per_l1 = 1.0 / (l1 * sin_elbow)
+        per_l2 = -(l1 / l2) * per_l1
         return LegPosture(
             leg=leg,
-            normal=scale(1.0 / sin_gamma, cross(a, W)),
+            normal=normal,
             cos_gamma=cos_gamma,
             sin_gamma=sin_gamma,
             cos_beta=cos_beta,
@@ -173,6 +216,21 @@ def _leg_posture(leg: Leg, W: Vector, d: Scalar) -> LegPosture:
             kappa_gamma=(cos_beta * end_gamma[0] + sin_beta * end_gamma[1]) * per_l2,
             kappa_d=(cos_beta * cos_gamma + sin_beta * sin_gamma) * per_l2,
         )
+
+
+def _plane_of(a: Vector, W: Vector, cos_gamma: Scalar) -> _Plane:
+    sin_gamma = np.sqrt(1.0 - cos_gamma * cos_gamma)
+    return scale(1.0 / sin_gamma, cross(a, W)), sin_gamma
+
+
+def _crank(leg: Leg, x: Scalar, y: Scalar) -> tuple[Scalar, Scalar]:
+    """Cosine and sine of the crank angle, from the coupler's end seen from the base joint."""
+    square = x * x + y * y
+    # The elbow in components along and across the line between the two.
+    along = (leg.l1 * leg.l1 + square - leg.l2 * leg.l2) / (2 * leg.l1)
+    with np.errstate(invalid="ignore"):
+        across = leg.elbow_sign * np.sqrt(square - along * along)
+    return (x * along - y * across) / square, (y * along + x * across) / square
 
 
 def reach(robot: Robot, pose: ArrayLike) -> Array:

@@ -118,10 +118,10 @@ def _depth(robot: Robot, W: Vector, theta3: Scalar) -> Scalar:
             excess=lack,
             remedy="check the joint angles, in rad",
         )
-    return along + _coupler_sign(robot) * np.sqrt(square)
+    return along + coupler_sign(robot) * np.sqrt(square)
 
 
-def _coupler_sign(robot: Robot) -> float:
+def coupler_sign(robot: Robot) -> float:
     """Tell whether the coupler of the middle leg points along the endoscope or against it."""
     return float(np.sign(_coupler_along(posture(robot, robot.home).legs[2])))
 

@@ -46,7 +46,19 @@ def joint_driven(closed: Posture, velocity: ArrayLike, acceleration: ArrayLike) 
     velocity, acceleration : array_like
         Of theta1, theta2, theta3; shape (..., 3), in rad/s and rad/s^2.
     """
-    v, a = components(velocity), components(acceleration)
+    return driven_by(closed, components(velocity), components(acceleration))
+
+
+def driven_by(closed: Posture, v: Vector, a: Vector) -> RobotMotion:
+    """Return the same of three components each.
+
+    Parameters
+    ----------
+    closed : Posture
+        The robot at its pose.
+    v, a : tuple of array
+        Velocities and accelerations of the joints, in rad/s and rad/s^2.
+    """
     left, right, middle = closed.legs
     W_1 = add(scale(left.sin_gamma * v[0], closed.u1), scale(right.sin_gamma * v[1], closed.u2))
     pushes = [
@@ -60,7 +72,7 @@ def joint_driven(closed: Posture, velocity: ArrayLike, acceleration: ArrayLike) 
     d_1 = (v[2] - middle.beta_gamma * gamma_1) / middle.beta_d
     bias = _closure_bias(middle, gamma_1, d_1)[0]
     d_2 = (a[2] - middle.beta_gamma * gamma_2 - bias) / middle.beta_d
-    return _motion(closed, W_1, W_2, d_1, d_2)
+    return _motion(closed, W_1, W_2, d_1, d_2, ((v[0], a[0]), (v[1], a[1])))
 
 
 def pose_driven(
@@ -89,26 +101,48 @@ def pose_driven(
     return _motion(closed, (x_1, y_1, z_1), (x_2, y_2, z_2), v[2], a[2])
 
 
-def _motion(closed: Posture, W_1: Vector, W_2: Vector, d_1: Scalar, d_2: Scalar) -> RobotMotion:
-    left, right, middle = (_leg_motion(leg, W_1, W_2, d_1, d_2) for leg in closed.legs)
+# Rate and acceleration of the plane of a leg.
+_Turn = tuple[Scalar, Scalar]
+
+
+def _motion(
+    closed: Posture,
+    W_1: Vector,
+    W_2: Vector,
+    d_1: Scalar,
+    d_2: Scalar,
+    turns: tuple[_Turn | None, _Turn | None] = (None, None),
+) -> RobotMotion:
+    left, right, middle = (
+        _leg_motion(leg, W_1, W_2, d_1, d_2, turn)
+        for leg, turn in zip(closed.legs, (*turns, None), strict=True)
+    )
     return RobotMotion(W_1, W_2, d_1, d_2, (left, right, middle))
 
 
-def _leg_motion(leg: LegPosture, W_1: Vector, W_2: Vector, d_1: Scalar, d_2: Scalar) -> LegMotion:
+def _leg_motion(
+    leg: LegPosture, W_1: Vector, W_2: Vector, d_1: Scalar, d_2: Scalar, turn: _Turn | None
+) -> LegMotion:
     gamma_1, gamma_2 = _gamma_rates(leg, W_1, W_2)
-    alpha_1 = dot(leg.normal, W_1) / leg.sin_gamma
-    push = dot(leg.normal, W_2) - 2 * leg.cos_gamma * gamma_1 * alpha_1
+    alpha_1, alpha_2 = turn or _turn_of(leg, W_1, W_2, gamma_1)
     beta_bias, kappa_bias = _closure_bias(leg, gamma_1, d_1)
     return LegMotion(
         alpha_1=alpha_1,
         gamma_1=gamma_1,
         beta_1=leg.beta_gamma * gamma_1 + leg.beta_d * d_1,
         kappa_1=leg.kappa_gamma * gamma_1 + leg.kappa_d * d_1,
-        alpha_2=push / leg.sin_gamma,
+        alpha_2=alpha_2,
         gamma_2=gamma_2,
         beta_2=leg.beta_gamma * gamma_2 + leg.beta_d * d_2 + beta_bias,
         kappa_2=leg.kappa_gamma * gamma_2 + leg.kappa_d * d_2 + kappa_bias,
     )
+
+
+def _turn_of(leg: LegPosture, W_1: Vector, W_2: Vector, gamma_1: Scalar) -> _Turn:
+    """Return how the plane turns, where the endoscope moves and no joint of the plane says it."""
+    alpha_1 = dot(leg.normal, W_1) / leg.sin_gamma
+    push = dot(leg.normal, W_2) - 2 * leg.cos_gamma * gamma_1 * alpha_1
+    return alpha_1, push / leg.sin_gamma
 
 
 def _gamma_1(leg: LegPosture, W_1: Vector) -> Scalar:

@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from nrs_design.proof.evidence.mode_quadratic import ModeQuadratic
     from nrs_design.proof.evidence.no_common_quadratic import NoCommonQuadratic
     from nrs_design.proof.evidence.parameter_quadratic import ParameterQuadratic
+    from nrs_design.proof.evidence.periodic_quadratic import PeriodicQuadratic
     from nrs_design.proof.evidence.unstable_mixture import UnstableMixture
     from nrs_design.proof.evidence.unstable_mode import UnstableMode
     from nrs_design.proof.evidence.unstable_period import UnstablePeriod
@@ -46,6 +47,7 @@ __all__ = [
     "ModeQuadratic",
     "NoCommonQuadratic",
     "ParameterQuadratic",
+    "PeriodicQuadratic",
     "Shows",
     "UnstableMixture",
     "UnstableMode",
@@ -69,6 +71,7 @@ KINDS: Mapping[str, str] = {
     "mode-quadratic": "ModeQuadratic",
     "no-common-quadratic": "NoCommonQuadratic",
     "parameter-quadratic": "ParameterQuadratic",
+    "periodic-quadratic": "PeriodicQuadratic",
     "unstable-mixture": "UnstableMixture",
     "unstable-mode": "UnstableMode",
     "unstable-period": "UnstablePeriod",

@@ -95,6 +95,8 @@ class AbstractEvidence(ABC):
     covers_lost_contact: ClassVar[bool] = False
     # It holds for all axes at once, where the system says what they do to each other.
     covers_coupling: ClassVar[bool] = False
+    # It is about modes that take turns, where the system says so.
+    covers_clock: ClassVar[bool] = False
 
     @property
     @abstractmethod
@@ -218,6 +220,8 @@ class AbstractEvidence(ABC):
             return f"evidence of kind {self.kind} does not cover the loss of contact"
         if system.couplings and self._is_good() and not self.covers_coupling:
             return f"evidence of kind {self.kind} does not cover what axes do to each other"
+        if system.clock is not None and not self.covers_clock:
+            return f"evidence of kind {self.kind} does not know that modes take turns"
         return self.find_misfit(system)
 
     def _takes_contact(self) -> bool:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from fractions import Fraction
 from itertools import product
 from typing import Any, ClassVar, Self
@@ -54,7 +54,11 @@ class ConewiseQuadratic(AbstractFunction):
       hold for convex combinations of modes;
     - free to free, and free to contact: the depth after landing lies between 0 and ``c y``, V is
       convex in it, so both ends suffice: ``rho^2 Q_yy - N' Q_yy N > 0`` and
-      ``rho^2 Q_yy - (N, c)' Q (N, c) > 0`` for every free mode.
+      ``rho^2 Q_yy - (N, c)' Q (N, c) > 0`` for every free mode;
+    - deflected without force, where an environment could pull, for every free mode and every force
+      q: ``rho^2 Q - F'QF + mu (e q + q' e') > 0`` if the deflection stays, and if it does not
+      ``rho^2 Q - N' Q_yy N + mu (e q + q' e') + lambda (e c + c' e') > 0``, each mu and this lambda
+      one for all free modes.
 
     Parameters
     ----------
@@ -66,7 +70,8 @@ class ConewiseQuadratic(AbstractFunction):
         The alpha in 1/s, or rho per step.
     multipliers : tuple of int
         The lambdas, over the denominator of Q: in continuous time one for each free mode and each
-        force in turn, in discrete time a single one.
+        force in turn; in discrete time one, and for each force three more, as in
+        `nrs_design.proof.steps.Steps`.
     roundings : tuple of int
         Over the denominator of Q: the multipliers of `nrs_design.proof.steps.Steps`, if what the
         arithmetic rounds is covered.
@@ -104,8 +109,6 @@ class ConewiseQuadratic(AbstractFunction):
             return NO_CONTACT
         if not is_square(self.Q, system.order):
             return f"Q is not a {system.order} x {system.order} matrix"
-        if system.time is Time.DISCRETE and system.contact.pulls:
-            return "in discrete time, an environment that could pull is not covered"
         if len(self.multipliers) != multiplier_count(system.contact, system.time):
             return "there is not one multiplier for each condition that needs it"
         if any(entry < 0 for entry in self.multipliers):
@@ -121,8 +124,14 @@ class ConewiseQuadratic(AbstractFunction):
         if system.time is Time.CONTINUOUS:
             yield from self._in_continuous_time(system.modes, system.contact)
             return
+        crossing, *lagging = self.multipliers
         steps = Steps(
-            self.Q, self.denominator_log2, self.rate**2, self.multipliers[0], self.roundings
+            self.Q,
+            self.denominator_log2,
+            self.rate**2,
+            crossing,
+            self.roundings,
+            lagging=in_threes(lagging),
         )
         for where, form in steps.forms(system):
             yield _failure(where), form
@@ -183,7 +192,14 @@ class ConewiseQuadratic(AbstractFunction):
 
 def multiplier_count(contact: Contact, time: Time) -> int:
     """Return how many multipliers the conditions need."""
-    return len(contact.free) * len(contact.pulls) if time is Time.CONTINUOUS else 1
+    if time is Time.CONTINUOUS:
+        return len(contact.free) * len(contact.pulls)
+    return 1 + 3 * len(contact.pulls)
+
+
+def in_threes(multipliers: Sequence[int]) -> tuple[tuple[int, int, int], ...]:
+    """Return those of each force that could pull, as `Steps` takes them; all but the first."""
+    return tuple(zip(multipliers[::3], multipliers[1::3], multipliers[2::3], strict=True))
 
 
 def _failure(where: str) -> str:

@@ -9,7 +9,7 @@ from typing import Any, ClassVar, Self
 
 from nrs_design.proof.bounds import rounded_down, rounded_up
 from nrs_design.proof.evidence.abstract import AbstractEvidence, Bound, Shows
-from nrs_design.proof.evidence.conewise_quadratic import multiplier_count
+from nrs_design.proof.evidence.conewise_quadratic import in_threes, multiplier_count
 from nrs_design.proof.evidence.fields import (
     MAX_INTEGER_BITS,
     Matrix,
@@ -110,8 +110,6 @@ class InvariantEllipsoid(AbstractEvidence):
             return f"Q is not a {system.order} x {system.order} matrix"
         if not 0 <= self.denominator_log2 <= MAX_INTEGER_BITS:
             return f"the denominator of Q is not two to a power up to {MAX_INTEGER_BITS}"
-        if contact is not None and system.time is Time.DISCRETE and contact.pulls:
-            return "in discrete time, an environment that could pull is not covered"
         needed = 0 if contact is None else multiplier_count(contact, system.time)
         if len(self.multipliers) != needed:
             return "there is not one multiplier for each condition that needs it"
@@ -159,14 +157,16 @@ class InvariantEllipsoid(AbstractEvidence):
             for where, form in flows.forms(multipliers):
                 yield where, RationalMatrix.from_rows(form).numerators
             return
+        crossing, *lagging = self.multipliers or (0,)
         yield from Steps(
             self.Q,
             self.denominator_log2,
             1 - sum(self.shares, Fraction(0)),
-            sum(self.multipliers),
+            crossing,
             roundings=self.roundings,
             channels=tuple(system.channels.index(channel) for channel in named),
             weights=weights,
+            lagging=in_threes(lagging),
         ).forms(system)
 
     def bound(self, system: SwitchedSystem) -> Bound:

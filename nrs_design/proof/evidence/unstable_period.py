@@ -7,6 +7,7 @@ from fractions import Fraction
 from typing import Any, ClassVar, Self
 
 from nrs_design.proof.bounds import nearly
+from nrs_design.proof.clock import keeps_turns
 from nrs_design.proof.enclosure import balls, exponential, precision
 from nrs_design.proof.evidence.abstract import AbstractEvidence, Shows
 from nrs_design.proof.evidence.fields import read_integer, read_ratio, read_text
@@ -41,6 +42,7 @@ class UnstablePeriod(AbstractEvidence):
     """
 
     kind: ClassVar[str] = "unstable-period"
+    covers_clock: ClassVar[bool] = True
 
     steps: tuple[tuple[str, Fraction], ...]
     doublings: int
@@ -91,6 +93,8 @@ class UnstablePeriod(AbstractEvidence):
             return f"a dwell time is not between 0 and {MAX_DWELL}"
         if system.time is Time.DISCRETE and any(dwell.denominator != 1 for _, dwell in self.steps):
             return "a number of steps is not whole"
+        if system.clock is not None and not keeps_turns(system.clock, self.steps):
+            return "a mode is in force when it is not its turn"
         if not expands(system, self.steps, self.doublings, self.edges):
             return "the enclosure of the monodromy matrix does not show growth"
         return None

@@ -1,15 +1,13 @@
 """Full dynamics against Pinocchio, an implementation that is not ours."""
 
-from dataclasses import replace
-
 import numpy as np
 import pinocchio as pin
 import pytest
 
 from benchmarks.pinocchio_tree import Tree
 from nrs_design.models.robot import inverse_dynamics, mass_matrix, posture
-from nrs_design.models.robot.body import rigid_body
 from nrs_design.models.robot.motion import joint_driven
+from tests.models.robot.crooked import crooked
 
 
 def poses(count, seed):
@@ -18,31 +16,9 @@ def poses(count, seed):
     return rng.uniform(low, high, (count, 3)), rng.normal(0, 2, (2, count, 3))
 
 
-@pytest.fixture(scope="module")
-def crooked(robot):
-    """A robot of the family without any symmetry: oblique axes, centers off the links, a tilt."""
-    rng = np.random.default_rng(5)
-
-    def body(mass):
-        A = rng.normal(0, 0.02, (3, 3))
-        second = A @ A.T
-        return rigid_body(mass, rng.normal(0, 0.05, 3), np.trace(second) * np.eye(3) - second)
-
-    changes = [
-        {"azimuth": -0.9, "l0": 0.21, "l1": 0.14, "l2": 0.2},
-        {"azimuth": 0.7, "l0": 0.19, "l3": 0.19},
-        {"azimuth": 0.1, "l1": 0.13, "l3": 0.205},
-    ]
-    legs = tuple(
-        replace(leg, crank=body(0.1), coupler=body(0.2), arm=body(0.3), axis_inertia=1e-3, **change)
-        for leg, change in zip(robot.legs, changes, strict=True)
-    )
-    return replace(robot, legs=legs, platform=body(0.8), base_tilt=-0.5)
-
-
 @pytest.fixture(params=["neuroboscope", "tilted", "crooked"])
-def tree(request, robot, crooked):
-    robots = {"neuroboscope": robot, "tilted": robot.tilted(-0.5), "crooked": crooked}
+def tree(request, robot):
+    robots = {"neuroboscope": robot, "tilted": robot.tilted(-0.5), "crooked": crooked(robot)}
     return Tree(robots[request.param])
 
 

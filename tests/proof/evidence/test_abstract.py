@@ -303,15 +303,18 @@ BOUNCING = {
     "conewise-polynomial",
     "conewise-quadratic",
     "coupled-axes",
+    "periodic-quadratic",
 }
 FREE = {"common-quadratic", "common-polynomial", "parameter-quadratic"} | BOUNCING
 SETS = {"common-quadratic", "conewise-quadratic", "coupled-axes", "invariant-ellipsoid"}
+SETS |= {"periodic-quadratic"}
 RULED = {"mode-quadratic", "mode-polynomial"}
 FACTS = {
     # The careful answer is no; these kinds show more.
     "allows_unequal_modes": RULED | {"unstable-mode"},
     "attains_rate": FREE | RULED,
     "bounds_at_once": FREE,
+    "covers_clock": {"periodic-quadratic", "unstable-period"},
     "covers_coupling": {"coupled-axes"},
     "covers_lost_contact": BOUNCING | {"invariant-ellipsoid", "no-common-quadratic"},
     "covers_mixtures": SETS | BOUNCING | {"common-polynomial", "block-triangular"},

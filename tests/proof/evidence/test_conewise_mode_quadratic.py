@@ -20,21 +20,13 @@ from tests.proof.truth import (
     times,
     transpose,
 )
-from tests.support import is_definite_by_ldl
+from tests.support import broken
 
 Q = ((40, 20), (20, 60))
 # By hand, as for one function: all modes have the same.
 STEPS = ConewiseModeQuadratic(
     (("m0", Q), ("m1", Q)), (("free", ((40,),)),), 0, Fraction(99, 100), (16,)
 )
-
-
-def broken(system: SwitchedSystem, candidate: ConewiseModeQuadratic) -> set[str]:
-    return {
-        failure.partition("rate ")[2]
-        for failure, form in candidate.forms(system)
-        if not is_definite_by_ldl(form)
-    }
 
 
 def test_a_bouncing_mass_is_proved():

@@ -21,7 +21,7 @@ from tests.proof.truth import (
     times,
     transpose,
 )
-from tests.support import is_definite_by_ldl
+from tests.support import broken
 
 Rows = Sequence[Sequence[Entry]]
 
@@ -123,16 +123,57 @@ def test_each_condition_in_steps_bars_a_family_that_grows(where):
     faults = set()
     for multiplier in (0, 16, 32, 64, 128, 256, 512):
         candidate = ConewiseQuadratic(scaled, 0, Fraction(98, 100), (multiplier,))
-        broken = {
-            failure.partition("rate ")[2]
-            for failure, form in candidate.forms(system)
-            if not is_definite_by_ldl(form)
-        }
-        assert where in broken
-        faults.add(frozenset(broken))
+        places = broken(system, candidate)
+        assert where in places
+        faults.add(frozenset(places))
     # With some multiplier nothing else is broken.
     assert frozenset({where}) in faults
     assert max(growth(system, Q, start) for start in range(40)) > 1000
+
+
+# A step from a state that lags, with functions that keep all conditions but one: V rises there.
+# The multipliers are lambda, mu where the deflection stays, mu and lambda where it does not.
+LAGGING = {
+    "while the environment lags, mode f": (
+        losable(over(8, (-4, 9), (3, 3)), over(8, (-1, 0), (5, 8)), Time.DISCRETE, [[-6, 1]]),
+        ((512, -320), (-320, 720)),
+        (16, 0, 16, 16),
+    ),
+    "where a lagging environment is left, mode f": (
+        losable(over(8, (6, -1), (-8, -2)), over(8, (-7, 0), (5, 8)), Time.DISCRETE, [[1, 4]]),
+        ((384, 336), (336, 400)),
+        (256, 128, 0, 0),
+    ),
+}
+RISES = {
+    "while the environment lags, mode f": (1, 5),
+    "where a lagging environment is left, mode f": (-8, Fraction(19, 10)),
+}
+
+
+@pytest.mark.parametrize("where", LAGGING)
+@pytest.mark.parametrize("mu", [0, 1, 16, 64, 1024, 10**6])
+def test_what_lags_in_steps_needs_its_own_conditions(where, mu):
+    """No mu, and no lambda beside it, makes up for a rise; without the force all else holds."""
+    system, Q, multipliers = LAGGING[where]
+    stays = where.startswith("while")
+    for beside in (0, 16, 256, 10**5):
+        tried = (multipliers[0], mu, *multipliers[2:]) if stays else (*multipliers[:2], mu, beside)
+        fault = ConewiseQuadratic(Q, 0, Fraction(98, 100), tried).find_fault(system)
+        assert fault == f"V does not decrease at the claimed rate {where}"
+    sprung = replace(system, contact=Contact(system.contact.free))
+    assert ConewiseQuadratic(Q, 0, Fraction(98, 100), multipliers[:1]).find_fault(sprung) is None
+
+
+@pytest.mark.parametrize("where", LAGGING)
+def test_a_function_rises_where_what_lags_is_not_looked_at(where):
+    system, Q, _ = LAGGING[where]
+    x = [Fraction(entry) for entry in RISES[where]]
+    (pull,), (free,) = (q.fractions()[0] for q in system.contact.pulls), system.contact.free
+    after = [sum(a * b for a, b in zip(row, x, strict=True)) for row in free.A.fractions()]
+    assert sum(a * b for a, b in zip(pull, x, strict=True)) < 0 < x[-1]
+    assert (after[-1] > 0) is where.startswith("while")
+    assert _value(Q, after) > _value(Q, x)
 
 
 def growth(system: SwitchedSystem, Q: Rows, start: int) -> Fraction:
@@ -194,10 +235,6 @@ def test_misfits_in_steps(changes, fault):
 
 def test_what_is_not_covered_is_refused():
     assert "how contact is lost" in BOUNCE.find_fault(replace(bouncing(), contact=None))
-    pulled = replace(
-        bouncing_in_steps(), contact=Contact(bouncing_in_steps().contact.free, (matrix([[1, 1]]),))
-    )
-    assert "could pull" in STEPS.find_fault(pulled)
     reset = Switching(resets=(Reset("m0", "m1", matrix([[1, 0], [0, 1]])),))
     assert "does not cover this kind of switching" in BOUNCE.find_fault(
         replace(bouncing(), switching=reset)
@@ -235,10 +272,13 @@ def test_against_the_definition(contact, free, Q, multiplier, rate, time):
     ends = [[a, b], [c, d]], [[e, f], [g, h]]
     moves = Fraction(int(time is Time.DISCRETE))
     motion = Mode("f", matrix([[Fraction(free[0], 8), 0], [Fraction(free[1], 8), moves]]))
-    pulls = (matrix([[1, 2]]),) if time is Time.CONTINUOUS else ()
-    system = replace(family(*ends, time=time), contact=Contact((motion,), pulls))
+    system = replace(
+        family(*ends, time=time), contact=Contact((motion,), (matrix([["1/3", "2/3"]]),))
+    )
     p, q, r = Q
-    candidate = ConewiseQuadratic(((p, q), (q, r)), 0, rate, (multiplier,))
+    count = 1 if time is Time.CONTINUOUS else 4
+    multipliers = tuple(range(multiplier, multiplier + count))
+    candidate = ConewiseQuadratic(((p, q), (q, r)), 0, rate, multipliers)
     assert (candidate.find_fault(system) is None) == holds(system, candidate)
 
 
@@ -288,9 +328,16 @@ def test_forms_in_continuous_time_by_hand():
 def test_forms_in_steps_by_hand():
     landing = [[*row[:2], int(k == 2)] for k, row in enumerate(FREE3)]
     rate, multiplier = Fraction(6, 7), 5
-    contact = Contact((Mode("f", matrix(landing)),))
+    pulls, lagging = ((3, -2, 12), (2, 40, 15)), ((2, 7, 11), (13, 17, 19))
+    contact = Contact(
+        (Mode("f", matrix(landing)),),
+        tuple(
+            matrix([[Fraction(entry, d) for entry in q]])
+            for q, d in zip(pulls, (6, 10), strict=True)
+        ),
+    )
     system = replace(family(CONTACT3, OTHER3, time=Time.DISCRETE), contact=contact)
-    evidence = ConewiseQuadratic(Q3, 0, rate, (multiplier,))
+    evidence = ConewiseQuadratic(Q3, 0, rate, (multiplier, *lagging[0], *lagging[1]))
     assert evidence.find_misfit(system) is None
     Q, *forms = (form for _, form in evidence.forms(system))
     assert Q == Q3
@@ -302,6 +349,15 @@ def test_forms_in_steps_by_hand():
     rows = columns(landing, 0, 1)
     for image, M in ((rows[:2], inner), (rows, Q3)):
         wanted.append(combine((rate**2, inner), (-1, times(transpose(image), times(M, image)))))
+    F = matrix(landing).fractions()
+    for q, (stays, leaves, weight) in zip(contact.pulls, lagging, strict=True):
+        pulled, lost = (
+            crossing(q.numerators[0]),
+            times(transpose(F[:2]), times(inner, F[:2])),
+        )
+        wanted.append(combine((1, decrease(F, Q3, rate, Time.DISCRETE)), (stays, pulled)))
+        ways = (leaves, pulled), (weight, crossing(F[2]))
+        wanted.append(combine((rate**2, Q3), (-1, lost), *ways))
     for form, true in zip(forms, wanted, strict=True):
         assert is_in_other_units(form, true)
 

@@ -13,7 +13,7 @@ from nrs_design.proof.second_opinion import agrees
 from nrs_design.proof.system import Contact, Coupling, Mode, Reset, SwitchedSystem, Switching, Time
 from tests.proof.systems import bouncing, family, genuine, leaning, matrix
 from tests.proof.truth import decrease, holds, is_positive_multiple
-from tests.support import is_definite_by_ldl
+from tests.support import broken
 
 ALL = ("coupled-axes", "coupled-axes, kept", "coupled-axes, pulling")
 
@@ -129,13 +129,9 @@ def test_each_condition_bars_what_is_false(where):
                 (tau,),
                 (multiplier,) * len(pulls),
             )
-            broken = {
-                failure.partition("rate ")[2]
-                for failure, form in item.forms(system)
-                if not is_definite_by_ldl(form)
-            }
-            assert where in broken
-            found.add(frozenset(broken))
+            places = broken(system, item)
+            assert where in places
+            found.add(frozenset(places))
     # With some multipliers nothing else is broken.
     assert frozenset({where}) in found
     assert rises(where, touching, flying)

@@ -21,6 +21,7 @@ from nrs_design.proof.system import (
     SwitchedSystem,
     Time,
 )
+from tests.proof.evidence.test_conewise_quadratic import LAGGING
 from tests.proof.systems import Entry, Rows, bouncing, bouncing_in_steps, family, matrix, pushed
 from tests.proof.truth import combine, decrease, holds, is_positive_multiple, times, transpose
 from tests.support import is_definite_by_ldl
@@ -298,10 +299,34 @@ def test_a_share_in_continuous_time_may_be_large():
     assert "left in mode" in replace(BOUNCE, shares=(Fraction(50),)).find_fault(pushed(bouncing()))
 
 
-def test_an_environment_that_could_pull_is_refused_in_steps():
+def test_an_environment_that_could_pull_has_multipliers_of_its_own_in_steps():
     system = pushed(bouncing_in_steps())
     pulled = replace(system, contact=replace(system.contact, pulls=(matrix([[1, 1]]),)))
-    assert "could pull" in STEPS.find_fault(pulled)
+    assert "one multiplier for each" in STEPS.find_fault(pulled)
+    lagging = (*STEPS.multipliers, 500, 500, 500)
+    covered = replace(STEPS, multipliers=lagging)
+    assert (covered.find_fault(pulled) is None) == holds(pulled, covered)
+    assert "one multiplier for each" in covered.find_fault(system)
+
+
+@pytest.mark.parametrize("where", LAGGING)
+def test_what_lags_in_steps_can_leave_the_set(where):
+    """A state that no disturbance has to push: V rises in one step by more than a twentieth."""
+    system, Q, multipliers = LAGGING[where]
+    columns = (matrix([["1/100"], [0]]),) * 2
+    system = replace(
+        system,
+        channels=(Channel("push", "N", Fraction(1, 1000), columns),),
+        outputs=(Output("force", "N", (matrix([[0, 1]]),)),),
+    )
+    ellipsoid = InvariantEllipsoid(
+        ("push",), "force", Q, 0, (Fraction(1, 50),), Fraction(10), multipliers
+    )
+    fault = ellipsoid.find_fault(system)
+    assert fault == f"the ellipsoid can be left {where}"
+    assert not holds(system, ellipsoid)
+    sprung = replace(system, contact=replace(system.contact, pulls=()))
+    assert replace(ellipsoid, multipliers=multipliers[:1]).find_fault(sprung) is None
 
 
 def changed_channel(**changes: object) -> Callable[[SwitchedSystem], SwitchedSystem]:

@@ -55,6 +55,13 @@ def test_rates_that_are_not_proved(rate):
     assert replace(EVIDENCE, quadratic=quadratic).find_fault(SYSTEM) is not None
 
 
+def test_the_claim_has_the_rate():
+    quadratic = replace(EVIDENCE.quadratic, rate=Fraction(49, 50))
+    claim = replace(EVIDENCE, quadratic=quadratic).claim(SYSTEM)
+    assert "rho^t |x(0)|" in claim
+    assert "rho = 0.98" in claim
+
+
 def test_one_more_switch_is_not_covered():
     switching = SYSTEM.switching
     more = replace(switching, transitions=(*switching.transitions, ("n4", "n1")))

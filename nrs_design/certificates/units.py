@@ -1,0 +1,19 @@
+"""The units of the gains that a certificate lists."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from nrs_design.certificates.certificate import Certificate
+
+
+def gain_units(certificate: Certificate) -> dict[str, dict[str, str]]:
+    """Return the unit of every gain, by controller; the motor's follows from what is assumed."""
+    if not certificate.gains:
+        return {}
+    # Controllers are slow to load, and a certificate of given matrices has none.
+    from nrs_design.controllers.gains import units_of
+    from nrs_design.switched.assumptions import command_in
+
+    return units_of(certificate.gains, command_in(certificate.system.assumptions))

@@ -1,0 +1,64 @@
+"""Search for a growing signal of whole rounds, where modes take turns (untrusted)."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from itertools import product
+
+import numpy as np
+from numpy.typing import NDArray
+
+from nrs_design.proof.evidence import UnstablePeriod
+from nrs_design.proof.system import Mode
+from nrs_design.search.candidates import Candidates
+from nrs_design.search.family import Family, stand_ins, to_floats
+from nrs_design.search.period import NOTHING_GROWS, powers
+from nrs_design.search.words import growing_words
+
+Array = NDArray[np.float64]
+
+# So many rounds, those that grow the most alone, are put in a row.
+LETTERS = 8
+
+
+def search_rounds(family: Family) -> Candidates[UnstablePeriod]:
+    """Search among rounds of one mode for the first step and one for all others.
+
+    Raises
+    ------
+    NotAffordableError
+        If time or memory do not suffice for longer signals.
+    """
+    system, clock = family.system, family.system.clock
+    if clock is None:
+        return NOTHING_GROWS
+    first, others = (
+        _distinct([mode for mode in system.modes if (mode.name in clock.first) == begins])
+        for begins in (True, False)
+    )
+    rest = clock.length - 1
+    rounds = [
+        (float(np.abs(np.linalg.eigvals(whole)).max()), (a.name, b.name), whole)
+        for (a, A), (b, B) in product(first, others)
+        for whole in [np.linalg.matrix_power(B, rest) @ A]
+    ]
+    rounds.sort(key=lambda item: -item[0])
+    for radius, names, _ in rounds[:1]:
+        yield from powers(system, _signal([names], rest), radius)
+    matrices = np.array([whole for _, _, whole in rounds[:LETTERS]])
+    for word, radius in growing_words(matrices, family.allowance):
+        yield from powers(system, _signal([rounds[i][1] for i in word], rest), radius)
+    return NOTHING_GROWS
+
+
+def _signal(rounds: list[tuple[str, str]], rest: int) -> UnstablePeriod:
+    pairs = (((a, Fraction(1)), (b, Fraction(rest))) for a, b in rounds)
+    return UnstablePeriod(tuple(step for pair in pairs for step in pair), 0)
+
+
+def _distinct(modes: list[Mode]) -> list[tuple[Mode, Array]]:
+    """Return modes in floating point, without those that differ by an enclosed number."""
+    matrices = to_floats([mode.A for mode in modes])
+    named = stand_ins([mode.name for mode in modes], matrices)
+    pairs = zip(modes, matrices, strict=True)
+    return [(mode, A) for mode, A in pairs if named[mode.name] == mode.name]

@@ -1,0 +1,92 @@
+"""Controllers of several kinds in one spec: what must be said, and what is not modelled."""
+
+from __future__ import annotations
+
+from nrs_design.spec.controllers import ControllerSpec, IdleStatesSpec, Offset
+from nrs_design.spec.environment import EnvironmentSpec
+from nrs_design.spec.faults import fault
+
+
+def check_mixture(
+    controllers: dict[str, ControllerSpec],
+    environments: dict[str, EnvironmentSpec],
+    idle: IdleStatesSpec | None,
+    coordinates: str,
+) -> None:
+    """Refuse states of impedance controllers that nobody says what to do with.
+
+    Position and force controllers do not use them.
+
+    Parameters
+    ----------
+    controllers, environments : dict
+        By name.
+    idle : IdleStatesSpec, optional
+        What these states do while another kind of controller is active.
+    coordinates : {"deflection", "force"}
+        State of the contact.
+    """
+    first_name, first = next(iter(controllers.items()))
+    others = (
+        (name, controller.type)
+        for name, controller in controllers.items()
+        if controller.commands != first.commands
+    )
+    name, kind = next(others, (None, None))
+    if idle is None and name is not None:
+        raise fault(
+            f"{kind} is mixed with {first.type} ({first_name!r}), and it is not said what the "
+            "states of impedance controllers do meanwhile",
+            "add `idle_states: {decay: 20 1/s}`, or use one kind of controller",
+            "controllers",
+            name,
+            "type",
+        )
+    if idle is None:
+        return
+    if name is None:
+        raise fault(
+            "idle_states without impedance controllers beside position or force controllers",
+            "remove idle_states",
+            "idle_states",
+        )
+    if coordinates == "force":
+        raise fault(
+            "force coordinates do not apply to impedance controllers beside others",
+            "use `coordinates: deflection`",
+            "coordinates",
+        )
+    for contact, environment in environments.items():
+        if environment.remembers:
+            raise fault(
+                f"{contact!r}, which is {environment.model}, is not modelled for impedance "
+                "controllers beside others",
+                "use elastic or kelvin-voigt environments, or one kind of controller",
+                "environments",
+                contact,
+                "model",
+            )
+
+
+def check_offsets(controllers: dict[str, ControllerSpec], idle: IdleStatesSpec | None) -> None:
+    """Refuse offsets that differ, and offsets where impedance controllers integrate a reference."""
+    first: tuple[str, Offset] | None = None
+    for name, controller in controllers.items():
+        if controller.type != "force":
+            continue
+        at = ("controllers", name, "offset")
+        if idle is not None and controller.offset != "none":
+            raise fault(
+                f"an offset is not modelled for force controllers beside impedance controllers "
+                f"({name!r} has offset {controller.offset})",
+                "leave offset out, or write a spec without impedance controllers",
+                *at,
+            )
+        first = first or (name, controller.offset)
+        if controller.offset != first[1]:
+            raise fault(
+                f"{name!r} has offset {controller.offset}, {first[0]!r} has {first[1]}: one state "
+                "cannot hold both",
+                f"give all force controllers `offset: {first[1]}`",
+                *at,
+            )

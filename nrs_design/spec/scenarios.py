@@ -1,0 +1,397 @@
+"""Scenarios of a spec: what the surgeon commands, where tissue is, and who is in control when."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from functools import partial
+from pathlib import PurePosixPath
+from typing import Annotated, Any, Literal
+
+from pydantic import Field, WithJsonSchema, model_validator
+
+from nrs_design.proof.text import quoted
+from nrs_design.spec import kinds
+from nrs_design.spec.faults import all_of, as_text, did_you_mean, fault
+from nrs_design.spec.fields import LABEL_PATTERN, Label, Title, UnitFraction, read_exact
+from nrs_design.spec.model import ReadBy, SpecModel
+from nrs_design.spec.quantity import Quantity, is_less
+from nrs_design.spec.quantity_fields import (
+    Angle,
+    AngularVelocity,
+    Bandwidth,
+    Command,
+    Duration,
+    SignedAngle,
+    SignedAngularVelocity,
+    Torque,
+    quantity_schema,
+    read_quantity,
+)
+
+MAX_POINTS, MAX_SURFACES, LONGEST = 1000, 16, 3600
+LARGEST_SEED = 2**32 - 1
+
+Points = tuple[tuple[Quantity, Quantity], ...]
+
+
+def _read_points(value: object) -> Points:
+    """Read ``[[time, velocity], ...]``; times never fall."""
+    if not isinstance(value, list | tuple) or not 2 <= len(value) <= MAX_POINTS:
+        raise fault(
+            "expected a list of breakpoints, two at least",
+            "write [[0 s, 0 deg/s], [1 s, 8 deg/s], ...]",
+        )
+    points = tuple(all_of(*(partial(_read_point, i, item) for i, item in enumerate(value))))
+    for i, (time, _) in enumerate(points):
+        if (i == 0 and time.value) or (i and is_less(time, points[i - 1][0])):
+            raise fault(
+                f"the time {quoted(time.text)} is not in order",
+                "begin at 0 s, and let times never fall; the same time twice is a jump",
+                i,
+                0,
+            )
+    return points
+
+
+def _read_point(i: int, item: object) -> tuple[Quantity, Quantity]:
+    if not isinstance(item, list | tuple) or len(item) != 2:
+        raise fault("a breakpoint is a time and a velocity", "write [1 s, 8 deg/s]", i)
+    time = read_quantity(item[0], kinds.DURATION, i, 0, positive=False)
+    return time, read_quantity(item[1], kinds.ANGULAR_VELOCITY, i, 1, positive=False, signed=True)
+
+
+def _read_schedule(value: object) -> tuple[tuple[Quantity, str], ...]:
+    """Read ``[[time, controller], ...]``; times rise from zero."""
+    wanted = "write [[0 s, insertion], [2 s, withdrawal], ...]"
+    if not isinstance(value, list | tuple) or not 1 <= len(value) <= MAX_POINTS:
+        raise fault("expected a list of switches", wanted)
+    steps: list[tuple[Quantity, str]] = []
+    for i, item in enumerate(value):
+        if not isinstance(item, list | tuple) or len(item) != 2:
+            raise fault("a switch is a time and a controller", wanted, i)
+        time = read_quantity(item[0], kinds.DURATION, i, 0, positive=False)
+        if (not steps and time.value) or (steps and not is_less(steps[-1][0], time)):
+            raise fault(f"the time {quoted(time.text)} is not in order", wanted, i, 0)
+        steps.append((time, as_text(item[1], i, 1)))
+    return tuple(steps)
+
+
+def _read_file(value: object) -> str:
+    """Read the name of a file below the folder of the spec."""
+    text = as_text(value)
+    path = PurePosixPath(text)
+    if not text.strip() or path.is_absolute() or ".." in path.parts or "\\" in text:
+        raise fault(f"{quoted(text)} is not a file below the spec's folder", "as in data/hand.csv")
+    return text
+
+
+def _read_seed(value: object) -> int:
+    number = read_exact(value)
+    if number.denominator != 1 or not 0 <= number <= LARGEST_SEED:
+        raise fault(f"{value} is not a seed", f"write a whole number from 0 to {LARGEST_SEED}")
+    return int(number)
+
+
+def _pairs(first: dict[str, Any], second: dict[str, Any], least: int) -> WithJsonSchema:
+    pair = {"type": "array", "items": [first, second], "minItems": 2, "maxItems": 2}
+    return WithJsonSchema(
+        {"type": "array", "items": pair, "minItems": least, "maxItems": MAX_POINTS}
+    )
+
+
+_TIME = quantity_schema(kinds.DURATION)
+Breakpoints = Annotated[
+    Points,
+    ReadBy(_read_points),
+    _pairs(_TIME, quantity_schema(kinds.ANGULAR_VELOCITY), 2),
+]
+Schedule = Annotated[
+    tuple[tuple[Quantity, str], ...],
+    ReadBy(_read_schedule),
+    _pairs(_TIME, {"type": "string", "pattern": LABEL_PATTERN}, 1),
+]
+File = Annotated[str, ReadBy(_read_file), WithJsonSchema({"type": "string"})]
+Seed = Annotated[
+    int,
+    ReadBy(_read_seed),
+    WithJsonSchema({"type": "integer", "minimum": 0, "maximum": LARGEST_SEED}),
+]
+
+
+class SinusoidSpec(SpecModel):
+    """A velocity ``offset + amplitude sin(omega t)``."""
+
+    amplitude: AngularVelocity = Field(description="amplitude in rad/s")
+    frequency: Bandwidth = Field(description="frequency in Hz, or rad/s")
+    offset: SignedAngularVelocity | None = Field(
+        default=None, description="mean in rad/s; default: none"
+    )
+
+
+class CommandProfileSpec(SpecModel):
+    """The velocity that the surgeon commands, in one of four ways; positive raises the angle."""
+
+    constant: SignedAngularVelocity | None = Field(
+        default=None, description="one velocity all the time, in rad/s"
+    )
+    points: Breakpoints | None = Field(
+        default=None,
+        description="breakpoints [[time, velocity], ...], with straight lines between (thesis fig. "
+        "6.7); the last velocity is kept. A time that is there twice is a jump",
+    )
+    sinusoid: SinusoidSpec | None = Field(
+        default=None, description="{amplitude: ..., frequency: ..., offset: ...}"
+    )
+    csv: File | None = Field(
+        default=None,
+        description="file below the folder of the spec, with columns time_s and velocity_deg_s or "
+        "velocity_rad_s; straight lines between its rows",
+    )
+
+    @model_validator(mode="after")
+    def _check_one(self) -> CommandProfileSpec:
+        _check_one(self, "a command is given in one way", "write constant, points, sinusoid or csv")
+        return self
+
+
+class SurfaceSpec(SpecModel):
+    """Where an environment begins; it pushes and never pulls."""
+
+    environment: Label = Field(description="name of the environment")
+    at: SignedAngle = Field(description="angle of its surface in rad")
+    side: Literal["above", "below"] = Field(
+        default="above", description="above: met by rising angles; below: by falling ones"
+    )
+    parameters: Literal["nominal", "lowest", "highest"] = Field(
+        default="nominal", description="which end of its ranges it has: all parameters alike"
+    )
+
+
+class SignControlSpec(SpecModel):
+    """Insertion and withdrawal by the signs of command and torque (thesis 6.3.2)."""
+
+    insertion: Label = Field(description="controller while the command goes into the tissue")
+    withdrawal: Label = Field(
+        description="controller while the command goes out of tissue that pushes"
+    )
+
+
+class ThresholdControlSpec(SpecModel):
+    """Position control up to a torque, force control from there on (thesis 6.3.3)."""
+
+    position: Label = Field(description="controller below the threshold")
+    force: Label = Field(description="controller from the threshold on, until the command is out")
+    torque: Torque = Field(description="the threshold T_th in N*m")
+
+
+class ControlSpec(SpecModel):
+    """Which controller is in force when, in one of six ways."""
+
+    fixed: Label | None = Field(default=None, description="one controller all the time")
+    schedule: Schedule | None = Field(
+        default=None, description="switches at times, [[0 s, insertion], [2 s, withdrawal], ...]"
+    )
+    sign: SignControlSpec | None = Field(
+        default=None, description="{insertion: ..., withdrawal: ...}, by command and torque"
+    )
+    contact: Annotated[dict[Label, Label], Field(min_length=1)] | None = Field(
+        default=None,
+        description="environment -> controller, by what was touched last (thesis 6.4), such as "
+        "{soft: tissue, stiff: tool}; the first one before any contact",
+    )
+    threshold: ThresholdControlSpec | None = Field(
+        default=None, description="{position: ..., force: ..., torque: ...}"
+    )
+    logic: Literal["mode-logic"] | None = Field(
+        default=None, description="mode-logic: as the spec's mode_logic says (thresholds)"
+    )
+
+    @model_validator(mode="after")
+    def _check_one(self) -> ControlSpec:
+        _check_one(
+            self,
+            "control is given in one way",
+            "write fixed, schedule, sign, contact, threshold or logic",
+        )
+        return self
+
+    @property
+    def named(self) -> Mapping[tuple[str | int, ...], str]:
+        """Every controller that is named, by its place."""
+        found: dict[tuple[str | int, ...], str] = {}
+        if self.fixed is not None:
+            found["fixed",] = self.fixed
+        for i, (_, name) in enumerate(self.schedule or ()):
+            found["schedule", i, 1] = name
+        for key in ("sign", "threshold"):
+            part = getattr(self, key)
+            for field in ("insertion", "withdrawal", "position", "force"):
+                if part is not None and hasattr(part, field):
+                    found[key, field] = getattr(part, field)
+        for environment, name in (self.contact or {}).items():
+            found["contact", environment] = name
+        return found
+
+
+class ErrorsSpec(SpecModel):
+    """What acts on the sampled loop and its sensors; what is left out is zero."""
+
+    friction: Command | None = Field(
+        default=None,
+        description="Coulomb friction of the motor, as the command that it takes, such as rpm",
+    )
+    encoder_step: Angle | None = Field(
+        default=None, description="resolution of the measured joint angle in rad"
+    )
+    force_step: Torque | None = Field(
+        default=None, description="resolution of the measured torque in N*m"
+    )
+    force_noise: Torque | None = Field(
+        default=None, description="standard deviation of white noise on the torque in N*m"
+    )
+    jitter: UnitFraction | None = Field(
+        default=None,
+        description="how far a sample may be late, as a share of the period; the law does not know",
+    )
+
+
+class ScenarioSpec(SpecModel):
+    """One run of the robot against its surroundings."""
+
+    title: Title = Field(default="", description="one line for people, at most 200 characters")
+    command: CommandProfileSpec = Field(description="velocity that the surgeon commands")
+    duration: Duration | None = Field(
+        default=None,
+        description="length of the run in s, at most an hour; default: that of points or csv",
+    )
+    start: SignedAngle | None = Field(
+        default=None, description="angle at which the axis rests at first, in rad; default: 0"
+    )
+    surfaces: Annotated[tuple[SurfaceSpec, ...], Field(max_length=MAX_SURFACES)] = Field(
+        default=(),
+        description="what is touched where; where several are, forces add up. Default: nothing",
+    )
+    control: ControlSpec | None = Field(
+        default=None,
+        description="which controller is in force; default: the spec's mode_logic, else the first "
+        "controller",
+    )
+    wanted_torque: Torque | None = Field(
+        default=None,
+        description="Fd of force controllers in N*m, towards rising angles; default: limits.torque",
+    )
+    errors: ErrorsSpec | None = Field(
+        default=None, description="friction, resolutions, noise and jitter; for the sampled engine"
+    )
+    seed: Seed = Field(default=0, description="of noise, jitter and varying delay")
+
+    @model_validator(mode="after")
+    def _check_length(self) -> ScenarioSpec:
+        length = self.length
+        if length is None and self.command.csv is None:
+            raise fault("nothing says how long the run is", "add `duration: 10 s`")
+        if length is not None and not 0 < length.exact <= LONGEST:
+            raise fault(
+                f"a run of {quoted(length.text)} is not simulated",
+                f"write a duration above zero, up to {LONGEST} s",
+                *(("duration",) if self.duration is not None else ("command", "points")),
+            )
+        return self
+
+    @property
+    def length(self) -> Quantity | None:
+        """Length of the run in s, as far as the spec itself says it."""
+        if self.duration is None and self.command.points is not None:
+            return self.command.points[-1][0]
+        return self.duration
+
+
+def _check_one(model: SpecModel, message: str, remedy: str) -> None:
+    if sum(value is not None for _, value in model) != 1:
+        raise fault(message, remedy)
+
+
+def check_scenario(
+    name: str,
+    scenario: ScenarioSpec,
+    controllers: Mapping[str, Any],
+    environments: Mapping[str, Any],
+    largest: Quantity,
+    *,
+    logic: bool,
+) -> None:
+    """Refuse a scenario that does not fit the rest of its spec.
+
+    Parameters
+    ----------
+    name : str
+        Of the scenario.
+    scenario : ScenarioSpec
+        As written.
+    controllers, environments : mapping
+        Of the spec, by name.
+    largest : Quantity
+        Limit of the commanded velocity.
+    logic : bool
+        Whether the spec has a mode logic of thresholds.
+    """
+    at = ("scenarios", name)
+    _check_velocity(scenario.command, largest, at)
+    for i, surface in enumerate(scenario.surfaces):
+        if surface.environment not in environments:
+            remedy = did_you_mean(surface.environment, environments)
+            message = f"there is no environment {surface.environment!r}"
+            raise fault(message, remedy, *at, "surfaces", i, "environment")
+        start = 0.0 if scenario.start is None else scenario.start.si
+        depth = start - surface.at.si if surface.side == "above" else surface.at.si - start
+        if depth > 0:
+            raise fault(
+                f"the axis rests inside {surface.environment!r} at the start",
+                f"move the surface beyond {start:.6g} rad, or the start out of it",
+                *at,
+                "surfaces",
+                i,
+                "at",
+            )
+    if scenario.control is None:
+        return
+    for place, controller in scenario.control.named.items():
+        if controller not in controllers:
+            remedy = did_you_mean(controller, controllers)
+            raise fault(f"there is no controller {controller!r}", remedy, *at, "control", *place)
+    for environment in scenario.control.contact or {}:
+        if environment not in environments:
+            remedy = did_you_mean(environment, environments)
+            place = (*at, "control", "contact", environment)
+            raise fault(f"there is no environment {environment!r}", remedy, *place)
+    if scenario.control.logic is not None and not logic:
+        raise fault(
+            "the spec has no mode_logic of type thresholds",
+            "add one, or control in another way",
+            *at,
+            "control",
+            "logic",
+        )
+
+
+def _check_velocity(
+    command: CommandProfileSpec, largest: Quantity, at: tuple[str | int, ...]
+) -> None:
+    written: dict[tuple[str | int, ...], float] = {}
+    if command.constant is not None:
+        written["constant",] = command.constant.si
+    for i, (_, quantity) in enumerate(command.points or ()):
+        written["points", i, 1] = quantity.si
+    if command.sinusoid is not None:
+        offset = 0.0 if command.sinusoid.offset is None else command.sinusoid.offset.si
+        written["sinusoid",] = abs(offset) + command.sinusoid.amplitude.si
+    for place, velocity in written.items():
+        # The same number in another unit may be a rounding above.
+        if abs(velocity) > largest.si * (1 + 1e-12):
+            raise fault(
+                f"a velocity of {velocity:.6g} rad/s is beyond the limit of {quoted(largest.text)}",
+                "command less, or raise limits.velocity",
+                *at,
+                "command",
+                *place,
+            )

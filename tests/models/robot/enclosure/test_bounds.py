@@ -1,0 +1,166 @@
+"""Bounds over a small workspace: shown, found, written, tampered with."""
+
+import json
+from dataclasses import replace
+from fractions import Fraction
+
+import numpy as np
+import pytest
+
+from nrs_design.errors import DesignError, PoseError
+from nrs_design.models.robot import (
+    Space,
+    compute_bounds,
+    confirm_bounds,
+    coriolis_matrix,
+    mass_matrix,
+    to_document,
+)
+from nrs_design.models.robot.enclosure.cover import Boxes, cover, cut
+from nrs_design.models.robot.enclosure.enclose import enclose
+from nrs_design.models.robot.enclosure.quantities import Inertia, VelocityTorques
+from nrs_design.spec.robot_bounds import content_id
+
+TAMPERED = {"heaviest": 0.9, "velocity_torques": 0.7, "gravity_gradient": 0.9}
+SPACE = Space("0.5", "0.5", ("199.5", "200.5"))
+
+
+@pytest.fixture(scope="module")
+def document(robot):
+    return to_document("arm", 64 * "0", SPACE, compute_bounds(robot, SPACE), "1")
+
+
+def tampered(document, key, factor):
+    altered = json.loads(json.dumps(document))
+    altered["bounds"][key] = str(float(Fraction(document["bounds"][key])) * factor)
+    return altered | {"id": content_id(altered)}
+
+
+def poses(count, seed):
+    space = SPACE.workspace
+    low, high = (-space.phi, -space.psi, space.d[0]), (space.phi, space.psi, space.d[1])
+    return np.random.default_rng(seed).uniform(low, high, (count, 3))
+
+
+@pytest.mark.slow
+def test_every_sampled_pose_is_within_the_bounds_and_some_near_them(robot, document):
+    bounds = {key: float(value) for key, value in document["bounds"].items()}
+    x = poses(2000, 1)
+    eigenvalues = np.linalg.eigvalsh(mass_matrix(robot, x))
+    assert bounds["lightest"] <= eigenvalues.min()
+    assert eigenvalues.max() <= bounds["heaviest"] < 1.03 * eigenvalues.max()
+    v = np.random.default_rng(2).normal(size=x.shape)
+    v /= np.linalg.norm(v, axis=-1)[:, None]
+    torque = np.einsum("nij,nj->ni", coriolis_matrix(robot, x, v), v)
+    assert np.linalg.norm(torque, axis=-1).max() <= bounds["velocity_torques"]
+
+
+@pytest.mark.slow
+def test_the_file_holds(robot, document):
+    assert list(confirm_bounds(robot, document)) == []
+
+
+@pytest.mark.parametrize("phi", ["170", "90", "0", "-0.5"])
+def test_angles_whose_sines_do_not_grow_are_refused(robot, phi):
+    """The boxes of 170 deg would be those of 10 deg."""
+    with pytest.raises(DesignError, match="no bounds of"):
+        compute_bounds(robot, replace(SPACE, phi=phi))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("light", [1.1, 0.0])
+def test_tampered_bounds_are_refuted_with_a_pose(robot, document, light):
+    """At once, without halving boxes until the time is over; a lightest of 0 claims nothing."""
+    altered = document
+    for key, factor in TAMPERED.items():
+        altered = tampered(altered, key, factor)
+    faults = list(confirm_bounds(robot, tampered(altered, "lightest", light)))
+    keys = [key for key in document["bounds"] if light or key != "lightest"]
+    assert [fault.partition(":")[0] for fault in faults] == [key.replace("_", " ") for key in keys]
+    assert all("at phi" in fault for fault in faults)
+
+
+def test_the_boxes_are_the_whole_workspace():
+    """One box less would be a gap, which the volume shows."""
+    low, high = np.array([-1.0, 0.0, 2.0]), np.array([1.0, 1.0, 3.0])
+
+    def bound(boxes):
+        return boxes.high.max(axis=0) + boxes.half.max(axis=0), np.argmax(boxes.half, axis=0)
+
+    shown = cover(cut(low, high, (1.0, 0.4, 1.0)), bound, 3.05)
+    assert shown.reached
+    assert 3 < shown.bound <= 3.05
+    volume = np.prod(shown.boxes.high - shown.boxes.low, axis=0)
+    assert volume.sum() == pytest.approx(np.prod(high - low), rel=1e-12)
+    assert volume[:-1].sum() < np.prod(high - low) * (1 - 1e-6)
+
+
+def test_a_goal_below_the_truth_is_never_reached():
+    whole = Boxes(np.zeros((3, 1)), np.ones((3, 1)))
+
+    def bound(boxes):
+        return boxes.high[0], np.zeros(boxes.count, dtype=int)
+
+    rounds = []
+
+    def stop(done, left):
+        rounds.append(left)
+        if len(rounds) > 6:
+            raise TimeoutError
+
+    with pytest.raises(TimeoutError):
+        cover(whole, bound, 0.99, progress=stop)
+
+
+def test_inertia_over_a_small_workspace(robot):
+    shown = enclose(robot, Inertia(), SPACE.workspace, lambda found: 1.05 * found)
+    largest = np.linalg.eigvalsh(mass_matrix(robot, poses(2000, 1))).max()
+    assert shown.cover.reached
+    assert largest <= shown.found * (1 + 1e-9) <= shown.bound < 1.06 * largest
+
+
+def test_time_that_is_over_shows_nothing(robot):
+    shown = enclose(robot, Inertia(), SPACE.workspace, lambda found: found, budget=0.0)
+    assert not shown.cover.reached
+    assert shown.bound == np.inf
+    with pytest.raises(DesignError, match="boxes of poses are left") as caught:
+        compute_bounds(robot, SPACE, budget=0.0)
+    assert "--budget" in caught.value.remedy
+
+
+def test_a_workspace_that_cannot_be_reached_is_refused(robot):
+    with pytest.raises(PoseError, match="overstretched"):
+        compute_bounds(robot, Space.of(robot.workspace))
+
+
+def test_a_box_with_a_stretched_leg_has_no_bound(robot):
+    wide = replace(SPACE, d=("150", "330")).workspace
+    shown = enclose(robot, VelocityTorques(), wide, lambda found: 2 * found, budget=0.0)
+    assert shown.bound == np.inf
+
+
+@pytest.mark.slow
+def test_pinocchio_over_ten_thousand_poses_of_the_workspace(robot):
+    """What the file in this repository says, against the dynamics of another library."""
+    from benchmarks.pinocchio_tree import Tree
+    from nrs_design.spec.robot_bounds import read_bounds
+    from tests.support import ROOT
+
+    bounds, document = read_bounds(ROOT / "specs/robots/neuroboscope.bounds.json")
+    space = Space(
+        document["workspace"]["phi_deg"],
+        document["workspace"]["psi_deg"],
+        tuple(document["workspace"]["d_mm"]),
+    ).workspace
+    low, high = (-space.phi, -space.psi, space.d[0]), (space.phi, space.psi, space.d[1])
+    rng = np.random.default_rng(11)
+    tree, still = Tree(robot), np.zeros(3)
+    for x in rng.uniform(low, high, (10_000, 3)):
+        weight = tree.torque(x, still, still)
+        M = np.array([tree.torque(x, still, unit) - weight for unit in np.eye(3)]).T
+        values = np.linalg.eigvalsh((M + M.T) / 2)
+        assert bounds.lightest <= values[0]
+        assert values[-1] <= bounds.heaviest
+        v = rng.normal(size=3)
+        v /= np.linalg.norm(v)
+        assert np.linalg.norm(tree.torque(x, v, still) - weight) <= bounds.velocity_torques

@@ -1,0 +1,146 @@
+"""Modes that take turns: which are in force when, and which signals keep to that."""
+
+from dataclasses import replace
+from fractions import Fraction
+from itertools import pairwise
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from nrs_design.proof.clock import keeps_turns, on_turn
+from nrs_design.proof.evidence import CommonQuadratic, UnstableMode, UnstablePeriod
+from nrs_design.proof.system import Clock, Contact, Switching
+from tests.proof.systems import bouncing_in_turns, doubled_in_turns, family, pushed
+
+ROUND = Clock(3, ("a", "b"))
+
+
+def signal(text: str) -> list[tuple[str, Fraction]]:
+    return [(name, Fraction(count)) for name, count in (item.split(":") for item in text.split())]
+
+
+@pytest.mark.parametrize(
+    ("text", "keeps"),
+    [
+        ("a:1 x:2", True),
+        ("b:1 x:1 y:1", True),
+        ("x:1 a:1 y:1", True),
+        ("x:2 a:1", True),
+        ("a:1 x:2 b:1 y:2", True),
+        ("x:1 a:1 y:2 b:1 z:1", True),
+        ("a:1 x:1", False),
+        ("a:1 x:3", False),
+        ("a:2 x:1", False),
+        ("a:1 x:5", False),
+        ("a:1 x:1 b:1 x:3", False),
+        ("a:1 b:1 x:2", False),
+        ("x:3", False),
+        ("a:3", False),
+        ("a:1", False),
+        ("x:1 a:1 x:2", False),
+    ],
+)
+def test_signals(text, keeps):
+    assert keeps_turns(ROUND, signal(text)) is keeps
+
+
+@settings(deadline=None, max_examples=200)
+@given(
+    st.lists(st.tuples(st.sampled_from("abxy"), st.integers(1, 4)), min_size=1, max_size=6),
+    st.integers(2, 4),
+)
+def test_against_every_step_written_down(steps, length):
+    every = [name in "ab" for name, count in steps for _ in range(count)]
+    true = len(every) % length == 0 and any(
+        all(first == ((k + start) % length == 0) for k, first in enumerate(every))
+        for start in range(length)
+    )
+    clock = Clock(length, ("a", "b"))
+    assert keeps_turns(clock, [(name, Fraction(count)) for name, count in steps]) is true
+
+
+def test_what_is_in_force_at_a_step():
+    system = pushed(bouncing_in_turns(1, rounded=True))
+    first, other = (on_turn(system, system.clock, step) for step in (0, 1))
+    assert [mode.name for mode in first.modes] == ["push 1", "push 2"]
+    assert [mode.name for mode in first.contact.free] == ["fall"]
+    assert [mode.name for mode in other.modes] == ["rest"]
+    assert [mode.name for mode in other.contact.free] == ["fall on"]
+    assert on_turn(system, system.clock, 7) == other
+    for part, count in ((first, 3), (other, 2)):
+        assert part.clock is None
+        assert part.channels == () == part.outputs
+        assert part.contact.pulls == system.contact.pulls
+        assert len(part.roundings[0].columns) == len(part.roundings[0].rows) == count
+        assert part.find_contradiction() is None
+
+
+def test_the_parts_of_a_rounding_are_those_of_their_modes():
+    system = bouncing_in_turns(rounded=True)
+    (item,) = system.roundings
+    marked = tuple(replace(row, numerators=((k, 0),)) for k, row in enumerate(item.rows, start=1))
+    system = replace(system, roundings=(replace(item, rows=marked, columns=item.columns),))
+    first, other = (on_turn(system, system.clock, step) for step in (0, 1))
+    assert [row.numerators[0][0] for row in first.roundings[0].rows] == [1, 2, 4]
+    assert [row.numerators[0][0] for row in other.roundings[0].rows] == [3, 5]
+
+
+def test_kept_contact_has_no_free_modes():
+    system = replace(bouncing_in_turns(), contact=None, clock=Clock(2, ("push 1", "push 2")))
+    assert on_turn(system, system.clock, 1).contact is None
+
+
+def test_a_signal_out_of_turn_refutes_nothing():
+    """Doubling at every third step grows by 9/8, at every fourth it does not."""
+    steps = (("m0", Fraction(1)), ("m1", Fraction(2)))
+    growth = UnstablePeriod(steps, 6)
+    assert growth.find_fault(doubled_in_turns(3)) is None
+    assert "not its turn" in growth.find_fault(doubled_in_turns(4))
+    assert growth.find_fault(replace(doubled_in_turns(4), clock=None)) is None
+    alone = UnstablePeriod((("m0", Fraction(3)),), 6)
+    assert "not its turn" in alone.find_fault(doubled_in_turns(3))
+    late = UnstablePeriod((("m0", Fraction(1)), ("m1", Fraction(3))), 6)
+    assert "growth" in late.find_fault(doubled_in_turns(4))
+
+
+def test_kinds_that_know_no_turns_show_nothing():
+    """The first mode is not stable, but is never in force twice in a row."""
+    system = doubled_in_turns(4)
+    assert UnstableMode("m0", "2").find_fault(replace(system, clock=None)) is None
+    assert "take turns" in UnstableMode("m0", "2").find_fault(system)
+    assert "take turns" in CommonQuadratic(((1,),), 0, Fraction(1, 2)).find_fault(system)
+
+
+CONTRADICTIONS = [
+    ({"clock": Clock(1, ("m0",))}, "take turns without steps"),
+    ({"clock": Clock(3, ())}, "has no mode"),
+    ({"clock": Clock(3, ("m0", "m1"))}, "has no mode"),
+    ({"clock": Clock(3, ("m0", "m2"))}, "does not exist"),
+    ({"switching": Switching(Fraction(2))}, "rules of switching besides"),
+]
+
+
+@pytest.mark.parametrize(("changes", "reason"), CONTRADICTIONS)
+def test_turns_that_make_no_sense(changes, reason):
+    system = doubled_in_turns(3)
+    assert system.find_contradiction() is None
+    assert reason in replace(system, **changes).find_contradiction()
+
+
+def test_turns_need_steps_of_one_size_and_free_modes_of_their_own():
+    clock = Clock(2, ("m0",))
+    assert "without steps" in replace(family([[-1]], [[-2]]), clock=clock).find_contradiction()
+    two = doubled_in_turns(2)
+    unlike = replace(two, modes=(two.modes[0], family([[1, 0], [0, 1]]).modes[0]))
+    unlike = replace(unlike, modes=(unlike.modes[0], replace(unlike.modes[1], name="m1")))
+    assert "unlike size" in unlike.find_contradiction()
+    bounce = bouncing_in_turns()
+    assert bounce.find_contradiction() is None
+    for first in (("push 1", "push 2"), ("push 1", "push 2", "fall", "fall on")):
+        found = replace(bounce, clock=Clock(2, first)).find_contradiction()
+        assert found == "a step of a round has no mode, in contact or free"
+    for a, b in pairwise(bounce.contact.free):
+        alone = replace(bounce, contact=Contact((a,)), clock=Clock(2, ("push 1", "fall")))
+        assert "has no mode" in alone.find_contradiction()
+        assert a != b

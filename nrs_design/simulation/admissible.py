@@ -11,7 +11,7 @@ import numpy as np
 
 from nrs_design.proof.system import Stay, SwitchedSystem, Time
 from nrs_design.simulation.norms import Array
-from nrs_design.simulation.switched import TimeResponse
+from nrs_design.simulation.switched import SwitchedRun
 
 # Fewest dwell times that a run of so many steps should hold.
 _LEGS = 8
@@ -64,7 +64,7 @@ class _Move:
 
 def admissible_run(
     system: SwitchedSystem, functions: Mapping[str, Array], step: float, steps: int
-) -> TimeResponse:
+) -> SwitchedRun:
     """Simulate a greedy adversary that keeps the rules.
 
     After every dwell time it stays for another step, if the mode need not be left, or switches and
@@ -95,11 +95,11 @@ def admissible_run(
         runs.append((_kept(roots, paces, states, modes), states, modes))
     _, states, modes = max(runs, key=lambda run: run[0])
     instants = np.concatenate([[0.0], np.cumsum([paces[mode].step for mode in modes])])
-    return TimeResponse(instants, _filled(states), np.array(modes))
+    return SwitchedRun(instants, _filled(states), np.array(modes))
 
 
 def active_norms(
-    system: SwitchedSystem, response: TimeResponse, functions: Mapping[str, Array]
+    system: SwitchedSystem, response: SwitchedRun, functions: Mapping[str, Array]
 ) -> Array:
     """Return ``sqrt(x' Q_i x)`` of the active mode over its first value; shape (N + 1,).
 
@@ -107,7 +107,7 @@ def active_norms(
     ----------
     system : SwitchedSystem
         The modes.
-    response : TimeResponse
+    response : SwitchedRun
         A run of N steps.
     functions : mapping
         The Q of every mode, by name.

@@ -8,7 +8,7 @@ import numpy as np
 
 from nrs_design.proof.system import SwitchedSystem, Time
 from nrs_design.simulation.norms import Array, Norm
-from nrs_design.simulation.switched import TimeResponse, times, transition_matrices
+from nrs_design.simulation.switched import SwitchedRun, times, transition_matrices
 
 
 def with_free_modes(system: SwitchedSystem) -> SwitchedSystem:
@@ -37,7 +37,7 @@ def deflected(states: Array) -> Array:
 
 def worst_contact(
     system: SwitchedSystem, norm: Norm, initial: Array, step: float, steps: int
-) -> TimeResponse:
+) -> SwitchedRun:
     """Simulate the greedy adversary: always the possible mode after which the norm is largest.
 
     Modes in contact are possible while the deflection is positive, and free ones while it is not.
@@ -59,7 +59,7 @@ def worst_contact(
 
     Returns
     -------
-    TimeResponse
+    SwitchedRun
         Its modes are those of `with_free_modes`.
     """
     transitions = transition_matrices(with_free_modes(system), step)
@@ -73,4 +73,4 @@ def worst_contact(
         chosen.append(first + best)
         states.append(candidates[best])
     unit = 1.0 if system.time is Time.DISCRETE else step
-    return TimeResponse(times(unit, steps), np.array(states), np.array(chosen))
+    return SwitchedRun(times(unit, steps), np.array(states), np.array(chosen))

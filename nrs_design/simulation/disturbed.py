@@ -12,7 +12,7 @@ from nrs_design.proof.evidence.abstract import Bound
 from nrs_design.proof.system import Channel, Output, SwitchedSystem, Time
 from nrs_design.simulation.contact import deflected
 from nrs_design.simulation.norms import Array
-from nrs_design.simulation.switched import TimeResponse, fine_step, times
+from nrs_design.simulation.switched import SwitchedRun, fine_step, times
 
 Indices = NDArray[np.int64]
 
@@ -93,7 +93,7 @@ class DisturbedMotions:
         return np.asarray(w @ self.rows.T)
 
 
-def worst_run(system: SwitchedSystem, bound: Bound) -> tuple[TimeResponse, DisturbedMotions]:
+def worst_run(system: SwitchedSystem, bound: Bound) -> tuple[SwitchedRun, DisturbedMotions]:
     """Simulate an adversary against a bound, for about as long as its set takes to fill.
 
     Parameters
@@ -122,7 +122,7 @@ def worst_output(system: SwitchedSystem, bound: Bound) -> float:
     return float(np.abs(motions.outputs(response.state)).max())
 
 
-def worst_disturbed(motions: DisturbedMotions, step: float, steps: int) -> TimeResponse:
+def worst_disturbed(motions: DisturbedMotions, step: float, steps: int) -> SwitchedRun:
     """Simulate an adversary from rest, who makes the output at the end as large as he can.
 
     He begins with the largest disturbance, held, in one mode, and then improves the run backwards
@@ -140,7 +140,7 @@ def worst_disturbed(motions: DisturbedMotions, step: float, steps: int) -> TimeR
 
     Returns
     -------
-    TimeResponse
+    SwitchedRun
         Its modes are those in contact, the free ones after them.
     """
     count = len(motions.touching)
@@ -154,7 +154,7 @@ def worst_disturbed(motions: DisturbedMotions, step: float, steps: int) -> TimeR
             run = int(reached.argmax())
             best, chosen, largest = states[:, run], modes[:, run], float(reached.max())
         wanted, signs = _improve(motions, states)
-    return TimeResponse(times(step, steps), best, chosen)
+    return SwitchedRun(times(step, steps), best, chosen)
 
 
 def follow(motions: DisturbedMotions, wanted: Indices, signs: Array) -> tuple[Array, Indices]:

@@ -12,7 +12,7 @@ import numpy as np
 
 from nrs_design.proof.system import SwitchedSystem, Time
 from nrs_design.simulation.norms import Array
-from nrs_design.simulation.switched import TimeResponse, fine_step
+from nrs_design.simulation.switched import SwitchedRun, fine_step
 
 # Mode index and time spent in it, in s or steps.
 Steps = Sequence[tuple[int, float]]
@@ -32,7 +32,7 @@ class PeriodicRun:
 
     Parameters
     ----------
-    response : TimeResponse
+    response : SwitchedRun
         The run.
     period : float
         In s, or steps.
@@ -40,7 +40,7 @@ class PeriodicRun:
         Spectral radius over one period: the factor of growth in the long run.
     """
 
-    response: TimeResponse
+    response: SwitchedRun
     period: float
     radius: float
 
@@ -73,12 +73,12 @@ def periodic_run(
     return PeriodicRun(response, sum(time for _, time in steps), radius)
 
 
-def one_period(run: PeriodicRun) -> TimeResponse:
+def one_period(run: PeriodicRun) -> SwitchedRun:
     """Return the first period of a run."""
     response = run.response
     # Sums of dwell times may miss the end of the period by a rounding error.
     end = max(int(np.searchsorted(response.time, run.period * (1 - 1e-9))), 1)
-    return TimeResponse(response.time[: end + 1], response.state[: end + 1], response.mode[:end])
+    return SwitchedRun(response.time[: end + 1], response.state[: end + 1], response.mode[:end])
 
 
 def mixture_matrix(system: SwitchedSystem, weights: Sequence[tuple[str, Fraction]]) -> Array:
@@ -148,7 +148,7 @@ def _legs(system: SwitchedSystem, steps: Steps, edges: Sequence[int]) -> list[_L
     return legs
 
 
-def _repeat(legs: Sequence[_Leg], initial: Array, periods: int) -> TimeResponse:
+def _repeat(legs: Sequence[_Leg], initial: Array, periods: int) -> SwitchedRun:
     states, modes, instants = [initial], [], [0.0]
     for _ in range(periods):
         for leg in legs:
@@ -158,7 +158,7 @@ def _repeat(legs: Sequence[_Leg], initial: Array, periods: int) -> TimeResponse:
                 states.append(factor @ states[-1])
                 modes.append(leg.mode)
                 instants.append(begin + leg.time * k / leg.pieces)
-    return TimeResponse(np.array(instants), np.array(states), np.array(modes))
+    return SwitchedRun(np.array(instants), np.array(states), np.array(modes))
 
 
 def _periods(radius: float, growth: float, samples: int) -> int:

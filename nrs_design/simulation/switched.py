@@ -20,7 +20,7 @@ _DIRECTIONS = 500
 
 
 @dataclass(frozen=True)
-class TimeResponse:
+class SwitchedRun:
     """A sampled solution.
 
     Parameters
@@ -51,7 +51,7 @@ def transition_matrices(system: SwitchedSystem, step: float) -> Array:
 
 def simulate_switching(
     system: SwitchedSystem, signal: NDArray[np.int64], initial: Array, step: float
-) -> TimeResponse:
+) -> SwitchedRun:
     """Simulate a switching signal that is constant over each step, exactly at the steps.
 
     Parameters
@@ -69,12 +69,12 @@ def simulate_switching(
     states = [initial]
     for mode in signal:
         states.append(transitions[mode] @ states[-1])
-    return TimeResponse(times(step, len(signal)), np.array(states), signal)
+    return SwitchedRun(times(step, len(signal)), np.array(states), signal)
 
 
 def worst_switching(
     system: SwitchedSystem, norm: Norm, initial: Array, step: float, steps: int
-) -> TimeResponse:
+) -> SwitchedRun:
     """Simulate the greedy adversary: always the mode after which the norm is largest.
 
     It switches as it likes, and it is a bad run, not the worst one: nothing is proved by it.
@@ -98,7 +98,7 @@ def worst_switching(
         candidates = transitions @ states[-1]
         chosen.append(int(norm(candidates).argmax()))
         states.append(candidates[chosen[-1]])
-    return TimeResponse(times(step, steps), np.array(states), np.array(chosen))
+    return SwitchedRun(times(step, steps), np.array(states), np.array(chosen))
 
 
 def worst_direction(system: SwitchedSystem, Q: Array) -> Array:
@@ -128,7 +128,7 @@ def sampled_direction(system: SwitchedSystem, norm: Norm, step: float) -> Array:
     return np.asarray(directions[norm(images).max(axis=0).argmax()])
 
 
-def norms(response: TimeResponse, norm: Norm) -> Array:
+def norms(response: SwitchedRun, norm: Norm) -> Array:
     """Return the norm over its first value; shape (N + 1,)."""
     values = norm(response.state)
     return np.asarray(values / values[0])
@@ -156,7 +156,7 @@ def alone(system: SwitchedSystem, mode: int) -> SwitchedSystem:
     return replace(system, modes=(kept,), states=system.states[: kept.A.shape[0]])
 
 
-def unstable_run(system: SwitchedSystem, mode: int, growth: float = 100.0) -> TimeResponse:
+def unstable_run(system: SwitchedSystem, mode: int, growth: float = 100.0) -> SwitchedRun:
     """Stay in one mode, from the real part of the eigenvector that is worst for stability.
 
     Parameters

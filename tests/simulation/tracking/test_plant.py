@@ -185,6 +185,7 @@ def energy(mechanism, drive, state):
     return v @ inertia @ v / 2 + potential_energy(mechanism.robot, pose)
 
 
+@pytest.mark.slow
 def test_energy_balance(robot, drive):
     # What the drives put in is motion, height, heat in the motors and heat of the friction.
     errors = []

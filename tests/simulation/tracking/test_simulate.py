@@ -27,6 +27,7 @@ def records(tracks):
     return simulate(tracks)
 
 
+@pytest.mark.slow
 def test_one_record_for_each_experiment(records):
     found = [(record.controller, record.experiment.moved) for record in records]
     assert found == [(name, moved) for name in CONTROLLERS for moved in ("d", "phi", "psi")]
@@ -35,6 +36,7 @@ def test_one_record_for_each_experiment(records):
         assert record.wanted.shape == record.measured.shape == record.command.shape == (1251, 3)
 
 
+@pytest.mark.slow
 def test_the_pose_is_held_before_the_sine(records):
     for record in records:
         if record.controller == "independent-joint":
@@ -42,6 +44,7 @@ def test_the_pose_is_held_before_the_sine(records):
             assert np.ptp(start, axis=0) == pytest.approx(np.zeros(3), abs=1e-12)
 
 
+@pytest.mark.slow
 def test_measured_is_actual_to_the_count(records):
     # Half a count is 3.8e-4 rad at the encoder, 7.7e-5 rad at the joint.
     for record in records:
@@ -49,6 +52,7 @@ def test_measured_is_actual_to_the_count(records):
         assert np.abs(record.measured - record.actual)[:, 2].max() < 5e-5
 
 
+@pytest.mark.slow
 def test_lockstep_changes_nothing(tracks, records):
     (alone,) = simulate([tracks[1].only("phi")])
     assert alone.rmse == pytest.approx(records[4].rmse, rel=1e-9)
@@ -63,12 +67,14 @@ def test_more_steps_change_nothing(tracks, records):
         assert coarse.rmse == pytest.approx(fine.rmse, rel=2e-3, abs=2e-3 * moved)
 
 
+@pytest.mark.slow
 def test_independent_joints_beat_computed_torque(records):
     # The ranking of thesis 4.3.4, on the same motions.
     for torque, joint, place in zip(records[:3], records[3:6], (2, 0, 1), strict=True):
         assert joint.rmse[place] < torque.rmse[place] / 5
 
 
+@pytest.mark.slow
 def test_complete_computed_torque_follows_almost_perfectly(spec, robot):
     # The law's model is the plant's: full dynamics, rotors and motors, no friction, no counts.
     # What remains is the sampling.

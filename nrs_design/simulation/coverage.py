@@ -1,0 +1,112 @@
+"""Whether a certified bound is about a run at all: what the run has that the proof has not."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from nrs_design.proof.evidence.abstract import AbstractEvidence
+from nrs_design.proof.system import SwitchedSystem
+from nrs_design.simulation.build_scenario import by_logic
+from nrs_design.simulation.run import Run
+from nrs_design.simulation.scenario import Scenario
+from nrs_design.spec import InteractionDesignSpec
+
+# The same number after a conversion may be a rounding above.
+_SAME = 1 + 1e-12
+
+
+def uncovered(
+    spec: InteractionDesignSpec,
+    system: SwitchedSystem,
+    statement: AbstractEvidence,
+    scenario: Scenario,
+    run: Run,
+) -> Iterator[str]:
+    """Yield what happens in a run that the bound says nothing about; nothing if it holds.
+
+    Parameters
+    ----------
+    spec : InteractionDesignSpec
+        That the bound is about.
+    system : SwitchedSystem
+        Of that spec.
+    statement : AbstractEvidence
+        Checked; it states a bound.
+    scenario : Scenario
+        That was simulated.
+    run : Run
+        Its run.
+    """
+    bound = statement.bound(system)
+    assert bound is not None
+    limits = {channel.name: float(channel.bound) for channel in bound.channels}
+    errors = scenario.errors
+    angles = None if spec.disturbances is None else spec.disturbances.largest_angle
+    acting = {
+        "velocity command": _largest_command(scenario, run),
+        "friction": errors.friction,
+        "encoder error": errors.encoder_step / 2,
+        "force error": errors.force_step / 2,
+    }
+    for name, size in acting.items():
+        if size > limits.get(name, 0.0) * _SAME:
+            yield f"the {name} is larger than the proof takes it for"
+    if errors.friction:
+        yield "friction may change its sign within a period"
+    if angles is not None and float(abs(run.response["angle"]).max()) > angles.si:
+        yield "the angle is larger than the proof takes it for"
+    if errors.force_noise:
+        yield "the noise of the torque has no bound"
+    if errors.jitter:
+        yield "samples are late, and the proof takes none for late"
+    yield from _sampling(spec, run)
+    if any(controller.type != "impedance" for controller in spec.controllers.values()):
+        yield "the run is not one of impedance control alone"
+    if run.engine == "sampled" and (angles is None or not statement.covers_rounding):
+        yield "the law is rounded to single precision, and the proof does not take up all of it"
+    if run.saturated:
+        yield "the motor's command met its limit, and the proof knows none"
+    if run.refused:
+        yield "the law refused samples, and the proof knows no such step"
+    if system.contact is None or not statement.covers_lost_contact:
+        # Each run begins in free motion.
+        yield "contact is lost or made, and the proof takes it for kept"
+    yield from _surroundings(spec, scenario)
+    control = scenario.control
+    thresholds = spec.mode_logic is not None and spec.mode_logic.type == "thresholds"
+    ruled = not spec.switching.is_arbitrary and bool(control.switches or control.schedule)
+    if ruled and not (thresholds and control == by_logic(spec)):
+        yield "nothing makes the run keep the rules of switching"
+
+
+def _largest_command(scenario: Scenario, run: Run) -> float:
+    """Return what is commanded at most: a sinusoid has its peak between two instants."""
+    profile = scenario.profile
+    seen = float(abs(run.response["hand"]).max())
+    if not profile.omega:
+        return seen
+    (piece,) = profile.pieces
+    return max(seen, abs(profile.mean) + abs(piece.slope / profile.omega))
+
+
+def _sampling(spec: InteractionDesignSpec, run: Run) -> Iterator[str]:
+    """Yield it if the law ran at other times than in the proof."""
+    if spec.sampling is None or run.sampling is None:
+        if run.sampling is not None or spec.sampling is not None:
+            yield f"the proof is not about the {run.engine} loop"
+        return
+    period, least, most = run.sampling
+    shortest, longest = spec.sampling.delay
+    if period != float(spec.sampling.period.exact) or least < shortest or most > longest:
+        yield "period or delay are not those of the proof"
+
+
+def _surroundings(spec: InteractionDesignSpec, scenario: Scenario) -> Iterator[str]:
+    """Yield what the proof does not say about the surfaces of a run."""
+    if len(scenario.surfaces) > 1:
+        yield "there are several surfaces, and the proof is about one"
+    for surface in scenario.surfaces:
+        if surface.element is None:
+            yield f"{surface.environment} is nonlinear, and the proof is about a box of linear ones"
+        if any(surface.environment not in c.contacts for c in spec.controllers.values()):
+            yield f"{surface.environment} is no contact of every controller"

@@ -1,0 +1,419 @@
+"""The exact engine: the continuous switched loop, by matrix exponentials from event to event.
+
+Contact made and lost, conditions of the mode logic, breakpoints of the command, timers and
+schedules are events. Between two of them the loop is linear, and `nrs_design.simulation.flow` tells
+when the next one comes.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from nrs_design.controllers.controller_design import ControllerDesign
+from nrs_design.models.plant import Plant
+from nrs_design.simulation.flow import CHUNK, Flow
+from nrs_design.simulation.loop import Loop, Mode
+from nrs_design.simulation.run import (
+    ERRORS_LEFT_OUT,
+    LEFT_OUT,
+    LEFT_OUT_EXACTLY,
+    MAX_EVENTS,
+    MAX_STEPS,
+    Run,
+)
+from nrs_design.simulation.scenario import Array, Errors, Scenario
+from nrs_design.simulation.time_response import Signal, TimeResponse
+from nrs_design.spec import InteractionDesignSpec
+
+# A depth, a torque and a velocity are on the other side of a threshold when they are so far beyond
+# it, in rad, N m and rad/s: contact neither chatters from rounding, nor does the logic.
+TOLERANCE = 1e-12
+# Points of a run, at least.
+POINTS = 2000
+# Steps after which it is told how far the run is.
+_OFTEN = 20_000
+_STEPS = np.arange(CHUNK, dtype=float)
+# Events at one instant, one after the other, after which a run does not come on.
+_STILL = 100
+
+OUTPUTS = (
+    Signal("angle", "rad"),
+    Signal("velocity", "rad/s"),
+    Signal("torque", "N*m"),
+    Signal("depth", "rad"),
+    Signal("reference", "rad"),
+)
+INPUTS = (Signal("hand", "rad/s"),)
+Tell = Callable[[str], None]
+
+
+def _silent(step: str) -> None:
+    """Report no progress."""
+
+
+def simulate_exactly(
+    spec: InteractionDesignSpec,
+    plant: Plant,
+    design: ControllerDesign,
+    scenario: Scenario,
+    *,
+    max_steps: int = MAX_STEPS,
+    tell: Tell = _silent,
+) -> Run:
+    """Simulate a scenario in continuous time, without what acts on the sampled loop alone.
+
+    Parameters
+    ----------
+    spec : InteractionDesignSpec
+        With idle states and offsets.
+    plant : Plant
+        Of that spec; its nominal motor.
+    design : ControllerDesign
+        Gains that ship.
+    scenario : Scenario
+        What happens.
+    max_steps : int
+        A run that takes more ends there.
+    tell : callable
+        Told how far the run is.
+
+    Raises
+    ------
+    DesignError
+        If a surface is not linear, or a law is not modelled with it.
+    """
+    return _Engine(Loop(spec, plant, design, scenario), max_steps, tell).run()
+
+
+@dataclass(frozen=True)
+class _Way:
+    """A controller in force and what is touched: the loop, and the signals that may end it.
+
+    Parameters
+    ----------
+    index : int
+        In the order in which ways are taken.
+    controller : str
+        In force.
+    mode : Mode
+        The loop.
+    flow : Flow
+        Watches the depths below all surfaces, the pushes of those that it is in and that have
+        damping, and then the bounds of conditions.
+    damped : tuple of int
+        Indices of the surfaces whose pushes are watched.
+    pushes : ndarray, shape (surfaces, n)
+        Rows of all pushes.
+    bounds : tuple of (int, int, int)
+        Of which switch and condition it is the lower (0) or the upper (1) bound.
+    """
+
+    index: int
+    controller: str
+    mode: Mode
+    flow: Flow
+    damped: tuple[int, ...]
+    pushes: Array
+    bounds: tuple[tuple[int, int, int], ...]
+
+
+@dataclass
+class _Engine:
+    """A run that is under way."""
+
+    loop: Loop
+    max_steps: int
+    tell: Tell
+    ways: dict[tuple[object, ...], _Way] = field(default_factory=dict)
+    switches: list[tuple[float, str]] = field(default_factory=list)
+    contacts: list[tuple[float, str, bool]] = field(default_factory=list)
+    steps: int = 0
+    stopped: str | None = None
+
+    def __post_init__(self) -> None:
+        """Begin at rest, free of contact."""
+        scenario = self.loop.scenario
+        self.t, self.z = 0.0, self.loop.start()
+        self.controller, self.since = scenario.control.start, 0.0
+        signs = [surface.sign for surface in scenario.surfaces]
+        self.direction = signs[0] if signs else 1
+        self.inside = [False] * len(signs)
+        self.pushing = [True] * len(signs)
+        self.offset = self.loop.spec.offset
+        self.laws = {c.name: c.law for c in self.loop.design.controllers}
+        self.damped = any(map(self.loop.is_damped, range(len(signs))))
+        self.met: dict[tuple[int, int, int], bool] = {}
+        self.sides: dict[tuple[bool, ...], Array] = {}
+        self.way = self._way()
+        # Kept so far: how many instants, with time and index of the way in front of the state.
+        self.count, self.kept = 0, np.empty((2 * POINTS, 2 + len(self.z)))
+
+    def _touched(self) -> tuple[int, ...]:
+        """Return the indices of the surfaces that push."""
+        both = zip(self.inside, self.pushing, strict=True)
+        return tuple(j for j, (inside, pushing) in enumerate(both) if inside and pushing)
+
+    def run(self) -> Run:
+        """Go from event to event until the end."""
+        end = self.loop.scenario.duration
+        stays = self.loop.scenario.control.stays
+        agenda = deque(sorted(self._agenda()))
+        still = 0
+        while self.t < end and self.stopped is None:
+            before = self.t
+            while agenda and agenda[0][0] <= self.t:
+                self._happen(*agenda.popleft()[1:])
+            limit = min(end, agenda[0][0]) if agenda else end
+            timer = self.since + stays.get(self.controller, 0.0)
+            held = timer > self.t
+            if self._advance(min(limit, timer) if held else limit) or held:
+                self._settle()
+            still = still + 1 if self.t == before else 0
+            self._check(still)
+        self._record(self.t, self.z)
+        errors = [ERRORS_LEFT_OUT] if self.loop.scenario.errors != Errors() else []
+        return Run(
+            self.loop.scenario.name,
+            "exact",
+            self._response(),
+            tuple(self.switches),
+            tuple(self.contacts),
+            self.steps,
+            stopped=self.stopped,
+            left_out=(*LEFT_OUT, *LEFT_OUT_EXACTLY, *errors),
+        )
+
+    def _check(self, still: int) -> None:
+        """Stop a run that does not come on."""
+        events = len(self.switches) + len(self.contacts)
+        if self.stopped is None and (events > MAX_EVENTS or still > _STILL):
+            self.stopped = (
+                f"{events} switches and contacts by {self.t:.6g} s: contact or mode logic chatters"
+            )
+
+    def _agenda(self) -> Iterator[tuple[float, int, str | int]]:
+        """Yield what happens at given times: breakpoints of the command and scheduled switches."""
+        scenario = self.loop.scenario
+        for i, piece in enumerate(scenario.profile.pieces):
+            yield piece.start, 0, i
+        for time, name in scenario.control.schedule:
+            yield time, 1, name
+
+    def _happen(self, kind: int, what: str | int) -> None:
+        if kind == 1:
+            self._record(self.t, self.z)
+            self._switch(str(what))
+            if not self.loop.scenario.control.switches and not self.damped:
+                # What is touched depends on the angle alone, which does not jump.
+                return
+        else:
+            piece = self.loop.scenario.profile.pieces[int(what)]
+            if self.z[-3] != piece.value:
+                self._record(self.t, self.z)
+            self.z = self.z.copy()
+            self.z[-3:-1] = piece.value, piece.slope
+        self._settle()
+
+    def _way(self) -> _Way:
+        """Return the way that the loop is in now."""
+        key = (self.controller, *self.inside, *self.pushing, self.direction)
+        if key not in self.ways:
+            self.ways[key] = self._make_way(len(self.ways))
+        return self.ways[key]
+
+    def _make_way(self, index: int) -> _Way:
+        loop, scenario = self.loop, self.loop.scenario
+        mode, one = loop.mode(self.controller, self._touched()), loop.row("one")
+        each = range(len(scenario.surfaces))
+        pushes = np.array([loop.push(j, mode) for j in each]).reshape(-1, len(one))
+        damped = tuple(j for j in each if self.inside[j] and loop.is_damped(j))
+        rows = [*(loop.depth(j, mode) for j in each), *(pushes[j] for j in damped)]
+        bounds = []
+        for i, switch in enumerate(scenario.control.switches):
+            for k, condition in enumerate(switch.conditions):
+                if switch.source != self.controller:
+                    continue
+                signal = loop.signal(condition.signal, mode, self.direction)
+                if np.isfinite(condition.low):
+                    rows.append(signal - condition.low * one)
+                    bounds.append((i, k, 0))
+                if np.isfinite(condition.high):
+                    rows.append(condition.high * one - signal)
+                    bounds.append((i, k, 1))
+        # A flow ends where a signal is clearly across, so that it counts so then.
+        across = np.full(len(rows), 2 * TOLERANCE)
+        step = scenario.duration / POINTS
+        flow = Flow(mode.A, np.array(rows).reshape(-1, len(one)), across, step)
+        return _Way(index, self.controller, mode, flow, damped, pushes, tuple(bounds))
+
+    def _sides(self, way: _Way) -> Array:
+        """Return on which side every signal of a way counts as being."""
+        flags = (
+            *self.inside,
+            *(self.pushing[j] for j in way.damped),
+            *(self.met.get(bound, False) for bound in way.bounds),
+        )
+        if flags not in self.sides:
+            self.sides[flags] = np.where(flags, 1.0, -1.0)
+        return self.sides[flags]
+
+    def _advance(self, limit: float) -> bool:
+        """Follow the flow up to the first event, or to a limit; tell whether there was an event."""
+        flow = self.way.flow
+        sides = self._sides(self.way)
+        while self.t < limit and self.stopped is None:
+            whole = min(CHUNK, int((limit - self.t) / flow.h))
+            states = flow.chunk(self.z, whole)
+            # The step after the last whole one is looked at too: it may be cut short.
+            count = flow.first_doubtful(states, sides)
+            done = min(count, whole)
+            if done:
+                self._record(self.t + flow.h * _STEPS[:done], states[:done])
+                self.t, self.z, self.steps = self.t + done * flow.h, states[done], self.steps + done
+                self._tell(done)
+            if done and count > whole and self.t + flow.h <= limit:
+                continue
+            width = min(flow.h, limit - self.t)
+            if width <= 0:
+                return False
+            time = flow.first_crossing(self.z, width, sides) if count <= whole else None
+            at_limit = time is None and width < flow.h
+            self._step(flow, width if time is None else time, limit if at_limit else None)
+            if time is not None:
+                return True
+        return False
+
+    def _tell(self, done: int) -> None:
+        """Say how far the run is, and stop it where it takes too many steps."""
+        if self.steps > self.max_steps:
+            self.stopped = f"{self.max_steps} steps by {self.t:.6g} s: the budget is used up"
+        if self.steps // _OFTEN != (self.steps - done) // _OFTEN:
+            self.tell(f"{self.t:.3g} s")
+
+    def _step(self, flow: Flow, width: float, end: float | None = None) -> None:
+        self._record(self.t, self.z)
+        self.z = flow.after(self.z, width)
+        self.t = self.t + width if end is None else end
+        self.steps += 1
+        self._tell(1)
+
+    def _settle(self) -> None:
+        """Make every change that is due at this instant."""
+        for _ in range(4 * (len(self.loop.scenario.control.switches) + len(self.inside)) + 4):
+            if not (self._change_contact() or self._change_controller()):
+                return
+        self.stopped = (
+            f"the mode logic chatters at {self.t:.6g} s: {self.controller} and others ask for "
+            "each other at one instant"
+        )
+
+    def _change_contact(self) -> bool:
+        """Update what is touched; tell whether that changed."""
+        way, before = self.way, self._touched()
+        was = (list(self.inside), list(self.pushing))
+        depths = (way.flow.signals @ self.z).tolist()
+        pushes = (way.pushes @ self.z).tolist() if way.pushes.size else []
+        for j in range(len(self.inside)):
+            self.inside[j] = _side(depths[j], self.inside[j])
+            # Outside, a push is not asked for: contact begins with it.
+            self.pushing[j] = not (self.inside[j] and self.loop.is_damped(j)) or _side(
+                pushes[j], self.pushing[j]
+            )
+        if was == (self.inside, self.pushing):
+            return False
+        after = self._touched()
+        for j in sorted(set(before) ^ set(after)):
+            surface = self.loop.scenario.surfaces[j]
+            self.contacts.append((self.t, surface.environment, j in after))
+            if j in after:
+                self.direction = surface.sign
+        self.way = self._way()
+        return True
+
+    def _change_controller(self) -> bool:
+        """Make the first switch that is due; tell whether there was one."""
+        way, control = self.way, self.loop.scenario.control
+        if not control.switches:
+            return False
+        values = (way.flow.signals @ self.z)[len(self.inside) + len(way.damped) :]
+        for bound, value in zip(way.bounds, values.tolist(), strict=True):
+            self.met[bound] = _side(value, self.met.get(bound, False))
+        if self.t < self.since + control.stays.get(self.controller, 0.0):
+            return False
+        unmet = {i for i, k, end in way.bounds if not self.met[i, k, end]}
+        for i, switch in enumerate(control.switches):
+            if switch.source == self.controller and i not in unmet:
+                self._record(self.t, self.z)
+                self._switch(switch.target)
+                return True
+        return False
+
+    def _switch(self, target: str) -> None:
+        """Let another controller take over, and set what the spec says is set then."""
+        if target == self.controller:
+            return
+        loop, spec = self.loop, self.loop.spec
+        mode = self.way.mode
+        names = [signal.name for signal in loop.states]
+        laws = self.laws
+        leaves = laws[self.controller].commands == "velocity"
+        self.z = self.z.copy()
+        if self.offset != "none":
+            taken = mode.reference if self.offset == "reference" else mode.angle
+            self.z[names.index("commanded position")] = float(taken @ self.z)
+        idle = spec.idle_states
+        if leaves and laws[target].commands != "velocity" and idle is not None and idle.reset:
+            for text in laws[self.controller].states:
+                self.z[names.index(text.split(" [")[0])] = 0.0
+            self.z[names.index("offset")] = 0.0
+        self.controller, self.since, self.met = target, self.t, {}
+        self.switches.append((self.t, target))
+        self.way = self._way()
+
+    def _record(self, times: float | Array, states: Array) -> None:
+        """Keep states, and the way that gives their outputs."""
+        first, self.count = self.count, self.count + (1 if states.ndim == 1 else len(states))
+        if self.count > len(self.kept):
+            more = np.empty((len(self.kept) + 2 * (self.count - first), self.kept.shape[1]))
+            self.kept = np.concatenate([self.kept[:first], more])
+        part = self.kept[first : self.count]
+        part[:, 0], part[:, 1], part[:, 2:] = times, self.way.index, states
+
+    def _response(self) -> TimeResponse:
+        loop = self.loop
+        kept = self.kept[: self.count]
+        times, which, states = kept[:, 0].copy(), kept[:, 1], kept[:, 2:]
+        rows, mode = np.empty((4, len(times))), np.empty(len(times), np.int64)
+        names = [c.name for c in loop.design.controllers]
+        for way in self.ways.values():
+            own, m = which == way.index, way.mode
+            rows[:, own] = np.array([m.angle, m.velocity, m.torque, m.reference]) @ states[own].T
+            mode[own] = names.index(way.controller)
+        angle, velocity, torque, reference = rows
+        states = states.T.copy()
+        surfaces = loop.scenario.surfaces
+        # What tissue seems to pull before its loss is noticed: see TOLERANCE.
+        stiffest = max((s.element.k for s in surfaces if s.element is not None), default=0.0)
+        torque = np.where(np.abs(torque) <= 4 * TOLERANCE * (1 + stiffest), 0.0, torque)
+        depths = [s.sign * (angle - s.at) for s in surfaces]
+        depth = np.maximum(np.max(depths, axis=0), 0.0) if depths else np.zeros_like(angle)
+        return TimeResponse(
+            times,
+            np.array([angle, velocity, torque, depth, reference]),
+            states[:-3],
+            states[-3:-2],
+            OUTPUTS,
+            loop.states[:-3],
+            INPUTS,
+            mode,
+            tuple(names),
+        )
+
+
+def _side(value: float, known: bool) -> bool:
+    """Tell whether a signal is above zero, or still counts so."""
+    return value > -TOLERANCE if known else value > TOLERANCE

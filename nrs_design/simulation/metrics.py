@@ -1,0 +1,297 @@
+"""What a run is judged by: safety, agility, human effort, and how well a controller does.
+
+Signals are taken as straight lines between the instants of a run, which need not be equally far
+apart. Numbers of the thesis stand beside the equations; `docs/design/scenarios.md` has them all.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from nrs_design.simulation.scenario import Array
+
+# A displayed impedance is a quotient: it is taken where the command is so large a share of its own
+# largest value.
+SMALLEST_SHARE = 0.1
+# What is left of a run when it counts as settled.
+LAST_SHARE = 0.1
+
+Mask = NDArray[np.bool_]
+
+
+def integral(t: Array, y: Array) -> float:
+    """Return the integral of a signal over a run.
+
+    Parameters
+    ----------
+    t : ndarray, shape (N,)
+        In s.
+    y : ndarray, shape (N,)
+        The signal.
+    """
+    return float(np.sum(np.diff(t) * (y[1:] + y[:-1]) / 2))
+
+
+def mean(t: Array, y: Array) -> float:
+    """Return the mean over time; the only value, where a run has no length.
+
+    Parameters
+    ----------
+    t : ndarray, shape (N,)
+        In s.
+    y : ndarray, shape (N,)
+        The signal.
+    """
+    length = float(t[-1] - t[0])
+    return integral(t, y) / length if length > 0 else float(y[0])
+
+
+def rms(t: Array, y: Array) -> float:
+    """Return ``sqrt(1/T int y^2 dt)``.
+
+    Parameters
+    ----------
+    t : ndarray, shape (N,)
+        In s.
+    y : ndarray, shape (N,)
+        The signal; the square of a straight line is integrated exactly.
+    """
+    length = float(t[-1] - t[0])
+    if length <= 0:
+        return abs(float(y[0]))
+    squares = (y[1:] ** 2 + y[1:] * y[:-1] + y[:-1] ** 2) / 3
+    return math.sqrt(float(np.sum(np.diff(t) * squares)) / length)
+
+
+def time_above(t: Array, y: Array, limit: float) -> float:
+    """Return for how long a signal is above a limit, in s; crossings are interpolated.
+
+    Parameters
+    ----------
+    t : ndarray, shape (N,)
+        In s.
+    y : ndarray, shape (N,)
+        The signal.
+    limit : float
+        In its unit.
+    """
+    low, high = np.minimum(y[1:], y[:-1]), np.maximum(y[1:], y[:-1])
+    crosses = (low <= limit) & (high > limit)
+    share = np.where(low > limit, 1.0, 0.0)
+    share[crosses] = (high[crosses] - limit) / (high[crosses] - low[crosses])
+    return float(np.sum(np.diff(t) * share))
+
+
+def displayed_impedance(command: Array, torque: Array) -> tuple[Array, Mask]:
+    """Return ``|F| / |v_c|`` where there is contact and a command to divide by (thesis 6.3.1).
+
+    Parameters
+    ----------
+    command : ndarray, shape (N,)
+        Commanded velocity v_c in rad/s.
+    torque : ndarray, shape (N,)
+        Torque F of the contact in N m.
+
+    Returns
+    -------
+    ndarray of shape (N,), and of bool
+        In N m s/rad, zero where it is not taken; and where it is taken.
+    """
+    size = np.abs(command)
+    taken = (torque != 0) & (size > SMALLEST_SHARE * size.max(initial=0.0))
+    quotient = np.zeros_like(command)
+    quotient[taken] = np.abs(torque[taken]) / size[taken]
+    return quotient, taken
+
+
+def impedance_rmse(t: Array, command: Array, torque: Array, desired: float) -> float | None:
+    """Return the root mean square of displayed less desired impedance (thesis 6.3, 6.4).
+
+    ``sqrt(1/T int (|F|/|v_c| - Z_des)^2 dt)`` over the time in contact; the thesis measures
+    0.1234 to 0.5333 N m s/rad on the robot.
+
+    Parameters
+    ----------
+    t : ndarray, shape (N,)
+        In s.
+    command, torque : ndarray, shape (N,)
+        As for `displayed_impedance`.
+    desired : float
+        Z_des in N m s/rad.
+
+    Returns
+    -------
+    float or None
+        In N m s/rad; None without contact under a command.
+    """
+    quotient, taken = displayed_impedance(command, torque)
+    both = taken[1:] & taken[:-1]
+    widths = np.diff(t)[both]
+    if not widths.sum() > 0:
+        return None
+    squares = (quotient - desired) ** 2
+    middle = (squares[1:] + squares[:-1])[both] / 2
+    return math.sqrt(float(np.sum(widths * middle) / widths.sum()))
+
+
+def withdrawal_times(t: Array, command: Array, torque: Array) -> tuple[float, ...]:
+    """Return how long each move out of tissue took, in s (thesis 6.3.2, figures 6.18 to 6.21).
+
+    From the moment when the command begins to point out of tissue that pushes, to the loss of
+    contact; a move that is turned round, or not over at the end, does not count.
+
+    Parameters
+    ----------
+    t : ndarray, shape (N,)
+        In s.
+    command : ndarray, shape (N,)
+        Commanded velocity in rad/s.
+    torque : ndarray, shape (N,)
+        Torque of the contact in N m: it has the sign of a command into the tissue.
+    """
+    found: list[float] = []
+    begin: float | None = None
+    for time, v, F in zip(t.tolist(), command.tolist(), torque.tolist(), strict=True):
+        if F == 0.0:
+            if begin is not None:
+                found.append(time - begin)
+            begin = None
+        elif v * F < 0 and begin is None:
+            begin = time
+        elif v * F > 0:
+            begin = None
+    return tuple(found)
+
+
+def gain_in_time(before: float, after: float) -> float:
+    """Return by which share a task is done sooner, ``1 - after/before`` (agility, thesis 5.1.3).
+
+    Parameters
+    ----------
+    before, after : float
+        Execution times in s; the thesis finds about 20 % for the withdrawal.
+    """
+    return 1 - after / before
+
+
+@dataclass(frozen=True, slots=True)
+class Effort:
+    """Human effort: what a hand applies to the robot, or the robot to what it touches.
+
+    Parameters
+    ----------
+    total : float
+        ``int |F| dt`` in N m s: the total applied torque of thesis 5.1.4.
+    rms : float
+        ``sqrt(1/T int F^2 dt)`` in N m.
+    energy : float
+        ``int |F v| dt`` in J.
+    """
+
+    total: float
+    rms: float
+    energy: float
+
+
+def effort(t: Array, torque: Array, velocity: Array) -> Effort:
+    """Return the effort of a run.
+
+    Parameters
+    ----------
+    t : ndarray, shape (N,)
+        In s.
+    torque : ndarray, shape (N,)
+        In N m.
+    velocity : ndarray, shape (N,)
+        In rad/s.
+    """
+    energy = integral(t, np.abs(torque * velocity))
+    return Effort(integral(t, np.abs(torque)), rms(t, torque), energy)
+
+
+def overshoot(y: Array, wanted: float) -> float:
+    """Return ``max(y)/wanted - 1``, at least 0, for a response from zero to a wanted value.
+
+    Parameters
+    ----------
+    y : ndarray, shape (N,)
+        The response.
+    wanted : float
+        Not zero; of either sign.
+    """
+    return max(0.0, float((y / wanted).max()) - 1)
+
+
+def steady_state_error(t: Array, y: Array, wanted: float) -> float:
+    """Return by which share of a wanted value the mean of the last tenth of a run misses it.
+
+    ``|1 - mean(y)/wanted|``; the thesis finds 2 to 12 % for proportional force control.
+
+    Parameters
+    ----------
+    t : ndarray, shape (N,)
+        In s.
+    y : ndarray, shape (N,)
+        The response.
+    wanted : float
+        Not zero.
+    """
+    last = t >= t[-1] - LAST_SHARE * (t[-1] - t[0])
+    return abs(1 - mean(t[last], y[last]) / wanted)
+
+
+def injury_factor(robot_mass: float, operator_mass: float, stiffness: float) -> float:
+    """Return the factor of the head-injury criterion, ``HIC = factor v^2.5`` (thesis 2.15, 2.16).
+
+    ``2 (2/pi)^1.5 (k/m_oper)^0.75 (m_rob/(m_rob + m_oper))^1.75``
+
+    Parameters
+    ----------
+    robot_mass, operator_mass : float
+        In kg.
+    stiffness : float
+        Of the contact between them, in N/m.
+
+    Raises
+    ------
+    ValueError
+        If one of them is not positive and finite.
+    """
+    given = (robot_mass, operator_mass, stiffness)
+    if not all(0 < value < math.inf for value in given):
+        raise ValueError("masses and stiffness of an impact are positive numbers")
+    share = robot_mass / (robot_mass + operator_mass)
+    front = 2 * (2 / math.pi) ** 1.5
+    return float(front * (stiffness / operator_mass) ** 0.75 * share**1.75)
+
+
+def head_injury(factor: float, speed: float) -> float:
+    """Return the head-injury criterion of an impact (thesis 2.16).
+
+    Parameters
+    ----------
+    factor : float
+        As `injury_factor` gives it.
+    speed : float
+        Of the impact, in m/s.
+    """
+    return float(factor * abs(speed) ** 2.5)
+
+
+def safe_speed(factor: float, largest: float) -> float:
+    """Return the speed in m/s at which the criterion reaches a largest value.
+
+    ``(HIC_max/factor)^(1/2.5)``, the inverse of 2.16; the print of 2.17 lacks the exponent.
+
+    Parameters
+    ----------
+    factor : float
+        As `injury_factor` gives it.
+    largest : float
+        HIC_max.
+    """
+    return float((largest / factor) ** (1 / 2.5))

@@ -1,0 +1,78 @@
+"""What an engine returns: the response, and how the run went."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import pairwise
+
+from nrs_design.simulation.time_response import TimeResponse
+
+# A controller that is left sooner has chattered, in s.
+CHATTER = 0.01
+# Steps of an engine, and events, after which a run is stopped.
+MAX_STEPS, MAX_EVENTS = 5_000_000, 200_000
+
+# What no run has in it, and what the exact engine leaves out besides.
+LEFT_OUT = (
+    "other axes, gravity, and play and elasticity of the gearhead",
+    "gain and time constant of the motor other than the nominal ones",
+)
+LEFT_OUT_EXACTLY = (
+    "sampling, delay and rounding of the law, and the limit of the motor's command",
+)
+ERRORS_LEFT_OUT = "friction, resolutions, noise and jitter of the scenario"
+
+
+@dataclass(frozen=True, slots=True)
+class Run:
+    """A simulated scenario.
+
+    Parameters
+    ----------
+    scenario : str
+        Its name.
+    engine : {"exact", "sampled"}
+        What simulated it.
+    response : TimeResponse
+        Up to where the run came.
+    switches : tuple of (float, str)
+        Times in s at which a controller took over, and which.
+    contacts : tuple of (float, str, bool)
+        Times in s at which a surface was met (true) or lost, and its environment.
+    steps : int
+        Steps of the engine.
+    sampling : tuple of (float, int, int) or None
+        Period in s, and smallest and largest delay in samples, of the sampled engine.
+    refused : int
+        Samples that the law refused, because an input was beyond its limits.
+    saturated : int
+        Samples at which the command of the motor met its limit.
+    stopped : str or None
+        Why the run ended before its time.
+    left_out : tuple of str
+        What is not in it.
+    """
+
+    scenario: str
+    engine: str
+    response: TimeResponse
+    switches: tuple[tuple[float, str], ...]
+    contacts: tuple[tuple[float, str, bool], ...]
+    steps: int
+    sampling: tuple[float, int, int] | None = None
+    refused: int = 0
+    saturated: int = 0
+    stopped: str | None = None
+    left_out: tuple[str, ...] = LEFT_OUT
+
+    @property
+    def chatter(self) -> int:
+        """How many times a controller was left within `CHATTER` of its switch."""
+        times = [time for time, _ in self.switches]
+        return sum(b - a < CHATTER for a, b in pairwise(times))
+
+    @property
+    def shortest_stay(self) -> float | None:
+        """Least time between two switches in s; None if there are no two."""
+        times = [time for time, _ in self.switches]
+        return min((b - a for a, b in pairwise(times)), default=None)

@@ -1,0 +1,258 @@
+"""A scenario in SI numbers: command over time, surfaces, and who is in control when."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from nrs_design.models.contact.law import AbstractContactLaw, Element
+
+Array = NDArray[np.float64]
+
+COMMAND, TORQUE = "command", "torque"
+# Before the index of a surface: the depth below it, rad.
+DEPTH = "depth of "
+
+
+@dataclass(frozen=True, slots=True)
+class Piece:
+    """A part of a profile: ``v' = s`` and ``s' = -omega^2 (v - mean)`` from its start on.
+
+    Parameters
+    ----------
+    start : float
+        In s.
+    value, slope : float
+        v in rad/s and s in rad/s^2 at the start.
+    """
+
+    start: float
+    value: float
+    slope: float
+
+
+@dataclass(frozen=True, slots=True)
+class Profile:
+    """The commanded velocity over time: straight lines, or a sinusoid.
+
+    Parameters
+    ----------
+    pieces : tuple of Piece
+        In order; the first starts at zero.
+    omega : float
+        Angular frequency in rad/s; zero for straight lines.
+    mean : float
+        About which it oscillates, rad/s.
+    """
+
+    pieces: tuple[Piece, ...]
+    omega: float = 0.0
+    mean: float = 0.0
+
+    @classmethod
+    def constant(cls, velocity: float) -> Profile:
+        """Return one velocity in rad/s, all the time."""
+        return cls((Piece(0.0, velocity, 0.0),))
+
+    @classmethod
+    def sinusoid(cls, amplitude: float, omega: float, mean: float = 0.0) -> Profile:
+        """Return ``mean + amplitude sin(omega t)``.
+
+        Parameters
+        ----------
+        amplitude, mean : float
+            In rad/s.
+        omega : float
+            In rad/s.
+        """
+        return cls((Piece(0.0, mean, amplitude * omega),), omega, mean)
+
+    @classmethod
+    def through(cls, times: Array, velocities: Array) -> Profile:
+        """Return straight lines between points; the last velocity is kept.
+
+        Parameters
+        ----------
+        times : ndarray, shape (N,)
+            In s, from zero, never falling; twice the same is a jump.
+        velocities : ndarray, shape (N,)
+            In rad/s.
+
+        Raises
+        ------
+        ValueError
+            If the times do not begin at zero or fall, or a number is not finite.
+        """
+        if not (np.isfinite(times).all() and np.isfinite(velocities).all()):
+            raise ValueError("a time or a velocity is not a finite number")
+        if times[0] != 0 or (np.diff(times) < 0).any():
+            raise ValueError("times begin at zero and never fall")
+        pieces = []
+        for i, (time, value) in enumerate(zip(times.tolist(), velocities.tolist(), strict=True)):
+            step = times[i + 1] - time if i + 1 < len(times) else math.inf
+            if step > 0:
+                slope = 0.0 if math.isinf(step) else float(velocities[i + 1] - value) / float(step)
+                pieces.append(Piece(time, value, slope))
+        return cls(tuple(pieces))
+
+    def at(self, time: Array) -> Array:
+        """Return the velocity at times in s, after a jump where there is one."""
+        starts = np.array([piece.start for piece in self.pieces])
+        index = np.clip(np.searchsorted(starts, time, side="right") - 1, 0, None)
+        value = np.array([piece.value for piece in self.pieces])[index]
+        slope = np.array([piece.slope for piece in self.pieces])[index]
+        elapsed = time - starts[index]
+        if self.omega == 0:
+            return np.asarray(value + slope * elapsed)
+        phase = self.omega * elapsed
+        swing = (value - self.mean) * np.cos(phase) + slope / self.omega * np.sin(phase)
+        return np.asarray(self.mean + swing)
+
+
+@dataclass(frozen=True, slots=True)
+class Surface:
+    """Where an environment begins; it pushes and never pulls.
+
+    Parameters
+    ----------
+    environment : str
+        Its name.
+    law : AbstractContactLaw
+        At the pivot, at fixed parameters.
+    element : Element or None
+        The springs and dampers that it consists of; None if it is not linear.
+    at : float
+        Angle in rad.
+    sign : int
+        1 if it is met by rising angles, -1 if by falling ones.
+    """
+
+    environment: str
+    law: AbstractContactLaw
+    element: Element | None
+    at: float
+    sign: int
+
+
+@dataclass(frozen=True, slots=True)
+class Condition:
+    """A bound on a signal, positive towards the tissue.
+
+    Parameters
+    ----------
+    signal : str
+        ``command`` in rad/s, ``torque`` in N m, or ``depth of INDEX`` in rad, of a surface.
+    low, high : float
+        Within which it holds.
+    """
+
+    signal: str
+    low: float = -math.inf
+    high: float = math.inf
+
+    def holds(self, signals: Mapping[str, float]) -> bool:
+        """Tell whether the signal is within; one that is no number is not."""
+        return self.low <= signals[self.signal] <= self.high
+
+
+@dataclass(frozen=True, slots=True)
+class Switch:
+    """A switch that is made when all its conditions hold.
+
+    Parameters
+    ----------
+    source, target : str
+        Controllers.
+    conditions : tuple of Condition
+        At least one.
+    """
+
+    source: str
+    target: str
+    conditions: tuple[Condition, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Control:
+    """Who is in control when.
+
+    Parameters
+    ----------
+    start : str
+        Controller at first.
+    switches : tuple of Switch
+        The first that may be made is.
+    stays : mapping of str to float
+        For how long a timer holds a controller, in s.
+    schedule : tuple of (float, str)
+        Times in s at which a controller takes over, whatever signals say.
+    """
+
+    start: str
+    switches: tuple[Switch, ...] = ()
+    stays: Mapping[str, float] = field(default_factory=dict)
+    schedule: tuple[tuple[float, str], ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Errors:
+    """What acts on the sampled loop and its sensors.
+
+    Parameters
+    ----------
+    friction : float
+        Coulomb friction of the motor, in the unit of its commands.
+    encoder_step, force_step : float
+        Resolutions in rad and N m; zero for none.
+    force_noise : float
+        Standard deviation in N m.
+    jitter : float
+        How far a sample may be late, as a share of the period.
+    """
+
+    friction: float = 0.0
+    encoder_step: float = 0.0
+    force_step: float = 0.0
+    force_noise: float = 0.0
+    jitter: float = 0.0
+
+
+@dataclass(frozen=True, slots=True)
+class Scenario:
+    """One run of the robot against its surroundings, in SI.
+
+    Parameters
+    ----------
+    name : str
+        As in the spec.
+    profile : Profile
+        Commanded velocity.
+    duration : float
+        In s.
+    surfaces : tuple of Surface
+        What is touched where; forces add up.
+    control : Control
+        Who is in control when.
+    start : float
+        Angle at which the axis rests at first, in rad.
+    wanted_torque : float
+        Fd of force controllers in N m, towards rising angles.
+    errors : Errors
+        For the sampled engine.
+    seed : int
+        Of noise, jitter and varying delay.
+    """
+
+    name: str
+    profile: Profile
+    duration: float
+    surfaces: tuple[Surface, ...]
+    control: Control
+    start: float = 0.0
+    wanted_torque: float = 0.0
+    errors: Errors = Errors()
+    seed: int = 0

@@ -1,0 +1,155 @@
+"""A simulated run as a table over time: outputs, states and inputs with their names and units."""
+
+from __future__ import annotations
+
+import io
+import zipfile
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+# How names of columns write units, as records are read.
+_IN_COLUMNS = {"N*m": "Nm", "rad/s": "rad_s", "N*m/rad": "Nm_rad", "N*m*s/rad": "Nms_rad"}
+
+
+@dataclass(frozen=True, slots=True)
+class Signal:
+    """What a row of a response is.
+
+    Parameters
+    ----------
+    name : str
+        Such as ``torque``.
+    unit : str
+        In SI, such as ``N*m``; empty for a number.
+    """
+
+    name: str
+    unit: str
+
+    @property
+    def column(self) -> str:
+        """Name of its column in a file, such as ``torque_Nm``."""
+        words = self.name.replace(" ", "-")
+        return f"{words}_{_IN_COLUMNS.get(self.unit, self.unit)}" if self.unit else words
+
+    def __str__(self) -> str:
+        """Name and unit, such as ``torque [N*m]``."""
+        return f"{self.name} [{self.unit}]" if self.unit else self.name
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class TimeResponse:
+    """Response of a loop over time, with time along the last axis as in python-control.
+
+    Parameters
+    ----------
+    t : ndarray, shape (N,)
+        Time in s; it never falls, and is there twice where something jumps.
+    y : ndarray, shape (p, N)
+        Outputs.
+    x : ndarray, shape (n, N)
+        States.
+    u : ndarray, shape (m, N)
+        Inputs.
+    outputs, states, inputs : tuple of Signal
+        What the rows are.
+    mode : ndarray of int, shape (N,)
+        Index of the controller in force from each instant on.
+    modes : tuple of str
+        The controllers.
+    """
+
+    t: Array
+    y: Array
+    x: Array
+    u: Array
+    outputs: tuple[Signal, ...]
+    states: tuple[Signal, ...]
+    inputs: tuple[Signal, ...]
+    mode: NDArray[np.int64]
+    modes: tuple[str, ...]
+
+    def __post_init__(self) -> None:
+        """Refuse shapes that do not fit together."""
+        for rows, signals in ((self.y, self.outputs), (self.x, self.states), (self.u, self.inputs)):
+            if rows.shape != (len(signals), len(self.t)):
+                raise ValueError(f"{len(signals)} signals over {len(self.t)} instants expected")
+        if self.mode.shape != self.t.shape:
+            raise ValueError("every instant has one mode")
+
+    def __len__(self) -> int:
+        """Return the number of instants."""
+        return len(self.t)
+
+    def __getitem__(self, name: str) -> Array:
+        """Return an output, an input or a state by its name, shape (N,); outputs come first.
+
+        Raises
+        ------
+        KeyError
+            If there is none of that name.
+        """
+        return self.signals[name]
+
+    @property
+    def signals(self) -> Mapping[str, Array]:
+        """All rows by name."""
+        return {signal.name: row for signal, row in reversed(list(self._rows()))}
+
+    @property
+    def active(self) -> list[str]:
+        """Name of the controller in force at every instant."""
+        return [self.modes[k] for k in self.mode.tolist()]
+
+    def _rows(self) -> Iterator[tuple[Signal, Array]]:
+        yield from zip(self.outputs, self.y, strict=True)
+        yield from zip(self.inputs, self.u, strict=True)
+        yield from zip(self.states, self.x, strict=True)
+
+    def to_csv(self) -> str:
+        """Return a table: ``time_s``, outputs, inputs, states, and ``mode``, in SI.
+
+        Numbers are written so that they are read back as the same. `nrs-design audit` and
+        `identify` read these columns.
+        """
+        # Of instants that are there twice, the last stays: a table has one row for each.
+        kept = np.append(np.diff(self.t) > 0, True)
+        rows = [("time_s", self.t), *((signal.column, row) for signal, row in self._rows())]
+        text = io.StringIO()
+        text.write(",".join([*(name for name, _ in rows), "mode"]) + "\n")
+        numbers = zip(*(map(repr, row[kept].tolist()) for _, row in rows), strict=True)
+        for line, mode in zip(numbers, self.mode[kept].tolist(), strict=True):
+            text.write(",".join(line) + f",{self.modes[mode]}\n")
+        return text.getvalue()
+
+    def to_npz(self) -> bytes:
+        """Return the arrays as a NumPy archive; names and units are text arrays beside them.
+
+        The first one, ``about``, is stored as it is, so that an archive of ours can be told from
+        others by its first bytes, whatever version of Python wrote it.
+        """
+        named = {
+            kind: np.array([[s.name, s.unit] for s in signals], dtype=np.str_).reshape(-1, 2)
+            for kind, signals in (
+                ("outputs", self.outputs),
+                ("states", self.states),
+                ("inputs", self.inputs),
+            )
+        }
+        about = {"about": np.array("a run of nrs-design")}
+        arrays = {"t": self.t, "y": self.y, "x": self.x, "u": self.u, "mode": self.mode}
+        modes = {"modes": np.array(self.modes, dtype=np.str_)}
+        file = io.BytesIO()
+        with zipfile.ZipFile(file, "w") as archive:
+            for name, array in (about | arrays | named | modes).items():
+                content = io.BytesIO()
+                np.lib.format.write_array(content, array, allow_pickle=False)
+                member = zipfile.ZipInfo(f"{name}.npy")
+                packed = zipfile.ZIP_STORED if name in about else zipfile.ZIP_DEFLATED
+                archive.writestr(member, content.getvalue(), packed)
+        return file.getvalue()

@@ -1,0 +1,100 @@
+"""All surfaces of a scenario: their torque on the robot, and what moves by itself in them."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+
+from nrs_design.models.contact import AbstractNonlinearLaw
+from nrs_design.simulation.scenario import Surface
+
+
+@dataclass
+class Tissue:
+    """What is touched during a run.
+
+    Parameters
+    ----------
+    surfaces : tuple of Surface
+        Where it begins.
+    contacts : list of (float, str, bool)
+        Times in s at which `note` found a surface met (true) or lost, and its environment.
+    """
+
+    surfaces: tuple[Surface, ...]
+    contacts: list[tuple[float, str, bool]] = field(default_factory=list)
+
+    def __post_init__(self) -> None:
+        """Begin free of contact, with all dampers at rest."""
+        self.dampers = [0.0] * len(self.surfaces)
+        self.touched = [False] * len(self.surfaces)
+        self.noted = list(self.touched)
+        self.direction = self.surfaces[0].sign if self.surfaces else 1
+
+    @property
+    def creeps(self) -> bool:
+        """Whether something in it moves by itself."""
+        each = (surface.element for surface in self.surfaces)
+        return any(element is not None and math.isfinite(element.b) for element in each)
+
+    def depths(self, theta: float) -> list[float]:
+        """Return the depth of an angle in rad below every surface."""
+        return [surface.sign * (theta - surface.at) for surface in self.surfaces]
+
+    def torque(self, theta: float, omega: float) -> float:
+        """Return the torque of all surfaces on the robot in N m: none of them pulls.
+
+        Parameters
+        ----------
+        theta, omega : float
+            Angle and velocity in rad and rad/s.
+        """
+        total = 0.0
+        for j, surface in enumerate(self.surfaces):
+            depth = surface.sign * (theta - surface.at) - self.dampers[j]
+            push = 0.0
+            if depth > 0:
+                push = _push(surface, depth, surface.sign * omega)
+            self.touched[j] = push > 0
+            if push > 0:
+                total += surface.sign * push
+        return total
+
+    def note(self, time: float) -> None:
+        """Write down which surfaces have been met and lost since the last time."""
+        if self.touched == self.noted:
+            return
+        for j, surface in enumerate(self.surfaces):
+            if self.touched[j] != self.noted[j]:
+                self.contacts.append((time, surface.environment, self.touched[j]))
+                if self.touched[j]:
+                    self.direction = surface.sign
+        self.noted = list(self.touched)
+
+    def creep(self, before: list[float], after: list[float], time: float) -> None:
+        """Move the dampers while the depths change evenly.
+
+        Parameters
+        ----------
+        before, after : list of float
+            Depths in rad.
+        time : float
+            That it takes, in s.
+        """
+        for j, (begin, end) in enumerate(zip(before, after, strict=True)):
+            element = self.surfaces[j].element
+            if element is None or not math.isfinite(element.b):
+                continue
+            middle = (begin + end) / 2
+            pushed = element.k if middle > self.dampers[j] else 0.0
+            rate = (pushed + element.h) / element.b
+            if rate:
+                rest = pushed * middle / (pushed + element.h)
+                self.dampers[j] = rest + (self.dampers[j] - rest) * math.exp(-rate * time)
+
+
+def _push(surface: Surface, depth: float, speed: float) -> float:
+    if surface.element is not None:
+        return surface.element.k * depth + surface.element.c * speed
+    assert isinstance(surface.law, AbstractNonlinearLaw)
+    return surface.law.push(depth, speed)

@@ -1,0 +1,188 @@
+"""`nrs-design simulate`, as a user types it."""
+
+import json
+
+import numpy as np
+import pytest
+
+from nrs_design.reporting.figures.simulated import draw_simulated
+from nrs_design.reporting.images import to_png
+from tests.simulation.interactions import IMPEDANCE, SAMPLED, simulated, text_of
+from tests.support import COMMUTING, run
+
+RUN = (
+    "command: {points: [[0 s, 0 deg/s], [0.5 s, 8 deg/s], [1 s, -8 deg/s]]}, "
+    "surfaces: [{environment: soft, at: 1 deg}]"
+)
+
+
+@pytest.fixture
+def spec(tmp_path):
+    def write(scenario=RUN, more="", **options):
+        path = tmp_path / "small.nrs.yaml"
+        path.write_text(text_of(scenario=scenario, more=more, **options))
+        return path
+
+    return write
+
+
+def test_metrics_and_files(spec, tmp_path):
+    result = run("simulate", spec(), "--out", "runs", cwd=tmp_path)
+    assert result.returncode == 0, result.stderr
+    assert "run: exact engine" in result.stdout
+    assert "largest torque" in result.stdout
+    names = {path.name for path in (tmp_path / "runs").iterdir()}
+    assert names == {f"small.run.{suffix}" for suffix in ("csv", "npz", "svg", "png")}
+    table = np.genfromtxt(tmp_path / "runs/small.run.csv", delimiter=",", names=True, dtype=None)
+    assert (np.diff(table["time_s"]) > 0).all()
+    again = run("simulate", spec(), "--out", "runs", "--quiet", cwd=tmp_path)
+    assert (again.returncode, again.stdout, again.stderr) == (0, "", "")
+
+
+@pytest.mark.slow
+def test_the_same_run_gives_the_same_bytes_and_never_those_of_another_spec(spec, tmp_path):
+    path = spec(RUN + ", errors: {force_noise: 0.01 N*m, jitter: 0.2}, seed: 7", SAMPLED)
+    for folder in ("a", "b"):
+        assert run("simulate", path, "--out", folder, cwd=tmp_path).returncode == 0
+    first, again = ({f.name: f.read_bytes() for f in (tmp_path / d).iterdir()} for d in "ab")
+    assert first == again
+    path.write_text(path.read_text().replace("name: small", "name: other"))
+    assert run("simulate", path, "--out", "a", cwd=tmp_path).returncode == 0
+    assert first.items() < {f.name: f.read_bytes() for f in (tmp_path / "a").iterdir()}.items()
+
+
+@pytest.mark.parametrize(
+    ("suffix", "content"),
+    [("csv", b"t,angle\n"), ("npz", b"PK\x03\x04\x14\x00\x00\x00\x08\x00"), ("png", b"GIF89a")],
+)
+def test_what_is_not_ours_stays_and_nothing_is_written(spec, tmp_path, suffix, content):
+    """A budget that would stop the run is not even used: the folder is looked at before."""
+    file = tmp_path / f"runs/small.run.{suffix}"
+    file.parent.mkdir()
+    file.write_bytes(content)
+    result = run("simulate", spec(), "--out", "runs", "--max-steps", "1", cwd=tmp_path)
+    assert (result.returncode, result.stdout) == (2, "")
+    assert "not overwritten" in result.stderr
+    assert [*file.parent.iterdir()] == [file]
+    assert file.read_bytes() == content
+
+
+def test_a_log_of_the_law_that_ships_can_be_audited(spec, tmp_path):
+    """Its columns have names of their own; thesis 6.3.2.1: the law has a velocity as a state."""
+    table = simulated(text_of(scenario=RUN, more=SAMPLED), "sampled").response.to_csv()
+    (tmp_path / "run.csv").write_text(table)
+    names = table.partition("\n")[0].split(",")
+    assert len(set(names)) == len(names)
+    assert "state-velocity_rad_s" in names
+    audited = run("audit", "run.csv", spec(more=SAMPLED), cwd=tmp_path)
+    assert audited.returncode in (1, 3), audited.stderr
+
+
+def test_a_saturated_command_is_said(spec, tmp_path):
+    path = spec(more=SAMPLED)
+    path.write_text(path.read_text().replace("2 Hz}", "2 Hz, command: 100 rpm}"))
+    result = run("simulate", path, "--json", cwd=tmp_path)
+    saturated = json.loads(result.stdout)["runs"][0]["saturated_samples"]
+    assert saturated > 0
+    told = run("simulate", path, cwd=tmp_path).stdout
+    assert f"met its limit at {saturated} samples" in told
+
+
+def test_json(spec, tmp_path):
+    result = run("simulate", spec(more=SAMPLED), "--json", cwd=tmp_path)
+    document = json.loads(result.stdout)
+    assert document["schema"] == "nrs-design/simulate/1"
+    (one,) = document["runs"]
+    assert (one["scenario"], one["engine"], one["stopped"]) == ("run", "sampled", None)
+    assert 0.05 < one["metrics"]["peak_torque"] < 0.4
+    assert one["metrics"]["withdrawal_times"]
+    assert one["switches"][0]["to"] == "withdrawal"
+    assert one["certified_bounds"] == []
+
+
+def test_what_an_engine_leaves_out_is_said(spec, tmp_path):
+    path = spec(RUN + ", errors: {force_noise: 0.01 N*m}")
+    result = run("simulate", path, cwd=tmp_path)
+    assert "noise and jitter of the scenario" in result.stdout
+    result = run("simulate", path, "--engine", "sampled", cwd=tmp_path)
+    assert "noise and jitter" not in result.stdout
+    assert "other axes" in result.stdout
+
+
+def test_a_spec_without_scenarios_has_one(spec, tmp_path):
+    result = run("simulate", spec(scenario=None), cwd=tmp_path)
+    assert "insertion-and-withdrawal: exact engine" in result.stdout
+
+
+def test_a_bound_stands_beside_the_peak(spec, tmp_path):
+    laws = {name: law.replace("0.01 kg", "0 kg") for name, law in IMPEDANCE.items()}
+    path = spec(more="contact: losable\ndisturbances: {command: 8 deg/s}\n", controllers=laws)
+    result = run("simulate", path, "--json", cwd=tmp_path)
+    (one,) = json.loads(result.stdout)["runs"]
+    force = next(b for b in one["certified_bounds"] if b["output"] == "force")
+    assert force["holds_for_this_run"]
+    assert one["metrics"]["peak_torque"] < force["level"] < 1
+    none = run("simulate", path, "--json", "--no-bound", cwd=tmp_path)
+    assert json.loads(none.stdout)["runs"][0]["certified_bounds"] == []
+    assert run("certify-switching", path, "--out", "a.cert.json", cwd=tmp_path).returncode == 0
+    shown = run("simulate", path, "--certificate", "a.cert.json", "--period", "0.002", cwd=tmp_path)
+    assert "certified bound on the force" in shown.stdout
+    assert "not about this run: the proof is not about the sampled loop" in shown.stdout
+    path.write_text(path.read_text().replace("[0.5 s, 8 deg/s]", "[0.5 s, 7 deg/s]"))
+    stale = run("simulate", path, "--certificate", "a.cert.json", cwd=tmp_path)
+    assert stale.returncode == 2
+    assert "the spec has changed" in stale.stderr
+
+
+def test_a_budget_is_inconclusive(spec, tmp_path):
+    result = run("simulate", spec(), "--max-steps", "5", cwd=tmp_path)
+    assert result.returncode == 3
+    assert "STOPPED" in result.stdout
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (["--scenario", "ran"], "no scenario 'ran'"),
+        (["--engine", "exact", "--period", "0.002"], "has no samples"),
+        (["--certificate", "none.json"], "cannot be read"),
+    ],
+)
+def test_wrong_usage(spec, tmp_path, arguments, message):
+    result = run("simulate", spec(), *arguments, cwd=tmp_path)
+    assert result.returncode == 2
+    assert message in result.stderr
+
+
+def test_another_kind_of_spec(tmp_path):
+    result = run("simulate", COMMUTING, cwd=tmp_path)
+    assert result.returncode == 2
+    assert "describes no interaction" in result.stderr
+
+
+def test_a_profile_from_a_file(spec, tmp_path):
+    path = spec("command: {csv: hand.csv}, surfaces: [{environment: soft, at: 1 deg}]")
+    hand = tmp_path / "hand.csv"
+    hand.write_text("time_s,velocity_deg_s\n0,0\n1,5\n2,0\n")
+    found = json.loads(run("simulate", path, "--json", cwd=tmp_path).stdout)["runs"][0]
+    assert found["metrics"]["duration"] == 2
+    for rows, message in (
+        ("0,0\n1,9\n", "beyond the spec's limit"),
+        ("0,0\n1,nan\n", "nan"),
+        ("0,0\n", "no profile"),
+        ("0,0\n2,1\n1,1\n", "no profile"),
+    ):
+        hand.write_text("time_s,velocity_deg_s\n" + rows)
+        result = run("simulate", path, "--out", "runs", cwd=tmp_path)
+        assert result.returncode == 2
+        assert message in result.stderr
+        assert not (tmp_path / "runs").exists()
+
+
+def test_a_bound_far_away_is_named_not_drawn():
+    response = simulated(text_of(scenario=RUN)).response
+    near = draw_simulated(response, 0.3, 0.14, 0.24, (0.6, True))
+    far = draw_simulated(response, 0.3, 0.14, None, (60.0, False))
+    assert "60 N m" in far.axes[0].get_title()
+    assert not near.axes[0].get_title()
+    assert to_png(near, 40)[:4] == b"\x89PNG"

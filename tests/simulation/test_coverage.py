@@ -1,0 +1,146 @@
+"""No run of a certified spec leaves its bound; and whether a bound is about a run."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from nrs_design.pipeline import Runs, run_bounds, run_certification, run_scenarios
+from nrs_design.search.certification import Limits
+from nrs_design.simulation.coverage import uncovered
+from nrs_design.simulation.exact import simulate_exactly
+from nrs_design.simulation.sampled import simulate_sampled
+from nrs_design.simulation.scenario import Control, Profile
+from nrs_design.spec import read_spec
+from tests.simulation.interactions import text_of
+
+LAWS = {
+    "insertion": "{type: impedance, environment: soft, Mt: 0 kg*m^2, Bt: 2.15 N*m*s/rad}",
+    "withdrawal": "{type: impedance, environment: soft, Mt: 0 kg*m^2, Bt: 1.06 N*m*s/rad}",
+}
+RUN = (
+    "command: {sinusoid: {amplitude: 8 deg/s, frequency: 2 Hz}}, duration: 1 s, "
+    "surfaces: [{environment: soft, at: 0 deg}]"
+)
+BOUNDED = "contact: losable\ndisturbances: {command: 8 deg/s}\n"
+
+
+@pytest.fixture(scope="module")
+def certified(tmp_path_factory):
+    path = tmp_path_factory.mktemp("spec") / "small.nrs.yaml"
+    path.write_text(text_of(LAWS, scenario=RUN, more=BOUNDED))
+    return run_certification(read_spec(path), limits=Limits(optimize_rate=False))
+
+
+def bounds(certified, simulated):
+    found = run_bounds(certified.designed, certified.certificate, simulated)
+    return {bound.output: bound for bound in found}
+
+
+@settings(max_examples=12)
+@given(
+    velocities=st.lists(st.sampled_from([-8.0, 8.0, 3.0]), min_size=2, max_size=12),
+    stay=st.floats(0.02, 0.2),
+    turns=st.lists(st.booleans(), min_size=12, max_size=12),
+)
+def test_no_run_leaves_its_bound(certified, velocities, stay, turns):
+    """Jumps of the command and of the controller, at any of the instants."""
+    designed = certified.designed
+    (usual,) = run_scenarios(designed)
+    times = np.repeat(stay * np.arange(len(velocities) + 1), 2)[1:-1]
+    profile = Profile.through(times, np.radians(np.repeat(velocities, 2)))
+    names = ["withdrawal" if turn else "insertion" for turn in turns]
+    schedule = tuple((stay * (i + 0.5), name) for i, name in enumerate(names))
+    scenario = replace(
+        usual.scenario,
+        profile=profile,
+        duration=stay * len(velocities),
+        control=Control("insertion", schedule=schedule),
+    )
+    run = simulate_exactly(designed.spec, designed.plant, designed.design, scenario)
+    found = bounds(certified, replace(usual, scenario=scenario, run=run))
+    assert not found["force"].uncovered
+    assert np.abs(run.response["torque"]).max() <= found["force"].level
+    assert np.abs(run.response["velocity"]).max() <= found["velocity"].level
+
+
+@pytest.fixture(scope="module")
+def sampled(tmp_path_factory):
+    """One controller, every 2 ms, with the roundings of single precision."""
+    path = tmp_path_factory.mktemp("spec") / "sampled.nrs.yaml"
+    more = BOUNDED.replace("8 deg/s", "8 deg/s, largest_angle: 1 rad")
+    more = f"{more}sampling: {{period: 2 ms, delay: 0}}\n"
+    path.write_text(text_of({"insertion": LAWS["insertion"]}, scenario=RUN, more=more))
+    return run_certification(read_spec(path), limits=Limits(optimize_rate=False))
+
+
+@pytest.mark.slow
+@settings(max_examples=8)
+@given(st.lists(st.sampled_from([-8.0, 8.0, 5.0]), min_size=2, max_size=10), st.floats(0.02, 0.2))
+def test_no_run_of_the_law_that_ships_leaves_its_bound(sampled, velocities, stay):
+    designed = sampled.designed
+    (usual,) = run_scenarios(designed)
+    times = np.repeat(stay * np.arange(len(velocities) + 1), 2)[1:-1]
+    profile = Profile.through(times, np.radians(np.repeat(velocities, 2)))
+    scenario = replace(usual.scenario, profile=profile, duration=stay * len(velocities))
+    run = simulate_sampled(designed.spec, designed.plant, designed.design, scenario)
+    found = bounds(sampled, replace(usual, scenario=scenario, run=run))
+    assert not found["force"].uncovered
+    assert np.abs(run.response["torque"]).max() <= found["force"].level
+    (faster,) = run_scenarios(designed, Runs(period=0.001))
+    assert any("period" in reason for reason in bounds(sampled, faster)["force"].uncovered)
+
+
+def test_what_a_proof_does_not_take_up_is_said(certified):
+    designed = certified.designed
+    (one,) = run_scenarios(designed)
+    assert not bounds(certified, one)["force"].uncovered
+    (sampled,) = run_scenarios(designed, Runs(engine="sampled"))
+    assert any("sampled loop" in reason for reason in bounds(certified, sampled)["force"].uncovered)
+    scenario = one.scenario
+    twice = replace(scenario, surfaces=scenario.surfaces * 2)
+    wild = replace(
+        scenario,
+        errors=replace(scenario.errors, friction=1.0, force_noise=0.1, jitter=0.1, force_step=1),
+    )
+    reasons = bounds(certified, replace(one, scenario=wild))["force"].uncovered
+    for word in ("friction", "noise", "late", "force error"):
+        assert any(word in reason for reason in reasons)
+    several = bounds(certified, replace(one, scenario=twice))["force"].uncovered
+    assert several == ("there are several surfaces, and the proof is about one",)
+
+
+def test_a_command_at_its_limit_is_said(certified):
+    """No proof knows saturation, nor samples that the law refuses."""
+    (one,) = run_scenarios(certified.designed)
+    assert one.run.saturated == one.run.refused == 0
+    assert not bounds(certified, one)["force"].uncovered
+    for change, word in (({"saturated": 1}, "met its limit"), ({"refused": 1}, "refused samples")):
+        reasons = bounds(certified, replace(one, run=replace(one.run, **change)))["force"].uncovered
+        assert len(reasons) == 1
+        assert word in reasons[0]
+
+
+def test_contact_that_a_proof_takes_for_kept(certified):
+    """A run begins in free motion, also where there is no surface at all."""
+    designed, system = certified.designed, certified.certificate.system
+    (one,) = run_scenarios(designed)
+    alone = replace(one.scenario, surfaces=())
+    statement = next(s for s in certified.certificate.statements if s.bound(system))
+    for kept in (replace(system, contact=None), system):
+        reasons = list(uncovered(designed.spec, kept, statement, alone, one.run))
+        assert reasons == ["contact is lost or made, and the proof takes it for kept"] * (
+            kept.contact is None
+        )
+
+
+def test_the_peak_of_a_sinusoid_counts(certified):
+    """Also where it lies between two instants: 8 deg/s is the bound of the proof."""
+    (one,) = run_scenarios(certified.designed)
+    above = Profile.sinusoid(np.radians(8) * (1 + 1e-7), 12.0)
+    found = bounds(certified, replace(one, scenario=replace(one.scenario, profile=above)))
+    assert found["force"].uncovered == (
+        "the velocity command is larger than the proof takes it for",
+    )

@@ -1,0 +1,63 @@
+"""An axis that is pressed in and let go, against what can be computed by hand."""
+
+from fractions import Fraction
+
+import numpy as np
+import pytest
+
+from nrs_design.proof.matrix import RationalMatrix
+from nrs_design.proof.system import Mode, SwitchedSystem, Switching, Time
+from nrs_design.simulation.release import Outputs, certified, simulate_release, watched
+
+# The velocity v and the deflection d: d' = v and v' = -k d - c v.
+ROWS = Outputs(np.array([[0.0, 4.0]]), np.array([1.0, 0.0]), 2.0, 1.0)
+
+
+def spring(name, k, c):
+    rows = [[Fraction(-c), Fraction(-k)], [Fraction(1), Fraction(0)]]
+    return Mode(name, RationalMatrix.from_rows(rows))
+
+
+def system(*modes, **rules):
+    states = ("v", "delta [rad]")
+    return SwitchedSystem("test", Time.CONTINUOUS, states, modes, (), Switching(**rules))
+
+
+def test_a_run_begins_at_rest_at_the_largest_force():
+    run = simulate_release(system(spring("soft", 1, 3)), ROWS, None)
+    assert run.state[0] == pytest.approx([0.0, 0.5])
+    # Overdamped by itself: d = a exp(-s t) + b exp(-f t).
+    fast, slow = (3 + np.sqrt(5)) / 2, (3 - np.sqrt(5)) / 2
+    by_hand = 0.5 * (fast * np.exp(-slow * run.time) - slow * np.exp(-fast * run.time))
+    assert run.state[:, 1] == pytest.approx(by_hand / (fast - slow), abs=1e-9)
+
+
+def test_the_adversary_is_worse_than_either_mode_alone():
+    soft, stiff = spring("soft", 1, 1), spring("stiff", 3, 1)
+    both = simulate_release(system(soft, stiff), ROWS, None)
+    alone = [simulate_release(system(mode), ROWS, None) for mode in (soft, stiff)]
+    largest = [np.abs(run.state[:, 0]).max() for run in (both, *alone)]
+    assert largest[0] >= max(largest[1:]) - 1e-9
+    assert set(both.mode.tolist()) == {0, 1}
+
+
+def test_rules_let_one_mode_hold():
+    ruled = system(spring("soft", 1, 1), spring("stiff", 3, 1), dwell_time=Fraction(1))
+    assert len(set(simulate_release(ruled, ROWS, None).mode.tolist())) == 1
+    assert watched(ruled) is ruled
+
+
+def test_a_certified_bound_holds_along_the_run_and_is_reached_by_some_start():
+    mode = spring("soft", 1, 2)
+    # A'Q + QA = -2 (1/3) Q is not needed to be exact: the rate is below that of this Q.
+    Q = np.array([[1.0, 1.0], [1.0, 3.0]])
+    A = np.array([[-2.0, -1.0], [1.0, 0.0]])
+    inverse = np.linalg.inv(np.linalg.cholesky(Q))
+    rate = -0.5 * np.linalg.eigvalsh(inverse @ (A.T @ Q + Q @ A) @ inverse.T).max()
+    assert rate > 0
+    run = simulate_release(system(mode), ROWS, Q)
+    for rows in (ROWS.force, ROWS.velocity[None, :]):
+        bound = certified(rows, Q, ROWS.start, rate, run.time)
+        assert (np.abs(run.state @ rows.T).max(axis=1) <= bound + 1e-12).all()
+        worst = np.linalg.solve(Q, rows[0])
+        assert certified(rows, Q, worst, rate, np.zeros(1))[0] == pytest.approx(rows[0] @ worst)

@@ -1,0 +1,47 @@
+"""Runs of modes that take turns."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from nrs_design.proof.system import Clock
+from nrs_design.reporting.kinds.periodic_quadratic import step_norms
+from nrs_design.simulation.rounds import all_modes, norms_in_rounds, worst_rounds
+from tests.proof.systems import bouncing_in_turns, doubled_in_turns, genuine
+
+
+def test_every_mode_takes_its_turn():
+    system = doubled_in_turns(3)
+    norm = [lambda x: np.abs(x[..., 0])] * 3
+    run = worst_rounds(system, norm, np.ones(1), 7)
+    assert run.mode.tolist() == [0, 1, 1, 0, 1, 1, 0]
+    assert run.state[:, 0] == pytest.approx([1, 2, 1.5, 1.125, 2.25, 1.6875, 1.265625, 2.53125])
+    assert norms_in_rounds(run, norm) == pytest.approx(run.state[:, 0])
+
+
+def test_contact_decides_which_modes_are_possible():
+    system = bouncing_in_turns()
+    norms = [lambda x: np.linalg.norm(x, axis=-1)] * 2
+    run = worst_rounds(system, norms, np.array([-3.0, 1.0]), 60)
+    names = [all_modes(system).modes[k].name for k in run.mode]
+    for t, (name, x) in enumerate(zip(names, run.state, strict=False)):
+        assert name.startswith("fall") == (x[-1] <= 0)
+        assert (name in system.clock.first) == (t % 2 == 0)
+    assert {"fall", "fall on", "rest"} <= set(names)
+
+
+@pytest.mark.parametrize("kept", [False, True])
+def test_no_run_is_above_a_proved_bound(kept):
+    system, evidence = genuine("periodic-quadratic, kept" if kept else "periodic-quadratic")
+    norms, rng = step_norms(evidence, system), np.random.default_rng(3)
+    for _ in range(20):
+        run = worst_rounds(system, norms, rng.standard_normal(2), 60)
+        allowed = float(evidence.rate) ** run.time * (1 + 1e-9)
+        assert (norms_in_rounds(run, norms) <= allowed).all()
+    assert all_modes(system).contact is None
+
+
+def test_only_what_takes_turns_is_run():
+    kept = replace(bouncing_in_turns(), contact=None, clock=Clock(2, ("push 1", "push 2")))
+    assert all_modes(kept) is kept

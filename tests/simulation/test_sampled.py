@@ -1,0 +1,169 @@
+"""The sampled engine against closed forms, an integrator and the exact engine."""
+
+import math
+
+import numpy as np
+import pytest
+
+from nrs_design.controllers.step_logic import StepLogic
+from nrs_design.errors import DesignError
+from nrs_design.spec import parse_spec
+from tests.simulation.interactions import PLACED, SAMPLED, simulated, text_of
+
+RUN = (
+    "command: {points: [[0 s, 0 deg/s], [0.3 s, 8 deg/s], [0.6 s, 2 deg/s], [1 s, -6 deg/s]]}, "
+    "surfaces: [{environment: soft, at: 1 deg}]"
+)
+
+
+def sampled(scenario=RUN, more=SAMPLED, **options):
+    return simulated(text_of(scenario=scenario, more=more, **options), "sampled")
+
+
+def test_shorter_samples_come_to_continuous_time():
+    """To first order in the period."""
+    fine = RUN + ", control: {schedule: [[0 s, insertion], [0.7 s, withdrawal]]}"
+    exact = simulated(text_of(scenario=fine)).response
+    errors = []
+    for period in ("2 ms", "1 ms", "0.5 ms"):
+        response = sampled(fine, f"sampling: {{period: {period}, delay: 0}}\n").response
+        wanted = np.interp(response.t, exact.t, exact["angle"])
+        errors.append(float(np.abs(response["angle"] - wanted).max()))
+    assert errors[0] < 4e-4
+    assert errors[1] < 0.6 * errors[0]
+    assert errors[2] < 0.6 * errors[1]
+
+
+def test_a_run_is_that_of_its_seed():
+    noisy = RUN + ", errors: {force_noise: 0.02 N*m, jitter: 0.2}, seed: "
+    one, same, other = (sampled(noisy + seed).response for seed in "778")
+    assert np.array_equal(one.y, same.y)
+    assert not np.array_equal(one.y, other.y)
+    assert (np.diff(one.t) > 0).all()
+
+
+def test_resolutions_noise_and_delay_are_felt_by_the_law():
+    """What the law computes from is what the scenario says: seen in its first lag of the force."""
+    more = SAMPLED.replace("delay: 1", "delay: 3")
+    coarse = RUN + ", errors: {force_step: 0.05 N*m, encoder_step: 0.01 deg}"
+    response = sampled(coarse, more).response
+    law = response["velocity"], response["torque"]
+    assert np.abs(law[1]).max() > 0.05
+    # v+ = a v + b f: from the law's own velocity follows the sample that it took.
+    vm = response["state velocity"].astype(np.float32)
+    a = np.float32(math.exp(-2.15 * 0.002 / 0.01))
+    b = (1 - a) / np.float32(2.15)
+    still = response.mode[:-1] == 0
+    taken = ((vm[1:] - a * vm[:-1]) / b)[still]
+    wanted = np.round(np.concatenate([np.zeros(3), response["torque"][:-4]]) / 0.05) * 0.05
+    assert taken == pytest.approx(wanted[still], abs=1e-4)
+
+
+def test_a_power_law_pushes_as_it_says():
+    power = (
+        "{model: hunt-crossley, stiffness: 43 N*m/rad, damping: 0.1 N*m*s/rad, exponent: 1.2, "
+        "about: 0.01 rad, preload: [0.005 rad, 0.02 rad]}"
+    )
+    response = sampled(environments={"soft": power}, more=SAMPLED + "contact: kept\n").response
+    depth, v = response["depth"], response["velocity"]
+    rho, lam = 43 / (1.2 * 0.01**0.2), 0.1 / 0.01**1.2
+    wanted = np.maximum((rho + lam * v) * depth**1.2, 0)
+    assert response["torque"] == pytest.approx(wanted, abs=1e-12)
+    assert wanted.max() > 0.05
+
+
+def test_an_environment_that_remembers_is_as_in_continuous_time():
+    solid = (
+        "{model: kelvin-boltzmann, parallel_stiffness: 60 N*m/rad, series_stiffness: 80 N*m/rad, "
+        "damping: 5 N*m*s/rad}"
+    )
+    fine = RUN + ", control: {fixed: insertion}"
+    exact = simulated(text_of(scenario=fine, environments={"soft": solid})).response
+    spec = text_of(scenario=fine, environments={"soft": solid})
+    response = simulated(spec, "sampled", sampling=("0.2 ms", 0)).response
+    wanted = np.interp(response.t, exact.t, exact["torque"])
+    assert response["torque"] == pytest.approx(wanted, abs=3e-3)
+    assert wanted.max() > 0.1
+
+
+def test_position_and_force_control_keep_the_threshold():
+    text = text_of(
+        PLACED,
+        scenario="command: {points: [[0 s, 4 deg/s], [2 s, 4 deg/s]]}, "
+        "surfaces: [{environment: soft, at: 2 deg}], "
+        "control: {threshold: {position: position, force: force, torque: 0.27 N*m}}",
+        more=SAMPLED,
+    )
+    run = simulated(text, "sampled")
+    ((moment, name),) = run.switches
+    assert name == "force"
+    # The position that was commanded by then is held; see the same test of the exact engine.
+    reached = 43 * np.radians(4 * moment - 2)
+    wanted = (reached + 0.02 * 43 * 0.3) / (1 + 0.02 * 43)
+    assert run.response["torque"][-1] == pytest.approx(wanted, rel=1e-4)
+
+
+def test_noise_makes_a_logic_without_bands_chatter():
+    """The signs of the thesis, with a command near zero; the count is told."""
+    slow = (
+        "command: {points: [[0 s, 4 deg/s], [1 s, 4 deg/s], [1 s, -0.1 deg/s], [3 s, -0.1 deg/s]]}"
+        ", surfaces: [{environment: soft, at: 1 deg}], errors: {force_noise: 0.05 N*m}"
+    )
+    assert sampled(slow).chatter > 3
+    assert sampled(slow.partition(", errors")[0]).chatter == 0
+
+
+def test_without_a_period_or_a_motor_nothing_runs():
+    text = text_of(scenario=RUN)
+    with pytest.raises(DesignError, match="how often the law runs"):
+        simulated(text, "sampled")
+    given_loop = "\n  transfer_function: {numerator: [1], denominator: [1, 1]}"
+    text = text.replace("  zero: 56.9706 1/s", f"  zero: 56.9706 1/s{given_loop}")
+    with pytest.raises(DesignError, match="no motor to simulate"):
+        simulated(text, "sampled", sampling=("2 ms", 0))
+
+
+def test_two_periods_are_not_simulated_as_one():
+    two = "sampling: {period: 2 ms, outer_period: 0.5 ms, delay: 0}\n"
+    with pytest.raises(DesignError, match="has a period of its own"):
+        sampled(RUN, two)
+
+
+def test_a_budget_ends_a_run():
+    run = simulated(text_of(scenario=RUN, more=SAMPLED), "sampled", max_steps=20)
+    assert len(run.response) == 20
+    assert "budget" in run.stopped
+
+
+LOGIC = """\
+mode_logic:
+  type: thresholds
+  start: position
+  hold: 100 ms
+  signals:
+    command: {noise: 0.1 deg/s, age: 4 ms, largest_rate: 40 deg/s^2}
+    torque: {noise: 0.002 N*m, age: 4 ms, largest_rate: 6.2 N*m/s}
+  switches:
+    - {from: position, to: force, torque: {above: 0.27 N*m}, command: {above: 0.5 deg/s}}
+    - {from: force, to: position, command: {below: -0.5 deg/s}}
+"""
+
+
+def test_the_timer_counts_samples_as_the_exported_logic_does():
+    """100 ms are 50 samples of 2 ms, although 50 differences of their times add up to less."""
+    shaken = (
+        "command: {sinusoid: {amplitude: 8 deg/s, frequency: 2 Hz}}, duration: 4 s, "
+        "surfaces: [{environment: soft, at: 0.1 deg}]"
+    )
+    text = text_of(PLACED, scenario=shaken, more=SAMPLED.replace("delay: 1", "delay: 0") + LOGIC)
+    spec = parse_spec(text)
+    run = simulated(text, "sampled")
+    response = run.response
+    logic = StepLogic.of(spec.mode_logic, response.modes, spec.sampling.period.exact)
+    mode, held, modes = logic.start, 0, []
+    for command, torque in zip(response["hand"], response["torque"], strict=True):
+        signals = {"command": np.float32(command), "torque": np.float32(torque)}
+        mode, held = logic.step(mode, held, signals)
+        modes.append(mode)
+    assert len(run.switches) > 8
+    assert modes == response.mode.tolist()

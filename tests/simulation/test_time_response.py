@@ -1,0 +1,77 @@
+"""A response as a table, and what reads it."""
+
+import io
+
+import numpy as np
+import pytest
+
+from nrs_design.identification.running.log import read_run
+from nrs_design.output import ARCHIVE
+from nrs_design.simulation.time_response import Signal, TimeResponse
+
+
+def response(t=(0.0, 0.5, 0.5, 1.0)):
+    n = len(t)
+    ones = np.linspace(0, 1 / 3, n)
+    return TimeResponse(
+        np.array(t),
+        np.array([ones, 2 * ones]),
+        np.array([3 * ones]),
+        np.array([4 * ones]),
+        (Signal("angle", "rad"), Signal("torque", "N*m")),
+        (Signal("commanded position", "rad"),),
+        (Signal("hand", "rad/s"),),
+        np.where(np.arange(n) < n // 2, 0, 1),
+        ("insertion", "withdrawal"),
+    )
+
+
+def test_rows_are_found_by_name():
+    one = response()
+    assert len(one) == 4
+    assert one["torque"] == pytest.approx(2 * one["angle"])
+    assert one["hand"] == pytest.approx(4 * one["angle"])
+    assert one.active == ["insertion", "insertion", "withdrawal", "withdrawal"]
+    with pytest.raises(KeyError):
+        one["speed"]
+
+
+def test_a_table_has_one_row_for_an_instant():
+    lines = response().to_csv().splitlines()
+    assert lines[0] == "time_s,angle_rad,torque_Nm,hand_rad_s,commanded-position_rad,mode"
+    modes = [line.rpartition(",")[2] for line in lines[1:]]
+    assert modes == ["insertion", "withdrawal", "withdrawal"]
+
+
+def test_csv_is_read_back_to_the_bit(tmp_path):
+    """The log of a running robot has these columns."""
+    file, one = tmp_path / "run.csv", response(tuple(np.linspace(0, 1, 60)))
+    file.write_text(one.to_csv())
+    log = read_run(file)
+    assert log.time.tolist() == one.t.tolist()
+    assert log.columns["torque"].tolist() == one["torque"].tolist()
+    assert log.labels == ("insertion", "withdrawal")
+
+
+def test_npz_holds_it_all():
+    content = response().to_npz()
+    # Told from other archives by every version of Python.
+    assert content.startswith(ARCHIVE)
+    archive = np.load(io.BytesIO(content))
+    assert archive["about"] == "a run of nrs-design"
+    assert archive["y"].tolist() == response().y.tolist()
+    assert archive["outputs"].tolist() == [["angle", "rad"], ["torque", "N*m"]]
+    assert archive["modes"].tolist() == ["insertion", "withdrawal"]
+
+
+def test_shapes_must_fit():
+    with pytest.raises(ValueError, match="2 signals over 3 instants"):
+        TimeResponse(
+            np.zeros(3), np.zeros((1, 3)), np.zeros((0, 3)), np.zeros((0, 3)),
+            (Signal("a", ""), Signal("b", "")), (), (), np.zeros(3, np.int64), ("one",),
+        )  # fmt: skip
+    with pytest.raises(ValueError, match="one mode"):
+        TimeResponse(
+            np.zeros(3), np.zeros((1, 3)), np.zeros((0, 3)), np.zeros((0, 3)),
+            (Signal("a", ""),), (), (), np.zeros(2, np.int64), ("one",),
+        )  # fmt: skip

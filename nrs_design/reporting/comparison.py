@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 _TITLES = {
     Part.SPEC: "What the specs say",
-    Part.GAINS: "Gains that ship, in SI units",
+    Part.GAINS: "Gains that ship",
     Part.MARGINS: "Margins (computed, not proved)",
     Part.VERDICT: "Verdict",
     Part.ASSUMPTIONS: "Taken for granted",
@@ -29,17 +29,11 @@ def comparison_report(found: Comparison) -> Report:
         title=f"{found.before.name} and {found.after.name}",
         verdict="different" if count else "same",
         claim=f"{plural(count, 'difference')}." if count else "No difference in what was compared.",
-        remarks=tuple(_remarks(found)),
+        remarks=found.remarks,
         facts=(("A", str(found.before.path)), ("B", str(found.after.path))),
         sections=tuple(_sections(found)),
         footer="Specs were designed and certified afresh, certificates re-checked.",
     )
-
-
-def _remarks(found: Comparison) -> Iterator[str]:
-    if found.not_compared:
-        parts = ", ".join(found.not_compared)
-        yield f"Not compared, since not both files tell it: {parts}."
 
 
 def _sections(found: Comparison) -> Iterator[Section]:

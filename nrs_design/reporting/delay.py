@@ -10,6 +10,7 @@ from nrs_design.reporting.formatting import number
 from nrs_design.reporting.identification import (
     FOOTER,
     IDENTIFIED,
+    data_lights,
     facts_of,
     label_of,
     source_section,
@@ -50,6 +51,7 @@ def delay_report(found: DelayIdentification) -> Report:
         f"it and every part of the record: {low} to {high}.",
         remarks=tuple(f"Doubt: {doubt}." for doubt in found.doubts),
         facts=facts_of([record.source]),
+        lights=data_lights([record.source], len(found.doubts)),
         sections=(
             Section("Models", (table,)),
             Section(

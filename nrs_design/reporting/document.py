@@ -8,10 +8,71 @@ from __future__ import annotations
 import datetime
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from enum import StrEnum
+from typing import TYPE_CHECKING, Self
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
+
+
+class Linked(str):
+    """Text of a cell that a line of the spec says, or that follows from it.
+
+    Parameters
+    ----------
+    text : str
+        Of the cell.
+    line : int
+        Of the spec, from 1.
+    """
+
+    __slots__ = ("line",)
+    line: int
+
+    def __new__(cls, text: str, line: int) -> Self:
+        """Attach a line to a text."""
+        made = super().__new__(cls, text)
+        made.line = line
+        return made
+
+
+class State(StrEnum):
+    """What a light shows; its text says it too."""
+
+    GOOD = "good"
+    DOUBTFUL = "doubtful"
+    BAD = "bad"
+    UNKNOWN = "unknown"
+
+
+@dataclass(frozen=True, slots=True)
+class Light:
+    """One thing that a reader looks for first, and how it stands.
+
+    Parameters
+    ----------
+    name : str
+        What it is about, such as ``Proof``.
+    state : State
+        Which colour and sign it has.
+    text : str
+        The same in words.
+    section : str
+        Title of the section that says more; empty for none.
+    """
+
+    name: str
+    state: State
+    text: str
+    section: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Listing:
+    """Numbered lines of a file, which cells link to."""
+
+    title: str
+    lines: tuple[str, ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,7 +101,7 @@ class Table:
     columns : tuple of str
         Headings, with units.
     rows : tuple of tuple of str
-        Cells.
+        Cells; one that is `Linked` leads to its line of the spec.
     """
 
     title: str
@@ -70,7 +131,7 @@ class Illustration:
     figure: Figure
 
 
-Block = Paragraph | Bullets | Table | Illustration
+Block = Paragraph | Bullets | Table | Illustration | Listing
 
 
 @dataclass(frozen=True, slots=True)
@@ -91,8 +152,8 @@ class Report:
     name, title : str
         Of the spec; the title may be empty.
     verdict : {"proved", "refuted", "inconclusive", "identified", "inside", "outside", "same", \
-"different"}
-        Of the certification, the judgement of a run or a comparison, or that this is an
+"different", "reachable", "unreachable"}
+        Of the certification, the judgement of a run, a comparison or a robot, or that this is an
         identification.
     claim : str
         What the certificate states about stability, or that nothing is known.
@@ -104,6 +165,11 @@ class Report:
         In reading order.
     footer : str
         Last line of the page.
+    summary : tuple of str
+        Plain sentences on top: what was shown, and under which assumptions. The claim stands
+        below them; without them, it stands on top itself.
+    lights : tuple of Light
+        Below the sentences.
     date : datetime.date, optional
         As the reader gave it. Without one the report has no date, and the same spec gives the
         same report on any day.
@@ -120,7 +186,15 @@ class Report:
         "Report of nrs-design. Figures are floating-point illustrations; the certificate is the "
         "proof."
     )
+    summary: tuple[str, ...] = ()
+    lights: tuple[Light, ...] = ()
     date: datetime.date | None = None
+
+    @property
+    def listed(self) -> int:
+        """How many lines of a spec the report holds; links to others would lead nowhere."""
+        blocks = (block for section in self.sections for block in section.blocks)
+        return max((len(block.lines) for block in blocks if isinstance(block, Listing)), default=0)
 
     @property
     def illustrations(self) -> Iterator[Illustration]:

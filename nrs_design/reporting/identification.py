@@ -12,7 +12,16 @@ import numpy as np
 from nrs_design import __version__
 from nrs_design.identification.lever import units_of
 from nrs_design.identification.tissue import OFFSET_UNITS, OFFSET_WORDS
-from nrs_design.reporting.document import Block, Bullets, Illustration, Report, Section, Table
+from nrs_design.reporting.document import (
+    Block,
+    Bullets,
+    Illustration,
+    Light,
+    Report,
+    Section,
+    State,
+    Table,
+)
 from nrs_design.reporting.figures.identification import (
     draw_bode,
     draw_fit,
@@ -29,6 +38,7 @@ if TYPE_CHECKING:
 
 IDENTIFIED = "identified"
 FOOTER = "Page of nrs-design. An identification is an estimate, not a proof."
+FILES = "Data files"
 _SYNTHETIC = "SYNTHETIC DATA, made by a simulation and not measured. "
 _DRAWN = 6
 _MEANING = (
@@ -68,6 +78,7 @@ def tissue_report(found: TissueIdentification, arm: float | None = None) -> Repo
         verdict=IDENTIFIED,
         claim=f"{label_of(found.synthetic)}{chosen.law.formula} with {values}. {found.reason}",
         remarks=found.caveats,
+        lights=data_lights([record.source for record in found.records], len(found.caveats)),
         facts=facts_of([record.source for record in found.records]),
         sections=(
             Section("What of the records is used", tuple(_used(found))),
@@ -96,6 +107,7 @@ def actuator_report(found: ActuatorIdentification) -> Report:
         verdict=IDENTIFIED,
         claim=f"{label_of(found.synthetic)}{', '.join(values)}. {found.reason}",
         remarks=tuple(f"Doubt: {doubt}." for doubt in found.doubts),
+        lights=data_lights(found.sources, len(found.doubts)),
         facts=facts_of(found.sources),
         sections=(
             Section("Fits", (_fits(found), *_ranges(found), *_derived(found))),
@@ -278,7 +290,7 @@ def _derived(found: ActuatorIdentification) -> Iterator[Table]:
     if found.figures is None:
         return
     yield Table(
-        "Derived with the data sheet",
+        f"Derived with the data sheet: {found.figures.sheet}",
         ("Quantity", "Value [95 % interval]", "Unit"),
         (
             ("Armature resistance R", _interval(found.figures.resistance), "ohm"),
@@ -341,13 +353,32 @@ def facts_of(sources: Iterable[Source]) -> tuple[tuple[str, str], ...]:
     )
 
 
+def data_lights(sources: Iterable[Source], doubts: int) -> tuple[Light, Light]:
+    """Return the lights of a page about data: what it is, and how much of it is doubtful.
+
+    Parameters
+    ----------
+    sources : iterable of Source
+        The files.
+    doubts : int
+        How many doubts there are.
+    """
+    synthetic = any(source.synthetic for source in sources)
+    data = Light("Data", State.GOOD, "measured", FILES)
+    if synthetic:
+        data = Light("Data", State.DOUBTFUL, "SYNTHETIC, made by a simulation", FILES)
+    if doubts:
+        return data, Light("Doubts", State.DOUBTFUL, plural(doubts, "doubt"))
+    return data, Light("Doubts", State.GOOD, "none")
+
+
 def source_section(sources: Iterable[Source]) -> Section:
     """Return the section that names the files."""
     rows = tuple(
         (source.path.name, "SYNTHETIC" if source.synthetic else "measured", source.sha256)
         for source in sources
     )
-    return Section("Data files", (Table("Files", ("File", "Data", "SHA-256"), rows),))
+    return Section(FILES, (Table("Files", ("File", "Data", "SHA-256"), rows),))
 
 
 def label_of(synthetic: bool) -> str:

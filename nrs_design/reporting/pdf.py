@@ -8,7 +8,18 @@ from pathlib import Path
 from typing import Any
 
 from nrs_design.plotting import load_matplotlib
-from nrs_design.reporting.document import Block, Bullets, Illustration, Paragraph, Report, Table
+from nrs_design.reporting.document import (
+    Block,
+    Bullets,
+    Illustration,
+    Light,
+    Linked,
+    Listing,
+    Paragraph,
+    Report,
+    State,
+    Table,
+)
 from nrs_design.reporting.images import to_svg_file
 from nrs_design.reporting.text import drawable
 
@@ -21,6 +32,14 @@ _TINT = {
     "different": "#005a8c",
     "inside": "#00664b",
     "outside": "#a63603",
+    "reachable": "#00664b",
+    "unreachable": "#a63603",
+}
+_SHOWN = {
+    State.GOOD: "#00664b",
+    State.DOUBTFUL: "#6b5b00",
+    State.BAD: "#a63603",
+    State.UNKNOWN: "#4a5360",
 }
 # In points, between the margins of A4; a figure with its heading and caption fits on one page.
 _WIDTH, _FIGURE_HEIGHT = 482.0, 610.0
@@ -71,17 +90,36 @@ def _content(report: Report) -> dict[str, Any]:
         "keywords": [f"sha256:{facts[_SPEC]}"] if _SPEC in facts else [],
         "date": day and {"year": day.year, "month": day.month, "day": day.day},
         "claim": drawable(report.claim),
+        "summary": [drawable(sentence) for sentence in report.summary],
+        "lights": [_light(light) for light in report.lights],
         "remarks": [drawable(remark) for remark in report.remarks],
         "facts": [[drawable(label), drawable(value)] for label, value in report.facts],
         "sections": [
-            {"title": drawable(part.title), "blocks": [_block(block) for block in part.blocks]}
+            {
+                "title": drawable(part.title),
+                "blocks": [_block(block, report.listed) for block in part.blocks],
+            }
             for part in report.sections
         ],
         "footer": drawable(report.footer),
     }
 
 
-def _block(block: Block) -> dict[str, Any]:
+def _light(light: Light) -> dict[str, str]:
+    return {
+        "name": drawable(light.name),
+        "text": drawable(light.text),
+        "tint": _SHOWN[light.state],
+    }
+
+
+def _cell(cell: str, listed: int) -> dict[str, Any]:
+    """Return a cell with the line that it leads to; 0 for none."""
+    line = cell.line if isinstance(cell, Linked) and cell.line <= listed else 0
+    return {"text": drawable(cell), "line": line}
+
+
+def _block(block: Block, listed: int) -> dict[str, Any]:
     if isinstance(block, Paragraph):
         return {"kind": "paragraph", "text": drawable(block.text)}
     if isinstance(block, Bullets):
@@ -92,9 +130,12 @@ def _block(block: Block) -> dict[str, Any]:
             "kind": "table",
             "title": drawable(block.title),
             "columns": [drawable(cell) for cell in block.columns],
-            "rows": [[drawable(cell) for cell in row] for row in block.rows],
+            "rows": [[_cell(cell, listed) for cell in row] for row in block.rows],
             "widths": _widths(block),
         }
+    if isinstance(block, Listing):
+        lines = [drawable(line) for line in block.lines]
+        return {"kind": "listing", "title": drawable(block.title), "lines": lines}
     return _figure(block)
 
 

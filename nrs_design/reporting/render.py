@@ -1,15 +1,20 @@
-"""The report as one HTML page without scripts or anything to fetch."""
+"""The report as one HTML page that fetches nothing; its script only adds to what is there."""
 
 from __future__ import annotations
 
+import base64
+import hashlib
+from importlib.resources import files
 from typing import Any
 
 from nrs_design.printable import visible
-from nrs_design.reporting.document import Bullets, Illustration, Paragraph, Report, Section, Table
+from nrs_design.reporting.document import Block, Illustration, Report, Section, State, Table
 from nrs_design.reporting.images import to_svg
 
-# More letters in a row than these do not fit on a telephone.
-_NARROW = 36
+# More letters in a row than these do not fit on a telephone, or in one line of a page.
+_NARROW, _LINE = 36, 120
+# Not only a colour tells how things stand.
+_SIGNS = {State.GOOD: "✓", State.DOUBTFUL: "▲", State.BAD: "✗", State.UNKNOWN: "?"}
 
 
 def render_html(report: Report, origin: str | None = None) -> str:
@@ -23,6 +28,7 @@ def render_html(report: Report, origin: str | None = None) -> str:
         Where its spec is, seen from the file; see `nrs_design.ownership`.
     """
     from jinja2 import Environment, PackageLoader, StrictUndefined
+    from markupsafe import Markup
 
     environment = Environment(
         loader=PackageLoader("nrs_design.reporting"),
@@ -33,10 +39,29 @@ def render_html(report: Report, origin: str | None = None) -> str:
         lstrip_blocks=True,
         keep_trailing_newline=True,
     )
-    sections = [_section(section) for section in report.sections]
+    ids = _ids(report)
+    sections = [_section(*pair) for pair in zip(report.sections, ids, strict=True)]
+    script = _script()
     return environment.get_template("report.html.j2").render(
-        report=report, sections=sections, origin=origin
+        report=report,
+        sections=sections,
+        # A light leads to the first section of a title.
+        anchors={s.title: i for s, i in reversed([*zip(report.sections, ids, strict=True)])},
+        origin=origin,
+        signs=_SIGNS,
+        script=Markup(script),
+        script_hash=base64.b64encode(hashlib.sha256(script.encode()).digest()).decode(),
     )
+
+
+def _script() -> str:
+    text = files("nrs_design.reporting").joinpath("templates/report.js").read_text("utf-8")
+    return text.replace("\r\n", "\n")
+
+
+def _ids(report: Report) -> list[str]:
+    """Return a name for each section that a link can lead to; figures have names of their own."""
+    return [f"section-{number}" for number in range(1, len(report.sections) + 1)]
 
 
 def _shown(value: object) -> object:
@@ -46,21 +71,28 @@ def _shown(value: object) -> object:
     return visible(value) if isinstance(value, str) and not isinstance(value, Markup) else value
 
 
-def _section(section: Section) -> dict[str, Any]:
+def _section(section: Section, name: str) -> dict[str, Any]:
     return {
+        "id": name,
         "title": section.title,
         "boxed": section.boxed,
         "blocks": [_block(block) for block in section.blocks],
     }
 
 
-def _block(block: Paragraph | Bullets | Table | Illustration) -> dict[str, Any]:
+def _block(block: Block) -> dict[str, Any]:
     from markupsafe import Markup
 
     # The only markup that is not escaped: matplotlib's own.
     svg = Markup(to_svg(block)) if isinstance(block, Illustration) else None
-    wide = isinstance(block, Table) and _letters(block) > _NARROW
-    return {"kind": type(block).__name__.lower(), "content": block, "svg": svg, "wide": wide}
+    look = _look(block) if isinstance(block, Table) else ""
+    return {"kind": type(block).__name__.lower(), "content": block, "svg": svg, "look": look}
+
+
+def _look(table: Table) -> str:
+    """Say which columns do not fit: on a telephone, or, as those of sentences, on any page."""
+    letters = _letters(table)
+    return "wide prose" if letters > _LINE else "wide" if letters > _NARROW else ""
 
 
 def _letters(table: Table) -> int:

@@ -13,14 +13,22 @@ from nrs_design.reporting.sections.methods import methods_section
 from nrs_design.reporting.sections.mode_logic import logic_section
 from nrs_design.reporting.sections.modes import modes_section
 from nrs_design.reporting.sections.proof import proof_section
-from nrs_design.reporting.sections.tail import assumptions_section, recheck_section, rungs_section
+from nrs_design.reporting.sections.release import release_section
+from nrs_design.reporting.sections.remedies import remedies_section
+from nrs_design.reporting.sections.summary import lights_of, summary_of
+from nrs_design.reporting.sections.tail import (
+    assumptions_section,
+    recheck_section,
+    rungs_section,
+    spec_section,
+)
 
 if TYPE_CHECKING:
     import datetime
     from collections.abc import Sequence
 
     from nrs_design.design.analysis import DesignAnalysis
-    from nrs_design.pipeline import Result
+    from nrs_design.pipeline import ProofMargins, Result
     from nrs_design.search.method_run import MethodRun
 
 
@@ -29,6 +37,7 @@ def build_report(
     analysis: DesignAnalysis | None = None,
     *,
     comparison: Sequence[MethodRun] = (),
+    margins: ProofMargins | None = None,
     times: bool = False,
     date: datetime.date | None = None,
 ) -> Report:
@@ -43,6 +52,8 @@ def build_report(
         no design figures.
     comparison : sequence of MethodRun, optional
         As `nrs_design.pipeline.run_comparison` gives them.
+    margins : ProofMargins, optional
+        As `nrs_design.pipeline.run_proof_margins` gives them.
     times : bool
         Add how long every rung of the search took. The same spec then gives another page each
         time.
@@ -54,7 +65,7 @@ def build_report(
     Report
         With its figures drawn; `render_html`, `render_pdf` and `render_png` write it out.
     """
-    spec, certification = result.loaded.spec, result.certification
+    spec, certification, designed = result.loaded.spec, result.certification, result.designed
     system = certification.system
     return Report(
         name=spec.name,
@@ -65,23 +76,23 @@ def build_report(
         facts=(*facts(result), *goal_facts(analysis)),
         sections=(
             proof_section(result),
-            *_design(result, analysis),
-            *_logic(result),
+            *_present(remedies_section(result, margins)),
+            *(() if designed is None else design_sections(designed, analysis)),
+            *_present(None if designed is None else logic_section(designed.spec)),
             modes_section(system, proved_rate(system, certification.evidence)),
             *evidence_sections(certification),
-            assumptions_section(certification),
+            *_present(release_section(result)),
+            assumptions_section(result),
             rungs_section(certification, times=times),
             *((methods_section(comparison, times=times),) if comparison else ()),
             recheck_section(result),
+            spec_section(result.loaded),
         ),
+        summary=summary_of(result),
+        lights=lights_of(result, analysis),
         date=date,
     )
 
 
-def _logic(result: Result) -> tuple[Section, ...]:
-    found = None if result.designed is None else logic_section(result.designed.spec)
-    return () if found is None else (found,)
-
-
-def _design(result: Result, analysis: DesignAnalysis | None) -> tuple[Section, ...]:
-    return () if result.designed is None else design_sections(result.designed, analysis)
+def _present(section: Section | None) -> tuple[Section, ...]:
+    return () if section is None else (section,)

@@ -32,6 +32,24 @@ TOLD_APART = 24
 ALARM = "#a00000"
 INK, MUTED, GRID = "#1b1f24", "#5a6472", "#dfe3e8"
 
+# What these colours are in a page, which may be light or dark; in a file they stay as they are.
+THEMED = {
+    tint.lower(): f"var(--{name},{tint})"
+    for name, tint in (
+        ("ink", INK),
+        ("muted", MUTED),
+        ("grid", GRID),
+        ("paper", "#ffffff"),
+        ("alarm", ALARM),
+        ("blue", BLUE),
+        ("vermillion", VERMILLION),
+        ("green", GREEN),
+        ("purple", PURPLE),
+        ("sky", SKY),
+        ("orange", ORANGE),
+    )
+}
+
 # In inches: the text of a figure this wide is read on a telephone, where it is as wide as the page.
 _WIDTH = 5.4
 _LEGEND_LETTERS, _LEGEND_LINE, _LEGEND_GAP = 46, 0.175, 0.055
@@ -87,11 +105,21 @@ def styled(draw: Callable[P, Figure]) -> Callable[P, Figure]:
         with figure_style():
             figure = draw(*args, **kwargs)
             write_ticks_in_full(figure)
-            figure.draw_without_rendering()
-            figure.set_layout_engine(None)
+            _settle(figure)
             return figure
 
     return drawn
+
+
+def _settle(figure: Figure) -> None:
+    """Lay a figure out for good; where an aspect is kept, only drawing it does that."""
+    engine = figure.get_layout_engine()
+    shaped = (a.get_aspect() != "auto" or a.get_box_aspect() is not None for a in figure.axes)
+    if engine is None or any(shaped):
+        figure.draw_without_rendering()
+    else:
+        engine.execute(figure)
+    figure.set_layout_engine(None)
 
 
 def new_figure(height: float = 3.9) -> Figure:

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from matplotlib.axis import Axis
     from matplotlib.figure import Figure
+    from matplotlib.ticker import Formatter
 
 _SUPERSCRIPT = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 # Labels of a logarithmic axis by how many times its low end the high end is.
@@ -17,14 +18,14 @@ _DIGITS = ((30.0, (1, 2, 3, 4, 6)), (200.0, (1, 3)))
 
 def write_ticks_in_full(figure: Figure) -> None:
     """Replace the formatters of all numeric axes: no offset, no common factor in a corner."""
-    from matplotlib.ticker import FuncFormatter, LogFormatter, ScalarFormatter
+    from matplotlib.ticker import LogFormatter, ScalarFormatter
 
     for axes in figure.axes:
         for axis, limits in ((axes.xaxis, axes.get_xlim()), (axes.yaxis, axes.get_ylim())):
             if isinstance(axis.get_major_formatter(), LogFormatter):
                 _write_logarithmic(axis, *sorted(limits))
             elif isinstance(axis.get_major_formatter(), ScalarFormatter):
-                axis.set_major_formatter(FuncFormatter(_plain(axis)))
+                axis.set_major_formatter(_plain())
 
 
 def in_full(value: float, step: float) -> str:
@@ -54,13 +55,17 @@ def _trimmed(digits: str) -> str:
     return digits.replace("-", "−")
 
 
-def _plain(axis: Axis) -> Callable[[float, int | None], str]:
-    def text(value: float, position: int | None) -> str:
-        ticks = axis.get_majorticklocs()
-        step = float(ticks[1] - ticks[0]) if len(ticks) > 1 else abs(value) or 1.0
-        return in_full(value, step)
+def _plain() -> Formatter:
+    from matplotlib.ticker import Formatter
 
-    return text
+    class InFull(Formatter):
+        """Writes all ticks at once: to find their distance anew for each would be slow."""
+
+        def format_ticks(self, values: Sequence[float]) -> list[str]:
+            distance = float(values[1] - values[0]) if len(values) > 1 else None
+            return [in_full(value, distance or abs(value) or 1.0) for value in values]
+
+    return InFull()
 
 
 def _write_logarithmic(axis: Axis, low: float, high: float) -> None:

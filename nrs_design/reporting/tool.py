@@ -10,6 +10,7 @@ from nrs_design.reporting.formatting import number, plural
 from nrs_design.reporting.identification import (
     FOOTER,
     IDENTIFIED,
+    data_lights,
     facts_of,
     label_of,
     source_section,
@@ -47,6 +48,7 @@ def tool_report(found: ToolIdentification) -> Report:
         f"{', '.join(number(e.value, 4) for e in found.center)} m from the origin of the sensor.",
         remarks=tuple(f"Doubt: {doubt}." for doubt in found.doubts),
         facts=facts_of(sources),
+        lights=data_lights(sources, len(found.doubts)),
         sections=(
             Section("Tool and bias", (Table("Estimates [95 % interval]", columns, rows),)),
             Section(

@@ -1,10 +1,14 @@
 from __future__ import annotations
 
+import base64
+import io
 import os
 import shutil
 from itertools import pairwise
+from pathlib import Path
 
 import pytest
+from pypdf import PdfReader
 
 from tests.reporting.conftest import KINDS
 
@@ -36,13 +40,15 @@ def browser():
     window.quit()
 
 
-def open_page(browser, html, folder, width):
+def open_page(browser, html, folder, width, scheme="light"):
     path = folder / "report.html"
     path.write_text(html, encoding="utf-8")
     browser.execute_cdp_cmd(
         "Emulation.setDeviceMetricsOverride",
         {"width": width, "height": 900, "deviceScaleFactor": 1, "mobile": False},
     )
+    preference = {"name": "prefers-color-scheme", "value": scheme}
+    browser.execute_cdp_cmd("Emulation.setEmulatedMedia", {"features": [preference]})
     browser.get(path.as_uri())
 
 
@@ -83,7 +89,7 @@ def test_blocks_do_not_overlap(browser, page, tmp_path, width):
     open_page(browser, page("proved"), tmp_path, width)
     boxes = browser.execute_script(
         "return [...document.querySelectorAll("
-        "'header > *, section > *:not(figure), figure > *')].map(e => {"
+        "'header > :not(button), section > *:not(figure), figure > *')].map(e => {"
         "const r = e.getBoundingClientRect(); return [r.top, r.bottom, e.tagName]})"
     )
     boxes = [box for box in boxes if box[1] > box[0]]
@@ -113,3 +119,98 @@ def test_letters_within_a_figure_do_not_overlap(browser, page, tmp_path, case):
         """
     )
     assert overlaps == []
+
+
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+def test_the_page_follows_the_reader_and_can_be_turned(browser, page, tmp_path, scheme):
+    open_page(browser, page("dwell"), tmp_path, 800, scheme)
+    color = "return getComputedStyle(document.documentElement).backgroundColor"
+    before = browser.execute_script(color)
+    assert before == ("rgb(255, 255, 255)" if scheme == "light" else "rgb(20, 24, 29)")
+    button = browser.find_element("css selector", ".theme")
+    button.click()
+    assert browser.execute_script(color) != before
+    button.click()
+    assert browser.execute_script(color) == before
+
+
+def test_a_figure_names_what_is_pointed_at_and_can_be_enlarged(browser, page, tmp_path):
+    from selenium.webdriver import ActionChains
+
+    open_page(browser, page("dwell"), tmp_path, 800)
+    curve = browser.find_element("css selector", "#run [data-named] path")
+    browser.execute_script("arguments[0].scrollIntoView({block: 'center'})", curve)
+    # The middle of a stroke, as pixels from the middle of the figure.
+    x, y = browser.execute_script(
+        """
+        const [path, svg] = [arguments[0], arguments[0].ownerSVGElement];
+        const at = path.getPointAtLength(path.getTotalLength() / 2);
+        const p = new DOMPoint(at.x, at.y).matrixTransform(path.getScreenCTM());
+        const r = svg.getBoundingClientRect();
+        return [p.x - r.left - r.width / 2, p.y - r.top - r.height / 2];
+        """,
+        curve,
+    )
+    svg = browser.find_element("css selector", "#run svg")
+    ActionChains(browser).move_to_element_with_offset(svg, round(x), round(y)).perform()
+    told = browser.find_element("css selector", "#run output").text
+    assert told.startswith("run (")
+    box = "return document.querySelector('#run svg').viewBox.baseVal.width"
+    whole = browser.execute_script(box)
+    closer, _, everything = browser.find_elements("css selector", "#run button")
+    closer.click()
+    assert browser.execute_script(box) == pytest.approx(whole / 2)
+    everything.click()
+    assert browser.execute_script(box) == pytest.approx(whole)
+
+
+def test_without_its_script_the_page_says_all_the_same(browser, page, tmp_path):
+    text = "return document.body.innerText"
+    open_page(browser, page("dwell"), tmp_path, 800)
+    added = "document.querySelectorAll('button, .tools')"
+    assert browser.execute_script(f"return {added}.length") > 0
+    browser.execute_script(f"{added}.forEach(b => b.remove())")
+    scripted = browser.execute_script(text)
+    browser.execute_cdp_cmd("Emulation.setScriptExecutionDisabled", {"value": True})
+    try:
+        open_page(browser, page("dwell"), tmp_path, 800)
+        assert browser.execute_script(text) == scripted
+        assert not browser.find_elements("css selector", "button")
+    finally:
+        browser.execute_cdp_cmd("Emulation.setScriptExecutionDisabled", {"value": False})
+
+
+def test_printed_pages_are_light_and_numbered(browser, page, tmp_path):
+    """A dark screen must not make dark paper."""
+    open_page(browser, page("dwell"), tmp_path, 800, "dark")
+    printed = browser.execute_cdp_cmd("Page.printToPDF", {"generateTaggedPDF": True})
+    reader = PdfReader(io.BytesIO(base64.b64decode(printed["data"])))
+    pages = [sheet.extract_text() for sheet in reader.pages]
+    assert f"1 / {len(pages)}" in pages[0]
+    assert reader.root_object["/MarkInfo"]["/Marked"]
+    browser.execute_cdp_cmd("Emulation.setEmulatedMedia", {"media": "print"})
+    paper = "return getComputedStyle(document.documentElement).backgroundColor"
+    shown = browser.execute_script(paper)
+    browser.execute_cdp_cmd("Emulation.setEmulatedMedia", {"media": ""})
+    assert shown == "rgb(255, 255, 255)"
+
+
+@pytest.fixture(scope="module")
+def axe():
+    """The rules of axe-core, whose file AXE names; `nox -s accessibility` brings it along."""
+    path = os.environ.get("AXE")
+    if path is None:
+        pytest.skip("AXE does not name axe.min.js")
+    return Path(path).read_text(encoding="utf-8")
+
+
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+@pytest.mark.parametrize("case", ["proved", "refuted", "inconclusive", "dwell", "discrete"])
+def test_no_serious_fault_of_accessibility(browser, axe, page, tmp_path, case, scheme):
+    open_page(browser, page(case), tmp_path, 1280, scheme)
+    browser.execute_script(axe)
+    found = browser.execute_async_script(
+        "axe.run().then(r => arguments[0](r.violations.map("
+        "v => [v.impact, v.id, v.nodes.map(n => n.target + ': ' + n.failureSummary)])))"
+    )
+    assert [fault for fault in found if fault[0] in ("serious", "critical")] == []

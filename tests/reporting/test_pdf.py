@@ -45,7 +45,9 @@ def elements(reader):
     return found
 
 
-@pytest.mark.parametrize("case", ["refuted", "inconclusive", "dwell", "blocks"])
+@pytest.mark.parametrize(
+    "case", ["refuted", "dwell", pytest.param("inconclusive", marks=pytest.mark.slow)]
+)
 def test_pdf_has_the_text_of_the_verdict(report, case):
     text = text_of(reader_of(report(case)))
     assert report(case).verdict.upper() in text

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from nrs_design.design.impedance import displayed_impedance, sensitivity
+from nrs_design.design.measures import IMPEDANCE_ERROR
 from nrs_design.reporting.style import (
     INK,
     MUTED,
@@ -54,6 +55,19 @@ def draw_displayed_impedance(items: Sequence[ImpedanceAnalysis]) -> Figure:
             linewidth=1.3,
             label=f"{' and '.join(names)}, desired" if len(names) < len(items) else "desired",
         )
+    low = min(axes.get_ylim()[0], *(float(item.problem.desired) for item in items))
+    for index, item in enumerate(items):
+        factor, desired = band_factor(item), float(item.problem.desired)
+        axes.fill_between(
+            [omega[0], item.problem.bandwidth],
+            desired / factor,
+            desired * factor,
+            color=color(index),
+            alpha=0.12,
+            linewidth=0,
+            label=f"{item.name}, within a factor of {factor:.3g}",
+        )
+    axes.set_ylim(low, None)
     _finish(axes, items, "Impedance magnitude [N·m·s/rad]")
     legend(figure, axes)
     return figure
@@ -77,6 +91,12 @@ def draw_sensitivity(items: Sequence[ImpedanceAnalysis]) -> Figure:
     _finish(axes, items, "Sensitivity magnitude |L| [1]")
     legend(figure, axes)
     return figure
+
+
+def band_factor(item: ImpedanceAnalysis) -> float:
+    """Return by which factor the displayed impedance may be off: the goal, or what is usual."""
+    goals = (f.goal for f in item.achieved if f.measure is IMPEDANCE_ERROR and f.goal)
+    return next(goals, IMPEDANCE_ERROR.doubtful or 2.0)
 
 
 def _wanted(items: Sequence[ImpedanceAnalysis]) -> dict[float, list[str]]:

@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from nrs_design.simulation.norms import Array
-    from nrs_design.simulation.switched import TimeResponse
+    from nrs_design.simulation.switched import SwitchedRun
 
 # States of a family that is nothing but its motion loop.
 MOTION_STATES = ("xp1", "xp2")
@@ -41,7 +41,7 @@ _ROWS = 24
 
 @styled
 def draw_run(
-    response: TimeResponse,
+    response: SwitchedRun,
     norm: Array,
     bound: tuple[str, Array] | None,
     system: SwitchedSystem,
@@ -51,7 +51,7 @@ def draw_run(
 
     Parameters
     ----------
-    response : TimeResponse
+    response : SwitchedRun
         The run.
     norm : ndarray, shape (N + 1,)
         Norm of its states over the first one.
@@ -85,13 +85,13 @@ def draw_run(
 
 @styled
 def draw_mode_levels(
-    response: TimeResponse, system: SwitchedSystem, norms: Mapping[str, Norm]
+    response: SwitchedRun, system: SwitchedSystem, norms: Mapping[str, Norm]
 ) -> Figure:
     """Draw a run in the plane with a level curve of every mode's own function.
 
     Parameters
     ----------
-    response : TimeResponse
+    response : SwitchedRun
         The run; two states.
     system : SwitchedSystem
         Names of modes and states, and the time axis.
@@ -116,7 +116,7 @@ def draw_mode_levels(
 
 @styled
 def draw_phase_plane(
-    response: TimeResponse,
+    response: SwitchedRun,
     system: SwitchedSystem,
     norm: Norm | None = None,
     levels: Sequence[float] = (1.0,),
@@ -125,7 +125,7 @@ def draw_phase_plane(
 
     Parameters
     ----------
-    response : TimeResponse
+    response : SwitchedRun
         The run; two states.
     system : SwitchedSystem
         Names of modes and states, and the time axis.
@@ -151,7 +151,7 @@ class _Group:
     tint: str
 
 
-def _groups(response: TimeResponse, system: SwitchedSystem) -> list[_Group]:
+def _groups(response: SwitchedRun, system: SwitchedSystem) -> list[_Group]:
     """Return the modes of a run in the order of their first use, the last ones together."""
     used = list(dict.fromkeys(response.mode.tolist()))
     single = used if len(used) <= _ROWS else used[: _ROWS - 1]
@@ -163,7 +163,7 @@ def _groups(response: TimeResponse, system: SwitchedSystem) -> list[_Group]:
 
 
 def _draw_paths(
-    axes: Axes, response: TimeResponse, system: SwitchedSystem, groups: Sequence[_Group]
+    axes: Axes, response: SwitchedRun, system: SwitchedSystem, groups: Sequence[_Group]
 ) -> None:
     # In discrete time only the points are states; the lines lead from one to the next.
     shape = "o" if system.time is Time.DISCRETE else "None"
@@ -177,7 +177,7 @@ def _draw_paths(
 
 
 def _finish_plane(
-    figure: Figure, axes: Axes, response: TimeResponse, system: SwitchedSystem
+    figure: Figure, axes: Axes, response: SwitchedRun, system: SwitchedSystem
 ) -> None:
     axes.plot(*response.state[0], "o", color=INK, label="start")
     axes.plot(0, 0, "+", color=MUTED, markersize=11, label="rest")
@@ -195,7 +195,7 @@ def _axis_label(states: tuple[str, ...], index: int) -> str:
 
 
 def _draw_modes(
-    axes: Axes, response: TimeResponse, groups: Sequence[_Group], labels: Sequence[str]
+    axes: Axes, response: SwitchedRun, groups: Sequence[_Group], labels: Sequence[str]
 ) -> None:
     """Draw one bar for each time that a mode is active, one row per mode."""
     edges = np.flatnonzero(np.diff(response.mode)) + 1
@@ -214,7 +214,7 @@ def _draw_modes(
     axes.grid(visible=False, axis="y")
 
 
-def _path_in(response: TimeResponse, modes: tuple[int, ...]) -> Array:
+def _path_in(response: SwitchedRun, modes: tuple[int, ...]) -> Array:
     """Return the states with every step of another mode cut out by NaN."""
     ends = response.state[1:].copy()
     begins = response.state[:-1].copy()

@@ -19,6 +19,7 @@ from nrs_design.proof.evidence import (
     ModeQuadratic,
     NoCommonQuadratic,
     ParameterQuadratic,
+    PeriodicQuadratic,
     UnstableMixture,
     UnstableMode,
     UnstablePeriod,
@@ -38,6 +39,7 @@ from nrs_design.reporting.kinds.mode_polynomial import ModePolynomialPage
 from nrs_design.reporting.kinds.mode_quadratic import ModeQuadraticPage
 from nrs_design.reporting.kinds.no_common_quadratic import NoCommonQuadraticPage
 from nrs_design.reporting.kinds.parameter_quadratic import ParameterQuadraticPage
+from nrs_design.reporting.kinds.periodic_quadratic import PeriodicQuadraticPage
 from nrs_design.reporting.kinds.unstable_mixture import UnstableMixturePage
 from nrs_design.reporting.kinds.unstable_mode import UnstableModePage
 from nrs_design.reporting.kinds.unstable_period import UnstablePeriodPage
@@ -56,6 +58,7 @@ KINDS: Mapping[type[AbstractEvidence], type[AbstractKindPage[Any]]] = {
     ModeQuadratic: ModeQuadraticPage,
     NoCommonQuadratic: NoCommonQuadraticPage,
     ParameterQuadratic: ParameterQuadraticPage,
+    PeriodicQuadratic: PeriodicQuadraticPage,
     UnstableMixture: UnstableMixturePage,
     UnstableMode: UnstableModePage,
     UnstablePeriod: UnstablePeriodPage,

@@ -9,6 +9,7 @@ from typing import Generic, TypeVar
 from nrs_design.proof.evidence import AbstractEvidence
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.reporting.document import Section
+from nrs_design.simulation.norms import Array
 
 E = TypeVar("E", bound=AbstractEvidence)
 
@@ -58,6 +59,10 @@ class AbstractKindPage(ABC, Generic[E]):
             No earlier statement of the report is of this kind. What would be drawn again is left
             out of the others.
         """
+
+    def quadratic(self) -> tuple[Array, float] | None:
+        """Return Q and a rate at which its norm decays from the first moment, if there is one."""
+        return None
 
     @abstractmethod
     def run(self) -> Section:

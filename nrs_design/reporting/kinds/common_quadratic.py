@@ -84,6 +84,10 @@ class CommonQuadraticPage(AbstractKindPage[CommonQuadratic]):
         )
         return (Section("Lyapunov evidence", blocks),)
 
+    def quadratic(self) -> tuple[Array, float]:
+        """Return the matrix of the certificate, scaled, and its rate."""
+        return scaled_matrices(self.evidence.Q)[0], float(self.evidence.rate)
+
     def run(self) -> Section:
         """Draw a run in the norm of Q, below its bound."""
         (Q,) = scaled_matrices(self.evidence.Q)

@@ -12,7 +12,7 @@ from nrs_design.reporting.kinds.shared.rates import rate_blocks
 from nrs_design.reporting.kinds.shared.run import trials_per_step
 from nrs_design.reporting.sections.modes import hardest_modes
 from nrs_design.simulation.contact import clipped
-from nrs_design.simulation.norms import quadratic_norm, scaled_matrices
+from nrs_design.simulation.norms import Array, quadratic_norm, scaled_matrices
 from nrs_design.simulation.rates import mode_rates
 from nrs_design.simulation.switched import worst_direction
 
@@ -58,6 +58,10 @@ class ConewiseQuadraticPage(AbstractConewisePage[ConewiseQuadratic]):
             *rate_blocks(system, mode_rates(system, Q), evidence.rate, "the norm of Q", _RATES),
         )
         return (Section("Lyapunov evidence", blocks),)
+
+    def quadratic(self) -> tuple[Array, float]:
+        """Return the matrix of the certificate, scaled, and its rate."""
+        return scaled_matrices(self.evidence.Q)[0], float(self.evidence.rate)
 
     def run(self) -> Section:
         """Draw a run in the norm of Q, below its bound, and when contact is lost."""

@@ -22,11 +22,17 @@ from nrs_design.reporting.sections.modes import hardest_modes
 from nrs_design.simulation.contact import clipped
 from nrs_design.simulation.norms import quadratic_norm, scaled_matrices
 from nrs_design.simulation.switched import worst_direction
+from nrs_design.spec.robot_bounds import COMPUTED
 
 _DECIDED = (
     "Q and the multipliers hold integers over a power of two, and integer arithmetic decides that "
     "Q is positive definite and that the function decreases in every mode, whatever the other axes "
     "do within their bounds. The solver only proposed the numbers"
+)
+_DECLARED = "They are declared by the spec, and nothing here shows them."
+_OF_ROBOT = (
+    "They were computed from the spec of the robot for all poses of a workspace, with its masses "
+    "and lengths; that the robot stays in there, and below the speed, is taken for granted."
 )
 _ONE = (
     "The run is that of a single axis, with the inertia of its links (and what else acts within "
@@ -60,10 +66,11 @@ class CoupledAxesPage(AbstractKindPage[CoupledAxes]):
 
     def limits(self) -> tuple[str, ...]:
         """Say what a constant force would change, and that the bounds are assumptions."""
+        computed = any(COMPUTED in text for text in self.system.assumptions)
         return (
             MOVED_REST,
-            "Poses and speeds in which the links do more than the bounds say. They are declared "
-            "by the spec, and nothing here shows them.",
+            "Poses and speeds in which the links do more than the bounds say. "
+            + (_OF_ROBOT if computed else _DECLARED),
         )
 
     def sections(self, *, first: bool = True) -> tuple[Section, ...]:

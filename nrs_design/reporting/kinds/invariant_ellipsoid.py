@@ -17,7 +17,7 @@ from nrs_design.reporting.kinds.shared import words
 from nrs_design.reporting.kinds.shared.run import simulated
 from nrs_design.simulation.disturbed import worst_run
 from nrs_design.simulation.norms import Array
-from nrs_design.simulation.switched import TimeResponse
+from nrs_design.simulation.switched import SwitchedRun
 
 _DECIDED = (
     "Q holds integers over a power of two, and exact arithmetic decides that no motion leaves the "
@@ -116,7 +116,7 @@ class InvariantEllipsoidPage(AbstractKindPage[InvariantEllipsoid]):
     def _is_discrete(self) -> bool:
         return self.system.time is Time.DISCRETE
 
-    def _illustration(self, response: TimeResponse, values: Array) -> Illustration:
+    def _illustration(self, response: SwitchedRun, values: Array) -> Illustration:
         system, output = self.system, self._output
         shown, unit = 1.0, "steps" if self._is_discrete else "s"
         if system.sample_time is not None:

@@ -28,7 +28,7 @@ from nrs_design.reporting.kinds.shared.run import (
 )
 from nrs_design.simulation.admissible import norm_ratio
 from nrs_design.simulation.norms import Array, quadratic_norm, scaled_matrices
-from nrs_design.simulation.switched import TimeResponse
+from nrs_design.simulation.switched import SwitchedRun
 
 _DECIDED = (
     "every Q holds integers over a power of two, and integer arithmetic decides that each is "
@@ -125,7 +125,7 @@ class ModeQuadraticPage(AbstractKindPage[ModeQuadratic]):
         )
 
     def _plane(
-        self, hardest: SwitchedSystem, response: TimeResponse, functions: dict[str, Array]
+        self, hardest: SwitchedSystem, response: SwitchedRun, functions: dict[str, Array]
     ) -> tuple[Illustration, ...]:
         """Draw the run among level curves of the modes' functions, if there are two states."""
         system = self.system

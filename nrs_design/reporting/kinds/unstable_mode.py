@@ -13,7 +13,7 @@ from nrs_design.reporting.kinds.abstract import AbstractKindPage
 from nrs_design.reporting.kinds.shared import words
 from nrs_design.reporting.kinds.shared.run import EUCLIDEAN, euclidean_norms, plane, witness
 from nrs_design.simulation.norms import Array
-from nrs_design.simulation.switched import TimeResponse, alone, unstable_run
+from nrs_design.simulation.switched import SwitchedRun, alone, unstable_run
 
 
 class UnstableModePage(AbstractKindPage[UnstableMode]):
@@ -65,7 +65,7 @@ class UnstableModePage(AbstractKindPage[UnstableMode]):
         return witness(run, *plane(single, response))
 
 
-def _growth(system: SwitchedSystem, response: TimeResponse) -> tuple[str, Array]:
+def _growth(system: SwitchedSystem, response: SwitchedRun) -> tuple[str, Array]:
     """Return how the worst eigenvalue of the one mode grows by itself, with its label."""
     values = np.linalg.eigvals(np.array(system.modes[0].A.floats()))
     if system.time is Time.CONTINUOUS:

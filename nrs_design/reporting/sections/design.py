@@ -2,71 +2,37 @@
 
 from __future__ import annotations
 
-import math
-from collections.abc import Callable, Sequence
-from fractions import Fraction
+from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 from nrs_design.controllers.controller_design import ControllerDesign
 from nrs_design.controllers.float32 import exact_decimal
 from nrs_design.design.transfer import TransferFunction, poles
-from nrs_design.proof.bounds import lower
-from nrs_design.reporting.document import Block, Illustration, Paragraph, Section, Table
+from nrs_design.reporting.document import Block, Illustration, Linked, Paragraph, Section, Table
 from nrs_design.reporting.figures.complex_plane import draw_root_locus
-from nrs_design.reporting.figures.impedance import draw_displayed_impedance, draw_sensitivity
 from nrs_design.reporting.formatting import number, polynomial, root, roots
 from nrs_design.reporting.sections.creep import creep_section
 from nrs_design.reporting.sections.goals import goals_section
+from nrs_design.reporting.sections.impedance import (
+    CURVES,
+    NOMINAL,
+    by_controller,
+    impedance_section,
+)
+from nrs_design.reporting.sections.landscape import landscape_section
 from nrs_design.reporting.sections.parallel import parallel_section
 from nrs_design.spec import InteractionDesignSpec
 
 if TYPE_CHECKING:
-    from nrs_design.design.analysis import DesignAnalysis, ForceAnalysis, ImpedanceAnalysis
-    from nrs_design.design.passivity import PassiveBand
+    from nrs_design.design.analysis import DesignAnalysis, ForceAnalysis
     from nrs_design.pipeline import Designed
 
-# More controllers than these make a table too wide for a page, or a figure too full.
-_COLUMNS = 4
-_CURVES = 6
-
-_NOMINAL = (
-    "Design values in floating point, for contact at the nominal stiffness; no part of the proof."
-)
 _OFFSET = (
     "Steady error and peak torque with an offset: for an axis that arrives at the largest velocity "
     "of the spec, and a switch to force control exactly at its torque limit, which is Fd."
 )
-_SUDDEN = (
-    "Viscoelastic contact: the stiffness is that which a sudden motion meets, and up to the "
-    "stiffness limit all parameters of the law grow in proportion to it."
-)
 
 
-def _spring(item: ImpedanceAnalysis) -> str:
-    return number(item.problem.loop.Kt, 6) if item.problem.loop.Kt else ""
-
-
-_IMPEDANCE_ROWS: tuple[tuple[str, Callable[[ImpedanceAnalysis], str]], ...] = (
-    ("Desired impedance [N·m·s/rad]", lambda item: number(item.problem.desired, 5)),
-    ("Nominal stiffness [N·m/rad]", lambda item: number(item.problem.loop.contact.stiffness, 6)),
-    ("Stiffness beside the damper [N·m/rad]", lambda item: _given(item, "parallel_stiffness")),
-    ("Nominal damping [N·m·s/rad]", lambda item: _given(item, "damping", "0")),
-    ("Mt at the optimum [kg·m²]", lambda item: number(item.optimum.Mt, 6)),
-    ("Bt at the optimum [N·m·s/rad]", lambda item: number(item.optimum.Bt, 6)),
-    ("Mt as shipped [kg·m²]", lambda item: number(item.Mt, 6)),
-    ("Bt as shipped [N·m·s/rad]", lambda item: number(item.Bt, 6)),
-    ("Kt as given [N·m/rad]", _spring),
-    ("Cost as shipped [1]", lambda item: number(item.cost, 5)),
-    ("Sensitivity peak Ms [1]", lambda item: number(item.margins.sensitivity_peak)),
-    ("Frequency of Ms [rad/s]", lambda item: number(item.margins.sensitivity_peak_frequency)),
-    ("Gain margin, up [factor]", lambda item: number(item.margins.gain_margin)),
-    ("Gain margin, down [factor]", lambda item: number(item.margins.gain_margin_low)),
-    ("Phase margin [deg]", lambda item: number(math.degrees(item.margins.phase_margin))),
-    ("Delay margin [ms]", lambda item: number(1e3 * item.margins.delay_margin)),
-    ("Disk margin [1]", lambda item: number(item.margins.disk_margin)),
-    ("Stiffness limit [N·m/rad]", lambda item: number(item.margins.stiffness_limit)),
-    ("Displayed admittance passive up to [Hz], exact", lambda item: _passive(item.band)),
-)
 _FORCE_ROWS: tuple[tuple[str, Callable[[ForceAnalysis], str]], ...] = (
     ("Kp [rad/(N·m)]", lambda item: number(item.loop.gain, 6)),
     ("Nominal stiffness [N·m/rad]", lambda item: number(item.stiffness, 6)),
@@ -81,8 +47,9 @@ _FORCE_ROWS: tuple[tuple[str, Callable[[ForceAnalysis], str]], ...] = (
 
 def design_sections(designed: Designed, analysis: DesignAnalysis | None) -> tuple[Section, ...]:
     """Describe a design; without an analysis only its gains."""
-    spec, design = designed.spec, designed.design
-    gains = Section("Designed gains", (_gain_table(design), *_ranges(spec, design)))
+    spec = designed.spec
+    blocks = (_gain_table(designed), *_ranges(designed))
+    gains = Section("Designed gains", blocks)
     if analysis is None:
         text = (
             "What the gains achieve is not shown: poles and margins exist only where the nominal "
@@ -91,7 +58,8 @@ def design_sections(designed: Designed, analysis: DesignAnalysis | None) -> tupl
         return (Section("Designed gains", (*gains.blocks, Paragraph(text))),)
     parts = [gains, _motion_section(designed, analysis)]
     if analysis.impedance:
-        parts.append(_impedance_section(analysis.impedance))
+        parts.append(impedance_section(designed, analysis.impedance))
+        parts.append(landscape_section(spec, analysis.impedance))
     if sensor := creep_section(designed, analysis):
         parts.append(sensor)
     if analysis.force:
@@ -99,29 +67,46 @@ def design_sections(designed: Designed, analysis: DesignAnalysis | None) -> tupl
     if analysis.parallel:
         parts.append(parallel_section(analysis))
     if any(item.achieved for item in analysis.measured):
-        parts.append(goals_section(spec, analysis))
+        parts.append(goals_section(designed, analysis))
     return tuple(parts)
 
 
-def _gain_table(design: ControllerDesign) -> Table:
-    rows = []
+def _gain_table(designed: Designed) -> Table:
+    design, rows = designed.design, []
     for name, law in design.laws.items():
         for gain, value in law.gains.items():
             unit = design.units[name][gain].replace("*", "·").replace("^2", "²")
-            rows.append((name, gain, number(float(value), 6), unit, exact_decimal(value)))
+            said = _said(designed, name, gain)
+            rows.append(
+                (name, gain, said(number(float(value), 6)), unit, said(exact_decimal(value)))
+            )
         if not law.gains:
             rows.append((name, "no gain: the motion loop alone", "", "", ""))
     columns = ("Controller", "Gain", "Value", "Unit", "Exact value that ships (float32)")
     return Table("Gains of one axis", columns, tuple(rows))
 
 
-def _ranges(spec: InteractionDesignSpec, design: ControllerDesign) -> tuple[Block, ...]:
+# Where a spec may give the gains of the motion loop, or what they follow from.
+_MOTION_KEYS = {"Kd": "derivative_gain", "Kp": "zero"}
+
+
+def _said(designed: Designed, controller: str, gain: str) -> Callable[[str], str]:
+    """Return what links a text to the line of the spec that a gain comes from."""
+    if controller in designed.spec.controllers:
+        place = designed.loaded.place("controllers", controller, gain)
+    else:
+        place = designed.loaded.place("motion_loop", _MOTION_KEYS.get(gain, gain))
+    return lambda text: Linked(text, place.line)
+
+
+def _ranges(designed: Designed) -> tuple[Block, ...]:
     """List the ranges of gains that the spec declares, if any."""
-    rows = []
+    spec, design, rows = designed.spec, designed.design, []
     for controller in design.controllers:
         for gain, declared in spec.controllers[controller.name].gains().items():
             if declared.range is not None and declared.ranged:
-                low, high = (end.text for end in declared.range)
+                said = _said(designed, controller.name, gain)
+                low, high = (said(end.text) for end in declared.range)
                 rows.append((controller.name, gain, low, high))
     if not rows:
         return ()
@@ -209,60 +194,15 @@ def _motion_locus(designed: Designed, analysis: DesignAnalysis) -> Illustration:
     return Illustration("root-locus", "Root locus of the PD design", caption, figure)
 
 
-def _impedance_section(items: tuple[ImpedanceAnalysis, ...]) -> Section:
-    drawn = items[:_CURVES]
-    rest = "" if len(drawn) == len(items) else f" The first {_CURVES} controllers are drawn."
-    displayed = Illustration(
-        "displayed-impedance",
-        "Displayed and desired impedance",
-        "Magnitude of the impedance that the operator feels in nominal contact (solid) and the "
-        f"desired one (dashed); the dotted line is the bandwidth of the motion.{rest}",
-        draw_displayed_impedance(drawn),
-    )
-    sensitivity = Illustration(
-        "sensitivity",
-        "Sensitivity",
-        "Magnitude of L = 1/(1 + G Ze Y) in nominal contact; the marker is its peak Ms. A value "
-        f"above 1 (gray line) amplifies disturbances of that frequency.{rest}",
-        draw_sensitivity(drawn),
-    )
-    rows = [(label, [value(item) for item in items]) for label, value in _IMPEDANCE_ROWS]
-    rows = [(label, values) for label, values in rows if any(values)]
-    tables = _by_controller(
-        "Impedance controllers",
-        [label for label, _ in rows],
-        [item.name for item in items],
-        [list(column) for column in zip(*(values for _, values in rows), strict=True)],
-    )
-    paragraphs = [Paragraph(_NOMINAL)]
-    if any(item.problem.loop.contact.remembers for item in items):
-        paragraphs.append(Paragraph(_SUDDEN))
-    return Section("Impedance control", (*paragraphs, *tables, displayed, sensitivity))
-
-
-def _passive(band: PassiveBand | None) -> str:
-    if band is None:
-        return ""
-    if band.passive is None:
-        return "every frequency"
-    return lower(band.passive * Fraction(1000, 6284), 4)
-
-
-def _given(item: ImpedanceAnalysis, key: str, default: str = "") -> str:
-    """Write a parameter of the nominal contact, if its law has it."""
-    value = item.problem.loop.contact.given().get(key)
-    return number(float(value), 5) if value is not None else default
-
-
 def _force_section(analysis: DesignAnalysis) -> Section:
-    tables = _by_controller(
-        "Force controllers",
+    tables = by_controller(
+        "Force controllers, at nominal values",
         [label for label, _ in _FORCE_ROWS],
         [item.name for item in analysis.force],
         [[value(item) for _, value in _FORCE_ROWS] for item in analysis.force],
     )
-    loci = (_force_locus(analysis.motion, item) for item in analysis.force[:_CURVES])
-    texts = [Paragraph(_NOMINAL)]
+    loci = (_force_locus(analysis.motion, item) for item in analysis.force[:CURVES])
+    texts = [Paragraph(NOMINAL)]
     if any(item.peak is not None for item in analysis.force):
         texts.append(Paragraph(_OFFSET))
     return Section("Force control", (*texts, *tables, *loci))
@@ -284,15 +224,3 @@ def _force_locus(motion: TransferFunction, item: ForceAnalysis) -> Illustration:
         caption,
         figure,
     )
-
-
-def _by_controller(
-    title: str, labels: Sequence[str], names: Sequence[str], columns: Sequence[Sequence[str]]
-) -> list[Block]:
-    """Make tables with a row for each quantity and a column for each controller."""
-    tables: list[Block] = []
-    for start in range(0, len(names), _COLUMNS):
-        part = slice(start, start + _COLUMNS)
-        rows = tuple(zip(labels, *columns[part], strict=True))
-        tables.append(Table(title, ("", *names[part]), rows))
-    return tables

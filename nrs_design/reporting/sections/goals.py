@@ -6,18 +6,22 @@ from typing import TYPE_CHECKING
 
 from nrs_design.design.goals import Achieved
 from nrs_design.design.measures import MEANING
-from nrs_design.reporting.document import Block, Bullets, Paragraph, Section, Table
-from nrs_design.spec import InteractionDesignSpec, doubt_spec
+from nrs_design.reporting.document import Block, Bullets, Linked, Paragraph, Section, Table
+from nrs_design.spec import doubt_spec
 
 if TYPE_CHECKING:
     from nrs_design.design.analysis import DesignAnalysis
+    from nrs_design.pipeline import Designed
 
 _COLUMNS = ("Controller", "Measure", "Goal", "Worst", "At", "Result")
 
 
-def goals_section(spec: InteractionDesignSpec, analysis: DesignAnalysis) -> Section:
+def goals_section(designed: Designed, analysis: DesignAnalysis) -> Section:
     """Set what is reached beside the goals, and list the warnings."""
-    rows = tuple(_row(item.name, found) for item in analysis.measured for found in item.achieved)
+    spec = designed.spec
+    rows = tuple(
+        _row(designed, item.name, found) for item in analysis.measured for found in item.achieved
+    )
     table = Table("Goals and worst values", _COLUMNS, rows)
     blocks: list[Block] = [Paragraph(" ".join(MEANING)), table]
     doubts = tuple(map(str, (*doubt_spec(spec), *analysis.warnings)))
@@ -37,13 +41,21 @@ def goal_facts(analysis: DesignAnalysis | None) -> tuple[tuple[str, str], ...]:
     return (("Design goals", f"{missed} of {len(goals)} MISSED" if missed else "all met"),)
 
 
-def _row(name: str, found: Achieved) -> tuple[str, ...]:
+def _row(designed: Designed, name: str, found: Achieved) -> tuple[str, ...]:
     measure = found.measure
     goal, result = "–", "no goal"
     if found.goal is not None:
-        goal = measure.goal_text(found.goal)
+        goal = Linked(measure.goal_text(found.goal), _line(designed, name, measure.goal))
         result = "met" if found.met else "MISSED"
     return (name, measure.title, goal, measure.text(found.value), _pretty(found.where), result)
+
+
+def _line(designed: Designed, controller: str, goal: str) -> int:
+    """Return the line of the controller's own goal, or of the one for all."""
+    own = designed.spec.controllers[controller].goals
+    if own is not None and getattr(own, goal, None) is not None:
+        return designed.loaded.place("controllers", controller, "goals", goal).line
+    return designed.loaded.place("goals", goal).line
 
 
 def _pretty(text: str) -> str:

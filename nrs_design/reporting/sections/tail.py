@@ -4,17 +4,46 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from nrs_design.reporting.document import Bullets, Paragraph, Section, Table
+from nrs_design.reporting.document import Bullets, Listing, Paragraph, Section, Table
 from nrs_design.reporting.formatting import number
+from nrs_design.reporting.register import register_of
+from nrs_design.spec import InteractionDesignSpec
 
 if TYPE_CHECKING:
     from nrs_design.pipeline import Result
     from nrs_design.search.certification import Certification
+    from nrs_design.spec import LoadedSpec
+
+ASSUMPTIONS = "Assumptions"
+# A longer spec is left to its file.
+_LINES = 1500
+_STANDINGS = (
+    "Tested: the spec names measured records that it was identified from, without doubts. Argued: "
+    "it follows from how the controller is made, if it is made so. Open: nobody has shown it here; "
+    "test it on the robot. The statements are those of the certificate, word for word."
+)
 
 
-def assumptions_section(certification: Certification) -> Section:
-    """List what a statement about the matrices takes for granted."""
-    return Section("Assumptions", (Bullets("", certification.system.assumptions),))
+def assumptions_section(result: Result) -> Section:
+    """List what a statement about the matrices takes for granted, and how to test it."""
+    spec = result.loaded.spec
+    design = spec if isinstance(spec, InteractionDesignSpec) else None
+    rows = tuple(
+        (item.name, item.statement, item.bound, item.breaks, item.test, str(item.standing))
+        for item in register_of(result.certification.system.assumptions, design)
+    )
+    columns = ("Assumption", "Statement", "Bound", "If it is false", "Test", "State")
+    table = Table("What is taken for granted", columns, rows)
+    return Section(ASSUMPTIONS, (Paragraph(_STANDINGS), table))
+
+
+def spec_section(loaded: LoadedSpec) -> Section:
+    """Show the text of the spec, line by line."""
+    lines = tuple(loaded.text.splitlines())
+    text = f"{loaded.path.name}, as it was read; linked numbers above lead to their lines."
+    if len(lines) > _LINES:
+        text += f" The first {_LINES} of {len(lines)} lines."
+    return Section("The spec", (Paragraph(text), Listing("Text of the spec", lines[:_LINES])))
 
 
 def rungs_section(certification: Certification, *, times: bool) -> Section:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from dataclasses import replace
 from sys import float_info
 from typing import TYPE_CHECKING
 
@@ -15,8 +16,9 @@ from nrs_design.reporting.figures.run import MOTION_STATES, draw_phase_plane, dr
 from nrs_design.reporting.sections.modes import hardest_modes
 from nrs_design.simulation.admissible import active_norms, admissible_run
 from nrs_design.simulation.norms import quadratic_norm
+from nrs_design.simulation.rounds import norms_in_rounds, worst_rounds
 from nrs_design.simulation.switched import (
-    TimeResponse,
+    SwitchedRun,
     fine_step,
     norms,
     worst_direction,
@@ -115,7 +117,7 @@ def bounded_run(
 
 def ruled_run(
     system: SwitchedSystem, functions: Mapping[str, Array], rate: float
-) -> tuple[SwitchedSystem, TimeResponse, Array]:
+) -> tuple[SwitchedSystem, SwitchedRun, Array]:
     """Let the adversary run that keeps the declared rules.
 
     Parameters
@@ -129,7 +131,7 @@ def ruled_run(
 
     Returns
     -------
-    SwitchedSystem, TimeResponse, ndarray of shape (k,)
+    SwitchedSystem, SwitchedRun, ndarray of shape (k,)
         The modes that take part, the run, and the norm of the active mode along it.
     """
     hardest = hardest_modes(system, None, _RULED_MODES)
@@ -141,6 +143,8 @@ def ruled_run(
 
 def unbounded_run(system: SwitchedSystem) -> Section:
     """Draw a bad run of a system of which nothing is proved."""
+    if system.clock is not None:
+        return _unbounded_rounds(system)
     arbitrary = system.switching.is_arbitrary
     hardest = hardest_modes(system, None, trials_per_step(system) if arbitrary else _RULED_MODES)
     step = fine_step(hardest)
@@ -162,23 +166,39 @@ def unbounded_run(system: SwitchedSystem) -> Section:
     return simulated(run, *phase_plane(hardest, response, None))
 
 
+def _unbounded_rounds(system: SwitchedSystem) -> Section:
+    """Draw a bad run in kept contact of modes that take turns."""
+    kept, norm = replace(system, contact=None), quadratic_norm(np.eye(system.order))
+    norms = [norm] * (1 if system.clock is None else system.clock.length)
+    response = worst_rounds(kept, norms, np.eye(system.order)[-1], _UNKNOWN_STEPS)
+    run = Illustration(
+        "run",
+        "One bad run",
+        "Simulated run in kept contact from a deflection: at every step the adversary takes the "
+        "mode, of those whose turn it is, after which the Euclidean norm is largest. There is no "
+        "bound: nothing is proved.",
+        draw_run(response, norms_in_rounds(response, norms), None, kept, EUCLIDEAN),
+    )
+    return simulated(run)
+
+
 def euclidean(system: SwitchedSystem) -> dict[str, Array]:
     """Return the identity as the function of every mode."""
     return {mode.name: np.eye(mode.A.shape[0]) for mode in system.modes}
 
 
-def euclidean_norms(response: TimeResponse) -> Array:
+def euclidean_norms(response: SwitchedRun) -> Array:
     """Return the norm of the states along a run, relative to the start."""
     values = np.linalg.norm(response.state, axis=1)
     return np.asarray(values / values[0])
 
 
-def bound_line(response: TimeResponse, rate: float, time: Time, label: str) -> Bound:
+def bound_line(response: SwitchedRun, rate: float, time: Time, label: str) -> Bound:
     """Return how a rate decays along the times of a run, with its label.
 
     Parameters
     ----------
-    response : TimeResponse
+    response : SwitchedRun
         With the times.
     rate : float
         The alpha in 1/s, or rho per step.
@@ -197,13 +217,13 @@ def trials_per_step(system: SwitchedSystem) -> int:
     return max(8, min(256, _EFFORT // system.order**2))
 
 
-def until_small(response: TimeResponse, values: Array) -> TimeResponse:
+def until_small(response: SwitchedRun, values: Array) -> SwitchedRun:
     """Cut a run where it has come to rest for all that can be seen."""
     small = np.flatnonzero(values < _SMALL)
     if not len(small):
         return response
     end = max(int(small[0]), 2)
-    return TimeResponse(response.time[: end + 1], response.state[: end + 1], response.mode[:end])
+    return SwitchedRun(response.time[: end + 1], response.state[: end + 1], response.mode[:end])
 
 
 def horizon(system: SwitchedSystem, claimed: float) -> tuple[float, int]:
@@ -221,7 +241,7 @@ def horizon(system: SwitchedSystem, claimed: float) -> tuple[float, int]:
 
 def phase_plane(
     system: SwitchedSystem,
-    response: TimeResponse,
+    response: SwitchedRun,
     norm: Norm | None,
     levels: tuple[float, ...] = (),
 ) -> tuple[Illustration, ...]:
@@ -231,7 +251,7 @@ def phase_plane(
     ----------
     system : SwitchedSystem
         The modes.
-    response : TimeResponse
+    response : SwitchedRun
         The run.
     norm : Norm or None
         Whose level curve bounds it.
@@ -246,7 +266,7 @@ def phase_plane(
 
 def plane(
     system: SwitchedSystem,
-    response: TimeResponse,
+    response: SwitchedRun,
     more: str = "",
     norm: Norm | None = None,
     levels: tuple[float, ...] = (),

@@ -1,0 +1,116 @@
+"""Force, deflection and velocity over time, against limits and certified bounds."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from nrs_design.reporting.style import (
+    BLUE,
+    GREEN,
+    MUTED,
+    VERMILLION,
+    color,
+    legend,
+    new_figure,
+    row_labels,
+    styled,
+)
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+    from nrs_design.simulation.norms import Array
+    from nrs_design.simulation.switched import SwitchedRun
+
+# A bound that is so many times higher than all else would squeeze the run flat.
+_HIGHEST = 4.0
+_ROWS = 10
+
+
+@dataclass(frozen=True, eq=False)
+class Panel:
+    """One quantity over time.
+
+    Parameters
+    ----------
+    label : str
+        With its unit.
+    values : ndarray, shape (N + 1, r)
+        For every row of it.
+    limit : float or None
+        Of the spec.
+    bound : ndarray, shape (N + 1,), or None
+        Certified.
+    one_sided : bool
+        Nothing bounds negative values.
+    """
+
+    label: str
+    values: Array
+    limit: float | None
+    bound: Array | None
+    one_sided: bool = False
+
+
+@styled
+def draw_release(response: SwitchedRun, panels: Sequence[Panel], names: Sequence[str]) -> Figure:
+    """Draw all panels over one time axis, and below them the mode that is active.
+
+    Parameters
+    ----------
+    response : SwitchedRun
+        The run.
+    panels : sequence of Panel
+        At least one.
+    names : sequence of str
+        Of all modes.
+    """
+    used = list(dict.fromkeys(response.mode.tolist()))[:_ROWS]
+    labels, height = row_labels([names[mode] for mode in used])
+    rows = height * len(used)
+    figure = new_figure(1.9 * len(panels) + 0.8 + rows)
+    ratios = [*([1.9] * len(panels)), rows]
+    *above, below = figure.subplots(len(panels) + 1, 1, sharex=True, height_ratios=ratios)
+    for axes, panel in zip(above, panels, strict=True):
+        _draw_panel(axes, response.time, panel)
+    for row, mode in enumerate(used):
+        active = response.mode == mode
+        edges = np.flatnonzero(np.diff(np.concatenate([[0], active.astype(int), [0]])))
+        spans = [
+            (response.time[a], response.time[b] - response.time[a]) for a, b in edges.reshape(-1, 2)
+        ]
+        label = names[mode]
+        below.broken_barh(spans, (row - 0.35, 0.7), color=color(row), linewidth=0, label=label)
+    below.set_yticks(range(len(used)), labels, fontsize=9)
+    below.set_ylim(len(used) - 0.4, -0.6)
+    below.set_title("Active mode", loc="left", fontsize=9.5)
+    below.grid(visible=False, axis="y")
+    below.set_xlabel("Time [s]")
+    legend(figure, above[0], 2)
+    return figure
+
+
+def _draw_panel(axes: Axes, time: Array, panel: Panel) -> None:
+    low, high = panel.values.min(axis=1), panel.values.max(axis=1)
+    if panel.values.shape[1] > 1:
+        axes.fill_between(time, low, high, color=BLUE, alpha=0.25, label="over the contact's range")
+    middle = panel.values[:, np.abs(panel.values).max(axis=0).argmax()]
+    axes.plot(time, middle, color=BLUE, label="simulated run")
+    axes.axhline(0.0, color=MUTED, linewidth=0.8)
+    top = max(float(np.abs(panel.values).max()), panel.limit or 0.0)
+    if panel.limit is not None:
+        for sign in (1.0, -1.0):
+            label = "limit of the spec" if sign > 0 else None
+            axes.axhline(sign * panel.limit, color=GREEN, linestyle=":", label=label)
+    if panel.bound is not None:
+        for sign in (1.0,) if panel.one_sided else (1.0, -1.0):
+            label = "certified bound" if sign > 0 else None
+            axes.plot(time, sign * panel.bound, color=VERMILLION, linestyle="--", label=label)
+        top = max(top, min(float(panel.bound.max()), _HIGHEST * top))
+    axes.set_ylim(-1.08 * top, 1.08 * top)
+    axes.set_ylabel(panel.label)

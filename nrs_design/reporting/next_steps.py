@@ -1,0 +1,49 @@
+"""What to do next where nothing was proved, as commands to type."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+from nrs_design.certificates.certificate import Verdict
+from nrs_design.proof.system import Time
+from nrs_design.spec import RobotSpec
+
+if TYPE_CHECKING:
+    from nrs_design.pipeline import Result
+
+
+def next_steps(result: Result) -> tuple[str, ...]:
+    """Return what to do next, the most promising first; nothing where stability is proved."""
+    verdict = result.certification.verdict
+    if verdict is Verdict.PROVED:
+        return ()
+    return (*_steps(result), "Do not ship this design: a gate must treat it as a failure.")
+
+
+def _steps(result: Result) -> Iterator[str]:
+    certification, spec = result.certification, result.loaded.spec
+    command = f"nrs-design certify-switching {result.loaded.path.name}"
+    evidence = certification.evidence
+    alone = evidence is not None and evidence.names_unstable_mode
+    if alone:
+        yield (
+            "A mode is not stable by itself, so no rule of switching helps: change the gains of "
+            "its controller, or narrow the range that makes it unstable."
+        )
+    if certification.verdict is Verdict.INCONCLUSIVE:
+        yield f"Search longer: {command} --budget 600, with more --memory or a --max-degree."
+    if spec.has_ranges:
+        yield f"Find the largest ranges that are proved: {command} --margin."
+    if not alone and _takes_dwell(result):
+        yield f"Find the shortest dwell time that is proved: {command} --shortest-dwell."
+    if result.designed is not None:
+        yield f"See which gains the goals allow: nrs-design optimize {result.loaded.path.name}."
+
+
+def _takes_dwell(result: Result) -> bool:
+    """Tell whether a shortest dwell time can be searched."""
+    spec, system = result.loaded.spec, result.certification.system
+    assert not isinstance(spec, RobotSpec)  # It has no modes, hence no certification.
+    lasting = len(system.lasting_modes()) == len(system.modes)
+    return system.time is Time.CONTINUOUS and lasting and spec.find_dwell_obstacle() is None

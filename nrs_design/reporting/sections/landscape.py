@@ -1,0 +1,104 @@
+"""What the choice of an admittance gives up, and how much delay it bears."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from nrs_design.design.landscape import alternatives, map_cost
+from nrs_design.reporting.document import Block, Illustration, Paragraph, Section, Table
+from nrs_design.reporting.figures.landscape import draw_cost, draw_delay_borne
+from nrs_design.reporting.formatting import number
+
+if TYPE_CHECKING:
+    from nrs_design.design.analysis import ImpedanceAnalysis
+    from nrs_design.spec import InteractionDesignSpec
+
+# More maps than these fill a page with what is nearly alike.
+_DRAWN = 4
+_TEXT = (
+    "The cost weighs how far the displayed impedance is from the desired one against the mean "
+    "sensitivity, up to the bandwidth. Each row of a table is the best for something else: what it "
+    "gains there, it gives up in the other columns. Nominal contact, floating point, goals left "
+    "out; no part of the proof."
+)
+_MAP = (
+    "Lines of equal cost, with their values. Shaded: the nominal loop is unstable. The dashed box "
+    "is where the spec allows the gains to be; an optimum on its edge was chosen by the bound, not "
+    "by the cost."
+)
+_DELAY = (
+    "A curve ends at zero where the loop is unstable without any dead time. Below its curve, a "
+    "controller bears that dead time in contact of that stiffness, constant and by itself. Dotted: "
+    "the stiffest contact that it is designed for."
+)
+
+
+def landscape_section(spec: InteractionDesignSpec, items: tuple[ImpedanceAnalysis, ...]) -> Section:
+    """Show cost, alternatives and delay of the impedance controllers.
+
+    Parameters
+    ----------
+    spec : InteractionDesignSpec
+        With the sampling, if any.
+    items : tuple of ImpedanceAnalysis
+        At least one.
+    """
+    blocks: list[Block] = [Paragraph(_TEXT)]
+    for item in items[:_DRAWN]:
+        blocks += [_map(item), _table(item)]
+    sampled = None if spec.sampling is None else float(spec.sampling.oldest)
+    blocks.append(
+        Illustration(
+            "delay-borne",
+            "Dead time over stiffness",
+            _DELAY,
+            draw_delay_borne(items[:_DRAWN], sampled),
+        )
+    )
+    return Section("What the gains give up", tuple(blocks))
+
+
+def _map(item: ImpedanceAnalysis) -> Illustration:
+    found = map_cost(item.problem, item.Mt, item.Bt)
+    held = " ".join(f"{gain} is on its {side} bound." for gain, side in _on_bounds(item))
+    return Illustration(
+        f"cost-{item.name}",
+        f"Cost over Mt and Bt: {item.name}",
+        f"{_MAP} {held}".rstrip(),
+        draw_cost(item, found),
+    )
+
+
+def _on_bounds(item: ImpedanceAnalysis) -> list[tuple[str, str]]:
+    found = []
+    for gain, bounds, value in (
+        ("Mt", item.given.Mt, item.optimum.Mt),
+        ("Bt", item.given.Bt, item.optimum.Bt),
+    ):
+        if not bounds.fixed:
+            ends = (("lower", bounds.min), ("upper", bounds.max))
+            found += [(gain, side) for side, end in ends if value == end.si]
+    return found
+
+
+def _table(item: ImpedanceAnalysis) -> Table:
+    rows = tuple(
+        (
+            other.name,
+            number(other.Mt, 4),
+            number(other.Bt, 4),
+            number(other.cost, 4),
+            number(other.displayed, 3),
+            number(other.sensitivity, 3),
+        )
+        for other in alternatives(item.problem, item.Mt, item.Bt)
+    )
+    columns = (
+        "Gains",
+        "Mt [kg·m²]",
+        "Bt [N·m·s/rad]",
+        "Cost [1]",
+        "Off the desired impedance, mean [decades]",
+        "Mean sensitivity [1]",
+    )
+    return Table(f"What is given up: {item.name}", columns, rows)

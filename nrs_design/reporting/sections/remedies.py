@@ -1,0 +1,38 @@
+"""How far what is proved reaches, and what to do next where nothing is."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from nrs_design.pipeline import find_relief
+from nrs_design.reporting.document import Block, Bullets, Section
+from nrs_design.reporting.margins import margin_lines
+from nrs_design.reporting.next_steps import next_steps
+
+if TYPE_CHECKING:
+    from nrs_design.pipeline import ProofMargins, Result
+
+REMEDIES = "What would help"
+MARGINS = "Margins of the proof"
+
+
+def remedies_section(result: Result, margins: ProofMargins | None) -> Section | None:
+    """Say how far the proof reaches and what to try; None where there is neither to say.
+
+    Parameters
+    ----------
+    result : Result
+        Of the certification.
+    margins : ProofMargins or None
+        Where they were searched.
+    """
+    blocks: list[Block] = []
+    if relief := find_relief(result):
+        blocks.append(Bullets("Gains that would hold", relief))
+    if margins is not None and (lines := tuple(margin_lines(margins))):
+        said = tuple(f"{line[0].upper()}{line[1:]}." for line in lines)
+        blocks.append(Bullets("How far a proof reaches", said))
+    steps = next_steps(result)
+    if steps:
+        blocks.append(Bullets("Next steps", steps))
+    return Section(REMEDIES if steps else MARGINS, tuple(blocks)) if blocks else None

@@ -1,0 +1,179 @@
+"""The top of the report: two plain sentences, and lights for what a reader looks for first.
+
+The sentences say less than the claim where that is needed to be plain, and never more.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from nrs_design.certificates.certificate import Verdict
+from nrs_design.proof.bounds import lower, upper
+from nrs_design.proof.evidence import AbstractEvidence, Shows
+from nrs_design.proof.system import SwitchedSystem, Time
+from nrs_design.reporting.document import Light, State
+from nrs_design.reporting.formatting import plural
+from nrs_design.reporting.kinds import page_of
+from nrs_design.reporting.register import register_of
+from nrs_design.reporting.sections.head import proved_rate
+from nrs_design.reporting.sections.tail import ASSUMPTIONS
+from nrs_design.spec import InteractionDesignSpec, doubt_spec
+from nrs_design.spec.goals import OF_THE_CERTIFICATE
+
+if TYPE_CHECKING:
+    from nrs_design.design.analysis import DesignAnalysis
+    from nrs_design.pipeline import Result
+
+MEANT = "What is and is not proved"
+GOALS = "Design goals"
+_PROOF = {
+    Verdict.PROVED: (State.GOOD, "proved; exact arithmetic decided, and a second library agreed"),
+    Verdict.REFUTED: (State.BAD, "refuted, with a witness"),
+    Verdict.INCONCLUSIVE: (State.DOUBTFUL, "inconclusive: a gate must treat it as a failure"),
+}
+
+
+def summary_of(result: Result) -> tuple[str, str]:
+    """Return what was shown, and under which assumptions, in a sentence each."""
+    system, evidence = result.certification.system, result.certification.evidence
+    names = "; ".join(dict.fromkeys(item.name for item in register_of(system.assumptions)))
+    granted = f"This takes for granted, each as {ASSUMPTIONS} below says it: {names}."
+    if evidence is None:
+        return (
+            "Neither proved nor refuted: this report makes no statement about stability.",
+            f"What was searched for would have taken for granted: {names}.",
+        )
+    if evidence.shows is Shows.STABILITY:
+        return _proved(result, evidence), granted
+    kept = ", in kept contact" if system.contact is not None else ""
+    name = page_of(system, evidence).name
+    return (
+        f"Refuted: no guarantee of stability is possible under {_signals(system)}{kept}; the "
+        f"witness: {name}.",
+        granted,
+    )
+
+
+def _proved(result: Result, evidence: AbstractEvidence) -> str:
+    system = result.certification.system
+    ranged = bool(page_of(system, evidence).between_corners()) and result.loaded.spec.has_ranges
+    among = plural(len(system.modes), "mode")
+    if system.contact is not None and evidence.covers_lost_contact:
+        among += f" in contact and {len(system.contact.free)} of free motion"
+    parts = [
+        f"Proved: under {_signals(system)}, among {among}",
+        *_contact(system, evidence),
+        "every motion dies out" + (", for all values in the declared ranges" if ranged else ""),
+        _rate(system, evidence),
+    ]
+    if system.couplings and evidence.covers_coupling:
+        parts.insert(1, "for axes that act on each other within the stated bounds")
+    if system.roundings:
+        parts.append(
+            "with what the processor rounds"
+            if evidence.covers_rounding
+            else "for a law computed without rounding"
+        )
+    return ", ".join(parts) + "."
+
+
+def _signals(system: SwitchedSystem) -> str:
+    if system.switching.fixed_ends:
+        return "the declared switching, with one parameter unknown but constant"
+    if system.switching.is_arbitrary and not system.switching.resets:
+        return "arbitrary switching"
+    return "every switching that the spec declares, and no other"
+
+
+def _contact(system: SwitchedSystem, evidence: AbstractEvidence) -> tuple[str, ...]:
+    if system.contact is None:
+        return ()
+    if evidence.covers_lost_contact:
+        return (
+            "with contact lost and made again at any time (where free motion ends is not claimed)",
+        )
+    return ("as long as contact is kept",)
+
+
+def _rate(system: SwitchedSystem, evidence: AbstractEvidence) -> str:
+    rate = proved_rate(system, evidence)
+    if rate is None:
+        return "at some rate"
+    if system.time is Time.CONTINUOUS:
+        text = f"at a rate of at least {lower(rate)} 1/s"
+    else:
+        text = f"by a factor of at most {upper(rate)} per step"
+    if not evidence.attains_rate:
+        text += " (not attained)"
+    return text + ("" if evidence.bounds_at_once else ", up to one constant factor")
+
+
+def lights_of(result: Result, analysis: DesignAnalysis | None) -> tuple[Light, ...]:
+    """Return the lights for proof, goals, margins, doubts of the data and open assumptions.
+
+    Parameters
+    ----------
+    result : Result
+        Of the certification.
+    analysis : DesignAnalysis or None
+        What the design achieves; None where there is none, or a nominal loop is unstable.
+    """
+    state, text = _PROOF[Verdict(result.certification.verdict)]
+    proof = Light("Proof", state, text, MEANT)
+    spec = result.loaded.spec
+    if not isinstance(spec, InteractionDesignSpec):
+        return (proof, _open(result))
+    return (proof, _goals(spec, analysis), _margins(spec, analysis), _data(spec), _open(result))
+
+
+def _goals(spec: InteractionDesignSpec, analysis: DesignAnalysis | None) -> Light:
+    name = "Goals"
+    certified = [key for key in sorted(OF_THE_CERTIFICATE) if getattr(spec.goals, key, None)]
+    more = f"; {', '.join(certified)}: nrs-design gate decides" if certified else ""
+    if analysis is None:
+        return Light(name, State.UNKNOWN, f"not computed{more}")
+    goals = [f for item in analysis.measured for f in item.achieved if f.goal is not None]
+    missed = sum(not found.met for found in goals)
+    if not goals:
+        return Light(name, State.UNKNOWN, f"no goals set{more}", GOALS)
+    if missed:
+        return Light(name, State.BAD, f"{missed} of {len(goals)} missed{more}", GOALS)
+    return Light(name, State.GOOD, f"all {len(goals)} met (floating point){more}", GOALS)
+
+
+def _margins(spec: InteractionDesignSpec, analysis: DesignAnalysis | None) -> Light:
+    if analysis is None:
+        return Light("Margins", State.BAD, "none: a nominal loop is unstable")
+    count = len((*doubt_spec(spec), *analysis.warnings))
+    if count:
+        return Light("Margins", State.DOUBTFUL, f"{plural(count, 'warning')} (worst corner)", GOALS)
+    text = "no warning in any corner (floating point, no part of the proof)"
+    return Light("Margins", State.GOOD, text, GOALS)
+
+
+def _data(spec: InteractionDesignSpec) -> Light:
+    name = "Data"
+    items = [item for item in spec.identified.values() if item.provenance or item.doubts]
+    if not items:
+        text = "no value names the records that it was identified from"
+        return Light(name, State.UNKNOWN, text, ASSUMPTIONS)
+    doubted = [item for item in items if item.doubts]
+    if any(item.accept_doubt is None for item in doubted):
+        text = f"{plural(sum(len(i.doubts) for i in doubted), 'doubt')}, not accepted"
+        return Light(name, State.BAD, text, ASSUMPTIONS)
+    if doubted:
+        text = f"{plural(sum(len(i.doubts) for i in doubted), 'doubt')}, accepted with a reason"
+        return Light(name, State.DOUBTFUL, text, ASSUMPTIONS)
+    if any(source.data == "synthetic" for item in items for source in item.provenance):
+        return Light(name, State.DOUBTFUL, "SYNTHETIC records, not measured", ASSUMPTIONS)
+    return Light(name, State.GOOD, "the spec names measured records, no doubts", ASSUMPTIONS)
+
+
+def _open(result: Result) -> Light:
+    spec = result.loaded.spec
+    design = spec if isinstance(spec, InteractionDesignSpec) else None
+    found = register_of(result.certification.system.assumptions, design)
+    count = sum(item.standing == "open" for item in found)
+    state = State.DOUBTFUL if count else State.GOOD
+    text = f"{count} of {len(found)} open: to be tested on the robot"
+    return Light("Assumptions", state, text, ASSUMPTIONS)

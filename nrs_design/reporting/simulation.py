@@ -1,0 +1,62 @@
+"""Metrics of a run in words, with the units in which people read them."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+from decimal import ROUND_CEILING, Context
+from typing import Any
+
+# Less is a number that nobody tells from zero, in s.
+_NOTHING = 1e-9
+
+
+def metric_rows(metrics: Mapping[str, Any]) -> list[list[str]]:
+    """Return rows of name, value, unit and limit.
+
+    Parameters
+    ----------
+    metrics : mapping
+        As `nrs_design.simulation.summary.summarize` gives them, in SI.
+    """
+    return list(_rows(metrics))
+
+
+def rounded_up(value: float) -> str:
+    """Return a number with four digits, rounded up."""
+    return f"{float(Context(prec=4, rounding=ROUND_CEILING).create_decimal(repr(value))):.4g}"
+
+
+def _rows(m: Mapping[str, Any]) -> Iterator[list[str]]:
+    limit = f"{m['torque_limit']:.4g}"
+    # What has a limit is never shown below it, nor as nothing, where it is not.
+    yield ["largest torque", rounded_up(m["peak_torque"]), "N m", limit]
+    yield ["time above the limit", rounded_up(m["time_above_limit"]), "s", "0"]
+    yield _row("largest deflection", math.degrees(m["peak_depth"]), "deg")
+    yield _row("time in contact", m["time_in_contact"], "s")
+    if m["impedance_rmse"] is not None:
+        wanted = f"{m['desired_impedance']:.4g} wanted"
+        name = "RMSE of the displayed impedance"
+        yield _row(name, m["impedance_rmse"], "N m s/rad", wanted)
+    yield _row("duration", m["duration"], "s")
+    for time in m["withdrawal_times"]:
+        yield _row("withdrawal from tissue", time, "s")
+    yield _row("mean speed", math.degrees(m["mean_speed"]), "deg/s")
+    yield _row("largest speed", math.degrees(m["peak_velocity"]), "deg/s")
+    yield _row("applied torque, total", m["effort"]["total"], "N m s")
+    yield _row("applied torque, rms", m["effort"]["rms"], "N m")
+    yield _row("energy", m["effort"]["energy"], "J")
+    for stay in m["force_control"]:
+        yield _row(f"overshoot under {stay['controller']}", 100 * stay["overshoot"], "%")
+        error = 100 * stay["steady_state_error"]
+        yield _row(f"steady-state error under {stay['controller']}", error, "%")
+    yield _row("switches", m["switches"], "")
+    if m["chatter"]:
+        yield _row("stays below 10 ms (chatter)", m["chatter"], "", "0")
+    if m["shortest_stay"] is not None:
+        yield _row("shortest stay", m["shortest_stay"], "s")
+
+
+def _row(name: str, value: float, unit: str, limit: str = "") -> list[str]:
+    shown = 0.0 if abs(value) < _NOTHING else value
+    return [name, f"{shown:.4g}", unit, limit]

@@ -1,0 +1,49 @@
+"""What to do next, where nothing was proved."""
+
+import pytest
+
+from nrs_design.pipeline import run_certification
+from nrs_design.reporting.next_steps import next_steps
+from nrs_design.search.certification import Limits
+from nrs_design.spec import read_spec
+from tests.reporting.conftest import KINDS
+from tests.support import COMMUTING, ROOT, run
+
+PRINT_ERROR = ROOT / "docs/examples/thesis-print-error.nrs.yaml"
+
+
+def steps_of(tmp_path, case):
+    path = tmp_path / f"{case}.nrs.yaml"
+    path.write_text(f"kind: switched-system\nname: {case}\n{KINDS[case]}")
+    return next_steps(run_certification(read_spec(path), limits=Limits(max_degree=4)))
+
+
+def test_a_proof_needs_none():
+    assert next_steps(run_certification(read_spec(COMMUTING))) == ()
+
+
+def test_no_rule_helps_a_mode_that_is_unstable_by_itself():
+    first, last = next_steps(run_certification(read_spec(PRINT_ERROR)))
+    assert first.startswith("A mode is not stable by itself, so no rule of switching helps")
+    assert last.startswith("Do not ship")
+
+
+@pytest.mark.parametrize("case", ["dwell-refuted", "inconclusive"])
+def test_a_dwell_time_is_searched_where_it_may_help(tmp_path, case):
+    steps = steps_of(tmp_path, case)
+    assert any("--shortest-dwell" in step for step in steps)
+    assert any("--budget" in step for step in steps) == (case == "inconclusive")
+    assert not any("--margin" in step for step in steps)
+
+
+def test_a_dwell_time_in_steps_is_not_searched(tmp_path):
+    assert not any("--shortest-dwell" in step for step in steps_of(tmp_path, "word"))
+
+
+@pytest.mark.parametrize("command", ["certify-switching", "report"])
+def test_commands_end_with_them(tmp_path, command):
+    done = run(command, PRINT_ERROR, cwd=tmp_path)
+    assert done.returncode == 1
+    said = [line for line in done.stdout.splitlines() if line.startswith("next: ")]
+    assert len(said) == 2
+    assert done.stdout.splitlines()[-2:] == said

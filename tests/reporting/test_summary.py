@@ -1,0 +1,113 @@
+"""The two sentences and the lights: no more than the claim."""
+
+import re
+from dataclasses import replace
+
+import pytest
+
+from nrs_design.pipeline import run_analysis, run_certification
+from nrs_design.proof.evidence.common_quadratic import CommonQuadratic
+from nrs_design.reporting import build_report
+from nrs_design.reporting.sections.summary import summary_of
+from nrs_design.spec import read_spec
+from tests.support import SOFT_TISSUE
+
+
+@pytest.mark.parametrize(
+    ("case", "said"),
+    [
+        ("proved", "with contact lost and made again at any time (where free motion ends is not"),
+        ("proved", "for all values in the declared ranges"),
+        ("dwell", "every switching that the spec declares, and no other"),
+        ("dwell", "up to one constant factor"),
+        ("parameter", "with one parameter unknown but constant"),
+        ("resets", "every switching that the spec declares, and no other"),
+        ("discrete", "per step"),
+        ("refuted", "Refuted: no guarantee of stability is possible under arbitrary switching"),
+        ("inconclusive", "this report makes no statement about stability"),
+    ],
+)
+def test_the_first_sentence_says_what_was_shown(report, case, said):
+    assert said in report(case).summary[0]
+
+
+def test_free_motion_is_named_only_where_its_loss_is_covered():
+    """The function of kept contact says nothing about the modes of free motion."""
+    result = run_certification(read_spec(SOFT_TISSUE))
+    conewise = result.certification.evidence
+    kept = CommonQuadratic(conewise.Q, conewise.denominator_log2, conewise.rate)
+    without = replace(result, certification=replace(result.certification, statements=(kept,)))
+    said = "among 4 modes in contact and 2 of free motion, with contact lost"
+    assert said in summary_of(result)[0]
+    assert "among 4 modes, as long as contact is kept" in summary_of(without)[0]
+
+
+@pytest.mark.parametrize("case", ["dwell", "inconclusive", "resets", "parameter", "dwell-refuted"])
+def test_arbitrary_switching_is_claimed_only_where_it_is_declared(report, case):
+    assert "arbitrary switching" not in report(case).summary[0]
+
+
+def test_the_rate_is_not_above_that_of_the_claim(report):
+    for case in ("proved", "dwell", "polynomial"):
+        (said,) = re.findall(r"at least ([0-9.]+) 1/s", report(case).summary[0])
+        assert said in report(case).claim
+
+
+def test_the_second_sentence_names_every_assumption_of_the_register(report):
+    section = next(part for part in report("proved").sections if part.title == "Assumptions")
+    names = {row[0] for row in section.blocks[1].rows}
+    assert all(name in report("proved").summary[1] for name in names)
+    assert len(section.blocks[1].rows) == 12
+
+
+def lights(report):
+    return {light.name: (str(light.state), light.text) for light in report.lights}
+
+
+def test_lights_of_a_design(report):
+    found = lights(report("proved"))
+    assert found["Proof"][0] == "good"
+    assert found["Goals"] == ("unknown", "no goals set")
+    assert found["Margins"] == ("doubtful", "3 warnings (worst corner)")
+    assert found["Data"][0] == "unknown"
+    assert lights(report("refuted"))["Proof"][0] == "bad"
+    assert lights(report("inconclusive"))["Proof"][0] == "doubtful"
+
+
+@pytest.mark.parametrize(
+    ("data", "more", "state"),
+    [
+        ("measured", "", "good"),
+        ("synthetic", "", "doubtful"),
+        ("measured", "    doubts: [short]\n", "bad"),
+        ("measured", "    doubts: [short]\n    accept_doubt: a pilot\n", "doubtful"),
+    ],
+)
+def test_the_light_of_data(tmp_path, data, more, state):
+    source = f"{{file: a.csv, sha256: {64 * 'a'}, data: {data}}}"
+    text = SOFT_TISSUE.read_text(encoding="utf-8").replace(
+        "    lever_arm: 0.24 m\n", f"    lever_arm: 0.24 m\n    provenance: [{source}]\n{more}"
+    )
+    path = tmp_path / "a.nrs.yaml"
+    path.write_text(text, encoding="utf-8")
+    result = run_certification(read_spec(path))
+    assert lights_state(result) == state
+
+
+def lights_state(result):
+    from nrs_design.reporting.sections.summary import lights_of
+
+    return next(str(light.state) for light in lights_of(result, None) if light.name == "Data")
+
+
+@pytest.mark.slow
+def test_a_missed_goal_is_a_bad_light(tmp_path):
+    text = SOFT_TISSUE.read_text(encoding="utf-8")
+    text = text.replace("Bt: {min: 0.1 N*m*s/rad, max: 20 N*m*s/rad}", "Bt: 1.04 N*m*s/rad")
+    text = text.replace("Mt: {min: 0.01 kg*m^2, max: 1 kg*m^2}", "Mt: 0.01 kg*m^2")
+    text = text.replace("switching:", "goals: {max_sensitivity_peak: 2}\nswitching:")
+    path = tmp_path / "a.nrs.yaml"
+    path.write_text(text, encoding="utf-8")
+    result = run_certification(read_spec(path))
+    found = build_report(result, run_analysis(result.designed))
+    assert lights(found)["Goals"] == ("bad", "2 of 2 missed")

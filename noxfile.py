@@ -10,9 +10,7 @@ nox.options.default_venv_backend = "venv"
 # Who is done takes over from the other: some tests are a thousand times as long as others.
 TWO_PROCESSES = ("-n", "2", "--dist", "worksteal")
 CONSTRAINTS = ("-c", "constraints.txt")
-CHECK_ELSEWHERE = "docs/certificates/check_elsewhere.py"
-PAGES_MADE = "docs/reference/generate.py"
-SOURCES = ("nrs_design", "tests", "benchmarks", CHECK_ELSEWHERE, PAGES_MADE, "noxfile.py")
+SOURCES = ("nrs_design", "tests", "benchmarks", "docs", "noxfile.py")
 
 
 @nox.session
@@ -35,6 +33,16 @@ def tests(session: nox.Session) -> None:
 
 
 @nox.session
+def accessibility(session: nox.Session) -> None:
+    """Hold pages against the rules of axe-core, which npm fetches, in Chromium."""
+    session.install(".[test]", *CONSTRAINTS)
+    folder = session.create_tmp()
+    session.run("npm", "install", "--prefix", folder, "axe-core@4.14.1", external=True, silent=True)
+    axe = f"{folder}/node_modules/axe-core/axe.min.js"
+    session.run("pytest", "-k", "accessibility", "tests/reporting", env={"AXE": axe})
+
+
+@nox.session
 def coverage(session: nox.Session) -> None:
     """Every line and every branch of what decides is run by its own tests."""
     session.install(".[test]", *CONSTRAINTS)
@@ -51,9 +59,18 @@ def mutation(session: nox.Session) -> None:
 
 @nox.session
 def slow(session: nox.Session) -> None:
-    """Run the exhaustive tests that the default session leaves out."""
+    """Run the exhaustive tests that the default session leaves out, and many more examples."""
     session.install(".[test]", *CONSTRAINTS)
-    session.run("pytest", *TWO_PROCESSES, "-m", "slow", *session.posargs)
+    chosen = ("-m", "slow or hypothesis", "--hypothesis-profile", "many")
+    session.run("pytest", *TWO_PROCESSES, *chosen, *session.posargs)
+
+
+@nox.session
+def frama(session: nox.Session) -> None:
+    """Analyze exported C for all inputs at once; for machines with Frama-C, which is large."""
+    session.install(".[test]", *CONSTRAINTS)
+    session.run("frama-c", "-version", external=True)
+    session.run("pytest", "-m", "slow", "tests/exporters/test_eva.py")
 
 
 @nox.session

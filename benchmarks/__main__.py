@@ -25,6 +25,8 @@ BENCHMARKS = (
     "robot_dynamics",
     "scaling",
     "bounded_runs",
+    "instruction_counts",
+    "scenario_runs",
 )
 MET = {True: "yes", False: "NO", None: "-"}
 

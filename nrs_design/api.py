@@ -285,6 +285,51 @@ class Study:
         )
         return Decision(result)
 
+    def simulate(
+        self,
+        *scenarios: str,
+        engine: str | None = None,
+        period: float | None = None,
+        delay: int | None = None,
+    ) -> tuple[pipeline.Simulated, ...]:
+        """Simulate scenarios of the spec, or the one of a spec that has none.
+
+        Parameters
+        ----------
+        *scenarios : str
+            Names; by default all.
+        engine : {"exact", "sampled"}, optional
+            By default sampled where the spec has sampling or tissue is not linear, else exact.
+        period, delay : float and int, optional
+            Of the sampled engine, in s and in samples; by default those of the spec.
+
+        Raises
+        ------
+        DesignError, DataError
+            If the spec is no interaction design, or a scenario cannot be simulated.
+
+        Examples
+        --------
+        >>> import nrs_design as nrs
+        >>> study = nrs.load("docs/examples/scenarios.nrs.yaml")
+        >>> (one,) = study.simulate("profile-of-the-thesis")
+        >>> bool(abs(one.run.response["torque"]).max() < 0.3)
+        True
+        """
+        if engine not in (None, "exact", "sampled"):
+            raise DesignError(f"there is no engine {engine!r}", remedy="write exact or sampled")
+        designed = pipeline.run_design(self.loaded)
+        if designed is None:
+            raise pipeline.wrong_kind(
+                self.loaded,
+                f"a spec of kind {self.loaded.spec.kind} describes no interaction",
+                "use a spec of kind interaction-design",
+            )
+        if engine is None and (period is not None or delay is not None):
+            engine = "sampled"
+        wanted = pipeline.Runs(tuple(scenarios), engine, period, delay)
+        return tuple(pipeline.run_scenarios(designed, wanted))
+
     def export(self, certificate: str | Path | None = None) -> Export:
         """Return the gains that ship with their proof, or why there are none.
 

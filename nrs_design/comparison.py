@@ -8,10 +8,12 @@ from enum import StrEnum
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from nrs_design.certificates.units import gain_units
 from nrs_design.errors import DesignError
 from nrs_design.pipeline import Progress, run_analysis, run_certification
 from nrs_design.proof.evidence.fields import rate_text
-from nrs_design.proof.system import Time
+from nrs_design.proof.system import SwitchedSystem, Time
+from nrs_design.proof.text import exact_text
 from nrs_design.spec import read_spec
 from nrs_design.spec.document import Data, to_data
 
@@ -22,6 +24,7 @@ if TYPE_CHECKING:
 CERTIFICATE_SUFFIX = ".json"
 # What is longer is a sentence, not a value.
 LONGEST_CELL = 60
+_RATES = ("decay rate", "contraction per step")
 
 
 class Part(StrEnum):
@@ -94,6 +97,26 @@ class Comparison:
         """The parts without a difference."""
         differing = {item.part for item in self.differences}
         return tuple(part for part in self.compared if part not in differing)
+
+    @property
+    def remarks(self) -> tuple[str, ...]:
+        """What a reader of the differences must know."""
+        texts = []
+        if self.not_compared:
+            parts = ", ".join(self.not_compared)
+            texts.append(f"Not compared, since not both files tell it: {parts}.")
+        names = [self._rates(side) for side in (self.before, self.after)]
+        if all(names) and names[0] != names[1]:
+            texts.append(
+                f"The rates are not compared: {' and '.join(f'a {name}' for name in names)} are "
+                "numbers of different things."
+            )
+        return tuple(texts)
+
+    @staticmethod
+    def _rates(side: Side) -> str:
+        told = side.parts.get(Part.VERDICT, {})
+        return next((what for what in told if what.startswith(_RATES)), "")
 
     @property
     def not_compared(self) -> tuple[Part, ...]:
@@ -172,18 +195,32 @@ def _proof_parts(certificate: Certificate) -> dict[Part, Mapping[str, str]]:
     rate = None if evidence is None else evidence.proved_rate(system)
     verdict = {"verdict": certificate.verdict, "modes": str(len(system.modes))}
     if rate is not None:
-        unit = "1/s" if system.time is Time.CONTINUOUS else "per step"
-        verdict["decay rate"] = f"{rate_text(rate, system.time)} {unit}"
+        verdict[_rate_name(system)] = f"{rate_text(rate, system.time)}{_rate_unit(system)}"
     for number, statement in enumerate(certificate.statements, 1):
         verdict[f"statement {number}"] = statement.claim(system)
+    units = gain_units(certificate)
     gains = {
-        f"{name}.{gain}": value
+        f"{name}.{gain}": f"{value} {units[name][gain]}"
         for name, values in certificate.gains.items()
         for gain, value in values.items()
     }
     # Each assumption is its own name: it is there or it is not.
     assumptions = {text: text for text in system.assumptions}
     return {Part.GAINS: gains, Part.VERDICT: verdict, Part.ASSUMPTIONS: assumptions}
+
+
+def _rate_name(system: SwitchedSystem) -> str:
+    """Name a rate so that only those are set side by side that are numbers of the same thing."""
+    decay, contraction = _RATES
+    if system.time is Time.CONTINUOUS:
+        return decay
+    if system.sample_time is None:
+        return contraction
+    return f"{contraction} of {exact_text(system.sample_time)} s"
+
+
+def _rate_unit(system: SwitchedSystem) -> str:
+    return " 1/s" if system.time is Time.CONTINUOUS else ""
 
 
 def _margins(designed: Designed) -> dict[str, str] | None:

@@ -4,6 +4,9 @@ from __future__ import annotations
 
 import os
 import tempfile
+from collections.abc import Iterator
+from contextlib import contextmanager
+from errno import ENOTDIR
 from pathlib import Path
 
 from nrs_design.errors import OutputError
@@ -14,16 +17,33 @@ CERTIFICATE = b'{\n  "schema": "nrs-design/certificate/'
 EXPORT = b'{\n  "schema": "nrs-design/export/'
 MAT = b"MATLAB 5.0 MAT-file, nrs-design export of "
 C_HEADER, C_SOURCE = b"/* nrs-design C header\n", b"/* nrs-design C source\n"
-C_TEST = b"/* nrs-design C test\n"
+C_TEST, C_TEST_HEADER = b"/* nrs-design C test\n", b"/* nrs-design C header of a test\n"
+C_AXES, C_AXES_HEADER = b"/* nrs-design C axes\n", b"/* nrs-design C header of axes\n"
+C_MONITOR, C_MONITOR_HEADER = (
+    b"/* nrs-design C monitor\n",
+    b"/* nrs-design C header of a monitor\n",
+)
 VECTORS = b'{\n  "schema": "nrs-design/vectors/'
 VECTOR_TABLE = b"# nrs-design vectors\n"
+# The first entry of the archive, which is stored as it is, and always the same.
+FMU = (
+    b"PK\x03\x04\x14\x00\x00\x00\x00\x00\x00\x00!\x00\x8f*\x87r\x0f\x00\x00\x00\x0f\x00\x00\x00"
+    b"\x1c\x00\x00\x00documentation/nrs-design.txtnrs-design fmu\n"
+)
 VECTOR_TEST = b'"""nrs-design test of conformance vectors'
+BOUNDS = b'{\n  "schema": "nrs-design/robot-bounds/'
 LOCK = b'{\n  "schema": "nrs-design/lock/'
 PAGE = b'<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta name="generator" content="nrs-design">\n'
 SCHEMA = (
     b'{\n  "$schema": "http://json-schema.org/draft-07/schema#",\n  "title": "nrs-design spec",\n',
     b'{\n  "$schema": "https://json-schema.org/draft/2020-12/schema",\n'
     b'  "title": "nrs-design export",\n',
+)
+RESPONSE = b"time_s,angle_rad,velocity_rad_s,torque_Nm,"
+# An archive of arrays that begins with a stored text, `about.npy`, which says that it is a run.
+ARCHIVE = (
+    b"PK\x03\x04\x14\x00\x00\x00\x00\x00\x00\x00!\x00_\x00\x9b?\xcc\x00\x00\x00\xcc\x00\x00\x00"
+    b"\x09\x00\x00\x00about.npy"
 )
 TABLE = b"theta4_deg,K1,K2,K3,"
 GATE = (
@@ -63,13 +83,10 @@ def write_output(path: Path, content: str | bytes, *, replaces: Beginning = b"")
         If the place cannot be written to, is a link, a folder or a device (here or on Windows),
         lies behind a link to a folder, or holds a file of another kind.
     """
-    if is_device_name(path.name):
-        raise OutputError("names a device on Windows", path=path, remedy="name another file")
+    check_place(path, replaces)
     # A file name that is no text may have got in; it is shown with escapes.
     data = content.encode(errors="backslashreplace") if isinstance(content, str) else content
-    try:
-        _refuse_links(path)
-        check_replaceable(path, replaces)
+    with _told(path):
         path.parent.mkdir(parents=True, exist_ok=True)
         handle, temporary = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.")
         try:
@@ -80,6 +97,31 @@ def write_output(path: Path, content: str | bytes, *, replaces: Beginning = b"")
         except BaseException:
             os.unlink(temporary)
             raise
+
+
+def check_place(path: Path, replaces: Beginning = b"") -> None:
+    """Refuse, before the work, a place to which its result could not be written.
+
+    Raises
+    ------
+    OutputError
+        As `write_output` raises it.
+    """
+    if is_device_name(path.name):
+        raise OutputError("names a device on Windows", path=path, remedy="name another file")
+    with _told(path):
+        _refuse_links(path)
+        check_replaceable(path, replaces)
+        folder = next(folder for folder in path.parents if folder.exists())
+        if not folder.is_dir():
+            raise NotADirectoryError(ENOTDIR, os.strerror(ENOTDIR))
+
+
+@contextmanager
+def _told(path: Path) -> Iterator[None]:
+    """Turn an error of the system into one that names the file."""
+    try:
+        yield
     except OSError as error:
         raise OutputError(
             f"cannot be written ({error.strerror})", path=path, remedy="choose a writable folder"

@@ -17,6 +17,12 @@ from nrs_design.output import PAGE
 # As exported models of robots write it.
 MARK = "spec file: "
 REMEDY = "give this spec a `name` of its own, choose another place, or remove that file"
+# As exports of designs write it: in the lines of their header, as JSON, as a MAT-file.
+_NAMED = re.compile(
+    rb"\bspec: ([a-z0-9._-]+),[\s*#]+sha256[\s*#]+[0-9a-f]{64}"
+    rb'|"spec": \{\s*"name": "([a-z0-9._-]+)"'
+    rb"|\AMATLAB 5.0 MAT-file, nrs-design export of ([a-z0-9._-]+) "
+)
 # As the template of the page writes it, near its beginning.
 _PAGE_ORIGIN = re.escape(PAGE) + rb'<meta name="spec" content="([^"]{1,4096})">'
 
@@ -62,12 +68,44 @@ def check_page(spec: Path, page: Path) -> None:
 
 
 def check_export(spec: Path, file: Path) -> None:
-    """Refuse to overwrite what was exported for another spec; see `check_owner`."""
+    """Refuse to overwrite what was exported for another spec; see `check_owner`.
+
+    What has the name of a spec, but not its place, was exported for a design.
+    """
     if file.is_file():
         with file.open("rb") as opened:
-            found = re.search(MARK.encode() + rb"([^\n]{1,4096})\n", opened.read(8192))
+            beginning = opened.read(8192)
+        found = re.search(MARK.encode() + rb'([^\n]{1,4096}?)(?:",?)?\n', beginning)
         if found:
             _refuse_other(spec, found[1].decode(errors="replace"), file)
+        elif _NAMED.search(beginning):
+            raise OutputError("was exported for a design", path=file, remedy=REMEDY)
+
+
+def check_name(name: str, file: Path) -> None:
+    """Refuse to overwrite what was exported for a spec of another name.
+
+    Parameters
+    ----------
+    name : str
+        Of the spec whose file would be written.
+    file : Path
+        One that is there, or not.
+
+    Raises
+    ------
+    OutputError
+        If it says, as every export does, that it is of another spec, or of a robot.
+    """
+    if file.is_file():
+        with file.open("rb") as opened:
+            beginning = opened.read(8192)
+        if MARK.encode() in beginning:
+            raise OutputError("was exported for a robot", path=file, remedy=REMEDY)
+        found = _NAMED.search(beginning)
+        owner = next(filter(None, found.groups())).decode() if found else name
+        if owner != name:
+            raise OutputError(f"was exported for the spec {owner}", path=file, remedy=REMEDY)
 
 
 def check_certificate(spec: Path, file: Path) -> None:

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
 from fractions import Fraction
 from functools import partial
+from itertools import combinations
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from nrs_design import __version__
 from nrs_design.certificates.certificate import Certificate, Gains, Verdict
@@ -24,12 +25,16 @@ from nrs_design.spec import LoadedSpec, read_spec
 if TYPE_CHECKING:
     from nrs_design.certificates.verify import Verification
     from nrs_design.controllers.controller_design import ControllerDesign
+    from nrs_design.controllers.operations import StepLaw
     from nrs_design.design.analysis import DesignAnalysis
     from nrs_design.models.plant import Plant
     from nrs_design.models.robot import Robot
     from nrs_design.search.loop_margin import Bracket, CommandMargin, LoopMargins
     from nrs_design.search.margin import BoxMargin, DwellMargin
     from nrs_design.search.method_run import MethodRun
+    from nrs_design.simulation.release import Outputs
+    from nrs_design.simulation.run import Run
+    from nrs_design.simulation.scenario import Scenario
     from nrs_design.spec import InteractionDesignSpec, RobotSpec, Spec
     from nrs_design.spec.sampling import SamplingSpec
 
@@ -95,6 +100,45 @@ class Result:
         return None if self.designed is None else self.designed.design
 
 
+@dataclass(frozen=True, slots=True)
+class Simulated:
+    """A scenario that has been simulated.
+
+    Parameters
+    ----------
+    scenario : Scenario
+        In SI.
+    run : Run
+        As far as it came.
+    metrics : mapping
+        Of the run, in SI.
+    """
+
+    scenario: Scenario
+    run: Run
+    metrics: Mapping[str, Any]
+
+
+@dataclass(frozen=True, slots=True)
+class CertifiedBound:
+    """A certified bound beside a run.
+
+    Parameters
+    ----------
+    output, unit : str
+        What is bounded.
+    level : float
+        Not below what is proved.
+    uncovered : tuple of str
+        What happens in the run that the proof says nothing about; empty if the bound holds for it.
+    """
+
+    output: str
+    unit: str
+    level: float
+    uncovered: tuple[str, ...]
+
+
 @contextmanager
 def placed(loaded: LoadedSpec) -> Iterator[None]:
     """Add path, line and column to errors from stages that know the spec but not its file."""
@@ -129,6 +173,61 @@ def run_robot(path: Path) -> tuple[LoadedSpec, RobotSpec, Robot]:
         )
     with placed(loaded):
         return loaded, loaded.spec, build_robot(loaded.spec)
+
+
+def run_robot_laws(spec: RobotSpec, robot: Robot) -> dict[str, StepLaw]:
+    """Design the motion control of a robot, and write its laws out as operations.
+
+    Raises
+    ------
+    DesignError
+        If the spec lacks something, or its numbers contradict each other.
+    PoseError
+        If the robot does not reach the motions that the table of corrections is made for.
+    """
+    from nrs_design.design.robot_laws import design_robot_laws
+
+    return design_robot_laws(spec, robot)
+
+
+def check_bounds(
+    path: Path, budget: float, progress: Progress = _silent
+) -> tuple[Path, tuple[str, ...]]:
+    """Compute again what the bounds of a robot claim.
+
+    Parameters
+    ----------
+    path : Path
+        The spec of the robot.
+    budget : float
+        Time for each of the bounds in s.
+    progress : callable
+        Told the name of each step.
+
+    Returns
+    -------
+    Path
+        The file of the bounds.
+    tuple of str
+        What is wrong with them; nothing if they hold.
+
+    Raises
+    ------
+    SpecError
+        If the robot, or the file of its bounds, cannot be read.
+    DesignError
+        If the time was over before something was decided.
+    """
+    from nrs_design.models.robot import confirm_bounds
+    from nrs_design.spec.robot_bounds import bounds_file, read_bounds
+
+    loaded, _, robot = run_robot(path)
+    file = bounds_file(path)
+    bounds, document = read_bounds(file)
+    if bounds.sha256 != loaded.sha256:
+        return file, ("the robot has changed since its bounds were computed",)
+    with placed(loaded):
+        return file, tuple(confirm_bounds(robot, document, budget, progress))
 
 
 def wrong_kind(loaded: LoadedSpec, message: str, remedy: str) -> DesignError:
@@ -186,6 +285,165 @@ def run_analysis(designed: Designed) -> DesignAnalysis:
 
     with placed(designed.loaded):
         return analyze_design(designed.spec, designed.plant, designed.design)
+
+
+@dataclass(frozen=True, slots=True)
+class Runs:
+    """How scenarios are run; None leaves what the spec says.
+
+    Parameters
+    ----------
+    names : tuple of str
+        Which; empty for all.
+    engine : {"exact", "sampled"} or None
+        By default sampled where the spec has sampling or tissue is not linear, else exact.
+    period : float or None
+        Of the sampled engine, in s; 2 ms where nothing says it.
+    delay : int or None
+        Age of its force samples, in samples; none where nothing says it.
+    max_steps : int or None
+        Of each run.
+    """
+
+    names: tuple[str, ...] = ()
+    engine: str | None = None
+    period: float | None = None
+    delay: int | None = None
+    max_steps: int | None = None
+
+
+def run_scenarios(
+    designed: Designed, wanted: Runs | None = None, progress: Progress = _silent
+) -> Iterator[Simulated]:
+    """Simulate scenarios of a spec; a spec without any has one of its own.
+
+    Parameters
+    ----------
+    designed : Designed
+        The spec, its plant and its gains.
+    wanted : Runs, optional
+        Which, and how.
+    progress : callable
+        Told the name of each run, and how far it is.
+
+    Yields
+    ------
+    Simulated
+        One run after the other.
+
+    Raises
+    ------
+    DesignError, DataError
+        If there is no such scenario, or it cannot be simulated.
+    """
+    from nrs_design.simulation.exact import simulate_exactly
+    from nrs_design.simulation.run import MAX_STEPS
+    from nrs_design.simulation.sampled import simulate_sampled
+    from nrs_design.simulation.summary import summarize
+
+    wanted, spec = wanted or Runs(), designed.spec
+    timed = spec.model_copy(update={"sampling": _sampling(spec, wanted)})
+    with placed(designed.loaded):
+        for scenario in _scenarios(designed, wanted.names):
+            # A law of tissue that is not linear has no exponential.
+            nonlinear = any(surface.element is None for surface in scenario.surfaces)
+            usual = "sampled" if spec.sampling is not None or nonlinear else "exact"
+            sampled = (wanted.engine or usual) == "sampled"
+            run = (simulate_sampled if sampled else simulate_exactly)(
+                timed if sampled else spec,
+                designed.plant,
+                designed.design,
+                scenario,
+                max_steps=wanted.max_steps or MAX_STEPS,
+                tell=partial(_tell, progress, scenario.name),
+            )
+            yield Simulated(scenario, run, summarize(spec, scenario, run))
+
+
+def _sampling(spec: InteractionDesignSpec, wanted: Runs) -> SamplingSpec:
+    """Return the sampling of a spec, changed as is wanted."""
+    from nrs_design.spec.sampling import SamplingSpec
+
+    usual = SamplingSpec.model_validate({"period": "2 ms", "delay": "0"})
+    changes: dict[str, object] = {}
+    if wanted.period is not None:
+        text = {"period": f"{wanted.period!r} s", "delay": "0"}
+        changes["period"] = SamplingSpec.model_validate(text).period
+    if wanted.delay is not None:
+        changes["delay"] = (wanted.delay, wanted.delay)
+    return (spec.sampling or usual).model_copy(update=changes)
+
+
+def _tell(progress: Progress, name: str, step: str) -> None:
+    progress(f"{name}, {step}")
+
+
+def _scenarios(designed: Designed, names: Sequence[str]) -> list[Scenario]:
+    from nrs_design.simulation.build_scenario import build_scenario, default_scenario
+    from nrs_design.spec.faults import did_you_mean
+
+    spec, plant, path = designed.spec, designed.plant, designed.loaded.path
+    if not spec.scenarios:
+        own = default_scenario(spec, plant)
+        if set(names) <= {own.name}:
+            return [own]
+    for name in names:
+        if name not in spec.scenarios:
+            remedy = did_you_mean(name, spec.scenarios) if spec.scenarios else "add scenarios"
+            raise DesignError(f"the spec has no scenario {name!r}", remedy=remedy)
+    folder = Path() if path is None else path.parent
+    return [
+        build_scenario(spec, plant, name, spec.scenarios[name], folder)
+        for name in names or spec.scenarios
+    ]
+
+
+def run_bounds(
+    designed: Designed, certificate: Certificate, simulated: Simulated
+) -> tuple[CertifiedBound, ...]:
+    """Hold what is certified against a run.
+
+    Parameters
+    ----------
+    designed : Designed
+        The spec and its plant.
+    certificate : Certificate
+        Checked, of that spec.
+    simulated : Simulated
+        A run of that spec.
+    """
+    from nrs_design.proof.bounds import upper_float
+    from nrs_design.simulation.coverage import uncovered
+
+    system, found = certificate.system, []
+    for statement in certificate.statements:
+        bound = statement.bound(system)
+        # One bound for each output is about all disturbances at once.
+        if bound is None or set(bound.channels) != set(system.channels):
+            continue
+        reasons = uncovered(designed.spec, system, statement, simulated.scenario, simulated.run)
+        level = upper_float(bound.level)
+        found.append(CertifiedBound(bound.output.name, bound.output.unit, level, tuple(reasons)))
+    return tuple(found)
+
+
+def read_certificate(file: Path, designed: Designed) -> Certificate:
+    """Return what a certificate file holds, checked exactly against the spec.
+
+    Raises
+    ------
+    CertificateError
+        If it is none, or does not hold for this spec.
+    """
+    from nrs_design.certificates.verify import verify
+    from nrs_design.errors import CertificateError
+
+    found = verify(file, designed.loaded, plant=designed.plant)
+    if found.certificate is None or found.fault is not None:
+        raise CertificateError(
+            str(found.fault), path=file, remedy="make it anew with certify-switching"
+        )
+    return found.certificate
 
 
 def find_relief(result: Result) -> tuple[str, ...]:
@@ -450,6 +708,63 @@ def run_loop_margins(
     return LoopMargins(delay, period, _command_margin(result))
 
 
+@dataclass(frozen=True, slots=True)
+class Subset:
+    """What is proved of a spec where not all of it is.
+
+    Parameters
+    ----------
+    left_out : tuple of str
+        Parts of the spec that the proof is not about.
+    claim : str
+        What is proved without them.
+    """
+
+    left_out: tuple[str, ...]
+    claim: str
+
+
+def run_subsets(
+    result: Result, limits: Limits | None = None, progress: Progress = _silent
+) -> tuple[Subset, ...]:
+    """Find what is proved with as few parts of the spec left out as possible; nothing if all is.
+
+    Parameters
+    ----------
+    result : Result
+        Of the spec as it stands; its design is kept.
+    limits : Limits, optional
+        How far the searches go each time; the decay rate is not optimized.
+    progress : callable
+        Told what is left out.
+    """
+    from nrs_design.models.plant import build_plant
+    from nrs_design.search.certify import certify
+    from nrs_design.spec.aspects import aspects_of
+
+    designed = result.designed
+    if designed is None or result.certification.verdict is Verdict.PROVED:
+        return ()
+    limits = limits or limits_of(result.loaded.spec)
+    quick = replace(limits, optimize_rate=False, budget=min(limits.budget, MARGIN_BUDGET))
+    aspects = aspects_of(designed.spec)
+    for count in range(1, len(aspects) + 1):
+        found = []
+        for left_out in combinations(aspects, count):
+            progress(f"without {' and '.join(left_out)}")
+            spec = designed.spec.model_copy(update={"disturbances": None})
+            for name in left_out:
+                spec = aspects[name](spec)
+            other = replace(designed, spec=spec, plant=build_plant(spec))
+            system = _assemble(result.loaded, other, result.coordinates)
+            decided = certify(system, limits=quick)
+            if decided.verdict is Verdict.PROVED and decided.evidence is not None:
+                found.append(Subset(left_out, decided.evidence.claim(system)))
+        if found:
+            return tuple(found)
+    return ()
+
+
 def _sampling_margins(
     designed: Designed,
     sampling: SamplingSpec,
@@ -479,9 +794,13 @@ def _sampling_margins(
     def at_period(period: Fraction) -> Verdict | None:
         if period == sampling.period.exact:
             return known
-        value = period * sampling.period.value / sampling.period.exact
+        changes = {
+            name: replace(given, value=period * given.value / sampling.period.exact)
+            for name in ("period", "outer_period")
+            if (given := getattr(sampling, name)) is not None
+        }
         try:
-            return decide({"period": replace(sampling.period, value=value)}, f"period {period} s")
+            return decide(changes, f"period {period} s")
         except NrsDesignError:
             return None
 
@@ -541,6 +860,101 @@ def run_shortest_dwell(
         return certify(candidate, limits=quick)
 
     return find_shortest_dwell(system, decide, known)
+
+
+def physical_outputs(result: Result) -> Outputs | None:
+    """Return force and velocity as rows over the state, with the limits of the spec.
+
+    None where the state of the system does not hold the deflection of a contact, or a run from it
+    would need rules that are not kept: in discrete time, for controllers that command a position,
+    and for laws with a memory.
+
+    Parameters
+    ----------
+    result : Result
+        Of the certification.
+    """
+    designed, system = result.designed, result.certification.system
+    if designed is None or system.time is not Time.CONTINUOUS or not system.is_uniform:
+        return None
+    rules, contacts = system.switching, designed.design.contacts
+    plain = all(c.law.commands == "velocity" for c in designed.design.controllers)
+    ruled = bool(rules.resets) or (system.contact is not None and not rules.is_arbitrary)
+    if not plain or ruled or not contacts or system.states[-1] != "delta [rad]":
+        return None
+    import numpy as np
+
+    from nrs_design.models.motion_loop import realize
+    from nrs_design.simulation.release import Outputs
+    from nrs_design.switched.commanded import outputs_of
+    from nrs_design.switched.joint import Joint
+
+    spec, plant, motion = designed.spec, designed.plant, designed.design.motion
+    joint = Joint.of(plant, motion)
+    loop = realize(plant.motion_loop(motion.Kp, motion.Kd)) if joint is None else joint.nominal
+    force, velocity = outputs_of(system.order, loop, spec, plant.among(contacts))
+    return Outputs(
+        np.array([row.floats()[0] for row in force.rows]),
+        np.array(velocity.rows[0].floats()[0]),
+        spec.limits.torque.si,
+        spec.limits.velocity.si,
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class ProofMargins:
+    """How far a proof reaches, as far as that was asked for.
+
+    Parameters
+    ----------
+    loop : LoopMargins or None
+        Of delay, period and disturbances.
+    box : BoxMargin or None
+        Of the declared ranges.
+    dwell : DwellMargin or None
+        Of the time between switches.
+    """
+
+    loop: LoopMargins | None = None
+    box: BoxMargin | None = None
+    dwell: DwellMargin | None = None
+
+
+def run_proof_margins(
+    result: Result,
+    limits: Limits,
+    progress: Progress = _silent,
+    *,
+    margin: bool,
+    shortest_dwell: bool,
+) -> ProofMargins:
+    """Find the margins that a command asks for.
+
+    Parameters
+    ----------
+    result : Result
+        Of the spec as it stands.
+    limits : Limits
+        How far the searches go each time; the decay rate is not optimized.
+    progress : callable
+        Told the name of each step.
+    margin : bool
+        Those of ranges, delay, period and disturbances; of ranges alone, a spec must have some.
+    shortest_dwell : bool
+        That of the time between switches.
+
+    Raises
+    ------
+    DesignError
+        If the spec has nothing that such a margin is about.
+    """
+    loop = run_loop_margins(result, limits, progress) if margin else None
+    ranged = loop is None or result.loaded.spec.has_ranges
+    return ProofMargins(
+        loop=loop,
+        box=run_margin(result, limits, progress) if margin and ranged else None,
+        dwell=run_shortest_dwell(result, limits, progress) if shortest_dwell else None,
+    )
 
 
 def _refuse_dwell(loaded: LoadedSpec, time: Time) -> None:

@@ -1,7 +1,8 @@
 """Settings of libraries, for all tests.
 
 One thread for small matrices, as the commands of the program set it: tests run side by side. And no
-deadline for examples of hypothesis: how fast a machine is decides nothing.
+deadline for examples of hypothesis: how fast a machine is decides nothing. By default they are few
+and the same each time; the slow session draws many, and others each time.
 
 Where no bytecode may be kept beside the sources, commands that run in processes of their own keep
 it in the cache of pytest: to compile all modules takes as long as to run them.
@@ -19,8 +20,9 @@ from hypothesis import settings
 from nrs_design.cli import COLLECT_AFTER
 
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
-settings.register_profile("untimed", deadline=None)
-settings.load_profile("untimed")
+settings.register_profile("few", deadline=None, max_examples=25, derandomize=True)
+settings.register_profile("many", deadline=None, max_examples=100)
+settings.load_profile("few")
 
 
 def pytest_configure(config: pytest.Config) -> None:

@@ -17,6 +17,7 @@ from flint import fmpq, fmpq_mat
 
 from nrs_design.cli import main
 from nrs_design.proof.evidence import AbstractEvidence, CommonQuadratic, UnstableMode
+from nrs_design.proof.evidence.function import AbstractFunction
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.system import Mode, SwitchedSystem, Time
 from nrs_design.spec import LoadedSpec, parse_exact, read_spec
@@ -162,6 +163,15 @@ def is_definite_by_ldl(M: Sequence[Sequence[Entry]]) -> bool:
             factor = rows[i][k] / pivot_row[k]
             rows[i] = [a - factor * b for a, b in zip(rows[i], pivot_row, strict=True)]
     return True
+
+
+def broken(system: SwitchedSystem, evidence: AbstractFunction) -> set[str]:
+    """Return where a function does not decrease at its rate, by another elimination."""
+    return {
+        failure.partition("rate ")[2]
+        for failure, form in evidence.forms(system)
+        if not is_definite_by_ldl(form)
+    }
 
 
 def is_stable_by_lyapunov(A: Sequence[Sequence[Entry]], *, discrete: bool = False) -> bool:

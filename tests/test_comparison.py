@@ -63,3 +63,26 @@ def test_what_only_one_side_has():
     ]
     assert Part.MARGINS in found.not_compared
     assert found.same == ()
+
+
+def test_rates_of_different_things_are_not_set_side_by_side():
+    reports = ROOT / "reports"
+    found = compare(reports / "soft-tissue.cert.json", reports / "soft-tissue-sampled.cert.json")
+    rates = {d.what: (d.before, d.after) for d in found.differences if "per step" in d.what}
+    rates |= {d.what: (d.before, d.after) for d in found.differences if d.what == "decay rate"}
+    (contraction,) = rates["contraction per step of 0.002 s"][1:]
+    assert 0 < float(contraction) < 1
+    assert rates["contraction per step of 0.002 s"][0] is None
+    assert rates["decay rate"] == ("3.9140625 1/s", None)
+    assert found.remarks[-1].startswith(
+        "The rates are not compared: a decay rate and a contraction"
+    )
+    alike = compare(reports / "soft-tissue.cert.json", reports / "force-limit.cert.json")
+    assert not any("rates" in remark for remark in alike.remarks)
+
+
+def test_gains_stand_with_their_units():
+    found = compare(ROOT / "reports/soft-tissue.cert.json", CERTIFICATE)
+    gains = {d.what: d.before for d in found.differences if d.part is Part.GAINS}
+    assert gains["motion.Kd"] == "2060 rpm*s/rad"
+    assert gains["withdrawal.Bt"].endswith(" N*m*s/rad")

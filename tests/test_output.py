@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from nrs_design.errors import OutputError
-from nrs_design.output import CERTIFICATE, GATE, PAGE, PDF, PNG, SCHEMA, write_output
+from nrs_design.output import CERTIFICATE, GATE, PAGE, PDF, PNG, SCHEMA, check_place, write_output
 from nrs_design.spec.schema import schema_text
 
 
@@ -143,4 +143,21 @@ def test_a_file_name_that_is_no_text_is_written_with_escapes(tmp_path):
 def test_the_name_of_a_device_is_refused(tmp_path, name):
     with pytest.raises(OutputError, match="device on Windows"):
         write_output(tmp_path / name, "x")
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize("name", ["nul.html", "file/page.html", "link", "file", "."])
+def test_a_place_is_refused_before_the_work_as_it_would_be_after_it(tmp_path, name):
+    (tmp_path / "file").write_text("precious")
+    (tmp_path / "link").symlink_to(tmp_path / "file")
+    with pytest.raises(OutputError) as before:
+        check_place(tmp_path / name, PAGE)
+    with pytest.raises(OutputError) as after:
+        write_output(tmp_path / name, "page", replaces=PAGE)
+    assert str(before.value) == str(after.value)
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["file", "link"]
+
+
+def test_a_place_that_is_free_stays_as_it_is(tmp_path):
+    check_place(tmp_path / "a/b/page.html", PAGE)
     assert list(tmp_path.iterdir()) == []

@@ -32,6 +32,7 @@ def test_settings_of_the_working_directory_are_not_read(tmp_path):
     assert done.stdout.split() == ["UTC", "100.0", str(tmp_path)], done.stderr
 
 
+@pytest.mark.slow
 def test_figures_are_the_same_beside_hostile_settings(tmp_path):
     pages = []
     for name in ("clean", "hostile"):

@@ -34,6 +34,7 @@ COMMANDS = (
     "diff",
     "audit",
     "check-lyapunov",
+    "simulate",
     "report",
     "reproduce",
     "export",

@@ -18,7 +18,7 @@ from nrs_design.cli.gradient_options import (
     StartMode,
     UpdateOrder,
 )
-from nrs_design.cli.loop_margins import loop_summary, print_loop_margins
+from nrs_design.cli.loop_margins import loop_summary
 from nrs_design.cli.options import (
     Budget,
     Json,
@@ -34,9 +34,10 @@ from nrs_design.search.gradient_settings import Coordinates, Gradient, Order
 from nrs_design.search.method import Method
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
     from fractions import Fraction
 
-    from nrs_design.pipeline import Result
+    from nrs_design.pipeline import ProofMargins, Result, Subset
     from nrs_design.search.certification import Certification
     from nrs_design.search.margin import BoxMargin, DwellMargin
 
@@ -47,6 +48,14 @@ LargestBox = Annotated[
         "--margin",
         help="Find the largest box of ranges with a proof, the smallest refuted; the same for "
         "delay and period of a sampled loop, and for what disturbs.",
+    ),
+]
+Subsets = Annotated[
+    bool,
+    typer.Option(
+        "--subsets",
+        help="Where not all is proved, find what is with as little left out as possible: ranges, "
+        "ages of the force sample, loss of contact.",
     ),
 ]
 ShortestDwell = Annotated[
@@ -69,6 +78,7 @@ def certify_switching(
     memory: Memory = None,
     margin: LargestBox = False,
     shortest_dwell: ShortestDwell = False,
+    subsets: Subsets = False,
     relaxation: Relaxation = 1.0,
     radius: Radius = 1.0,
     start_mode: StartMode = None,
@@ -85,22 +95,22 @@ def certify_switching(
     Example: nrs-design certify-switching specs/neuroboscope/soft-tissue.nrs.yaml
     """
     from nrs_design.certificates.certificate import dump
-    from nrs_design.output import CERTIFICATE, write_output
+    from nrs_design.output import CERTIFICATE, check_place, write_output
     from nrs_design.ownership import check_certificate, origin_of
     from nrs_design.pipeline import (
         Overrides,
         find_relief,
         limits_of,
         run_certification,
-        run_loop_margins,
-        run_margin,
-        run_shortest_dwell,
+        run_proof_margins,
+        run_subsets,
     )
     from nrs_design.spec import read_spec
 
     loaded = read_spec(spec)
     path = out or Path("reports") / f"{loaded.spec.name}.cert.json"
     check_certificate(spec, path)
+    check_place(path, CERTIFICATE)
     history: list[tuple[int, float]] = []
     gradient = Gradient(
         relaxation, radius, start_mode, order, seed, max_updates, gradient_coordinates
@@ -124,24 +134,54 @@ def certify_switching(
     if written is not None:
         note(f"certificate written to {written}", quiet=quiet or as_json)
     with progress(f"margins of {loaded.spec.name}", quiet=quiet, lines=True) as step:
-        loop = run_loop_margins(result, limits, step) if margin else None
-        ranged = loop is None or loaded.spec.has_ranges
-        box = run_margin(result, limits, step) if margin and ranged else None
-        dwell = run_shortest_dwell(result, limits, step) if shortest_dwell else None
+        margins = run_proof_margins(
+            result, limits, step, margin=margin, shortest_dwell=shortest_dwell
+        )
+        parts = run_subsets(result, limits, step) if subsets else None
     if as_json:
         told: dict[str, Any] = {"gradient_history": history} if history else {}
         told["relief"] = list(find_relief(result))
-        content = summary(result, written) | margins_summary(box, dwell) | told
-        content |= {} if loop is None else {"loop_margins": loop_summary(loop)}
+        content = summary(result, written) | margins_summary(margins.box, margins.dwell) | told
+        content |= {} if margins.loop is None else {"loop_margins": loop_summary(margins.loop)}
+        content["next_steps"] = list(_next_steps(result))
+        if parts is not None:
+            content["subsets"] = [{"left_out": p.left_out, "claim": p.claim} for p in parts]
         print_json("certify-switching", content)
     elif not quiet:
         _print(result, verbose=verbose)
         for relief in find_relief(result):
             say(f"  {relief}")
-        _print_margin(box)
-        print_loop_margins(loop)
-        _print_dwell(dwell)
+        for line in _margin_lines(margins, asked=margin or shortest_dwell):
+            say(f"  {line}")
+        _print_subsets(result, parts)
+        for line in _next_steps(result):
+            say(f"next: {line}")
     raise typer.Exit(exit_codes.OF_VERDICT[str(result.certification.verdict)])
+
+
+def _margin_lines(margins: ProofMargins, *, asked: bool) -> Iterator[str]:
+    # Reports are slow to load, and a bare proof says nothing that only they can.
+    if asked:
+        from nrs_design.reporting.margins import margin_lines
+
+        yield from margin_lines(margins)
+
+
+def _next_steps(result: Result) -> tuple[str, ...]:
+    if str(result.certification.verdict) == "proved":
+        return ()
+    from nrs_design.reporting.next_steps import next_steps
+
+    return next_steps(result)
+
+
+def _print_subsets(result: Result, parts: tuple[Subset, ...] | None) -> None:
+    if parts is None or str(result.certification.verdict) == "proved":
+        return
+    if not parts:
+        say("  nothing is proved with parts of the spec left out either")
+    for part in parts:
+        say(f"  proved without {' and '.join(part.left_out)}: {part.claim}")
 
 
 def summary(result: Result, path: Path | None) -> dict[str, Any]:
@@ -224,37 +264,6 @@ def margins_summary(box: BoxMargin | None, dwell: DwellMargin | None) -> dict[st
             "method": dwell.proof.method if dwell.proof else None,
         }
     return content
-
-
-def _print_margin(box: BoxMargin | None) -> None:
-    from nrs_design.proof.bounds import rounded_down, rounded_up
-
-    if box is None:
-        return
-    if box.proved is None or box.proof is None:
-        say("  largest box: not even the nominal values are proved")
-        return
-    beyond = ""
-    if box.refuted is not None:
-        beyond = f"; scaled by {rounded_up(box.refuted)} they are refuted"
-    say(
-        f"  largest box: scaled by {rounded_down(box.proved)} about their nominal values, all "
-        f"ranges are proved ({box.proof.method}){beyond}"
-    )
-
-
-def _print_dwell(dwell: DwellMargin | None) -> None:
-    from nrs_design.proof.bounds import rounded_down, rounded_up
-
-    if dwell is None:
-        return
-    proved = f"no proof up to {rounded_down(dwell.longest, 's')}, where the search ended"
-    if dwell.proved is not None and dwell.proof is not None:
-        proved = f"{rounded_up(dwell.proved, 's')} is proved ({dwell.proof.method})"
-    refuted = "" if dwell.proved == 0 else "; no dwell time was refuted"
-    if dwell.refuted is not None:
-        refuted = f"; {rounded_down(dwell.refuted, 's')} and all shorter ones are refuted"
-    say(f"  shortest dwell time: {proved}{refuted}")
 
 
 def _print(result: Result, *, verbose: bool) -> None:

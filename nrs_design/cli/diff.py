@@ -65,6 +65,7 @@ def _summary(found: Comparison) -> dict[str, Any]:
         ],
         "same": list(map(str, found.same)),
         "not_compared": list(map(str, found.not_compared)),
+        "remarks": list(found.remarks),
     }
 
 
@@ -84,8 +85,8 @@ def _print(found: Comparison) -> None:
             _print_text(item)
     if found.same:
         say(f"the same: {', '.join(found.same)}")
-    if found.not_compared:
-        say(f"not compared, since not both files tell it: {', '.join(found.not_compared)}")
+    for remark in found.remarks:
+        say(remark)
 
 
 def _print_text(item: Difference) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -99,7 +100,7 @@ def _list(*, as_json: bool) -> None:
 
 
 def _format(name: str) -> Format:
-    group = "robot" if name in ROBOT_FORMATS else name
+    group = "robot" if name in ROBOT_FORMATS.keys() - FORMATS.keys() else name
     if group in ("robot", "ros2"):
         raise NrsDesignError(
             f"{name} is not a format of this command", remedy=f"use `nrs-design {group} export`"
@@ -117,6 +118,11 @@ def _execution(chosen: Format, sample_time: str | None, *, unproved: bool) -> Ex
     from nrs_design.exporters.export import Execution
 
     if chosen.executable:
+        if not (chosen.provable or unproved):
+            raise NrsDesignError(
+                "no proof is about what this format writes",
+                remedy="add --unproved, or take another",
+            )
         period = None if sample_time is None else _seconds(sample_time)
         return Execution(period, unproved)
     if unproved or sample_time is not None:
@@ -161,22 +167,29 @@ def _export_design(
     for file in files.values():
         if file.resolve() == proof.resolve():
             raise OutputError("is the certificate file", path=file, remedy="choose another --out")
-    check_places(chosen, files)
+    check_places(chosen, files, name)
     check_certificate(spec, beside)
     with progress(f"exporting {name}", quiet=quiet) as step:
         result = export_design(loaded, certificate, step, execution)
+    remarks: tuple[str, ...] = ()
     if result.record is not None:
         # A design of which there is no program is told at its place in the spec.
         with placed(loaded):
-            _write(result, chosen, files, None if certificate else proof, spec)
+            remarks = _write(result, chosen, files, None if certificate else proof, spec)
     written = list(files.values()) if result.record else []
+    if result.verdict == "proved" and not chosen.provable:
+        reason = "what is proved is the step of one axis"
+        result = replace(result, verdict="inconclusive", reason=reason)
     if as_json:
-        print_json("export", _summary(name, result, written, proof))
+        summary = _summary(name, result, written, proof)
+        print_json("export", summary | ({"remarks": remarks} if chosen.remarks else {}))
     elif result.record is None:
         # Nothing was written, which is an error of its own.
         note(f"{name}: not exported: {result.reason}")
     elif not quiet:
         _say(name, result, written, proof)
+        for remark in remarks:
+            note(remark)
     raise typer.Exit(exit_codes.OF_VERDICT.get(result.verdict, exit_codes.REFUTED))
 
 
@@ -192,8 +205,8 @@ def _say(name: str, result: Export, written: list[Path], proof: Path) -> None:
 
 def _write(
     result: Export, chosen: Format, files: dict[str, Path], proof: Path | None, spec: Path
-) -> None:
-    """Write the certificate first: there is never an export without its proof."""
+) -> tuple[str, ...]:
+    """Write the certificate first: there is never an export without its proof; return remarks."""
     from importlib import import_module
 
     from nrs_design.certificates.certificate import dump
@@ -201,11 +214,13 @@ def _write(
     from nrs_design.output import CERTIFICATE, write_output
     from nrs_design.ownership import origin_of
 
-    contents = import_module(f"nrs_design.exporters.{chosen.module}").render(result)
+    module = import_module(f"nrs_design.exporters.{chosen.module}")
+    contents = module.render(result)
     if proof is not None and result.certificate is not None:
         text = dump(result.certificate, origin_of(spec, proof))
         write_output(proof, text, replaces=CERTIFICATE)
     write_files(chosen, files, contents)
+    return tuple(module.remarks(contents)) if chosen.remarks else ()
 
 
 def _summary(name: str, result: Export, written: list[Path], proof: Path) -> dict[str, Any]:

@@ -16,6 +16,12 @@ if TYPE_CHECKING:
     from nrs_design.spec import Spec
 
 
+NOMINAL = (
+    "Values in this table are nominal: contact at its nominal stiffness, gains as designed. Goals "
+    "and warnings are about the worst corner of the ranges."
+)
+
+
 def print_goals(name: str, items: Iterable[AbstractControllerAnalysis]) -> None:
     """Print what the spec asks for beside what is achieved at worst; nothing without goals."""
     from nrs_design.design.measures import MEANING

@@ -27,7 +27,10 @@ class TemplateOption(StrEnum):
 
 
 def init(
-    template: Annotated[TemplateOption, typer.Argument(metavar="TEMPLATE", show_choices=True)],
+    template: Annotated[
+        TemplateOption,
+        typer.Argument(metavar="TEMPLATE", show_choices=True, help="What to start from."),
+    ],
     out: Annotated[
         Path | None, typer.Option(help="File to write; default TEMPLATE.nrs.yaml.")
     ] = None,

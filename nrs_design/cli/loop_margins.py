@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from nrs_design.cli.printing import say
-
 if TYPE_CHECKING:
     from nrs_design.search.loop_margin import Bracket, LoopMargins
 
@@ -50,41 +48,3 @@ def _ends(bracket: Bracket) -> dict[str, float | None]:
         "proved": None if proved is None else lower_float(proved),
         "refuted": None if refuted is None else upper_float(refuted),
     }
-
-
-def print_loop_margins(margins: LoopMargins | None) -> None:
-    """Print what was found; nothing where a spec has neither samples nor disturbances.
-
-    Parameters
-    ----------
-    margins : LoopMargins or None
-        As `nrs_design.pipeline.run_loop_margins` finds them.
-    """
-    from nrs_design.proof.bounds import nearly, rounded_down
-
-    if margins is None:
-        return
-    if margins.delay is not None:
-        say(f"  longest delay of the force sample: {_said(margins.delay, 'samples')}")
-    if margins.period is not None:
-        said = _said(margins.period, "s")
-        say(f"  period: {said} (each for itself, nothing is said of those in between)")
-    if margins.command is not None:
-        limit, bounds = margins.command.limit, margins.command.bounds
-        kept = ", ".join(
-            f"|{name}| <= {rounded_down(kept, unit)}" for name, (kept, _, unit) in bounds.items()
-        )
-        broken = ", ".join(nearly(end, unit) for _, end, unit in bounds.values())
-        say(
-            f"  limit of {nearly(limit, 'N*m')}: proved to be kept for {kept}; a simulated run "
-            f"reaches it at {broken}"
-        )
-
-
-def _said(bracket: Bracket, unit: str) -> str:
-    from nrs_design.proof.bounds import nearly
-
-    proved, refuted = bracket.proved, bracket.refuted
-    said = "none is proved" if proved is None else f"{nearly(proved, unit)} is proved"
-    none = "no refutation was found"
-    return f"{said}, " + (none if refuted is None else f"{nearly(refuted, unit)} is refuted")

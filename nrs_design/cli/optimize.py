@@ -7,7 +7,14 @@ from typing import TYPE_CHECKING, Any
 
 import typer
 
-from nrs_design.cli.goals import exit_code, goals_summary, print_goals, print_warnings, warnings_of
+from nrs_design.cli.goals import (
+    NOMINAL,
+    exit_code,
+    goals_summary,
+    print_goals,
+    print_warnings,
+    warnings_of,
+)
 from nrs_design.cli.options import Json, Quiet, SpecFile
 from nrs_design.cli.printing import note, print_json, progress, say
 from nrs_design.cli.tables import print_table
@@ -91,6 +98,8 @@ def _summary(item: ImpedanceAnalysis) -> dict[str, Any]:
         "delay_margin_s": finite(margins.delay_margin),
         "disk_margin": finite(margins.disk_margin),
         "stiffness_limit": finite(margins.stiffness_limit),
+        "lever_arm_m": item.lever_arm,
+        "stiffness_limit_at_arm_N_m": item.limit_at_arm and finite(item.limit_at_arm),
         "passive_up_to_rad_s": passive and lower_float(passive),
         "not_passive_at_rad_s": broken and upper_float(broken),
         "creep": _creep(item),
@@ -174,7 +183,15 @@ def _print(name: str, analysis: DesignAnalysis) -> None:
         for item in analysis.impedance
     ]
     if rows:
-        print_table("", columns, rows)
+        print_table("at nominal values", columns, rows)
+        say(NOMINAL)
+    limits = [
+        f"{item.name} {item.limit_at_arm:.4g} N/m at {item.lever_arm:g} m"
+        for item in analysis.impedance
+        if item.limit_at_arm is not None and math.isfinite(item.limit_at_arm)
+    ]
+    if limits:
+        say(f"k limit where it is touched: {', '.join(limits)}")
 
 
 def _polynomial(coefficients: tuple[float, ...]) -> str:

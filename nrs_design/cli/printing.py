@@ -11,12 +11,15 @@ import shutil
 import sys
 import textwrap
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
+from time import monotonic
 from typing import Any, TextIO
 
 from nrs_design.printable import json_text, printable
 
 _CODES = {"red": "1;31", "green": "1;32", "yellow": "1;33", "blue": "1;34", "cyan": "36"}
+# Seconds after which a command that still works says so, where it shows no spinner.
+SILENCE = 20.0
 COLOURS = {"proved": "green", "refuted": "red", "rejected": "red", "inconclusive": "yellow"}
 
 
@@ -90,7 +93,7 @@ def wrapped(line: str, stream: TextIO, hanging: int = 2) -> str:
 def progress(
     title: str, *, quiet: bool = False, lines: bool = False
 ) -> Iterator[Callable[[str], None]]:
-    """Show a spinner with the current step on stderr, on a terminal only.
+    """Show the current step on stderr: a spinner on a terminal, elsewhere a line now and then.
 
     Parameters
     ----------
@@ -99,18 +102,48 @@ def progress(
     quiet : bool
         Whether to show nothing.
     lines : bool
-        Whether to write a line for each step where there is no terminal: for what takes minutes.
+        Whether to write a line for each step, too, where there is no terminal.
 
     Yields
     ------
     callable
         Tell it the name of the step that begins.
     """
-    if quiet or not sys.stderr.isatty():
-        yield lambda step: note(f"{title}: {step}", quiet=quiet or not lines)
+    if quiet:
+        yield lambda step: None
+        return
+    if not sys.stderr.isatty():
+        with _spoken(title, lines=lines) as tell:
+            yield tell
         return
     from rich.console import Console
     from rich.markup import escape
 
     with Console(stderr=True).status(title) as status:
         yield lambda step: status.update(f"{title}: {escape(printable(step))}")
+
+
+@contextmanager
+def _spoken(title: str, *, lines: bool) -> Iterator[Callable[[str], None]]:
+    """Say now and then which step it is, so that whoever reads a log sees that it goes on."""
+    from threading import Event, Thread
+
+    current, ended, start = [title], Event(), monotonic()
+
+    def tell(step: str) -> None:
+        current[0] = f"{title}: {step}"
+        note(current[0], quiet=not lines)
+
+    def speak() -> None:
+        # A reader that has gone ends the command where it prints its result.
+        with suppress(OSError):
+            while not ended.wait(SILENCE):
+                note(f"{current[0]} ({monotonic() - start:.0f} s)")
+
+    speaker = Thread(target=speak, daemon=True)
+    speaker.start()
+    try:
+        yield tell
+    finally:
+        ended.set()
+        speaker.join()

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from enum import StrEnum
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, NoReturn
 
 import typer
 
@@ -14,9 +14,12 @@ from nrs_design.cli.printing import note, print_json, progress, say
 from nrs_design.errors import DesignError
 
 if TYPE_CHECKING:
+    from datetime import datetime
+
     from nrs_design.design.analysis import DesignAnalysis
     from nrs_design.pipeline import Result
     from nrs_design.reporting import Report
+    from nrs_design.spec import LoadedSpec
 
 REPORTS = Path("reports")
 
@@ -49,6 +52,14 @@ def report(
         bool,
         typer.Option("--compare-methods", help="Add the gradient iteration beside the LMI."),
     ] = False,
+    margin: Annotated[
+        bool,
+        typer.Option("--margin", help="Add how far ranges, delay and period reach; takes minutes."),
+    ] = False,
+    shortest_dwell: Annotated[
+        bool,
+        typer.Option("--shortest-dwell", help="Add the shortest dwell time; takes minutes."),
+    ] = False,
     max_degree: MaxDegree = None,
     budget: Budget = None,
     memory: Memory = None,
@@ -57,26 +68,46 @@ def report(
 ) -> None:
     """Design, certify, and report it all with figures; the exit code is that of the verdict.
 
+    A robot spec gives a page about workspace, dynamics, correction and balance; the exit code is
+    then that of `robot check`.
+
     Example: nrs-design report specs/neuroboscope/soft-tissue.nrs.yaml --format pdf
     """
+    from nrs_design.output import PAGE, PDF, check_place
     from nrs_design.ownership import check_owner, check_page
-    from nrs_design.pipeline import Overrides, limits_of, run_certification, run_comparison
+    from nrs_design.pipeline import (
+        Overrides,
+        limits_of,
+        run_certification,
+        run_comparison,
+        run_proof_margins,
+    )
     from nrs_design.reporting import build_report
+    from nrs_design.reporting.next_steps import next_steps
     from nrs_design.spec import read_spec
 
     loaded = read_spec(spec)
+    if loaded.spec.kind == "robot":
+        _report_robot(loaded, file_format, out, date, as_json=as_json, quiet=quiet)
     if out is None:
         check_owner(spec, loaded.spec.name, REPORTS)
     else:
         check_page(spec, out)
+        if file_format is not ReportFormat.PNG:
+            check_place(out, PDF if file_format is ReportFormat.PDF else PAGE)
     with progress(f"reporting {loaded.spec.name}", quiet=quiet) as step:
         limits = limits_of(loaded.spec, Overrides(max_degree, budget, memory))
         result = run_certification(loaded, limits=limits, progress=step)
+        margins = run_proof_margins(
+            result, limits, step, margin=margin, shortest_dwell=shortest_dwell
+        )
         step("figures")
         day = date.date() if date else None
         runs = run_comparison(loaded, limits, progress=step)[1] if compare_methods else ()
         analysis = _analysis(result, quiet=quiet)
-        page = build_report(result, analysis, comparison=runs, times=times, date=day)
+        page = build_report(
+            result, analysis, comparison=runs, margins=margins, times=times, date=day
+        )
         files = _write(page, file_format, out, spec)
     verdict = str(result.certification.verdict)
     if as_json:
@@ -92,9 +123,51 @@ def report(
         )
     elif not quiet:
         say(f"{loaded.spec.name}: {verdict.upper()}", verdict=verdict)
+        for line in next_steps(result):
+            say(f"next: {line}")
         for path in files:
             note(f"written to {path}")
     raise typer.Exit(exit_codes.OF_VERDICT[verdict])
+
+
+def _report_robot(
+    loaded: LoadedSpec,
+    file_format: ReportFormat,
+    out: Path | None,
+    date: datetime | None,
+    *,
+    as_json: bool,
+    quiet: bool,
+) -> NoReturn:
+    """Report a robot; the exit code is that of `robot check`."""
+    from nrs_design.ownership import check_page
+    from nrs_design.pipeline import placed, run_robot
+    from nrs_design.reporting.robot import robot_report
+
+    spec = loaded.path
+    check_page(spec, out or REPORTS / f"{loaded.spec.name}.html")
+    with progress(f"reporting {loaded.spec.name}", quiet=quiet):
+        _, robot_spec, robot = run_robot(spec)
+        with placed(loaded):
+            page = robot_report(loaded, robot_spec, robot, date.date() if date else None)
+        files = _write(page, file_format, out, spec)
+    if as_json:
+        print_json(
+            "report",
+            {
+                "spec": loaded.spec.name,
+                "spec_sha256": loaded.sha256,
+                "verdict": page.verdict,
+                "certificate_id": None,
+                "files": [str(path) for path in files],
+            },
+        )
+    elif not quiet:
+        say(f"{loaded.spec.name}: {page.verdict}")
+        for path in files:
+            note(f"written to {path}")
+    reached = page.verdict == "reachable"
+    raise typer.Exit(exit_codes.PROVED if reached else exit_codes.REFUTED)
 
 
 def _analysis(result: Result, *, quiet: bool) -> DesignAnalysis | None:

@@ -29,11 +29,13 @@ def reproduce(
 
     Example: nrs-design reproduce --html reports/reproduce.html
     """
-    from nrs_design.output import PAGE, write_output
+    from nrs_design.output import PAGE, check_place, write_output
     from nrs_design.reproduction.comparison import drifted
     from nrs_design.reproduction.page import render_page
     from nrs_design.reproduction.table import reproduce as recompute
 
+    if html is not None:
+        check_place(html, PAGE)
     with progress("recomputing", quiet=quiet) as step:
         table = recompute(step)
     if html is not None:

@@ -7,7 +7,14 @@ from typing import TYPE_CHECKING, Any
 
 import typer
 
-from nrs_design.cli.goals import exit_code, goals_summary, print_goals, print_warnings, warnings_of
+from nrs_design.cli.goals import (
+    NOMINAL,
+    exit_code,
+    goals_summary,
+    print_goals,
+    print_warnings,
+    warnings_of,
+)
 from nrs_design.cli.optimize import motion_summary
 from nrs_design.cli.options import Json, Quiet, SpecFile
 from nrs_design.cli.printing import print_json, progress, say
@@ -125,7 +132,8 @@ def _print(name: str, design: ControllerDesign, analysis: DesignAnalysis) -> Non
     if analysis.motion_source == "given":
         say("The spec states G itself: the poles are those of that G, not of the PD gains.")
     if analysis.force:
-        print_table(f"{name}: force loop", FORCE_COLUMNS, _force_rows(analysis))
+        print_table(f"{name}: force loop, nominal", FORCE_COLUMNS, _force_rows(analysis))
+        say(NOMINAL)
         for item in analysis.force:
             if item.peak is not None:
                 say(_offset_text(item))

@@ -10,11 +10,14 @@ import typer
 
 from nrs_design.cli import exit_codes
 from nrs_design.cli.options import CoordinatesOption, Json, Quiet
-from nrs_design.cli.printing import print_json, say
+from nrs_design.cli.printing import print_json, progress, say
 
 if TYPE_CHECKING:
     from nrs_design.certificates.certificate import Certificate
     from nrs_design.spec import LoadedSpec, Spec
+
+# For each of the bounds of a robot, in s.
+BUDGET = 1800.0
 
 
 def verify(
@@ -39,6 +42,14 @@ def verify(
             "bit for bit.",
         ),
     ] = None,
+    bounds: Annotated[
+        bool,
+        typer.Option(
+            "--bounds",
+            help="Compute again what the links of the robot do to its axes, where the spec names "
+            "one: minutes.",
+        ),
+    ] = False,
     as_json: Json = False,
     quiet: Quiet = False,
 ) -> None:
@@ -50,11 +61,15 @@ def verify(
     With --deployed, the numbers in an exported file are compared with the certificate: the gains of
     a record; coefficients, limits and modes of a header. Code and comments are not compared.
 
+    Where the spec names a robot, the bounds on its links are read from the file beside it, and the
+    answer says so; --bounds computes them again, from the spec of the robot.
+
     Exit code 0: the proof holds. 1: the certificate is rejected, or it holds and refutes, or the
-    deployed numbers are others. 3: it holds, but decides nothing.
+    deployed numbers or the bounds of the robot are others. 3: it holds, but decides nothing.
 
     Example: nrs-design verify reports/soft-tissue.cert.json specs/neuroboscope/soft-tissue.nrs.yaml
     """
+    from nrs_design.certificates.units import gain_units
     from nrs_design.certificates.verify import verify as verify_file
     from nrs_design.spec import read_spec
 
@@ -64,6 +79,10 @@ def verify(
         raise typer.BadParameter("needs a SPEC, whose law it is", param_hint="--deployed")
     loaded = None if spec is None else read_spec(spec)
     outcome = verify_file(certificate, loaded, None if coordinates is None else str(coordinates))
+    robot = None if loaded is None else _robot_of(loaded)
+    if bounds and robot is None:
+        raise typer.BadParameter("needs a SPEC that names a robot", param_hint="--bounds")
+    faults = _bounds_faults(robot, quiet=quiet) if bounds and robot is not None else None
     checked = outcome.certificate if outcome.fault is None else None
     verdict = checked.verdict if checked else "rejected"
     differences = _differences(deployed, loaded, checked)
@@ -76,12 +95,15 @@ def verify(
                 "fault": outcome.fault,
                 "claims": claims,
                 "gains": dict(checked.gains) if checked else None,
+                "gain_units": gain_units(checked) if checked else None,
                 "assumptions": list(checked.system.assumptions) if checked else None,
                 "certificate": str(certificate),
                 "certificate_id": checked.id if checked else None,
                 "spec": None if spec is None else str(spec),
                 "deployed": None if deployed is None else str(deployed),
                 "differences": differences,
+                "robot": None if robot is None else str(robot),
+                "bounds_faults": faults,
             },
         )
     elif checked is None:
@@ -90,10 +112,45 @@ def verify(
         # What was deployed comes first: a proof of other numbers is no good news.
         if differences is not None:
             _print_deployed(deployed, differences, quiet=quiet)
+        if faults:
+            say("REJECTED: the bounds of the robot do not hold", verdict="rejected")
+            for line in faults:
+                say(f"  {line}")
         if not quiet:
             _print(checked, None if loaded is None else loaded.spec)
+        if robot is not None and not faults and not quiet:
+            say(_taken(robot, again=bounds))
     code = exit_codes.OF_VERDICT.get(verdict, exit_codes.REFUTED)
-    raise typer.Exit(exit_codes.REFUTED if differences else code)
+    raise typer.Exit(exit_codes.REFUTED if differences or faults else code)
+
+
+def _robot_of(loaded: LoadedSpec) -> Path | None:
+    """Return the file of the robot that a spec names."""
+    spec = loaded.spec
+    coupling = spec.coupling if spec.kind == "interaction-design" else None
+    return None if coupling is None or not coupling.robot else loaded.path.parent / coupling.robot
+
+
+def _bounds_faults(robot: Path, *, quiet: bool) -> list[str]:
+    from nrs_design.pipeline import check_bounds
+
+    with progress(f"bounds of {robot.name}", quiet=quiet, lines=True) as step:
+        return list(check_bounds(robot, BUDGET, step)[1])
+
+
+def _taken(robot: Path, *, again: bool) -> str:
+    if again:
+        return f"  bounds of {robot.as_posix()}: computed again, they hold"
+    return (
+        f"  taken for granted: the bounds of {robot.as_posix()}, as computed before; --bounds "
+        "computes them again"
+    )
+
+
+_NEXT = {
+    "refuted": "next: change gains or ranges; nrs-design report SPEC says what would help",
+    "inconclusive": "next: search longer, or narrow ranges; nrs-design report SPEC says how",
+}
 
 
 def _differences(
@@ -122,6 +179,8 @@ def _print_deployed(file: Path | None, differences: list[str], *, quiet: bool) -
 
 
 def _print(certificate: Certificate, spec: Spec | None) -> None:
+    from nrs_design.certificates.units import gain_units
+
     verdict = certificate.verdict
     if spec is None:
         say(f"{verdict.upper()} for the modes in the file, checked exactly.", verdict=verdict)
@@ -132,9 +191,13 @@ def _print(certificate: Certificate, spec: Spec | None) -> None:
         say(f"  {statement.claim(certificate.system)}")
     if certificate.coordinates:
         say(f"  coordinates: {certificate.coordinates}")
+    if verdict in _NEXT:
+        say(_NEXT[verdict])
+    units = gain_units(certificate)
     for name, gains in certificate.gains.items():
         if gains:
-            say(f"  {name}: " + ", ".join(f"{k} = {v}" for k, v in gains.items()))
+            said = (f"{gain} = {value} {units[name][gain]}" for gain, value in gains.items())
+            say(f"  {name}: {', '.join(said)}")
             for gain, low, high in _ranges(spec, name):
                 say(f"  {name}: {gain} anywhere in [{low}, {high}]")
 

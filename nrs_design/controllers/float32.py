@@ -36,7 +36,7 @@ def to_float32(value: Fraction) -> Fraction:
 
 
 def float32_not_above(value: Fraction) -> Fraction:
-    """Return the largest single-precision number that is not above a positive value.
+    """Return the largest single-precision number that is not above a value.
 
     Raises
     ------
@@ -46,9 +46,24 @@ def float32_not_above(value: Fraction) -> Fraction:
     rounded = to_float32(value)
     if rounded <= value:
         return rounded
+    if rounded == 0:
+        return -(Fraction(2) ** SMALLEST)
     (bits,) = struct.unpack("<I", struct.pack("<f", float(rounded)))
-    below: float = struct.unpack("<f", struct.pack("<I", bits - 1))[0]
+    # Bits count away from zero.
+    further = bits - 1 if rounded > 0 else bits + 1
+    below: float = struct.unpack("<f", struct.pack("<I", further))[0]
     return Fraction(below)
+
+
+def float32_not_below(value: Fraction) -> Fraction:
+    """Return the smallest single-precision number that is not below a value.
+
+    Raises
+    ------
+    DesignError
+        If the value is beyond the range of single precision.
+    """
+    return -float32_not_above(-value)
 
 
 def is_float32(value: Fraction) -> bool:

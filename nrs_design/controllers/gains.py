@@ -26,6 +26,24 @@ def gains_of(design: ControllerDesign) -> dict[str, dict[str, str]]:
     }
 
 
+def units_of(gains: Mapping[str, Mapping[str, str]], command: str) -> dict[str, dict[str, str]]:
+    """Return the units of gains that are named as `gains_of` names them.
+
+    Parameters
+    ----------
+    gains : mapping
+        By controller and name; the PD is ``motion``.
+    command : str
+        Unit of the commands that the motor takes.
+    """
+    units = {gain: unit for law in LAWS.values() for gain, unit in law.units.items()}
+    motion = ProportionalDerivative.units_in(command)
+    return {
+        name: {gain: (motion if name == MOTION else units).get(gain, "") for gain in values}
+        for name, values in gains.items()
+    }
+
+
 def design_from_gains(
     spec: InteractionDesignSpec, gains: Mapping[str, Mapping[str, str]]
 ) -> ControllerDesign:

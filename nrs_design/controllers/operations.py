@@ -4,24 +4,44 @@ The list is the one definition of the law. From it follow its exact linear map a
 term is rounded (`nrs_design.controllers.step_analysis`), the C (`nrs_design.exporters.c`) and the
 same steps in NumPy (`nrs_design.controllers.replica`).
 
-An operation is a sum, a difference, a product with a coefficient, or a saturation. Every one rounds
-once; a saturation does not round. The linear map is that of a step in which nothing saturates.
+An operation is one of `Kind`. Every one rounds once, as IEEE 754 says, square roots and quotients
+too; a saturation does not round, and a table that is interpolated rounds as `replica` does. None is
+a function of libm. The laws of a single axis are `LINEAR`: their map is that of a step in which
+nothing saturates.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from fractions import Fraction
 from typing import Literal
 
 from nrs_design.controllers.float32 import is_float32
+from nrs_design.controllers.step_logic import StepLogic
 
 # How the result of an operation, or the reading of an input, counts as rounded: with the terms that
 # it is made of; as a number of its own, of which the next operations take the rounded value; in
 # proportion to the largest angle, apart from all terms.
 Rounding = Literal["term", "own", "angle", "none"]
-Kind = Literal["add", "subtract", "multiply", "saturate"]
+Kind = Literal[
+    "add",
+    "subtract",
+    "multiply",
+    "saturate",
+    "shift",
+    "rest",
+    "product",
+    "divide",
+    "invert",
+    "root",
+    "interpolate",
+]
+LINEAR: frozenset[Kind] = frozenset({"add", "subtract", "multiply", "saturate"})
+# Of these, the left operand is a coefficient.
+WITH_COEFFICIENT: frozenset[Kind] = frozenset(
+    {"multiply", "saturate", "shift", "rest", "invert", "interpolate"}
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,6 +64,8 @@ class Value:
         Whether it is rounded when it is read, and how that counts.
     starts_at_angle : bool
         Whether a state is the measured angle at first; others are zero.
+    guarded : bool
+        Whether a value beyond its limit is refused as such; if not, the checks of results do it.
     """
 
     name: str
@@ -53,6 +75,7 @@ class Value:
     meaning: str
     rounding: Rounding = "none"
     starts_at_angle: bool = False
+    guarded: bool = True
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,29 +91,45 @@ class Coefficient:
     unit : str
         Its unit.
     values : tuple of Fraction
-        Single-precision numbers: one, or one for each mode.
+        Single-precision numbers: one, one for each mode, or those of a table.
+    inline : bool
+        Whether it is a number of the robot, without a name of its own in the exported code.
+    table : bool
+        Whether it is a table at equal distances, for `interpolate`.
     """
 
     name: str
     symbol: str
     unit: str
     values: tuple[Fraction, ...]
+    inline: bool = False
+    table: bool = False
+
+    @property
+    def by_mode(self) -> bool:
+        """Whether each mode has a number of its own."""
+        return len(self.values) > 1 and not self.table
 
     def of(self, mode: int) -> Fraction:
         """Return its value in a mode."""
-        return self.values[mode if len(self.values) > 1 else 0]
+        return self.values[mode if self.by_mode else 0]
 
 
 @dataclass(frozen=True, slots=True)
 class Operation:
-    """One operation; of `multiply` and `saturate` the left operand is a coefficient.
+    """One operation; of those in `WITH_COEFFICIENT` the left operand is a coefficient.
 
     Parameters
     ----------
     name : str
         Of the result.
-    kind : {"add", "subtract", "multiply", "saturate"}
-        Left plus right, left minus right, left times right, right within plus and minus left.
+    kind : str
+        ``add``, ``subtract``: left plus or minus right. ``multiply``: a coefficient times right.
+        ``saturate``: right within plus and minus a coefficient. ``shift``: right plus a
+        coefficient. ``rest``: a coefficient minus right. ``product``, ``divide``: left times or
+        over right. ``invert``: a coefficient over right. ``root``: the square root of right,
+        without a left operand. ``interpolate``: a table at right, which counts from its first entry
+        and ends at its last.
     left, right : str
         Names of values, of coefficients, or of results of operations before.
     rounding : {"term", "own", "angle"}
@@ -114,7 +153,7 @@ class StepLaw:
     Parameters
     ----------
     modes : tuple of str
-        Controllers, in the order of the spec.
+        Controllers, in the order of the spec; none where there is nothing to choose.
     inputs, states : tuple of Value
         What a step gets.
     coefficients : tuple of Coefficient
@@ -127,6 +166,10 @@ class StepLaw:
         Every state, and the result that it has after the step.
     units : mapping of str to str
         Of the outputs.
+    checks : mapping of str to Fraction
+        Results that have to be numbers within a limit; if one is not, the step is not valid.
+    logic : StepLogic or None
+        What chooses the mode, where the spec says it.
 
     Raises
     ------
@@ -142,36 +185,58 @@ class StepLaw:
     outputs: Mapping[str, str]
     following: Mapping[str, str]
     units: Mapping[str, str]
+    checks: Mapping[str, Fraction] = field(default_factory=dict)
+    logic: StepLogic | None = None
 
     def __post_init__(self) -> None:
         """Refuse a list that does not fit together."""
-        known = [value.name for value in (*self.inputs, *self.states)]
-        constants = {c.name for c in self.coefficients}
-        for operation in self.operations:
-            lefts = constants if operation.kind in ("multiply", "saturate") else known
-            if operation.left not in lefts or operation.right not in known:
-                raise ValueError(f"{operation.name} is computed from what is not there")
-            known.append(operation.name)
-        if len({*known, *constants}) != len(known) + len(self.coefficients):
-            raise ValueError("a name occurs twice")
+        self._check_operations()
         if set(self.following) != {state.name for state in self.states}:
             raise ValueError("every state needs the value that follows it, and nothing else")
         results = {operation.name for operation in self.operations}
-        if not {*self.outputs.values(), *self.following.values()} <= results:
+        if not {*self.outputs.values(), *self.following.values(), *self.checks} <= results:
             raise ValueError("an output, or the next state, is not computed")
+        self._check_numbers()
+
+    def _check_operations(self) -> None:
+        known = {value.name for value in self.values}
+        constants = {c.name: c for c in self.coefficients}
+        names = [*(value.name for value in self.values), *(c.name for c in self.coefficients)]
+        for operation in self.operations:
+            with_coefficient = operation.kind in WITH_COEFFICIENT
+            lefts = constants.keys() if with_coefficient else known
+            missing = operation.kind != "root" and operation.left not in lefts
+            if missing or operation.right not in known:
+                raise ValueError(f"{operation.name} is computed from what is not there")
+            of_table = with_coefficient and constants[operation.left].table
+            if of_table != (operation.kind == "interpolate"):
+                raise ValueError(f"{operation.name} is no use of a table")
+            known.add(operation.name)
+            names.append(operation.name)
+        if len({*names}) != len(names):
+            raise ValueError("a name occurs twice")
+
+    def _check_numbers(self) -> None:
         numbers = [
             *(n for c in self.coefficients for n in c.values),
             *(v.limit for v in self.values),
+            *self.checks.values(),
         ]
         if not all(map(is_float32, numbers)):
             raise ValueError("a coefficient or a limit is no single-precision number")
-        if {len(c.values) for c in self.coefficients} - {1, len(self.modes)}:
-            raise ValueError("a coefficient has a number for some modes only")
+        for c in self.coefficients:
+            if len(c.values) < 2 if c.table else len(c.values) not in (1, len(self.modes)):
+                raise ValueError("a coefficient has a number for some modes only")
 
     @property
     def values(self) -> tuple[Value, ...]:
         """Inputs and states, in this order."""
         return (*self.inputs, *self.states)
+
+    @property
+    def guarded(self) -> tuple[Value, ...]:
+        """Inputs and states that are refused beyond their limits."""
+        return tuple(value for value in self.values if value.guarded)
 
     @property
     def coefficient(self) -> Mapping[str, Coefficient]:

@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from fractions import Fraction
 from itertools import chain
 
-from nrs_design.controllers.operations import Operation, StepLaw
+from nrs_design.controllers.operations import LINEAR, Operation, StepLaw
 from nrs_design.controllers.sampled import Term
 from nrs_design.errors import DesignError
 from nrs_design.models.linear_form import LinearForm, combine
@@ -28,7 +28,13 @@ def linear_forms(law: StepLaw, mode: int, given: Mapping[str, LinearForm]) -> di
         Which controller is in force.
     given : mapping of str to LinearForm
         Inputs and states in coordinates of the caller's choice.
+
+    Raises
+    ------
+    ValueError
+        If the law is not linear.
     """
+    _check_linear(law)
     forms = dict(given)
     for operation in law.operations:
         right = forms[operation.right]
@@ -41,6 +47,12 @@ def linear_forms(law: StepLaw, mode: int, given: Mapping[str, LinearForm]) -> di
             sign = Fraction(1 if operation.kind == "add" else -1)
             forms[operation.name] = combine((Fraction(1), forms[operation.left]), (sign, right))
     return forms
+
+
+def _check_linear(law: StepLaw) -> None:
+    others = {operation.kind for operation in law.operations} - LINEAR
+    if others:
+        raise ValueError(f"not linear: {', '.join(sorted(others))}")
 
 
 def rounded_terms(
@@ -112,7 +124,10 @@ def check_range(law: StepLaw) -> None:
     ------
     DesignError
         If one can.
+    ValueError
+        If the law is not linear: its results are checked instead.
     """
+    _check_linear(law)
     bounds = {value.name: value.limit for value in law.values}
     for operation in law.operations:
         right = bounds[operation.right]

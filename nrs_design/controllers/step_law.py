@@ -9,68 +9,44 @@ from collections.abc import Collection, Iterator, Mapping
 from fractions import Fraction
 
 from nrs_design.controllers.operations import Coefficient, Operation, StepLaw, Value
-from nrs_design.controllers.sampled import (
-    SampledAdmittance,
-    SampledForce,
-    SampledLaw,
-    SampledMotion,
-)
-from nrs_design.controllers.sensor import SampledLowPass
+from nrs_design.controllers.sampled import SampledAdmittance, SampledForce, SampledLaw
 from nrs_design.controllers.step_parts import (
     BEYOND,
     HAND,
     VELOCITY,
+    StepFrame,
     StepLimits,
     admitted,
     error_before,
-    felt,
     filtered,
     lags,
-    motion_coefficients,
-    next_lags,
+    motion,
 )
-from nrs_design.controllers.step_parts import motion as motion_operations
 
 UNITS = {"command": "rpm"}
 ONE, ZERO = Fraction(1), Fraction(0)
 
 
-def build_step_law(
-    motion: SampledMotion,
-    laws: Mapping[str, SampledAdmittance],
-    low_pass: SampledLowPass | None = None,
-    limits: StepLimits | None = None,
-) -> StepLaw:
-    """Write impedance control out, operation by operation.
+def build_step_law(frame: StepFrame, laws: Mapping[str, SampledAdmittance]) -> StepLaw:
+    """Write impedance control out, by the names of its controllers.
 
-    Parameters
-    ----------
-    motion : SampledMotion
-        The motion controller.
-    laws : mapping of str to SampledAdmittance
-        By the names of their controllers; all have a virtual inertia, or none has.
-    low_pass : SampledLowPass or None
-        Through which the force passes on its way to them.
-    limits : StepLimits, optional
-        Without them, nothing saturates and inputs are refused where no robot gets.
+    All of them have a virtual inertia, or none has.
     """
-    limits = limits or StepLimits()
+    limits = frame.limits
     inert = any(law.a is not None for law in laws.values())
     sprung = any(law.Kt for law in laws.values())
-    order = 0 if low_pass is None else low_pass.order
-    following = {"reference": "next_reference", "error_before": "error", **next_lags(order)}
+    following = {"reference": "next_reference", **frame.memory}
     following |= {"velocity": "next_velocity"} if inert else {}
     following |= {"commanded": "next_commanded"} if sprung else {}
-    coefficients = [*motion_coefficients(motion, low_pass), *_admittances(laws), *_hand(limits)]
     return StepLaw(
         tuple(laws),
         (*limits.measured, HAND),
-        tuple(_states(limits, order, inert=inert, sprung=sprung)),
-        (*coefficients, *limits.coefficients),
+        tuple(_states(limits, frame.order, inert=inert, sprung=sprung)),
+        (*frame.coefficients, *_admittances(laws), *_hand(limits), *limits.coefficients),
         (
-            *filtered(order),
-            *motion_operations(limits),
-            *_moving(felt(order), inert=inert, sprung=sprung),
+            *filtered(frame.order),
+            *motion(limits),
+            *_moving(frame.force, inert=inert, sprung=sprung),
         ),
         limits.output,
         following,
@@ -78,48 +54,23 @@ def build_step_law(
     )
 
 
-def build_placed_law(
-    motion: SampledMotion,
-    laws: Mapping[str, SampledForce],
-    low_pass: SampledLowPass | None = None,
-    limits: StepLimits | None = None,
-) -> StepLaw:
-    """Write position and force control out; neither has a reference of its own.
-
-    Parameters
-    ----------
-    motion : SampledMotion
-        The motion controller.
-    laws : mapping of str to SampledForce
-        By the names of their controllers.
-    low_pass : SampledLowPass or None
-        Through which the force passes on its way to them.
-    limits : StepLimits, optional
-        Without them, nothing saturates and inputs are refused where no robot gets.
-    """
-    limits = limits or StepLimits()
-    order = 0 if low_pass is None else low_pass.order
-    coefficients = (*motion_coefficients(motion, low_pass), _force_gains(laws))
+def build_placed_law(frame: StepFrame, laws: Mapping[str, SampledForce]) -> StepLaw:
+    """Write position and force control out; neither has a reference of its own."""
+    limits = frame.limits
     place = Operation("reference", "add", "position", "correction", "angle")
     return StepLaw(
         tuple(laws),
         (*limits.measured, *limits.commanded),
-        (error_before(2 * BEYOND), *lags(order)),
-        (*coefficients, *limits.coefficients),
-        (*filtered(order), *_correction(felt(order)), place, *motion_operations(limits)),
+        (error_before(2 * BEYOND), *lags(frame.order)),
+        (*frame.coefficients, _force_gains(laws), *limits.coefficients),
+        (*filtered(frame.order), *_correction(frame.force), place, *motion(limits)),
         limits.output,
-        {"error_before": "error", **next_lags(order)},
+        frame.memory,
         UNITS,
     )
 
 
-def build_mixed_law(
-    motion: SampledMotion,
-    laws: Mapping[str, SampledLaw],
-    idle: Fraction,
-    low_pass: SampledLowPass | None = None,
-    limits: StepLimits | None = None,
-) -> StepLaw:
+def build_mixed_law(frame: StepFrame, laws: Mapping[str, SampledLaw], idle: Fraction) -> StepLaw:
     """Write impedance control beside position and force control out.
 
     The reference of impedance control is counted from the commanded position. While another
@@ -128,41 +79,37 @@ def build_mixed_law(
 
     Parameters
     ----------
-    motion : SampledMotion
-        The motion controller.
+    frame : StepFrame
+        Below and before all of them.
     laws : mapping of str to SampledAdmittance or SampledForce
         By the names of their controllers; no admittance has a spring, and all have an inertia or
         none has.
     idle : Fraction
-        What a sample leaves of the states of idle controllers.
-    low_pass : SampledLowPass or None
-        Through which the force passes on its way to them.
-    limits : StepLimits, optional
-        Without them, nothing saturates and inputs are refused where no robot gets.
+        What a sample leaves of the states of idle controllers; nothing where a switch resets them.
     """
-    limits = limits or StepLimits()
-    order = 0 if low_pass is None else low_pass.order
+    limits = frame.limits
     each = {n: law if isinstance(law, SampledAdmittance) else None for n, law in laws.items()}
     inert = any(law is not None and law.a is not None for law in each.values())
     offset = Value("offset", "r", "rad", limits.angle, "reference over the commanded position")
-    following = {"offset": "next_offset", "error_before": "error", **next_lags(order)}
+    following = {"offset": "next_offset", **frame.memory}
     following |= {"velocity": "next_velocity"} if inert else {}
-    coefficients = [
-        *motion_coefficients(motion, low_pass),
-        _force_gains(laws),
-        *_idle_admittances(each.values(), idle, inert=inert),
-        *_hand(limits),
-    ]
+    admittances = _idle_admittances(each.values(), idle, inert=inert)
+    ends = (*_hand(limits), *limits.coefficients)
     return StepLaw(
         tuple(laws),
         (*limits.measured, *limits.commanded, HAND),
-        (offset, error_before(2 * BEYOND), *([VELOCITY] if inert else []), *lags(order)),
-        (*coefficients, *limits.coefficients),
         (
-            *filtered(order),
-            *_mixed_reference(felt(order)),
-            *motion_operations(limits),
-            *admitted(felt(order), inert=inert),
+            offset,
+            error_before(2 * BEYOND),
+            *([VELOCITY] if inert else []),
+            *lags(frame.order),
+        ),
+        (*frame.coefficients, _force_gains(laws), *admittances, *ends),
+        (
+            *filtered(frame.order),
+            *_mixed_reference(frame.force),
+            *motion(limits),
+            *admitted(frame.force, inert=inert),
             Operation("left", "multiply", "d", "offset"),
             Operation("next_offset", "add", "left", "moved", "angle"),
         ),

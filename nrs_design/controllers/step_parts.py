@@ -71,15 +71,49 @@ def error_before(limit: Fraction) -> Value:
     return Value("error_before", "e before", "rad", limit, "error of motion a sample ago")
 
 
-def motion_coefficients(
-    motion: SampledMotion, low_pass: SampledLowPass | None
-) -> Iterator[Coefficient]:
-    """Yield the coefficients of the motion controller and of the filter of the force."""
-    yield Coefficient("Kp", "Kp", "rpm/rad", (motion.Kp,))
-    yield Coefficient("Kd_over_T", "D", "rpm/rad", (motion.D,))
-    if low_pass is not None:
-        yield Coefficient("p", "p", "1", (low_pass.p,))
-        yield Coefficient("q", "q", "1", (low_pass.q,))
+@dataclass(frozen=True, slots=True)
+class StepFrame:
+    """What all laws of a program have in common.
+
+    Parameters
+    ----------
+    motion : SampledMotion
+        The motion controller below them.
+    low_pass : SampledLowPass or None
+        Through which the force passes on its way to them.
+    limits : StepLimits
+        By default nothing saturates, and inputs are refused where no robot gets.
+    """
+
+    motion: SampledMotion
+    low_pass: SampledLowPass | None = None
+    limits: StepLimits = StepLimits()
+
+    @property
+    def order(self) -> int:
+        """How many lags the filter of the force has."""
+        return 0 if self.low_pass is None else self.low_pass.order
+
+    @property
+    def force(self) -> str:
+        """The name of the force that the laws take."""
+        return felt(self.order)
+
+    @property
+    def coefficients(self) -> tuple[Coefficient, ...]:
+        """Those of the motion controller and of the filter of the force."""
+        held = {"p": self.low_pass.p, "q": self.low_pass.q} if self.low_pass is not None else {}
+        return (
+            Coefficient("Kp", "Kp", "rpm/rad", (self.motion.Kp,)),
+            Coefficient("Kd_over_T", "D", "rpm/rad", (self.motion.D,)),
+            *(Coefficient(name, name, "1", (number,)) for name, number in held.items()),
+        )
+
+    @property
+    def memory(self) -> dict[str, str]:
+        """The states of motion controller and filter, and the results that follow them."""
+        lagging = {f"filtered_{i}": felt(i) for i in range(1, self.order + 1)}
+        return {"error_before": "error", **lagging}
 
 
 def motion(limits: StepLimits) -> Iterator[Operation]:
@@ -97,11 +131,6 @@ def lags(order: int) -> Iterator[Value]:
     """Yield the states of a filter with so many lags."""
     for i in range(1, order + 1):
         yield Value(f"filtered_{i}", f"x{i}", "N*m", BEYOND, f"torque behind lag {i} of the filter")
-
-
-def next_lags(order: int) -> dict[str, str]:
-    """Return the states of a filter, and the results that follow them."""
-    return {f"filtered_{i}": felt(i) for i in range(1, order + 1)}
 
 
 def felt(order: int) -> str:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Self
 
@@ -73,6 +73,11 @@ class ThresholdLogic:
             },
             {name: upper_float(stay.value) for name, stay in stays.items()},
         )
+
+    def conditions(self) -> Iterator[tuple[str, str, Mapping[str, tuple[float, float]]]]:
+        """Yield every switch: the controller that is left, the next one, bounds of the signals."""
+        for source, switches in self.switches.items():
+            yield from ((source, switch.target, switch.bounds) for switch in switches)
 
     def start(self) -> LogicState:
         """Return the state at the start; the timer runs from there."""

@@ -75,7 +75,7 @@ def creep_of(
     sampling = spec.sampling
     gain = 1 / lowest["Bt"]
     if sampling is not None:
-        period = sampling.period.exact
+        period = sampling.outer
         error = sensor.lasting
         if sensor.filter is not None:
             error *= sensor.filter.sampled(period).lasting_gain

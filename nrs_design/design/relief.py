@@ -42,7 +42,8 @@ def doubt_stiffness(
         text = (
             f"{name}: the stiffness of {contact.name}, up to {highest:.6g} N*m/rad, reaches the "
             f"limit {limit:.6g} N*m/rad of its gains; with Mt = {Mt:g} kg*m^2, {held} would hold "
-            "one such contact (continuous time, floating point, not a proof)"
+            "one such contact, all else nominal and without margin (continuous time, floating "
+            "point, not a proof)"
         )
         yield Doubt(("controllers", name), text)
 

@@ -11,10 +11,16 @@ from dataclasses import dataclass
 from types import MappingProxyType
 
 from nrs_design.output import (
+    C_AXES,
+    C_AXES_HEADER,
     C_HEADER,
+    C_MONITOR,
+    C_MONITOR_HEADER,
     C_SOURCE,
     C_TEST,
+    C_TEST_HEADER,
     EXPORT,
+    FMU,
     MAT,
     VECTOR_TABLE,
     VECTOR_TEST,
@@ -39,6 +45,10 @@ class Format:
         that begins otherwise is another's, and is not overwritten.
     executable : bool
         Whether a processor runs it, so that the proof must be about the sampled loop.
+    remarks : bool
+        Whether the module also has ``remarks``, which says what rendered files lack.
+    provable : bool
+        Whether a proof of the sampled loop is about these files.
     """
 
     module: str
@@ -46,6 +56,8 @@ class Format:
     needs: str
     files: Mapping[str, bytes]
     executable: bool = False
+    remarks: bool = False
+    provable: bool = True
 
 
 DESIGN = "a proof of the design"
@@ -66,6 +78,15 @@ FORMATS: Mapping[str, Format] = MappingProxyType(
             {".h": C_HEADER, ".c": C_SOURCE},
             executable=True,
         ),
+        "axes": Format(
+            "axes",
+            "C99: the admittances of three axes in one step, without the motor loop",
+            "--unproved: no proof is about this step",
+            {"_axes.h": C_AXES_HEADER, "_axes.c": C_AXES},
+            executable=True,
+            remarks=True,
+            provable=False,
+        ),
         "vectors": Format(
             "vectors",
             "inputs and exact outputs that any implementation of the law must give, with tests",
@@ -73,10 +94,26 @@ FORMATS: Mapping[str, Format] = MappingProxyType(
             {
                 ".vectors.json": VECTORS,
                 ".vectors.csv": VECTOR_TABLE,
+                "_test.h": C_TEST_HEADER,
                 "_test.c": C_TEST,
                 "_test.py": VECTOR_TEST,
             },
             executable=True,
+        ),
+        "monitor": Format(
+            "monitor",
+            "C99 that tells when a running loop first leaves its proof; takes the header of c",
+            SAMPLED,
+            {"_monitor.h": C_MONITOR_HEADER, "_monitor.c": C_MONITOR},
+            executable=True,
+        ),
+        "fmu": Format(
+            "fmu",
+            "the law for co-simulation by FMI 2.0, with sources, and compiled where cc is",
+            SAMPLED,
+            {".fmu": FMU},
+            executable=True,
+            remarks=True,
         ),
         "mat": Format(
             "matlab",
@@ -89,6 +126,20 @@ FORMATS: Mapping[str, Format] = MappingProxyType(
 # Of specs of kind robot, by `nrs-design robot export`.
 ROBOT_FORMATS: Mapping[str, Format] = MappingProxyType(
     {
+        "c": Format(
+            "robot_c",
+            "motion control and dynamics of the robot in C99, in single precision",
+            "a robot spec (robot export), and --unproved: nothing is proved of them",
+            {".h": C_HEADER, ".c": C_SOURCE},
+            executable=True,
+        ),
+        "vectors": Format(
+            "robot_vectors",
+            "inputs and exact outputs that any implementation of these laws must give",
+            "a robot spec (robot export), and --unproved: nothing is proved of them",
+            {".robot-vectors.json": b'{\n "schema": "nrs-design/robot-vectors/'},
+            executable=True,
+        ),
         "mjcf": Format(
             "mjcf",
             "the robot with its closed loops for MuJoCo",

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import re
 import textwrap
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 
 from nrs_design.controllers.operations import Coefficient, StepLaw, Value
+from nrs_design.controllers.step_logic import Bound, StepLogic
 from nrs_design.errors import DesignError
 from nrs_design.printable import printable
 
@@ -59,11 +60,34 @@ class CNames:
         """Return every macro of the header with its number: modes, coefficients and limits."""
         modes = {self.mode(mode): k for k, mode in enumerate(law.modes)}
         coefficients = {name: value for name, (_, value) in self.coefficients(law).items()}
-        limits = {self.limit(value): value.limit for value in law.values}
-        return {self.modes: len(law.modes), **modes, **coefficients, **limits}
+        limits = {self.limit(value): value.limit for value in law.guarded}
+        logic = {} if law.logic is None else self.logic(law.logic, law.modes)
+        return {self.modes: len(law.modes), **modes, **coefficients, **limits, **logic}
+
+    def threshold(self, index: int, bound: Bound) -> str:
+        """Return the macro of a bound of the switch with that number, counted from one."""
+        side = "ABOVE" if bound.above else "BELOW"
+        return f"{self.upper}_LOGIC_{index}_{bound.signal.upper()}_{side}"
+
+    def hold(self, controller: str) -> str:
+        """Return the macro of how many samples a mode is held."""
+        return f"{self.upper}_LOGIC_HOLD_OF_{_identifier(controller).upper()}"
+
+    @property
+    def start(self) -> str:
+        """The macro of the mode at first."""
+        return f"{self.upper}_LOGIC_START"
+
+    def logic(self, logic: StepLogic, modes: Sequence[str]) -> dict[str, int | Fraction]:
+        """Return the macros of a mode logic with their numbers."""
+        found: dict[str, int | Fraction] = {self.start: logic.start}
+        found |= {self.hold(m): stay for m, stay in zip(modes, logic.stays, strict=True)}
+        for index, switch in enumerate(logic.switches, 1):
+            found |= {self.threshold(index, bound): bound.threshold for bound in switch.bounds}
+        return found
 
     def coefficients(self, law: StepLaw) -> dict[str, tuple[Coefficient, Fraction]]:
-        """Return every coefficient of a law by its macro.
+        """Return every coefficient of a law that has a macro, by it.
 
         Raises
         ------
@@ -72,9 +96,11 @@ class CNames:
         """
         found: dict[str, tuple[Coefficient, Fraction]] = {}
         for coefficient in law.coefficients:
-            several = len(coefficient.values) > 1
-            for mode, value in zip(law.modes, coefficient.values, strict=False):
-                found[self.coefficient(coefficient, mode if several else "")] = coefficient, value
+            if coefficient.inline or coefficient.table:
+                continue
+            owners = law.modes if coefficient.by_mode else ("",)
+            for owner, value in zip(owners, coefficient.values, strict=True):
+                found[self.coefficient(coefficient, owner)] = coefficient, value
         if len({self.mode(name) for name in law.modes}) < len(law.modes):
             raise DesignError(
                 "two controllers have the same name in C",

@@ -14,10 +14,10 @@ from pathlib import Path
 from nrs_design.certificates.certificate import Certificate
 from nrs_design.controllers.float32 import exact_decimal, to_float32
 from nrs_design.controllers.gains import design_from_gains, idle_decay
+from nrs_design.controllers.shipped import shipped_law
 from nrs_design.errors import DesignError, NrsDesignError
 from nrs_design.exporters.c_names import CNames
 from nrs_design.exporters.record import ExportRecord
-from nrs_design.exporters.shipped import shipped_law
 from nrs_design.files import open_regular
 from nrs_design.proof.text import exact_text
 from nrs_design.spec import InteractionDesignSpec
@@ -92,6 +92,12 @@ def _of_header(
             "holds a law in steps, and the certificate is about continuous time",
             path=file,
             remedy="name a certificate of a spec with `sampling`",
+        )
+    if certificate.system.clock is not None:
+        raise NrsDesignError(
+            "holds a law of one period, and the certificate is about two",
+            path=file,
+            remedy="name a certificate of a spec without `outer_period`",
         )
     law = shipped_law(spec, design_from_gains(spec, certificate.gains), period)
     names = CNames(spec.name)

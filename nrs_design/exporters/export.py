@@ -107,6 +107,7 @@ def export_design(
             f"a spec of kind {loaded.spec.kind} has no gains to export",
             "use a spec of kind interaction-design",
         )
+    _check_one_period(loaded, loaded.spec)
     period = None if execution is None else _period(loaded, loaded.spec, execution.sample_time)
     export = (
         _certified_afresh(loaded, progress)
@@ -117,6 +118,16 @@ def export_design(
     if execution is None or period is None or export.verdict == "rejected":
         return export
     return _executable(loaded, export, period, unproved=execution.unproved)
+
+
+def _check_one_period(loaded: LoadedSpec, spec: InteractionDesignSpec) -> None:
+    if spec.sampling is not None and spec.sampling.round > 1:
+        raise DesignError(
+            "an export has room for one period, and the outer loop has its own",
+            path=loaded.path,
+            remedy="leave outer_period out to export; the report has the gains",
+            at=("sampling", "outer_period"),
+        )
 
 
 def _certified_afresh(loaded: LoadedSpec, progress: Progress) -> Export:

@@ -1,31 +1,16 @@
-"""The law that an export ships, as operations: from the same gains and the same sampling."""
+"""The law of an export that a processor runs."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import replace
 from fractions import Fraction
 
-from nrs_design.controllers.controller_design import ControllerDesign
-from nrs_design.controllers.float32 import float32_not_above
-from nrs_design.controllers.gains import idle_share
 from nrs_design.controllers.operations import StepLaw
-from nrs_design.controllers.sampled import (
-    SampledAdmittance,
-    SampledForce,
-    SampledLaw,
-    SampledMotion,
-)
-from nrs_design.controllers.step_analysis import check_range
-from nrs_design.controllers.step_law import build_mixed_law, build_placed_law, build_step_law
-from nrs_design.controllers.step_parts import BEYOND, StepLimits
-from nrs_design.errors import DesignError
+from nrs_design.controllers.shipped import shipped_law
 from nrs_design.exporters.export import Export
-from nrs_design.spec import InteractionDesignSpec
 
 
 def law_of(export: Export) -> StepLaw:
-    """Return the law of an export that a processor runs.
+    """Return the law of an export, as operations.
 
     Raises
     ------
@@ -37,108 +22,3 @@ def law_of(export: Export) -> StepLaw:
     assert export.design is not None
     assert record.sample_time is not None
     return shipped_law(export.spec, export.design, Fraction(record.sample_time.exact))
-
-
-def shipped_law(spec: InteractionDesignSpec, design: ControllerDesign, period: Fraction) -> StepLaw:
-    """Write the law of a design out for a sample time.
-
-    Parameters
-    ----------
-    spec : InteractionDesignSpec
-        Its limits, and the method by which an admittance becomes a step.
-    design : ControllerDesign
-        Gains that ship.
-    period : Fraction
-        Sample time in s.
-
-    Raises
-    ------
-    DesignError
-        If a controller has no step yet, or a step could leave single precision.
-    """
-    method = "exact" if spec.sampling is None else spec.sampling.admittance
-    laws: dict[str, SampledLaw] = {}
-    for controller in design.controllers:
-        sampled = controller.law.sampled(period, method)
-        if sampled is None:
-            what = f"{controller.name} is a {controller.law.name} controller"
-            raise _without_program(what, controller.name)
-        laws[controller.name] = sampled
-    law = _step_law(spec, design, laws, period)
-    check_range(law)
-    return _in_commands(law, design.command)
-
-
-def _step_law(
-    spec: InteractionDesignSpec,
-    design: ControllerDesign,
-    laws: Mapping[str, SampledLaw],
-    period: Fraction,
-) -> StepLaw:
-    motion, limits = SampledMotion.of(design.motion, period), limits_of(spec)
-    low_pass = None if design.sensor.filter is None else design.sensor.filter.sampled(period)
-    moving = {name: law for name, law in laws.items() if isinstance(law, SampledAdmittance)}
-    placed = {name: law for name, law in laws.items() if isinstance(law, SampledForce)}
-    if spec.offset != "none":
-        raise _without_program("force control takes an offset", next(iter(placed)))
-    if placed and not moving:
-        return build_placed_law(motion, placed, low_pass, limits)
-    if len({law.a is None for law in moving.values()}) > 1:
-        raise DesignError(
-            "some impedance controllers have a virtual inertia and some have none",
-            remedy="give all of them an inertia Mt > 0, or none",
-            at=("controllers",),
-        )
-    if not placed:
-        return build_step_law(motion, moving, low_pass, limits)
-    _check_mixed(spec, moving, next(iter(placed)))
-    assert spec.idle_states is not None, "a spec with both kinds has them"
-    idle = idle_share(spec.idle_states, period)
-    return build_mixed_law(motion, laws, idle, low_pass, limits)
-
-
-def _check_mixed(
-    spec: InteractionDesignSpec, moving: Mapping[str, SampledAdmittance], other: str
-) -> None:
-    """Refuse what the program of both kinds of controllers would not do as it is proved."""
-    if any(law.Kt for law in moving.values()):
-        raise _without_program(f"a spring of impedance control beside {other}", other)
-    if spec.idle_states is not None and spec.idle_states.reset:
-        raise _without_program(f"a reset of idle states beside {other}", other)
-
-
-def _in_commands(law: StepLaw, command: str) -> StepLaw:
-    """Name the unit that the motor takes, where the law says rpm; its numbers are in it already."""
-    units = {name: _renamed(unit, command) for name, unit in law.units.items()}
-    coefficients = tuple(replace(c, unit=_renamed(c.unit, command)) for c in law.coefficients)
-    return replace(law, units=units, coefficients=coefficients)
-
-
-def _renamed(unit: str, command: str) -> str:
-    return command + unit.removeprefix("rpm") if unit.startswith("rpm") else unit
-
-
-def _without_program(what: str, controller: str) -> DesignError:
-    return DesignError(
-        f"{what}, of which there is no program",
-        remedy="export the gains alone, with --format json",
-        at=("controllers", controller),
-    )
-
-
-def limits_of(spec: InteractionDesignSpec) -> StepLimits:
-    """Return the limits of a spec in single precision, none of them above what is written.
-
-    Parameters
-    ----------
-    spec : InteractionDesignSpec
-        With a largest angle and a largest speed command, or without.
-    """
-    angle, command = BEYOND, spec.limits.command
-    if spec.disturbances is not None and spec.disturbances.largest_angle is not None:
-        angle = float32_not_above(spec.disturbances.largest_angle.not_above)
-    return StepLimits(
-        angle,
-        float32_not_above(spec.limits.velocity.not_above),
-        None if command is None else float32_not_above(command.not_above),
-    )

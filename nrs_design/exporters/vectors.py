@@ -10,17 +10,19 @@ from __future__ import annotations
 import json
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from nrs_design.controllers.operations import StepLaw
 from nrs_design.controllers.replica import Single, step
-from nrs_design.exporters.c_names import CNames, comment, harmless
+from nrs_design.exporters.c_names import CNames, harmless
 from nrs_design.exporters.export import Export
-from nrs_design.exporters.header import header_lines
-from nrs_design.exporters.shipped import law_of
-from nrs_design.output import C_TEST, VECTOR_TABLE
+from nrs_design.exporters.logic_cases import logic_document
+from nrs_design.exporters.program import program_of
+from nrs_design.exporters.self_test import program_macro, self_test
+from nrs_design.output import VECTOR_TABLE
 
 COUNT, SEED = 1000, 2026
 SCHEMA = "nrs-design/vectors/1"
@@ -57,12 +59,13 @@ def render(export: Export) -> dict[str, bytes]:
     DesignError
         If there is no program of a controller yet.
     """
-    record, law = export.shipped(), law_of(export)
-    names, vectors, lines = CNames(record.spec.name), make_vectors(law), header_lines(record)
+    program = program_of(export)
+    law, names, lines = program.law, program.names, program.about
+    vectors = make_vectors(law)
     return {
         ".vectors.json": json_text(law, vectors, lines).encode(),
         ".vectors.csv": csv_text(vectors, lines).encode(),
-        "_test.c": c_test(law, vectors, names, lines).encode(),
+        **self_test(law, vectors.columns, vectors.rows, names, lines),
         "_test.py": pytest_text(names, lines).encode(),
     }
 
@@ -82,14 +85,14 @@ def make_vectors(law: StepLaw, count: int = COUNT, seed: int = SEED) -> Vectors:
     # The bits of this generator are fixed; what NumPy makes of them may change.
     draw = np.random.PCG64(seed).random_raw
     wild = draw(count) % 4 == 0
-    modes = len(law.modes)
+    modes = max(len(law.modes), 1)
     mode = (draw(count) % (modes + wild).astype(np.uint64)).astype(np.uint32)
     given: dict[str, Single] = {}
     for value in law.values:
         scale = np.float32(min(float(value.limit), 1.0))
         given[value.name] = _draw(draw(count), draw(count), wild, scale)
     result = step(law, mode, given)
-    parts: dict[str, NDArray[np.uint32]] = {"mode": mode}
+    parts: dict[str, NDArray[np.uint32]] = {"mode": mode} if law.modes else {}
     parts |= {v.name: _bits(given[v.name]) for v in law.inputs}
     parts |= {f"before.{v.name}": _bits(given[v.name]) for v in law.states}
     parts |= {name: _bits(values) for name, values in result.outputs.items()}
@@ -129,21 +132,30 @@ def json_text(law: StepLaw, vectors: Vectors, about: tuple[str, ...]) -> str:
     about : tuple of str
         What every exported file says of itself.
     """
-    head = {
+    head: dict[str, Any] = {
         "schema": SCHEMA,
         "about": list(about),
         "numbers": "mode and valid as integers, all others as bits of IEEE 754 single precision, "
         "big end first, in hexadecimal",
         "modes": list(law.modes),
+        **law_document(law, vectors),
+    }
+    if law.logic is not None:
+        head["logic"] = logic_document(law.logic)
+    text = json.dumps(head, indent=2).removesuffix("\n}")
+    rows = ",\n".join(f"    {json.dumps(row)}" for row in rows_of(vectors))
+    return f'{text},\n  "cases": [\n{rows}\n  ]\n}}\n'
+
+
+def law_document(law: StepLaw, vectors: Vectors) -> dict[str, Any]:
+    """Return what a document says of the columns of the cases of a law."""
+    return {
         "inputs": [value.name for value in law.inputs],
         "states": [value.name for value in law.states],
         "outputs": list(law.outputs),
         "units": _units(law),
         "columns": list(vectors.columns),
     }
-    text = json.dumps(head, indent=2).removesuffix("\n}")
-    rows = ",\n".join(f"    {json.dumps(row)}" for row in _rows(vectors))
-    return f'{text},\n  "cases": [\n{rows}\n  ]\n}}\n'
 
 
 def csv_text(vectors: Vectors, about: tuple[str, ...]) -> str:
@@ -161,10 +173,11 @@ def csv_text(vectors: Vectors, about: tuple[str, ...]) -> str:
         *(f"# {line}" for line in about),
         ",".join(vectors.columns),
     ]
-    return "\n".join([*lines, *(",".join(map(str, row)) for row in _rows(vectors))]) + "\n"
+    return "\n".join([*lines, *(",".join(map(str, row)) for row in rows_of(vectors))]) + "\n"
 
 
-def _rows(vectors: Vectors) -> Iterator[list[int | str]]:
+def rows_of(vectors: Vectors) -> Iterator[list[int | str]]:
+    """Yield the cases: mode and valid as integers, all others as bits in hexadecimal."""
     whole = [name in ("mode", "valid") for name in vectors.columns]
     for row in vectors.rows.tolist():
         yield [n if plain else f"{n:08x}" for n, plain in zip(row, whole, strict=True)]
@@ -172,96 +185,6 @@ def _rows(vectors: Vectors) -> Iterator[list[int | str]]:
 
 def _units(law: StepLaw) -> Mapping[str, str]:
     return {value.name: value.unit for value in law.values} | dict(law.units)
-
-
-def c_test(law: StepLaw, vectors: Vectors, names: CNames, about: tuple[str, ...]) -> str:
-    """Return a program that runs all cases and fails if one bit is another.
-
-    Parameters
-    ----------
-    law : StepLaw
-        The law.
-    vectors : Vectors
-        Its cases.
-    names : CNames
-        Of its spec.
-    about : tuple of str
-        What every exported file says of itself.
-    """
-    own, column = names.lower, {name: i for i, name in enumerate(vectors.columns)}
-    table = ",\n".join(
-        "    {" + ", ".join(f"0x{n:x}U" for n in row) + "}" for row in vectors.rows.tolist()
-    )
-    reads = [f"in.{v.name} = from_bits(row[{column[v.name]}]);" for v in law.inputs]
-    reads += [f"state.{v.name} = from_bits(row[{column[f'before.{v.name}']}]);" for v in law.states]
-    checks = [f"(to_bits(out.{name}) == row[{column[name]}])" for name in law.outputs]
-    checks += [f"(to_bits(state.{v.name}) == row[{column[f'after.{v.name}']}])" for v in law.states]
-    starts = [
-        f"(to_bits(state.{v.name}) == to_bits({'in.angle' if v.starts_at_angle else '0.0F'}))"
-        for v in law.states
-    ]
-    return f"""\
-{comment(about, C_TEST)}
-#include "{names.spec}.h"
-
-#include <stdbool.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <string.h>
-
-static const uint32_t cases[{len(vectors.rows)}][{len(vectors.columns)}] = {{
-{table}
-}};
-
-static float from_bits(uint32_t bits)
-{{
-    float value;
-    (void)memcpy(&value, &bits, sizeof value);
-    return value;
-}}
-
-static uint32_t to_bits(float value)
-{{
-    uint32_t bits;
-    (void)memcpy(&bits, &value, sizeof bits);
-    return bits;
-}}
-
-int main(void)
-{{
-    unsigned long wrong = 0UL;
-    unsigned long k;
-    for (k = 0UL; k < {len(vectors.rows)}UL; k++) {{
-        const uint32_t *row = cases[k];
-        {own}_input_t in;
-        {own}_state_t state;
-        {own}_output_t out;
-        bool same;
-        in.mode = row[0];
-        {_lines(reads)}
-        {own}_step(&in, &state, &out);
-        same = ((out.valid ? 1U : 0U) == row[{column["valid"]}]) &&
-            {_all(checks)};
-        {own}_init(&state, in.angle);
-        same = same &&
-            {_all(starts)};
-        if (!same) {{
-            (void)printf("case %lu differs\\n", k);
-            wrong++;
-        }}
-    }}
-    (void)printf("%lu of {len(vectors.rows)} cases differ\\n", wrong);
-    return (wrong == 0UL) ? 0 : 1;
-}}
-"""
-
-
-def _lines(statements: list[str]) -> str:
-    return "\n        ".join(statements)
-
-
-def _all(conditions: list[str]) -> str:
-    return " &&\n            ".join(conditions)
 
 
 def pytest_text(names: CNames, about: tuple[str, ...]) -> str:
@@ -275,7 +198,8 @@ def pytest_text(names: CNames, about: tuple[str, ...]) -> str:
         What every exported file says of itself.
     """
     comments = "\n".join(f"# {harmless(line)}" for line in about)
-    return _PYTEST.replace("SPEC_NAME", names.spec).replace("# ABOUT", comments)
+    text = _PYTEST.replace("SPEC_NAME", names.spec).replace("TEST_PROGRAM", program_macro(names))
+    return text.replace("# ABOUT", comments)
 
 
 _PYTEST = '''\
@@ -336,7 +260,7 @@ def test_an_implementation_in_python():
 def test_the_exported_c(tmp_path, level):
     program = tmp_path / "test"
     files = [str(HERE / "SPEC_NAME.c"), str(HERE / "SPEC_NAME_test.c")]
-    flags = ["-std=c99", "-ffp-contract=off", level, "-I", str(HERE)]
+    flags = ["-std=c99", "-ffp-contract=off", "-DTEST_PROGRAM", level, "-I", str(HERE)]
     subprocess.run(["cc", *flags, *files, "-o", str(program)], check=True)
     subprocess.run([str(program)], check=True)
 '''

@@ -2,12 +2,17 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 from pathlib import Path
 
 from nrs_design.errors import OutputError
 from nrs_design.exporters import Format
-from nrs_design.output import check_replaceable, write_output
+from nrs_design.output import check_place, write_output
+from nrs_design.ownership import check_name
+
+# Of a file, such as .txt or .h5; a version of a folder, such as .2, is none.
+_ENDING = re.compile(r"\.[A-Za-z]\w{0,7}")
 
 
 def places(format_: Format, name: str, out: Path) -> dict[str, Path]:
@@ -21,15 +26,31 @@ def places(format_: Format, name: str, out: Path) -> dict[str, Path]:
         Of the spec.
     out : Path
         A folder. Where the format has one file only, that may be named, with its ending.
+
+    Raises
+    ------
+    OutputError
+        If a file seems to be meant that is none of this format.
     """
     files = {ending: out / f"{name}{ending}" for ending in format_.files}
-    if len(files) == 1 and not out.is_dir():
+    if out.is_dir():
+        return files
+    if len(files) == 1:
         ((ending, path),) = files.items()
-        return {ending: out if out.suffix == path.suffix else path}
+        if out.suffix == path.suffix:
+            return {ending: out}
+    if _ENDING.fullmatch(out.suffix) and not out.exists():
+        endings = ", ".join(format_.files)
+        raise OutputError(
+            f"seems to be a file, and this format writes {name} with {endings}",
+            path=out,
+            remedy="name a folder (one with such a name must be there already)"
+            + (f", or a file that ends in {endings}" if len(files) == 1 else ""),
+        )
     return files
 
 
-def check_places(format_: Format, files: Mapping[str, Path]) -> None:
+def check_places(format_: Format, files: Mapping[str, Path], name: str | None = None) -> None:
     """Refuse to go on where something else stands in the place of a file.
 
     Parameters
@@ -38,18 +59,23 @@ def check_places(format_: Format, files: Mapping[str, Path]) -> None:
         It says how its files begin.
     files : mapping of str to Path
         As `places` gives them.
+    name : str, optional
+        Of the spec of a design; a file that says that it is another's stays.
 
     Raises
     ------
     OutputError
-        If the folder is none, or a file is not one of this format.
+        If the folder is none or lies behind a link, or a file is a link, or none of this format or
+        of this spec.
     """
     for ending, path in files.items():
         if path.parent.exists() and not path.parent.is_dir():
             raise OutputError(
                 "is a file, not a folder", path=path.parent, remedy="choose another --out"
             )
-        check_replaceable(path, format_.files[ending])
+        check_place(path, format_.files[ending])
+        if name is not None:
+            check_name(name, path)
 
 
 def write_files(format_: Format, files: Mapping[str, Path], contents: Mapping[str, bytes]) -> None:

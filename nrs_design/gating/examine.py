@@ -226,7 +226,7 @@ class Examiner:
             proved = certificate is not None and certificate.verdict == Verdict.PROVED
             said = "nothing was proved"
             if proved:
-                least = spec.sampling.delay[0] * spec.sampling.period.exact
+                least = spec.sampling.delay[0] * spec.sampling.outer
                 ages = f"{rounded_up(least, 's')} to {rounded_down(oldest, 's')} old"
                 said = f"the loop is proved for force samples {ages}"
             met = proved and oldest >= goals.delay.exact

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 from nrs_design import __version__
 from nrs_design.certificates.bounds import bounds_summary
 from nrs_design.certificates.certificate import Certificate
+from nrs_design.certificates.units import gain_units
 from nrs_design.certificates.verify import verify
 from nrs_design.gating.examine import Examiner, certified_rate
 from nrs_design.gating.lock import Lock, LockedSpec, relative_to_lock
@@ -147,6 +148,7 @@ def _confirmed(
         certificate=place,
         certificate_id=certificate.id,
         gains=certificate.gains,
+        units=gain_units(certificate),
         bounds=bounds_summary(certificate.system, certificate.statements),
         cautions=tuple(examiner.cautions(None)),
     )

@@ -125,6 +125,8 @@ class SpecOutcome:
     gains : mapping
         What the obligations are about: designed gains (float32, as exact decimals) by controller;
         empty for given matrices.
+    units : mapping
+        Of these gains, likewise.
     certifiable : bool
         False for a spec that is valid and makes no claim about switching, such as a robot: there
         is no verdict, and nothing to lock.
@@ -145,6 +147,7 @@ class SpecOutcome:
     certificate: Path | None = None
     certificate_id: str | None = None
     gains: Mapping[str, Mapping[str, str]] = field(default_factory=dict)
+    units: Mapping[str, Mapping[str, str]] = field(default_factory=dict)
     certifiable: bool = True
     cautions: tuple[Caution, ...] = ()
     bounds: Sequence[Mapping[str, Any]] = ()

@@ -35,6 +35,9 @@ def make_lock(specs: Iterable[SpecOutcome], file: Path) -> Lock:
 def write_lock(outcome: GateOutcome, file: Path, *, prune: bool = False) -> GateOutcome:
     """Renew the entries of the specs that were examined, keep the others, and note it.
 
+    A spec that has no verdict now keeps its entry if it has not changed: what was locked is
+    re-checked exactly.
+
     Parameters
     ----------
     outcome : GateOutcome
@@ -55,8 +58,10 @@ def write_lock(outcome: GateOutcome, file: Path, *, prune: bool = False) -> Gate
         if spec.certificate is not None:
             check_folder(spec.certificate.parent, file)
     fresh = make_lock(outcome.specs, file).specs
-    examined = {relative_to_lock(spec.path, file) for spec in outcome.specs if _is_there(spec)}
-    old = [entry for entry in read_lock_if_any(file).specs if entry.path not in examined]
+    present = filter(_is_there, outcome.specs)
+    examined = {relative_to_lock(spec.path, file): spec for spec in present}
+    locked = read_lock_if_any(file).specs
+    old = [e for e in locked if e.path not in examined or _still_holds(e, examined[e.path])]
     gone = {entry.path for entry in old if not os.path.isfile(file.parent / entry.path)}
     written = {entry.certificate.file for entry in fresh if entry.certificate is not None}
     # A spec that was renamed: its certificate is now found under the new name of the file.
@@ -68,9 +73,13 @@ def write_lock(outcome: GateOutcome, file: Path, *, prune: bool = False) -> Gate
         entries = sorted([*kept, *fresh], key=lambda entry: entry.path)
         write_output(file, dump_lock(Lock(specs=entries)), replaces=LOCK)
         outcome = outcome.with_note(f"{file} written")
-    missing = [str(s.path) for s in outcome.specs if s.certifiable and s.verdict is None]
+    pending = [s.path for s in outcome.specs if s.certifiable and s.verdict is None]
+    names = {entry.path for entry in kept}
+    missing = [str(path) for path in pending if relative_to_lock(path, file) not in names]
+    unchanged = {str(path) for path in pending if os.path.isfile(path)}.difference(missing)
     for text, paths in (
         (f"not in {file}, for want of a verdict", missing),
+        (f"without a verdict now, but unchanged, so still in {file}", unchanged),
         (f"removed from {file}", dropped),
         (f"no longer there, but in {file} (--prune removes it)", gone - dropped),
     ):
@@ -82,6 +91,11 @@ def write_lock(outcome: GateOutcome, file: Path, *, prune: bool = False) -> Gate
 def _is_there(spec: SpecOutcome) -> bool:
     """Tell whether the outcome is about a file: one that is gone keeps its entry."""
     return os.path.isfile(spec.path)
+
+
+def _still_holds(entry: LockedSpec, spec: SpecOutcome) -> bool:
+    """Tell whether nothing was decided about a spec that is what was locked."""
+    return spec.verdict is None and spec.sha256 == entry.sha256
 
 
 def certificates_of(lock: Lock, file: Path) -> Mapping[Path, Path]:

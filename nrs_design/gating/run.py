@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections import Counter
+from collections import defaultdict
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -106,14 +106,12 @@ def run_gate(
         A spec that fails is part of it, and does not keep the others from being examined.
     """
     read = [_read(path) for path in specs]
-    shared = _shared_names(item for item in read if isinstance(item, LoadedSpec))
+    namesakes = _namesakes(item for item in read if isinstance(item, LoadedSpec))
     return GateOutcome(
         tuple(
             item
             if isinstance(item, SpecOutcome)
-            else _examine_safely(
-                item, item.spec.name.casefold() in shared, files, progress, overrides
-            )
+            else _examine_safely(item, namesakes.get(item.path), files, progress, overrides)
             for item in read
         )
     )
@@ -128,22 +126,26 @@ def _read(path: Path) -> LoadedSpec | SpecOutcome:
         return failed(path, error)
 
 
-def _shared_names(specs: Iterable[LoadedSpec]) -> set[str]:
-    # Some file systems do not tell capitals from small letters.
-    counts = Counter(loaded.spec.name.casefold() for loaded in specs)
-    return {name for name, count in counts.items() if count > 1}
+def _namesakes(specs: Iterable[LoadedSpec]) -> dict[Path, Path]:
+    """Return another spec of the same name, for those that have one."""
+    named: defaultdict[str, list[Path]] = defaultdict(list)
+    for loaded in specs:
+        # Some file systems do not tell capitals from small letters.
+        named[loaded.spec.name.casefold()].append(loaded.path)
+    shared = (paths for paths in named.values() if len(paths) > 1)
+    return {path: paths[paths[0] == path] for paths in shared for path in paths}
 
 
 def _examine_safely(
     loaded: LoadedSpec,
-    shares_its_name: bool,
+    namesake: Path | None,
     files: Files,
     progress: Progress,
     overrides: Overrides | None,
 ) -> SpecOutcome:
     try:
-        if shares_its_name:
-            raise _shared_name(loaded)
+        if namesake is not None:
+            raise _shared_name(loaded, namesake)
         return _examine(
             loaded, files, lambda step: progress(f"{loaded.spec.name}: {step}"), overrides
         )
@@ -152,11 +154,10 @@ def _examine_safely(
         return failed(loaded.path, error, loaded.sha256)
 
 
-def _shared_name(loaded: LoadedSpec) -> SpecError:
+def _shared_name(loaded: LoadedSpec, namesake: Path) -> SpecError:
     place = Places(loaded).at("name")
     return SpecError(
-        f"another spec is named {loaded.spec.name!r} too, and their files would overwrite each "
-        "other",
+        f"{namesake} is named {loaded.spec.name!r} too, and their files would overwrite each other",
         path=loaded.path,
         line=place.line,
         column=place.column,
@@ -202,6 +203,7 @@ def _examine(
         certificate=file,
         certificate_id=None if certificate is None else certificate.id,
         gains=gains_of(result.design) if result.design else {},
+        units=result.design.units if result.design else {},
         bounds=bounds_summary(certification.system, certification.statements),
         cautions=cautions,
     )

@@ -253,7 +253,7 @@ def merge_delay(loaded: LoadedSpec, found: DelayIdentification) -> str:
             remedy="name the force as measured by --command and the force that the law used by "
             "--measured; dynamics between them belong into the model",
         )
-    low, high = found.in_periods(spec.sampling.period.exact)
+    low, high = found.in_periods(spec.sampling.outer)
     if high > LONGEST_DELAY:
         raise DataError(
             f"the force is up to {high} periods old, a spec takes {LONGEST_DELAY} at most",

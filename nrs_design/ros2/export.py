@@ -113,6 +113,12 @@ def _sampling(designed: Designed) -> SamplingSpec:
             "the spec does not say when its law runs and how old its force is",
             remedy="add `sampling: {period: 2 ms, delay: [0, 1]}`",
         )
+    if designed.spec.sampling.round > 1:
+        raise DesignError(
+            "a controller of ros2_control has one period, and the outer loop has its own",
+            remedy="leave outer_period out",
+            at=("sampling", "outer_period"),
+        )
     for controller in designed.design.controllers:
         gains = controller.law.gains
         if gains.keys() != {"Mt", "Bt"} or not gains["Mt"]:

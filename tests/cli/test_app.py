@@ -195,9 +195,9 @@ def start(tmp_path, *command, **environment):
     )
 
 
-@pytest.mark.parametrize("name", ["typer", "rich", "ruamel", "json", "pydantic", "numpy"])
-def test_as_a_module_it_imports_nothing_from_the_working_folder(tmp_path, name):
-    (tmp_path / f"{name}.py").write_text("raise SystemExit('taken over')")
+def test_as_a_module_it_imports_nothing_from_the_working_folder(tmp_path):
+    for name in ("typer", "rich", "ruamel", "json", "pydantic", "numpy"):
+        (tmp_path / f"{name}.py").write_text("raise SystemExit('taken over')")
     result = start(tmp_path, "-m", "nrs_design", "certify-switching", COMMUTING)
     assert result.returncode == 0, result.stderr
     assert "taken over" not in result.stderr
@@ -228,7 +228,7 @@ def test_a_warning_of_a_library_is_no_verdict(tmp_path, how):
 
 
 @pytest.mark.parametrize("spec", ["a\udcff.nrs.yaml", "::error::\u202e\x1b[31m\n.nrs.yaml"])
-@pytest.mark.parametrize("encoding", ["ascii", "utf-8"])
+@pytest.mark.parametrize("encoding", ["ascii", pytest.param("utf-8", marks=pytest.mark.slow)])
 def test_a_hostile_file_name_is_shown_and_changes_no_exit_code(tmp_path, spec, encoding):
     (tmp_path / spec).write_bytes(COMMUTING.read_bytes())
     program = ("-m", "nrs_design")

@@ -66,7 +66,7 @@ def test_an_edited_spec_renews_its_certificate_and_a_copy_does_not(tmp_path):
 
 
 def test_refuted(tmp_path):
-    result = typed("certify-switching", PRINT_ERROR, cwd=tmp_path)
+    result = run("certify-switching", PRINT_ERROR, cwd=tmp_path)
     assert result.returncode == 1
     assert "REFUTED" in result.stdout
     assert "eigenvalue about 10.6523 +- 17.71j" in result.stdout
@@ -142,14 +142,14 @@ def test_examples_of_what_must_fail(tmp_path, name):
     assert run("verify", f"reports/{name}.cert.json", path, cwd=tmp_path).returncode == 1
 
 
-def slow_if_sampled(path):
-    """Sampled loops have many modes; the gate's test and the gate itself prove them, too."""
-    marks = [pytest.mark.slow] if "sampled" in path.name else []
+def mostly_slow(path):
+    """The gate itself proves them all, too."""
+    marks = [] if path.stem in ("commuting.nrs", "soft-tissue.nrs") else [pytest.mark.slow]
     return pytest.param(path, id=path.stem, marks=marks)
 
 
 @pytest.mark.parametrize(
-    "path", [slow_if_sampled(path) for path in SHIPPED if path.parent.name != "robots"]
+    "path", [mostly_slow(path) for path in SHIPPED if path.parent.name != "robots"]
 )
 def test_shipped_specs_are_proved(tmp_path, path):
     result = run("certify-switching", path, "--out", "c.json", cwd=tmp_path)
@@ -204,6 +204,7 @@ def test_highest_degree(tmp_path):
         assert result.returncode == code, degree
 
 
+@pytest.mark.slow
 def test_margin_of_the_oscillator(tmp_path):
     """Zelentsovsky 1994: stable up to 6.98513, so no larger box can be proved."""
     arguments = ("certify-switching", RANGES, "--margin", "--max-degree", 6)
@@ -384,16 +385,21 @@ def test_the_default_degree_follows_the_budget(tmp_path):
 
 def test_a_spec_says_how_far_the_search_goes_and_options_override_it(tmp_path):
     path = write_spec(tmp_path / "eleven.nrs.yaml", *HARD).path
-    path.write_text(path.read_text() + "certification: {max_degree: 6, budget: 20 s}\n")
+    path.write_text(path.read_text() + "certification: {max_degree: 4, budget: 20 s}\n")
     result = run("certify-switching", path, cwd=tmp_path)
-    assert "polynomial of degree 8: not tried: --max-degree is 6" in result.stdout
-    result = run("certify-switching", path, "--max-degree", 4, cwd=tmp_path)
     assert "polynomial of degree 6: not tried: --max-degree is 4" in result.stdout
-    result = run("report", path, "--max-degree", 4, cwd=tmp_path)
+    result = run("certify-switching", path, "--max-degree", 2, cwd=tmp_path)
+    assert "polynomial of degree 4: not tried: --max-degree is 2" in result.stdout
+    result = run("gate", path, "--max-degree", 2, "--no-reports", cwd=tmp_path)
     assert result.returncode == 3
-    result = run("gate", path, "--max-degree", 4, "--no-reports", cwd=tmp_path)
+    assert "not tried: --max-degree is 2" in result.stdout
+
+
+@pytest.mark.slow
+def test_options_of_the_search_are_those_of_a_report_and_of_memory_too(tmp_path):
+    path = write_spec(tmp_path / "eleven.nrs.yaml", *HARD).path
+    result = run("report", path, "--max-degree", 2, cwd=tmp_path)
     assert result.returncode == 3
-    assert "not tried: --max-degree is 4" in result.stdout
     result = run("certify-switching", path, "--memory", "1e-9", cwd=tmp_path)
     assert "GB are allowed (--memory)" in result.stdout
 
@@ -429,9 +435,7 @@ def test_verbose_lists_every_step(tmp_path):
     assert "lmi: found" in result.stdout
 
 
-@pytest.mark.parametrize(
-    "environment", [{}, {"NO_COLOR": "1"}, {"FORCE_COLOR": "1", "NO_COLOR": "1"}]
-)
+@pytest.mark.parametrize("environment", [{}, {"FORCE_COLOR": "1", "NO_COLOR": "1"}])
 def test_no_color_in_a_pipe(tmp_path, environment):
     result = typed("certify-switching", COMMUTING, "-v", cwd=tmp_path, environment=environment)
     assert "\x1b" not in result.stdout + result.stderr
@@ -447,6 +451,14 @@ def test_unwritable_output(tmp_path):
         assert result.stdout == ""
     assert (tmp_path / "file").read_text() == "precious"
     assert sorted(path.name for path in tmp_path.iterdir()) == ["file", "link"]
+
+
+def test_a_place_that_cannot_be_written_is_refused_before_the_search(tmp_path, monkeypatch):
+    (tmp_path / "file").write_text("precious")
+    monkeypatch.setattr("nrs_design.pipeline.run_certification", None)
+    result = run("certify-switching", COMMUTING, "--out", "file/c.json", cwd=tmp_path)
+    assert result.returncode == 2
+    assert "cannot be written (Not a directory)" in result.stderr
 
 
 def test_coordinates(tmp_path):
@@ -498,18 +510,18 @@ def test_full_disk(tmp_path, unbuffered):
 
 
 @pytest.mark.parametrize(
-    ("command", "closed"),
+    ("command", "spec", "closed"),
     [
-        ("certify-switching", ">&-"),
-        ("certify-switching", "2>&-"),
-        ("certify-switching", ">&- 2>&-"),
-        ("tune", ">&-"),
+        ("certify-switching", COMMUTING, ">&-"),
+        ("certify-switching", COMMUTING, "2>&-"),
+        ("certify-switching", COMMUTING, ">&- 2>&-"),
+        ("tune", SOFT_TISSUE, ">&-"),
     ],
 )
-def test_closed_streams(tmp_path, command, closed):
+def test_closed_streams(tmp_path, command, spec, closed):
     line = f'exec "$0" -m nrs_design {command} "$1" {closed}'
     result = subprocess.run(
-        ["sh", "-c", line, sys.executable, str(SOFT_TISSUE)],
+        ["sh", "-c", line, sys.executable, str(spec)],
         capture_output=True,
         text=True,
         cwd=tmp_path,
@@ -611,7 +623,7 @@ AT_ONCE = ROOT / "docs" / "examples" / "tissue-and-tool-at-once.nrs.yaml"
 
 def test_tissue_and_tool_touched_at_once(tmp_path):
     """Thesis 6.1 and 6.3.2: 104.7 N m/rad is beyond the 75.9 of the withdrawal."""
-    result = typed("certify-switching", AT_ONCE, cwd=tmp_path)
+    result = run("certify-switching", AT_ONCE, cwd=tmp_path)
     assert result.returncode == 1, result.stderr
     assert "Mode withdrawal/soft+stiff/k-max is not Hurwitz" in result.stdout
     assert "up to 104.696 N*m/rad, reaches the limit 75.9465 N*m/rad" in result.stdout

@@ -12,7 +12,7 @@ def test_text_and_exit_codes(tmp_path):
     done = run("diff", COMMUTING, CERTIFICATE, cwd=tmp_path)
     assert done.returncode == 0, done.stderr
     assert "the same: gains, verdict, assumptions" in done.stdout
-    assert "not compared, since not both files tell it: spec, margins" in done.stdout
+    assert "Not compared, since not both files tell it: spec, margins." in done.stdout
     done = run("diff", CERTIFICATE, OTHER, cwd=tmp_path)
     assert done.returncode == 1
     assert "decay rate" in done.stdout

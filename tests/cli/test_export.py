@@ -1,5 +1,7 @@
 import json
 import re
+import shutil
+import subprocess
 import sys
 from dataclasses import replace
 from pathlib import Path
@@ -226,13 +228,30 @@ def test_options_of_programs(export, capsys, monkeypatch):
 SLOW = SPECS.parent / "docs/examples/slow-processor.nrs.yaml"
 
 
-def sampled_spec():
+def sampled_text():
     """Insertion alone, every 2 ms: proved in a moment."""
     head, _, _ = SPEC.read_text().partition("  withdrawal:")
     sampling = "switching: arbitrary\nsampling: {period: 2 ms, delay: 0}\n"
-    text = head.replace("name: soft-tissue", "name: every-2-ms") + sampling
-    Path("every-2-ms.nrs.yaml").write_text(text)
+    return head.replace("name: soft-tissue", "name: every-2-ms") + sampling
+
+
+def sampled_spec():
+    Path("every-2-ms.nrs.yaml").write_text(sampled_text())
     return "every-2-ms.nrs.yaml"
+
+
+@pytest.fixture(scope="module")
+def sampled_certificate(tmp_path_factory):
+    file = tmp_path_factory.mktemp("sampled") / "every-2-ms.nrs.yaml"
+    file.write_text(sampled_text())
+    return dump(run_certification(read_spec(file)).certificate)
+
+
+@pytest.fixture
+def sampled(export, sampled_certificate):
+    """A spec and its certificate, in the folder where the command is typed."""
+    Path("mine.json").write_text(sampled_certificate)
+    return sampled_spec(), "mine.json"
 
 
 def test_programs_with_a_proof_of_the_sampled_loop(export, capsys):
@@ -241,7 +260,16 @@ def test_programs_with_a_proof_of_the_sampled_loop(export, capsys):
     assert "every-2-ms: PROVED" in capsys.readouterr().out
     proved = (spec, "--out", "out", "--certificate", "out/every-2-ms.cert.json")
     assert export(*proved, "--format", "vectors", "--quiet") == 0
-    endings = (".c", ".cert.json", ".h", ".vectors.csv", ".vectors.json", "_test.c", "_test.py")
+    endings = (
+        ".c",
+        ".cert.json",
+        ".h",
+        ".vectors.csv",
+        ".vectors.json",
+        "_test.c",
+        "_test.h",
+        "_test.py",
+    )
     assert files() == [spec, *(f"out/every-2-ms{ending}" for ending in endings)]
     before = {name: Path(name).read_bytes() for name in files()}
     assert export(*proved, "--format", "c") == 0
@@ -251,6 +279,65 @@ def test_programs_with_a_proof_of_the_sampled_loop(export, capsys):
     before = {name: Path(name).read_bytes() for name in files()}
     assert export(*proved, "--format", "c") == 2
     assert {name: Path(name).read_bytes() for name in files()} == before
+
+
+@pytest.mark.parametrize("name", ["c", "json", "mat", "vectors", "fmu"])
+def test_the_export_of_another_spec_is_not_overwritten(export, capsys, sampled, name):
+    """Whatever its name: it says inside whose it is."""
+    spec, certificate = sampled
+    options = ("--certificate", certificate, "--format", name, "--out", "out")
+    assert export(spec, *options) == 0
+    for path in [*Path("out").iterdir()]:
+        # An older text of the same spec is replaced, one of another spec stays.
+        path.write_bytes(path.read_bytes().replace(b"every-2-ms", b"each-2-ms-"))
+    before = {file: Path(file).read_bytes() for file in files()}
+    capsys.readouterr()
+    assert export(spec, *options) == 2
+    assert "was exported for the spec each-2-ms-" in capsys.readouterr().err
+    assert {file: Path(file).read_bytes() for file in files()} == before
+
+
+def test_two_laws_make_one_program(export, sampled):
+    """Tests of both are beside them, and neither brings a `main` that nobody asked for."""
+    cc = shutil.which("cc") or pytest.skip("there is no compiler cc")
+    spec, certificate = sampled
+    Path("other.nrs.yaml").write_text(Path(spec).read_text().replace("every-2-ms", "other"))
+    for options in ((spec, "--certificate", certificate), ("other.nrs.yaml",)):
+        for name in ("c", "vectors"):
+            assert export(*options, "--format", name, "--out", "out", "-q") == 0
+    Path("main.c").write_text(
+        """#include "other_test.h"
+#include "every-2-ms_test.h"
+int main(void) { return nrs_other_self_test() + nrs_every_2_ms_self_test() + 2; }
+"""
+    )
+    sources = sorted(map(str, Path("out").glob("*.c")))
+    flags = ("-std=c99", "-ffp-contract=off", "-Iout", "-o", "program")
+    subprocess.run([cc, *flags, "main.c", *sources], check=True)
+    subprocess.run(["./program"], check=True)
+    subprocess.run([cc, *flags, "-DNRS_OTHER_TEST_PROGRAM", *sources], check=True)
+    done = subprocess.run(["./program"], check=True, capture_output=True)
+    assert done.stdout == b"other: all 1000 cases are the same\n"
+
+
+@pytest.mark.parametrize("name", ["x.txt", "x.c", "x.h"])
+def test_a_file_that_no_format_writes_is_no_folder(export, capsys, sampled, name):
+    spec, certificate = sampled
+    before = files()
+    assert export(spec, "--certificate", certificate, "--format", "c", "--out", name) == 2
+    assert "seems to be a file" in capsys.readouterr().err
+    assert files() == before
+
+
+def test_a_co_simulation_model(export, capsys, sampled, monkeypatch):
+    spec, certificate = sampled
+    options = ("--certificate", certificate, "--format", "fmu")
+    monkeypatch.setattr("nrs_design.exporters.fmu.compiler", lambda: None)
+    assert export(spec, *options, "--out", "model.fmu") == 0
+    assert "sources only" in capsys.readouterr().err
+    assert export(spec, *options, "--out", "model.fmu", "--json") == 0
+    (remark,) = json.loads(capsys.readouterr().out)["remarks"]
+    assert "sources only" in remark
 
 
 def test_a_refuted_program_says_so_in_every_file(export, capsys):
@@ -271,3 +358,14 @@ def test_what_has_no_program_is_told_at_its_place(export, capsys):
     assert export(parallel, *options) == 2
     assert files() == []
     assert re.search(r"parallel\.nrs\.yaml:\d+:\d+", capsys.readouterr().err)
+
+
+@pytest.mark.slow
+def test_axes_are_never_exported_as_proved(export, capsys):
+    """The proof of a sampled loop is about the step of one axis."""
+    command = (SPECS / "neuroboscope/soft-tissue-sampled.nrs.yaml", "--format", "axes")
+    assert export(*command) == 2
+    assert "no proof is about" in capsys.readouterr().err
+    assert files() == []
+    assert export(*command, "--unproved") == 3
+    assert "UNPROVED (what is proved is the step of one axis)" in capsys.readouterr().out

@@ -319,7 +319,7 @@ def test_a_missed_goal_is_missed_when_locked_and_gains_are_shown(gate, capsys):
         assert gate("specs", *arguments) == 1
         out = capsys.readouterr().out
         assert "NRS103 missed: design goal: the stiffness of soft" in out
-        assert "insertion Mt 0.01, Bt 2.15" in out
+        assert "insertion Mt 0.01 kg*m^2, Bt 2.15 N*m*s/rad" in out
 
 
 def test_the_document_may_not_replace_a_spec(gate):

@@ -6,7 +6,9 @@ from fractions import Fraction
 
 import pytest
 
-from nrs_design.cli.loop_margins import loop_summary, print_loop_margins
+from nrs_design.cli.loop_margins import loop_summary
+from nrs_design.pipeline import ProofMargins
+from nrs_design.reporting.margins import margin_lines
 from nrs_design.search.loop_margin import Bracket, CommandMargin, LoopMargins
 from tests.support import SOFT_TISSUE, run
 
@@ -29,11 +31,9 @@ def test_doubles_stay_on_the_side_that_is_true():
     assert loop_summary(LoopMargins(None, None, None)) == {}
 
 
-def test_what_is_not_found_is_said(capsys):
-    print_loop_margins(None)
-    assert capsys.readouterr().out == ""
-    print_loop_margins(FOUND)
-    delay, period, command = capsys.readouterr().out.splitlines()
+def test_what_is_not_found_is_said():
+    assert list(margin_lines(ProofMargins())) == []
+    delay, period, command = margin_lines(ProofMargins(FOUND))
     assert delay.endswith("2 samples is proved, no refutation was found")
     assert "none is proved, about 0.333" in period
     assert "rounded down" in command

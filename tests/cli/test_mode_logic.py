@@ -4,14 +4,14 @@ import json
 
 import pytest
 
-from tests.support import FORCE_LIMIT, ROOT, run, typed
+from tests.support import FORCE_LIMIT, ROOT, run
 
 BY_SIGN = ROOT / "docs/examples/insertion-by-sign.nrs.yaml"
 UNKNOWN = ROOT / "docs/examples/unknown-environment.nrs.yaml"
 
 
 def test_switches_and_times(tmp_path):
-    result = typed("mode-logic", BY_SIGN, cwd=tmp_path)
+    result = run("mode-logic", BY_SIGN, cwd=tmp_path)
     assert result.returncode == 0, result.stderr
     assert "command below -0.5 deg/s and torque above 0.1 N*m" in result.stdout
     assert "torque ≤ 0.126401 N·m" in result.stdout
@@ -37,6 +37,7 @@ def test_a_spec_without_logic(tmp_path):
     assert "has no mode_logic" in result.stderr
 
 
+@pytest.mark.slow
 def test_a_wrong_controller_that_is_unstable_is_proved_for_as_long_as_it_lasts(tmp_path):
     """Under arbitrary switching it may last, and that is refuted."""
     result = run("certify-switching", UNKNOWN, "--out", "ours.cert.json", cwd=tmp_path)
@@ -53,6 +54,7 @@ def test_a_wrong_controller_that_is_unstable_is_proved_for_as_long_as_it_lasts(t
     assert "agile/tool" in refuted.stdout
 
 
+@pytest.mark.slow
 def test_the_report_shows_it(tmp_path):
     result = run("report", BY_SIGN, "--out", "page.html", cwd=tmp_path)
     assert result.returncode == 0, result.stderr

@@ -4,12 +4,12 @@ import json
 
 import pytest
 
-from tests.support import COMMUTING, FORCE_LIMIT, SOFT_TISSUE, run, typed
+from tests.support import COMMUTING, FORCE_LIMIT, SOFT_TISSUE, run
 
 
 def test_optimum_of_the_thesis(tmp_path):
     """Thesis 6.3.2.1: Mt = 0.01 and Bt = 2.15, 1.04; desired impedances 2.1486 and half of it."""
-    result = typed("optimize", SOFT_TISSUE, "--json", cwd=tmp_path)
+    result = run("optimize", SOFT_TISSUE, "--json", cwd=tmp_path)
     assert result.returncode == 0, result.stderr
     document = json.loads(result.stdout)
     assert document["schema"] == "nrs-design/optimize/1"
@@ -22,6 +22,10 @@ def test_optimum_of_the_thesis(tmp_path):
         assert controller["Bt"] == pytest.approx(Bt)
         assert controller["optimum"]["cost"] <= controller["cost"]
         assert controller["stiffness_limit"] > controller["stiffness"]
+        # Thesis 6.3.1.1: 747.1461 N/m at 0.24 m is 43.0356 N m/rad.
+        assert controller["lever_arm_m"] == 0.24
+        at_arm = controller["stiffness_limit_at_arm_N_m"] / 747.1461
+        assert at_arm == pytest.approx(controller["stiffness_limit"] / 43.0356, rel=1e-6)
     assert document["motion_loop"]["source"] == "designed"
 
 

@@ -6,7 +6,7 @@ import pytest
 
 from nrs_design.errors import SpecError
 from nrs_design.spec import parse_spec
-from tests.support import ROOT, run, typed
+from tests.support import ROOT, run
 
 PARALLEL = ROOT / "docs/examples/parallel.nrs.yaml"
 
@@ -22,7 +22,7 @@ def changed(tmp_path, *pairs):
 
 
 def test_any_stiffness_from_tissue_to_tissue_and_tool_is_proved(tmp_path):
-    result = typed("certify-switching", PARALLEL, "--out", "ours.cert.json", cwd=tmp_path)
+    result = run("certify-switching", PARALLEL, "--out", "ours.cert.json", cwd=tmp_path)
     assert result.returncode == 0, result.stderr
     assert "PROVED" in result.stdout
     assert "the axis moves on until it meets something" in result.stdout

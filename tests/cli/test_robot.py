@@ -134,6 +134,7 @@ def test_correction_table_replaces_tables_only(tmp_path):
     assert record.read_text() == "time,force"
 
 
+@pytest.mark.slow
 def test_correction_table_for_the_controller(tmp_path):
     found = document("correction", "--table", "K.csv", "--figures", "out", cwd=tmp_path)
     assert found["trajectories"][0]["mean_ratio"] == pytest.approx([1.823, 1.819, 2.282], abs=6e-4)
@@ -159,7 +160,11 @@ def test_tables_for_people(tmp_path, command):
 
 @pytest.mark.parametrize(
     ("command", "name"),
-    [("kinematics", "workspace"), ("dynamics", "torque-shares"), ("balance", "balance")],
+    [
+        pytest.param("kinematics", "workspace", marks=pytest.mark.slow),
+        pytest.param("dynamics", "torque-shares", marks=pytest.mark.slow),
+        ("balance", "balance"),
+    ],
 )
 def test_figures(tmp_path, command, name):
     found = document(command, "--figures", "drawn", "-q", cwd=tmp_path)
@@ -200,7 +205,7 @@ def test_no_balance_in_the_spec(tmp_path):
 
 
 def test_other_commands_say_that_a_robot_has_nothing_to_certify(tmp_path):
-    for command in ("certify-switching", "optimize", "tune", "report", "export"):
+    for command in ("certify-switching", "optimize", "tune", "export"):
         result = run(command, ROBOT, cwd=tmp_path)
         assert result.returncode == 2, command
         assert "robot" in result.stderr

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.support import ROOT, run, typed
+from tests.support import ROOT, run
 
 SPEC = str(ROOT / "specs/robots/neuroboscope.nrs.yaml")
 
@@ -27,8 +27,67 @@ def test_files(tmp_path, format_, ending):
     assert file.read_text() == "<robot>mine</robot>"
 
 
+def test_a_file_of_another_ending_is_no_folder(tmp_path):
+    done = run("robot", "export", SPEC, "--format", "urdf", "--out", "x.txt", cwd=tmp_path)
+    assert done.returncode == 2
+    assert "seems to be a file" in done.stderr
+    assert "ends in .urdf" in done.stderr
+    assert not list(tmp_path.iterdir())
+
+
+C = ("robot", "export", SPEC, "--format", "c", "--out", "there")
+
+
+def test_c_is_not_written_without_unproved(tmp_path):
+    """Nothing is proved of it."""
+    done = run(*C, cwd=tmp_path)
+    assert done.returncode == 3
+    assert "not exported: no certificate covers" in done.stderr
+    document = json.loads(run(*C, "--json", cwd=tmp_path).stdout)
+    assert (document["verdict"], document["files"]) == ("inconclusive", [])
+    assert not (tmp_path / "there").exists()
+
+
+@pytest.mark.slow
+def test_c_is_written_unproved(tmp_path):
+    """The exit code says that nothing is proved, and every file does."""
+    command = C
+    done = run(*command, "--unproved", cwd=tmp_path)
+    assert done.returncode == 3
+    assert "UNPROVED (no certificate covers" in done.stdout
+    files = [tmp_path / f"there/neuroboscope.{ending}" for ending in ("h", "c")]
+    before = [file.read_bytes() for file in files]
+    assert all(b"verdict: UNPROVED" in text for text in before)
+    document = json.loads(run(*command, "--unproved", "--json", cwd=tmp_path).stdout)
+    assert document["verdict"] == "inconclusive"
+    assert document["files"] == ["there/neuroboscope.h", "there/neuroboscope.c"]
+    assert [file.read_bytes() for file in files] == before
+    (tmp_path / "copy.nrs.yaml").write_bytes(Path(SPEC).read_bytes())
+    copied = ("robot", "export", "copy.nrs.yaml", *command[3:], "--unproved")
+    refused = run(*copied, cwd=tmp_path)
+    assert refused.returncode == 2
+    assert "belongs to" in refused.stderr
+    vectors = ("robot", "export", SPEC, "--format", "vectors", "--unproved", "--out", "there")
+    assert run(*vectors, cwd=tmp_path).returncode == 3
+    assert (
+        "nrs-design/robot-vectors/1"
+        in (tmp_path / "there/neuroboscope.robot-vectors.json").read_text()
+    )
+    copied = ("robot", "export", "copy.nrs.yaml", *vectors[3:])
+    refused = run(*copied, cwd=tmp_path)
+    assert refused.returncode == 2
+    assert "belongs to" in refused.stderr
+
+
+def test_models_are_no_programs(tmp_path):
+    done = run("robot", "export", SPEC, "--unproved", cwd=tmp_path)
+    assert done.returncode == 2
+    assert "--unproved is for programs" in done.stderr
+    assert not list(tmp_path.iterdir())
+
+
 def test_json(tmp_path):
-    done = typed("robot", "export", SPEC, "--json", cwd=tmp_path)
+    done = run("robot", "export", SPEC, "--json", cwd=tmp_path)
     document = json.loads(done.stdout)
     assert document["schema"] == "nrs-design/robot-export/1"
     assert document["files"] == ["reports/neuroboscope.mjcf.xml"]

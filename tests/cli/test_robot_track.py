@@ -73,6 +73,7 @@ def test_table_for_people_beside_the_print(tmp_path):
     assert list(tmp_path.iterdir()) == []
 
 
+@pytest.mark.slow
 def test_a_robot_of_ones_own(tmp_path):
     text = TEMPLATES["robot"].replace("mass: 797.2 g", "mass: 900 g")
     (tmp_path / "mine.nrs.yaml").write_text(text[: text.index("# Thesis 4.4 and its")])

@@ -15,10 +15,10 @@ COMMUTING, PRINT_ERROR, SOFT_TISSUE = map(str, (COMMUTING, PRINT_ERROR, SOFT_TIS
     ("arguments", "code"),
     [
         (("schema",), 0),
-        (("check", SOFT_TISSUE), 0),
+        pytest.param(("check", SOFT_TISSUE), 0, marks=pytest.mark.slow),
         (("certify-switching", PRINT_ERROR, "-v"), 1),
-        (("explain",), 0),
-        (("--help",), 0),
+        pytest.param(("explain",), 0, marks=pytest.mark.slow),
+        pytest.param(("--help",), 0, marks=pytest.mark.slow),
         (("check", "missing.nrs.yaml"), 2),
     ],
 )
@@ -38,7 +38,10 @@ def test_head_does_not_change_the_exit_code(tmp_path, arguments, code):
 
 @pytest.mark.parametrize(
     ("spec", "code", "word"),
-    [(COMMUTING, 0, "\x1b[1;32mPROVED"), (PRINT_ERROR, 1, "\x1b[1;31mREFUTED")],
+    [
+        (COMMUTING, 0, "\x1b[1;32mPROVED"),
+        pytest.param(PRINT_ERROR, 1, "\x1b[1;31mREFUTED", marks=pytest.mark.slow),
+    ],
 )
 def test_verdicts_in_colour(tmp_path, spec, code, word):
     shown, ended = run_on_terminal(80, "certify-switching", spec, cwd=tmp_path)

@@ -4,7 +4,7 @@ import json
 
 import pytest
 
-from tests.support import COMMUTING, FORCE_LIMIT, ROBOT, SOFT_TISSUE, run, typed
+from tests.support import COMMUTING, FORCE_LIMIT, ROBOT, SOFT_TISSUE, run
 
 GIVEN = """motion_loop:
   transfer_function: {numerator: [28.416, 1618.80], denominator: [1, 56.89, 1618.80]}
@@ -13,7 +13,7 @@ GIVEN = """motion_loop:
 
 def test_motion_loop_of_the_thesis(tmp_path):
     """Thesis 4.3: zero 56.9706, gain 2065.4 (2060 used), poles -28.453 +- 28.448j, 6.8 %."""
-    result = typed("tune", FORCE_LIMIT, "--json", cwd=tmp_path)
+    result = run("tune", FORCE_LIMIT, "--json", cwd=tmp_path)
     assert result.returncode == 0, result.stderr
     document = json.loads(result.stdout)
     assert document["schema"] == "nrs-design/tune/1"

@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 from nrs_design.controllers.float32 import (
     exact_decimal,
     float32_not_above,
+    float32_not_below,
     is_float32,
     neighbors,
     round_significant,
@@ -140,3 +141,17 @@ def test_the_number_below(value, share):
     )
     between = low + share * (high - low)
     assert float32_not_above(between) == (high if share == 1 else low)
+
+
+@given(st.fractions(min_value=-4, max_value=4), st.integers(-160, 100))
+def test_the_numbers_on_both_sides(share, exponent):
+    """Single-precision numbers both, equal or next to each other, zero and negative ones too."""
+    value = share * Fraction(2) ** exponent
+    low, high = float32_not_above(value), float32_not_below(value)
+    assert low <= value <= high
+    assert is_float32(low)
+    assert is_float32(high)
+    if low == high:
+        assert low == value
+    else:
+        assert np.nextafter(np.float32(float(low)), np.float32(np.inf)) == np.float32(float(high))

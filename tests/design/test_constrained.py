@@ -104,10 +104,7 @@ def optimum_of(name):
     return optimize_with_goals(problem(), requirement(GOALS[name]))
 
 
-EACH = [
-    pytest.param(name, marks=[] if name in ("peak", "several") else pytest.mark.slow)
-    for name in GOALS
-]
+EACH = [pytest.param(name, marks=[] if name == "several" else pytest.mark.slow) for name in GOALS]
 
 
 @pytest.mark.parametrize("name", EACH)

@@ -1,14 +1,12 @@
 """Designs that are certified once for all tests of exports."""
 
-from dataclasses import replace
-
-import numpy as np
 import pytest
 
 from nrs_design.exporters.export import Execution, export_design
 from nrs_design.models.robot import build_robot
-from nrs_design.models.robot.body import rigid_body
+from nrs_design.pipeline import run_robot_laws
 from nrs_design.spec import read_spec
+from tests.models.robot.crooked import crooked
 from tests.support import ROOT
 
 CONTINUOUS = ROOT / "specs/neuroboscope/soft-tissue.nrs.yaml"
@@ -59,21 +57,7 @@ def robot(request, loaded):
     ]
 
 
-def crooked(robot):
-    rng = np.random.default_rng(5)
-
-    def body(mass):
-        root = rng.normal(0, 0.02, (3, 3))
-        second = root @ root.T
-        return rigid_body(mass, rng.normal(0, 0.05, 3), np.trace(second) * np.eye(3) - second)
-
-    changes = [
-        {"azimuth": -0.9, "l0": 0.21, "l1": 0.14, "l2": 0.2},
-        {"azimuth": 0.7, "l0": 0.19, "l3": 0.19},
-        {"azimuth": 0.1, "l1": 0.13, "l3": 0.205},
-    ]
-    legs = tuple(
-        replace(leg, crank=body(0.1), coupler=body(0.2), arm=body(0.3), axis_inertia=1e-3, **change)
-        for leg, change in zip(robot.legs, changes, strict=True)
-    )
-    return replace(robot, legs=legs, platform=body(0.8), base_tilt=-0.5)
+@pytest.fixture(scope="session")
+def control_laws(loaded):
+    """The laws of motion control of the thesis robot."""
+    return run_robot_laws(loaded.spec, build_robot(loaded.spec))

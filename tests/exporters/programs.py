@@ -13,7 +13,7 @@ from nrs_design.controllers.operations import StepLaw
 from nrs_design.controllers.sampled import SampledForce, SampledMotion
 from nrs_design.controllers.sensor import LowPass
 from nrs_design.controllers.step_law import build_mixed_law, build_placed_law, build_step_law
-from nrs_design.controllers.step_parts import StepLimits
+from nrs_design.controllers.step_parts import StepFrame, StepLimits
 
 PERIOD = Fraction(1, 500)
 MOTION = ProportionalDerivative(to_float32(Fraction("117359.43")), Fraction(2060))
@@ -28,6 +28,11 @@ MACHINE = ("-M", "netduinoplus2", "-nographic", "-monitor", "none", "-serial", "
 SEMIHOSTING = ("-semihosting-config", "enable=on,target=native")
 
 
+def frame(low_pass=None, limits=None) -> StepFrame:
+    """Return what all laws here have in common."""
+    return StepFrame(SampledMotion.of(MOTION, PERIOD), low_pass, limits or StepLimits())
+
+
 def law(*, Mt="0.01", Kt=("0", "0"), order=0, method="exact", limits=None) -> StepLaw:
     """Build two admittances of the thesis robot above its motion controller."""
     laws = {
@@ -39,7 +44,7 @@ def law(*, Mt="0.01", Kt=("0", "0"), order=0, method="exact", limits=None) -> St
         )
     }
     low_pass = LowPass(order, Fraction(200)).sampled(PERIOD) if order else None
-    return build_step_law(SampledMotion.of(MOTION, PERIOD), laws, low_pass, limits)
+    return build_step_law(frame(low_pass, limits), laws)
 
 
 PLACED = {
@@ -49,14 +54,14 @@ PLACED = {
 ADMITTANCE = Admittance(to_float32(Fraction("0.01")), to_float32(Fraction("2.15")))
 LAWS = {
     "force and position": build_placed_law(
-        SampledMotion.of(MOTION, PERIOD), PLACED, LowPass(1, Fraction(200)).sampled(PERIOD)
+        frame(LowPass(1, Fraction(200)).sampled(PERIOD)), PLACED
     ),
     "inertia": law(),
     "static": law(Mt="0"),
     "filter and spring": law(order=2, Kt=("0.5", "0")),
     "static, filter, spring": law(Mt="0", order=1, Kt=("0.5", "3"), method="euler"),
     "mixed": build_mixed_law(
-        SampledMotion.of(MOTION, PERIOD),
+        frame(),
         {**PLACED, "insertion": ADMITTANCE.sampled(PERIOD, "exact")},
         to_float32(Fraction("0.96")),
     ),

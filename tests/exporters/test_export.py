@@ -68,3 +68,12 @@ def test_a_certificate_that_is_rejected_is_not_exported_on_request(
     file.write_text(dump(continuous_export.certificate))
     export = export_design(sampled, file, execution=Execution(unproved=True))
     assert (export.verdict, export.record) == ("rejected", None)
+
+
+def test_a_law_of_two_periods_is_not_exported(sampled):
+    text = sampled.text.replace("delay: [0, 1]", "outer_period: 1 ms, delay: 0")
+    loaded = replace(sampled, spec=parse_spec(text))
+    for execution in (None, Execution(), Execution(PERIOD, unproved=True)):
+        with pytest.raises(DesignError, match="the outer loop has its own") as caught:
+            export_design(loaded, execution=execution)
+        assert caught.value.at == ("sampling", "outer_period")

@@ -8,7 +8,6 @@ import pytest
 
 from nrs_design.exporters import FORMATS
 from nrs_design.exporters.export import Execution, export_design
-from nrs_design.exporters.header import header_lines
 
 
 @pytest.fixture(params=["sampled", "continuous"])
@@ -56,13 +55,3 @@ def test_every_file_says_what_it_is_worth(name, design, proved):
     for content in rendered(name, export).values():
         text = " ".join(content.decode(errors="replace").replace("*", " ").split())
         assert [fact for fact in facts if fact not in text] == []
-
-
-def test_the_lines_of_a_header(proved):
-    lines = header_lines(proved.record)
-    assert not [line for line in lines if "\n" in line]
-    text = "\n".join(lines)
-    assert "verdict: PROVED" in lines
-    assert f"certificate: {proved.certificate.id}" in lines
-    assert ("about continuous time" in text) == (proved.record.sample_time is None)
-    assert text.count("outside the proof: ") == len(proved.record.outside)

@@ -14,9 +14,19 @@ CONTENTS = {".c": b"/* ours */ c", ".h": b"/* ours */ h"}
 def test_where_files_go(tmp_path):
     assert places(ONE, "x", Path("a/b.mat")) == {".mat": Path("a/b.mat")}
     assert places(ONE, "x", Path("a/b")) == {".mat": Path("a/b/x.mat")}
-    assert places(TWO, "x", Path("a/b.c")) == {".c": Path("a/b.c/x.c"), ".h": Path("a/b.c/x.h")}
+    assert places(TWO, "x", Path("a/b.2")) == {".c": Path("a/b.2/x.c"), ".h": Path("a/b.2/x.h")}
     (tmp_path / "b.mat").mkdir()
     assert places(ONE, "x", tmp_path / "b.mat") == {".mat": tmp_path / "b.mat/x.mat"}
+
+
+@pytest.mark.parametrize(("format_", "name"), [(ONE, "b.txt"), (TWO, "b.c"), (TWO, "b.txt")])
+def test_what_seems_to_be_another_file_makes_no_folder(tmp_path, format_, name):
+    with pytest.raises(OutputError, match="seems to be a file"):
+        places(format_, "x", tmp_path / name)
+    (tmp_path / name).mkdir()
+    assert {path.parent for path in places(format_, "x", tmp_path / name).values()} == {
+        tmp_path / name
+    }
 
 
 def test_files_are_written_and_replaced(tmp_path):
@@ -46,3 +56,12 @@ def test_a_file_is_no_folder_and_a_link_is_not_followed(tmp_path):
     with pytest.raises(OutputError, match="behind the symbolic link"):
         write_files(TWO, places(TWO, "x", tmp_path / "link"), CONTENTS)
     assert not list((tmp_path / "real").iterdir())
+
+
+def test_nothing_is_written_where_one_file_is_a_link(tmp_path):
+    """A new header beside an old source would be a law that nobody proved."""
+    (tmp_path / "real").touch()
+    (tmp_path / "x.h").symlink_to(tmp_path / "real")
+    with pytest.raises(OutputError, match="symbolic link"):
+        write_files(TWO, places(TWO, "x", tmp_path), CONTENTS)
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["real", "x.h"]

@@ -16,6 +16,7 @@ from .conftest import STABLE
 
 ROOT = Path(__file__).parents[2]
 WORKFLOW = ROOT / "docs/ci/github-actions.yml"
+GITLAB = ROOT / "docs/ci/gitlab-ci.yml"
 HOOKS = ROOT / ".pre-commit-hooks.yaml"
 GUIDE = ROOT / "docs/ci/README.md"
 
@@ -35,9 +36,13 @@ def local_hooks():
     return repository["hooks"]
 
 
+def gitlab_lines():
+    return [line for job in parse(GITLAB).values() for line in job.get("script", [])]
+
+
 def commands():
     """Every command line of nrs-design in these files, as words without the program."""
-    lines = [step["run"] for step in steps() if "run" in step]
+    lines = [step["run"] for step in steps() if "run" in step] + gitlab_lines()
     lines += [" ".join([hook["entry"], *hook.get("args", [])]) for hook in parse(HOOKS)]
     lines += [hook["entry"] for hook in local_hooks()]
     lines += re.findall(r"#\s+(nrs-design .*)", WORKFLOW.read_text())
@@ -46,7 +51,7 @@ def commands():
 
 def test_commands_and_options_exist():
     known = get_command(make_app()).commands
-    assert len(commands()) == 7
+    assert len(commands()) == 9
     for name, *words in commands():
         options = {option for p in known[name].params for option in p.opts}
         assert {word for word in words if word.startswith("-")} <= options
@@ -104,6 +109,18 @@ def test_required_versions_are_those_that_are_tested():
     project = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
     needed = {re.split("[>=]", text)[0].replace(".", "-") for text in project["dependencies"]}
     assert needed <= names
+
+
+def test_gitlab_installs_and_keeps_what_github_does():
+    jobs = parse(GITLAB)
+    before = jobs.pop(".nrs-design")["before_script"]
+    assert before == [step["run"] for step in steps() if "pip install" in step.get("run", "")][:2]
+    assert set(jobs) == {"nrs-design-locked", "nrs-design-gate"}
+    for job in jobs.values():
+        (line,) = job["script"]
+        assert job["extends"] == ".nrs-design"
+        assert job["artifacts"]["reports"]["junit"] == line.rpartition("--out ")[2]
+        assert job["artifacts"]["when"] == "always"
 
 
 def test_a_fork_may_only_read():

@@ -71,6 +71,20 @@ def test_a_spec_without_a_verdict_has_no_entry_so_that_locked_fails(project):
     assert "is not in nrs.lock" in broken.message
 
 
+def test_a_copy_of_the_same_name_does_not_drop_what_is_locked(project):
+    before = (project / "nrs.lock").read_bytes()
+    shutil.copy(project / "specs/stable.nrs.yaml", project / "specs/zopy.nrs.yaml")
+    outcome = gate(project, "specs")
+    assert outcome.severity == 3
+    assert (project / "nrs.lock").read_bytes() == before
+    missing, unchanged = (note for note in outcome.notes if "a verdict" in note)
+    assert missing.endswith("zopy.nrs.yaml")
+    assert unchanged.startswith("without a verdict now, but unchanged")
+    assert unchanged.endswith("stable.nrs.yaml")
+    (project / "specs/zopy.nrs.yaml").unlink()
+    assert re_check(project).severity == 0
+
+
 def test_a_spec_that_is_gone_stays_locked_until_it_is_pruned(project):
     (project / "specs/stable.nrs.yaml").unlink()
     outcome = gate(project, "specs")

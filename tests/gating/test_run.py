@@ -110,6 +110,9 @@ def test_two_specs_of_one_name_would_overwrite_each_other(examine, tmp_path):
     outcome = examine(STABLE, UNSTABLE, STABLE + "# the same name\n")
     assert [spec.verdict for spec in outcome.specs] == [None, "refuted", None]
     assert [(b.line, b.column) for b in outcome.broken[:2]] == [(2, 1), (2, 1)]
+    first, _, last = (spec.path for spec in outcome.specs)
+    assert outcome.specs[0].obligations[0].message.startswith(f"{last} is named 'stable' too")
+    assert outcome.specs[2].obligations[0].message.startswith(f"{first} is named 'stable' too")
     assert not (tmp_path / "reports/stable.cert.json").exists()
 
 

@@ -22,13 +22,14 @@ def off_grid(seed):
     return Motion(motion.time, motion.deflection + shift)
 
 
+ELASTIC = (Elastic(768.17), off_grid, 0.0969, synthetic.COUNT)
 SINGLE = [
-    (Elastic(768.17), off_grid, 0.0969, synthetic.COUNT),
-    pytest.param(KelvinVoigt(0.574, 0.957), slow, 0.0114, 0.0, marks=pytest.mark.slow),
-    pytest.param(Maxwell(1.129, 20.0), slow, 0.0135, 0.0, marks=pytest.mark.slow),
-    pytest.param(synthetic.NOSE, slow, 0.0165, 1e-4, marks=pytest.mark.slow),
-    pytest.param(synthetic.CONCHA, slow, 0.0085, 1e-4, marks=pytest.mark.slow),
-    pytest.param(HuntCrossley(0.28, 15.328, 1.2), slow, 0.0096, 0.0, marks=pytest.mark.slow),
+    ELASTIC,
+    (KelvinVoigt(0.574, 0.957), slow, 0.0114, 0.0),
+    (Maxwell(1.129, 20.0), slow, 0.0135, 0.0),
+    (synthetic.NOSE, slow, 0.0165, 1e-4),
+    (synthetic.CONCHA, slow, 0.0085, 1e-4),
+    (HuntCrossley(0.28, 15.328, 1.2), slow, 0.0096, 0.0),
 ]
 
 
@@ -36,13 +37,23 @@ def holds(estimates, values):
     return [e.covers(v) for e, v in zip(estimates, values, strict=True)]
 
 
-@pytest.mark.parametrize(("law", "motion", "noise", "q"), SINGLE)
-def test_one_record(law, motion, noise, q):
+def shares_of(law, motion, noise, q, seeds=SEEDS):
     hits = [
         holds(fit_record(type(law), record(law, motion(s), noise, s, q)).estimates, law.values)
-        for s in range(SEEDS)
+        for s in range(seeds)
     ]
-    shares = np.mean(hits, axis=0)
+    return np.mean(hits, axis=0)
+
+
+def test_some_records():
+    """That 33 or fewer of 40 are held, happens less than once in a hundred times."""
+    assert shares_of(*ELASTIC, seeds=40)[0] > 33 / 40
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("law", "motion", "noise", "q"), SINGLE)
+def test_one_record(law, motion, noise, q):
+    shares = shares_of(law, motion, noise, q)
     assert (shares >= 0.92).all(), shares
     assert (shares <= 0.98).all(), shares
 

@@ -25,7 +25,9 @@ def test_the_command_acts_later(delay):
     assert held.grid[held.samples] == pytest.approx(TIME)
     middle = (held.grid[1:] + held.grid[:-1]) / 2
     index = np.searchsorted(TIME + delay, middle, side="right") - 1
-    assert (held.command == COMMAND[np.maximum(index, 0)]).all()
+    # Between times that doubles hardly tell apart, either command is right.
+    clear = np.diff(held.grid) > 1e-12
+    assert (held.command == COMMAND[np.maximum(index, 0)])[clear].all()
 
 
 @pytest.mark.parametrize("delay", [0.0, 0.0031, 0.02])

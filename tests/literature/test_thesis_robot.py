@@ -30,7 +30,9 @@ def test_stable_without_a_quadratic_function(name):
     assert 2 * evidence.degree == known(name).degree
 
 
-@pytest.mark.parametrize("name", ["tissue-x-withdrawal", "hand-no-mass"])
+@pytest.mark.parametrize(
+    "name", [pytest.param("tissue-x-withdrawal", marks=pytest.mark.slow), "hand-no-mass"]
+)
 def test_stable_in_force_coordinates_too(name):
     assert settle(name, coordinates="force").evidence.kind == "common-polynomial"
 

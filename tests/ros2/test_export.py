@@ -176,3 +176,9 @@ def test_what_it_cannot_run(changes, message):
     with pytest.raises(DesignError, match=message) as caught:
         exported(designed(*changes))
     assert caught.value.remedy
+
+
+def test_two_periods_are_refused():
+    two = designed(("delay: 1", "outer_period: 1 ms, delay: 1"))
+    with pytest.raises(DesignError, match="has one period"):
+        list(export_controllers(two, AXES[0], LAG, Limits()))

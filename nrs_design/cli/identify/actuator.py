@@ -112,6 +112,7 @@ def _print(found: ActuatorIdentification) -> None:
     if found.figures is not None:
         say(f"R = {found.figures.resistance} ohm")
         say(f"speed over torque = {found.figures.gradient} rpm/(N m)")
+        say(f"both for a motor with {found.figures.sheet}; options give another data sheet")
     for doubt in found.doubts:
         say(f"doubt: {doubt}")
 

@@ -28,6 +28,7 @@ class ProportionalForce(AbstractCompliantLaw[ForceControllerSpec]):
     name: ClassVar[str] = "force"
     units: ClassVar[Mapping[str, str]] = MappingProxyType({"Kp": "rad/(N*m)"})
     commands: ClassVar[Command] = ForceControllerSpec.commands
+    holds_hand: ClassVar[bool] = True
 
     Kp: Fraction
 

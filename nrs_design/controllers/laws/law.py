@@ -49,6 +49,8 @@ class AbstractCompliantLaw(AbstractLaw, Generic[S]):
 
     # Whether the motion loop gets a velocity or a position from it.
     commands: ClassVar[Command]
+    # Whether the velocity command of the hand waits while the law is active (thesis 6.3.3).
+    holds_hand: ClassVar[bool] = False
 
     @property
     def states(self) -> tuple[str, ...]:

@@ -42,7 +42,7 @@ from nrs_design.errors import DesignError
 from nrs_design.models.contact.environment import Environment
 from nrs_design.proof.bounds import upper_float
 from nrs_design.spec import Doubt, GainSpec, ImpedanceControllerSpec, InteractionDesignSpec
-from nrs_design.spec.controllers import contact_names, names_in
+from nrs_design.spec.controllers import contact_names, names_in, touched_in
 
 
 @dataclass(frozen=True)
@@ -76,6 +76,8 @@ class ImpedanceAnalysis(AbstractControllerAnalysis):
         By the errors of the force signal, where the spec says how large they are.
     band : PassiveBand or None
         Where the displayed admittance is passive, exactly; None with a spring or a filter.
+    lever_arm : float or None
+        Of everything that it touches, in m; None if there is none, or not the same for all.
     """
 
     given: ImpedanceControllerSpec
@@ -90,6 +92,12 @@ class ImpedanceAnalysis(AbstractControllerAnalysis):
     stiff: tuple[Doubt, ...]
     creep: Creep | None = None
     band: PassiveBand | None = None
+    lever_arm: float | None = None
+
+    @property
+    def limit_at_arm(self) -> float | None:
+        """The stiffness limit where the contact is, in N/m, if its lever arm is known."""
+        return self.lever_arm and self.margins.stiffness_limit / self.lever_arm**2
 
     def doubts(self) -> Iterator[Doubt]:
         """Yield what is doubtful about the gains, and which of them the bounds have chosen."""
@@ -159,7 +167,17 @@ def analyze(
         lowest_limit=min(margins.stiffness_limit, *limits),
         creep=creep,
         band=_band(task, given, controller),
+        lever_arm=_lever_arm(task, given),
     )
+
+
+def _lever_arm(task: Task, given: ImpedanceControllerSpec) -> float | None:
+    arms = {
+        None if arm is None else arm.si
+        for name in touched_in(given.contacts)
+        for arm in (task.spec.environments[name].lever_arm,)
+    }
+    return arms.pop() if len(arms) == 1 else None
 
 
 def _band(task: Task, given: ImpedanceControllerSpec, controller: Controller) -> PassiveBand | None:

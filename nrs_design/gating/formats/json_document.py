@@ -33,6 +33,7 @@ def _spec(spec: SpecOutcome) -> dict[str, Any]:
         "certificate": None if spec.certificate is None else from_here(spec.certificate),
         "certificate_id": spec.certificate_id,
         "gains": {name: dict(gains) for name, gains in spec.gains.items()},
+        "gain_units": {name: dict(units) for name, units in spec.units.items()},
         "warnings": [
             {"message": item.message, "line": item.line, "column": item.column}
             for item in spec.cautions

@@ -63,7 +63,11 @@ def _table(rows: Sequence[Sequence[str]]) -> list[str]:
 
 def _gains(spec: SpecOutcome) -> str:
     listed = (
-        f"{printable(name)} " + ", ".join(f"{key} {_shortest(text)}" for key, text in gains.items())
+        f"{printable(name)} "
+        + ", ".join(
+            f"{key} {_shortest(text)} {spec.units.get(name, {}).get(key, '')}".rstrip()
+            for key, text in gains.items()
+        )
         for name, gains in spec.gains.items()
         if gains
     )

@@ -37,10 +37,22 @@ class MotorFigures:
         Armature resistance R in ohm (thesis 4.6).
     gradient : Estimate
         Speed over torque in rpm/(N m) (thesis 4.10).
+    motor : MotorConstants
+        The data sheet.
     """
 
     resistance: Estimate
     gradient: Estimate
+    motor: MotorConstants
+
+    @property
+    def sheet(self) -> str:
+        """The data sheet in words: these figures are about no other motor."""
+        motor = self.motor
+        return (
+            f"K_T = {motor.torque_constant:g} N m/A, K_B = {motor.back_emf_constant:g} V s/rad, "
+            f"inertia {motor.inertia:g} kg m^2, reduction {motor.reduction:g}"
+        )
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -107,7 +119,8 @@ class ActuatorFit:
         variance = float(contrast @ self.uncertainty.covariance @ contrast)
         half = student_quantile(self.uncertainty.degrees) * float(np.sqrt(variance))
         estimate = Estimate.from_log(float(np.log(resistance)), half)
-        return MotorFigures(estimate, estimate.scaled(speed_torque_gradient(1.0, motor)))
+        gradient = estimate.scaled(speed_torque_gradient(1.0, motor))
+        return MotorFigures(estimate, gradient, motor)
 
 
 def actuator_fit(method: str, logarithms: Array, known: Uncertainty) -> ActuatorFit:

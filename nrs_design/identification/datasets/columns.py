@@ -15,6 +15,7 @@ from nrs_design.identification.datasets.names import (
     read_name,
     read_stamp,
     standard_name,
+    stated_unit,
 )
 
 
@@ -124,6 +125,37 @@ def _check_mapped(
             raise DataError(
                 f"there is no column {theirs!r} to map", path=path, line=line, remedy=hint
             )
+    for theirs, ours in mapping.items():
+        check_stated(theirs, stated_unit(theirs, _split(ours, path, "", line).quantity), ours, path)
+
+
+def check_stated(theirs: str, unit: str | None, ours: str, path: Path) -> None:
+    """Refuse to map a column to another unit than it says it has.
+
+    Parameters
+    ----------
+    theirs : str
+        The name in the file.
+    unit : str or None
+        What it says, as we write it.
+    ours : str
+        The name that it is mapped to.
+    path : Path
+        For errors.
+    """
+    name = _split(ours, path, "")
+    if unit in (None, name.unit) or name.unit in ("", "1", "any"):
+        return
+    if unit in UNITS[name.quantity]:
+        right = "_".join(filter(None, (name.quantity, unit, name.group)))
+        remedy = f"write --map '{right}={theirs}', or rename the column if its unit is wrong"
+    else:
+        remedy = f"map another column; if this is one in {name.unit}, correct its name"
+    raise DataError(
+        f"--map '{ours}={theirs}': the column {theirs!r} says {unit}, and {ours} is in {name.unit}",
+        path=path,
+        remedy=remedy,
+    )
 
 
 def _grouped(

@@ -4,17 +4,19 @@ from __future__ import annotations
 
 import csv
 import re
-from collections.abc import Callable, Collection, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import BinaryIO
 
 from nrs_design.errors import DataError
+from nrs_design.identification.datasets.columns import check_stated
 from nrs_design.identification.datasets.names import (
     UNITS,
     read_name,
     read_stamp,
     read_unit,
+    stated_unit,
 )
 
 BLOCK = 1 << 20
@@ -62,7 +64,7 @@ class Header:
 
 
 def read_header(
-    file: BinaryIO, path: Path, mapped: Collection[str], seen: Callable[[bytes], None]
+    file: BinaryIO, path: Path, mapped: Mapping[str, str], seen: Callable[[bytes], None]
 ) -> Header:
     """Find the line of names: below a preamble, above the first row.
 
@@ -72,8 +74,8 @@ def read_header(
         At its beginning.
     path : Path
         For errors.
-    mapped : collection of str
-        Foreign names that the user has mapped.
+    mapped : mapping of str to str
+        From foreign names that the user has mapped to ours.
     seen : callable
         Told all bytes that are read.
 
@@ -95,7 +97,8 @@ def read_header(
     if below < len(lines):
         units = _cells(lines[below], separator)
         if _are_units(units, len(names)):
-            pairs = zip(names, units, strict=True)
+            pairs = list(zip(names, units, strict=True))
+            _check_mapped_units(pairs, mapped, path)
             names = [_with_unit(name, unit, mapped) for name, unit in pairs]
             below += 1
     comma = _has_decimal_comma(lines[below:], separator, path, below + 1)
@@ -231,6 +234,18 @@ def _with_unit(name: str, unit: str, mapped: Collection[str]) -> str:
         return name
     match = _BRACKETS.match(unit)
     return f"{name} [{match[1] if match else unit}]"
+
+
+def _check_mapped_units(
+    pairs: Sequence[tuple[str, str]], mapped: Mapping[str, str], path: Path
+) -> None:
+    """Hold what is mapped against the line of units below the names."""
+    for theirs, unit in pairs:
+        ours = read_name(mapped.get(theirs, ""))
+        if ours is not None:
+            bare = _BRACKETS.match(unit)
+            said = stated_unit(f"column [{bare[1] if bare else unit}]", ours.quantity)
+            check_stated(theirs, said, mapped[theirs], path)
 
 
 def _has_decimal_comma(lines: Sequence[str], separator: str | None, path: Path, line: int) -> bool:

@@ -84,6 +84,8 @@ _SPELLINGS = {
 }
 _BRACKETED = re.compile(r"^(?P<what>[^\[\](){}]+?)\s*[\[({](?P<unit>[^\[\](){}]*)[\])}]$")
 _SLASHED = re.compile(r"^(?P<what>[A-Za-z ]+?)\s*[/,]\s*(?P<unit>\S+)$")
+# Endings of foreign names that may be a unit, and are as often a minimum, a motor or a sensor A.
+_NO_ENDINGS = frozenset({"", "1", "any", "s", "m", "min", "A"})
 # Of messages in bags that were turned into text; nanoseconds since 1970.
 _STAMP = re.compile(r"(^%time|(^|[./_])stamp)$")
 _PLOTTED_TIME = "__time"
@@ -181,6 +183,31 @@ def read_unit(text: str, quantity: str) -> str:
         return plain
     found = _SPELLINGS.get(plain.lower().replace(" ", ""), plain)
     return {"Hz": "hz", "kHz": "khz", "dB": "db"}.get(found, found)
+
+
+def stated_unit(text: str, quantity: str) -> str | None:
+    """Return the unit that a foreign name says it has: ``Weg [mm]``, ``load_kN``.
+
+    Parameters
+    ----------
+    text : str
+        The name.
+    quantity : str
+        What it is taken for, in whose units a unit is read first.
+
+    Returns
+    -------
+    str or None
+        None if it says none that is known.
+    """
+    known = {unit for units in UNITS.values() for unit in units}
+    bracketed = _BRACKETED.match(text.strip()) or _SLASHED.match(text.strip())
+    if bracketed:
+        unit = read_unit(bracketed["unit"], quantity)
+        return unit if unit in known - {"", "1"} else None
+    words = text.strip().split("_")
+    endings = (read_unit("_".join(words[-n:]), quantity) for n in (2, 1) if len(words) > n)
+    return next((unit for unit in endings if unit in known - _NO_ENDINGS), None)
 
 
 def _quantity(text: str) -> str | None:

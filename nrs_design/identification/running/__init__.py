@@ -1,6 +1,11 @@
 """Whether a run stayed inside what was proved."""
 
-from nrs_design.identification.running.bounds import RunBounds, bounds_of
+from nrs_design.identification.running.bounds import (
+    RunBounds,
+    bounds_of,
+    bounds_of_spec,
+    rules_of,
+)
 from nrs_design.identification.running.check import Check, Status, Violation
 from nrs_design.identification.running.judge import RunJudgement, judge_run
 from nrs_design.identification.running.log import RunLog, read_run
@@ -13,6 +18,8 @@ __all__ = [
     "Status",
     "Violation",
     "bounds_of",
+    "bounds_of_spec",
     "judge_run",
     "read_run",
+    "rules_of",
 ]

@@ -96,9 +96,21 @@ def bounds_of(loaded: LoadedSpec) -> RunBounds:
             path=loaded.path,
             remedy="name a spec of kind interaction-design",
         )
+    return bounds_of_spec(spec)
+
+
+def rules_of(spec: InteractionDesignSpec) -> SwitchingSpec:
+    """Return the rules of switching that a run can be held against.
+
+    A log says which controller is active, not what is touched.
+    """
+    return SwitchingSpec() if spec.switching.names_contacts else spec.switching
+
+
+def bounds_of_spec(spec: InteractionDesignSpec) -> RunBounds:
+    """Return the bounds of a design; see `bounds_of`."""
     arms = {e.lever_arm.si for e in spec.environments.values() if e.lever_arm is not None}
-    # A log says which controller is active, not what is touched.
-    rules = SwitchingSpec() if spec.switching.names_contacts else spec.switching
+    rules = rules_of(spec)
     transitions = rules.transitions
     margin = spec.goals.min_delay_margin if spec.goals else None
     return RunBounds(
@@ -108,9 +120,15 @@ def bounds_of(loaded: LoadedSpec) -> RunBounds:
         torque=spec.limits.torque.si,
         delay=None if margin is None else margin.si,
         lever_arm=arms.pop() if len(arms) == 1 else None,
-        period=None if spec.sampling is None else spec.sampling.period.si,
+        period=_period(spec),
         losable=spec.contact == "losable",
     )
+
+
+def _period(spec: InteractionDesignSpec) -> float | None:
+    """Return when the law runs; of two periods, a log does not say which it has."""
+    sampling = spec.sampling
+    return None if sampling is None or sampling.round > 1 else sampling.period.si
 
 
 def _stiffness(spec: InteractionDesignSpec, name: str) -> Stiffness | None:

@@ -16,6 +16,9 @@ Array = NDArray[np.float64]
 
 # Less than this part of the least stiffness is no contact.
 _FREE = 0.1
+# Where contact may be lost, it is kept throughout a window if the force never falls below this part
+# of its largest value there.
+_KEPT = 0.25
 # So many windows in which force and deflection oppose each other are no accident.
 _OPPOSED = 0.5
 
@@ -58,7 +61,11 @@ def judge_contact(
         replace(w, value=w.value * turn, low=w.low * turn, high=w.high * turn)
         for w in stiffness_of(log.time, x, f, spans)
     ]
-    judged = [item for w in windows for item in [_judge(log, bounds, w)] if item is not None]
+    found = (_judge(log, bounds, w) for w in windows)
+    judged = [item for item in found if item is not None]
+    if losable:
+        # Partly free, a window has a stiffness that no tissue has.
+        judged = [_doubted(item, f) for item in judged]
     told = [w for w in windows if w.low > -np.inf]
     if told and sum(w.high < 0 for w in told) > _OPPOSED * len(told):
         reason = "force and deflection have opposite signs; turn one with another column"
@@ -110,6 +117,15 @@ def _judge(log: RunLog, bounds: RunBounds, window: Window) -> _Judged | None:
     if all(window.high < low or window.low > high for low, high in allowed.ranges):
         return _Judged(window, allowed, Status.OUTSIDE, free=_is_free(window, least))
     return _Judged(window, allowed, Status.UNDECIDED, free=False)
+
+
+def _doubted(item: _Judged, force: Array) -> _Judged:
+    """Return a window without its violation, if contact may have been lost in it."""
+    f = force[item.window.first : item.window.last]
+    size = np.abs(f)
+    kept = abs(np.sign(f).sum()) == len(f) and size.min() >= _KEPT * size.max()
+    told = item.free or kept or item.status is not Status.OUTSIDE
+    return item if told else replace(item, status=Status.UNDECIDED)
 
 
 def _is_free(window: Window, least: float) -> bool:

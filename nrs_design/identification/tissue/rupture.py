@@ -72,7 +72,8 @@ def find_rupture(motion: Motion, force: Array) -> Rupture | None:
     size = _smoothed(force - np.median(force[:window]), max(window // 2, 1))
     # Into the tissue, and against it: where the force is largest.
     top = int(np.argmax(np.abs(size)))
-    size, inward = size * np.sign(size[top]), float(np.sign(x[top] - x[0]))
+    size = size * np.sign(size[top])
+    inward = _direction(x[: top + 1], size[: top + 1])
     span = float(np.ptp(size))
     if span == 0.0:
         return None
@@ -92,6 +93,19 @@ def find_rupture(motion: Motion, force: Array) -> Rupture | None:
     # Before the peak, a tissue may already give way.
     fall = float(size[peak] - size[peak : peak + 2 * window].min()) / span
     return Rupture(peak, fall, float(motion.time[peak]))
+
+
+def _direction(x: Array, size: Array) -> float:
+    """Return the sign of the motion against which the force grows, with its way and its speed.
+
+    Where the force is largest does not tell: a tissue that relaxes may pull most where the probe
+    is back at its start.
+    """
+    way = x - x.mean()
+    speed = np.diff(x, prepend=x[0])
+    grown = size - size.mean()
+    shares = (float(y @ grown) / (float(np.linalg.norm(y)) or 1.0) for y in (way, speed))
+    return float(np.sign(sum(shares)))
 
 
 def _smoothed(values: Array, count: int) -> Array:

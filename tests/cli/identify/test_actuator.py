@@ -30,3 +30,4 @@ def test_sinusoids_and_a_ready_response(tmp_path):
     text = run("identify", "actuator", DATA / "actuator-response.csv", cwd=tmp_path).stdout
     assert text.startswith("SYNTHETIC data")
     assert "ready frequency response" in text
+    assert "both for a motor with K_T = 0.0115 N m/A" in text

@@ -16,8 +16,10 @@ def test_table_and_failures(mixed):
 
 
 def test_gains_are_shown_by_their_shortest_single_precision_decimals():
-    text = to_text(outcome_of(obligation(), gains=GAINS))
-    assert "specs/a.nrs.yaml: motion Kp 117359.44, Kd 2060; tissue Mt 0.01\n" in text
+    units = {"motion": {"Kp": "rpm/rad", "Kd": "rpm*s/rad"}, "tissue": {"Mt": "kg*m^2"}}
+    text = to_text(outcome_of(obligation(), gains=GAINS, units=units))
+    motion = "motion Kp 117359.44 rpm/rad, Kd 2060 rpm*s/rad"
+    assert f"specs/a.nrs.yaml: {motion}; tissue Mt 0.01 kg*m^2\n" in text
     assert "single-precision" in text
     assert "gains" not in to_text(outcome_of(obligation()))
 

@@ -14,7 +14,7 @@ def doubts(*records):
     return "; ".join(identify_actuator(records, MOTOR).doubts)
 
 
-@pytest.mark.parametrize("kind", ["chirp", "multisine"])
+@pytest.mark.parametrize("kind", [pytest.param("chirp", marks=pytest.mark.slow), "multisine"])
 def test_saturation(kind):
     text = doubts(motors.record(kind, 1, limit=1800.0))
     assert "the model misses" in text

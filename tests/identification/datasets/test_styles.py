@@ -8,7 +8,7 @@ from scipy.io import savemat
 
 from nrs_design.errors import DataError
 from nrs_design.identification.datasets import read_tissue
-from nrs_design.identification.datasets.columns import parse_mapping
+from nrs_design.identification.datasets.columns import find_columns, parse_mapping
 from nrs_design.identification.datasets.names import Name, read_name, read_stamp
 
 N = 80
@@ -180,3 +180,40 @@ def test_a_mapped_quantity_is_the_mapped_column(tmp_path):
     text = "time_s,deflection_m,force_raw,force_N\n" + rows(",").replace("\n", ",1\n")
     path.write_text(text)
     check(read_tissue(path, parse_mapping(["force_N=force_raw"])))
+
+
+CONTRADICTIONS = {
+    "force_N=Load_kN": "force_kN=Load_kN",
+    "deflection_m=Weg [mm]": "deflection_mm=Weg [mm]",
+    "time_s=t/ms": "time_ms=t/ms",
+    "command_rpm=voltage_V": "command_V=voltage_V",
+    "velocity_rad_s_2=w_deg_s": "velocity_deg_s_2=w_deg_s",
+    "angle_rad=Weg [mm]": "map another column",
+}
+
+
+@pytest.mark.parametrize(("entry", "remedy"), CONTRADICTIONS.items(), ids=CONTRADICTIONS)
+def test_a_mapped_column_keeps_the_unit_that_it_says(tmp_path, entry, remedy):
+    theirs = entry.partition("=")[2]
+    with pytest.raises(DataError, match="says") as caught:
+        find_columns([theirs], [("time",)], parse_mapping([entry]), tmp_path, 1)
+    assert remedy in str(caught.value.remedy)
+
+
+@pytest.mark.parametrize(
+    "entry",
+    ["force_N=F [N]", "torque_Nm=T (N*m)", "frequency_hz=f_Hz", "angle_rad=theta_m",
+     "command_V=sensor_A", "input_any=cmd_V", "force_N=Force (filtered)", "force_N=wrench/force"],
+)  # fmt: skip
+def test_a_name_that_does_not_contradict_is_mapped(entry):
+    ours, _, theirs = entry.partition("=")
+    quantity = read_name(ours).quantity
+    layout, groups = find_columns([theirs], [(quantity,)], parse_mapping([entry]), "file", 1)
+    assert (layout, groups[""][quantity].name) == ((quantity,), theirs)
+
+
+def test_a_line_of_units_contradicts_too(tmp_path):
+    path = tmp_path / "foreign.csv"
+    path.write_text(FOREIGN, "utf-8")
+    with pytest.raises(DataError, match="column 'x' says mm, and deflection_m is in m"):
+        read_tissue(path, parse_mapping(["time_s=t", "deflection_m=x", "force_N=F"]))

@@ -40,7 +40,7 @@ def test_a_whole_number_of_samples_without_noise():
     ("options", "name"),
     [
         ({}, "a first-order lag"),
-        ({"second": 0.02}, "a second-order lag"),
+        pytest.param({"second": 0.02}, "a second-order lag", marks=pytest.mark.slow),
         ({"kind": "multisine", "is_angle": True}, "a lag and an integrator"),
     ],
 )

@@ -97,6 +97,17 @@ def test_lost_contact_that_the_proof_covers(tmp_path):
     assert str(check(kept, "contact").status) == "outside"
 
 
+def test_a_window_that_is_partly_free_is_no_stiffness(tmp_path):
+    """Where the proof covers lost contact, what seems soft may have been free for a while."""
+    t, angle, _, command, mode = runs.run()
+    torque = runs.STIFFNESS * np.maximum(angle - angle.mean(), 0.0)
+    data = log(tmp_path, (t, angle, torque, command, mode))
+    assert str(check(judged(data), "stiffness").status) == "outside"
+    found = judged(data, losable=True)
+    assert str(check(found, "stiffness").status) == "undecided"
+    assert found.verdict == "inconclusive"
+
+
 def test_a_sampled_proof_is_not_called_continuous(tmp_path):
     found = judged(log(tmp_path), SAMPLED)
     assert "sampled every 0.002 s" in check(found, "jitter").allowed

@@ -82,6 +82,7 @@ def test_several_starts_agree():
     assert fit.starts == fit.agreeing == 3
 
 
+@pytest.mark.slow
 def test_a_touch_that_only_grazes_the_tissue():
     # All its samples are at the edge of contact, so that none of them is used.
     time = np.arange(0, 16, 0.01)

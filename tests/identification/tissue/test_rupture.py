@@ -8,6 +8,7 @@ from nrs_design.identification.tissue.rupture import find_rupture
 from nrs_design.identification.tissue.trial import prepare
 from nrs_design.models.contact import Elastic, HuntCrossley, KelvinVoigt, Maxwell, Motion
 from tests.identification import synthetic
+from tests.identification.coverage import TISSUES, colored
 from tests.identification.support import quick, record, slow, source
 
 ROWS = 3000
@@ -45,6 +46,22 @@ def test_relaxation_and_unloading_are_none(law, motion, noise):
     for seed in range(10):
         data = record(law, motion(seed), noise, seed)
         assert find_rupture(data.motion, data.force) is None
+
+
+def test_a_tissue_that_pulls_most_where_the_probe_is_back_is_not_torn():
+    """A Maxwell tissue at the end of its presses, under a noise that hides which way it went."""
+    data = colored(TISSUES["maxwell"], 235_560)
+    size = np.abs(data.force - np.median(data.force[:32]))
+    top = int(np.argmax(size))
+    assert abs(data.motion.deflection[top] - data.motion.deflection[0]) < 0.01
+    assert find_rupture(data.motion, data.force) is None
+
+
+@pytest.mark.parametrize("side", [1, -1])
+def test_a_tissue_that_is_torn_at_once_and_feels_nothing_from_then_on(side):
+    motion, force, _ = torn(0, side)
+    force[600:] = 0.02 * np.random.default_rng(1).standard_normal(ROWS - 600)
+    assert find_rupture(motion, force).peak == pytest.approx(600, abs=30)
 
 
 def test_what_follows_is_cut_and_said():

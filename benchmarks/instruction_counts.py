@@ -1,0 +1,159 @@
+"""Instructions of exported laws on a Cortex-M4F, counted twice, with cycles, stack and code."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from fractions import Fraction
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from time import perf_counter
+
+import numpy as np
+from numpy.typing import NDArray
+
+from benchmarks.cortex import Compiled, Counts, measure, versions
+from benchmarks.measure import Finding
+from nrs_design.controllers.axes_law import build_axes_law
+from nrs_design.controllers.operations import StepLaw
+from nrs_design.controllers.shipped import shipped_law
+from nrs_design.exporters import axes, robot_c
+from nrs_design.exporters.build import build_unproved
+from nrs_design.exporters.c import header_text, source_text
+from nrs_design.exporters.c_names import CNames
+from nrs_design.exporters.program import Program
+from nrs_design.exporters.robot_tree import RobotExport
+from nrs_design.exporters.vectors import make_vectors
+from nrs_design.models.robot import build_robot
+from nrs_design.pipeline import run_design, run_robot_laws
+from nrs_design.spec import RobotSpec, read_spec
+
+HERE = Path(__file__).parent
+SPECS = HERE.parent / "specs" / "neuroboscope"
+ROBOT = HERE.parent / "specs" / "robots" / "neuroboscope.nrs.yaml"
+PERIOD = Fraction(1, 500)
+COUNT, FEW = 1000, 100
+
+
+@dataclass(frozen=True)
+class Exported:
+    """A law with its C.
+
+    Parameters
+    ----------
+    law : StepLaw
+        Its operations.
+    name : str
+        Of the header and the source.
+    header, source : str
+        Their texts.
+    own : str
+        Beginning of the names in C.
+    """
+
+    law: StepLaw
+    name: str
+    header: str
+    source: str
+    own: str
+
+
+def _of_spec(file: Path) -> Callable[[], Exported]:
+    """Return what designs a spec; what the comments of its C say of a proof is not compiled."""
+
+    def make() -> Exported:
+        loaded = read_spec(file)
+        designed = run_design(loaded)
+        assert designed is not None
+        law = shipped_law(designed.spec, designed.design, PERIOD)
+        record = build_unproved(loaded, designed.design, "a benchmark", PERIOD, None)
+        names = CNames(record.spec.name)
+        texts = header_text(record, law, names), source_text(record, law, names)
+        return Exported(law, names.spec, *texts, names.lower)
+
+    return make
+
+
+def _of_robot(law: str) -> Callable[[], Exported]:
+    """Return what designs the motion control of the robot, and takes one of its laws."""
+
+    def make() -> Exported:
+        loaded = read_spec(ROBOT)
+        assert isinstance(loaded.spec, RobotSpec)
+        export = RobotExport(loaded, build_robot(loaded.spec), ROBOT.name)
+        laws = run_robot_laws(loaded.spec, export.robot)
+        names = robot_c.names_of(loaded.spec.name, law)
+        texts = robot_c.header_text(export, laws), robot_c.source_text(export, laws)
+        return Exported(laws[law], loaded.spec.name, *texts, names.lower)
+
+    return make
+
+
+def _of_axes(file: Path) -> Callable[[], Exported]:
+    """Return what designs a spec, and takes the admittance of three axes."""
+
+    def make() -> Exported:
+        loaded = read_spec(file)
+        designed = run_design(loaded)
+        assert designed is not None
+        one = shipped_law(designed.spec, designed.design, PERIOD)
+        record = build_unproved(loaded, designed.design, "a benchmark", PERIOD, None)
+        program, law = Program(record, one, CNames(record.spec.name)), build_axes_law(one)
+        texts = axes.header_text(program, law), axes.source_text(program, law)
+        own = axes.names_of(record.spec.name).lower
+        return Exported(law, f"{record.spec.name}_axes", *texts, own)
+
+    return make
+
+
+# Each law by its name: what makes it, and how many instructions are aimed for.
+LAWS: dict[str, tuple[Callable[[], Exported], int | None]] = {
+    "hybrid impedance axis with guards": (_of_spec(HERE / "hybrid.nrs.yaml"), 200),
+    "soft-tissue-sampled": (_of_spec(SPECS / "soft-tissue-sampled.nrs.yaml"), None),
+    "force-limit-sampled": (_of_spec(SPECS / "force-limit-sampled.nrs.yaml"), None),
+    "three-axis admittance": (_of_axes(SPECS / "soft-tissue-axes.nrs.yaml"), 80),
+    "robot: base": (_of_robot("base"), None),
+    "robot: PD": (_of_robot("pd"), None),
+    "robot: PD with gravity": (_of_robot("pd_gravity"), 250),
+    "robot: simplified computed torque": (_of_robot("computed_torque"), 1700),
+    "robot: full inverse dynamics": (_of_robot("inverse_dynamics"), 1000),
+}
+
+
+def run(quick: bool) -> tuple[Finding, ...]:
+    """Count every law; one more line says whether both ways of counting agree."""
+    alike, findings = [], []
+    for name, (make, goal) in LAWS.items():
+        begin = perf_counter()
+        found, valid = _count(make(), FEW if quick else COUNT)
+        seconds = perf_counter() - begin
+        alike.append(bool((found.instructions == found.by_clock).all()))
+        most = int(found.instructions.max())
+        aim = "-" if goal is None else f"at most {goal}"
+        findings.append(
+            Finding(name, _words(found, valid), aim, goal is None or most <= goal, seconds)
+        )
+    count = FEW if quick else COUNT
+    result = f"{sum(alike)} of {len(alike)} laws alike in each of {count} cases; {versions()}"
+    aim = "both ways to count agree"
+    return (*findings, Finding("instructions, counted twice", result, aim, all(alike), 0.0))
+
+
+def _count(made: Exported, count: int) -> tuple[Counts, NDArray[np.bool_]]:
+    """Count cases of which a part is refused; which are not comes back, too."""
+    law, vectors = made.law, make_vectors(made.law, count)
+    rows = vectors.rows[:, : bool(law.modes) + len(law.inputs) + len(law.states)]
+    compiled = Compiled(made.name, made.header, made.source, made.own, rows, len(law.states))
+    with TemporaryDirectory() as folder:
+        found = measure(Path(folder), compiled)
+    return found, vectors.rows[:, vectors.columns.index("valid")] == 1
+
+
+def _words(found: Counts, valid: NDArray[np.bool_]) -> str:
+    n, refused = found.instructions[valid], found.instructions[~valid]
+    return (
+        f"{n.min()}, {np.mean(n):.1f}, {n.max()} instructions (least, mean, most), "
+        f"{refused.max()} at most where a step is refused; "
+        f"{found.cycles[valid].min()} to {found.cold_cycles.max()} cycles, modelled; "
+        f"stack {found.stack} B, code {found.code} B"
+    )

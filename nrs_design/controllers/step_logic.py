@@ -1,0 +1,139 @@
+"""The mode logic as a processor runs it: comparisons in single precision, and a count of samples.
+
+`nrs_design.controllers.threshold_logic` is the same in seconds and doubles. Thresholds are rounded
+away from each other here, too, and times up to whole samples, so what is shown for those of the
+spec holds for these.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from math import ceil
+from typing import Self
+
+from nrs_design.controllers.float32 import float32_not_above, float32_not_below
+from nrs_design.errors import DesignError
+from nrs_design.spec.threshold_logic import LogicSwitchSpec, ThresholdLogicSpec
+
+# The count of samples stops there.
+LONGEST = 2**32 - 1
+UNITS = {"command": "rad/s", "torque": "N*m"}
+
+
+@dataclass(frozen=True, slots=True)
+class Bound:
+    """One side of a threshold.
+
+    Parameters
+    ----------
+    signal : str
+        ``command`` or ``torque``, positive towards the tissue.
+    above : bool
+        Whether the signal has to be at least, or at most, the threshold.
+    threshold : Fraction
+        A single-precision number in rad/s or N m.
+    """
+
+    signal: str
+    above: bool
+    threshold: Fraction
+
+
+@dataclass(frozen=True, slots=True)
+class StepSwitch:
+    """A switch, which is made when all of its bounds hold: modes by number."""
+
+    source: int
+    target: int
+    bounds: tuple[Bound, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class StepLogic:
+    """Which mode is active, sample by sample.
+
+    Parameters
+    ----------
+    start : int
+        Mode at first.
+    signals : tuple of str
+        What it sees.
+    switches : tuple of StepSwitch
+        The first that may be made is.
+    stays : tuple of int
+        For how many samples each mode is held.
+    """
+
+    start: int
+    signals: tuple[str, ...]
+    switches: tuple[StepSwitch, ...]
+    stays: tuple[int, ...]
+
+    @classmethod
+    def of(cls, logic: ThresholdLogicSpec, modes: Sequence[str], period: Fraction) -> Self:
+        """Return the logic of a spec in samples.
+
+        Parameters
+        ----------
+        logic : ThresholdLogicSpec
+            As the spec says.
+        modes : sequence of str
+            Names of the controllers, by number.
+        period : Fraction
+            In s.
+
+        Raises
+        ------
+        DesignError
+            If a threshold is beyond single precision, or a time too long to be counted.
+        """
+        seen = {name for switch in logic.switches for name in switch.conditions}
+        stays = {name: logic.stay(name) for name in modes}
+        samples = [0 if stay is None else ceil(stay.value / period) for stay in stays.values()]
+        if max(samples) > LONGEST:
+            raise DesignError(
+                "a controller is held for more samples than 32 bits count",
+                remedy="shorten `hold`",
+                at=("mode_logic", "hold"),
+            )
+        return cls(
+            modes.index(logic.start),
+            tuple(name for name in UNITS if name in seen),
+            tuple(_switch(switch, modes) for switch in logic.switches),
+            tuple(samples),
+        )
+
+    def step(self, mode: int, held: int, signals: Mapping[str, float]) -> tuple[int, int]:
+        """Return mode and count after a sample.
+
+        Parameters
+        ----------
+        mode, held : int
+            The mode before, and for how many samples it has been active.
+        signals : mapping of str to float
+            Single-precision numbers; one that is no number is no reason to switch.
+        """
+        if mode >= len(self.stays):
+            return self.start, 1
+        if held >= self.stays[mode]:
+            for switch in self.switches:
+                if switch.source == mode and all(_holds(b, signals) for b in switch.bounds):
+                    return switch.target, 1
+        return mode, min(held + 1, LONGEST)
+
+
+def _holds(bound: Bound, signals: Mapping[str, float]) -> bool:
+    value, threshold = signals[bound.signal], float(bound.threshold)
+    return value >= threshold if bound.above else value <= threshold
+
+
+def _switch(switch: LogicSwitchSpec, modes: Sequence[str]) -> StepSwitch:
+    bounds: list[Bound] = []
+    for name, condition in switch.conditions.items():
+        if condition.above is not None:
+            bounds.append(Bound(name, True, float32_not_below(condition.above.not_below)))
+        if condition.below is not None:
+            bounds.append(Bound(name, False, float32_not_above(condition.below.not_above)))
+    return StepSwitch(modes.index(switch.source), modes.index(switch.target), tuple(bounds))

@@ -1,0 +1,256 @@
+"""A monitor in C: it tells when a running loop first leaves what its proof is about.
+
+The checks are those of `nrs_design.identification.running`, which holds a log against a spec, as
+far as a processor can make them while it runs.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from fractions import Fraction
+
+from nrs_design.controllers.float32 import exact_decimal
+from nrs_design.exporters.c_names import CNames, comment, harmless, literal
+from nrs_design.exporters.export import Export
+from nrs_design.exporters.monitor_limits import CHANCE, MonitorLimits, limits_of
+from nrs_design.exporters.monitor_source import KEPT, SOURCE
+from nrs_design.exporters.program import Program, program_of
+from nrs_design.output import C_MONITOR, C_MONITOR_HEADER
+
+KINDS = {
+    "NONE": "Nothing was left",
+    "INPUT": "The angle is no number, or no robot gets there, or the mode does not exist",
+    "JITTER": "A step of time is off by more than the caller accepts",
+    "DELAY": "The torque is older, or younger, than the proof says",
+    "STAY": "A mode was left too early or too late",
+    "ORDER": "A mode was followed by one that must not follow it",
+    "SATURATION": "The command met its limit",
+    "FORCE": "The torque is beyond its limit",
+    "STIFFNESS": "A window shows a stiffness outside the ranges, for certain",
+    "CONTACT": "A window shows free motion, for certain, and contact must be kept",
+}
+
+
+def render(export: Export) -> dict[str, bytes]:
+    """Return header and source, by their endings.
+
+    Parameters
+    ----------
+    export : Export
+        With a record, proved or not.
+
+    Raises
+    ------
+    DesignError
+        If there is no program of a controller yet.
+    """
+    program = program_of(export)
+    limits = limits_of(export, program.law.modes)
+    return {
+        "_monitor.h": header_text(program, limits).encode(),
+        "_monitor.c": source_text(program, limits).encode(),
+    }
+
+
+def header_text(program: Program, limits: MonitorLimits) -> str:
+    """Return the header: limits, types and functions.
+
+    Parameters
+    ----------
+    program : Program
+        The law that is monitored.
+    limits : MonitorLimits
+        What it must keep.
+    """
+    names = program.names
+    guard = f"{names.upper}_MONITOR_H"
+    text = _HEADER.replace("@KINDS@", _kinds(names)).replace("@MACROS@", _macros(names, limits))
+    text = text.replace("@GUARD@", guard).replace("@OWN@", names.lower)
+    text = text.replace("@UP@", names.upper).replace("@SPEC@", names.spec)
+    return comment((*program.about, *_words(program, limits)), C_MONITOR_HEADER) + text
+
+
+def source_text(program: Program, limits: MonitorLimits) -> str:
+    """Return the source.
+
+    Parameters
+    ----------
+    program : Program
+        The law that is monitored.
+    limits : MonitorLimits
+        What it must keep.
+    """
+    names = program.names
+    text = SOURCE
+    losable = not limits.contact_kept
+    text = text.replace("@KEPT@", KEPT if losable else "")
+    text = text.replace("@AND_KEPT@", " && kept(m)" if losable else "")
+    for place, table in _tables(program, limits).items():
+        text = text.replace(place, table)
+    text = text.replace("@CHECKS@", _checks(limits)).replace("@CONTACT@", _contact(limits))
+    text = text.replace("@OWN@", names.lower).replace("@UP@", names.upper)
+    about = (*program.about, f"More is in {names.spec}_monitor.h.")
+    return comment(about, C_MONITOR) + text.replace("@SPEC@", names.spec)
+
+
+def _words(program: Program, limits: MonitorLimits) -> Iterator[str]:
+    own = program.names.lower
+    yield ""
+    yield (
+        f"Call {own}_monitor_init once, then {own}_monitor_step at every sample, beside "
+        f"{own}_step. It returns the first violation, and from then on the same until init. What "
+        "to do then is for the caller to say. It commands nothing and is no part of the proof: "
+        "silence does not show that the loop kept its bounds between samples or windows."
+    )
+    yield (
+        f"Stiffness is judged in windows of {limits.window} samples in one mode, at the end of "
+        "each: that sample takes longer than the others. A window claims only what a whole "
+        f"interval shows, {float(limits.quantile):.3g} standard errors to both sides: where errors "
+        f"are normal, Student's distribution leaves {CHANCE:g} of the windows outside. Shorter "
+        "stays are not judged. A torque that stays the same for a whole window tells nothing."
+    )
+    if not limits.contact_kept:
+        yield (
+            "Contact may be lost, and a window that is partly free shows a stiffness that no "
+            "tissue has. So one is judged only if the torque keeps its sign, and a quarter of its "
+            "largest size at least."
+        )
+    yield "Uneven steps of time: no proof knows them. The caller says how much is accepted."
+    yield from (f"Not monitored: {text}" for text in limits.left_out)
+
+
+def _kinds(names: CNames) -> str:
+    rows = enumerate(KINDS.items())
+    return "".join(f"/* {text}: */\n#define {names.upper}_LEFT_{k} {i}U\n" for i, (k, text) in rows)
+
+
+def _macros(names: CNames, limits: MonitorLimits) -> str:
+    up = f"{names.upper}_MONITOR"
+    lines = [
+        f"#define {up}_WINDOW {limits.window}U /* samples */\n",
+        _number(f"{up}_QUANTILE", limits.quantile, "standard errors"),
+        _number(f"{up}_PERIOD", limits.period, "s"),
+        _number(f"{up}_TORQUE", limits.torque, "N*m, from the spec"),
+    ]
+    if limits.command is not None:
+        lines.append(_number(f"{up}_COMMAND", limits.command, "from the spec"))
+    if limits.age is not None:
+        least, most = limits.age
+        lines.append(f"#define {up}_YOUNGEST {least}U /* samples, from the spec */\n")
+        lines.append(f"#define {up}_OLDEST {most}U\n")
+    return "".join(lines)
+
+
+def _number(name: str, value: Fraction, words: str) -> str:
+    return f"#define {name} {literal(value)} /* {exact_decimal(value)} {words} */\n"
+
+
+def _tables(program: Program, limits: MonitorLimits) -> dict[str, str]:
+    """Write what each mode has, by where it goes; a range that is not there is never left."""
+    modes, count = program.law.modes, f"{program.names.upper}_MODES"
+    most = max(1, *map(len, limits.stiffness))
+    allowed = [", ".join("true" if may else "false" for may in row) for row in limits.follows]
+    rows = {
+        ("uint32_t", "shortest", ""): [f"{n}U" for n, _ in limits.stays],
+        ("uint32_t", "longest", ""): [f"{n}U" for _, n in limits.stays],
+        ("bool", "follows", f"[{count}]"): [f"{{{row}}}" for row in allowed],
+    }
+    counts = [f"{len(pairs)}U" for pairs in limits.stiffness]
+    pairs = [_range(each, most) for each in limits.stiffness]
+    return {
+        "@COUNTS@": _table(("uint32_t", "ranges", ""), counts, modes, count, ""),
+        "@RANGE@": _table(("float", "range", f"[{most}][2]"), pairs, modes, count),
+        "@STAYS@": "".join(_table(head, each, modes, count) for head, each in rows.items()),
+    }
+
+
+def _table(
+    head: tuple[str, str, str],
+    rows: list[str],
+    modes: tuple[str, ...],
+    count: str,
+    by: str = "    ",
+) -> str:
+    type_, name, shape = head
+    lines = "".join(
+        f"{by}    {row}, /* {harmless(mode)} */\n" for row, mode in zip(rows, modes, strict=True)
+    )
+    return f"{by}static const {type_} {name}[{count}]{shape} = {{\n{lines}{by}}};\n"
+
+
+def _range(pairs: tuple[tuple[Fraction, Fraction], ...], most: int) -> str:
+    texts = [f"{{{literal(low)}, {literal(high)}}}" for low, high in pairs]
+    texts += ["{0.0F, 0.0F}"] * (most - len(pairs))
+    return "{" + ", ".join(texts) + "}"
+
+
+def _checks(limits: MonitorLimits) -> str:
+    """Write the checks that the spec has a limit for."""
+    text = ""
+    if limits.age is not None:
+        least, _ = limits.age
+        young = "(in->age < @UP@_MONITOR_YOUNGEST) || " if least else ""
+        text += _check(f"{young}(in->age > @UP@_MONITOR_OLDEST)", "DELAY")
+    else:
+        text += "    (void)in->age;\n"
+    if limits.command is not None:
+        below = "(in->command > -@UP@_MONITOR_COMMAND) && (in->command < @UP@_MONITOR_COMMAND)"
+        text += _check(f"!({below})", "SATURATION")
+    return text
+
+
+def _check(condition: str, kind: str) -> str:
+    return f"    note(m, {condition}, @UP@_LEFT_{kind});\n"
+
+
+def _contact(limits: MonitorLimits) -> str:
+    return "@UP@_LEFT_CONTACT" if limits.contact_kept else "@UP@_LEFT_NONE"
+
+
+_HEADER = """\
+
+#ifndef @GUARD@
+#define @GUARD@
+
+#include "@SPEC@.h"
+
+#include <stdbool.h>
+#include <stdint.h>
+
+@KINDS@
+/* Limits. */
+@MACROS@
+/* What the loop measured and commanded in a sample. */
+typedef struct {
+    uint32_t mode;
+    float step; /* s since the sample before; in the first one, the sample time */
+    uint32_t age; /* samples: how old the torque is */
+    float angle; /* rad */
+    float torque; /* N*m */
+    float command; /* of the motor */
+} @OWN@_monitor_input_t;
+
+/* What it remembers. */
+typedef struct {
+    float jitter;
+    uint32_t left;
+    uint32_t sample;
+    uint32_t mode;
+    uint32_t stay;
+    bool begun;
+    bool switched;
+    uint32_t count;
+    float angle[@UP@_MONITOR_WINDOW];
+    float torque[@UP@_MONITOR_WINDOW];
+} @OWN@_monitor_t;
+
+/* Begin anew; steps of time may be off by so many s. */
+void @OWN@_monitor_init(@OWN@_monitor_t *m, float jitter);
+
+/* Return what was left first; `sample` counts the samples before it. */
+uint32_t @OWN@_monitor_step(
+    const @OWN@_monitor_input_t *in,
+    @OWN@_monitor_t *m);
+
+#endif
+"""

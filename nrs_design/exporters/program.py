@@ -1,0 +1,53 @@
+"""What every format of a program is made from: a record, its law and their names in C."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from nrs_design.controllers.operations import StepLaw
+from nrs_design.exporters.c_names import CNames
+from nrs_design.exporters.export import Export
+from nrs_design.exporters.header import header_lines
+from nrs_design.exporters.record import ExportRecord
+from nrs_design.exporters.shipped import law_of
+
+
+@dataclass(frozen=True, slots=True)
+class Program:
+    """A law that a processor runs.
+
+    Parameters
+    ----------
+    record : ExportRecord
+        What the law is, and what is proved of it.
+    law : StepLaw
+        Its operations.
+    names : CNames
+        Of its spec.
+    """
+
+    record: ExportRecord
+    law: StepLaw
+    names: CNames
+
+    @property
+    def about(self) -> tuple[str, ...]:
+        """What every exported file says of itself."""
+        return header_lines(self.record)
+
+
+def program_of(export: Export) -> Program:
+    """Return the program of an export.
+
+    Parameters
+    ----------
+    export : Export
+        With a record, proved or not.
+
+    Raises
+    ------
+    DesignError
+        If nothing may be exported, or there is no program of a controller yet.
+    """
+    record = export.shipped()
+    return Program(record, law_of(export), CNames(record.spec.name))

@@ -1,0 +1,87 @@
+"""The cost around a design, on the published loop of the thesis (6.3.2)."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from nrs_design.design.impedance import impedance_cost, stabilizes
+from nrs_design.design.landscape import alternatives, delay_borne, map_cost
+from nrs_design.design.margins import loop_margins
+from nrs_design.pipeline import run_analysis, run_design
+from nrs_design.spec import read_spec
+from tests.support import SOFT_TISSUE
+
+
+@pytest.fixture(scope="module")
+def insertion():
+    return run_analysis(run_design(read_spec(SOFT_TISSUE))).impedance[0]
+
+
+def test_no_point_within_the_bounds_costs_less_than_the_optimum(insertion):
+    found = map_cost(insertion.problem, insertion.Mt, insertion.Bt)
+    (left, right), (low, high) = insertion.problem.mass_bounds, insertion.problem.damping_bounds
+    columns = (left <= found.Mt) & (found.Mt <= right)
+    rows = (low <= found.Bt) & (found.Bt <= high)
+    assert found.Mt[0] < left < right < found.Mt[-1]
+    inside = found.cost[np.ix_(rows, columns)]
+    assert np.nanmin(inside) >= insertion.optimum.cost
+    assert np.nanmin(inside) == pytest.approx(insertion.optimum.cost, rel=0.05)
+
+
+def test_the_border_is_that_of_stability(insertion):
+    found = map_cost(insertion.problem, insertion.Mt, insertion.Bt)
+    Mt, Bt = np.meshgrid(found.Mt, found.Bt)
+    assert (np.isfinite(found.cost) == stabilizes(insertion.problem.loop, Mt, Bt)).all()
+    assert np.isnan(found.cost).any()
+
+
+def test_each_alternative_is_the_best_at_what_it_is_named_for(insertion):
+    shipped, displayed, robust, beyond = alternatives(insertion.problem, insertion.Mt, insertion.Bt)
+    assert (shipped.Mt, shipped.Bt) == (insertion.Mt, insertion.Bt)
+    assert shipped.cost == pytest.approx(insertion.cost)
+    assert shipped.cost == pytest.approx((shipped.displayed + shipped.sensitivity) / 2)
+    assert displayed.displayed < shipped.displayed
+    assert displayed.sensitivity > shipped.sensitivity
+    assert robust.sensitivity < shipped.sensitivity
+    assert robust.displayed > shipped.displayed
+    # Mt is on its lower bound of 0.01 kg m^2, and would be lower still.
+    assert beyond.name == "with a tenth of the lower bound of Mt"
+    assert beyond.Mt < shipped.Mt
+    assert beyond.cost < shipped.cost
+
+
+def test_fixed_gains_have_a_map_and_no_bound_to_move(insertion):
+    fixed = replace(insertion.problem, mass_bounds=(0.01, 0.01), damping_bounds=(2.15, 2.15))
+    found = map_cost(fixed, 0.01, 2.15)
+    assert found.Mt[0] < 0.01 < found.Mt[-1]
+    assert [other.Bt for other in alternatives(fixed, 0.01, 2.15)] == [2.15] * 3
+
+
+def test_a_mass_of_zero_has_a_map(insertion):
+    bounds = replace(insertion.problem, mass_bounds=(0.0, 1.0))
+    found = map_cost(bounds, 0.0, 2.15)
+    assert 0 < found.Mt[0] < 1e-3
+    assert found.cost[50, 0] == pytest.approx(
+        float(impedance_cost(bounds, found.Mt[0], found.Bt[50]))
+    )
+
+
+def test_delay_borne_is_the_delay_margin_at_that_stiffness(insertion):
+    loop, margins = insertion.problem.loop, insertion.margins
+    nominal, limit = loop.contact.stiffness, margins.stiffness_limit
+    borne = delay_borne(
+        loop, insertion.Mt, insertion.Bt, np.array([nominal, 0.999 * limit, 1.001 * limit])
+    )
+    assert borne[0] == pytest.approx(margins.delay_margin, rel=1e-6)
+    assert 0 < borne[1] < 1e-3
+    assert borne[2] == 0
+
+
+def test_delay_borne_falls_with_stiffness(insertion):
+    loop = insertion.problem.loop
+    margin = loop_margins(loop, insertion.Mt, 2 * insertion.Bt).delay_margin
+    stiffness = np.array([1, 2, 3]) * loop.contact.stiffness
+    borne = delay_borne(loop, insertion.Mt, 2 * insertion.Bt, stiffness)
+    assert borne[0] == pytest.approx(margin, rel=1e-6)
+    assert (np.diff(borne) < 0).all()

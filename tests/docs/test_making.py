@@ -1,0 +1,91 @@
+"""Drawings, tables and refusals of the documentation."""
+
+import re
+
+import pytest
+from making.cost import problem_of
+from making.floors import drawing, floors_of, imports_between
+from making.misprints import misprints_table
+from making.offline import loaded_from_elsewhere
+
+from nrs_design.design.impedance import impedance_cost, optimize_impedance
+from nrs_design.reproduction.comparison import PrintVerdict
+from nrs_design.reproduction.table import reproduce
+from tests.support import ROOT, SOFT_TISSUE
+
+ARCHITECTURE = (ROOT / "docs" / "architecture.md").read_text(encoding="utf-8")
+TABLE = "| `top`, `middle` | words |\n| `ground` | words |\n"
+
+
+@pytest.fixture
+def house(tmp_path):
+    package = tmp_path / "house"
+    for floor in ("top", "ground"):
+        (package / floor).mkdir(parents=True)
+    (package / "top" / "a.py").write_text(
+        "from house.ground.b import x\nfrom house.ground import b\nfrom house import middle\n"
+    )
+    (package / "middle.py").write_text("from os import path\nfrom house.middle import self\n")
+    (package / "ground" / "b.py").write_text("import json\n")
+    return package
+
+
+def test_imports_are_counted_by_module(house):
+    assert floors_of(TABLE) == ["top", "middle", "ground"]
+    assert imports_between(house, floors_of(TABLE)) == {("top", "ground"): 1, ("top", "middle"): 1}
+
+
+def test_an_import_upward_is_told(house):
+    assert "2 imports of modules from other floors, none of them upward" in drawing(house, TABLE)
+    (house / "ground" / "b.py").write_text("def f():\n    from house.top.a import x\n")
+    assert "3 imports of modules from other floors, 1 of them upward" in drawing(house, TABLE)
+
+
+@pytest.mark.slow
+def test_the_drawing_shows_every_floor():
+    drawn = drawing(ROOT / "nrs_design", ARCHITECTURE)
+    assert "none of them upward" in drawn
+    names = re.findall(r'text-anchor="end">(\w+)</text>', drawn)
+    assert names == floors_of(ARCHITECTURE)
+    assert "<title>cli imports pipeline: " in drawn
+    assert "<!-- made: floors -->" in ARCHITECTURE
+
+
+@pytest.mark.parametrize(
+    "tag",
+    [
+        '<script src="https://cdn.example/a.js"></script>',
+        '<link rel="stylesheet" href="//cdn.example/a.css">',
+        '<img src="HTTP://example.org/a.png">',
+        '<link rel="shortcut icon" href="https://example.org/a.ico">',
+    ],
+)
+def test_what_a_page_would_load_from_a_network_is_found(tag):
+    assert len(loaded_from_elsewhere(f"<html>{tag}</html>")) == 1
+
+
+def test_links_and_local_files_are_no_loading():
+    page = (
+        '<a href="https://example.org">x</a><script src="js/a.js"></script><img src="a.png">'
+        '<link rel="canonical" href="https://example.org">'
+    )
+    assert loaded_from_elsewhere(page) == []
+
+
+@pytest.mark.slow
+def test_the_cost_that_is_drawn_is_that_of_the_design():
+    problem = problem_of(SOFT_TISSUE, "insertion")
+    optimum = optimize_impedance(problem)
+    assert optimum.Mt == 0.01
+    # As the README shows.
+    assert float(impedance_cost(problem, optimum.Mt, optimum.Bt)) == pytest.approx(0.1552, abs=1e-4)
+
+
+@pytest.mark.slow
+def test_every_misprint_has_a_row():
+    wrong = [row for row in reproduce() if row.verdict is PrintVerdict.PRINT_IS_WRONG]
+    table = misprints_table().splitlines()
+    assert len(table) == 2 + len(wrong)
+    assert all(
+        line.startswith(f"| {row.section} |") for line, row in zip(table[2:], wrong, strict=True)
+    )

@@ -1,0 +1,91 @@
+import json
+
+import pytest
+from making.notebook import made, notebook_of, page_of, read_cells, run_cells
+
+from tests.docs.pages import DOCS
+from tests.support import ROOT
+
+SOURCE = '''"""A file."""
+# %% [markdown]
+# # Title
+#
+# Words.
+
+# %%
+import math
+x = 2
+
+# %%
+print("x is", x)
+math.sqrt(x + 2)
+'''
+
+
+def test_cells():
+    words, first, second = read_cells(SOURCE)
+    assert (words.is_code, words.source) == (False, "# Title\n\nWords.")
+    assert (first.is_code, first.source) == (True, "import math\nx = 2")
+    assert second.source.endswith("math.sqrt(x + 2)")
+
+
+def test_cells_share_their_names_and_show_what_they_print_and_end_with():
+    cells = run_cells(read_cells(SOURCE))
+    assert [cell.printed for cell in cells] == ["", "", "x is 2\n2.0\n"]
+    page, images = page_of(cells, "name")
+    assert "```text\nx is 2\n2.0\n```" in page
+    assert images == {}
+
+
+DRAWING = """# %%
+class Drawn:
+    def savefig(self, buffer, **settings):
+        buffer.write(b"png")
+
+Drawn()
+"""
+
+
+def test_a_figure_becomes_an_image():
+    cells = run_cells(read_cells(DRAWING))
+    page, images = page_of(cells, "name")
+    assert images == {"name-1.png": b"png"}
+    assert "(name-1.png)" in page
+    (output,) = json.loads(notebook_of(cells))["cells"][0]["outputs"]
+    assert output["data"] == {"image/png": "cG5n"}
+
+
+def test_an_error_is_not_swallowed():
+    with pytest.raises(ZeroDivisionError):
+        run_cells(read_cells("# %%\n1 / 0\n"))
+
+
+def test_the_notebook_is_one_of_jupyter():
+    document = json.loads(notebook_of(run_cells(read_cells(SOURCE))))
+    assert (document["nbformat"], document["nbformat_minor"]) == (4, 5)
+    kinds = [cell["cell_type"] for cell in document["cells"]]
+    assert kinds == ["markdown", "code", "code"]
+    assert len({cell["id"] for cell in document["cells"]}) == 3
+    assert "".join(document["cells"][1]["source"]) == "import math\nx = 2"
+    assert document["cells"][2]["outputs"][0]["text"] == ["x is 2\n", "2.0\n"]
+
+
+@pytest.mark.slow
+def test_the_tutorial(monkeypatch):
+    monkeypatch.chdir(ROOT)
+    cells = made(DOCS / "tutorial_python.py")
+    printed = "".join(cell.printed for cell in cells)
+    said = [
+        "proved - a common quadratic function: impossible\n",
+        "Repeating the signal",
+        "insertion: Mt = 0.01 kg m^2, Bt = 2.15 N m s/rad\n",
+        "proved at ",
+        "\nrefuted\n1 to 150 N m/rad: proved\n",
+        "holds: True at the rate ",
+        "holds for both modes: False\nfails in m2 at x = ",
+        "soft-tissue.cert.json holds: True\n",
+        "its content does not match its id: it was altered\n",
+    ]
+    places = [printed.index(text) for text in said]
+    assert places == sorted(places)
+    assert sum(len(cell.images) for cell in cells) == 2

@@ -1,0 +1,118 @@
+"""Every session that a page shows runs, and prints what is shown; every option shown exists."""
+
+from __future__ import annotations
+
+import os
+import re
+import shlex
+import shutil
+import subprocess
+import sys
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import pytest
+from typer.main import get_command
+
+from nrs_design.cli.app import make_app
+from tests.docs.pages import commands_of, pages, python_of, session_of
+from tests.support import ROOT
+from tests.test_readme import squeeze
+
+# The README has a test of its own, in process.
+SESSIONS = [page for page in pages() if session_of(page) and page != "README.md"]
+WRITTEN = {
+    "docs/tutorial.md": {"arm.cert.json", "arm.html", "arm.json", "nrs.lock", "arm.c", "arm.h"},
+    "docs/how-to/ci.md": {"soft-tissue.cert.json", "nrs.lock"},
+}
+
+
+@pytest.fixture
+def checkout(tmp_path: Path) -> Path:
+    """A folder as pages take it for granted: specs, examples, and the records as ``data``."""
+    folder = tmp_path / "checkout"
+    shutil.copytree(ROOT / "specs", folder / "specs")
+    shutil.copytree(ROOT / "docs" / "examples", folder / "docs" / "examples")
+    shutil.copytree(ROOT / "specs" / "data", folder / "data")
+    return folder
+
+
+def environment(folder: Path) -> dict[str, str]:
+    """With a program ``nrs-design`` that is this one."""
+    program = folder / "bin" / "nrs-design"
+    program.parent.mkdir()
+    program.write_text(f'#!/bin/sh\nexec "{sys.executable}" -m nrs_design "$@"\n')
+    program.chmod(0o755)
+    return os.environ | {
+        "PATH": f"{program.parent}:{os.environ['PATH']}",
+        "PYTHONPATH": str(ROOT),
+        "PYTHONWARNINGS": "default",
+    }
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("page", SESSIONS)
+def test_a_session_prints_what_is_shown(page: str, checkout: Path, tmp_path: Path) -> None:
+    settings = environment(tmp_path)
+    for command, shown in session_of(page):
+        result = subprocess.run(
+            ["bash", "-c", command],
+            capture_output=True,
+            text=True,
+            cwd=checkout,
+            check=False,
+            env=settings,
+        )
+        assert squeeze(result.stdout) == squeeze(shown), (command, result.stderr)
+        assert not re.search("^error", result.stderr, re.MULTILINE), (command, result.stderr)
+    written = {path.name for path in checkout.rglob("*")}
+    assert WRITTEN.get(page, set()) <= written
+
+
+def test_pages_have_sessions() -> None:
+    assert len(session_of("docs/tutorial.md")) >= 10
+    how_to = {page for page in pages() if page.startswith("docs/how-to/")}
+    # How to extend the package is no matter of commands.
+    assert how_to - {*SESSIONS} == {"docs/how-to/extend.md"}
+
+
+@cache
+def program() -> Any:
+    return get_command(make_app())
+
+
+def unknown_options(line: str) -> list[str]:
+    """Return words of a command line that no command or option is called."""
+    words = shlex.split(re.split(r" [|>] |  +#", line)[0])
+    command = program()
+    while words and hasattr(command, "commands") and not words[0].startswith("-"):
+        if words[0] not in command.commands:
+            return [words[0]]
+        command = command.commands[words.pop(0)]
+    known = {option for one in command.params for option in (*one.opts, *one.secondary_opts)} | {
+        "--help"
+    }
+    return [word for word in words if re.match("--?[a-z]", word) and word not in known]
+
+
+@pytest.mark.parametrize("page", [page for page in pages() if commands_of(page)])
+def test_commands_and_options_exist(page: str) -> None:
+    assert {line: unknown_options(line) for line in commands_of(page)} == {
+        line: [] for line in commands_of(page)
+    }
+
+
+def test_an_option_that_does_not_exist_is_seen() -> None:
+    assert unknown_options("gate specs --locked --lokced") == ["--lokced"]
+    assert unknown_options("identify tisue a.csv") == ["tisue"]
+    assert unknown_options("certify-switching a.nrs.yaml --no-optimize-rate | head -1") == []
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("page", [page for page in pages() if python_of(page)])
+def test_python_on_a_page_runs(page: str, checkout: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(checkout)
+    namespace: dict[str, object] = {"__name__": "page"}
+    for block in python_of(page):
+        exec(compile(block, page, "exec"), namespace)

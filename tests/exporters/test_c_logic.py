@@ -1,0 +1,188 @@
+"""The mode logic in C: step by step what the replica does, and every number of it deployed."""
+
+import json
+import struct
+from fractions import Fraction
+
+import numpy as np
+import pytest
+
+from nrs_design.controllers.shipped import shipped_law
+from nrs_design.exporters.build import build_unproved
+from nrs_design.exporters.c import header_text, source_text
+from nrs_design.exporters.c_names import CNames
+from nrs_design.exporters.logic_cases import logic_document
+from nrs_design.exporters.vectors import json_text, make_vectors
+from nrs_design.pipeline import run_design
+from nrs_design.spec import read_spec
+from tests.exporters.programs import (
+    CORTEX,
+    M4F,
+    MACHINE,
+    SEMIHOSTING,
+    STRICT,
+    built,
+    compiler,
+    run,
+)
+from tests.support import ROOT
+
+PERIOD = Fraction(1, 500)
+MAIN = """
+#include "{name}.h"
+#include <stdio.h>
+#include <string.h>
+static const uint32_t cases[{count}][{signals}] = {{
+{rows}
+}};
+static float from_bits(uint32_t bits)
+{{
+    float value;
+    (void)memcpy(&value, &bits, sizeof value);
+    return value;
+}}
+int main(void)
+{{
+    {own}_logic_t logic;
+    unsigned long k;
+    {own}_logic_init(&logic);
+    for (k = 0UL; k < {count}UL; k++) {{
+        {own}_signals_t seen;
+        uint32_t mode;
+        {reads}
+        mode = {own}_logic_step(&seen, &logic);
+        (void)printf("%lu %lu\\n", (unsigned long)mode, (unsigned long)logic.held);
+    }}
+    logic.mode = 99U;
+    logic.held = UINT32_MAX;
+    (void)printf("%lu\\n", (unsigned long){own}_logic_step(&(const {own}_signals_t){{0}}, &logic));
+    logic.held = UINT32_MAX;
+    (void){own}_logic_step(&(const {own}_signals_t){{0}}, &logic);
+    (void)printf("%d\\n", logic.held == UINT32_MAX);
+    return 0;
+}}
+"""
+
+
+@pytest.fixture(scope="module", params=["insertion-by-sign", "force-by-threshold"])
+def shipped(request):
+    found = run_design(read_spec(ROOT / f"docs/examples/{request.param}.nrs.yaml"))
+    law = shipped_law(found.spec, found.design, PERIOD)
+    record = build_unproved(found.loaded, found.design, "a test", PERIOD, None)
+    return record, law, CNames(found.spec.name)
+
+
+def signals(logic, count):
+    """Draw signals that stay for a while, some of them no numbers."""
+    rng = np.random.default_rng(4)
+    drawn = rng.uniform(-0.3, 0.5, (count // 20, len(logic.signals)))
+    drawn[rng.random(drawn.shape) < 0.05] = np.nan
+    drawn[rng.random(drawn.shape) < 0.02] = np.inf
+    return np.repeat(drawn, 20, axis=0).astype(np.float32)
+
+
+@pytest.fixture
+def program(tmp_path, shipped):
+    """Write the law and a program that prints what its logic does; what it should print."""
+    record, law, names = shipped
+    values = signals(law.logic, 4000)
+    rows = ",\n".join(
+        "{" + ", ".join(f"0x{bits:x}U" for bits in row) + "}" for row in values.view(np.uint32)
+    )
+    reads = " ".join(
+        f"seen.{name} = from_bits(cases[k][{i}]);" for i, name in enumerate(law.logic.signals)
+    )
+    main = MAIN.format(
+        name=names.spec,
+        own=names.lower,
+        rows=rows,
+        reads=reads,
+        count=len(values),
+        signals=len(law.logic.signals),
+    )
+    (tmp_path / f"{names.spec}.h").write_text(header_text(record, law, names))
+    (tmp_path / "law.c").write_text(source_text(record, law, names))
+    (tmp_path / "main.c").write_text(main)
+    return [*steps_of(law.logic, values), str(law.logic.start), "1"]
+
+
+def steps_of(logic, values):
+    mode, held, steps, switches = logic.start, 0, [], 0
+    for row in values:
+        before = mode
+        seen = dict(zip(logic.signals, map(float, row), strict=True))
+        mode, held = logic.step(mode, held, seen)
+        steps.append(f"{mode} {held}")
+        switches += mode != before
+    assert switches > 10
+    return steps
+
+
+def test_compiled_logic_agrees_with_the_replica(tmp_path, program):
+    gcc = compiler()
+    for level in ("-O0", "-O2"):
+        made = tmp_path / f"main{level}"
+        built(gcc, *STRICT, level, tmp_path / "law.c", tmp_path / "main.c", "-o", made)
+        assert run(made).stdout.splitlines() == program
+
+
+@pytest.mark.slow
+def test_an_emulated_cortex_agrees_with_the_replica(tmp_path, program):
+    gcc, emulator = compiler("arm-none-eabi-gcc"), compiler("qemu-system-arm")
+    compiled, made = tmp_path / "law.o", tmp_path / "main.elf"
+    built(gcc, *CORTEX, *STRICT, "-O2", "-c", tmp_path / "law.c", "-o", compiled)
+    start = (M4F / "startup.c", "-T", M4F / "m4f.ld", "--specs=nosys.specs", "-nostartfiles")
+    linked = run(gcc, *CORTEX, "-O2", "-std=c99", compiled, tmp_path / "main.c", *start, "-o", made)
+    assert linked.returncode == 0, linked.stderr
+    done = run(emulator, *MACHINE, *SEMIHOSTING, "-kernel", made)
+    # The emulator prints what the program says beside its own messages.
+    assert (done.returncode, done.stderr.splitlines()) == (0, program)
+
+
+def test_exported_cases_reach_every_switch(shipped):
+    """They are steps of the replica, next to thresholds and to the end of times."""
+    _, law, _ = shipped
+    document = json.loads(json_text(law, make_vectors(law, 3), ()))["logic"]
+    assert document["start"] == law.logic.start
+    switched = set()
+    for mode, held, *signals, after, count in document["cases"]:
+        seen = {
+            name: struct.unpack(">f", bytes.fromhex(bits))[0]
+            for name, bits in zip(law.logic.signals, signals, strict=True)
+        }
+        assert law.logic.step(mode, held, seen) == (after, count)
+        switched.add((mode, after))
+    wanted = {(switch.source, switch.target) for switch in law.logic.switches}
+    assert wanted | {(2, law.logic.start)} <= switched
+    assert {(mode, mode) for mode in range(2)} <= switched
+    assert document == logic_document(law.logic)
+
+
+@pytest.mark.slow
+def test_it_compiles_for_a_cortex_and_is_clean(tmp_path, shipped):
+    record, law, names = shipped
+    (tmp_path / f"{names.spec}.h").write_text(header_text(record, law, names))
+    (tmp_path / "law.c").write_text(source_text(record, law, names))
+    gcc = compiler("arm-none-eabi-gcc")
+    built(gcc, *CORTEX, *STRICT, "-O2", "-c", tmp_path / "law.c", "-o", tmp_path / "law.o")
+    limits = ("RADIX=2", "MANT_DIG=24", "MAX_EXP=128", "EVAL_METHOD=0")
+    suppressed = ("missingIncludeSystem", "unusedFunction")
+    done = run(
+        compiler("cppcheck"),
+        *("--enable=all", "--addon=misra", "--std=c99", "--quiet", "--error-exitcode=1"),
+        *(f"-DFLT_{limit}" for limit in limits),
+        *(f"--suppress={name}" for name in suppressed),
+        tmp_path / "law.c",
+    )
+    assert (done.returncode, done.stderr) == (0, "")
+
+
+def test_every_number_of_the_logic_is_in_the_header(shipped):
+    """`verify --deployed` compares all of them."""
+    record, law, names = shipped
+    text = header_text(record, law, names)
+    numbers = names.logic(law.logic, law.modes)
+    assert len(numbers) == 1 + len(law.modes) + sum(len(s.bounds) for s in law.logic.switches)
+    assert numbers.items() <= names.numbers(law).items()
+    assert all(f"#define {macro} " in text for macro in numbers)
+    assert "The proof does not rest on the signals" in " ".join(text.replace("\n *", " ").split())

@@ -1,0 +1,70 @@
+"""Names, numbers and comments of exported C."""
+
+import re
+from dataclasses import replace
+from fractions import Fraction
+
+import pytest
+from hypothesis import example, given
+from hypothesis import strategies as st
+
+from nrs_design.controllers.float32 import to_float32
+from nrs_design.errors import DesignError
+from nrs_design.exporters.c_names import CNames, comment, literal
+from tests.exporters.programs import LAWS
+
+NAMES = st.from_regex("[a-z0-9][a-z0-9._-]{0,63}", fullmatch=True)
+
+
+@given(NAMES)
+def test_every_name_of_a_spec_gives_identifiers(name):
+    names = CNames(name)
+    assert re.fullmatch("nrs_[a-z0-9_]+", names.lower)
+    assert names.upper == names.lower.upper()
+    assert re.fullmatch("NRS_[A-Z0-9_]+_MODE_A_B", names.mode("a.b"))
+
+
+def test_every_number_of_a_law_has_a_macro_of_its_own():
+    law = LAWS["static, filter, spring"]
+    numbers = CNames("x").numbers(law)
+    coefficients = [value for c in law.coefficients for value in c.values]
+    limits = [value.limit for value in law.values]
+    assert sorted(numbers.values()) == sorted([2, 0, 1, *coefficients, *limits])
+    assert numbers["NRS_X_MODE_WITHDRAWAL"] == 1
+    assert numbers["NRS_X_KT_OF_INSERTION"] == Fraction(1, 2)
+    assert {"NRS_X_KP", "NRS_X_T", "NRS_X_MAX_ANGLE"} < set(numbers)
+
+
+def test_controllers_that_are_one_in_c_are_refused():
+    twice = replace(LAWS["inertia"], modes=("a-b", "a.b"))
+    with pytest.raises(DesignError, match="same name in C"):
+        CNames("x").coefficients(twice)
+
+
+@pytest.mark.parametrize(
+    ("value", "text"),
+    [(0, "0x0.0p+0F"), (1, "0x1.0p+0F"), (Fraction(-3, 2), "(-0x1.8p+0F)"), (4000, "0x1.f4p+11F")],
+)
+def test_literals_that_are_known(value, text):
+    assert literal(Fraction(value)) == text
+
+
+@given(st.floats(width=32, allow_nan=False, allow_infinity=False))
+def test_literals_are_exact(value):
+    text = literal(Fraction(value))
+    assert Fraction(float.fromhex(text.strip("()").removesuffix("F"))) == Fraction(value)
+    assert text.strip("()").endswith("F")
+    assert to_float32(Fraction(value)) == Fraction(value)
+
+
+@example("???/ */*/ /*")
+@given(st.text())
+def test_no_text_ends_a_comment(text):
+    """Nor begins one, nor is more than ASCII, nor a trigraph."""
+    block = comment([text], b"/* first\n")
+    assert block.count("*/") == 1
+    assert block.endswith(" */\n")
+    assert block.count("/*") == 1
+    assert block.isascii()
+    assert "??" not in block
+    assert all(c == "\n" or " " <= c <= "~" for c in block)

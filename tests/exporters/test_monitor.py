@@ -1,0 +1,367 @@
+"""The monitor in C reports first what `audit` finds in the log of the same run."""
+
+import ctypes
+from dataclasses import replace
+from fractions import Fraction
+
+import numpy as np
+import pytest
+
+from nrs_design.exporters.c import header_text as law_header
+from nrs_design.exporters.c_names import CNames
+from nrs_design.exporters.compiled import shared_library
+from nrs_design.exporters.export import Export
+from nrs_design.exporters.monitor import KINDS, header_text, render, source_text
+from nrs_design.exporters.monitor_limits import limits_of
+from nrs_design.exporters.program import Program
+from nrs_design.identification.running import bounds_of_spec, judge_run, read_run
+from nrs_design.spec import parse_spec, read_spec
+from tests.exporters.programs import (
+    CORTEX,
+    LAWS,
+    M4F,
+    MACHINE,
+    SEMIHOSTING,
+    STRICT,
+    built,
+    compiler,
+    run,
+)
+from tests.identification import runs
+from tests.support import ROBOT, SOFT_TISSUE
+
+LAW = LAWS["inertia"]
+TEXT = SOFT_TISSUE.read_text().replace("bandwidth: 2 Hz", "bandwidth: 2 Hz\n  command: 3000 rpm")
+# Of the checks of `audit`, what the monitor calls them.
+SAME = {
+    "stiffness": {"STIFFNESS"},
+    "contact": {"CONTACT"},
+    "dwell times": {"STAY", "ORDER"},
+    "saturation": {"SATURATION"},
+    "force": {"FORCE"},
+}
+WINDOW = 0.5
+
+
+def spec_with(rules="arbitrary", text=TEXT):
+    """The nominal tissue where there are rules: a dwell time and a range exclude each other."""
+    if rules != "arbitrary":
+        text = text.replace("switching: arbitrary", f"switching: {rules}")
+        text = text.replace("{nominal: 747.1461 N/m, range: [720.56 N/m, 768.17 N/m]}", "747 N/m")
+    return parse_spec(text)
+
+
+class Input(ctypes.Structure):
+    _fields_ = [
+        ("mode", ctypes.c_uint32),
+        ("step", ctypes.c_float),
+        ("age", ctypes.c_uint32),
+        ("angle", ctypes.c_float),
+        ("torque", ctypes.c_float),
+        ("command", ctypes.c_float),
+    ]
+
+
+class Monitor:
+    """The compiled monitor of a spec."""
+
+    def __init__(self, folder, sampled_export, spec):
+        record = sampled_export.record
+        if spec.contact == "losable":
+            record = record.model_copy(update={"unproved": "so"})
+        export = Export("proved", record, None, spec=spec)
+        names = CNames("x")
+        program = Program(sampled_export.record, LAW, names)
+        limits = limits_of(export, LAW.modes)
+        self.sources = {
+            "x.h": law_header(sampled_export.record, LAW, names),
+            "x_monitor.h": header_text(program, limits),
+            "x_monitor.c": source_text(program, limits),
+        }
+        self.limits = limits
+        # One that is loaded must not be written over.
+        file = folder / f"monitor-{len([*folder.iterdir()])}.so"
+        file.write_bytes(shared_library(compiler("cc"), self._visible()))
+        library = ctypes.CDLL(str(file))
+        self._init, self._step = library.nrs_x_monitor_init, library.nrs_x_monitor_step
+        self._init.argtypes = [ctypes.c_void_p, ctypes.c_float]
+        self._step.restype = ctypes.c_uint32
+        # More than it needs.
+        self._memory = (ctypes.c_uint32 * (2 * limits.window + 64))()
+        self.begin()
+
+    def _visible(self):
+        seen = "#pragma GCC visibility push(default)\n"
+        return {name: seen + text for name, text in self.sources.items()}
+
+    def begin(self, jitter=1e-4):
+        self._init(self._memory, jitter)
+
+    def step(self, **given):
+        usual = {"mode": 0, "step": 0.002, "age": 0, "angle": 0.0, "torque": 0.0, "command": 0.0}
+        found = self._step(ctypes.byref(Input(**(usual | given))), self._memory)
+        return list(KINDS)[found]
+
+    def watch(self, log):
+        """Return what was left first in a log, and when."""
+        steps = np.diff(log.time, prepend=log.time[0] - log.step)
+        modes = [LAW.modes.index(log.labels[k]) for k in log.modes]
+        columns = (log.columns[name] for name in ("angle", "torque", "command"))
+        for time, step, mode, *rest in zip(log.time, steps, modes, *columns, strict=True):
+            angle, torque, command = rest
+            found = self.step(mode=mode, step=step, angle=angle, torque=torque, command=command)
+            if found != "NONE":
+                return found, log.begin + float(time)
+        return "NONE", None
+
+
+@pytest.fixture
+def monitor(tmp_path, sampled_export):
+    return lambda spec: Monitor(tmp_path, sampled_export, spec)
+
+
+def log_of(folder, data):
+    path = folder / "run.csv"
+    path.write_text(runs.text(*data))
+    return read_run(path)
+
+
+def changed(data, **columns):
+    names = ("t", "angle", "torque", "command", "mode")
+    return tuple(
+        columns[name](values) if name in columns else values
+        for name, values in zip(names, data, strict=True)
+    )
+
+
+def peak(at, size):
+    return lambda values: values + np.where(np.arange(len(values)) == at, size, 0.0)
+
+
+@pytest.mark.parametrize(
+    ("rules", "data"),
+    [
+        ("arbitrary", runs.run()),
+        ("arbitrary", runs.run(seed=3, noise=0.002)),
+        ("arbitrary", runs.run(stiffness=48.0)),
+        ("arbitrary", runs.run(stiffness=lambda t: np.where(t > 6, 33.0, runs.STIFFNESS))),
+        ("arbitrary", runs.run(stiffness=-runs.STIFFNESS)),
+        ("arbitrary", runs.run(free=2.0)),
+        ("arbitrary", changed(runs.run(), torque=peak(3000, 0.3))),
+        ("arbitrary", changed(runs.run(), torque=peak(3000, -0.6))),
+        ("arbitrary", changed(runs.run(), command=peak(2000, 4000.0))),
+        ("{dwell_time: 2 s}", runs.run()),
+        ("{dwell_time: 2.503 s}", runs.run()),
+        ("{dwell_time: 1 s, longest_dwell_time: 2 s}", runs.run()),
+        ("{transitions: [[insertion, withdrawal]]}", runs.run()),
+    ],
+    ids=lambda value: value if isinstance(value, str) else "run",
+)
+def test_it_reports_first_what_audit_finds(tmp_path, monitor, rules, data):
+    """The same kind, a window later at most; and nothing where nothing is found."""
+    spec, log = spec_with(rules), log_of(tmp_path, data)
+    found = judge_run(log, bounds_of_spec(spec), proved=True, command_limit=3000.0)
+    kind, time = monitor(spec).watch(log)
+    if found.first is None:
+        # Of a wiring with another sign a log tells; a monitor takes it for what it seems to be.
+        assert kind == ("STIFFNESS" if data[2].mean() < 0 else "NONE")
+        return
+    assert kind in SAME[found.first.name]
+    begin = found.first.first.time
+    longest = 2.6 if found.first.name == "dwell times" else 2 * WINDOW
+    assert begin <= time <= begin + longest
+
+
+def test_what_is_monitored_is_what_the_spec_says(monitor):
+    """Thesis 6.1 and 6.3.1.1: 720.56 to 768.17 N/m at 0.24 m, 0.3 N m."""
+    limits = monitor(spec_with("{dwell_time: 2.501 s, longest_dwell_time: 5.001 s}")).limits
+    assert limits.stays == ((1251, 2500), (1251, 2500))
+    limits = monitor(spec_with()).limits
+    (pair,) = limits.stiffness[0]
+    assert [float(k) for k in pair] == pytest.approx([720.56 * 0.24**2, 768.17 * 0.24**2])
+    assert limits.torque <= Fraction(3, 10) < limits.torque * (1 + Fraction(1, 2**22))
+    assert (limits.window, limits.age, limits.command) == (250, (0, 1), 3000)
+
+
+def test_one_sample_at_a_time(monitor):
+    """What no log of `audit` has: the age of the force, steps of time, what is no number."""
+    watching = monitor(spec_with())
+    nan, inf = float("nan"), float("inf")
+    for given, kind in (
+        ({}, "NONE"),
+        ({"age": 1}, "NONE"),
+        ({"age": 2}, "DELAY"),
+        ({"step": 0.00209}, "NONE"),
+        ({"step": 0.00211}, "JITTER"),
+        ({"step": nan}, "JITTER"),
+        ({"step": 0.0}, "JITTER"),
+        ({"mode": 2}, "INPUT"),
+        ({"angle": nan}, "INPUT"),
+        ({"angle": -inf}, "INPUT"),
+        ({"torque": nan}, "FORCE"),
+        ({"torque": 0.29999998}, "NONE"),
+        ({"torque": -0.30000001}, "FORCE"),
+        ({"command": nan}, "SATURATION"),
+        ({"command": -3000.0}, "SATURATION"),
+        ({"command": 2999.9}, "NONE"),
+    ):
+        watching.begin()
+        assert watching.step(**given) == kind
+        assert watching.step() == kind
+    watching.begin()
+    assert watching.step() == "NONE"
+
+
+def test_lost_contact_that_the_proof_covers(tmp_path, sampled_export):
+    """Without a proof, what the spec asks for counts."""
+    record = sampled_export.record.model_copy(update={"verdict": "unproved", "unproved": "so"})
+    export = replace(sampled_export, record=record)
+    spec = parse_spec(f"{TEXT}contact: losable\n")
+    assert not limits_of(replace(export, spec=spec), ("insertion",)).contact_kept
+    assert limits_of(replace(export, spec=spec_with()), ("insertion",)).contact_kept
+    covered = replace(sampled_export, spec=spec_with())
+    assert not limits_of(covered, ("insertion",)).contact_kept
+    assert limits_of(replace(covered, certificate=None), ("insertion",)).contact_kept
+
+
+@pytest.mark.parametrize("noise", [0.0, 0.005])
+def test_a_window_that_is_partly_free_is_no_stiffness(tmp_path, sampled_export, monitor, noise):
+    """Where the proof covers lost contact: otherwise it is a violation, whatever its name."""
+    t, random = np.arange(0, 0.5, 0.002), np.random.default_rng(0)
+    kept, losable = monitor(spec_with()), monitor(spec_with(text=f"{TEXT}contact: losable\n"))
+    assert (kept.limits.contact_kept, losable.limits.contact_kept) == (True, False)
+    found = set()
+    for _ in range(100):
+        angle = 0.004 * np.sin(2 * np.pi * random.uniform(0.3, 2) * t + random.uniform(0, 6))
+        torque = 43.0 * np.maximum(0, angle - random.uniform(-0.002, 0.002))
+        torque += noise * random.standard_normal(len(t))
+        for watching in (kept, losable):
+            watching.begin()
+            for x, f in zip(angle, torque, strict=True):
+                last = watching.step(angle=x, torque=f)
+            found.add((watching is losable, last))
+    assert {(False, "STIFFNESS"), (True, "NONE")} <= found
+    assert found <= {(False, "STIFFNESS"), (False, "CONTACT"), (False, "NONE"), (True, "NONE")}
+
+
+@pytest.mark.parametrize(("stiffness", "kind"), [(43.0, "NONE"), (60.0, "STIFFNESS")])
+def test_a_stiffness_in_contact_that_may_be_lost(monitor, stiffness, kind):
+    """What pushes throughout is judged as ever."""
+    watching = monitor(spec_with(text=f"{TEXT}contact: losable\n"))
+    angle = 0.003 + 0.001 * np.sin(6 * np.arange(0, 0.5, 0.002))
+    assert [watching.step(angle=x, torque=stiffness * x) for x in angle][-1] == kind
+
+
+def test_free_modes_of_force_control_are_covered(sampled_export):
+    """Their proof is of an ordinary kind: it knows them as modes, not as a loss of contact."""
+    spec = read_spec(ROBOT / "force-limit-sampled.nrs.yaml").spec
+    export = replace(sampled_export, spec=spec, certificate=None)
+    assert not limits_of(export, tuple(spec.controllers)).contact_kept
+
+
+def test_what_is_left_out_is_said(sampled_export):
+    files = render(sampled_export)
+    words = " ".join(files["_monitor.h"].decode().replace("\n *", " ").split())
+    for text in (
+        "Not monitored: Saturation: the spec has no `limits: command`.",
+        "Not monitored: Dead time of the motion",
+        "is no part of the proof",
+        sampled_export.record.proof.certificate_id,
+    ):
+        assert text in words
+    for kind in KINDS:
+        assert f"_LEFT_{kind} " in words
+
+
+def test_a_tissue_that_remembers_is_not_judged(sampled_export):
+    spec = read_spec(ROBOT / "nose.nrs.yaml").spec
+    limits = limits_of(replace(sampled_export, spec=spec), tuple(spec.controllers))
+    assert set(limits.stiffness) == {()}
+    assert [text for text in limits.left_out if "remembers" in text]
+
+
+def test_rules_that_name_contacts_are_not_followed(sampled_export):
+    spec = spec_with("{transitions: [[insertion, withdrawal]]}")
+    limits = limits_of(replace(sampled_export, spec=spec), LAW.modes)
+    assert limits.follows == ((True, True), (False, True))
+    rules = spec.switching.model_copy(update={"transitions": (("insertion/a", "withdrawal/b"),)})
+    named = replace(sampled_export, spec=spec.model_copy(update={"switching": rules}))
+    limits = limits_of(named, LAW.modes)
+    assert limits.follows == ((True, True), (True, True))
+    assert [text for text in limits.left_out if "name contacts" in text]
+
+
+@pytest.mark.parametrize(("period", "window"), [("0.05", 20), ("0.002", 250), ("0.0001", 500)])
+def test_a_window_is_neither_too_short_nor_too_long(sampled_export, period, window):
+    time = sampled_export.record.sample_time.model_copy(update={"exact": period})
+    record = sampled_export.record.model_copy(update={"sample_time": time})
+    export = replace(sampled_export, record=record, spec=spec_with())
+    assert limits_of(export, LAW.modes).window == window
+
+
+def test_it_compiles_for_the_processor_and_links_to_nothing(tmp_path, sampled_export, monitor):
+    for name, text in monitor(spec_with()).sources.items():
+        (tmp_path / name).write_text(text)
+    own = ["T nrs_x_monitor_init", "T nrs_x_monitor_step"]
+    for gcc, nm, flags in (("gcc", "nm", ()), ("arm-none-eabi-gcc", "arm-none-eabi-nm", CORTEX)):
+        files = (tmp_path / "x_monitor.c", "-o", tmp_path / "o")
+        built(compiler(gcc), *flags, *STRICT, "-O2", "-c", *files)
+        symbols = run(compiler(nm), "-g", tmp_path / "o").stdout.splitlines()
+        assert [line.split(maxsplit=1)[-1] for line in symbols] == own
+
+
+# A press on a tissue of 43 N m/rad that is 45 N m/rad from sample 1000 on; what is told, and when.
+PRESS = """#include "x_monitor.h"
+#include <stdio.h>
+int main(void)
+{
+    static nrs_x_monitor_t m;
+    uint32_t noise = 1U;
+    uint32_t left = 0U;
+    uint32_t k;
+    nrs_x_monitor_init(&m, 1.0e-4F);
+    for (k = 0U; (k < 3000U) && (left == 0U); k++) {
+        const float phase = (float)(k % 400U) * 0.01F;
+        const float back = phase - 2.0F;
+        const float way = (back < 0.0F) ? (-phase * back) : (back * (back - 2.0F));
+        nrs_x_monitor_input_t in = {0U, 0.002F, 0U, 0.0F, 0.0F, 0.0F};
+        noise = (noise * 1664525U) + 1013904223U;
+        in.angle = 0.004F + (0.0015F * way);
+        in.torque = ((k < 1000U) ? 43.0F : 45.0F) * in.angle;
+        in.torque += 2.0e-13F * ((float)(noise >> 1) - 1073741824.0F);
+        left = nrs_x_monitor_step(&in, &m);
+    }
+    (void)printf("%lu at %lu\\n", (unsigned long)left, (unsigned long)m.sample);
+    return 0;
+}
+"""
+
+
+def test_on_an_emulated_processor_it_tells_the_same(tmp_path, monitor):
+    gcc, emulator = compiler("arm-none-eabi-gcc"), compiler("qemu-system-arm")
+    for name, text in (monitor(spec_with()).sources | {"main.c": PRESS}).items():
+        (tmp_path / name).write_text(text)
+    sources = (tmp_path / "x_monitor.c", tmp_path / "main.c")
+    built(compiler(), *STRICT, "-O2", *sources, "-o", tmp_path / "here")
+    here = run(tmp_path / "here").stdout
+    start = (M4F / "startup.c", "-T", M4F / "m4f.ld", "--specs=nosys.specs", "-nostartfiles")
+    flags = (*CORTEX, "-O2", "-std=c99", "-ffp-contract=off")
+    assert run(gcc, *flags, *sources, *start, "-o", tmp_path / "there").returncode == 0
+    there = run(emulator, *MACHINE, *SEMIHOSTING, "-kernel", tmp_path / "there")
+    stiffness = [*KINDS].index("STIFFNESS")
+    assert here == there.stderr == f"{stiffness} at 1249\n"
+
+
+def test_cppcheck_with_misra_is_content(tmp_path, monitor):
+    """But for macros that the caller uses, as with the law."""
+    cppcheck = compiler("cppcheck")
+    for name, text in monitor(spec_with("{dwell_time: 2 s}")).sources.items():
+        (tmp_path / name).write_text(text)
+    suppressed = ("missingIncludeSystem", "unusedFunction", "misra-c2012-2.5")
+    done = run(
+        cppcheck,
+        *("--enable=all", "--addon=misra", "--std=c99", "--quiet", "--error-exitcode=1"),
+        *(f"--suppress={name}" for name in suppressed),
+        tmp_path / "x_monitor.c",
+    )
+    assert (done.returncode, done.stderr) == (0, "")

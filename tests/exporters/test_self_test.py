@@ -1,0 +1,82 @@
+"""The self-test finds the first step that differs, on a computer and on an emulated processor."""
+
+import pytest
+
+from nrs_design.exporters.c import header_text, source_text
+from nrs_design.exporters.c_names import CNames
+from nrs_design.exporters.header import header_lines
+from nrs_design.exporters.self_test import program_macro, self_test
+from nrs_design.exporters.vectors import make_vectors
+from tests.exporters.programs import (
+    CORTEX,
+    LAWS,
+    M4F,
+    MACHINE,
+    SEMIHOSTING,
+    STRICT,
+    built,
+    compiler,
+    run,
+)
+
+# What a robot does before it moves: the exit code says which case is the first to differ.
+MAIN = """#include "soft-tissue_test.h"
+int main(void) { return (int)nrs_soft_tissue_self_test() + 1; }
+"""
+
+
+def written(folder, export, wrong=None):
+    """Write a law with 60 cases, and another result in some of them."""
+    record, names, law = export.record, CNames(export.record.spec.name), LAWS["limits"]
+    vectors = make_vectors(law, 60)
+    for row, column in wrong or []:
+        vectors.rows[row, vectors.columns.index(column)] ^= 1
+    files = self_test(law, vectors.columns, vectors.rows, names, header_lines(record))
+    for ending, content in files.items():
+        (folder / f"{names.spec}{ending}").write_bytes(content)
+    (folder / f"{names.spec}.h").write_text(header_text(record, law, names))
+    (folder / f"{names.spec}.c").write_text(source_text(record, law, names))
+    (folder / "main.c").write_text(MAIN)
+    return [folder / "main.c", *(folder / f"{names.spec}{end}" for end in (".c", "_test.c"))]
+
+
+@pytest.mark.parametrize(
+    ("wrong", "first"),
+    [
+        ([], -1),
+        ([(0, "command")], 0),
+        ([(41, "after.velocity"), (17, "valid"), (59, "command")], 17),
+        ([(59, "after.reference")], 59),
+    ],
+)
+def test_the_first_case_that_differs(tmp_path, sampled_export, wrong, first):
+    sources = written(tmp_path, sampled_export, wrong)
+    built(compiler(), *STRICT, "-O1", *sources, "-o", tmp_path / "program")
+    assert run(tmp_path / "program").returncode == first + 1
+
+
+@pytest.mark.parametrize("wrong", [[], [(17, "command"), (30, "valid")]])
+def test_on_an_emulated_processor(tmp_path, sampled_export, wrong):
+    gcc, emulator = compiler("arm-none-eabi-gcc"), compiler("qemu-system-arm")
+    sources, program = written(tmp_path, sampled_export, wrong), tmp_path / "test.elf"
+    start = (M4F / "startup.c", "-T", M4F / "m4f.ld", "--specs=nosys.specs", "-nostartfiles")
+    flags = (*CORTEX, "-O2", "-std=c99", "-ffp-contract=off")
+    done = run(gcc, *flags, *sources, *start, "-o", program)
+    assert done.returncode == 0, done.stderr
+    done = run(emulator, *MACHINE, *SEMIHOSTING, "-kernel", program)
+    assert (done.returncode, done.stderr) == (18 if wrong else 0, "")
+
+
+def test_the_program_around_it(tmp_path, sampled_export):
+    sources = written(tmp_path, sampled_export, [(17, "valid")])[1:]
+    flag = f"-D{program_macro(CNames('soft-tissue'))}"
+    built(compiler(), *STRICT, flag, *sources, "-o", tmp_path / "program")
+    done = run(tmp_path / "program")
+    assert (done.returncode, done.stdout) == (1, "case 17 differs\n")
+
+
+def test_it_says_what_it_does_not_test(tmp_path, sampled_export):
+    written(tmp_path, sampled_export)
+    text = (tmp_path / "soft-tissue_test.h").read_text()
+    assert "It tests no input or output" in " ".join(text.replace("\n *", " ").split())
+    assert sampled_export.record.proof.certificate_id in text

@@ -142,7 +142,9 @@ def _speeds(pushed: list[HandRun], led: list[HandRun]) -> tuple[Comparison, Comp
 def _torques(pushed: list[HandRun], led: list[HandRun]) -> tuple[Comparison, Comparison]:
     low, high = (_changes([run.effort.total for run in runs]) for runs in (pushed, led))
     printed = ", ".join(map(str, TORQUES))
-    balance = "The total is Bt times the way and Mt times the last velocity, whoever pushes and never pulls"
+    balance = (
+        "Of a hand that never pulls, the total is Bt times the way and Mt times the last speed"
+    )
     return (
         derived(
             f"change of total torque, a hand that pushes with 0.3 N m; {_CHANGES}",
@@ -168,8 +170,8 @@ def _torques(pushed: list[HandRun], led: list[HandRun]) -> tuple[Comparison, Com
             right=("22.49", "29.37", "6.575", "6.300", "88.03", "63.60", "34.42"),
             tolerance=Tolerance(2e-3),
             holds=all(ours > 0 for ours in high),
-            note=f"{balance}. The signs are as printed; Mt counts for more than on the robot, as "
-            "this hand swings with it.",
+            note="The signs are as printed. Mt counts for more than on the robot: this hand swings "
+            "with it, and pulls.",
         ),
     )
 

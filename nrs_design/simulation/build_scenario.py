@@ -201,11 +201,11 @@ def _control(
 
 def _usual(spec: InteractionDesignSpec, first: str) -> Control:
     """Return what fits names and kinds: signs, the threshold of the torque, or one controller."""
-    kinds = {name: controller.type for name, controller in spec.controllers.items()}
-    if {"insertion", "withdrawal"} <= kinds.keys():
+    controllers = spec.controllers.items()
+    if {"insertion", "withdrawal"} <= spec.controllers.keys():
         return by_sign("insertion", "withdrawal")
-    position = next((n for n, kind in kinds.items() if kind == "position"), None)
-    force = next((n for n, kind in kinds.items() if kind == "force"), None)
+    position = next((n for n, c in controllers if c.type == "position"), None)
+    force = next((n for n, c in controllers if c.holds_force), None)
     if position and force:
         return by_threshold(position, force, spec.limits.torque.si)
     return Control(first)

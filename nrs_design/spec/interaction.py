@@ -80,7 +80,8 @@ class InteractionDesignSpec(SpecModel):
     idle_states: IdleStatesSpec | None = Field(
         default=None,
         description="what the states of impedance controllers do while a position or force "
-        "controller is active; required where both kinds are there",
+        "controller is active, and the integral of a pi-force controller while another one is; "
+        "required where there are both",
     )
     goals: GoalsSpec | None = Field(
         default=None,

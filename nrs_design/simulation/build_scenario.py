@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -29,6 +30,7 @@ from nrs_design.spec import InteractionDesignSpec
 from nrs_design.spec.environment import EnvironmentSpec
 from nrs_design.spec.interval import Interval
 from nrs_design.spec.scenarios import (
+    AXES,
     LONGEST,
     CommandProfileSpec,
     ControlSpec,
@@ -36,7 +38,7 @@ from nrs_design.spec.scenarios import (
     ScenarioSpec,
 )
 
-DEFAULT = "insertion-and-withdrawal"
+DEFAULT, DEFAULT_AXES = "insertion-and-withdrawal", "all-axes"
 # Thesis fig. 6.7 and 6.11: in free space to the largest command, down, again in contact, and out.
 _SHAPE = ((0.0, 0.0), (1.0, 1.0), (2.0, 0.25), (3.0, 1.0), (4.0, 0.0), (5.0, -1.0), (6.0, -1.0),
           (7.0, 0.0), (7.5, 0.0))  # fmt: skip
@@ -86,6 +88,61 @@ def build_scenario(
         _errors(scenario.errors),
         scenario.seed,
     )
+
+
+def build_runs(
+    spec: InteractionDesignSpec, plant: Plant, name: str, folder: Path
+) -> tuple[Scenario, ...]:
+    """Return one scenario of a spec or a default one; of three axes ``NAME.theta1`` and so on.
+
+    Parameters
+    ----------
+    spec, plant, folder
+        As `build_scenario` takes them.
+    name : str
+        Of the scenario.
+
+    Raises
+    ------
+    DataError
+        As `build_scenario` does.
+    """
+    written = spec.scenarios.get(name)
+    if written is None:
+        alone = default_scenario(spec, plant)
+        return tuple(replace(alone, name=run) for run in run_names(spec, (name,)))
+    whole = build_scenario(spec, plant, name, written, folder)
+    if written.axes is None:
+        return (whole,)
+    runs = zip(AXES, run_names(spec, (name,)), strict=True)
+    each = (build_scenario(spec, plant, run, written.of_axis(axis), folder) for axis, run in runs)
+    return tuple(
+        replace(one, duration=whole.duration, seed=whole.seed + i) for i, one in enumerate(each)
+    )
+
+
+def default_names(spec: InteractionDesignSpec) -> tuple[str, ...]:
+    """Return the names of the scenarios that a spec without any has."""
+    robot = spec.coupling is not None and spec.coupling.robot is not None
+    return (DEFAULT, DEFAULT_AXES) if robot else (DEFAULT,)
+
+
+def run_names(spec: InteractionDesignSpec, names: Sequence[str]) -> tuple[str, ...]:
+    """Return the names of the runs of some scenarios: three for one that has axes.
+
+    Parameters
+    ----------
+    spec : InteractionDesignSpec
+        With its scenarios, or without.
+    names : sequence of str
+        Of scenarios.
+    """
+    found: list[str] = []
+    for name in names:
+        written = spec.scenarios.get(name)
+        several = name == DEFAULT_AXES if written is None else written.axes is not None
+        found += [f"{name}.{axis}" for axis in AXES] if several else [name]
+    return tuple(found)
 
 
 def default_scenario(spec: InteractionDesignSpec, plant: Plant) -> Scenario:

@@ -11,24 +11,22 @@ from __future__ import annotations
 
 import math
 from collections import deque
-from collections.abc import Callable
 from dataclasses import dataclass
 from fractions import Fraction
 
 import numpy as np
-from numpy.typing import NDArray
 
 from nrs_design.controllers.controller_design import ControllerDesign
 from nrs_design.controllers.shipped import shipped_law
 from nrs_design.errors import DesignError
 from nrs_design.models.plant import Plant
 from nrs_design.simulation.motor import Motor
+from nrs_design.simulation.processor import Fate, Motors, Tell, run_axes, silent
 from nrs_design.simulation.run import MAX_STEPS, Run
 from nrs_design.simulation.scenario import (
     COMMAND,
     DEPTH,
     TORQUE,
-    Array,
     Condition,
     Scenario,
 )
@@ -39,9 +37,6 @@ from nrs_design.spec import InteractionDesignSpec
 
 # Parts of a step, where tissue moves by itself or loads the motor.
 PARTS = 8
-# Samples after which it is told how far the run is.
-_OFTEN = 20_000
-Tell = Callable[[str], None]
 _OUTPUTS = (
     Signal("angle", "rad"),
     Signal("velocity", "rad/s"),
@@ -51,10 +46,6 @@ _OUTPUTS = (
 _INPUTS = (Signal("hand", "rad/s"),)
 
 
-def _silent(step: str) -> None:
-    """Report no progress."""
-
-
 def simulate_sampled(
     spec: InteractionDesignSpec,
     plant: Plant,
@@ -62,7 +53,7 @@ def simulate_sampled(
     scenario: Scenario,
     *,
     max_steps: int = MAX_STEPS,
-    tell: Tell = _silent,
+    tell: Tell = silent,
 ) -> Run:
     """Simulate a scenario as the processor runs it.
 
@@ -87,6 +78,26 @@ def simulate_sampled(
         If the spec has no sampling or two periods, states the motion loop itself, or there is no
         program of a controller.
     """
+    axis = sampled_axis(spec, plant, design, scenario)
+    (run,) = run_axes((axis,), Motors(), "sampled", max_steps, tell)
+    return run
+
+
+def sampled_axis(
+    spec: InteractionDesignSpec, plant: Plant, design: ControllerDesign, scenario: Scenario
+) -> SampledAxis:
+    """Return an axis with its law, at rest at the start of a scenario.
+
+    Parameters
+    ----------
+    spec, plant, design, scenario
+        As `simulate_sampled` takes them.
+
+    Raises
+    ------
+    DesignError
+        As `simulate_sampled` does.
+    """
     if spec.sampling is None:
         raise DesignError(
             "the spec does not say how often the law runs",
@@ -109,41 +120,28 @@ def simulate_sampled(
         program = StepProgram(shipped_law(spec, design, period))
     except DesignError as error:
         raise DesignError(error.message, remedy="use --engine exact", at=error.at) from None
-    engine = _Engine(plant, design, scenario, program, period, spec.sampling.delay)
-    return engine.run(max_steps, tell)
-
-
-@dataclass(frozen=True, slots=True)
-class _Fate:
-    """What chance and the surgeon bring, for every sample.
-
-    Parameters
-    ----------
-    times, hand, noise : ndarray, shape (N,)
-        Instants in s, commanded velocities in rad/s, errors of the torque in N m.
-    ages : ndarray of int, shape (N,)
-        Of the force samples.
-    """
-
-    times: Array
-    hand: Array
-    noise: Array
-    ages: NDArray[np.int64]
-
-    @classmethod
-    def of(cls, scenario: Scenario, period: float, delay: tuple[int, int], count: int) -> _Fate:
-        """Draw it from the seed of the scenario."""
-        rng = np.random.default_rng(scenario.seed)
-        late = scenario.errors.jitter * period * rng.random(count)
-        noise = scenario.errors.force_noise * rng.standard_normal(count)
-        ages = rng.integers(delay[0], delay[1] + 1, count)
-        times = period * np.arange(count) + late
-        return cls(times, scenario.profile.at(times), noise, ages)
+    return SampledAxis(plant, design, scenario, program, period, spec.sampling.delay)
 
 
 @dataclass
-class _Engine:
-    """A run that is under way."""
+class SampledAxis:
+    """One axis during a run: the law, what it senses, and the tissue that it touches.
+
+    Parameters
+    ----------
+    plant : Plant
+        Its motor.
+    design : ControllerDesign
+        Gains that ship.
+    scenario : Scenario
+        What happens to it.
+    program : StepProgram
+        Its law.
+    period : Fraction
+        Between two samples, in s.
+    delay : tuple of (int, int)
+        Smallest and largest age of the force samples.
+    """
 
     plant: Plant
     design: ControllerDesign
@@ -189,39 +187,43 @@ class _Engine:
             if switch.source == source
         ]
 
-    def run(self, max_steps: int, tell: Tell) -> Run:
-        """Go from sample to sample until the end."""
-        T = self.T
-        wanted = math.floor(self.scenario.duration / T + 1e-9) + 1
-        count = min(wanted, max_steps)
-        fate = _Fate.of(self.scenario, T, self.delay, count)
-        instants = [*fate.times.tolist(), float(fate.times[-1]) + T]
-        rows = zip(fate.hand.tolist(), fate.noise.tolist(), fate.ages.tolist(), strict=True)
-        t = 0.0
-        for k, (hand, noise, age) in enumerate(rows):
-            t = instants[k]
-            command = self._sample(t, hand, noise, age)
-            self._move(command, instants[k + 1] - t)
-            if k % _OFTEN == 0:
-                tell(f"{t:.3g} s")
-        stopped = None
-        if count < wanted:
-            stopped = f"{max_steps} samples by {t:.6g} s: the budget is used up"
+    def finish(self, engine: str, fate: Fate, stopped: str | None) -> Run:
+        """Return the run up to now.
+
+        Parameters
+        ----------
+        engine : str
+            What moved it.
+        fate : Fate
+            What it was given.
+        stopped : str or None
+            Why it ends before its time.
+        """
         return Run(
             self.scenario.name,
-            "sampled",
+            engine,
             self._response(fate),
             tuple(self.switches),
             tuple(self.tissue.contacts),
-            count,
-            (T, *self.delay),
+            len(self.rows),
+            (self.T, *self.delay),
             self.refused,
             self.saturated,
             stopped,
         )
 
-    def _sample(self, t: float, hand: float, noise: float, age: int) -> float:
-        """Run the law once; return its command."""
+    def sample(self, t: float, hand: float, noise: float, age: int) -> float:
+        """Run the law once; return its command.
+
+        Parameters
+        ----------
+        t : float
+            In s.
+        hand, noise : float
+            Commanded velocity in rad/s, and error of the measured torque in N m.
+        age : int
+            Of the force sample.
+        """
         tissue, errors = self.tissue, self.scenario.errors
         torque = tissue.torque(self.theta, self.omega)
         tissue.note(t)
@@ -270,8 +272,8 @@ class _Engine:
             self.controller, self.held = target, 0
             self.switches.append((t, target))
 
-    def _move(self, command: float, width: float) -> None:
-        """Let motor and tissue move until the next sample."""
+    def glide(self, command: float, width: float) -> None:
+        """Let motor and tissue move for a time in s, as if there were no other axis."""
         if self.parts == 1:
             self.theta, self.omega = self.motor.after(self.theta, self.omega, command, width)
             return
@@ -282,14 +284,15 @@ class _Engine:
             self.theta, self.omega = self.motor.after(self.theta, self.omega, drive, part)
             self.tissue.creep(before, self.tissue.depths(self.theta), part)
 
-    def _response(self, fate: _Fate) -> TimeResponse:
+    def _response(self, fate: Fate) -> TimeResponse:
         law, last = self.program.law, len(_OUTPUTS) + 2
         rows = np.array(self.rows, dtype=float).T
+        count = len(self.rows)
         return TimeResponse(
-            fate.times,
+            fate.times[:count],
             rows[1:last],
             rows[last:],
-            fate.hand[None, :],
+            fate.hand[None, :count],
             (*_OUTPUTS, Signal("command", self.design.command)),
             tuple(Signal(_named(value.name), value.unit) for value in law.states),
             _INPUTS,

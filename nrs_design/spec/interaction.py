@@ -38,7 +38,8 @@ from nrs_design.spec.sampling import (
     check_peak,
     takes_motor_ranges,
 )
-from nrs_design.spec.scenarios import ScenarioSpec, check_scenario
+from nrs_design.spec.scenario_checks import check_scenario
+from nrs_design.spec.scenarios import ScenarioSpec
 from nrs_design.spec.sensor import SensorSpec
 from nrs_design.spec.switching import MODE_LOGIC, DwellTime, LogicalRule, check_names
 from nrs_design.spec.touched import (
@@ -343,9 +344,10 @@ def _check_scenarios(spec: InteractionDesignSpec) -> None:
     """Refuse scenarios that do not fit the rest of the spec."""
     logic = spec.mode_logic is not None and spec.mode_logic.type == "thresholds"
     given = (spec.controllers, spec.environments, spec.limits.velocity)
+    robot = spec.coupling is not None and spec.coupling.robot is not None
     all_of(
         *(
-            partial(check_scenario, name, scenario, *given, logic=logic)
+            partial(check_scenario, name, scenario, *given, logic=logic, robot=robot)
             for name, scenario in spec.scenarios.items()
         ),
         lambda: check_commands(

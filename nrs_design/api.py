@@ -39,6 +39,7 @@ if TYPE_CHECKING:
     from nrs_design.controllers.controller_design import ControllerDesign
     from nrs_design.exporters.export import Export
     from nrs_design.exporters.state_space import StateSpaces
+    from nrs_design.pipeline.scenarios import Simulated
     from nrs_design.proof.evidence import AbstractEvidence
     from nrs_design.reporting import Report
 
@@ -291,7 +292,7 @@ class Study:
         engine: str | None = None,
         period: float | None = None,
         delay: int | None = None,
-    ) -> tuple[pipeline.Simulated, ...]:
+    ) -> tuple[Simulated, ...]:
         """Simulate scenarios of the spec, or the one of a spec that has none.
 
         Parameters
@@ -327,8 +328,9 @@ class Study:
             )
         if engine is None and (period is not None or delay is not None):
             engine = "sampled"
-        wanted = pipeline.Runs(tuple(scenarios), engine, period, delay)
-        return tuple(pipeline.run_scenarios(designed, wanted))
+        from nrs_design.pipeline.scenarios import Runs, run_scenarios
+
+        return tuple(run_scenarios(designed, Runs(tuple(scenarios), engine, period, delay)))
 
     def export(self, certificate: str | Path | None = None) -> Export:
         """Return the gains that ship with their proof, or why there are none.

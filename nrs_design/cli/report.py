@@ -75,13 +75,8 @@ def report(
     """
     from nrs_design.output import PAGE, PDF, check_place
     from nrs_design.ownership import check_owner, check_page
-    from nrs_design.pipeline import (
-        Overrides,
-        limits_of,
-        run_certification,
-        run_comparison,
-        run_proof_margins,
-    )
+    from nrs_design.pipeline import Overrides, limits_of, run_certification, run_comparison
+    from nrs_design.pipeline.margins import run_proof_margins
     from nrs_design.reporting import build_report
     from nrs_design.reporting.next_steps import next_steps
     from nrs_design.spec import read_spec
@@ -141,7 +136,8 @@ def _report_robot(
 ) -> NoReturn:
     """Report a robot; the exit code is that of `robot check`."""
     from nrs_design.ownership import check_page
-    from nrs_design.pipeline import placed, run_robot
+    from nrs_design.pipeline import placed
+    from nrs_design.pipeline.robots import run_robot
     from nrs_design.reporting.robot import robot_report
 
     spec = loaded.path

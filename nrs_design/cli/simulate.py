@@ -17,7 +17,8 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from nrs_design.certificates.certificate import Certificate
-    from nrs_design.pipeline import CertifiedBound, Designed, Progress, Simulated
+    from nrs_design.pipeline import Designed, Progress
+    from nrs_design.pipeline.scenarios import CertifiedBound, Simulated
     from nrs_design.spec import InteractionDesignSpec
 
 
@@ -87,7 +88,8 @@ def simulate(
 
     Example: nrs-design simulate docs/examples/scenarios.nrs.yaml --out runs
     """
-    from nrs_design.pipeline import Runs, run_design, run_scenarios, wrong_kind
+    from nrs_design.pipeline import run_design, wrong_kind
+    from nrs_design.pipeline.scenarios import Runs, run_scenarios
     from nrs_design.spec import read_spec
 
     if engine is EngineOption.EXACT and (period is not None or delay is not None):
@@ -131,7 +133,8 @@ def _proof(
     designed: Designed, file: Path | None, step: Progress, *, bound: bool
 ) -> Certificate | None:
     """Return the certificate whose bounds are shown, if there is one."""
-    from nrs_design.pipeline import read_certificate, run_certification
+    from nrs_design.pipeline import run_certification
+    from nrs_design.pipeline.scenarios import read_certificate
 
     if file is not None:
         return read_certificate(file, designed)
@@ -144,9 +147,9 @@ def _proof(
 def _bounds(
     designed: Designed, proof: Certificate | None, one: Simulated
 ) -> tuple[CertifiedBound, ...]:
-    from nrs_design.pipeline import run_bounds
+    from nrs_design.pipeline.scenarios import hold_bounds
 
-    return () if proof is None else run_bounds(designed, proof, one)
+    return () if proof is None else hold_bounds(designed, proof, one)
 
 
 def _check_places(

@@ -28,7 +28,8 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from nrs_design.design.analysis import DesignAnalysis
-    from nrs_design.pipeline import ProofMargins, Result
+    from nrs_design.pipeline import Result
+    from nrs_design.pipeline.margins import ProofMargins
     from nrs_design.search.method_run import MethodRun
 
 
@@ -53,7 +54,7 @@ def build_report(
     comparison : sequence of MethodRun, optional
         As `nrs_design.pipeline.run_comparison` gives them.
     margins : ProofMargins, optional
-        As `nrs_design.pipeline.run_proof_margins` gives them.
+        As `nrs_design.pipeline.margins.run_proof_margins` gives them.
     times : bool
         Add how long every rung of the search took. The same spec then gives another page each
         time.

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from nrs_design.certificates.certificate import Verdict
-from nrs_design.pipeline import physical_outputs
+from nrs_design.pipeline.release import physical_outputs
 from nrs_design.reporting.document import Illustration, Paragraph, Section, Table
 from nrs_design.reporting.figures.release import Panel, draw_release
 from nrs_design.reporting.formatting import number

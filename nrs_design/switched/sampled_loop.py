@@ -119,7 +119,7 @@ def close_sampled_loop(
         frame.states,
         tuple(item.mode for item in motions),
         (
-            *assume_sampled(spec, sampling, ranges, frame, laws, design, loss),
+            *assume_sampled(spec, sampling, ranges, frame, laws, design, loss, touched),
             *at_once_texts(touched),
         ),
         assemble_switching(spec.switching, groups, _resets(spec.idle_states, design, frame)),

@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 import pytest
+from scipy.linalg import expm
 
 from nrs_design.controllers.step_logic import StepLogic
 from nrs_design.errors import DesignError
@@ -123,10 +124,49 @@ def test_without_a_period_or_a_motor_nothing_runs():
         simulated(text, "sampled", sampling=("2 ms", 0))
 
 
-def test_two_periods_are_not_simulated_as_one():
-    two = "sampling: {period: 2 ms, outer_period: 0.5 ms, delay: 0}\n"
-    with pytest.raises(DesignError, match="has a period of its own"):
-        sampled(RUN, two)
+def two_clocks(period, outer, delay, duration):
+    """The two loops as docs/certificates/periodic-quadratic.md has them, in double, with a matrix exponential."""
+    Km, tau, Kd, zero, k, at = 4.8417e-4, 0.0351, 2060.0, 56.9706, 43.0, np.radians(1)
+    h = min(period, outer)
+    step = expm(h * np.array([[0, 1, 0], [0, -1 / tau, Km / tau], [0, 0, 0]]))
+    a = math.exp(-2.15 * outer / 0.01)
+    b = (1 - a) / 2.15
+    theta = omega = reference = velocity = before = command = 0.0
+    samples, rows = [0.0] * (delay + 1), []
+    for n in range(round(duration / h) + 1):
+        t = n * h
+        rows.append(theta)
+        wanted = np.radians(np.interp(t, [0, 0.3, 0.6, 1], [0, 8, 2, -6]))
+        if n % round(period / h) == 0:
+            error = reference - theta
+            command = Kd * zero * error + Kd * (error - before) / period
+            before = error
+        if n % round(outer / h) == 0:
+            samples = [max(0.0, k * (theta - at)), *samples[:-1]]
+            reference += outer * (wanted - velocity)
+            velocity = a * velocity + b * samples[delay]
+        theta, omega, _ = step @ [theta, omega, command]
+    return np.array(rows)
+
+
+@pytest.mark.parametrize(
+    ("period", "outer", "delay"),
+    [("2 ms", "0.1 ms", 1), ("2 ms", "0.1 ms", 0), ("1 ms", "4 ms", 1)],
+)
+def test_two_periods(period, outer, delay):
+    """Thesis 4.3: 2 ms and 0.1 ms. The peer has its own law, its own clocks and motor."""
+    both = f"sampling: {{period: {period}, outer_period: {outer}, delay: {delay}}}\n"
+    steady = RUN.replace("[1 s, -6 deg/s]", "[0.8 s, -2 deg/s]") + ", control: {fixed: insertion}"
+    run = sampled(steady, both)
+    first, second = (float(text.split()[0]) * 1e-3 for text in (period, outer))
+    wanted = two_clocks(first, second, delay, 0.8)
+    assert len(run.response) == len(wanted)
+    assert run.response["angle"].max() > np.radians(1.1)
+    # Single precision: some units in the last place of the reference, summed over its steps.
+    assert np.abs(run.response["angle"] - wanted).max() < 1e-6
+    alone = sampled(steady, f"sampling: {{period: {period}, delay: {delay}}}\n").response
+    both = np.interp(alone.t, run.response.t, run.response["angle"])
+    assert np.abs(both - alone["angle"]).max() > 1e-5
 
 
 def test_a_budget_ends_a_run():

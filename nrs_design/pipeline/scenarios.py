@@ -144,7 +144,7 @@ def folder_of(designed: Designed) -> Path:
 
 def _usual(spec: InteractionDesignSpec, group: Sequence[Scenario]) -> str:
     """Return the engine for a scenario: a law of tissue that is not linear has no exponential."""
-    nonlinear = any(surface.element is None for one in group for surface in one.surfaces)
+    nonlinear = any(not surface.is_linear for one in group for surface in one.surfaces)
     sampled = spec.sampling is not None or nonlinear or len(group) > 1
     return "sampled" if sampled else "exact"
 

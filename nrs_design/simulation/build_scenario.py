@@ -36,6 +36,7 @@ from nrs_design.spec.scenarios import (
     ControlSpec,
     ErrorsSpec,
     ScenarioSpec,
+    SurfaceSpec,
 )
 
 DEFAULT, DEFAULT_AXES = "insertion-and-withdrawal", "all-axes"
@@ -73,10 +74,7 @@ def build_scenario(
     profile, length = _profile(scenario.command, folder, spec.limits.velocity.si)
     length = length if scenario.length is None else scenario.length.si
     wanted = spec.limits.torque if scenario.wanted_torque is None else scenario.wanted_torque
-    surfaces = tuple(
-        _surface(spec, plant, s.environment, s.parameters, s.at.si, 1 if s.side == "above" else -1)
-        for s in scenario.surfaces
-    )
+    surfaces = tuple(_surface(spec, plant, written) for written in scenario.surfaces)
     return Scenario(
         name,
         profile,
@@ -159,7 +157,7 @@ def default_scenario(spec: InteractionDesignSpec, plant: Plant) -> Scenario:
     times, shares = np.array(_SHAPE).T
     touched = [name for name in spec.environments if name in spec.touched]
     at = largest * _AWAY
-    surfaces = tuple(_surface(spec, plant, name, "nominal", at, 1) for name in touched[:1])
+    surfaces = tuple(_touched(spec, plant, name, at, 1, "nominal") for name in touched[:1])
     profile = Profile.through(times, shares * largest)
     control, wanted = _control(spec, None, surfaces), spec.limits.torque.si
     return Scenario(DEFAULT, profile, float(times[-1]), surfaces, control, wanted_torque=wanted)
@@ -203,8 +201,18 @@ def _recorded(path: Path, largest: float) -> tuple[Profile, float]:
     return Profile.through(times, columns["velocity"]), float(times[-1])
 
 
-def _surface(
-    spec: InteractionDesignSpec, plant: Plant, name: str, end: str, at: float, sign: int
+def _surface(spec: InteractionDesignSpec, plant: Plant, written: SurfaceSpec) -> Surface:
+    sign = 1 if written.side == "above" else -1
+    found = _touched(spec, plant, written.environment, written.at.si, sign, written.parameters)
+    others = (
+        _law(spec.environments[name], plant.environment(name), written.parameters)[1]
+        for name in written.beside
+    )
+    return replace(found, arms=tuple(element for element in others if element is not None))
+
+
+def _touched(
+    spec: InteractionDesignSpec, plant: Plant, name: str, at: float, sign: int, end: str
 ) -> Surface:
     law, element = _law(spec.environments[name], plant.environment(name), end)
     return Surface(name, law, element, at, sign)

@@ -37,6 +37,8 @@ from nrs_design.spec import InteractionDesignSpec
 
 # Parts of a step, where tissue moves by itself or loads the motor.
 PARTS = 8
+# What the motion loop keeps from one of its samples to the next; all else is of the outer loop.
+_OF_MOTION = frozenset({"error_before"})
 _OUTPUTS = (
     Signal("angle", "rad"),
     Signal("velocity", "rad/s"),
@@ -75,8 +77,8 @@ def simulate_sampled(
     Raises
     ------
     DesignError
-        If the spec has no sampling or two periods, states the motion loop itself, or there is no
-        program of a controller.
+        If the spec has no sampling or periods that never meet, states the motion loop itself, or
+        there is no program of a controller.
     """
     axis = sampled_axis(spec, plant, design, scenario)
     (run,) = run_axes((axis,), Motors(), "sampled", max_steps, tell)
@@ -109,18 +111,35 @@ def sampled_axis(
             remedy="leave transfer_function out, or use --engine exact",
             at=("motion_loop", "transfer_function"),
         )
-    period = spec.sampling.period.exact
-    if spec.sampling.outer != period:
+    sampling = spec.sampling
+    odd = sampling.find_odd_periods()
+    if odd is not None:
         raise DesignError(
-            "the outer loop has a period of its own, and the simulated processor has one for all",
-            remedy="leave outer_period out, or use --engine exact",
-            at=("sampling", "outer_period"),
+            f"the two loops do not meet at common samples: {odd}",
+            remedy="let the longer period be a whole number of the shorter one",
+            at=("sampling",),
         )
+    period, outer = sampling.period.exact, sampling.outer
     try:
-        program = StepProgram(shipped_law(spec, design, period))
+        program = StepProgram(shipped_law(spec, design, period, outer))
     except DesignError as error:
         raise DesignError(error.message, remedy="use --engine exact", at=error.at) from None
-    return SampledAxis(plant, design, scenario, program, period, spec.sampling.delay)
+    turns = Turns(int(period / sampling.step), int(outer / sampling.step))
+    return SampledAxis(plant, design, scenario, program, sampling.step, sampling.delay, turns)
+
+
+@dataclass(frozen=True, slots=True)
+class Turns:
+    """Whose turn it is at a sample, where motion loop and outer loop have periods of their own.
+
+    Parameters
+    ----------
+    motion, outer : int
+        Their periods in samples; one of them is 1.
+    """
+
+    motion: int = 1
+    outer: int = 1
 
 
 @dataclass
@@ -140,7 +159,9 @@ class SampledAxis:
     period : Fraction
         Between two samples, in s.
     delay : tuple of (int, int)
-        Smallest and largest age of the force samples.
+        Smallest and largest age of the force samples, counted in samples of the outer loop.
+    turns : Turns
+        Which samples are those of the motion loop, and of the outer one.
     """
 
     plant: Plant
@@ -149,6 +170,7 @@ class SampledAxis:
     program: StepProgram
     period: Fraction
     delay: tuple[int, int]
+    turns: Turns = Turns()
 
     def __post_init__(self) -> None:
         """Begin at rest, free of contact."""
@@ -175,7 +197,8 @@ class SampledAxis:
         self.schedule = deque(scenario.control.schedule)
         self.switches: list[tuple[float, str]] = []
         self.rows: list[tuple[float, ...]] = []
-        self.refused, self.saturated = 0, 0
+        self.refused, self.saturated, self.turn, self.command = 0, 0, 0, 0.0
+        self.kept = [state.name in _OF_MOTION for state in law.states]
         limit = law.coefficient.get("command_limit")
         self.largest = math.inf if limit is None else float(limit.of(0))
 
@@ -228,10 +251,13 @@ class SampledAxis:
         torque = tissue.torque(self.theta, self.omega)
         tissue.note(t)
         depths = tissue.depths(self.theta)
-        self.buffer.appendleft(_coarse(torque + noise, errors.force_step))
+        outer = self.turn % self.turns.outer == 0
+        if outer:
+            self.buffer.appendleft(_coarse(torque + noise, errors.force_step))
         felt = self.buffer[age]
-        self._decide(t, hand, felt, depths)
-        self.held += 1
+        if outer:
+            self._decide(t, hand, felt, depths)
+            self.held += 1
         seen = {
             "angle": _coarse(self.theta, errors.encoder_step),
             "torque": felt,
@@ -241,12 +267,22 @@ class SampledAxis:
         }
         mode, before = self.modes[self.controller], self.states
         given = [np.float32(seen[name]) for name in self.inputs]
-        outputs, self.states, valid = self.program.step(mode, [*given, *before])
+        outputs, after, valid = self.program.step(mode, [*given, *before])
         self.refused += not valid
-        command = float(outputs[0])
-        self.saturated += abs(command) >= self.largest
-        outer = (self.theta, self.omega, torque, max(0.0, *depths, 0.0), command)
-        self.rows.append((mode, *outer, *map(float, before)))
+        motion = self.turn % self.turns.motion == 0
+        if motion:
+            self.command = float(outputs[0])
+            self.saturated += abs(self.command) >= self.largest
+        if motion and outer:
+            self.states = after
+        else:
+            # The loop whose turn it is not keeps what it has.
+            each = zip(self.kept, before, after, strict=True)
+            self.states = [new if of_motion == motion else old for of_motion, old, new in each]
+        self.turn += 1
+        command = self.command
+        now = (self.theta, self.omega, torque, max(0.0, *depths, 0.0), command)
+        self.rows.append((mode, *now, *map(float, before)))
         if not self.holds[self.controller]:
             self.commanded += self.T * hand
         return command

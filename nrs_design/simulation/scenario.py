@@ -129,6 +129,8 @@ class Surface:
         Angle in rad.
     sign : int
         1 if it is met by rising angles, -1 if by falling ones.
+    arms : tuple of Element
+        What is one body with it: forces add up before the sum is held to pushing.
     """
 
     environment: str
@@ -136,6 +138,12 @@ class Surface:
     element: Element | None
     at: float
     sign: int
+    arms: tuple[Element, ...] = ()
+
+    @property
+    def is_linear(self) -> bool:
+        """Whether the exact engine knows it."""
+        return self.element is not None and not self.arms
 
 
 @dataclass(frozen=True, slots=True)

@@ -67,10 +67,17 @@ def _check_axis(
 ) -> None:
     _check_velocity(scenario.command, largest, at)
     for i, surface in enumerate(scenario.surfaces):
-        if surface.environment not in environments:
-            remedy = did_you_mean(surface.environment, environments)
-            message = f"there is no environment {surface.environment!r}"
-            raise fault(message, remedy, *at, "surfaces", i, "environment")
+        for j, name in enumerate((surface.environment, *surface.beside)):
+            part: tuple[str | int, ...] = ("beside", j - 1) if j else ("environment",)
+            if name not in environments:
+                remedy = did_you_mean(name, environments)
+                raise fault(f"there is no environment {name!r}", remedy, *at, "surfaces", i, *part)
+            if surface.beside and environments[name].model == "hunt-crossley":
+                raise fault(
+                    f"{name} is not linear, and environments of one body are",
+                    "leave beside out, or name linear environments",
+                    *(*at, "surfaces", i, *part),
+                )
         start = 0.0 if scenario.start is None else scenario.start.si
         depth = start - surface.at.si if surface.side == "above" else surface.at.si - start
         if depth > 0:

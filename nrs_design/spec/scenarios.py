@@ -161,6 +161,12 @@ class SurfaceSpec(SpecModel):
     """Where an environment begins; it pushes and never pulls."""
 
     environment: Label = Field(description="name of the environment")
+    beside: Annotated[tuple[Label, ...], Field(max_length=MAX_SURFACES)] = Field(
+        default=(),
+        description="linear environments that are one body with it, of the same parameters: "
+        "forces add up, and only their sum does not pull. An elastic one with maxwell ones beside "
+        "it is a Prony series",
+    )
     at: SignedAngle = Field(description="angle of its surface in rad")
     side: Literal["above", "below"] = Field(
         default="above", description="above: met by rising angles; below: by falling ones"

@@ -107,28 +107,53 @@ def run_scenarios(
     DesignError, DataError
         If there is no such scenario, or it cannot be simulated.
     """
+    wanted = wanted or Runs()
+    with placed(designed.loaded):
+        for scenario in scenarios_of(designed, wanted.names):
+            yield simulate_one(designed, scenario, wanted, progress)
+
+
+def simulate_one(
+    designed: Designed, scenario: Scenario, wanted: Runs, progress: Progress = silent
+) -> Simulated:
+    """Simulate one scenario with the engine that is wanted, and measure the run.
+
+    Parameters
+    ----------
+    designed : Designed
+        The spec, its plant and its gains.
+    scenario : Scenario
+        In SI.
+    wanted : Runs
+        How.
+    progress : callable
+        Told how far the run is.
+
+    Raises
+    ------
+    DesignError
+        If it cannot be simulated.
+    """
     from nrs_design.simulation.exact import simulate_exactly
     from nrs_design.simulation.run import MAX_STEPS
     from nrs_design.simulation.sampled import simulate_sampled
     from nrs_design.simulation.summary import summarize
 
-    wanted, spec = wanted or Runs(), designed.spec
-    timed = spec.model_copy(update={"sampling": _sampling(spec, wanted)})
-    with placed(designed.loaded):
-        for scenario in _scenarios(designed, wanted.names):
-            # A law of tissue that is not linear has no exponential.
-            nonlinear = any(surface.element is None for surface in scenario.surfaces)
-            usual = "sampled" if spec.sampling is not None or nonlinear else "exact"
-            sampled = (wanted.engine or usual) == "sampled"
-            run = (simulate_sampled if sampled else simulate_exactly)(
-                timed if sampled else spec,
-                designed.plant,
-                designed.design,
-                scenario,
-                max_steps=wanted.max_steps or MAX_STEPS,
-                tell=partial(_tell, progress, scenario.name),
-            )
-            yield Simulated(scenario, run, summarize(spec, scenario, run))
+    spec = designed.spec
+    # A law of tissue that is not linear has no exponential.
+    nonlinear = any(surface.element is None for surface in scenario.surfaces)
+    usual = "sampled" if spec.sampling is not None or nonlinear else "exact"
+    sampled = (wanted.engine or usual) == "sampled"
+    timed = spec.model_copy(update={"sampling": _sampling(spec, wanted)}) if sampled else spec
+    run = (simulate_sampled if sampled else simulate_exactly)(
+        timed,
+        designed.plant,
+        designed.design,
+        scenario,
+        max_steps=wanted.max_steps or MAX_STEPS,
+        tell=partial(_tell, progress, scenario.name),
+    )
+    return Simulated(scenario, run, summarize(spec, scenario, run))
 
 
 def _sampling(spec: InteractionDesignSpec, wanted: Runs) -> SamplingSpec:
@@ -149,7 +174,21 @@ def _tell(progress: Progress, name: str, step: str) -> None:
     progress(f"{name}, {step}")
 
 
-def _scenarios(designed: Designed, names: Sequence[str]) -> list[Scenario]:
+def scenarios_of(designed: Designed, names: Sequence[str]) -> list[Scenario]:
+    """Return scenarios of a spec in SI; a spec without any has one of its own.
+
+    Parameters
+    ----------
+    designed : Designed
+        The spec and its plant.
+    names : sequence of str
+        Which; empty for all.
+
+    Raises
+    ------
+    DesignError, DataError
+        If there is no such scenario, or its file of commands cannot be read.
+    """
     from nrs_design.simulation.build_scenario import build_scenario, default_scenario
     from nrs_design.spec.faults import did_you_mean
 

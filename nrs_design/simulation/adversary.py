@@ -18,7 +18,7 @@ from nrs_design.simulation.rules import Indices, Rules
 
 # Where a run is continued by the new choices: from these shares of its length on.
 _CUTS = (0.0, 0.5, 0.8)
-_NO_GAIN = 1e-9
+_NO_GAIN = 1e-5
 # Mean length of a change, as a share of a run.
 _SPAN = 0.06
 
@@ -272,25 +272,24 @@ def improve(game: Game, aim: Aim, signals: Signals, sweeps: int) -> tuple[Signal
     """
     states = play(game, signals)
     value = _at_end(game, aim, signals, states)
-    runs = signals.actions.shape[1]
-    many = aim.repeated(len(_CUTS))
+    actions, shares = signals.actions.copy(), signals.shares.copy()
+    # Runs that the last sweep has improved; the others have come to where they stay.
+    moving = np.arange(len(value))
     for _ in range(sweeps):
-        policy = _Policy.against(game, aim, signals, states)
-        fresh = policy.follow(game, signals)
-        reached = play(game, fresh)
-        values = _at_end(game, many, fresh, reached).reshape(len(_CUTS), runs)
-        best = values.argmax(axis=0)
-        gained = values[best, np.arange(runs)] > value * (1 + _NO_GAIN)
-        if not gained.any():
+        if not len(moving):
             break
-        own = best * runs + np.arange(runs)
-        signals = Signals(
-            np.where(gained, fresh.actions[:, own], signals.actions),
-            np.where(gained[:, None], fresh.shares[:, own], signals.shares),
-        )
-        states = np.where(gained[:, None], reached[:, own], states)
-        value = np.where(gained, values[best, np.arange(runs)], value)
-    return signals, value
+        own, now = aim.only(moving), Signals(actions[:, moving], shares[:, moving])
+        policy = _Policy.against(game, own, now, states[:, moving])
+        fresh = policy.follow(game, now)
+        reached = play(game, fresh)
+        values = _at_end(game, own.repeated(len(_CUTS)), fresh, reached)
+        best = values.reshape(len(_CUTS), -1).argmax(axis=0)
+        picked = best * len(moving) + np.arange(len(moving))
+        gained = values[picked] > value[moving] * (1 + _NO_GAIN)
+        moving, picked = moving[gained], picked[gained]
+        actions[:, moving], shares[:, moving] = fresh.actions[:, picked], fresh.shares[:, picked]
+        states[:, moving], value[moving] = reached[:, picked], values[picked]
+    return Signals(actions, shares), value
 
 
 def _at_end(game: Game, aim: Aim, signals: Signals, states: Array) -> Array:
@@ -315,23 +314,26 @@ class _Policy:
         signs = np.zeros((steps, nodes, runs, game.disturbances), dtype=np.int8)
         # What a run is worth at a node is p x + c.
         p, c = _final(game, aim, states[-1], runs), np.zeros((nodes, runs))
+        pull, reset = _Pull(game), len(rules.jumps) > 1
         taken = rules.jumps[rules.jump]
-        column = np.arange(runs)
+        column, row = np.arange(runs), np.arange(nodes)[:, None]
         for k in range(steps - 1, -1, -1):
-            x = (taken @ states[k].T).transpose(0, 2, 1)
-            after = p[rules.target]
-            pulled = after @ game.maps[rules.mode]
-            if game.losable:
-                free = after @ game.flights[rules.mode]
-                pulled = np.where(game.flies(x)[:, :, None], free, pulled)
+            x = (taken @ states[k].T).transpose(0, 2, 1) if reset else states[k]
+            pulled = pull(p, x)
             added = np.abs(pulled[:, :, n:]).sum(axis=2) + c[rules.target]
-            worth = (pulled[:, :, :n] * x).sum(axis=2) + added
-            best = worth[rules.choices].argmax(axis=1)
-            action = rules.choices[np.arange(nodes)[:, None], best]
+            worth = (
+                np.einsum(
+                    "usn,usn->us",
+                    pulled[:, :, :n],
+                    np.broadcast_to(x, pulled.shape[:2] + x.shape[-1:]),
+                )
+                + added
+            )
+            action = rules.choices[row, worth[rules.choices].argmax(axis=1)]
             own = pulled[action, column]
             actions[k], signs[k] = action, np.where(own[:, :, n:] < 0, -1, 1)
             p, c = own[:, :, :n], added[action, column]
-            if len(rules.jumps) > 1:
+            if reset:
                 p = (p[:, :, None] @ taken[action])[:, :, 0]
         return cls(actions, signs)
 
@@ -350,6 +352,28 @@ class _Policy:
             shares[k] = np.where(new[:, None], self.signs[k, node, column], shares[k])
             node = rules.target[actions[k]]
         return Signals(actions, shares)
+
+
+class _Pull:
+    """Gradients before a step from those after it, for every action; shape (U, S, n + c)."""
+
+    def __init__(self, game: Game) -> None:
+        self._game, self._target = game, game.rules.target
+        self._maps, self._flights = (
+            maps[game.rules.mode] if len(maps) else maps for maps in (game.maps, game.flights)
+        )
+
+    def __call__(self, p: Array, x: Array) -> Array:
+        """Pull back p, shape (N, S, n), along states x, shape (S, n) or (U, S, n)."""
+        lost = self._game.flies(x)
+        if not lost.any():
+            return self._back(p, self._maps)
+        free = self._back(p, self._flights)
+        return free if lost.all() else np.where(lost[..., None], free, self._back(p, self._maps))
+
+    def _back(self, p: Array, maps: Array) -> Array:
+        # With one node all actions share their gradients.
+        return np.asarray((p if len(p) == 1 else p[self._target]) @ maps)
 
 
 def _final(game: Game, aim: Aim, ends: Array, runs: int) -> Array:

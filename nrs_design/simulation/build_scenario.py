@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -38,6 +38,8 @@ from nrs_design.spec.scenarios import (
     ScenarioSpec,
     SurfaceSpec,
 )
+
+Pick = Callable[[Interval], float]
 
 DEFAULT, DEFAULT_AXES = "insertion-and-withdrawal", "all-axes"
 # Thesis fig. 6.7 and 6.11: in free space to the largest command, down, again in contact, and out.
@@ -85,6 +87,7 @@ def build_scenario(
         wanted.si,
         _errors(scenario.errors),
         scenario.seed,
+        {} if scenario.limits is None else {n: q.si for n, q in scenario.limits.named.items()},
     )
 
 
@@ -205,7 +208,7 @@ def _surface(spec: InteractionDesignSpec, plant: Plant, written: SurfaceSpec) ->
     sign = 1 if written.side == "above" else -1
     found = _touched(spec, plant, written.environment, written.at.si, sign, written.parameters)
     others = (
-        _law(spec.environments[name], plant.environment(name), written.parameters)[1]
+        _law(spec.environments[name], plant.environment(name), _PICKS[written.parameters])[1]
         for name in written.beside
     )
     return replace(found, arms=tuple(element for element in others if element is not None))
@@ -214,29 +217,48 @@ def _surface(spec: InteractionDesignSpec, plant: Plant, written: SurfaceSpec) ->
 def _touched(
     spec: InteractionDesignSpec, plant: Plant, name: str, at: float, sign: int, end: str
 ) -> Surface:
-    law, element = _law(spec.environments[name], plant.environment(name), end)
+    law, element = _law(spec.environments[name], plant.environment(name), _PICKS[end])
     return Surface(name, law, element, at, sign)
 
 
+def drawn_laws(
+    spec: InteractionDesignSpec, plant: Plant, names: Collection[str], pick: Pick
+) -> dict[str, tuple[AbstractContactLaw, Element | None]]:
+    """Return the laws of environments, with every parameter picked from its range.
+
+    Parameters
+    ----------
+    spec : InteractionDesignSpec
+        With these environments.
+    plant : Plant
+        Of that spec.
+    names : collection of str
+        Of the environments.
+    pick : callable
+        Takes a range and returns a number within; asked in the order of the parameters.
+    """
+    return {name: _law(spec.environments[name], plant.environment(name), pick) for name in names}
+
+
+_PICKS: Mapping[str, Pick] = {
+    "nominal": lambda interval: float(interval.nominal),
+    "lowest": lambda interval: float(interval.low),
+    "highest": lambda interval: float(interval.high),
+}
+
+
 def _law(
-    written: EnvironmentSpec, environment: Environment, end: str
+    written: EnvironmentSpec, environment: Environment, pick: Pick
 ) -> tuple[AbstractContactLaw, Element | None]:
-    """Return the law at one end of its ranges; a power law is not linear."""
-
-    def pick(interval: Interval) -> float:
-        return float({"lowest": interval.low, "highest": interval.high}.get(end, interval.nominal))
-
+    """Return the law with every parameter picked from its range; a power law is not linear."""
     if written.model == "hunt-crossley":
         tangent = written.exact_at_pivot()
         about = written.about.si
         if written.lever_arm is not None:
             about /= written.lever_arm.si
-        exponent = {
-            "lowest": written.exponent.range[0],
-            "highest": written.exponent.range[1],
-        }.get(end, written.exponent.nominal)
+        exponent = Interval(written.exponent.nominal, *written.exponent.range)
         k, b = pick(tangent["stiffness"]), pick(tangent["damping"])
-        return HuntCrossley.through(k, b, float(exponent), about), None
+        return HuntCrossley.through(k, b, pick(exponent), about), None
     law = environment.law(*(pick(interval) for interval in environment.ranges))
     return law, law.element
 

@@ -253,6 +253,8 @@ class Scenario:
         For the sampled engine.
     seed : int
         Of noise, jitter and varying delay.
+    limits : mapping of str to float
+        What its run must keep: ``torque`` in N m, ``deflection`` in rad, ``velocity`` in rad/s.
     """
 
     name: str
@@ -264,3 +266,4 @@ class Scenario:
     wanted_torque: float = 0.0
     errors: Errors = Errors()
     seed: int = 0
+    limits: Mapping[str, float] = field(default_factory=dict)

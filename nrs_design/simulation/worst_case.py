@@ -33,12 +33,13 @@ from nrs_design.simulation.rules import Indices, Rules, fitting_step
 from nrs_design.simulation.switched import fine_step, mode_eigenvalues
 
 # Starts for each quantity, most sweeps from each, and rounds in which the best are changed.
-STARTS, SWEEPS, ROUNDS = 24, 15, 10
+STARTS, SWEEPS, ROUNDS = 24, 15, 8
 _KEPT, _COPIES = 4, 6
 # How much finer the grid is at last, in continuous time.
 _FINER = 4
-# A run is as long as a motion of the slowest mode needs to fade to a thousandth, within these.
-_FADED, _FEWEST, _MOST = 7.0, 100, 800
+# A run is as long as a motion of the slowest mode needs to fade to a hundredth, and has so many
+# steps; in continuous time they are longer where there would be more.
+_FADED, _FEWEST, _MOST = 5.0, 100, 300
 DEFLECTION = "deflection"
 
 
@@ -253,17 +254,21 @@ def _check(system: SwitchedSystem) -> None:
         raise ValueError("modes take turns, differ in size or are ends of a constant parameter")
     if not system.channels:
         raise ValueError("nothing disturbs the loop, so from rest it stays at rest")
+    if not any(any(map(any, column.numerators)) for c in system.channels for column in c.columns):
+        raise ValueError("what disturbs the loop acts on none of its modes")
 
 
 def _grid(system: SwitchedSystem) -> tuple[float, int]:
     """Return a step that resolves the fastest motion, and steps in which the slowest one fades."""
     step = fine_step(system)
-    if system.time is Time.DISCRETE:
-        rates = [-float(np.log(np.abs(values)).max()) for values in mode_eigenvalues(system)]
-    else:
-        rates = [-float(values.real.max()) for values in mode_eigenvalues(system)]
-    slowest = min((rate for rate in rates if rate > 0), default=_FADED / step / _MOST)
-    return step, int(np.clip(_FADED / (slowest * step), _FEWEST, _MOST))
+    values = [v[np.abs(v) > 0] for v in mode_eigenvalues(system)]
+    discrete = system.time is Time.DISCRETE
+    rates = [-float((np.log(np.abs(v)) if discrete else v.real).max()) for v in values if len(v)]
+    slowest = min((rate for rate in rates if rate > 0), default=_FADED / (step * _MOST))
+    length = _FADED / slowest
+    if not discrete:
+        step = max(step, length / _MOST)
+    return step, int(np.clip(length / step, _FEWEST, _MOST))
 
 
 def _game(system: SwitchedSystem, step: float) -> Game:

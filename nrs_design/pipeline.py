@@ -880,7 +880,8 @@ def physical_outputs(result: Result) -> Outputs | None:
     rules, contacts = system.switching, designed.design.contacts
     plain = all(c.law.commands == "velocity" for c in designed.design.controllers)
     ruled = bool(rules.resets) or (system.contact is not None and not rules.is_arbitrary)
-    if not plain or ruled or not contacts or system.states[-1] != "delta [rad]":
+    heavy = any(environment.law.has_mass for environment in designed.plant.among(contacts))
+    if not plain or ruled or heavy or not contacts or system.states[-1] != "delta [rad]":
         return None
     import numpy as np
 

@@ -46,6 +46,7 @@ from nrs_design.spec.touched import (
     check_at_once,
     check_controller_names,
     check_free,
+    check_hands,
     check_memories,
     check_references,
     check_springs,
@@ -201,6 +202,7 @@ class InteractionDesignSpec(SpecModel):
                 deflection=self.coordinates == "deflection",
             ),
             lambda: check_memories(self.controllers, self.environments, self.coordinates),
+            partial(check_hands, self),
             lambda: check_offsets(self.controllers, self.idle_states),
             lambda: all_of(
                 *(

@@ -161,9 +161,10 @@ class Loop:
         """Return the row of the torque that a surface has while it is touched, towards it."""
         surface = self.scenario.surfaces[j]
         element = surface.element
-        if element is None:
+        if element is None or not surface.is_linear:
+            what = "has others beside it" if surface.arms else "is not linear"
             raise DesignError(
-                f"{surface.environment} is not linear: the exact engine does not simulate it",
+                f"{surface.environment} {what}: the exact engine does not simulate it",
                 remedy="use --engine sampled",
                 at=("environments", surface.environment),
             )

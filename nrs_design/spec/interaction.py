@@ -38,13 +38,15 @@ from nrs_design.spec.sampling import (
     check_peak,
     takes_motor_ranges,
 )
-from nrs_design.spec.scenarios import ScenarioSpec, check_scenario
+from nrs_design.spec.scenario_checks import check_scenario
+from nrs_design.spec.scenarios import ScenarioSpec
 from nrs_design.spec.sensor import SensorSpec
 from nrs_design.spec.switching import MODE_LOGIC, DwellTime, LogicalRule, check_names
 from nrs_design.spec.touched import (
     check_at_once,
     check_controller_names,
     check_free,
+    check_hands,
     check_memories,
     check_references,
     check_springs,
@@ -200,6 +202,7 @@ class InteractionDesignSpec(SpecModel):
                 deflection=self.coordinates == "deflection",
             ),
             lambda: check_memories(self.controllers, self.environments, self.coordinates),
+            partial(check_hands, self),
             lambda: check_offsets(self.controllers, self.idle_states),
             lambda: all_of(
                 *(
@@ -343,9 +346,10 @@ def _check_scenarios(spec: InteractionDesignSpec) -> None:
     """Refuse scenarios that do not fit the rest of the spec."""
     logic = spec.mode_logic is not None and spec.mode_logic.type == "thresholds"
     given = (spec.controllers, spec.environments, spec.limits.velocity)
+    robot = spec.coupling is not None and spec.coupling.robot is not None
     all_of(
         *(
-            partial(check_scenario, name, scenario, *given, logic=logic)
+            partial(check_scenario, name, scenario, *given, logic=logic, robot=robot)
             for name, scenario in spec.scenarios.items()
         ),
         lambda: check_commands(

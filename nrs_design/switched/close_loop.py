@@ -448,7 +448,7 @@ def _can_be_free(state: _State) -> bool:
         state.idle is None
         and state.law.commands == "velocity"
         and state.coordinates == "deflection"
-        and not any(e.law.remembers or e.preloaded for e in state.touched)
+        and not any(e.law.remembers or e.law.has_mass or e.preloaded for e in state.touched)
         and not any(e.parts and not e.each_losable for e in state.touched)
         and bool(state.touched)
     )

@@ -47,7 +47,12 @@ def velocity_mode(
     own = motion.order + len(law.states)
     touch = own + (0 if low_pass is None else low_pass.order)
     state = coordinates(touch + len(contact.states))
-    force, reaction = contact.react(motion.output(len(state)), state[touch:])
+    velocity = motion.output(len(state))
+    if contact.has_mass:
+        acceleration = _acceleration(motion, law, state)
+        force, reaction = contact.react_accelerated(velocity, acceleration, state[touch:])
+    else:
+        force, reaction = contact.react(velocity, state[touch:])
     felt, sensed = force, list[LinearForm]()
     if low_pass is not None:
         felt, sensed = low_pass.respond(force, state[own:touch])
@@ -56,6 +61,29 @@ def velocity_mode(
         felt = combine((Fraction(1), felt), (law.spring, motion.integral(state[touch])))
     command, rates = law.respond(felt, state[motion.order : own])
     return [*motion.rates(command, force), *rates, *sensed, *reaction]
+
+
+def _acceleration(
+    motion: Realization | JointMotion, law: CompliantLaw, state: Sequence[LinearForm]
+) -> LinearForm:
+    """Return the rate of the velocity, where the force does not act on it at once.
+
+    Raises
+    ------
+    AssemblyError
+        If it does: the equations would be implicit.
+    """
+    loaded = isinstance(motion, JointMotion) and motion.J is not None
+    if not law.states or loaded:
+        raise AssemblyError(
+            "a hand, which has a mass, is not modelled for an admittance without virtual inertia, "
+            "or with its load on the motor: its force would depend on itself",
+            remedy="give impedance controllers Mt > 0, and leave load_inertia out",
+            at=("actuator", "load_inertia") if loaded else ("controllers",),
+        )
+    command, _ = law.respond(zero(len(state)), state[motion.order : motion.order + len(law.states)])
+    rates = motion.rates(command)
+    return combine(*zip(motion.output(len(state))[: motion.order], rates, strict=True))
 
 
 def to_force_coordinates(

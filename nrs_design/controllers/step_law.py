@@ -104,7 +104,9 @@ def build_step_law(frame: StepFrame, laws: Mapping[str, SampledAdmittance]) -> S
     )
 
 
-def build_placed_law(frame: StepFrame, laws: Mapping[str, SampledForce], idle: Fraction) -> StepLaw:
+def build_placed_law(
+    frame: StepFrame, laws: Mapping[str, SampledForce], idle: Fraction = ZERO
+) -> StepLaw:
     """Write position and force control out; neither has a reference of its own.
 
     Parameters

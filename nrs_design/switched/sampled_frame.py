@@ -143,9 +143,8 @@ class Frame:
 
     @property
     def _placing(self) -> tuple[str, ...]:
-        """The terms of a reference that force control computes."""
-        counts = self.listed.counts
-        each = (counts.get(mode, {}).get("error", {}) for mode in ("force", "pi-force"))
+        """The terms of a reference that is computed within a sample."""
+        each = (results["error"] for results in self.listed.counts.values())
         names = dict.fromkeys(name for reference in each for name in reference)
         return tuple(name for name in names if name != ERROR)
 

@@ -73,7 +73,13 @@ scenarios: {{run: {{{scenario}}}}}
 
 
 def simulated(controllers: dict[str, str], scenario: str, more: str = "") -> Run:
-    """Simulate it with the exact engine; parameters as in `interaction`."""
+    """Simulate it with the exact engine.
+
+    Parameters
+    ----------
+    controllers, scenario, more
+        As `interaction` takes them.
+    """
     text = interaction(controllers, scenario, more)
     designed = run_design(LoadedSpec(Path("runs.nrs.yaml"), "", text, parse_spec(text)))
     assert designed is not None

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -176,7 +177,18 @@ def _profile(command: CommandProfileSpec, folder: Path, largest: float) -> tuple
         times, velocities = np.array(points).T
         return Profile.through(times, velocities), float(times[-1])
     assert command.csv is not None
+    _check_inside(folder / command.csv, folder)
     return _recorded(folder / command.csv, largest)
+
+
+def _check_inside(path: Path, folder: Path) -> None:
+    """Refuse a link out of the folder of the spec: it would be another file elsewhere."""
+    if not Path(os.path.realpath(path)).is_relative_to(os.path.realpath(folder)):
+        raise DataError(
+            "is a link that leads out of the spec's folder",
+            path=path,
+            remedy="put the file itself below that folder",
+        )
 
 
 def _recorded(path: Path, largest: float) -> tuple[Profile, float]:

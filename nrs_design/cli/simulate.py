@@ -12,15 +12,16 @@ import typer
 from nrs_design.cli import exit_codes
 from nrs_design.cli.options import Json, Quiet, SpecFile
 from nrs_design.cli.printing import note, print_json, progress, say
+from nrs_design.cli.simulate_options import Jobs, Many, MonteCarloRuns, Resume, Seed, WorstCaseFlag
 from nrs_design.cli.tables import print_table
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Sequence
 
     from nrs_design.certificates.certificate import Certificate
     from nrs_design.pipeline import Designed, Progress
-    from nrs_design.pipeline.scenarios import CertifiedBound, Simulated
-    from nrs_design.spec import InteractionDesignSpec
+    from nrs_design.pipeline.scenarios import CertifiedBound, Runs, Simulated
+    from nrs_design.spec import InteractionDesignSpec, LoadedSpec
 
 
 class EngineOption(StrEnum):
@@ -81,6 +82,11 @@ def simulate(
     max_steps: Annotated[
         int | None, typer.Option(min=1, help="Most steps of a run; beyond, exit code 3.")
     ] = None,
+    worst: WorstCaseFlag = False,
+    monte_carlo: MonteCarloRuns = None,
+    jobs: Jobs = 1,
+    seed: Seed = 0,
+    resume: Resume = None,
     as_json: Json = False,
     quiet: Quiet = False,
 ) -> None:
@@ -90,6 +96,10 @@ def simulate(
     environment and out again. A run proves nothing: it shows one thing that may happen.
 
     Example: nrs-design simulate docs/examples/scenarios.nrs.yaml --out runs
+
+    Example: nrs-design simulate docs/examples/scenarios.nrs.yaml --worst-case
+
+    Example: nrs-design simulate docs/examples/scenarios.nrs.yaml --monte-carlo 500 --jobs 2
     """
     from nrs_design.pipeline import run_design, wrong_kind
     from nrs_design.pipeline.scenarios import Runs, run_scenarios
@@ -97,6 +107,7 @@ def simulate(
 
     if engine is EngineOption.EXACT and (period is not None or delay is not None):
         raise typer.BadParameter("the exact engine has no samples", param_hint="--period, --delay")
+    Many(worst, monte_carlo, seed, jobs, resume).check((scenario, engine, period, delay, max_steps))
     loaded = read_spec(spec)
     if loaded.spec.kind != "interaction-design":
         raise wrong_kind(
@@ -104,19 +115,25 @@ def simulate(
             f"a spec of kind {loaded.spec.kind} describes no interaction",
             "name a spec of kind interaction-design; see also `nrs-design robot track`",
         )
+    how = None if engine is None else str(engine)
+    if how is None and (period is not None or delay is not None):
+        how = str(EngineOption.SAMPLED)
+    wanted = Runs(tuple(dict.fromkeys(scenario or ())), how, period, delay, max_steps)
     with progress(f"simulating {loaded.spec.name}", quiet=quiet) as step:
-        _check_places(loaded.spec, scenario, out)
-        designed = run_design(loaded)
-        assert designed is not None
-        how = None if engine is None else str(engine)
-        if how is None and (period is not None or delay is not None):
-            how = str(EngineOption.SAMPLED)
-        wanted = Runs(tuple(dict.fromkeys(scenario or ())), how, period, delay, max_steps)
-        found = list(run_scenarios(designed, wanted, step))
-        proof = _proof(designed, certificate, step, bound=bound)
-        runs = [(one, _bounds(designed, proof, one)) for one in found]
-        step("figures")
-        files = [str(path) for path in _write(designed, out, runs)]
+        if worst or monte_carlo is not None:
+            many = Many(worst, monte_carlo, seed, jobs, resume)
+            show = _simulate_many(loaded, wanted, many, certificate, out, step, bound=bound)
+        else:
+            _check_places(loaded.spec, scenario, out)
+            designed = run_design(loaded)
+            assert designed is not None
+            found = list(run_scenarios(designed, wanted, step))
+            proof = _proof(designed, certificate, step, bound=bound)
+            runs = [(one, _bounds(designed, proof, one)) for one in found]
+            step("figures")
+            files = [str(path) for path in _write(designed, out, runs)]
+    if worst or monte_carlo is not None:
+        raise typer.Exit(show(as_json=as_json, quiet=quiet))
     if files:
         note(f"written to {out}", quiet=quiet)
     if as_json:
@@ -130,6 +147,31 @@ def simulate(
             say(f"  - {line}")
     stopped = any(one.run.stopped for one in found)
     raise typer.Exit(exit_codes.INCONCLUSIVE if stopped else exit_codes.PROVED)
+
+
+def _simulate_many(
+    loaded: LoadedSpec,
+    wanted: Runs,
+    many: Many,
+    certificate: Path | None,
+    out: Path | None,
+    step: Progress,
+    *,
+    bound: bool,
+) -> Callable[..., int]:
+    """Let an adversary search, or chance draw; return what prints the result."""
+    from nrs_design.cli.monte_carlo import monte_carlo
+    from nrs_design.cli.worst_case import worst_case
+    from nrs_design.pipeline import run_design
+    from nrs_design.pipeline.monte_carlo import MonteCarlo
+
+    designed = run_design(loaded)
+    assert designed is not None
+    proof = _proof(designed, certificate, step, bound=bound)
+    if many.runs is None:
+        return worst_case(designed, proof, many.seed, out, step)
+    asked = MonteCarlo(designed, wanted, many.runs, many.seed)
+    return monte_carlo(asked, many.jobs, many.resume, proof, out, step)
 
 
 def _proof(

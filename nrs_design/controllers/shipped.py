@@ -83,8 +83,9 @@ def _step_law(
     placed = {name: law for name, law in laws.items() if isinstance(law, SampledForce)}
     if spec.offset != "none":
         raise _without_program("force control takes an offset", next(iter(placed)))
+    idle = None if spec.idle_states is None else _left(spec.idle_states, period)
     if placed and not moving:
-        return build_placed_law(frame, placed)
+        return build_placed_law(frame, placed, idle or Fraction(0))
     if len({law.a is None for law in moving.values()}) > 1:
         raise DesignError(
             "some impedance controllers have a virtual inertia and some have none",
@@ -96,8 +97,8 @@ def _step_law(
     other = next(iter(placed))
     if any(law.Kt for law in moving.values()):
         raise _without_program(f"a spring of impedance control beside {other}", other)
-    assert spec.idle_states is not None, "a spec with both kinds has them"
-    return build_mixed_law(frame, laws, _left(spec.idle_states, period))
+    assert idle is not None, "a spec with both kinds has them"
+    return build_mixed_law(frame, laws, idle)
 
 
 def _left(idle: IdleStatesSpec, period: Fraction) -> Fraction:

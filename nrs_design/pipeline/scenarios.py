@@ -108,32 +108,62 @@ def run_scenarios(
     DesignError, DataError
         If there is no such scenario, or it cannot be simulated.
     """
+    wanted = wanted or Runs()
+    with placed(designed.loaded):
+        for name, group in scenarios_of(designed, wanted):
+            yield from simulate_group(designed, name, group, wanted, progress)
+
+
+def simulate_group(
+    designed: Designed,
+    name: str,
+    group: Sequence[Scenario],
+    wanted: Runs,
+    progress: Progress = silent,
+) -> Iterator[Simulated]:
+    """Simulate what one axis does, or three of a robot at once, and measure the runs.
+
+    Parameters
+    ----------
+    designed : Designed
+        The spec, its plant and its gains.
+    name : str
+        Of the scenario.
+    group : sequence of Scenario
+        In SI, one for each axis.
+    wanted : Runs
+        How.
+    progress : callable
+        Told how far the run is.
+
+    Yields
+    ------
+    Simulated
+        For each axis.
+
+    Raises
+    ------
+    DesignError
+        If it cannot be simulated.
+    """
     from nrs_design.simulation.bodies import simulate_on_body
-    from nrs_design.simulation.build_scenario import build_runs
     from nrs_design.simulation.exact import simulate_exactly
     from nrs_design.simulation.run import MAX_STEPS
     from nrs_design.simulation.summary import summarize
 
-    wanted, spec = wanted or Runs(), designed.spec
-    timed = spec.model_copy(update={"sampling": _sampling(spec, wanted)})
-    with placed(designed.loaded):
-        for name in _names(spec, wanted):
-            group = build_runs(spec, designed.plant, name, folder_of(designed))
-            engine = wanted.engine or _usual(spec, group)
-            given = designed.plant, designed.design
-            most = wanted.max_steps or MAX_STEPS
-            tell = partial(_tell, progress, name)
-            if engine == "exact":
-                runs = tuple(
-                    simulate_exactly(spec, *given, one, max_steps=most, tell=tell) for one in group
-                )
-            else:
-                arm = _arm(designed, name) if len(group) > 1 else None
-                runs = simulate_on_body(
-                    timed, *given, group, engine, arm, max_steps=most, tell=tell
-                )
-            for scenario, run in zip(group, runs, strict=True):
-                yield Simulated(scenario, run, summarize(spec, scenario, run))
+    spec, engine = designed.spec, wanted.engine or _usual(designed.spec, group)
+    given = designed.plant, designed.design
+    most, tell = wanted.max_steps or MAX_STEPS, partial(_tell, progress, name)
+    if engine == "exact":
+        runs = tuple(
+            simulate_exactly(spec, *given, one, max_steps=most, tell=tell) for one in group
+        )
+    else:
+        timed = spec.model_copy(update={"sampling": _sampling(spec, wanted)})
+        arm = _arm(designed, name) if len(group) > 1 else None
+        runs = simulate_on_body(timed, *given, group, engine, arm, max_steps=most, tell=tell)
+    for scenario, run in zip(group, runs, strict=True):
+        yield Simulated(scenario, run, summarize(spec, scenario, run))
 
 
 def folder_of(designed: Designed) -> Path:
@@ -182,6 +212,28 @@ def _sampling(spec: InteractionDesignSpec, wanted: Runs) -> SamplingSpec:
 
 def _tell(progress: Progress, name: str, step: str) -> None:
     progress(f"{name}, {step}")
+
+
+def scenarios_of(designed: Designed, wanted: Runs) -> list[tuple[str, tuple[Scenario, ...]]]:
+    """Return the scenarios that are wanted, in SI: of each its name, and one for each axis.
+
+    Parameters
+    ----------
+    designed : Designed
+        The spec and its plant.
+    wanted : Runs
+        Which; a spec without any has one of its own.
+
+    Raises
+    ------
+    DesignError, DataError
+        If there is no such scenario, its file of commands cannot be read, or three axes are wanted
+        from the exact engine.
+    """
+    from nrs_design.simulation.build_scenario import build_runs
+
+    spec, folder = designed.spec, folder_of(designed)
+    return [(name, build_runs(spec, designed.plant, name, folder)) for name in _names(spec, wanted)]
 
 
 def _names(spec: InteractionDesignSpec, wanted: Runs) -> Sequence[str]:

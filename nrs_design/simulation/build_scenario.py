@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -39,6 +39,8 @@ from nrs_design.spec.scenarios import (
     ScenarioSpec,
     SurfaceSpec,
 )
+
+Pick = Callable[[Interval], float]
 
 DEFAULT, DEFAULT_AXES = "insertion-and-withdrawal", "all-axes"
 # Thesis fig. 6.7 and 6.11: in free space to the largest command, down, again in contact, and out.
@@ -86,6 +88,7 @@ def build_scenario(
         wanted.si,
         _errors(scenario.errors),
         scenario.seed,
+        {} if scenario.limits is None else {n: q.si for n, q in scenario.limits.named.items()},
     )
 
 
@@ -216,39 +219,57 @@ def _recorded(path: Path, largest: float) -> tuple[Profile, float]:
 def _surface(spec: InteractionDesignSpec, plant: Plant, written: SurfaceSpec) -> Surface:
     sign = 1 if written.side == "above" else -1
     found = _touched(spec, plant, written.environment, written.at.si, sign, written.parameters)
-    others = (
-        _law(spec.environments[name], plant.environment(name), written.parameters)[1]
-        for name in written.beside
+    laws = drawn_laws(spec, plant, written.beside, _PICKS[written.parameters])
+    return replace(found, beside=written.beside).with_laws(
+        {found.environment: (found.law, found.element), **laws}
     )
-    return replace(found, arms=tuple(element for element in others if element is not None))
 
 
 def _touched(
     spec: InteractionDesignSpec, plant: Plant, name: str, at: float, sign: int, end: str
 ) -> Surface:
-    law, element = _law(spec.environments[name], plant.environment(name), end)
+    law, element = _law(spec.environments[name], plant.environment(name), _PICKS[end])
     return Surface(name, law, element, at, sign)
 
 
+def drawn_laws(
+    spec: InteractionDesignSpec, plant: Plant, names: Collection[str], pick: Pick
+) -> dict[str, tuple[AbstractContactLaw, Element | None]]:
+    """Return the laws of environments, with every parameter picked from its range.
+
+    Parameters
+    ----------
+    spec : InteractionDesignSpec
+        With these environments.
+    plant : Plant
+        Of that spec.
+    names : collection of str
+        Of the environments.
+    pick : callable
+        Takes a range and returns a number within; asked in the order of the parameters.
+    """
+    return {name: _law(spec.environments[name], plant.environment(name), pick) for name in names}
+
+
+_PICKS: Mapping[str, Pick] = {
+    "nominal": lambda interval: float(interval.nominal),
+    "lowest": lambda interval: float(interval.low),
+    "highest": lambda interval: float(interval.high),
+}
+
+
 def _law(
-    written: EnvironmentSpec, environment: Environment, end: str
+    written: EnvironmentSpec, environment: Environment, pick: Pick
 ) -> tuple[AbstractContactLaw, Element | None]:
-    """Return the law at one end of its ranges; a power law is not linear."""
-
-    def pick(interval: Interval) -> float:
-        return float({"lowest": interval.low, "highest": interval.high}.get(end, interval.nominal))
-
+    """Return the law with every parameter picked from its range; a power law is not linear."""
     if written.model == "hunt-crossley":
         tangent = written.exact_at_pivot()
         about = written.about.si
         if written.lever_arm is not None:
             about /= written.lever_arm.si
-        exponent = {
-            "lowest": written.exponent.range[0],
-            "highest": written.exponent.range[1],
-        }.get(end, written.exponent.nominal)
+        exponent = Interval(written.exponent.nominal, *written.exponent.range)
         k, b = pick(tangent["stiffness"]), pick(tangent["damping"])
-        return HuntCrossley.through(k, b, float(exponent), about), None
+        return HuntCrossley.through(k, b, pick(exponent), about), None
     law = environment.law(*(pick(interval) for interval in environment.ranges))
     return law, law.element
 
@@ -278,11 +299,11 @@ def _control(
 
 def _usual(spec: InteractionDesignSpec, first: str) -> Control:
     """Return what fits names and kinds: signs, the threshold of the torque, or one controller."""
-    kinds = {name: controller.type for name, controller in spec.controllers.items()}
-    if {"insertion", "withdrawal"} <= kinds.keys():
+    controllers = spec.controllers.items()
+    if {"insertion", "withdrawal"} <= spec.controllers.keys():
         return by_sign("insertion", "withdrawal")
-    position = next((n for n, kind in kinds.items() if kind == "position"), None)
-    force = next((n for n, kind in kinds.items() if kind == "force"), None)
+    position = next((n for n, c in controllers if c.type == "position"), None)
+    force = next((n for n, c in controllers if c.holds_force), None)
     if position and force:
         return by_threshold(position, force, spec.limits.torque.si)
     return Control(first)

@@ -46,6 +46,7 @@ from nrs_design.spec.touched import (
     check_at_once,
     check_controller_names,
     check_free,
+    check_hands,
     check_memories,
     check_references,
     check_springs,
@@ -81,7 +82,8 @@ class InteractionDesignSpec(SpecModel):
     idle_states: IdleStatesSpec | None = Field(
         default=None,
         description="what the states of impedance controllers do while a position or force "
-        "controller is active; required where both kinds are there",
+        "controller is active, and the integral of a pi-force controller while another one is; "
+        "required where there are both",
     )
     goals: GoalsSpec | None = Field(
         default=None,
@@ -200,6 +202,7 @@ class InteractionDesignSpec(SpecModel):
                 deflection=self.coordinates == "deflection",
             ),
             lambda: check_memories(self.controllers, self.environments, self.coordinates),
+            partial(check_hands, self),
             lambda: check_offsets(self.controllers, self.idle_states),
             lambda: all_of(
                 *(

@@ -297,6 +297,29 @@ class AxesSpec(SpecModel):
     theta3: AxisSpec | None = Field(default=None, description="what the middle axis has for itself")
 
 
+class ScenarioLimitsSpec(SpecModel):
+    """What the gate wants a simulated run to keep; what is left out is not looked at."""
+
+    torque: Torque | None = Field(default=None, description="largest torque of the tissue in N*m")
+    deflection: Angle | None = Field(
+        default=None, description="largest depth below a surface in rad, about the pivot"
+    )
+    velocity: AngularVelocity | None = Field(
+        default=None, description="largest speed of the axis in rad/s"
+    )
+
+    @model_validator(mode="after")
+    def _check_any(self) -> ScenarioLimitsSpec:
+        if not self.named:
+            raise fault("no limit is named", "name torque, deflection or velocity")
+        return self
+
+    @property
+    def named(self) -> Mapping[str, Quantity]:
+        """The limits that there are, by quantity."""
+        return {name: value for name, value in self if value is not None}
+
+
 class ScenarioSpec(SpecModel):
     """One run of the robot against its surroundings."""
 
@@ -324,6 +347,11 @@ class ScenarioSpec(SpecModel):
     )
     errors: ErrorsSpec | None = Field(
         default=None, description="friction, resolutions, noise and jitter; for the sampled engine"
+    )
+    limits: ScenarioLimitsSpec | None = Field(
+        default=None,
+        description="what the run must keep for the gate to pass (NRS109), such as "
+        "{torque: 0.3 N*m, deflection: 1 deg}; without it, the gate does not simulate it",
     )
     seed: Seed = Field(default=0, description="of noise, jitter and varying delay")
     axes: AxesSpec | None = Field(

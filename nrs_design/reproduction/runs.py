@@ -8,13 +8,11 @@ from pathlib import Path
 
 import numpy as np
 
-from nrs_design.design.design import design_controllers
-from nrs_design.models.plant import build_plant
+from nrs_design.pipeline import run_design
+from nrs_design.pipeline.scenarios import Runs, run_scenarios
 from nrs_design.proof.text import exact_text
 from nrs_design.reproduction import thesis
 from nrs_design.reproduction.comparison import Comparison, Tolerance, derived
-from nrs_design.simulation.build_scenario import build_scenario
-from nrs_design.simulation.exact import simulate_exactly
 from nrs_design.simulation.metrics import (
     displayed_impedance,
     gain_in_time,
@@ -25,7 +23,7 @@ from nrs_design.simulation.metrics import (
 )
 from nrs_design.simulation.run import Run
 from nrs_design.simulation.time_response import Array
-from nrs_design.spec import InteractionDesignSpec, parse_spec
+from nrs_design.spec import LoadedSpec, parse_spec
 
 DESIRED = thesis.TORQUE / thesis.VELOCITY
 _POSITION = "{type: position}"
@@ -75,13 +73,18 @@ scenarios: {{run: {{{scenario}}}}}
 
 
 def simulated(controllers: dict[str, str], scenario: str, more: str = "") -> Run:
-    """Simulate it with the exact engine; parameters as in `interaction`."""
-    spec = parse_spec(interaction(controllers, scenario, more))
-    assert isinstance(spec, InteractionDesignSpec)
-    plant = build_plant(spec)
-    design = design_controllers(spec, plant)
-    built = build_scenario(spec, plant, "run", spec.scenarios["run"], Path())
-    return simulate_exactly(spec, plant, design, built)
+    """Simulate it with the exact engine.
+
+    Parameters
+    ----------
+    controllers, scenario, more
+        As `interaction` takes them.
+    """
+    text = interaction(controllers, scenario, more)
+    designed = run_design(LoadedSpec(Path("runs.nrs.yaml"), "", text, parse_spec(text)))
+    assert designed is not None
+    (found,) = run_scenarios(designed, Runs(engine="exact"))
+    return found.run
 
 
 def admittance(Mt: str, Bt: str, environment: str = "soft") -> str:

@@ -72,7 +72,19 @@ class Outcome:
     def of(
         cls, index: int, drawn: Drawn, metrics: Mapping[str, Any], stopped: str | None
     ) -> Outcome:
-        """Return what a run came to, from its metrics."""
+        """Return what a run came to, from its metrics.
+
+        Parameters
+        ----------
+        index : int
+            Of the run.
+        drawn : Drawn
+            What was simulated.
+        metrics : mapping
+            As `nrs_design.simulation.summary` names them.
+        stopped : str or None
+            Why the run ended before its time.
+        """
         peaks = {name: float(metrics[key]) for name, key in PEAKS.items()}
         seed = drawn.scenario.seed
         return cls(index, drawn.scenario.name, seed, peaks, stopped, drawn.parameters)

@@ -116,7 +116,7 @@ def simulate(
             "name a spec of kind interaction-design; see also `nrs-design robot track`",
         )
     how = None if engine is None else str(engine)
-    if period is not None or delay is not None:
+    if how is None and (period is not None or delay is not None):
         how = str(EngineOption.SAMPLED)
     wanted = Runs(tuple(dict.fromkeys(scenario or ())), how, period, delay, max_steps)
     with progress(f"simulating {loaded.spec.name}", quiet=quiet) as step:

@@ -160,7 +160,8 @@ def draw(
     def pick(interval: Interval) -> float:
         return float(rng.uniform(float(interval.low), float(interval.high)))
 
-    names = list(dict.fromkeys(surface.environment for surface in scenario.surfaces))
+    each = (name for s in scenario.surfaces for name in (s.environment, *s.beside))
+    names = list(dict.fromkeys(each))
     laws = drawn_laws(spec, plant, names, pick)
     for name, (law, _) in laws.items():
         parameters |= {f"{name} {key}": value for key, value in _numbers(law)}
@@ -170,10 +171,7 @@ def draw(
         parameters |= {"motor gain": gain, "motor time constant": tau}
         motor = Actuator(Fraction(gain), Fraction(tau), plant.actuator.command)
         plant = replace(plant, actuator=motor)
-    surfaces = tuple(
-        replace(surface, law=laws[surface.environment][0], element=laws[surface.environment][1])
-        for surface in scenario.surfaces
-    )
+    surfaces = tuple(surface.with_laws(laws) for surface in scenario.surfaces)
     own = int(rng.integers(0, LARGEST_SEED + 1))
     return Drawn(replace(scenario, surfaces=surfaces, seed=own), plant, parameters)
 

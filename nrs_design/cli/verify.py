@@ -77,6 +77,7 @@ def verify(
         raise typer.BadParameter("needs a SPEC to compare with", param_hint="--coordinates")
     if spec is None and deployed is not None:
         raise typer.BadParameter("needs a SPEC, whose law it is", param_hint="--deployed")
+    _refuse_swapped(certificate, spec)
     loaded = None if spec is None else read_spec(spec)
     outcome = verify_file(certificate, loaded, None if coordinates is None else str(coordinates))
     robot = None if loaded is None else _robot_of(loaded)
@@ -122,6 +123,15 @@ def verify(
             say(_taken(robot, again=bounds))
     code = exit_codes.OF_VERDICT.get(verdict, exit_codes.REFUTED)
     raise typer.Exit(exit_codes.REFUTED if differences or faults else code)
+
+
+def _refuse_swapped(certificate: Path, spec: Path | None) -> None:
+    """Say it where the two files stand in each other's place."""
+    if spec is not None and spec.suffix == ".json" and certificate.suffix in (".yaml", ".yml"):
+        raise typer.BadParameter(
+            f"the certificate comes first, then the spec: nrs-design verify {spec} {certificate}",
+            param_hint="CERT",
+        )
 
 
 def _robot_of(loaded: LoadedSpec) -> Path | None:

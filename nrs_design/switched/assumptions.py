@@ -14,6 +14,7 @@ from nrs_design.switched.parameters import Parameter
 if TYPE_CHECKING:
     from nrs_design.models.contact.environment import Environment
     from nrs_design.spec import InteractionDesignSpec
+    from nrs_design.spec.provenance import IdentifiedRangesSpec
 
 MAX_LISTED = 20
 LOST_CONTACT = (
@@ -173,11 +174,11 @@ def identified_texts(spec: InteractionDesignSpec) -> Iterator[str]:
 
     if spec.actuator.range_covers is not None:
         covered = MOTOR_COVERS[spec.actuator.range_covers]
-        yield f"The range of the actuator was identified to hold {covered}."
+        yield f"The range of the actuator was identified to hold {covered}{_since(spec.actuator)}."
     for name, environment in spec.environments.items():
         if environment.range_covers is not None:
             covered = COVERS[environment.range_covers]
-            yield f"The range of {name} was identified to hold {covered}."
+            yield f"The range of {name} was identified to hold {covered}{_since(environment)}."
         if environment.linearized_about is not None:
             about = environment.linearized_about
             yield f"{name} is the linearization about {about}: it holds for small motions there."
@@ -186,6 +187,11 @@ def identified_texts(spec: InteractionDesignSpec) -> Iterator[str]:
             why = item.accept_doubt
             end = "nothing says why that is accepted" if why is None else f"accepted because: {why}"
             yield f"The identification of {at[-1]} is in doubt: {'; '.join(item.doubts)}; {end}."
+
+
+def _since(item: IdentifiedRangesSpec) -> str:
+    """Say what nobody can check of values that came without an id."""
+    return "" if item.range_id else ", unless it has been changed by hand since"
 
 
 def preload_texts(spec: InteractionDesignSpec, scale: Fraction) -> Iterator[str]:

@@ -37,7 +37,9 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
     from fractions import Fraction
 
-    from nrs_design.pipeline import ProofMargins, Result, Subset
+    from nrs_design.pipeline import Result
+    from nrs_design.pipeline.margins import ProofMargins
+    from nrs_design.pipeline.subsets import Subset
     from nrs_design.search.certification import Certification
     from nrs_design.search.margin import BoxMargin, DwellMargin
 
@@ -97,14 +99,9 @@ def certify_switching(
     from nrs_design.certificates.certificate import dump
     from nrs_design.output import CERTIFICATE, check_place, write_output
     from nrs_design.ownership import check_certificate, origin_of
-    from nrs_design.pipeline import (
-        Overrides,
-        find_relief,
-        limits_of,
-        run_certification,
-        run_proof_margins,
-        run_subsets,
-    )
+    from nrs_design.pipeline import Overrides, find_relief, limits_of, run_certification
+    from nrs_design.pipeline.margins import run_proof_margins
+    from nrs_design.pipeline.subsets import run_subsets
     from nrs_design.spec import read_spec
 
     loaded = read_spec(spec)

@@ -132,10 +132,10 @@ def _robot_of(loaded: LoadedSpec) -> Path | None:
 
 
 def _bounds_faults(robot: Path, *, quiet: bool) -> list[str]:
-    from nrs_design.pipeline import check_bounds
+    from nrs_design.pipeline.robots import check_robot_bounds
 
     with progress(f"bounds of {robot.name}", quiet=quiet, lines=True) as step:
-        return list(check_bounds(robot, BUDGET, step)[1])
+        return list(check_robot_bounds(robot, BUDGET, step)[1])
 
 
 def _taken(robot: Path, *, again: bool) -> str:

@@ -6,6 +6,7 @@ The order, and every rounding, are those of `nrs_design.controllers.sampled`.
 from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Mapping
+from dataclasses import dataclass, field
 from fractions import Fraction
 
 from nrs_design.controllers.operations import Coefficient, Operation, StepLaw, Value
@@ -54,18 +55,38 @@ def build_step_law(frame: StepFrame, laws: Mapping[str, SampledAdmittance]) -> S
     )
 
 
-def build_placed_law(frame: StepFrame, laws: Mapping[str, SampledForce]) -> StepLaw:
-    """Write position and force control out; neither has a reference of its own."""
+def build_placed_law(
+    frame: StepFrame, laws: Mapping[str, SampledForce], idle: Fraction = ZERO
+) -> StepLaw:
+    """Write position and force control out; neither has a reference of its own.
+
+    Parameters
+    ----------
+    frame : StepFrame
+        Below and before all of them.
+    laws : mapping of str to SampledForce
+        By the names of their controllers.
+    idle : Fraction
+        What a sample leaves of an integral while another controller is active.
+    """
     limits = frame.limits
-    place = Operation("reference", "add", "position", "correction", "angle")
+    integral = _Integral.of(laws, idle, limits)
+    place = Operation("reference", "add", "position", integral.correction, "angle")
     return StepLaw(
         tuple(laws),
         (*limits.measured, *limits.commanded),
-        (error_before(2 * BEYOND), *lags(frame.order)),
-        (*frame.coefficients, _force_gains(laws), *limits.coefficients),
-        (*filtered(frame.order), *_correction(frame.force), place, *motion(limits)),
+        (error_before(2 * BEYOND), *lags(frame.order), *integral.states),
+        (*frame.coefficients, _force_gains(laws), *integral.coefficients, *limits.coefficients),
+        (
+            *filtered(frame.order),
+            *_correction(frame.force),
+            *integral.added,
+            place,
+            *motion(limits),
+            *integral.advanced,
+        ),
         limits.output,
-        frame.memory,
+        {**frame.memory, **integral.memory},
         UNITS,
     )
 
@@ -91,7 +112,8 @@ def build_mixed_law(frame: StepFrame, laws: Mapping[str, SampledLaw], idle: Frac
     each = {n: law if isinstance(law, SampledAdmittance) else None for n, law in laws.items()}
     inert = any(law is not None and law.a is not None for law in each.values())
     offset = Value("offset", "r", "rad", limits.angle, "reference over the commanded position")
-    following = {"offset": "next_offset", **frame.memory}
+    integral = _Integral.of(laws, idle, limits)
+    following = {"offset": "next_offset", **frame.memory, **integral.memory}
     following |= {"velocity": "next_velocity"} if inert else {}
     admittances = _idle_admittances(each.values(), idle, inert=inert)
     ends = (*_hand(limits), *limits.coefficients)
@@ -103,15 +125,19 @@ def build_mixed_law(frame: StepFrame, laws: Mapping[str, SampledLaw], idle: Frac
             error_before(2 * BEYOND),
             *([VELOCITY] if inert else []),
             *lags(frame.order),
+            *integral.states,
         ),
-        (*frame.coefficients, _force_gains(laws), *admittances, *ends),
+        (*frame.coefficients, _force_gains(laws), *integral.coefficients, *admittances, *ends),
         (
             *filtered(frame.order),
-            *_mixed_reference(frame.force),
+            *_correction(frame.force),
+            *integral.added,
+            *_mixed_reference(integral.correction),
             *motion(limits),
             *admitted(frame.force, inert=inert),
             Operation("left", "multiply", "d", "offset"),
             Operation("next_offset", "add", "left", "moved", "angle"),
+            *integral.advanced,
         ),
         limits.output,
         following,
@@ -169,10 +195,46 @@ def _correction(force: str) -> Iterator[Operation]:
     yield Operation("correction", "multiply", "Kf", "lack")
 
 
-def _mixed_reference(force: str) -> Iterator[Operation]:
-    yield from _correction(force)
+@dataclass(frozen=True, slots=True)
+class _Integral:
+    """The integral of the force error, in the reference of every mode; empty where there is none.
+
+    It goes on where the force is controlled with it, and bleeds in all other modes.
+    """
+
+    correction: str = "correction"
+    states: tuple[Value, ...] = ()
+    coefficients: tuple[Coefficient, ...] = ()
+    added: tuple[Operation, ...] = ()
+    advanced: tuple[Operation, ...] = ()
+    memory: Mapping[str, str] = field(default_factory=dict)
+
+    @classmethod
+    def of(cls, laws: Mapping[str, SampledLaw], idle: Fraction, limits: StepLimits) -> _Integral:
+        gains = [law.Ki_T if isinstance(law, SampledForce) else ZERO for law in laws.values()]
+        if not any(gains):
+            return cls()
+        left = tuple(ONE if gain else idle for gain in gains)
+        return cls(
+            "aimed",
+            (Value("integral", "w", "rad", limits.angle, "integral of the force error"),),
+            (
+                Coefficient("Ki_T", "Ki_T", "rad/(N*m)", tuple(gains)),
+                Coefficient("bled", "g", "1", left),
+            ),
+            (Operation("aimed", "add", "integral", "correction"),),
+            (
+                Operation("bleeding", "multiply", "bled", "integral"),
+                Operation("gathered", "multiply", "Ki_T", "lack"),
+                Operation("next_integral", "add", "bleeding", "gathered"),
+            ),
+            {"integral": "next_integral"},
+        )
+
+
+def _mixed_reference(correction: str) -> Iterator[Operation]:
     yield Operation("taken", "multiply", "takes_offset", "offset")
-    yield Operation("off", "add", "taken", "correction")
+    yield Operation("off", "add", "taken", correction)
     yield Operation("reference", "add", "position", "off", "angle")
 
 

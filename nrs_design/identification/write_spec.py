@@ -17,7 +17,7 @@ from nrs_design.identification.statistics import Estimate
 from nrs_design.identification.tissue import TissueIdentification
 from nrs_design.identification.tissue.tangent import Tangent
 from nrs_design.identification.tool import ToolIdentification
-from nrs_design.models.contact import LINEAR_LAWS, AbstractLinearLaw, HuntCrossley
+from nrs_design.models.contact import LINEAR_LAWS, TISSUE_LAWS, AbstractLinearLaw, HuntCrossley
 from nrs_design.spec import InteractionDesignSpec, LoadedSpec, parse_spec
 from nrs_design.spec.fields import MAX_TITLE
 from nrs_design.spec.preload import FINEST, LARGEST, LEAST
@@ -60,7 +60,7 @@ def merge_tissue(
         raise DataError(
             f"the chosen law, {law.name}, has no place in a spec",
             remedy="say by --preload at which deflections, or choose one that has a place: "
-            f"--model {' or --model '.join(LINEAR_LAWS)}",
+            f"--model {' or --model '.join(TISSUE_LAWS)}",
         )
     if model.doubts and not all(map(_is_limited, ranges)):
         raise DataError(

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from nrs_design.proof.bounds import nearly, rounded_down, rounded_up
 
 if TYPE_CHECKING:
-    from nrs_design.pipeline import ProofMargins
+    from nrs_design.pipeline.margins import ProofMargins
 
 
 def margin_lines(margins: ProofMargins) -> Iterator[str]:

@@ -129,6 +129,8 @@ class Surface:
         Angle in rad.
     sign : int
         1 if it is met by rising angles, -1 if by falling ones.
+    arms : tuple of Element
+        What is one body with it: forces add up before the sum is held to pushing.
     """
 
     environment: str
@@ -136,6 +138,12 @@ class Surface:
     element: Element | None
     at: float
     sign: int
+    arms: tuple[Element, ...] = ()
+
+    @property
+    def is_linear(self) -> bool:
+        """Whether the exact engine knows it."""
+        return self.element is not None and not self.arms
 
 
 @dataclass(frozen=True, slots=True)
@@ -245,6 +253,8 @@ class Scenario:
         For the sampled engine.
     seed : int
         Of noise, jitter and varying delay.
+    limits : mapping of str to float
+        What its run must keep: ``torque`` in N m, ``deflection`` in rad, ``velocity`` in rad/s.
     """
 
     name: str
@@ -256,3 +266,4 @@ class Scenario:
     wanted_torque: float = 0.0
     errors: Errors = Errors()
     seed: int = 0
+    limits: Mapping[str, float] = field(default_factory=dict)

@@ -154,6 +154,13 @@ def test_wrong_usage(spec, tmp_path, arguments, message):
     assert message in result.stderr
 
 
+def test_two_periods_that_never_meet_are_refused(spec, tmp_path):
+    two = spec(more="sampling: {period: 2 ms, outer_period: 0.1 ms, delay: 0}\n")
+    result = run("simulate", two, "--period", "0.00025", cwd=tmp_path)
+    assert result.returncode == 2
+    assert "do not meet at common samples" in result.stderr
+
+
 def test_another_kind_of_spec(tmp_path):
     result = run("simulate", COMMUTING, cwd=tmp_path)
     assert result.returncode == 2

@@ -73,7 +73,8 @@ def bounds(
     from nrs_design import __version__
     from nrs_design.models.robot import Space, compute_bounds, to_document
     from nrs_design.output import BOUNDS, write_output
-    from nrs_design.pipeline import placed, run_robot
+    from nrs_design.pipeline import placed
+    from nrs_design.pipeline.robots import run_robot
     from nrs_design.printable import json_text
     from nrs_design.spec.robot_bounds import bounds_file
 
@@ -95,10 +96,10 @@ def bounds(
 
 
 def _check(spec: Path, budget: float, *, as_json: bool, quiet: bool) -> None:
-    from nrs_design.pipeline import check_bounds
+    from nrs_design.pipeline.robots import check_robot_bounds
 
     with progress(f"bounds of {spec.name}", quiet=quiet, lines=True) as step:
-        file, faults = check_bounds(spec, budget, step)
+        file, faults = check_robot_bounds(spec, budget, step)
     if as_json:
         print_json("robot-bounds-check", {"file": str(file), "faults": list(faults)})
     elif faults:

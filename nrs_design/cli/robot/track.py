@@ -75,7 +75,7 @@ def track(
 
     Example: nrs-design robot track specs/robots/neuroboscope.nrs.yaml --figures figures
     """
-    from nrs_design.pipeline import run_robot
+    from nrs_design.pipeline.robots import run_robot
 
     loaded, robot_spec, robot = run_robot(spec)
     robot = _on_base(robot_spec, robot, tilt)

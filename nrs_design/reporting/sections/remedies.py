@@ -10,7 +10,8 @@ from nrs_design.reporting.margins import margin_lines
 from nrs_design.reporting.next_steps import next_steps
 
 if TYPE_CHECKING:
-    from nrs_design.pipeline import ProofMargins, Result
+    from nrs_design.pipeline import Result
+    from nrs_design.pipeline.margins import ProofMargins
 
 REMEDIES = "What would help"
 MARGINS = "Margins of the proof"

@@ -29,8 +29,8 @@ def assumptions_section(result: Result) -> Section:
     spec = result.loaded.spec
     design = spec if isinstance(spec, InteractionDesignSpec) else None
     rows = tuple(
-        (item.name, item.statement, item.bound, item.breaks, item.test, str(item.standing))
-        for item in register_of(result.certification.system.assumptions, design)
+        (e.kind.name, e.statement, e.bound, e.kind.breaks, e.kind.test, str(e.standing))
+        for e in register_of(result.certification.system.assumptions, design)
     )
     columns = ("Assumption", "Statement", "Bound", "If it is false", "Test", "State")
     table = Table("What is taken for granted", columns, rows)

@@ -32,6 +32,8 @@ ROOM = 1.02
 ROOMS: Mapping[str, float] = {VelocityTorques.name: 1.35}
 # Of a sampled value, which is computed in floating point.
 ROUNDING = 1e-9
+# In SI, of a quantity that is zero, such as gravity in space: no enclosure is exactly that.
+NOTHING = 1e-9
 _QUANTITIES: Mapping[str, AbstractQuantity] = {
     "heaviest": Inertia(),
     "lightest": Mobility(),
@@ -153,8 +155,8 @@ def confirm_bounds(
             raise _undecided(shown)
 
 
-def _goal(room: float, least: float = 0.0) -> Goal:
-    return lambda found: room * found + least
+def _goal(room: float, least: float = NOTHING) -> Goal:
+    return lambda found: max(room * found, least)
 
 
 def space_of(document: Mapping[str, Any]) -> Space:

@@ -1,0 +1,28 @@
+"""What is proved of a spec where not all of it is."""
+
+from nrs_design.pipeline import run_certification
+from nrs_design.pipeline.subsets import run_subsets
+from nrs_design.search.certify import Limits, Verdict
+from nrs_design.spec import read_spec
+from tests.support import SOFT_TISSUE
+
+
+def test_what_is_proved_with_as_little_left_out_as_possible(tmp_path):
+    """Withdrawal alone is unstable with a force that is five samples old, whatever else holds."""
+    text = SOFT_TISSUE.read_text(encoding="utf-8")
+    path = tmp_path / "late.nrs.yaml"
+    late = "sampling: {period: 2 ms, delay: [0, 5]}\ncontact: losable\n"
+    path.write_text(f"{text}\n{late}", encoding="utf-8")
+    result = run_certification(read_spec(path), limits=Limits(optimize_rate=False))
+    assert result.certification.verdict is Verdict.REFUTED
+    told: list[str] = []
+    (subset,) = run_subsets(result, progress=told.append)
+    assert subset.left_out == ("ages of the force sample beyond the shortest",)
+    assert "contact lost and made again at any time" in subset.claim
+    assert told == [
+        "without the loss of contact",
+        "without the ranges of what is touched",
+        "without ages of the force sample beyond the shortest",
+    ]
+    path.write_text(f"{text}\n{late}".replace("[0, 5]", "0"), encoding="utf-8")
+    assert run_subsets(run_certification(read_spec(path), limits=Limits(optimize_rate=False))) == ()

@@ -12,6 +12,7 @@ import typer
 from nrs_design.cli import exit_codes
 from nrs_design.cli.options import Json, Quiet, SpecFile
 from nrs_design.cli.printing import note, print_json, progress, say
+from nrs_design.cli.seconds import seconds
 from nrs_design.cli.simulate_options import Jobs, Many, MonteCarloRuns, Resume, Seed, WorstCaseFlag
 from nrs_design.cli.tables import print_table
 
@@ -70,8 +71,7 @@ def simulate(
         float | None,
         typer.Option(
             metavar="S",
-            min=1e-5,
-            max=1.0,
+            parser=seconds(1e-5, 1.0),
             help="Period of the sampled engine in s, not the spec's; without either, 0.002.",
         ),
     ] = None,
@@ -116,7 +116,7 @@ def simulate(
             "name a spec of kind interaction-design; see also `nrs-design robot track`",
         )
     how = None if engine is None else str(engine)
-    if period is not None or delay is not None:
+    if how is None and (period is not None or delay is not None):
         how = str(EngineOption.SAMPLED)
     wanted = Runs(tuple(dict.fromkeys(scenario or ())), how, period, delay, max_steps)
     with progress(f"simulating {loaded.spec.name}", quiet=quiet) as step:

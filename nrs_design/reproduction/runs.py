@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
-from nrs_design.pipeline.design import run_design
+from nrs_design.pipeline import run_design
 from nrs_design.pipeline.scenarios import Runs, run_scenarios
 from nrs_design.proof.text import exact_text
 from nrs_design.reproduction import thesis
@@ -73,10 +73,16 @@ scenarios: {{run: {{{scenario}}}}}
 
 
 def simulated(controllers: dict[str, str], scenario: str, more: str = "") -> Run:
-    """Simulate it with the exact engine; parameters as in `interaction`."""
+    """Simulate it with the exact engine.
+
+    Parameters
+    ----------
+    controllers, scenario, more
+        As `interaction` takes them.
+    """
     text = interaction(controllers, scenario, more)
     designed = run_design(LoadedSpec(Path("runs.nrs.yaml"), "", text, parse_spec(text)))
-    assert designed is not None, "it is an interaction design"
+    assert designed is not None
     (found,) = run_scenarios(designed, Runs(engine="exact"))
     return found.run
 

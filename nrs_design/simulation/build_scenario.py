@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -179,7 +180,18 @@ def _profile(command: CommandProfileSpec, folder: Path, largest: float) -> tuple
         times, velocities = np.array(points).T
         return Profile.through(times, velocities), float(times[-1])
     assert command.csv is not None
+    _check_inside(folder / command.csv, folder)
     return _recorded(folder / command.csv, largest)
+
+
+def _check_inside(path: Path, folder: Path) -> None:
+    """Refuse a link out of the folder of the spec: it would be another file elsewhere."""
+    if not Path(os.path.realpath(path)).is_relative_to(os.path.realpath(folder)):
+        raise DataError(
+            "is a link that leads out of the spec's folder",
+            path=path,
+            remedy="put the file itself below that folder",
+        )
 
 
 def _recorded(path: Path, largest: float) -> tuple[Profile, float]:
@@ -207,11 +219,10 @@ def _recorded(path: Path, largest: float) -> tuple[Profile, float]:
 def _surface(spec: InteractionDesignSpec, plant: Plant, written: SurfaceSpec) -> Surface:
     sign = 1 if written.side == "above" else -1
     found = _touched(spec, plant, written.environment, written.at.si, sign, written.parameters)
-    others = (
-        _law(spec.environments[name], plant.environment(name), _PICKS[written.parameters])[1]
-        for name in written.beside
+    laws = drawn_laws(spec, plant, written.beside, _PICKS[written.parameters])
+    return replace(found, beside=written.beside).with_laws(
+        {found.environment: (found.law, found.element), **laws}
     )
-    return replace(found, arms=tuple(element for element in others if element is not None))
 
 
 def _touched(
@@ -367,7 +378,7 @@ def by_logic(spec: InteractionDesignSpec) -> Control:
         Switch(source, target, tuple(Condition(signal, *ends) for signal, ends in bounds.items()))
         for source, target, bounds in logic.conditions()
     )
-    return Control(logic.initial, tuple(switches), logic.stays)
+    return Control(logic.initial, tuple(switches), logic.stays, ships=True)
 
 
 def _errors(written: ErrorsSpec | None) -> Errors:

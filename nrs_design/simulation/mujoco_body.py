@@ -138,18 +138,21 @@ def _driven(
 ) -> str:
     """Return a model with the drives at its driven joints, by their names.
 
-    MuJoCo's dry friction is a constraint that gives way: it is made as stiff as the step allows.
+    MuJoCo's dry friction is a constraint that gives way, and so are closed loops: they are made as
+    stiff as the step allows.
     """
     inertia, damping, torque = drive_torques(plant)
-    root = ElementTree.fromstring(text)
+    root, stiff = ElementTree.fromstring(text), f"{2 * step!r} 1"
     for joint in root.iter("joint"):
         name = joint.get("name", "")
         if name in friction:
             joint.set("armature", repr(float(joint.get("armature", "0")) + inertia))
             joint.set("damping", repr(damping))
             joint.set("frictionloss", repr(torque * friction[name]))
-            joint.set("solreffriction", f"{2 * step!r} 1")
+            joint.set("solreffriction", stiff)
             joint.set("solimpfriction", "0.9999 0.9999")
+    for loop in root.iter("connect"):
+        loop.set("solref", stiff)
     option = root.find("option")
     if compensated and option is not None:
         option.set("gravity", "0 0 0")

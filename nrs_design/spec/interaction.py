@@ -38,7 +38,7 @@ from nrs_design.spec.sampling import (
     check_peak,
     takes_motor_ranges,
 )
-from nrs_design.spec.scenario_checks import check_scenario
+from nrs_design.spec.scenario_checks import check_run_names, check_scenario
 from nrs_design.spec.scenarios import ScenarioSpec
 from nrs_design.spec.sensor import SensorSpec
 from nrs_design.spec.switching import MODE_LOGIC, DwellTime, LogicalRule, check_names
@@ -348,6 +348,7 @@ def _check_scenarios(spec: InteractionDesignSpec) -> None:
     given = (spec.controllers, spec.environments, spec.limits.velocity)
     robot = spec.coupling is not None and spec.coupling.robot is not None
     all_of(
+        partial(check_run_names, spec.scenarios),
         *(
             partial(check_scenario, name, scenario, *given, logic=logic, robot=robot)
             for name, scenario in spec.scenarios.items()

@@ -11,6 +11,19 @@ from nrs_design.spec.quantity import Quantity
 from nrs_design.spec.scenarios import AXES, CommandProfileSpec, ScenarioSpec
 
 
+def check_run_names(scenarios: Mapping[str, ScenarioSpec]) -> None:
+    """Refuse a scenario that is called as one axis of another, ``NAME.theta1``."""
+    for name in scenarios:
+        whole, _, axis = name.rpartition(".")
+        if axis in AXES and whole in scenarios and scenarios[whole].axes is not None:
+            raise fault(
+                f"{name!r} is the name of a run of {whole!r}",
+                "give it another name",
+                "scenarios",
+                name,
+            )
+
+
 def check_scenario(
     name: str,
     scenario: ScenarioSpec,

@@ -281,7 +281,7 @@ class AxisSpec(SpecModel):
     command: CommandProfileSpec | None = Field(default=None, description="as above")
     surfaces: Surfaces | None = Field(default=None, description="as above; [] for nothing")
     control: ControlSpec | None = Field(default=None, description="as above")
-    wanted_torque: Torque | None = Field(default=None, description="as above")
+    wanted_torque: Torque | None = Field(default=None, description="as above, in N*m")
 
 
 class AxesSpec(SpecModel):

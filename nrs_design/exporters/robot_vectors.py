@@ -12,7 +12,7 @@ from nrs_design.exporters.robot_c import UNPROVED
 from nrs_design.exporters.robot_tree import RobotExport
 from nrs_design.exporters.vectors import law_document, make_vectors, rows_of
 from nrs_design.ownership import MARK
-from nrs_design.pipeline import run_robot_laws
+from nrs_design.pipeline.robots import run_robot_laws
 from nrs_design.spec import RobotSpec
 
 SCHEMA = "nrs-design/robot-vectors/1"

@@ -362,7 +362,7 @@ def _ranged(estimate: Estimate, unit: str, name: str) -> dict[str, Any]:
     """Write an estimate with ends rounded outwards, so that nothing is lost."""
     if not _is_limited(estimate):
         raise DataError(
-            f"the interval of the {name} is unlimited: the records do not determine it",
+            f"the interval of the {name} is unlimited or reaches 0: the records do not tell it",
             remedy="choose a simpler law with --model, or record more",
         )
     low = _decimal(estimate.low, ROUND_FLOOR)

@@ -7,7 +7,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from nrs_design.pipeline import Runs, run_bounds, run_certification, run_scenarios
+from nrs_design.pipeline import run_certification
+from nrs_design.pipeline.scenarios import Runs, hold_bounds, run_scenarios
 from nrs_design.search.certification import Limits
 from nrs_design.simulation.coverage import uncovered
 from nrs_design.simulation.exact import simulate_exactly
@@ -35,7 +36,7 @@ def certified(tmp_path_factory):
 
 
 def bounds(certified, simulated):
-    found = run_bounds(certified.designed, certified.certificate, simulated)
+    found = hold_bounds(certified.designed, certified.certificate, simulated)
     return {bound.output: bound for bound in found}
 
 

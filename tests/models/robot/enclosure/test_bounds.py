@@ -16,7 +16,7 @@ from nrs_design.models.robot import (
     mass_matrix,
     to_document,
 )
-from nrs_design.models.robot.enclosure.bounds import _goal
+from nrs_design.models.robot.enclosure.bounds import goal_of
 from nrs_design.models.robot.enclosure.cover import Boxes, cover, cut
 from nrs_design.models.robot.enclosure.enclose import enclose, find_largest
 from nrs_design.models.robot.enclosure.quantities import GravityGradient, Inertia, VelocityTorques
@@ -64,7 +64,7 @@ def test_the_file_holds(robot, document):
 def test_a_quantity_that_is_zero_is_bounded(robot):
     """Without gravity no box is below zero, since every operation adds what it may round."""
     weightless = replace(robot, gravity=0.0)
-    shown = enclose(weightless, GravityGradient(), SPACE.workspace, _goal(1.02))
+    shown = enclose(weightless, GravityGradient(), SPACE.workspace, goal_of(1.02))
     assert shown.found == 0
     assert shown.cover.reached
     assert shown.bound < 1e-9

@@ -181,8 +181,9 @@ def test_a_report_assembles_and_searches_nothing():
     """It shows what the pipeline gives it, and draws the curves of a design."""
     below = {item.target for item in ours() if floor(item.source) == "reporting"}
     stages = {name for name in below if floor(name) in ("switched", "search")}
-    nouns = {"certification", "gradient_settings", "method_run"}
-    assert stages == {f"nrs_design.search.{noun}" for noun in nouns}
+    nouns = {f"search.{noun}" for noun in ("certification", "gradient_settings", "method_run")}
+    nouns |= {"switched.assumption", "switched.assumption_kinds"}
+    assert stages == {f"nrs_design.{noun}" for noun in nouns}
 
 
 VERBS = {
@@ -284,6 +285,7 @@ def test_adding_is_cheap():
         ("Admittance", "impedance", {"spec/describe.py", "design/doubts.py"}),
         ("ProportionalForce", "force", set()),
         ("PositionControl", "position", set()),
+        ("IntegralForce", "integral", set()),
         ("ParallelForce", "parallel", set()),
     ],
 )

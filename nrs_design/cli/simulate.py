@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import asdict
 from enum import StrEnum
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -11,6 +12,7 @@ import typer
 from nrs_design.cli import exit_codes
 from nrs_design.cli.options import Json, Quiet, SpecFile
 from nrs_design.cli.printing import note, print_json, progress, say
+from nrs_design.cli.seconds import seconds
 from nrs_design.cli.simulate_options import Jobs, Many, MonteCarloRuns, Resume, Seed, WorstCaseFlag
 from nrs_design.cli.tables import print_table
 
@@ -28,6 +30,7 @@ class EngineOption(StrEnum):
 
     EXACT = "exact"
     SAMPLED = "sampled"
+    MUJOCO = "mujoco"
 
 
 # A run and the bounds that are certified beside it.
@@ -44,8 +47,9 @@ def simulate(
         EngineOption | None,
         typer.Option(
             help="exact: continuous time, from event to event; sampled: the law that ships, in "
-            "single precision. Default: sampled where the spec has sampling, or tissue is not "
-            "linear."
+            "single precision; mujoco: the same law on MuJoCo's mechanics (extra mujoco), and how "
+            "far that is from the sampled engine. Default: sampled where the spec has sampling, "
+            "tissue is not linear, or three axes move."
         ),
     ] = None,
     out: Annotated[
@@ -67,8 +71,7 @@ def simulate(
         float | None,
         typer.Option(
             metavar="S",
-            min=1e-5,
-            max=1.0,
+            parser=seconds(1e-5, 1.0),
             help="Period of the sampled engine in s, not the spec's; without either, 0.002.",
         ),
     ] = None,
@@ -113,7 +116,7 @@ def simulate(
             "name a spec of kind interaction-design; see also `nrs-design robot track`",
         )
     how = None if engine is None else str(engine)
-    if period is not None or delay is not None:
+    if how is None and (period is not None or delay is not None):
         how = str(EngineOption.SAMPLED)
     wanted = Runs(tuple(dict.fromkeys(scenario or ())), how, period, delay, max_steps)
     with progress(f"simulating {loaded.spec.name}", quiet=quiet) as step:
@@ -199,11 +202,11 @@ def _check_places(
 ) -> None:
     """Refuse, before the runs, a folder in which something else stands in the place of a file."""
     from nrs_design.output import check_place
-    from nrs_design.simulation.build_scenario import DEFAULT
+    from nrs_design.simulation.build_scenario import default_names, run_names
 
     if out is None:
         return
-    for name in names or spec.scenarios or (DEFAULT,):
+    for name in run_names(spec, tuple(names or spec.scenarios or default_names(spec))):
         for path, beginning in _places(out, spec.name, name).values():
             check_place(path, beginning)
 
@@ -258,6 +261,7 @@ def _document(one: Simulated, bounds: tuple[CertifiedBound, ...]) -> dict[str, A
         "steps": run.steps,
         "refused_samples": run.refused,
         "saturated_samples": run.saturated,
+        "deviation_from_sampled": None if run.deviation is None else asdict(run.deviation),
         "not_modelled": list(run.left_out),
         "metrics": dict(one.metrics),
         "switches": [{"time": time, "to": name} for time, name in run.switches],
@@ -299,5 +303,11 @@ def _print(one: Simulated, bounds: tuple[CertifiedBound, ...]) -> None:
         say(f"  the law refused {run.refused} samples: an input was beyond its limits")
     if run.saturated:
         say(f"  the motor's command met its limit at {run.saturated} samples")
+    if run.deviation is not None:
+        apart = run.deviation
+        say(
+            f"  from the sampled engine, at most: angle {rounded_up(apart.angle)} rad, velocity "
+            f"{rounded_up(apart.velocity)} rad/s, torque {rounded_up(apart.torque)} N m"
+        )
     if run.stopped:
         say(f"  STOPPED: {run.stopped}")

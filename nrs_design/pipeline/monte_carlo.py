@@ -6,8 +6,9 @@ from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
+from nrs_design.errors import DesignError
 from nrs_design.pipeline.design import Designed, placed
-from nrs_design.pipeline.scenarios import Runs, scenarios_of, simulate_one
+from nrs_design.pipeline.scenarios import Runs, scenarios_of, simulate_group
 from nrs_design.proof.noun import dataclass
 
 if TYPE_CHECKING:
@@ -41,9 +42,23 @@ class MonteCarlo:
 
     @property
     def scenarios(self) -> list[Scenario]:
-        """The scenarios, in SI."""
+        """The scenarios of one axis, in SI.
+
+        Raises
+        ------
+        DesignError
+            If one of three axes is wanted by its name.
+        """
         with placed(self.designed.loaded):
-            return scenarios_of(self.designed, self.wanted.names)
+            groups = scenarios_of(self.designed, self.wanted)
+            for name, group in groups:
+                if len(group) > 1 and name in self.wanted.names:
+                    raise DesignError(
+                        f"{name} moves three axes, and what is drawn is for one",
+                        remedy="name scenarios of one axis",
+                        at=("scenarios", name, "axes"),
+                    )
+        return [group[0] for _, group in groups if len(group) == 1]
 
     @property
     def limits(self) -> Mapping[str, Mapping[str, float]]:
@@ -98,7 +113,8 @@ class _Simulator:
         drawn = draw(designed.spec, designed.plant, self.scenarios, self.asked.seed, index)
         with placed(designed.loaded):
             mine = replace(designed, plant=drawn.plant)
-            one = simulate_one(mine, drawn.scenario, self.asked.wanted)
+            scenario = drawn.scenario
+            (one,) = simulate_group(mine, scenario.name, (scenario,), self.asked.wanted)
         return Outcome.of(index, drawn, one.metrics, one.run.stopped)
 
 

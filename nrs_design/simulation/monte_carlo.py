@@ -71,7 +71,19 @@ class Outcome:
     def of(
         cls, index: int, drawn: Drawn, metrics: Mapping[str, Any], stopped: str | None
     ) -> Outcome:
-        """Return what a run came to, from its metrics."""
+        """Return what a run came to, from its metrics.
+
+        Parameters
+        ----------
+        index : int
+            Of the run.
+        drawn : Drawn
+            What was simulated.
+        metrics : mapping
+            As `nrs_design.simulation.summary` names them.
+        stopped : str or None
+            Why the run ended before its time.
+        """
         peaks = {name: float(metrics[key]) for name, key in PEAKS.items()}
         seed = drawn.scenario.seed
         return cls(index, drawn.scenario.name, seed, peaks, stopped, drawn.parameters)
@@ -147,7 +159,8 @@ def draw(
     def pick(interval: Interval) -> float:
         return float(rng.uniform(float(interval.low), float(interval.high)))
 
-    names = list(dict.fromkeys(surface.environment for surface in scenario.surfaces))
+    each = (name for s in scenario.surfaces for name in (s.environment, *s.beside))
+    names = list(dict.fromkeys(each))
     laws = drawn_laws(spec, plant, names, pick)
     for name, (law, _) in laws.items():
         parameters |= {f"{name} {key}": value for key, value in _numbers(law)}
@@ -157,10 +170,7 @@ def draw(
         parameters |= {"motor gain": gain, "motor time constant": tau}
         motor = Actuator(Fraction(gain), Fraction(tau), plant.actuator.command)
         plant = replace(plant, actuator=motor)
-    surfaces = tuple(
-        replace(surface, law=laws[surface.environment][0], element=laws[surface.environment][1])
-        for surface in scenario.surfaces
-    )
+    surfaces = tuple(surface.with_laws(laws) for surface in scenario.surfaces)
     own = int(rng.integers(0, LARGEST_SEED + 1))
     return Drawn(replace(scenario, surfaces=surfaces, seed=own), plant, parameters)
 

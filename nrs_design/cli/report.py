@@ -134,7 +134,7 @@ def report(
         )
     elif not quiet:
         say(f"{loaded.spec.name}: {verdict.upper()}", verdict=verdict)
-        for line in next_steps(result):
+        for line in next_steps(result, margin=margin, shortest_dwell=shortest_dwell):
             say(f"next: {line}")
         for path in files:
             note(f"written to {path}")

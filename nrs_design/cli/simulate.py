@@ -12,6 +12,7 @@ import typer
 from nrs_design.cli import exit_codes
 from nrs_design.cli.options import Json, Quiet, SpecFile
 from nrs_design.cli.printing import note, print_json, progress, say
+from nrs_design.cli.seconds import seconds
 from nrs_design.cli.simulate_options import Jobs, Many, MonteCarloRuns, Resume, Seed, WorstCaseFlag
 from nrs_design.cli.tables import print_table
 
@@ -70,8 +71,7 @@ def simulate(
         float | None,
         typer.Option(
             metavar="S",
-            min=1e-5,
-            max=1.0,
+            parser=seconds(1e-5, 1.0),
             help="Period of the sampled engine in s, not the spec's; without either, 0.002.",
         ),
     ] = None,

@@ -17,7 +17,7 @@ from nrs_design.controllers.sampled import (
     SampledMotion,
 )
 from nrs_design.controllers.step_analysis import check_range
-from nrs_design.controllers.step_law import build_mixed_law, build_placed_law, build_step_law
+from nrs_design.controllers.step_law import build_law
 from nrs_design.controllers.step_logic import StepLogic
 from nrs_design.controllers.step_parts import BEYOND, StepFrame, StepLimits
 from nrs_design.errors import DesignError
@@ -79,26 +79,21 @@ def _step_law(
 ) -> StepLaw:
     low_pass = None if design.sensor.filter is None else design.sensor.filter.sampled(outer)
     frame = StepFrame(SampledMotion.of(design.motion, period), low_pass, limits_of(spec))
-    moving = {name: law for name, law in laws.items() if isinstance(law, SampledAdmittance)}
-    placed = {name: law for name, law in laws.items() if isinstance(law, SampledForce)}
+    moving = [law for law in laws.values() if isinstance(law, SampledAdmittance)]
+    placed = [name for name, law in laws.items() if isinstance(law, SampledForce)]
     if spec.offset != "none":
-        raise _without_program("force control takes an offset", next(iter(placed)))
-    idle = None if spec.idle_states is None else _left(spec.idle_states, period)
-    if placed and not moving:
-        return build_placed_law(frame, placed, idle or Fraction(0))
-    if len({law.a is None for law in moving.values()}) > 1:
+        raise _without_program("force control takes an offset", placed[0])
+    if len({law.a is None for law in moving}) > 1:
         raise DesignError(
             "some impedance controllers have a virtual inertia and some have none",
             remedy="give all of them an inertia Mt > 0, or none",
             at=("controllers",),
         )
-    if not placed:
-        return build_step_law(frame, moving)
-    other = next(iter(placed))
-    if any(law.Kt for law in moving.values()):
-        raise _without_program(f"a spring of impedance control beside {other}", other)
-    assert idle is not None, "a spec with both kinds has them"
-    return build_mixed_law(frame, laws, idle)
+    if placed and any(law.Kt for law in moving):
+        what = f"a spring of impedance control beside {placed[0]}"
+        raise _without_program(what, placed[0])
+    idle = spec.idle_states
+    return build_law(frame, laws, None if idle is None else _left(idle, period))
 
 
 def _left(idle: IdleStatesSpec, period: Fraction) -> Fraction:

@@ -100,6 +100,10 @@ def merge_tissue(
         document.put(node, "linearized_about", _preload(found))
     document.put(node, "provenance", [_provenance(record.source) for record in found.records])
     _put_doubts(document, node, found.caveats)
+    document.drop(node, "range_id")
+    written = parse_spec(document.text())
+    assert isinstance(written, InteractionDesignSpec)
+    document.put(node, "range_id", written.environments[name].values_id())
     return document.text()
 
 
@@ -207,6 +211,11 @@ def merge_actuator(loaded: LoadedSpec, found: ActuatorIdentification) -> str:
         document.put(node, "intervals", intervals)
     document.put(node, "provenance", [_provenance(source) for source in found.sources])
     _put_doubts(document, node, found.caveats)
+    document.drop(node, "range_id")
+    if covered:
+        again = parse_spec(document.text())
+        assert isinstance(again, InteractionDesignSpec)
+        document.put(node, "range_id", again.actuator.values_id())
     return document.text()
 
 
@@ -353,7 +362,7 @@ def _ranged(estimate: Estimate, unit: str, name: str) -> dict[str, Any]:
     """Write an estimate with ends rounded outwards, so that nothing is lost."""
     if not _is_limited(estimate):
         raise DataError(
-            f"the interval of the {name} is unlimited: the records do not determine it",
+            f"the interval of the {name} is unlimited or reaches 0: the records do not tell it",
             remedy="choose a simpler law with --model, or record more",
         )
     low = _decimal(estimate.low, ROUND_FLOOR)

@@ -11,7 +11,8 @@ import numpy as np
 
 from nrs_design.proof.bounds import lower, upper
 from nrs_design.reporting.figures.monte_carlo import Spread, draw_monte_carlo
-from nrs_design.simulation.monte_carlo import CONFIDENCE, PEAKS, Outcome, Share
+from nrs_design.simulation.monte_carlo import CONFIDENCE, Outcome, Share
+from nrs_design.simulation.peaks import PEAKS
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

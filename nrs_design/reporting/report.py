@@ -86,7 +86,7 @@ def build_report(
             *(() if stability_map is None else (stability_map_section(stability_map),)),
             *(() if designed is None else design_sections(designed, analysis)),
             *_present(None if designed is None else logic_section(designed.spec)),
-            modes_section(system, proved_rate(system, certification.evidence)),
+            modes_section(result.loaded, system, proved_rate(system, certification.evidence)),
             *evidence_sections(certification),
             *_present(release_section(result)),
             assumptions_section(result),

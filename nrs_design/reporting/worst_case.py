@@ -214,4 +214,5 @@ def _panel(case: WorstCase, run: WorstRun, output: Output, lever_arm: float | No
         factor * _values(case, run, output),
         None if limit is None else factor * limit,
         None if bound is None else np.full(len(run.time), factor * bound),
+        one_sided=case.system.contact is not None and output.name != "velocity",
     )

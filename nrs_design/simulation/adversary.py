@@ -19,8 +19,8 @@ from nrs_design.simulation.rules import Indices, Rules
 # Where a run is continued by the new choices: from these shares of its length on.
 _CUTS = (0.0, 0.5, 0.8)
 _NO_GAIN = 1e-5
-# Mean length of a change, as a share of a run.
-_SPAN = 0.06
+# Mean length of a change, as a share of a run, and the error of a misjudged choice.
+_SPAN, _ERROR = 0.06, 0.2
 
 
 @dataclass(frozen=True, eq=False)
@@ -172,7 +172,8 @@ def random_signals(game: Game, steps: int, runs: int, rng: np.random.Generator) 
     actions = np.zeros((steps, runs), dtype=np.int64)
     shares = np.zeros((steps, runs, c))
     rest = rng.uniform(0, 0.9, runs) * steps
-    pace = rng.uniform(0.005, 0.3, runs)
+    # Some switch hardly ever, others at almost every step.
+    pace = np.exp(rng.uniform(np.log(0.5 / steps), np.log(0.9), runs))
     node = np.zeros(runs, dtype=np.int64)
     last = np.zeros(runs, dtype=np.int64)
     share = rng.choice([-1.0, 1.0], (runs, c))
@@ -222,6 +223,25 @@ def changed_signals(game: Game, signals: Signals, copies: int, rng: np.random.Ge
         actions = np.where(span & (kind != 1), drawn, actions)
     shares = np.where((span & (kind != 0))[:, :, None], -shares, shares)
     return Signals(actions, shares)
+
+
+def misjudged_signals(
+    game: Game, aim: Aim, signals: Signals, copies: int, rng: np.random.Generator
+) -> Signals:
+    """Choose anew along each run, with errors: it keeps the rules, and may come to a better one.
+
+    Parameters
+    ----------
+    game, signals, copies, rng
+        As for `changed_signals`, which it is for where rules are to be kept.
+    aim : Aim
+        Of each run.
+    """
+    runs = np.tile(np.arange(signals.actions.shape[1]), copies)
+    many = signals.only(runs)
+    policy = _Policy.against(game, aim.only(runs), many, play(game, many), rng)
+    fresh, cut = policy.follow(game, many), rng.integers(0, len(_CUTS), len(runs))
+    return fresh.only(cut * len(runs) + np.arange(len(runs)))
 
 
 def play(game: Game, signals: Signals) -> Array:
@@ -305,8 +325,18 @@ class _Policy:
     signs: NDArray[np.int8]
 
     @classmethod
-    def against(cls, game: Game, aim: Aim, signals: Signals, states: Array) -> _Policy:
-        """Go backward along runs, with the gradient at every node of the rules."""
+    def against(
+        cls,
+        game: Game,
+        aim: Aim,
+        signals: Signals,
+        states: Array,
+        rng: np.random.Generator | None = None,
+    ) -> _Policy:
+        """Go backward along runs, with the gradient at every node; perhaps not quite for the best.
+
+        With a generator, every choice is judged with an error of its own.
+        """
         rules, n = game.rules, game.order
         steps, runs = signals.actions.shape
         nodes = len(rules.choices)
@@ -321,14 +351,9 @@ class _Policy:
             x = (taken @ states[k].T).transpose(0, 2, 1) if reset else states[k]
             pulled = pull(p, x)
             added = np.abs(pulled[:, :, n:]).sum(axis=2) + c[rules.target]
-            worth = (
-                np.einsum(
-                    "usn,usn->us",
-                    pulled[:, :, :n],
-                    np.broadcast_to(x, pulled.shape[:2] + x.shape[-1:]),
-                )
-                + added
-            )
+            worth = (pulled[:, :, :n] * x).sum(axis=2) + added
+            if rng is not None:
+                worth *= 1 + _ERROR * rng.standard_normal(worth.shape)
             action = rules.choices[row, worth[rules.choices].argmax(axis=1)]
             own = pulled[action, column]
             actions[k], signs[k] = action, np.where(own[:, :, n:] < 0, -1, 1)

@@ -378,7 +378,7 @@ def by_logic(spec: InteractionDesignSpec) -> Control:
         Switch(source, target, tuple(Condition(signal, *ends) for signal, ends in bounds.items()))
         for source, target, bounds in logic.conditions()
     )
-    return Control(logic.initial, tuple(switches), logic.stays)
+    return Control(logic.initial, tuple(switches), logic.stays, ships=True)
 
 
 def _errors(written: ErrorsSpec | None) -> Errors:

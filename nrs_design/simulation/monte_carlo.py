@@ -12,13 +12,12 @@ import numpy as np
 from nrs_design.models.actuator import Actuator
 from nrs_design.models.plant import Plant
 from nrs_design.simulation.build_scenario import drawn_laws
+from nrs_design.simulation.peaks import PEAKS
 from nrs_design.simulation.scenario import Scenario
 from nrs_design.spec import InteractionDesignSpec
 from nrs_design.spec.interval import Interval
 from nrs_design.spec.scenarios import LARGEST_SEED
 
-# What a run is measured by, as `nrs_design.simulation.summary` names it.
-PEAKS = {"torque": "peak_torque", "deflection": "peak_depth", "velocity": "peak_velocity"}
 CONFIDENCE = 0.95
 
 

@@ -12,7 +12,8 @@ from typing import Any
 
 from nrs_design.errors import DataError, OutputError
 from nrs_design.files import open_regular
-from nrs_design.simulation.monte_carlo import PEAKS, Outcome
+from nrs_design.simulation.monte_carlo import Outcome
+from nrs_design.simulation.peaks import PEAKS
 
 SCHEMA = "nrs-design/monte-carlo/1"
 _BEGINNING = b'{"schema": "nrs-design/monte-carlo/'

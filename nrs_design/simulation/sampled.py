@@ -191,9 +191,8 @@ class SampledAxis:
         self.holds = {c.name: c.law.holds_hand for c in self.design.controllers}
         self.rules = {name: self._rules(name) for name in law.modes}
         self.controller, self.held = scenario.control.start, 0
-        # In samples, as the logic that ships counts them.
-        stays = law.logic.stays if law.logic is not None and scenario.control.stays else ()
-        self.stays = dict(zip(law.modes, stays, strict=False))
+        # What ships compares in single precision, and counts samples.
+        self.logic = law.logic if scenario.control.ships else None
         self.schedule = deque(scenario.control.schedule)
         self.switches: list[tuple[float, str]] = []
         self.rows: list[tuple[float, ...]] = []
@@ -258,7 +257,6 @@ class SampledAxis:
         felt = self.buffer[age]
         if outer:
             self._decide(t, hand, felt, depths)
-            self.held += 1
         seen = {
             "angle": _coarse(self.theta, errors.encoder_step),
             "torque": felt,
@@ -292,11 +290,14 @@ class SampledAxis:
         """Let schedule and mode logic choose, by what they see at this sample."""
         while self.schedule and self.schedule[0][0] <= t:
             self._switch(t, self.schedule.popleft()[1])
-        rules = self.rules[self.controller]
-        if not rules or self.held < self.stays.get(self.controller, 0):
-            return
         signs = {COMMAND: self.tissue.direction * hand, TORQUE: self.tissue.direction * felt}
-        for target, bounds in rules:
+        if self.logic is not None:
+            seen = {name: float(np.float32(value)) for name, value in signs.items()}
+            mode, held = self.logic.step(self.modes[self.controller], self.held, seen)
+            self._switch(t, self.program.law.modes[mode])
+            self.held = held
+            return
+        for target, bounds in self.rules[self.controller]:
             for signal, j, low, high in bounds:
                 if not low <= (depths[j] if signal == DEPTH else signs[signal]) <= high:
                     break
@@ -306,7 +307,7 @@ class SampledAxis:
 
     def _switch(self, t: float, target: str) -> None:
         if target != self.controller:
-            self.controller, self.held = target, 0
+            self.controller = target
             self.switches.append((t, target))
 
     def glide(self, command: float, width: float) -> None:

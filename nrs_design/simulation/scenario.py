@@ -208,12 +208,15 @@ class Control:
         For how long a timer holds a controller, in s.
     schedule : tuple of (float, str)
         Times in s at which a controller takes over, whatever signals say.
+    ships : bool
+        Whether it is the mode logic of the spec, which a program of the law has, too.
     """
 
     start: str
     switches: tuple[Switch, ...] = ()
     stays: Mapping[str, float] = field(default_factory=dict)
     schedule: tuple[tuple[float, str], ...] = ()
+    ships: bool = False
 
 
 @dataclass(frozen=True, slots=True)

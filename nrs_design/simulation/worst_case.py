@@ -24,6 +24,7 @@ from nrs_design.simulation.adversary import (
     Signals,
     changed_signals,
     improve,
+    misjudged_signals,
     play,
     random_signals,
 )
@@ -34,12 +35,12 @@ from nrs_design.simulation.switched import fine_step, mode_eigenvalues
 
 # Starts for each quantity, most sweeps from each, and rounds in which the best are changed.
 STARTS, SWEEPS, ROUNDS = 24, 15, 8
-_KEPT, _COPIES = 4, 6
+_KEPT, _COPIES = 4, 3
 # How much finer the grid is at last, in continuous time.
 _FINER = 4
-# A run is as long as a motion of the slowest mode needs to fade to a hundredth, and has so many
+# A run is as long as a motion of the slowest mode needs to fade to a thousandth, and has so many
 # steps; in continuous time they are longer where there would be more.
-_FADED, _FEWEST, _MOST = 5.0, 100, 300
+_FADED, _FEWEST, _MOST = 8.0, 100, 300
 DEFLECTION = "deflection"
 
 
@@ -152,7 +153,8 @@ class _Search:
         kept, reached = self.best(signals, values, _KEPT)
         groups = np.arange(len(reached)).reshape(len(self.aims), -1)
         parts = [
-            changed_signals(self.game, kept.only(group), _COPIES, self.rng) for group in groups
+            self._children(kept.only(group), aim)
+            for group, aim in zip(groups, self.aims, strict=True)
         ]
         fresh, came = self._improved(_beside(parts))
         every = kept.beside(fresh)
@@ -160,6 +162,13 @@ class _Search:
         mine = np.arange(len(came)).reshape(len(self.aims), -1) + len(reached)
         order = np.concatenate([groups, mine], axis=1).ravel()
         return every.only(order), np.concatenate([reached, came])[order]
+
+    def _children(self, signals: Signals, aim: Aim) -> Signals:
+        """Change what the best runs do for a while, or how they are continued."""
+        runs = signals.actions.shape[1]
+        own = _joined([aim] * runs)
+        changed = changed_signals(self.game, signals, _COPIES, self.rng)
+        return changed.beside(misjudged_signals(self.game, own, signals, _COPIES, self.rng))
 
     def best(self, signals: Signals, values: Array, count: int) -> tuple[Signals, Array]:
         """Return the best runs for each aim, the worst ones for the robot first."""

@@ -243,7 +243,6 @@ class IntegralControllerSpec(AbstractControllerSpec):
         }
     )
     commands: ClassVar[Command] = "position"
-    sampled: ClassVar[bool] = False
     holds_force: ClassVar[bool] = True
     bleeds: ClassVar[bool] = True
 

@@ -12,7 +12,7 @@ from nrs_design.spec.faults import fault
 from nrs_design.spec.fields import Title
 from nrs_design.spec.interval import Interval
 from nrs_design.spec.preload import RangedExponent, power_box
-from nrs_design.spec.provenance import Coverage, IdentifiedSpec
+from nrs_design.spec.provenance import Coverage, IdentifiedRangesSpec
 from nrs_design.spec.quantity import Quantity
 from nrs_design.spec.quantity_fields import (
     Damping,
@@ -44,7 +44,7 @@ _COVERS = (
 Number = TypeVar("Number", float, Fraction)
 
 
-class AbstractEnvironmentSpec(IdentifiedSpec):
+class AbstractEnvironmentSpec(IdentifiedRangesSpec):
     """What all environments have in common; parameters of the law are the ranged quantities."""
 
     # Whether the force depends on more than the deflection and the velocity of the moment.

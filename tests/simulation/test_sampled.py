@@ -279,3 +279,26 @@ def test_the_law_gets_coarse_angles_and_noisy_torques():
     noise = (vm[2:] - a * vm[1:-1]) / ((1 - a) / 2.15) - response["torque"][:-2]
     assert noise.std() == pytest.approx(0.01, rel=0.1)
     assert abs(noise.mean()) < 0.002
+
+
+def test_a_threshold_is_compared_as_the_program_does():
+    """The single-precision number nearest to 0.64 is below it, and the threshold one above.
+
+    The force sensor reads in steps of 0.64 N*m: compared as doubles, one would switch.
+    """
+    logic = LOGIC.replace("0.27 N*m", "0.64 N*m")
+    text = text_of(
+        PLACED,
+        scenario="command: {points: [[0 s, 4 deg/s], [DURATION, 4 deg/s]]}, "
+        "surfaces: [{environment: soft, at: 2 deg}], errors: {force_step: 0.64 N*m}",
+        more=SAMPLED + logic,
+    )
+    for duration, largest, switches in (("0.8 s", 0.96, 0), ("1.2 s", 2.0, 1)):
+        run = simulated(text.replace("DURATION", duration), "sampled")
+        torque = run.response["torque"]
+        assert 0.64 < torque.max() < largest
+        assert len(run.switches) == switches
+    ((moment, _),) = run.switches
+    # Where 1.28 N*m is the nearest step.
+    reached = torque[np.searchsorted(run.response.t, moment)]
+    assert reached == pytest.approx(0.96, abs=0.02)

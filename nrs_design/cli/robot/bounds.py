@@ -12,6 +12,7 @@ from nrs_design.cli import exit_codes
 from nrs_design.cli.options import Json, Quiet, SpecFile
 from nrs_design.cli.printing import note, print_json, progress, say
 from nrs_design.cli.robot.options import Figures, write_figures
+from nrs_design.cli.seconds import seconds
 from nrs_design.cli.tables import print_table
 
 if TYPE_CHECKING:
@@ -41,7 +42,8 @@ def bounds(
         typer.Option(metavar="MIN,MAX", help="Range of d in mm; default: the spec's."),
     ] = None,
     budget: Annotated[
-        float, typer.Option(min=0.0, help="Time for each of the four bounds in s.")
+        float,
+        typer.Option(metavar="S", parser=seconds(), help="Time for each of the four bounds in s."),
     ] = 1800.0,
     write: Annotated[
         bool,

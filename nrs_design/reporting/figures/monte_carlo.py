@@ -16,9 +16,11 @@ if TYPE_CHECKING:
 
     from nrs_design.simulation.norms import Array
 
-# A line that is so many times farther than the largest peak is named, not drawn to scale.
-_FAR = 3.0
+# A limit or bound that is so many times farther than the largest peak is named, not drawn.
+_FAR = 1.5
 _BINS = 40
+# Lines are seen in front of the bars.
+_PALE = 0.45
 
 
 @dataclass(frozen=True, eq=False)
@@ -65,23 +67,24 @@ def draw_monte_carlo(spreads: Sequence[Spread]) -> Figure:
 
 def _draw(axes: Axes, spread: Spread) -> None:
     largest = float(spread.peaks.max())
-    lines = [(limit, GREEN, ":") for limit in spread.limits]
+    lines = [(limit, "limit", GREEN, ":") for limit in spread.limits]
     if spread.bound is not None:
-        lines.append((spread.bound, VERMILLION, "--"))
-    far = [value for value, *_ in lines if value > _FAR * largest]
-    near = max([largest, *(value for value, *_ in lines if value not in far)])
+        lines.append((spread.bound, "certified bound", VERMILLION, "--"))
+    far = [line for line in lines if line[0] > _FAR * largest]
+    near = max([largest, *(line[0] for line in lines if line not in far)])
     low = min(float(spread.peaks.min()), near)
     margin = 0.04 * (near - low) or 0.05 * near or 1.0
     edges = np.linspace(low - margin, near + margin, _BINS + 1).tolist()
-    axes.hist(spread.peaks, bins=edges, color=BLUE)
-    for value, colour, style in lines:
-        if value not in far:
-            axes.axvline(value, color=colour, linestyle=style, lw=1.6)
+    axes.hist(spread.peaks, bins=edges, color=BLUE, alpha=_PALE)
+    for line in lines:
+        if line not in far:
+            axes.axvline(line[0], color=line[2], linestyle=line[3], lw=2.0)
     if far:
-        named = ", ".join(f"{value:.4g}" for value in far)
+        named = ", ".join(f"{name} {value:.4g}" for value, name, *_ in far)
         axes.set_title(f"beyond this scale: {named}", fontsize=9, loc="right")
     axes.set_xlabel(spread.label)
     axes.set_ylabel("Runs")
+    axes.locator_params(axis="y", integer=True)
 
 
 def _legend(figure: Figure, spreads: Sequence[Spread]) -> None:
@@ -89,7 +92,7 @@ def _legend(figure: Figure, spreads: Sequence[Spread]) -> None:
     from matplotlib.patches import Patch
 
     handles: list[Line2D | Patch] = [
-        Patch(facecolor=BLUE, label="peaks of the runs"),
+        Patch(facecolor=BLUE, alpha=_PALE, label="peaks of the runs"),
         Line2D([], [], color=GREEN, linestyle=":", lw=1.6, label="limit"),
     ]
     if any(spread.bound is not None for spread in spreads):

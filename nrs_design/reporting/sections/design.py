@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import TYPE_CHECKING
 
-from nrs_design.controllers.controller_design import ControllerDesign
 from nrs_design.controllers.float32 import exact_decimal
 from nrs_design.design.transfer import TransferFunction, poles
 from nrs_design.reporting.document import Block, Illustration, Linked, Paragraph, Section, Table
@@ -21,6 +20,7 @@ from nrs_design.reporting.sections.impedance import (
 )
 from nrs_design.reporting.sections.landscape import landscape_section
 from nrs_design.reporting.sections.parallel import parallel_section
+from nrs_design.reporting.sections.places import At, linked
 from nrs_design.spec import InteractionDesignSpec
 
 if TYPE_CHECKING:
@@ -67,9 +67,9 @@ def design_sections(designed: Designed, analysis: DesignAnalysis | None) -> tupl
     if sensor := creep_section(designed, analysis):
         parts.append(sensor)
     if analysis.force:
-        parts.append(_force_section(analysis))
+        parts.append(_force_section(designed, analysis))
     if analysis.parallel:
-        parts.append(parallel_section(analysis))
+        parts.append(parallel_section(designed.loaded, analysis))
     if any(item.achieved for item in analysis.measured):
         parts.append(goals_section(designed, analysis))
     return tuple(parts)
@@ -123,7 +123,7 @@ def _ranges(designed: Designed) -> tuple[Block, ...]:
 
 
 def _motion_section(designed: Designed, analysis: DesignAnalysis) -> Section:
-    spec, design = designed.spec, designed.design
+    spec = designed.spec
     G = analysis.motion
     text = (
         f"Motion loop in use: G(s) = ({polynomial(G.numerator, 6)}) / "
@@ -132,7 +132,7 @@ def _motion_section(designed: Designed, analysis: DesignAnalysis) -> Section:
     )
     return Section(
         "Motion loop",
-        (Paragraph(text), _motion_table(design, analysis), _motion_locus(designed, analysis)),
+        (Paragraph(text), _motion_table(designed, analysis), _motion_locus(designed, analysis)),
     )
 
 
@@ -150,7 +150,21 @@ def _source(spec: InteractionDesignSpec, analysis: DesignAnalysis) -> str:
     return "It follows from the PD controller that was designed by root locus."
 
 
-def _motion_table(design: ControllerDesign, analysis: DesignAnalysis) -> Table:
+# The key of a spec that says most of each row.
+_MOTION_ROWS = (
+    "derivative_gain",
+    "zero",
+    "zero",
+    "settling_time",
+    "damping_ratio",
+    "settling_time",
+    "damping_ratio",
+    "settling_time",
+)
+
+
+def _motion_table(designed: Designed, analysis: DesignAnalysis) -> Table:
+    design = designed.design
     wanted, reached, motion = analysis.wanted, analysis.reached, design.motion
     damping = -wanted.wanted_poles[0].real / wanted.natural_frequency
     wanted_Kp = wanted.derivative_gain * wanted.zero
@@ -176,9 +190,12 @@ def _motion_table(design: ControllerDesign, analysis: DesignAnalysis) -> Table:
         ("Overshoot [%]", "–", number(100 * reached.overshoot, 3)),
         ("Bandwidth [rad/s]", "–", number(reached.bandwidth)),
     )
-    return Table(
-        "Motion loop: wanted and reached", ("", "Root locus asks for", "G and gains in use"), rows
+    cells = tuple(
+        (label, *(linked(designed.loaded, text, "motion_loop", key) for text in texts))
+        for (label, *texts), key in zip(rows, _MOTION_ROWS, strict=True)
     )
+    columns = ("", "Root locus asks for", "G and gains in use")
+    return Table("Motion loop: wanted and reached", columns, cells)
 
 
 def _motion_locus(designed: Designed, analysis: DesignAnalysis) -> Illustration:
@@ -198,18 +215,32 @@ def _motion_locus(designed: Designed, analysis: DesignAnalysis) -> Illustration:
     return Illustration("root-locus", "Root locus of the PD design", caption, figure)
 
 
-def _force_section(analysis: DesignAnalysis) -> Section:
+def _force_section(designed: Designed, analysis: DesignAnalysis) -> Section:
     tables = by_controller(
         "Force controllers, at nominal values",
         [label for label, _ in _FORCE_ROWS],
         [item.name for item in analysis.force],
-        [[value(item) for _, value in _FORCE_ROWS] for item in analysis.force],
+        [
+            [
+                linked(designed.loaded, value(item), *_force_at(designed, label, item))
+                for label, value in _FORCE_ROWS
+            ]
+            for item in analysis.force
+        ],
     )
     loci = (_force_locus(item) for item in analysis.force[:CURVES])
     texts = [Paragraph(NOMINAL)]
     if any(item.peak is not None for item in analysis.force):
         texts.append(Paragraph(_OFFSET))
     return Section("Force control", (*texts, *tables, *loci))
+
+
+def _force_at(designed: Designed, label: str, item: ForceAnalysis) -> At:
+    if label.startswith("Nominal stiffness"):
+        touched = designed.spec.controllers[item.name].environment
+        return ("environments", touched) if touched else ("environments",)
+    key = ("proportional_gain",) if label.startswith("Kp") else ()
+    return ("controllers", item.name, *key)
 
 
 def _force_locus(item: ForceAnalysis) -> Illustration:

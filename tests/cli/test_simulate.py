@@ -280,6 +280,7 @@ def test_without_mujoco_it_is_said_what_to_install(spec, tmp_path, monkeypatch):
     monkeypatch.setitem(sys.modules, "mujoco", None)
     result = run("simulate", spec(), "--engine", "mujoco", cwd=tmp_path)
     assert result.returncode == 2
+    assert "needs MuJoCo, which cannot be loaded" in result.stderr
     assert "pip install 'nrs-design[mujoco]'" in result.stderr
     assert run("simulate", spec(), "--engine", "sampled", cwd=tmp_path).returncode == 0
 

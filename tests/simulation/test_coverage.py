@@ -191,13 +191,14 @@ def test_when_a_rate_is_not_about_a_run(ending, change, options, reason):
     assert any(reason in text for text in held.uncovered)
 
 
-def test_mujoco_is_another_engine_than_that_of_the_proof(sampled):
+def test_mujoco_is_another_engine_than_that_of_the_proof(certified):
     pytest.importorskip("mujoco", reason="MuJoCo is not installed")
-    (one,) = run_scenarios(sampled.designed, Runs(engine="mujoco"))
-    for bound in bounds(sampled, one).values():
+    (one,) = run_scenarios(certified.designed, Runs(engine="mujoco"))
+    for bound in bounds(certified, one).values():
         assert any("MuJoCo" in reason for reason in bound.uncovered)
 
 
+@pytest.mark.slow
 def test_two_clocks_are_not_one(sampled):
     """The step of both is the same, and the law is another."""
     (one,) = run_scenarios(sampled.designed)

@@ -299,7 +299,7 @@ class Study:
         ----------
         *scenarios : str
             Names; by default all.
-        engine : {"exact", "sampled"}, optional
+        engine : {"exact", "sampled", "mujoco"}, optional
             By default sampled where the spec has sampling or tissue is not linear, else exact.
         period, delay : float and int, optional
             Of the sampled engine, in s and in samples; by default those of the spec.
@@ -317,8 +317,9 @@ class Study:
         >>> bool(abs(one.run.response["torque"]).max() < 0.3)
         True
         """
-        if engine not in (None, "exact", "sampled"):
-            raise DesignError(f"there is no engine {engine!r}", remedy="write exact or sampled")
+        if engine not in (None, "exact", "sampled", "mujoco"):
+            remedy = "write exact, sampled or mujoco"
+            raise DesignError(f"there is no engine {engine!r}", remedy=remedy)
         designed = pipeline.run_design(self.loaded)
         if designed is None:
             raise pipeline.wrong_kind(

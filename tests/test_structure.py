@@ -285,6 +285,7 @@ def test_adding_is_cheap():
         ("Admittance", "impedance", {"spec/describe.py", "design/doubts.py"}),
         ("ProportionalForce", "force", set()),
         ("PositionControl", "position", set()),
+        ("IntegralForce", "integral", set()),
         ("ParallelForce", "parallel", set()),
     ],
 )

@@ -38,8 +38,8 @@ def verify(
         Path | None,
         typer.Option(
             metavar="FILE",
-            help="Exported C header or JSON record whose numbers must be those of the certificate, "
-            "bit for bit.",
+            help="Exported C header, monitor, FMU or JSON record whose numbers must be those of "
+            "the certificate, bit for bit.",
         ),
     ] = None,
     bounds: Annotated[
@@ -59,7 +59,8 @@ def verify(
     and the answer says so: whose modes they are is then not known.
 
     With --deployed, the numbers in an exported file are compared with the certificate: the gains of
-    a record; coefficients, limits and modes of a header. Code and comments are not compared.
+    a record; coefficients, limits and modes of a header; limits, ranges and code of a monitor; all
+    sources and variables of an FMU. Comments and compiled libraries are not compared.
 
     Where the spec names a robot, the bounds on its links are read from the file beside it, and the
     answer says so; --bounds computes them again, from the spec of the robot.
@@ -186,6 +187,8 @@ def _print_deployed(file: Path | None, differences: list[str], *, quiet: bool) -
             say(f"  {line}")
     elif not quiet:
         say(f"deployed: {file} holds the numbers of the certificate, bit for bit")
+        if file is not None and file.suffix == ".fmu":
+            say("  not compared: a compiled library inside; only its sources are")
 
 
 def _print(certificate: Certificate, spec: Spec | None) -> None:

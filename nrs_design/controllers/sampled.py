@@ -1,6 +1,7 @@
-"""The laws as a processor computes them once a period, with the coefficients that ship.
+"""The laws as a processor computes them once a period: the coefficients that ship.
 
-Every coefficient is a single-precision number, and so is every result of these operations:
+Every coefficient is a single-precision number, and so is every result of the operations that
+`nrs_design.controllers.step_law` lists:
 
     x1 = p x1 + q F              (where the force is filtered; then x2 = p x2 + q x1, ...)
     e = xref - theta
@@ -15,6 +16,10 @@ other half of it, which comes before the error and not after it:
     xref = X + Kp (Fd - x1)      (its own Kp; without it, position control; X is commanded)
     vm = d vm,  r = d r          (idle: the velocity and the reference of impedance controllers)
 
+and an integral w of the force error, which is in the reference of every controller:
+
+    w = w + Ki_T (Fd - x1)       (with its own gain; w = g w while another controller is active)
+
 Rounding to nearest changes a result by at most 2^-24 of its size, so a term that takes part in n
 roundings changes by at most `rounding_share` of n of its own. A fused product and sum rounds once
 less. The position is taken at the sample, the force sample may be older.
@@ -28,20 +33,12 @@ from typing import TYPE_CHECKING
 
 from nrs_design.controllers.float32 import PRECISION, to_float32
 from nrs_design.errors import DesignError
-from nrs_design.models.linear_form import LinearForm, combine
 
 if TYPE_CHECKING:
     from nrs_design.controllers.laws import ProportionalDerivative
 
 # Half a unit in the last place, over the number.
 UNIT = Fraction(1, 2**PRECISION)
-# How many roundings a term takes part in, in the order of the operations above. The force sample
-# is rounded once, when it is read; the difference of two errors once, before its product.
-ROUNDINGS = {"e": 1, "Kp e": 2, "D (e - e before)": 3, "a vm": 2, "b F": 3, "T (v - vm)": 2}
-# In how many roundings of force control the force takes part: its difference from Fd, the product,
-# the sum with X and the difference from theta.
-FORCE_ROUNDINGS = 4
-ROUNDINGS_WITHOUT_INERTIA = {"e": 1, "Kp e": 2, "D (e - e before)": 3, "b F": 2, "T (v - vm)": 2}
 
 
 def rounding_share(count: int) -> Fraction:
@@ -63,39 +60,6 @@ def rounding_share(count: int) -> Fraction:
     if not 1 <= count <= 15:
         raise ValueError(f"{count} roundings are not counted")
     return count * UNIT * (1 + Fraction(1, 2**20))
-
-
-@dataclass(frozen=True, slots=True)
-class Term:
-    """A term of a sum that the processor forms.
-
-    Parameters
-    ----------
-    name : str
-        Such as ``b F``.
-    form : LinearForm
-        What it is without rounding, of the state.
-    roundings : int
-        In how many it takes part.
-    """
-
-    name: str
-    form: LinearForm
-    roundings: int
-
-    def times(self, factor: Fraction, prefix: str, more: int) -> Term:
-        """Return the term times a factor, which is named in front, with more roundings.
-
-        Parameters
-        ----------
-        factor : Fraction
-            A single-precision number.
-        prefix : str
-            Its name, and a blank.
-        more : int
-            Roundings, that of the product included.
-        """
-        return Term(prefix + self.name, combine((factor, self.form)), self.roundings + more)
 
 
 @dataclass(frozen=True, slots=True)
@@ -170,20 +134,25 @@ class SampledAdmittance:
 
 @dataclass(frozen=True, slots=True)
 class SampledForce:
-    """``xref = X + Kp (Fd - F)``, before the error is formed; without Kp, position control.
+    """``xref = X + Kp (Fd - F) + w``, before the error is formed; without Kp, position control.
 
     Parameters
     ----------
     Kp : Fraction
         In rad/(N m); zero takes no force.
+    Ki_T : Fraction
+        What a sample adds to the integral, ``w+ = w + Ki_T (Fd - F)``, in rad/(N m); zero is no
+        integral of its own.
     """
 
     Kp: Fraction
+    Ki_T: Fraction = Fraction(0)
 
     @property
     def coefficients(self) -> dict[str, Fraction]:
-        """The coefficient by name, if there is one."""
-        return {"Kp": self.Kp} if self.Kp else {}
+        """The coefficients by name, as far as there are any."""
+        named = {"Kp": self.Kp, "Ki_T": self.Ki_T}
+        return {name: value for name, value in named.items() if value}
 
 
 SampledLaw = SampledAdmittance | SampledForce

@@ -15,7 +15,6 @@ from itertools import product
 from math import comb, isqrt
 
 from nrs_design.controllers.float32 import to_float32
-from nrs_design.controllers.sampled import Term
 from nrs_design.errors import DesignError
 from nrs_design.models.linear_form import LinearForm, combine
 from nrs_design.proof.taylor import exponential_between
@@ -118,28 +117,6 @@ class SampledLowPass:
     def lasting_gain(self) -> Fraction:
         """Output over input in the long run: one, but for what the coefficients round."""
         return (self.q / (1 - self.p)) ** self.order
-
-    def stages(
-        self, sample: tuple[Term, ...], states: Sequence[LinearForm]
-    ) -> list[tuple[Term, ...]]:
-        """Return the terms that each lag is the sum of; the last is the filtered force.
-
-        All are terms of what was there before the sample, and of the sample itself.
-
-        Parameters
-        ----------
-        sample : tuple of Term
-            The force sample that is taken now.
-        states : sequence of LinearForm
-            Those named in `states`.
-        """
-        found: list[tuple[Term, ...]] = []
-        for i, own in enumerate(states, 1):
-            # A product and a sum.
-            before = (term.times(self.q, "q ", 2) for term in sample)
-            sample = (Term(f"p x{i}", combine((self.p, own)), 2), *before)
-            found.append(sample)
-        return found
 
 
 @dataclass(frozen=True, slots=True)

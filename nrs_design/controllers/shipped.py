@@ -17,14 +17,19 @@ from nrs_design.controllers.sampled import (
     SampledMotion,
 )
 from nrs_design.controllers.step_analysis import check_range
-from nrs_design.controllers.step_law import build_mixed_law, build_placed_law, build_step_law
+from nrs_design.controllers.step_law import build_law
 from nrs_design.controllers.step_logic import StepLogic
 from nrs_design.controllers.step_parts import BEYOND, StepFrame, StepLimits
 from nrs_design.errors import DesignError
 from nrs_design.spec import IdleStatesSpec, InteractionDesignSpec
 
 
-def shipped_law(spec: InteractionDesignSpec, design: ControllerDesign, period: Fraction) -> StepLaw:
+def shipped_law(
+    spec: InteractionDesignSpec,
+    design: ControllerDesign,
+    period: Fraction,
+    outer: Fraction | None = None,
+) -> StepLaw:
     """Write the law of a design out for a sample time.
 
     Parameters
@@ -35,6 +40,9 @@ def shipped_law(spec: InteractionDesignSpec, design: ControllerDesign, period: F
         Gains that ship.
     period : Fraction
         Sample time in s.
+    outer : Fraction, optional
+        That of force, filter and admittance, where it is another: then the operations of either
+        loop are taken at its own samples, by whoever runs them.
 
     Raises
     ------
@@ -44,12 +52,12 @@ def shipped_law(spec: InteractionDesignSpec, design: ControllerDesign, period: F
     method = "exact" if spec.sampling is None else spec.sampling.admittance
     laws: dict[str, SampledLaw] = {}
     for controller in design.controllers:
-        sampled = controller.law.sampled(period, method)
+        sampled = controller.law.sampled(outer or period, method)
         if sampled is None:
             what = f"{controller.name} is a {controller.law.name} controller"
             raise _without_program(what, controller.name)
         laws[controller.name] = sampled
-    law = _step_law(spec, design, laws, period)
+    law = _step_law(spec, design, laws, period, outer or period)
     check_range(law)
     return replace(_in_commands(law, design.command), logic=_logic_of(spec, law, period))
 
@@ -67,28 +75,25 @@ def _step_law(
     design: ControllerDesign,
     laws: Mapping[str, SampledLaw],
     period: Fraction,
+    outer: Fraction,
 ) -> StepLaw:
-    low_pass = None if design.sensor.filter is None else design.sensor.filter.sampled(period)
+    low_pass = None if design.sensor.filter is None else design.sensor.filter.sampled(outer)
     frame = StepFrame(SampledMotion.of(design.motion, period), low_pass, limits_of(spec))
-    moving = {name: law for name, law in laws.items() if isinstance(law, SampledAdmittance)}
-    placed = {name: law for name, law in laws.items() if isinstance(law, SampledForce)}
+    moving = [law for law in laws.values() if isinstance(law, SampledAdmittance)]
+    placed = [name for name, law in laws.items() if isinstance(law, SampledForce)]
     if spec.offset != "none":
-        raise _without_program("force control takes an offset", next(iter(placed)))
-    if placed and not moving:
-        return build_placed_law(frame, placed)
-    if len({law.a is None for law in moving.values()}) > 1:
+        raise _without_program("force control takes an offset", placed[0])
+    if len({law.a is None for law in moving}) > 1:
         raise DesignError(
             "some impedance controllers have a virtual inertia and some have none",
             remedy="give all of them an inertia Mt > 0, or none",
             at=("controllers",),
         )
-    if not placed:
-        return build_step_law(frame, moving)
-    other = next(iter(placed))
-    if any(law.Kt for law in moving.values()):
-        raise _without_program(f"a spring of impedance control beside {other}", other)
-    assert spec.idle_states is not None, "a spec with both kinds has them"
-    return build_mixed_law(frame, laws, _left(spec.idle_states, period))
+    if placed and any(law.Kt for law in moving):
+        what = f"a spring of impedance control beside {placed[0]}"
+        raise _without_program(what, placed[0])
+    idle = spec.idle_states
+    return build_law(frame, laws, None if idle is None else _left(idle, period))
 
 
 def _left(idle: IdleStatesSpec, period: Fraction) -> Fraction:

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from fractions import Fraction
 from itertools import chain
 
 from nrs_design.controllers.operations import LINEAR, Operation, StepLaw
-from nrs_design.controllers.sampled import Term
 from nrs_design.errors import DesignError
 from nrs_design.models.linear_form import LinearForm, combine
 
@@ -15,9 +15,49 @@ from nrs_design.models.linear_form import LinearForm, combine
 LARGEST = Fraction(2) ** 127
 # More than all roundings of a step add to a value, over its size.
 SLACK = 1 + Fraction(1, 2**16)
+ONE = Fraction(1)
 
 
-def linear_forms(law: StepLaw, mode: int, given: Mapping[str, LinearForm]) -> dict[str, LinearForm]:
+@dataclass(frozen=True, slots=True)
+class Term:
+    """A term of a sum that the processor forms.
+
+    Parameters
+    ----------
+    name : str
+        Such as ``b F``.
+    form : LinearForm
+        What it is without rounding, of the state.
+    roundings : int
+        In how many it takes part.
+    """
+
+    name: str
+    form: LinearForm
+    roundings: int
+
+    def times(self, factor: Fraction, prefix: str, more: int) -> Term:
+        """Return the term times a factor, which is named in front, with more roundings.
+
+        Parameters
+        ----------
+        factor : Fraction
+            A single-precision number.
+        prefix : str
+            Its name, and a blank.
+        more : int
+            Roundings, that of the product included.
+        """
+        return Term(prefix + self.name, combine((factor, self.form)), self.roundings + more)
+
+
+def linear_forms(
+    law: StepLaw,
+    mode: int,
+    given: Mapping[str, LinearForm],
+    numbers: Mapping[str, Fraction] | None = None,
+    errors: Mapping[str, LinearForm] | None = None,
+) -> dict[str, LinearForm]:
     """Return every value of a step as a linear form, computed without rounding or saturation.
 
     Parameters
@@ -28,6 +68,10 @@ def linear_forms(law: StepLaw, mode: int, given: Mapping[str, LinearForm]) -> di
         Which controller is in force.
     given : mapping of str to LinearForm
         Inputs and states in coordinates of the caller's choice.
+    numbers : mapping of str to Fraction, optional
+        Coefficients by name, where they are not those of the law in that mode.
+    errors : mapping of str to LinearForm, optional
+        What is added to results, by name, for all that is computed from them.
 
     Raises
     ------
@@ -35,17 +79,18 @@ def linear_forms(law: StepLaw, mode: int, given: Mapping[str, LinearForm]) -> di
         If the law is not linear.
     """
     _check_linear(law)
-    forms = dict(given)
+    held = {c.name: c.of(mode) for c in law.coefficients} | dict(numbers or {})
+    forms, off = dict(given), errors or {}
     for operation in law.operations:
-        right = forms[operation.right]
-        if operation.kind == "saturate":
-            forms[operation.name] = right
-        elif operation.kind == "multiply":
-            factor = law.coefficient[operation.left].of(mode)
-            forms[operation.name] = combine((factor, right))
-        else:
-            sign = Fraction(1 if operation.kind == "add" else -1)
-            forms[operation.name] = combine((Fraction(1), forms[operation.left]), (sign, right))
+        form = forms[operation.right]
+        if operation.kind == "multiply":
+            form = combine((held[operation.left], form))
+        elif operation.kind != "saturate":
+            sign = ONE if operation.kind == "add" else -ONE
+            form = combine((ONE, forms[operation.left]), (sign, form))
+        if operation.name in off:
+            form = combine((ONE, form), (ONE, off[operation.name]))
+        forms[operation.name] = form
     return forms
 
 
@@ -56,7 +101,11 @@ def _check_linear(law: StepLaw) -> None:
 
 
 def rounded_terms(
-    law: StepLaw, mode: int, given: Mapping[str, LinearForm]
+    law: StepLaw,
+    mode: int,
+    given: Mapping[str, LinearForm],
+    numbers: Mapping[str, Fraction] | None = None,
+    errors: Mapping[str, LinearForm] | None = None,
 ) -> dict[str, tuple[Term, ...]]:
     """Return what each result is a sum of, and in how many roundings each summand takes part.
 
@@ -64,23 +113,32 @@ def rounded_terms(
     the next states. Of a result with a rounding of its own, the operations after it take the
     rounded value.
 
+    The rounding of an angle counts apart, in proportion to the largest angle. Where the angle is
+    used within the step, it counts with the rounded terms in it besides: nobody has to know how
+    large angles get.
+
     Parameters
     ----------
     law : StepLaw
-        The law.
+        The law. A product with a coefficient that is zero or one there is exact.
     mode : int
         Which controller is in force.
     given : mapping of str to LinearForm
         Inputs and states in coordinates of the caller's choice.
+    numbers : mapping of str to Fraction, optional
+        What coefficients are in the place of those of the law, by name; with the same roundings.
+    errors : mapping of str to LinearForm, optional
+        Of results with a rounding of their own, what that adds to all that takes them.
     """
-    forms, terms = linear_forms(law, mode, given), dict[str, tuple[Term, ...]]()
+    forms = linear_forms(law, mode, given, numbers, errors)
+    held, terms = numbers or {}, dict[str, tuple[Term, ...]]()
     for value in law.values:
         count = int(value.rounding == "term")
         terms[value.name] = (Term(value.symbol, given[value.name], count),)
     kept: dict[str, tuple[Term, ...]] = {}
     targets = {*law.outputs.values(), *law.following.values()}
     for operation in law.operations:
-        found = _terms(law, mode, operation, terms)
+        found = _terms(law, mode, operation, terms, held)
         if operation.rounding == "own" or operation.name in targets:
             kept[operation.name] = found
         if operation.rounding == "own":
@@ -90,31 +148,38 @@ def rounded_terms(
 
 
 def _terms(
-    law: StepLaw, mode: int, operation: Operation, terms: Mapping[str, tuple[Term, ...]]
+    law: StepLaw,
+    mode: int,
+    operation: Operation,
+    terms: Mapping[str, tuple[Term, ...]],
+    numbers: Mapping[str, Fraction],
 ) -> tuple[Term, ...]:
     right = terms[operation.right]
     if operation.kind == "saturate":
         return right
     if operation.kind == "multiply":
         coefficient = law.coefficient[operation.left]
-        factor, prefix = coefficient.of(mode), f"{coefficient.symbol} "
+        factor = coefficient.of(mode)
         if factor in (0, 1):
             # Both products are exact.
             return right if factor else ()
-        return tuple(term.times(factor, prefix, 1) for term in right)
+        factor = numbers.get(operation.left, factor)
+        return tuple(term.times(factor, f"{coefficient.symbol} ", 1) for term in right)
     add, left = operation.kind == "add", terms[operation.left]
-    sign = Fraction(1 if add else -1)
+    sign = ONE if add else -ONE
     if not left or not right:
         # What nothing is added to stays as it is.
         return left or tuple(term.times(sign, "", 0) for term in right)
-    more = int(operation.rounding != "angle")
     both = (*left, *(term.times(sign, "", 0) for term in right))
+    apart = operation.rounding == "angle"
+    more = int(not apart)
     if any(term.roundings for term in both):
-        return tuple(term.times(Fraction(1), "", more) for term in both)
+        again = apart and operation.name not in law.following.values()
+        return tuple(t.times(ONE, "", int(t.roundings > 0) if again else more) for t in both)
     # A sum of exact numbers is off in proportion to itself.
     names = [" + ".join(term.name for term in side) for side in (left, right)]
     name = operation.symbol or f"({names[0]} {'+' if add else '-'} {names[1]})"
-    return (Term(name, combine(*((Fraction(1), term.form) for term in both)), more),)
+    return (Term(name, combine(*((ONE, term.form) for term in both)), more),)
 
 
 def check_range(law: StepLaw) -> None:
@@ -142,6 +207,35 @@ def check_range(law: StepLaw) -> None:
                 remedy="choose smaller gains, or other units",
             )
         bounds[operation.name] = bound
+
+
+def counted_terms(
+    law: StepLaw, mode: int, given: Mapping[str, LinearForm]
+) -> dict[str, dict[str, int]]:
+    """Return for each result of `rounded_terms` how often its terms are rounded, by name.
+
+    A difference with a rounding of its own, of terms that are rounded themselves, counts twice:
+    with them, and as a whole. So what is subtracted exactly needs no rounding of its own.
+
+    Parameters
+    ----------
+    law : StepLaw
+        The law.
+    mode : int
+        Which controller is in force.
+    given : mapping of str to LinearForm
+        Inputs and states in coordinates of the caller's choice; zero is what is not there.
+    """
+    found: dict[str, dict[str, int]] = {}
+    own = {o.name: o.symbol for o in law.operations if o.rounding == "own" and o.kind != "multiply"}
+    for name, terms in rounded_terms(law, mode, given).items():
+        counts = {t.name: t.roundings for t in terms if t.roundings and any(t.form)}
+        if name in own and own[name] not in counts:
+            # One rounding is that of the difference itself.
+            earlier = {term: count for term, count in counts.items() if count > 1}
+            counts = {own[name]: 1} | earlier
+        found[name] = counts
+    return found
 
 
 def term_counts(law: StepLaw, mode: int = 0) -> dict[str, int]:

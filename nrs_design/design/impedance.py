@@ -92,7 +92,7 @@ class ImpedanceLoop:
         numerator, denominator = self.contact.impedance
         return (
             np.convolve(self.motion.numerator, trim(numerator)),
-            np.convolve(np.convolve(self.motion.denominator, denominator), self.lags),
+            np.convolve(np.convolve(self.motion.denominator, trim(denominator)), self.lags),
         )
 
     def free(self, Mt: float, Bt: float) -> FloatArray:
@@ -342,7 +342,7 @@ class _Samples:
 
 def _sample(problem: ImpedanceProblem, nodes: int) -> _Samples:
     omega: FloatArray = (np.arange(nodes, dtype=np.float64) + 0.5) * (problem.bandwidth / nodes)
-    Ze = TransferFunction(*problem.loop.contact.impedance)
+    Ze = TransferFunction(*map(trim, problem.loop.contact.impedance))
     forward = frequency_response(problem.loop.motion, omega) * frequency_response(Ze, omega)
     filtered = forward / np.polyval(problem.loop.lags, 1j * omega)
     return _Samples(

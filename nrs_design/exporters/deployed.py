@@ -1,40 +1,34 @@
 """Whether numbers that were deployed are those of a certificate, bit for bit.
 
 An exported header is read as a compiler reads it, as far as its numbers go: comments say nothing.
-An export record is read as JSON. Code is not compared: that is what the vectors are for.
+An export record is read as JSON. Of the law, code is not compared: that is what the vectors are
+for. A monitor has tables in its code, and a model for co-simulation has it inside: theirs is.
 """
 
 from __future__ import annotations
 
-import re
-from collections.abc import Iterator, Mapping
-from fractions import Fraction
+from collections.abc import Iterator
 from pathlib import Path
 
 from nrs_design.certificates.certificate import Certificate
-from nrs_design.controllers.float32 import exact_decimal, to_float32
+from nrs_design.controllers.float32 import exact_decimal
 from nrs_design.controllers.gains import design_from_gains, idle_decay
-from nrs_design.controllers.shipped import shipped_law
-from nrs_design.errors import DesignError, NrsDesignError
+from nrs_design.errors import NrsDesignError
+from nrs_design.exporters import monitor
+from nrs_design.exporters.build import build_record
 from nrs_design.exporters.c_names import CNames
+from nrs_design.exporters.deployed_c import code_differences, macro_differences
+from nrs_design.exporters.deployed_model import model_differences
+from nrs_design.exporters.export import Export
+from nrs_design.exporters.monitor_limits import limits_of
+from nrs_design.exporters.program import program_of
 from nrs_design.exporters.record import ExportRecord
+from nrs_design.exporters.shipped import law_of
 from nrs_design.files import open_regular
 from nrs_design.proof.text import exact_text
 from nrs_design.spec import InteractionDesignSpec
 
 LARGEST_BYTES = 2**22
-# Comments, and the strings that could hide where one begins.
-_TOKEN = re.compile(
-    r"""/\*.*?(?:\*/|\Z)|//[^\n]*|"(?:\\.|[^"\\\n])*"?|'(?:\\.|[^'\\\n])*'?""", re.DOTALL
-)
-# Lines that go on or end otherwise, and other ways to write a # or a backslash.
-_STRANGE = re.compile(r"\\\n|\?\?|%:|[\x00-\x08\x0b-\x1f\x7f]")
-_DEFINE = re.compile(r"define\s+([A-Za-z_]\w*)(?:\s+(.*))?", re.ASCII)
-_MODE = re.compile(r"(0|[1-9]\d{0,8})U", re.ASCII)
-_HEX = re.compile(r"0[xX]([0-9a-fA-F]{1,16})(?:\.([0-9a-fA-F]{0,16}))?[pP]([+-]?\d{1,4})[fF]")
-_DECIMAL = re.compile(
-    r"(\d{1,60}\.\d{0,160}|\.\d{1,160}|\d{1,60}(?=[eE]))(?:[eE]([+-]?\d{1,3}))?[fF]", re.ASCII
-)
 
 
 def find_differences(
@@ -45,7 +39,8 @@ def find_differences(
     Parameters
     ----------
     file : Path
-        An exported header (``.h``) or export record (``.json``).
+        An exported header (``.h``), monitor (``.h``, ``.c``), model (``.fmu``) or export record
+        (``.json``).
     spec : InteractionDesignSpec
         That of the certificate.
     certificate : Certificate
@@ -56,38 +51,35 @@ def find_differences(
     NrsDesignError
         If the file cannot be read as one of these, or the certificate says nothing about it.
     """
-    if file.suffix == ".h":
-        return [*_of_header(_read(file), spec, certificate, file)]
     if file.suffix == ".json":
-        return [*_of_record(_read(file), spec, certificate, file)]
-    raise NrsDesignError(
-        "is neither an exported header nor an export record",
+        return [*_of_record(_text(file), spec, certificate, file)]
+    if file.suffix not in (".h", ".c", ".fmu"):
+        raise _something_else(file)
+    export = _exported(spec, certificate, file)
+    if file.suffix == ".fmu":
+        return [*model_differences(_read(file), export)]
+    text = _text(file)
+    if "_monitor_t" in text:
+        return [*_of_monitor(text, export, file)]
+    if file.suffix == ".c":
+        raise _something_else(file)
+    names = CNames(spec.name)
+    wanted = names.numbers(law_of(export))
+    return [*macro_differences(text, f"{names.upper}_H", wanted)]
+
+
+def _something_else(file: Path) -> NrsDesignError:
+    return NrsDesignError(
+        "is none of the files whose numbers are compared",
         path=file,
-        remedy="name the .h of `export --format c`, or the .json of `export --format json`",
+        remedy="name the .h of `export --format c`, a file of `--format monitor`, or that of "
+        "`--format fmu` or `--format json`",
     )
 
 
-def _read(file: Path) -> str:
-    try:
-        with open_regular(file) as stream:
-            content = stream.read(LARGEST_BYTES + 1)
-        text = content.decode("ascii" if file.suffix == ".h" else "utf-8")
-    except OSError as error:
-        raise NrsDesignError(f"cannot be read ({error.strerror})", path=file) from error
-    except UnicodeDecodeError as error:
-        raise NrsDesignError(
-            "is not the text that was exported", path=file, remedy="export it again"
-        ) from error
-    if len(content) > LARGEST_BYTES:
-        raise NrsDesignError("is larger than any export", path=file, remedy="export it again")
-    return text
-
-
-def _of_header(
-    text: str, spec: InteractionDesignSpec, certificate: Certificate, file: Path
-) -> Iterator[str]:
-    period = certificate.system.sample_time
-    if period is None:
+def _exported(spec: InteractionDesignSpec, certificate: Certificate, file: Path) -> Export:
+    """Return what is exported with a certificate of a sampled loop."""
+    if certificate.system.sample_time is None:
         raise NrsDesignError(
             "holds a law in steps, and the certificate is about continuous time",
             path=file,
@@ -99,80 +91,42 @@ def _of_header(
             path=file,
             remedy="name a certificate of a spec without `outer_period`",
         )
-    law = shipped_law(spec, design_from_gains(spec, certificate.gains), period)
-    names = CNames(spec.name)
-    wanted = names.numbers(law)
-    macros, faults = _macros(text, f"{names.upper}_H")
-    yield from faults
-    for name in macros.keys() - wanted.keys():
-        yield f"{name} is not a number of this law"
-    for name, number in wanted.items():
-        if name not in macros:
-            yield f"{name} is missing"
-        elif (found := _number(macros[name])) != (number, False) or not _same_type(found, number):
-            yield f"{name} is {macros[name][:80]}, and the certificate has {_text(number)}"
+    design = design_from_gains(spec, certificate.gains)
+    delay = None if spec.sampling is None else spec.sampling.delay
+    record = build_record(design, certificate, spec.idle_states, spec.offset, delay)
+    return Export("proved", record, certificate, design=design, spec=spec)
 
 
-def _macros(text: str, guard: str) -> tuple[Mapping[str, str], list[str]]:
-    """Return the macros of a header, and what else in it could change a number."""
-    faults: list[str] = []
-    text = text.replace("\r\n", "\n")
-    if _STRANGE.search(text) or any(t[0] in "\"'" for t in _TOKEN.findall(text)):
-        faults.append("it has strings or characters that no export has")
-    lines = [line.strip() for line in _TOKEN.sub(" ", text).splitlines()]
-    directives = [line[1:].strip() for line in lines if line.startswith("#")]
-    faults += [f"#{d[:80]} is not in an export" for d in directives if not _usual(d, guard)]
-    if [d.split()[0] for d in directives if _conditional(d)] != ["ifndef", "endif"]:
-        faults.append("a part of it may not be compiled")
-    found: dict[str, str] = {}
-    for match in filter(None, map(_DEFINE.fullmatch, directives)):
-        if match[1] in found:
-            faults.append(f"{match[1]} is defined twice")
-        found[match[1]] = (match[2] or "").strip()
-    if found.pop(guard, None) != "":
-        faults.append(f"the guard {guard} is missing")
-    return found, faults
+def _of_monitor(text: str, export: Export, file: Path) -> Iterator[str]:
+    """Compare all macros of its header, or all code of its source, where the tables are."""
+    program = program_of(export)
+    limits, names = limits_of(export, program.law.modes), program.names
+    if file.suffix == ".c":
+        yield from code_differences(text, monitor.source_text(program, limits))
+        return
+    wanted = monitor.numbers_of(names, limits)
+    guard = f"{names.upper}_MONITOR_H"
+    yield from macro_differences(text, guard, wanted, (f"{names.spec}.h",))
 
 
-def _conditional(directive: str) -> bool:
-    return bool(re.match(r"(if|el|endif)", directive))
-
-
-def _usual(directive: str, guard: str) -> bool:
-    includes = ("include <stdbool.h>", "include <stdint.h>")
-    frame = (f"ifndef {guard}", "endif", *includes)
-    return directive in frame or _DEFINE.fullmatch(directive) is not None
-
-
-def _number(text: str) -> tuple[int | Fraction, bool] | None:
-    """Return what a compiler takes a literal for, and whether as -0; None if it is unknown."""
-    if match := _MODE.fullmatch(text):
-        return int(match[1]), False
-    inner = text[1:-1].strip() if text.startswith("(") and text.endswith(")") else text
-    negative, digits = inner.startswith("-"), inner.removeprefix("-").strip()
-    if match := _HEX.fullmatch(digits):
-        after = match[2] or ""
-        size = Fraction(int(match[1] + after, 16)) * Fraction(2) ** (int(match[3]) - 4 * len(after))
-    elif match := _DECIMAL.fullmatch(digits):
-        size = Fraction(match[1] + "0" * match[1].endswith(".")) * Fraction(10) ** int(
-            match[2] or 0
-        )
-    else:
-        return None
+def _read(file: Path) -> bytes:
     try:
-        held = to_float32(size)
-    except DesignError:
-        return None
-    return (-held if negative else held), negative and not held
+        with open_regular(file) as stream:
+            content = stream.read(LARGEST_BYTES + 1)
+    except OSError as error:
+        raise NrsDesignError(f"cannot be read ({error.strerror})", path=file) from error
+    if len(content) > LARGEST_BYTES:
+        raise NrsDesignError("is larger than any export", path=file, remedy="export it again")
+    return content
 
 
-def _same_type(found: tuple[int | Fraction, bool] | None, number: int | Fraction) -> bool:
-    """Tell whether both are integers or neither: 3000U is not 3000.0F in an expression."""
-    return found is not None and isinstance(found[0], int) == isinstance(number, int)
-
-
-def _text(number: int | Fraction) -> str:
-    return f"{number}U" if isinstance(number, int) else exact_decimal(number)
+def _text(file: Path) -> str:
+    try:
+        return _read(file).decode("utf-8" if file.suffix == ".json" else "ascii")
+    except UnicodeDecodeError as error:
+        raise NrsDesignError(
+            "is not the text that was exported", path=file, remedy="export it again"
+        ) from error
 
 
 def _of_record(

@@ -22,7 +22,7 @@ from nrs_design.exporters.record import ExportRecord
 # The first entry is always the same, and so are the first bytes of the file.
 FIRST, MARK = "documentation/nrs-design.txt", b"nrs-design fmu\n"
 _DATE = (1980, 1, 1, 0, 0, 0)
-_FOLDER = "binaries/linux64"
+LIBRARIES = "binaries/linux64"
 
 
 def render(export: Export) -> dict[str, bytes]:
@@ -45,7 +45,7 @@ def render(export: Export) -> dict[str, bytes]:
 def remarks(files: Mapping[str, bytes]) -> tuple[str, ...]:
     """Say what a rendered file lacks."""
     with zipfile.ZipFile(io.BytesIO(files[".fmu"])) as archive:
-        if any(name.startswith(_FOLDER) for name in archive.namelist()):
+        if any(name.startswith(LIBRARIES) for name in archive.namelist()):
             return ()
     return (
         "the FMU holds sources only: there is no compiler cc for 64-bit Linux on x86 here; an "
@@ -76,7 +76,7 @@ def contents(program: Program, compile_with: str | None) -> dict[str, bytes]:
     entries |= {f"sources/{name}": text.encode() for name, text in sources.items()}
     binary = "compiled: nothing, only sources"
     if compile_with is not None:
-        library = f"{_FOLDER}/{names.lower}.so"
+        library = f"{LIBRARIES}/{names.lower}.so"
         entries[library] = shared_library(compile_with, sources)
         binary = (
             f"compiled for 64-bit Linux on x86: {library}, by the C compiler of who exported it"

@@ -64,7 +64,8 @@ def header_text(program: Program, limits: MonitorLimits) -> str:
     """
     names = program.names
     guard = f"{names.upper}_MONITOR_H"
-    text = _HEADER.replace("@KINDS@", _kinds(names)).replace("@MACROS@", _macros(names, limits))
+    macros = "".join(_macro(*row) for row in _limits(names, limits))
+    text = _HEADER.replace("@KINDS@", _kinds(names)).replace("@MACROS@", macros)
     text = text.replace("@GUARD@", guard).replace("@OWN@", names.lower)
     text = text.replace("@UP@", names.upper).replace("@SPEC@", names.spec)
     return comment((*program.about, *_words(program, limits)), C_MONITOR_HEADER) + text
@@ -119,29 +120,35 @@ def _words(program: Program, limits: MonitorLimits) -> Iterator[str]:
     yield from (f"Not monitored: {text}" for text in limits.left_out)
 
 
+def numbers_of(names: CNames, limits: MonitorLimits) -> dict[str, int | Fraction]:
+    """Return every macro of the header with its number: what may be left, and limits."""
+    kinds = {f"{names.upper}_LEFT_{kind}": k for k, kind in enumerate(KINDS)}
+    return {**kinds, **{name: number for name, number, _ in _limits(names, limits)}}
+
+
 def _kinds(names: CNames) -> str:
     rows = enumerate(KINDS.items())
     return "".join(f"/* {text}: */\n#define {names.upper}_LEFT_{k} {i}U\n" for i, (k, text) in rows)
 
 
-def _macros(names: CNames, limits: MonitorLimits) -> str:
+def _limits(names: CNames, limits: MonitorLimits) -> Iterator[tuple[str, int | Fraction, str]]:
+    """Yield the macro of each limit, its number, and what stands beside it."""
     up = f"{names.upper}_MONITOR"
-    lines = [
-        f"#define {up}_WINDOW {limits.window}U /* samples */\n",
-        _number(f"{up}_QUANTILE", limits.quantile, "standard errors"),
-        _number(f"{up}_PERIOD", limits.period, "s"),
-        _number(f"{up}_TORQUE", limits.torque, "N*m, from the spec"),
-    ]
+    yield f"{up}_WINDOW", limits.window, "samples"
+    yield f"{up}_QUANTILE", limits.quantile, "standard errors"
+    yield f"{up}_PERIOD", limits.period, "s"
+    yield f"{up}_TORQUE", limits.torque, "N*m, from the spec"
     if limits.command is not None:
-        lines.append(_number(f"{up}_COMMAND", limits.command, "from the spec"))
+        yield f"{up}_COMMAND", limits.command, "from the spec"
     if limits.age is not None:
         least, most = limits.age
-        lines.append(f"#define {up}_YOUNGEST {least}U /* samples, from the spec */\n")
-        lines.append(f"#define {up}_OLDEST {most}U\n")
-    return "".join(lines)
+        yield f"{up}_YOUNGEST", least, "samples, from the spec"
+        yield f"{up}_OLDEST", most, ""
 
 
-def _number(name: str, value: Fraction, words: str) -> str:
+def _macro(name: str, value: int | Fraction, words: str) -> str:
+    if isinstance(value, int):
+        return f"#define {name} {value}U /* {words} */\n" if words else f"#define {name} {value}U\n"
     return f"#define {name} {literal(value)} /* {exact_decimal(value)} {words} */\n"
 
 

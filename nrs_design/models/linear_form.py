@@ -11,9 +11,14 @@ LinearForm = Sequence[Fraction]
 def combine(*terms: tuple[Fraction, LinearForm]) -> list[Fraction]:
     """Return the sum of forms, each times its factor; most coefficients are zero."""
     (factor, form), *others = terms
-    total = [factor * c if c else Fraction(0) for c in form]
+    total = [*form] if factor == 1 else [factor * c if c else Fraction(0) for c in form]
     for factor, form in others:
-        total = [entry + factor * c if c else entry for entry, c in zip(total, form, strict=True)]
+        pairs = zip(total, form, strict=True)
+        # Most factors are one.
+        if factor == 1:
+            total = [entry + c if c else entry for entry, c in pairs]
+        else:
+            total = [entry + factor * c if c else entry for entry, c in pairs]
     return total
 
 

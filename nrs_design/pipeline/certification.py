@@ -212,7 +212,24 @@ def assemble_spec(
     coordinates: str | None,
     scale: Fraction = Fraction(1),
 ) -> SwitchedSystem:
-    """Assemble either kind of spec, with its ranges stretched by a scale."""
+    """Assemble either kind of spec, with its ranges stretched by a scale.
+
+    Parameters
+    ----------
+    loaded : LoadedSpec
+        The spec and where it came from.
+    designed : Designed or None
+        Its plant and gains; None for given matrices.
+    coordinates : {"deflection", "force"} or None
+        Of the contact; None for given matrices.
+    scale : Fraction
+        Of each range about its nominal value.
+
+    Raises
+    ------
+    AssemblyError
+        If the modes make no switched system.
+    """
     from nrs_design.switched.assemble import assemble, assemble_matrices
 
     if designed is not None:

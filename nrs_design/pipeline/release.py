@@ -16,8 +16,8 @@ def physical_outputs(result: Result) -> Outputs | None:
     """Return force and velocity as rows over the state, with the limits of the spec.
 
     None where the state of the system does not hold the deflection of a contact, or a run from it
-    would need rules that are not kept: for controllers that command a position, laws with a memory,
-    two periods, and where contact may be lost at any deflection.
+    would need rules that are not kept: for controllers that command a position, laws with a memory
+    or a mass, two periods, and where contact may be lost at any deflection.
 
     Parameters
     ----------
@@ -30,7 +30,8 @@ def physical_outputs(result: Result) -> Outputs | None:
     rules, contacts = system.switching, designed.design.contacts
     plain = all(c.law.commands == "velocity" for c in designed.design.controllers)
     ruled = bool(rules.resets) or (system.contact is not None and not rules.is_arbitrary)
-    if not plain or ruled or not contacts or system.states[-1] != "delta [rad]":
+    heavy = any(environment.law.has_mass for environment in designed.plant.among(contacts))
+    if not plain or ruled or heavy or not contacts or system.states[-1] != "delta [rad]":
         return None
     anywhere = system.contact is None and designed.spec.contact == "losable"
     if anywhere and system.time is Time.DISCRETE:

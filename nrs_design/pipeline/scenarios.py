@@ -13,6 +13,7 @@ from nrs_design.pipeline.design import Designed, Progress, placed, silent
 from nrs_design.proof.noun import dataclass
 
 if TYPE_CHECKING:
+    from nrs_design.simulation.robot_body import Arm
     from nrs_design.simulation.run import Run
     from nrs_design.simulation.scenario import Scenario
     from nrs_design.spec import InteractionDesignSpec
@@ -66,7 +67,7 @@ class Runs:
     ----------
     names : tuple of str
         Which; empty for all.
-    engine : {"exact", "sampled"} or None
+    engine : {"exact", "sampled", "mujoco"} or None
         By default sampled where the spec has sampling or tissue is not linear, else exact.
     period : float or None
         Of the sampled engine, in s; 2 ms where nothing says it.
@@ -107,28 +108,92 @@ def run_scenarios(
     DesignError, DataError
         If there is no such scenario, or it cannot be simulated.
     """
+    wanted = wanted or Runs()
+    with placed(designed.loaded):
+        for name, group in scenarios_of(designed, wanted):
+            yield from simulate_group(designed, name, group, wanted, progress)
+
+
+def simulate_group(
+    designed: Designed,
+    name: str,
+    group: Sequence[Scenario],
+    wanted: Runs,
+    progress: Progress = silent,
+) -> Iterator[Simulated]:
+    """Simulate what one axis does, or three of a robot at once, and measure the runs.
+
+    Parameters
+    ----------
+    designed : Designed
+        The spec, its plant and its gains.
+    name : str
+        Of the scenario.
+    group : sequence of Scenario
+        In SI, one for each axis.
+    wanted : Runs
+        How.
+    progress : callable
+        Told how far the run is.
+
+    Yields
+    ------
+    Simulated
+        For each axis.
+
+    Raises
+    ------
+    DesignError
+        If it cannot be simulated.
+    """
+    from nrs_design.simulation.bodies import simulate_on_body
     from nrs_design.simulation.exact import simulate_exactly
     from nrs_design.simulation.run import MAX_STEPS
-    from nrs_design.simulation.sampled import simulate_sampled
     from nrs_design.simulation.summary import summarize
 
-    wanted, spec = wanted or Runs(), designed.spec
-    timed = spec.model_copy(update={"sampling": _sampling(spec, wanted)})
-    with placed(designed.loaded):
-        for scenario in _scenarios(designed, wanted.names):
-            # A law of tissue that is not linear has no exponential.
-            nonlinear = any(surface.element is None for surface in scenario.surfaces)
-            usual = "sampled" if spec.sampling is not None or nonlinear else "exact"
-            sampled = (wanted.engine or usual) == "sampled"
-            run = (simulate_sampled if sampled else simulate_exactly)(
-                timed if sampled else spec,
-                designed.plant,
-                designed.design,
-                scenario,
-                max_steps=wanted.max_steps or MAX_STEPS,
-                tell=partial(_tell, progress, scenario.name),
-            )
-            yield Simulated(scenario, run, summarize(spec, scenario, run))
+    spec, engine = designed.spec, wanted.engine or _usual(designed.spec, group)
+    given = designed.plant, designed.design
+    most, tell = wanted.max_steps or MAX_STEPS, partial(_tell, progress, name)
+    if engine == "exact":
+        runs = tuple(
+            simulate_exactly(spec, *given, one, max_steps=most, tell=tell) for one in group
+        )
+    else:
+        timed = spec.model_copy(update={"sampling": _sampling(spec, wanted)})
+        arm = _arm(designed, name) if len(group) > 1 else None
+        runs = simulate_on_body(timed, *given, group, engine, arm, max_steps=most, tell=tell)
+    for scenario, run in zip(group, runs, strict=True):
+        yield Simulated(scenario, run, summarize(spec, scenario, run))
+
+
+def folder_of(designed: Designed) -> Path:
+    """Return the folder of a spec, for files that it names."""
+    path = designed.loaded.path
+    return Path() if path is None else path.parent
+
+
+def _usual(spec: InteractionDesignSpec, group: Sequence[Scenario]) -> str:
+    """Return the engine for a scenario: a law of tissue that is not linear has no exponential."""
+    nonlinear = any(not surface.is_linear for one in group for surface in one.surfaces)
+    sampled = spec.sampling is not None or nonlinear or len(group) > 1
+    return "sampled" if sampled else "exact"
+
+
+def _arm(designed: Designed, name: str) -> Arm:
+    """Return the robot of a spec in the pose in which a scenario of three axes begins."""
+    import numpy as np
+
+    from nrs_design.pipeline.robots import run_robot
+    from nrs_design.simulation.robot_body import Arm
+
+    spec = designed.spec
+    assert spec.coupling is not None
+    assert spec.coupling.robot is not None
+    _, _, robot = run_robot(folder_of(designed) / spec.coupling.robot)
+    axes = spec.scenarios[name].axes if name in spec.scenarios else None
+    pose = None if axes is None else axes.pose
+    rest = robot.home if pose is None else np.array([pose.phi.si, pose.psi.si, pose.d.si])
+    return Arm(robot, rest, spec.coupling.gravity_compensated == "at-rest")
 
 
 def _sampling(spec: InteractionDesignSpec, wanted: Runs) -> SamplingSpec:
@@ -149,24 +214,48 @@ def _tell(progress: Progress, name: str, step: str) -> None:
     progress(f"{name}, {step}")
 
 
-def _scenarios(designed: Designed, names: Sequence[str]) -> list[Scenario]:
-    from nrs_design.simulation.build_scenario import build_scenario, default_scenario
+def scenarios_of(designed: Designed, wanted: Runs) -> list[tuple[str, tuple[Scenario, ...]]]:
+    """Return the scenarios that are wanted, in SI: of each its name, and one for each axis.
+
+    Parameters
+    ----------
+    designed : Designed
+        The spec and its plant.
+    wanted : Runs
+        Which; a spec without any has one of its own.
+
+    Raises
+    ------
+    DesignError, DataError
+        If there is no such scenario, its file of commands cannot be read, or three axes are wanted
+        from the exact engine.
+    """
+    from nrs_design.simulation.build_scenario import build_runs
+
+    spec, folder = designed.spec, folder_of(designed)
+    return [(name, build_runs(spec, designed.plant, name, folder)) for name in _names(spec, wanted)]
+
+
+def _names(spec: InteractionDesignSpec, wanted: Runs) -> Sequence[str]:
+    """Return the scenarios that are run; what three axes do has no exact engine."""
+    from nrs_design.simulation.build_scenario import default_names, run_names
     from nrs_design.spec.faults import did_you_mean
 
-    spec, plant, path = designed.spec, designed.plant, designed.loaded.path
-    if not spec.scenarios:
-        own = default_scenario(spec, plant)
-        if set(names) <= {own.name}:
-            return [own]
-    for name in names:
-        if name not in spec.scenarios:
+    known = tuple(spec.scenarios) or default_names(spec)
+    for name in wanted.names:
+        if name not in known:
             remedy = did_you_mean(name, spec.scenarios) if spec.scenarios else "add scenarios"
             raise DesignError(f"the spec has no scenario {name!r}", remedy=remedy)
-    folder = Path() if path is None else path.parent
-    return [
-        build_scenario(spec, plant, name, spec.scenarios[name], folder)
-        for name in names or spec.scenarios
-    ]
+    if wanted.engine == "exact" and not wanted.names and not spec.scenarios:
+        return known[:1]
+    for name in wanted.names or known:
+        if wanted.engine == "exact" and len(run_names(spec, (name,))) > 1:
+            raise DesignError(
+                f"{name} moves three axes of a robot, whose dynamics is not linear",
+                remedy="use --engine sampled or mujoco",
+                at=("scenarios", name, "axes"),
+            )
+    return wanted.names or known
 
 
 def hold_bounds(

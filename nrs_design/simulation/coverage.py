@@ -106,6 +106,8 @@ def _surroundings(spec: InteractionDesignSpec, scenario: Scenario) -> Iterator[s
     if len(scenario.surfaces) > 1:
         yield "there are several surfaces, and the proof is about one"
     for surface in scenario.surfaces:
+        if surface.arms:
+            yield f"{surface.environment} has others beside it, and the proof is about it alone"
         if surface.element is None:
             yield f"{surface.environment} is nonlinear, and the proof is about a box of linear ones"
         if any(surface.environment not in c.contacts for c in spec.controllers.values()):

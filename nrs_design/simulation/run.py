@@ -20,7 +20,28 @@ LEFT_OUT = (
 LEFT_OUT_EXACTLY = (
     "sampling, delay and rounding of the law, and the limit of the motor's command",
 )
+# What three axes on the links of a robot leave out.
+LEFT_OUT_ON_LINKS = (
+    "play and elasticity of gearheads, cables, links and joints, and friction of passive joints",
+    "springs and counter-masses of a balance, and tissue that couples the axes",
+    "gain and time constant of the motors other than the nominal ones",
+)
 ERRORS_LEFT_OUT = "friction, resolutions, noise and jitter of the scenario"
+
+
+@dataclass(frozen=True, slots=True)
+class Deviation:
+    """How far a run is from the same one on the sampled engine, at the samples.
+
+    Parameters
+    ----------
+    angle, velocity, torque : float
+        Largest differences in rad, rad/s and N m.
+    """
+
+    angle: float
+    velocity: float
+    torque: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,7 +52,7 @@ class Run:
     ----------
     scenario : str
         Its name.
-    engine : {"exact", "sampled"}
+    engine : {"exact", "sampled", "mujoco"}
         What simulated it.
     response : TimeResponse
         Up to where the run came.
@@ -51,6 +72,8 @@ class Run:
         Why the run ended before its time.
     left_out : tuple of str
         What is not in it.
+    deviation : Deviation or None
+        From the sampled engine, where another one was asked for.
     """
 
     scenario: str
@@ -64,6 +87,7 @@ class Run:
     saturated: int = 0
     stopped: str | None = None
     left_out: tuple[str, ...] = LEFT_OUT
+    deviation: Deviation | None = None
 
     @property
     def chatter(self) -> int:

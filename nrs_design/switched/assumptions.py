@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from nrs_design.controllers.controller_design import ControllerDesign
     from nrs_design.models.contact.environment import Environment
     from nrs_design.spec import InteractionDesignSpec
+    from nrs_design.spec.provenance import IdentifiedRangesSpec
 
 MAX_LISTED = 20
 LOST_CONTACT = kinds.CONTACT_LOST.says(
@@ -206,15 +207,13 @@ def identified_texts(spec: InteractionDesignSpec) -> Iterator[Assumption]:
 
     if spec.actuator.range_covers is not None:
         covered = MOTOR_COVERS[spec.actuator.range_covers]
-        yield kinds.COVERAGE.says(
-            f"The range of the actuator was identified to hold {covered}.", covered
-        )
+        said = f"hold {covered}{_since(spec.actuator)}"
+        yield kinds.COVERAGE.says(f"The range of the actuator was identified to {said}.", covered)
     for name, environment in spec.environments.items():
         if environment.range_covers is not None:
             covered = COVERS[environment.range_covers]
-            yield kinds.COVERAGE.says(
-                f"The range of {name} was identified to hold {covered}.", covered
-            )
+            said = f"hold {covered}{_since(environment)}"
+            yield kinds.COVERAGE.says(f"The range of {name} was identified to {said}.", covered)
         if environment.linearized_about is not None:
             about = environment.linearized_about
             yield kinds.LINEARIZED.says(
@@ -227,6 +226,11 @@ def identified_texts(spec: InteractionDesignSpec) -> Iterator[Assumption]:
             yield kinds.DOUBT.says(
                 f"The identification of {at[-1]} is in doubt: {'; '.join(item.doubts)}; {end}."
             )
+
+
+def _since(item: IdentifiedRangesSpec) -> str:
+    """Say what nobody can check of values that came without an id."""
+    return "" if item.range_id else ", unless it has been changed by hand since"
 
 
 def preload_texts(spec: InteractionDesignSpec, scale: Fraction) -> Iterator[Assumption]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from fractions import Fraction
 from itertools import chain
 
 from nrs_design.controllers.controller_design import ControllerDesign
@@ -209,12 +210,14 @@ def _idle_texts(loop: Assumed, idle: IdleStatesSpec) -> Iterator[Assumption]:
     what = " and ".join((*loop.law.state_words, "the position reference"))
     decay = idle_decay(idle)
     meanwhile = f"decay at {exact_decimal(decay)} 1/s" if decay else "are held"
-    yield kinds.IDLE.says(
-        f"{driving.capitalize()} controllers integrate their velocity to a position reference of "
-        f"the motion loop. While a {others} controller is active, {what} of the {driving} "
-        f"controllers act on nothing and {meanwhile}.",
-        f"while another is active, they {meanwhile}",
-    )
+    if driving:
+        yield kinds.IDLE.says(
+            f"{driving.capitalize()} controllers integrate their velocity to a position reference "
+            f"of the motion loop. While a {others} controller is active, {what} of the {driving} "
+            f"controllers act on nothing and {meanwhile}.",
+            f"while another is active, they {meanwhile}",
+        )
+    yield from _bleeding_texts(loop.design, decay)
     if idle.reset:
         rest = "".join(f", with {state.split()[0]} = 0" for state in loop.law.states)
         yield kinds.AT_A_SWITCH.says(
@@ -226,6 +229,21 @@ def _idle_texts(loop: Assumed, idle: IdleStatesSpec) -> Iterator[Assumption]:
         "reference are counted from it."
     )
     yield _KICK
+
+
+def _bleeding_texts(design: ControllerDesign, decay: Fraction) -> Iterator[Assumption]:
+    """Say what becomes of an integral while other controllers are active."""
+    law = next((c.law for c in design.controllers if c.law.bleeds), None)
+    if law is None:
+        return
+    others = " or ".join(dict.fromkeys(c.law.name for c in design.controllers if not c.law.bleeds))
+    meanwhile = f"decays at {exact_decimal(decay)} 1/s" if decay else "is held"
+    yield kinds.IDLE.says(
+        f"While a {others} controller is active, {' and '.join(law.state_words)} of the {law.name} "
+        f"controllers {meanwhile}, and stays in the command of the motion loop meanwhile. No "
+        "switch changes it; one that is set to zero, or to another value, is not covered.",
+        f"while another is active, it {meanwhile}",
+    )
 
 
 def _names(design: ControllerDesign, command: Command) -> dict[str, None]:

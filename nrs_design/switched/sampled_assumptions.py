@@ -221,7 +221,9 @@ def _placed_texts(frame: Frame, design: ControllerDesign, *, reset: bool) -> Ite
     yield _PLACED
     if not all(c.contacts for c in design.controllers):
         yield _IN_POSITION
-    if frame.idle is None:
+    if frame.gathers:
+        yield from _integral_texts(frame, design)
+    if frame.idle is None or not frame.integrates:
         return
     what = "velocity vm and reference" if frame.has_inertia else "the reference"
     yield kinds.IDLE.says(
@@ -231,6 +233,20 @@ def _placed_texts(frame: Frame, design: ControllerDesign, *, reset: bool) -> Ite
     if reset:
         yield kinds.AT_A_SWITCH.says(
             "When an impedance controller is left for one of these, they are set to zero first."
+        )
+
+
+def _integral_texts(frame: Frame, design: ControllerDesign) -> Iterator[Assumption]:
+    """Say what becomes of the integral of a PI force controller."""
+    yield kinds.IDLE.says(
+        "A pi-force controller adds the integral w of its force error besides, and a sample adds "
+        "Ki_T times the difference of the wanted force and its sample to w."
+    )
+    others = dict.fromkeys(c.law.name for c in design.controllers if not c.law.bleeds)
+    if others and frame.idle is not None:
+        yield kinds.IDLE.says(
+            f"While a {' or '.join(others)} controller is active, w stays in the reference, and a "
+            f"sample leaves g = {exact_decimal(frame.idle)} of it. No switch changes w."
         )
 
 

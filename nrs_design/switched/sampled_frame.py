@@ -2,42 +2,47 @@
 
 The actuator holds the command between samples and is not loaded by the tissue, so the stiffness
 enters through the force sample alone: every entry is affine in it, and a stiffness that moves at
-will is covered by its ends. State: ``[e, omega, e_before, vm, F_1, ..., F_d, delta]`` with the
+will is covered by its ends. State: ``[e, omega, e_before, vm, w, F_1, ..., F_d, delta]`` with the
 error e of the motion loop, its value a period ago, the velocity vm of the admittance (absent
-without inertia), the lags of a filter, the force samples on their way, and the deflection. Beside
-position and force controllers, the reference of the impedance controllers stands in the place of
-e; without impedance controllers, there is neither it nor vm. Where the admittance runs more often
-than the motion loop, the command u that is held stands after e_before.
+without inertia), the integral w of a PI force controller (absent without one), the lags of a
+filter, the force samples on their way, and the deflection. Beside position and force controllers,
+the reference of the impedance controllers stands in the place of e; without impedance controllers,
+there is neither it nor vm. Where the admittance runs more often than the motion loop, the command u
+that is held stands after e_before.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from enum import StrEnum
 from fractions import Fraction
-from itertools import chain
-from math import ceil
 
 from nrs_design.controllers.sampled import (
-    FORCE_ROUNDINGS,
-    ROUNDINGS,
-    ROUNDINGS_WITHOUT_INERTIA,
     SampledAdmittance,
-    SampledForce,
     SampledLaw,
     SampledMotion,
-    Term,
     rounding_share,
 )
 from nrs_design.controllers.sensor import SampledLowPass
+from nrs_design.controllers.step_law import numbers_of
+from nrs_design.controllers.step_parts import StepFrame
 from nrs_design.models.linear_form import LinearForm, combine, coordinates, zero
+from nrs_design.switched.sampled_law import (
+    ERROR,
+    IDLE_REFERENCE,
+    IDLE_VELOCITY,
+    KD,
+    KEPT,
+    KP,
+    ONE,
+    STEP,
+    Kinds,
+    ListedLaw,
+    list_law,
+)
+from nrs_design.switched.sampled_step import SampledStep, second, short
 
-ONE = Fraction(1)
-# Binary digits of how large roundings are.
-SIZE_BITS = 8
-ERROR, KP, KD, FORCE, KEPT = "e", "Kp e", "D (e - e before)", "b F", "a vm"
-STEP, IDLE_REFERENCE, IDLE_VELOCITY = "T (v - vm)", "d r", "d vm"
 # What acts on a frame from outside, in this order.
 INPUTS = (
     "velocity command",
@@ -84,6 +89,8 @@ class Frame:
     idle : Fraction or None
         What a period leaves of reference and velocity of the impedance controllers, where there are
         other controllers, too.
+    gathers : bool
+        Whether there are PI force controllers.
     holds : bool
         Whether the command of the motion loop outlasts a sample: there are some at which only the
         admittance is computed.
@@ -100,62 +107,51 @@ class Frame:
     takes_force: bool = False
     idle: Fraction | None = None
     holds: bool = False
+    gathers: bool = False
 
     @property
     def roundings(self) -> dict[str, Fraction]:
         """What the arithmetic changes of every term of the law at most, over its size."""
-        shares = {name: _short(rounding_share(count)) for name, count in self.counts.items()}
-        again = {term.name: _short(shares[KD] * shares[term.name]) for term in self._placing}
-        return shares | {_again(name): share for name, share in again.items()}
+        counts = self.counts
+        shares = {name: short(rounding_share(count)) for name, count in counts.items()}
+        again = {second(name): short(shares[KD] * shares[name]) for name in self._placing}
+        return shares | again
 
     @property
     def counts(self) -> dict[str, int]:
-        """How often each term of the law is rounded."""
-        counts: dict[str, int] = {}
-        plain = ROUNDINGS if self.has_inertia else ROUNDINGS_WITHOUT_INERTIA
-        felt = self._felt([], [[]] * self._order)
-        pushes = self._pushes(SampledAdmittance(None, ONE, ONE, ONE), felt[-1], [])
-        for name, count in plain.items():
-            if name == FORCE:
-                terms = chain(*felt[1:], pushes if self.integrates else ())
-                counts |= {term.name: term.roundings for term in terms}
-            elif self.integrates or name in (ERROR, KP, KD):
-                counts[name] = count
-        if self.idle is not None:
-            idle = (IDLE_REFERENCE, IDLE_VELOCITY) if self.has_inertia else (IDLE_REFERENCE,)
-            counts |= dict.fromkeys(idle, 1)
-        return counts | {term.name: term.roundings for term in self._placing}
+        """How often each term of the law is rounded, as a certificate lists them."""
+        counts = self.listed.all_counts
+        first = (ERROR, KP, KD, KEPT)
+        last = (STEP, IDLE_REFERENCE, IDLE_VELOCITY, *self._placing)
+        others = [name for name in counts if name not in (*first, *last)]
+        return {name: counts[name] for name in (*first, *others, *last) if name in counts}
+
+    @property
+    def listed(self) -> ListedLaw:
+        """The list of operations of the law."""
+        return list_law(
+            Kinds(
+                0 if self.low_pass is None else self.low_pass.order,
+                self.has_inertia,
+                self.sprung,
+                moves=self.integrates,
+                places=not self.integrates or self.idle is not None,
+                takes_force=self.takes_force,
+                gathers=self.gathers,
+            )
+        )
+
+    @property
+    def _placing(self) -> tuple[str, ...]:
+        """The terms of a reference that is computed within a sample."""
+        each = (results["error"] for results in self.listed.counts.values())
+        names = dict.fromkeys(name for reference in each for name in reference)
+        return tuple(name for name in names if name != ERROR)
 
     @property
     def remembers(self) -> bool:
         """Whether a force sample outlasts its period."""
         return self.longest_delay > 0 or self.low_pass is not None
-
-    @property
-    def _order(self) -> int:
-        return 0 if self.low_pass is None else self.low_pass.order
-
-    @property
-    def _placing(self) -> tuple[Term, ...]:
-        """The terms of a reference that force control computes."""
-        if not self.takes_force:
-            return ()
-        return _placed(SampledForce(ONE), self._felt([], [[]] * self._order)[-1])
-
-    def _felt(self, sample: LinearForm, lags: Sequence[LinearForm]) -> list[tuple[Term, ...]]:
-        """Return the terms of the force sample and of each lag; the last is what a law takes."""
-        # The sample is rounded when it is read.
-        felt = (Term("F", sample, 1),)
-        return [felt, *(() if self.low_pass is None else self.low_pass.stages(felt, lags))]
-
-    def _pushes(
-        self, law: SampledAdmittance, felt: tuple[Term, ...], pull: LinearForm
-    ) -> tuple[Term, ...]:
-        """Return the terms of what the force adds to the velocity."""
-        if self.sprung:
-            # The pull is a difference of references times Kt.
-            felt = (*(term.times(ONE, "", 1) for term in felt), Term("Kt r", pull, 3))
-        return tuple(term.times(law.b, "b ", 1 + self.has_inertia) for term in felt)
 
     @property
     def states(self) -> tuple[str, ...]:
@@ -165,7 +161,8 @@ class Frame:
         first = ("e [rad]" if self.idle is None else "reference [rad]",) if self.integrates else ()
         sensed = () if self.low_pass is None else self.low_pass.states
         motion = ("omega [rad/s]", "e before [rad]", *(("u held",) if self.holds else ()))
-        return (*first, *motion, *inner, *sensed, *ages, "delta [rad]")
+        gathered = ("integral [rad]",) if self.gathers else ()
+        return (*first, *motion, *inner, *gathered, *sensed, *ages, "delta [rad]")
 
     def rows(
         self,
@@ -192,124 +189,72 @@ class Frame:
         turn : Turn
             What is computed; the rest holds what it had.
         """
-        at, shares = _Signals.of(self), self.roundings
+        shares = self.roundings
+        at = _Signals.of(self, tuple(shares))
         k, b = values.get("k", Fraction(0)), values.get("b", Fraction(0))
         ages = [combine((k, at.delta), (b, at.omega), (ONE, at.sensor)), *at.samples]
-        felt = self._felt(ages[delay], at.lags)
-        lags = [_sum_of(stage, at.rounded) for stage in felt[1:]]
+        step = self._step(law, at, ages[delay], shares)
+        following, nothing = self.listed.following, zero(len(at.delta))
+        lags, velocity = [*at.lags], [at.velocity] if self.has_inertia else []
+        integral = [at.integral] if self.gathers else []
+        seen, drive, reference = at.before, at.drive, at.reference
+        sizes: dict[str, LinearForm] = {}
+        if turn is not Turn.ADMITTANCE:
+            seen = step.result(following["error_before"], nothing)
+            drive = step.command(nothing)
+            sizes |= step.motion_sizes()
         if turn is Turn.MOTION:
-            kept = [at.velocity] if self.has_inertia else []
-            answer = _Answer(at.reference, (), at.reference, kept)
-            felt, lags, ages = [], [*at.lags], [*at.samples]
-        elif isinstance(law, SampledAdmittance):
-            answer = self._integrate(law, felt[-1], at, shares, retuned="a" in values)
+            ages = [*at.samples]
         else:
-            answer = self._place(law, felt[-1], at, shares)
-        sizes = answer.sizes | {
-            term.name: combine((shares[term.name], term.form)) for term in chain(*felt[1:])
-        }
-        if turn is Turn.ADMITTANCE:
-            seen, drive = at.before, at.drive
-        else:
-            seen, drive = self._command(answer, at, shares, sizes)
+            after = {name: step.result(made, nothing) for name, made in following.items()}
+            lags = [after[f"filtered_{i}"] for i in range(1, len(lags) + 1)]
+            velocity = [after["velocity"] for _ in velocity]
+            integral = [after["integral"] for _ in integral]
+            moves = isinstance(law, SampledAdmittance)
+            reference = after.get("reference", after.get("offset", nothing))
+            reference = combine((ONE, reference), (Fraction(moves), at.reference_rounding))
+            sizes |= step.other_sizes(retuned="a" in values)
         speed, moved = self._move(drive, at, values)
         delta = combine((ONE, at.delta), (ONE, moved))
-        first = [answer.reference] if self.integrates else []
+        first = [reference] if self.integrates else []
         if self.integrates and self.idle is None:
-            first = [combine((ONE, answer.reference), (-ONE, delta))]
-        nothing = zero(len(delta))
+            first = [combine((ONE, reference), (-ONE, delta))]
         return [
             *first,
             speed,
             seen,
             *([drive] if self.holds else []),
-            *answer.velocity,
+            *velocity,
+            *integral,
             *lags,
             *ages[: self.longest_delay],
             delta,
             *(sizes.get(name, nothing) for name in shares),
         ]
 
-    def _integrate(
-        self,
-        law: SampledAdmittance,
-        felt: tuple[Term, ...],
-        at: _Signals,
-        shares: Mapping[str, Fraction],
-        *,
-        retuned: bool,
-    ) -> _Answer:
-        """Return what an admittance does: its reference of the moment, and what comes of it."""
-        # By how much the admittance has moved the reference is the reference itself.
-        pushes = self._pushes(law, felt, combine((law.Kt, at.reference)))
-        pushed, kept = combine(*((ONE, term.form) for term in pushes)), list[LinearForm]()
-        velocity = exact = _sum_of(pushes, at.rounded)
-        sizes: dict[str, LinearForm] = {}
-        if law.a is None:
-            exact = pushed
-        else:
-            inner = combine((law.a, at.velocity), (ONE, at.rounded[KEPT]))
-            kept, velocity = [combine((ONE, inner), (ONE, exact))], at.velocity
-            exact = velocity
-            size = shares[KEPT] * law.a
-            # Where the coefficient has a range, its corners suffice for what is affine in it.
-            sizes[KEPT] = combine((size if retuned or not size else _short(size), at.velocity))
-        step = combine((law.T, at.command), (-law.T, velocity), (ONE, at.rounded[STEP]))
-        reference = combine((ONE, at.reference), (ONE, step), (ONE, at.reference_rounding))
-        # Of a sum of two sizes, the part that is of second order counts with another term.
-        beyond = ONE if kept else 1 + shares[STEP]
-        sizes |= {t.name: combine((shares[t.name] * beyond, t.form)) for t in pushes}
-        moving = combine((ONE, at.command), (-ONE, exact))
-        sizes[STEP] = combine((_short(shares[STEP] * law.T), moving))
-        return _Answer(at.reference, (), reference, kept, sizes)
-
-    def _place(
-        self,
-        law: SampledForce,
-        felt: tuple[Term, ...],
-        at: _Signals,
-        shares: Mapping[str, Fraction],
-    ) -> _Answer:
-        """Return what force or position control does, while the states of admittances are idle."""
-        terms = _placed(law, felt) if law.Kp else ()
-        placed = combine((ONE, at.reference_rounding), *((ONE, term.form) for term in terms))
-        sizes: dict[str, LinearForm] = {}
-        sizes |= {t.name: combine((shares[t.name], t.form)) for t in terms}
-        if self.idle is None:
-            return _Answer(placed, terms, [], [], sizes)
-        left, kept = combine((self.idle, at.reference), (ONE, at.rounded[IDLE_REFERENCE])), []
-        sizes[IDLE_REFERENCE] = combine((shares[IDLE_REFERENCE] * self.idle, at.reference))
-        if self.has_inertia:
-            kept = [combine((self.idle, at.velocity), (ONE, at.rounded[IDLE_VELOCITY]))]
-            sizes[IDLE_VELOCITY] = combine((shares[IDLE_VELOCITY] * self.idle, at.velocity))
-        return _Answer(placed, terms, left, kept, sizes)
-
-    def _command(
-        self,
-        answer: _Answer,
-        at: _Signals,
-        shares: Mapping[str, Fraction],
-        sizes: dict[str, LinearForm],
-    ) -> tuple[LinearForm, LinearForm]:
-        """Return the error that is seen, and the command, and add to the sizes."""
-        Kp, D = self.motion.Kp, self.motion.D
-        parts = ((ONE, answer.taken), (-ONE, at.delta), (-ONE, at.encoder), (-ONE, at.angle))
-        read = combine(*parts)
-        rounded = [at.rounded[ERROR], *(at.rounded[term.name] for term in answer.terms)]
-        seen = combine((ONE, read), *((ONE, form) for form in rounded))
-        drive = combine((Kp + D, seen), (-D, at.before))
-        added = [KP, KD, *(_again(term.name) for term in answer.terms)]
-        drive = combine((ONE, drive), *((ONE, at.rounded[name]) for name in added))
-        # Of a sum of two sizes, the part that is of second order counts with another term.
-        second = shares[KP] * Kp * (1 + shares[ERROR]) + shares[KD] * D * shares[ERROR]
-        change = combine((ONE, read), (-ONE, at.before))
-        sizes[ERROR] = combine((shares[ERROR], read))
-        sizes[KP] = combine((_short(second), read))
-        sizes[KD] = combine((_short(shares[KD] * D), change))
-        for term in answer.terms:
-            name = _again(term.name)
-            sizes[name] = combine((shares[name] * (Kp + D), term.form))
-        return seen, drive
+    def _step(
+        self, law: SampledLaw, at: _Signals, force: LinearForm, shares: Mapping[str, Fraction]
+    ) -> SampledStep:
+        """Return what the law makes of a sample of the force."""
+        moves = isinstance(law, SampledAdmittance)
+        # Beside one with a spring, an admittance may have none.
+        numbers = {"Kt": Fraction(0)} | numbers_of(
+            StepFrame(self.motion, self.low_pass), law, self.idle
+        )
+        given = {
+            "angle": combine((ONE, at.delta), (ONE, at.encoder), (ONE, at.angle)),
+            "torque": force,
+            "velocity_command": at.command,
+            "reference": at.reference,
+            "offset": at.reference,
+            "error_before": at.before,
+            "velocity": at.velocity,
+            "integral": at.integral,
+            **{f"filtered_{i}": lag for i, lag in enumerate(at.lags, 1)},
+        }
+        # A commanded position is rounded as it is read, the reference of an admittance as it moves.
+        given |= {} if moves else {"position": at.reference_rounding}
+        return SampledStep.of(self.listed, law, numbers, given, at.rounded, shares)
 
     def _move(
         self, drive: LinearForm, at: _Signals, values: Mapping[str, Fraction]
@@ -335,6 +280,7 @@ class _Signals:
     before: LinearForm
     drive: LinearForm
     velocity: LinearForm
+    integral: LinearForm
     lags: Sequence[LinearForm]
     samples: Sequence[LinearForm]
     delta: LinearForm
@@ -347,8 +293,8 @@ class _Signals:
     rounded: Mapping[str, LinearForm]
 
     @classmethod
-    def of(cls, frame: Frame) -> _Signals:
-        names, shares = frame.states, frame.roundings
+    def of(cls, frame: Frame, shares: Sequence[str]) -> _Signals:
+        names = frame.states
         size = len(names)
         unit = coordinates(size + len(INPUTS) + len(shares))
         left, delta, nothing = iter(unit[: size - 1]), unit[size - 1], zero(len(unit))
@@ -359,6 +305,7 @@ class _Signals:
         omega, before = next(left), next(left)
         drive = next(left) if frame.holds else nothing
         velocity = next(left) if frame.has_inertia else nothing
+        integral = next(left) if frame.gathers else nothing
         order = 0 if frame.low_pass is None else frame.low_pass.order
         lags = [next(left) for _ in range(order)]
         inputs = dict(zip(_FIELDS, unit[size:], strict=False))
@@ -370,45 +317,10 @@ class _Signals:
             before,
             drive,
             velocity,
+            integral,
             lags,
             samples,
             delta,
             rounded=rounded,
             **inputs,
         )
-
-
-@dataclass(frozen=True, slots=True)
-class _Answer:
-    """What a law makes of a sample.
-
-    The reference that the motion loop takes now, the terms of which it is rounded; the next ones
-    of the reference and of the velocity of impedance control, where there are such; sizes.
-    """
-
-    taken: LinearForm
-    terms: tuple[Term, ...]
-    reference: LinearForm
-    velocity: Sequence[LinearForm]
-    sizes: dict[str, LinearForm] = field(default_factory=dict)
-
-
-def _placed(law: SampledForce, felt: tuple[Term, ...]) -> tuple[Term, ...]:
-    return tuple(term.times(-law.Kp, "Kp ", FORCE_ROUNDINGS) for term in felt)
-
-
-def _again(name: str) -> str:
-    """Name the part of second order of what a term of the reference does to the command."""
-    return f"u of {name}"
-
-
-def _short(size: Fraction) -> Fraction:
-    """Round a size up to a few binary digits, so that the numbers of a certificate stay short."""
-    bits = size.numerator.bit_length() - size.denominator.bit_length()
-    unit = Fraction(2) ** (bits - SIZE_BITS)
-    return ceil(size / unit) * unit
-
-
-def _sum_of(terms: Iterable[Term], rounded: Mapping[str, LinearForm]) -> LinearForm:
-    """Return the sum of terms, each with what it is rounded by."""
-    return combine(*((ONE, form) for t in terms for form in (t.form, rounded[t.name])))

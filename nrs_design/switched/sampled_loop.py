@@ -175,9 +175,10 @@ def _frame(
         None if low_pass is None else low_pass.sampled(outer),
         any(law.Kt for law in admittances),
         bool(admittances),
-        any(isinstance(law, SampledForce) and law.Kp for law in laws),
+        any(isinstance(law, SampledForce) and law.Kp and not law.Ki_T for law in laws),
         idle,
         Turn.ADMITTANCE in _turns(sampling),
+        any(isinstance(law, SampledForce) and law.Ki_T for law in laws),
     )
 
 

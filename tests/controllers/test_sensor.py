@@ -10,15 +10,18 @@ from scipy.signal import lfilter
 from scipy.spatial.transform import Rotation
 
 from nrs_design.controllers.float32 import is_float32
-from nrs_design.controllers.sampled import Term
+from nrs_design.controllers.sampled import SampledForce, SampledMotion
 from nrs_design.controllers.sensor import (
     LowPass,
     Sensor,
     build_sensor,
     length_between,
 )
+from nrs_design.controllers.step_analysis import linear_forms
+from nrs_design.controllers.step_law import build_placed_law
+from nrs_design.controllers.step_parts import StepFrame
 from nrs_design.errors import DesignError
-from nrs_design.models.linear_form import coordinates
+from nrs_design.models.linear_form import coordinates, zero
 from nrs_design.spec.sensor import SensorSpec
 
 F = Fraction
@@ -143,11 +146,12 @@ def test_lags_as_a_processor_runs_them(order):
     wanted = force
     for _ in range(order):
         wanted = lfilter([q], [1, -p], wanted)
-    forms = coordinates(order + 1)
-    stages = step.stages((Term("F", forms[-1], 1),), forms[:-1])
-    rows = np.array(
-        [np.sum([term.form for term in stage], axis=0) for stage in stages], dtype=float
-    )
+    law = build_placed_law(StepFrame(SampledMotion(F(1), F(1)), step), {"one": SampledForce(F(0))})
+    names = [f"filtered_{i}" for i in range(1, order + 1)]
+    given = {value.name: zero(order + 1) for value in law.values}
+    given |= zip([*names, "torque"], coordinates(order + 1), strict=True)
+    forms = linear_forms(law, 0, given)
+    rows = np.array([forms[law.following[name]] for name in names], dtype=float)
     x, found = np.zeros(order), []
     for sample in force:
         x = rows @ [*x, sample]

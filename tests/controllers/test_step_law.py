@@ -1,4 +1,9 @@
-"""The list of operations is the law of the certificate: its map and its roundings."""
+"""The list of operations is the law of the certificate: its map and its roundings.
+
+The certificate takes both from the list. Here the loop around it is written again, with inputs and
+motor, and how often terms are rounded is counted by hand; `tests/switched/test_sampled_frame.py`
+holds the same loop against simulations step by step.
+"""
 
 from fractions import Fraction
 
@@ -6,12 +11,7 @@ import numpy as np
 
 from nrs_design.controllers.float32 import to_float32
 from nrs_design.controllers.laws import Admittance, ProportionalDerivative
-from nrs_design.controllers.sampled import (
-    ROUNDINGS,
-    ROUNDINGS_WITHOUT_INERTIA,
-    SampledForce,
-    SampledMotion,
-)
+from nrs_design.controllers.sampled import SampledForce, SampledMotion
 from nrs_design.controllers.sensor import LowPass
 from nrs_design.controllers.step_analysis import (
     linear_forms,
@@ -120,10 +120,28 @@ def test_the_roundings_are_those_of_the_certificate():
         assert counted == frame.counts
 
 
+WITH_INERTIA = {"e": 1, "Kp e": 2, "D (e - e before)": 3, "a vm": 2, "b F": 3, "T (v - vm)": 2}
+WITHOUT_INERTIA = {"e": 1, "Kp e": 2, "D (e - e before)": 3, "b F": 2, "T (v - vm)": 2}
+
+
 def test_the_table_of_roundings():
     """The numbers that docs/certificates/rounding.md explains."""
     found = {frame.has_inertia: term_counts(law) for frame, _, law in cases(33) if plain(frame)}
-    assert found == {True: ROUNDINGS, False: ROUNDINGS_WITHOUT_INERTIA}
+    assert found == {True: WITH_INERTIA, False: WITHOUT_INERTIA}
+
+
+def test_the_roundings_of_filters_and_springs():
+    """Counted by hand: a lag is two products and a sum, a spring a difference, product and sum."""
+    for frame, _, law in cases(34):
+        counted = term_counts(law)
+        order = 0 if frame.low_pass is None else frame.low_pass.order
+        force = {0: {"F": 1}, 1: {"p x1": 2, "q F": 3}}.get(
+            order, {"p x2": 2, "q p x1": 4, "q q F": 5}
+        )
+        more = frame.sprung + 1 + frame.has_inertia
+        wanted = {f"b {name}": count + more for name, count in force.items()}
+        wanted |= {"b Kt r": 4 + frame.has_inertia} if frame.sprung else {}
+        assert {k: n for k, n in counted.items() if k.startswith("b ")} == wanted
 
 
 def plain(frame):
@@ -196,13 +214,17 @@ def test_the_map_of_force_and_position_control_is_that_of_the_certificate():
             assert without_roundings(frame, delta) == expected[size - 1]
 
 
-def test_no_term_of_force_control_is_rounded_more_often_than_is_proved():
-    """Besides, what is proved adds the rounding of the error to that of all of its terms."""
+def test_how_often_the_terms_of_force_control_are_rounded():
+    """The force five times, as docs/certificates/rounding.md says: with the sum with X, too.
+
+    Besides, what is proved adds the rounding of the error to that of all of its terms.
+    """
     for frame, _, law in placed_cases(38):
         angles = {"X", "theta", "Kp Fd"}
         counted = term_counts(law, 1)
         assert {*counted} - angles == {*frame.counts} - {"e"}
-        assert all(counted[name] <= frame.counts[name] for name in {*counted} - angles)
+        assert all(counted[name] == frame.counts[name] for name in {*counted} - angles)
+        assert frame.low_pass is not None or frame.counts["Kp F"] == 5
         assert (counted["X"], counted["theta"]) == (1, 1)
         # In position control there is no force.
         assert term_counts(law, 0).items() <= frame.counts.items()
@@ -290,8 +312,8 @@ def test_no_term_of_a_mixed_law_is_rounded_more_often_than_is_proved():
     for frame, laws, law in mixed_cases(43):
         for mode, sampled in enumerate(laws.values()):
             counted = term_counts(law, mode)
-            for angle in ("X", "theta", "Kp Fd"):
-                assert counted.pop(angle, 1) <= 3
+            assert counted.pop("Kp Fd", 4) == 4
+            assert {counted.pop(angle, 1) for angle in ("X", "theta")} == {1}
             if isinstance(sampled, SampledForce) and frame.has_inertia:
                 # The coefficient a of the velocity is d where it is idle.
                 assert counted.pop("a vm") == frame.counts["d vm"]

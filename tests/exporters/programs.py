@@ -65,6 +65,15 @@ LAWS = {
         {**PLACED, "insertion": ADMITTANCE.sampled(PERIOD, "exact")},
         to_float32(Fraction("0.96")),
     ),
+    "integral": build_mixed_law(
+        frame(),
+        {
+            **PLACED,
+            "insertion": ADMITTANCE.sampled(PERIOD, "exact"),
+            "hold": SampledForce(to_float32(Fraction("0.02")), to_float32(Fraction("0.001"))),
+        },
+        to_float32(Fraction("0.96")),
+    ),
     "limits": law(limits=StepLimits(Fraction(1, 2), to_float32(Fraction("0.13")), Fraction(4000))),
 }
 

@@ -10,6 +10,7 @@ from nrs_design.exporters.c import render as render_c
 from nrs_design.exporters.deployed import find_differences
 from nrs_design.exporters.export import export_design
 from nrs_design.exporters.json_record import render as render_json
+from nrs_design.exporters.monitor import render as render_monitor
 from nrs_design.spec import read_spec
 from tests.support import ROBOT, ROOT, SOFT_TISSUE, ends_soon
 
@@ -195,3 +196,36 @@ def test_a_continuous_certificate_says_nothing_of_a_program(
     (tmp_path / "law.h").write_text(header)
     with pytest.raises(NrsDesignError, match="continuous time"):
         find_differences(tmp_path / "law.h", continuous.spec, continuous_export.certificate)
+
+
+def test_a_monitor_is_that_of_the_certificate(differences, sampled_export):
+    """Its limits to the last bit, its ranges and names; what is beside them says nothing."""
+    files = {ending: text.decode() for ending, text in render_monitor(sampled_export).items()}
+    for ending, text in files.items():
+        assert differences(text, f"law{ending}") == []
+        assert differences(text.replace("\n", "\r\n"), f"law{ending}") == []
+        assert differences(text.replace("*/", "or so */", 1), f"law{ending}") == []
+    header, source = files["_monitor.h"], files["_monitor.c"]
+    lines = [line for line in header.splitlines() if re.match(r"#define \w+ \S", line)]
+    assert len(lines) == 16
+    for line in lines:
+        _, name, number, *_ = line.split()
+        other = f"{int(number[:-1]) + 1}U" if number.endswith("U") else f"-{number}"
+        (found,) = differences(header.replace(line, f"#define {name} {other}"), "law_monitor.h")
+        assert found.startswith(name)
+    numbers = re.findall(r"0x1\S*F|\b\d+U", source)
+    assert len(numbers) > 8
+    for number in {*numbers}:
+        one = number.replace("0x1", "0x1.000002") if "x" in number else f"9{number}"
+        (found,) = differences(source.replace(number, one, 1), "law_monitor.c")
+        assert found.endswith(f"the export has `{number}`")
+    for old, new in (("LEFT_STAY", "LEFT_ORDER"), ("m->stay", "m->mode"), ("    ", "#if 0\n")):
+        assert old in source
+        assert len(differences(source.replace(old, new, 1), "law_monitor.c")) == 1
+    assert differences(source + "\n#undef NAN\n", "law_monitor.c")
+    assert differences(source.replace("//", "/").replace(";", "; // \\\n", 1), "law_monitor.c")
+
+
+def test_a_law_in_code_is_not_read_as_numbers(differences, sampled_export):
+    with pytest.raises(NrsDesignError, match="none of the files whose numbers are compared"):
+        differences(render_c(sampled_export)[".c"], "law.c")

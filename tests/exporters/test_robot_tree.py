@@ -8,15 +8,8 @@ import pytest
 
 from nrs_design.errors import PoseError
 from nrs_design.exporters import ROBOT_FORMATS
-from nrs_design.exporters.robot_tree import (
-    RobotExport,
-    comment,
-    home_joints,
-    joint_names,
-    links_of,
-    tree_angles,
-)
-from nrs_design.models.robot import inverse_kinematics
+from nrs_design.exporters.robot_tree import RobotExport, comment, home_joints
+from nrs_design.models.robot import inverse_kinematics, joint_names, links_of, tree_angles
 from tests.exporters.robots import POSES
 
 

@@ -9,7 +9,7 @@ import pytest
 from nrs_design.certificates.bounds import bound_on
 from nrs_design.certificates.certificate import Verdict
 from nrs_design.controllers.laws import Admittance
-from nrs_design.controllers.sampled import ROUNDINGS, SampledMotion
+from nrs_design.controllers.sampled import SampledMotion
 from nrs_design.errors import AssemblyError
 from nrs_design.pipeline import run_design
 from nrs_design.proof.system import SwitchedSystem, Time
@@ -62,7 +62,8 @@ def test_modes_and_states_of_the_thesis_robot(tmp_path):
     assert len(system.modes) == 16
     assert len(system.contact.free) == 8
     assert system.find_contradiction() is None
-    assert [item.name for item in system.roundings] == [*ROUNDINGS]
+    terms = ["e", "Kp e", "D (e - e before)", "a vm", "b F", "T (v - vm)"]
+    assert [item.name for item in system.roundings] == terms
     texts = " ".join(system.assumptions)
     assert "0 to 1 sample old" in texts
     assert "D (e - e before) 3" in texts

@@ -35,6 +35,10 @@ _OFFSET = (
 
 _FORCE_ROWS: tuple[tuple[str, Callable[[ForceAnalysis], str]], ...] = (
     ("Kp [rad/(N·m)]", lambda item: number(item.loop.gain, 6)),
+    (
+        "Ki [rad/(N·m·s)]",
+        lambda item: number(item.approach.integral, 6) if item.approach.integral else "–",
+    ),
     ("Nominal stiffness [N·m/rad]", lambda item: number(item.stiffness, 6)),
     ("Closed-loop poles [rad/s]", lambda item: roots(item.loop.poles)),
     ("Damping ratio [1]", lambda item: number(item.loop.damping_ratio)),
@@ -224,7 +228,7 @@ def _force_section(designed: Designed, analysis: DesignAnalysis) -> Section:
             for item in analysis.force
         ],
     )
-    loci = (_force_locus(analysis.motion, item) for item in analysis.force[:CURVES])
+    loci = (_force_locus(item) for item in analysis.force[:CURVES])
     texts = [Paragraph(NOMINAL)]
     if any(item.peak is not None for item in analysis.force):
         texts.append(Paragraph(_OFFSET))
@@ -239,9 +243,9 @@ def _force_at(designed: Designed, label: str, item: ForceAnalysis) -> At:
     return ("controllers", item.name, *key)
 
 
-def _force_locus(motion: TransferFunction, item: ForceAnalysis) -> Illustration:
-    scaled = tuple(item.stiffness * c for c in motion.numerator)
-    open_loop = TransferFunction(scaled, motion.denominator)
+def _force_locus(item: ForceAnalysis) -> Illustration:
+    scaled = tuple(item.stiffness * c for c in item.forward.numerator)
+    open_loop = TransferFunction(scaled, item.forward.denominator)
     # A gain of zero is allowed; the locus still needs a range of gains.
     gain = item.loop.gain or 1 / item.stiffness
     caption = (

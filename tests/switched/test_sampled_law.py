@@ -1,0 +1,98 @@
+"""A certificate of the sampled loop is about the list of operations, and changes with it."""
+
+from dataclasses import replace
+from fractions import Fraction
+
+import pytest
+
+from nrs_design.certificates.verify import verify
+from nrs_design.controllers import step_law, step_parts
+from nrs_design.controllers.operations import Operation
+from nrs_design.controllers.sampled import SampledForce
+from nrs_design.errors import InternalError
+from nrs_design.pipeline import run_design
+from nrs_design.spec import read_spec
+from nrs_design.switched.sampled_law import Kinds, list_law, mode_of
+from tests.support import ROOT
+
+SPEC = ROOT / "specs/neuroboscope/soft-tissue-sampled.nrs.yaml"
+CERTIFICATE = ROOT / "reports/soft-tissue-sampled.cert.json"
+PLAIN = Kinds(0, inert=True, sprung=False, moves=True, places=False, takes_force=False)
+MIXED = replace(PLAIN, places=True, takes_force=True)
+
+
+@pytest.fixture
+def alter(monkeypatch):
+    """Put other operations in the place of those of a part of the law."""
+
+    def put(part, change):
+        given = getattr(step_parts, part)
+        monkeypatch.setattr(step_law, part, lambda *a, **b: change([*given(*a, **b)]))
+        list_law.cache_clear()
+
+    yield put
+    monkeypatch.undo()
+    list_law.cache_clear()
+
+
+def one(name, **other):
+    """Change one operation."""
+    return lambda found: [replace(o, **other) if o.name == name else o for o in found]
+
+
+def velocity_first(found):
+    """Let the reference move on with the velocity of after the sample."""
+    return [replace(o, right="next_velocity") if o.name == "relative" else o for o in found]
+
+
+ALTERED = {
+    "as it is": ("motion", lambda found: found),
+    "a sign": ("motion", one("command", kind="subtract")),
+    "a coefficient": ("motion", one("proportional", left="Kd_over_T")),
+    "an order": ("admitted", velocity_first),
+    "a rounding": ("admitted", one("next_velocity", rounding="own", symbol="w")),
+}
+
+
+@pytest.mark.parametrize("what", ALTERED)
+def test_a_certificate_is_rejected_where_the_law_was_altered(alter, what):
+    """The loop is assembled from the list, so that of another law is another loop."""
+    alter(*ALTERED[what])
+    loaded = read_spec(SPEC)
+    designed = run_design(loaded)
+    try:
+        fault = verify(CERTIFICATE, loaded, plant=designed.plant).fault
+    except InternalError as error:
+        fault = str(error)
+    assert (fault is None) == (what == "as it is")
+
+
+def test_a_rounded_number_taken_somewhere_new_is_refused(alter):
+    """What that adds to the roundings there would be left out of the bounds."""
+    alter("motion", lambda found: [*found, Operation("again", "multiply", "Kp", "error")])
+    list_law(PLAIN)
+    # Not used any further, it is nothing.
+    alter("motion", one("derivative", right="error"))
+    with pytest.raises(InternalError, match="second order of D e is not bounded"):
+        list_law(PLAIN)
+
+
+def test_terms_are_counted_whatever_the_numbers():
+    """With coefficients zero and one, too, of which products are exact."""
+    counts = list_law(MIXED).counts
+    assert {*counts} == {"impedance", "position", "force"}
+    assert counts["force"]["error"] == {"e": 1, "Kp F": 5}
+    assert counts["position"]["error"] == {"e": 1}
+    assert counts["position"]["next_velocity"] == {"d vm": 1}
+    assert counts["impedance"]["next_velocity"] == {"a vm": 2, "b F": 3}
+    assert counts["impedance"]["next_offset"] == {"T (v - vm)": 2}
+
+
+def test_what_the_loop_has_not_is_no_state_of_it():
+    listed = list_law(replace(PLAIN, sprung=True))
+    assert {*listed.law.following} - {*listed.following} == {"commanded"}
+    assert "T v" not in listed.all_counts
+
+
+def test_position_control_is_force_control_that_takes_none():
+    assert [mode_of(SampledForce(Fraction(n))) for n in (0, 1)] == ["position", "force"]

@@ -76,7 +76,7 @@ def monte_carlo(
 
     for path, beginning in _places(asked, out):
         check_place(path, beginning)
-    bounds = {} if proof is None else _bounds(asked, proof)
+    written = {} if proof is None else _bounds(asked, proof)
     outcomes: list[Outcome] = []
     try:
         _simulate(asked, jobs, resume, outcomes, step)
@@ -88,6 +88,11 @@ def monte_carlo(
         raise typer.Exit(exit_codes.INTERRUPTED) from None
     step("figures")
     found = shares(outcomes, asked.limits)
+    drawn = tuple(dict.fromkeys(reason for one in outcomes for reason in one.uncovered))
+    bounds = {
+        name: (level, tuple(dict.fromkeys((*reasons, *drawn))))
+        for name, (level, reasons) in written.items()
+    }
     study = Study(asked, outcomes, found, bounds, _write(asked, out, outcomes, bounds))
     return partial(_show, study)
 

@@ -6,9 +6,12 @@ import signal
 import subprocess
 import sys
 import time
+from types import SimpleNamespace
 
 import pytest
 
+from nrs_design.cli import monte_carlo as cli
+from nrs_design.simulation.monte_carlo import Outcome
 from tests.simulation.interactions import text_of
 from tests.support import run
 
@@ -25,6 +28,20 @@ def spec(tmp_path):
     more = "contact: losable\ndisturbances: {command: 8 deg/s}\n"
     path.write_text(text_of(LAW, SOFT, scenario=RUN, more=more))
     return path
+
+
+def test_a_bound_is_not_about_what_a_drawn_run_does(monkeypatch):
+    """The scenario as written keeps what the proof takes for granted, one of the runs does not."""
+    asked = SimpleNamespace(limits={"run": {}})
+    peaks = {"torque": 0.1, "deflection": 0.1, "velocity": 0.1}
+    ends = [Outcome(i, "run", i, peaks, None, {}, why) for i, why in enumerate(([], ["too far"]))]
+    monkeypatch.setattr(cli, "_bounds", lambda asked, proof: {"torque": (0.5, ())})
+    monkeypatch.setattr(
+        cli, "_simulate", lambda asked, jobs, resume, outcomes, step: outcomes.extend(ends)
+    )
+    shown = cli.monte_carlo(asked, 1, None, object(), None, lambda text: None)
+    (study,) = shown.args
+    assert study.bounds == {"torque": (0.5, ("too far",))}
 
 
 @pytest.mark.slow

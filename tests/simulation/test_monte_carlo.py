@@ -8,7 +8,7 @@ import pytest
 from nrs_design.errors import DataError
 from nrs_design.pipeline import run_design
 from nrs_design.pipeline.monte_carlo import MonteCarlo, run_monte_carlo
-from nrs_design.pipeline.scenarios import Runs, scenarios_of
+from nrs_design.pipeline.scenarios import Runs
 from nrs_design.simulation.monte_carlo import Outcome, Share, draw, shares
 from nrs_design.simulation.outcomes_file import appending, read_outcomes
 from nrs_design.spec import parse_spec
@@ -66,7 +66,7 @@ def test_the_interval_is_exact():
 
 def test_a_run_depends_on_seed_and_index_alone():
     asked = study(4)
-    scenarios = scenarios_of(asked.designed, ())
+    scenarios = asked.scenarios
 
     def drawn(seed, index):
         return draw(asked.designed.spec, asked.designed.plant, scenarios, seed, index)
@@ -85,13 +85,26 @@ def test_the_motor_is_drawn_from_its_ranges():
         "gain: {nominal: 4.8417e-4 rad/s/rpm, range: [4.7e-4 rad/s/rpm, 5e-4 rad/s/rpm]}",
     )
     designed = run_design(LoadedSpec(Path("small"), "", text, parse_spec(text)))
-    scenarios = scenarios_of(designed, ())
+    scenarios = MonteCarlo(designed, Runs(), 1, 0).scenarios
     drawn = [draw(designed.spec, designed.plant, scenarios, 0, i) for i in range(20)]
     gains = [float(one.plant.actuator.gain) for one in drawn]
     assert 4.7e-4 < min(gains) < 4.8e-4 < 4.9e-4 < max(gains) < 5e-4
     assert [one.parameters["motor gain"] for one in drawn] == gains
     assert {one.parameters["motor time constant"] for one in drawn} == {0.0351}
     assert "motor gain" not in next(run_monte_carlo(asked)).parameters
+
+
+def test_what_a_drawn_run_does_beyond_a_proof_is_kept():
+    """Soft tissue lets the angle come further than at its nominal stiffness."""
+    more = "sampling: {period: 2 ms, delay: 0}\ndisturbances: {largest_angle: 0.5 deg}\n"
+    found = list(run_monte_carlo(study(8, more=more)))
+    beyond = {bool(one.uncovered): [] for one in found}
+    for one in found:
+        beyond[bool(one.uncovered)].append(one.parameters["soft k"])
+    assert max(beyond[True]) < min(beyond[False])
+    for one in found:
+        assert not one.uncovered or "the angle is larger" in one.uncovered[0]
+    assert not any(one.uncovered for one in run_monte_carlo(study(3)))
 
 
 @pytest.mark.slow
@@ -103,8 +116,8 @@ def test_processes_change_nothing():
 def test_what_was_stopped_counts_as_above():
     calm = {"torque": 0.1, "deflection": 0.0, "velocity": 0.0}
     limits = {"run": {"torque": 0.3}}
-    ended = Outcome(0, "run", 0, calm, None, {})
-    stopped = Outcome(1, "run", 0, calm, "the budget is used up", {})
+    ended = Outcome(0, "run", 0, calm, None, {}, [])
+    stopped = Outcome(1, "run", 0, calm, "the budget is used up", {}, [])
     assert shares([ended, stopped], limits)["torque"].above == 1
     assert shares([ended], limits).keys() == {"torque"}
 
@@ -114,7 +127,7 @@ HEAD = {"spec": "small", "spec_sha256": "0" * 64, "runs": 5, "seed": 0}
 
 def outcome(index):
     peaks = dict.fromkeys(("torque", "deflection", "velocity"), 0.1 / 3)
-    return Outcome(index, "run", 7, peaks, None, {"soft k": 41.5})
+    return Outcome(index, "run", 7, peaks, None, {"soft k": 41.5}, [])
 
 
 def test_a_file_keeps_runs_and_drops_a_torn_line(tmp_path):

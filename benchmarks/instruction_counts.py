@@ -25,7 +25,8 @@ from nrs_design.exporters.program import Program
 from nrs_design.exporters.robot_tree import RobotExport
 from nrs_design.exporters.vectors import make_vectors
 from nrs_design.models.robot import build_robot
-from nrs_design.pipeline import run_design, run_robot_laws
+from nrs_design.pipeline import run_design
+from nrs_design.pipeline.robots import run_robot_laws
 from nrs_design.spec import RobotSpec, read_spec
 
 HERE = Path(__file__).parent

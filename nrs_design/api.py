@@ -39,6 +39,7 @@ if TYPE_CHECKING:
     from nrs_design.controllers.controller_design import ControllerDesign
     from nrs_design.exporters.export import Export
     from nrs_design.exporters.state_space import StateSpaces
+    from nrs_design.pipeline.scenarios import Simulated
     from nrs_design.proof.evidence import AbstractEvidence
     from nrs_design.reporting import Report
 
@@ -291,14 +292,14 @@ class Study:
         engine: str | None = None,
         period: float | None = None,
         delay: int | None = None,
-    ) -> tuple[pipeline.Simulated, ...]:
+    ) -> tuple[Simulated, ...]:
         """Simulate scenarios of the spec, or the one of a spec that has none.
 
         Parameters
         ----------
         *scenarios : str
             Names; by default all.
-        engine : {"exact", "sampled"}, optional
+        engine : {"exact", "sampled", "mujoco"}, optional
             By default sampled where the spec has sampling or tissue is not linear, else exact.
         period, delay : float and int, optional
             Of the sampled engine, in s and in samples; by default those of the spec.
@@ -316,8 +317,9 @@ class Study:
         >>> bool(abs(one.run.response["torque"]).max() < 0.3)
         True
         """
-        if engine not in (None, "exact", "sampled"):
-            raise DesignError(f"there is no engine {engine!r}", remedy="write exact or sampled")
+        if engine not in (None, "exact", "sampled", "mujoco"):
+            remedy = "write exact, sampled or mujoco"
+            raise DesignError(f"there is no engine {engine!r}", remedy=remedy)
         designed = pipeline.run_design(self.loaded)
         if designed is None:
             raise pipeline.wrong_kind(
@@ -327,8 +329,9 @@ class Study:
             )
         if engine is None and (period is not None or delay is not None):
             engine = "sampled"
-        wanted = pipeline.Runs(tuple(scenarios), engine, period, delay)
-        return tuple(pipeline.run_scenarios(designed, wanted))
+        from nrs_design.pipeline.scenarios import Runs, run_scenarios
+
+        return tuple(run_scenarios(designed, Runs(tuple(scenarios), engine, period, delay)))
 
     def export(self, certificate: str | Path | None = None) -> Export:
         """Return the gains that ship with their proof, or why there are none.

@@ -40,6 +40,8 @@ SCHEMA = (
     b'  "title": "nrs-design export",\n',
 )
 RESPONSE = b"time_s,angle_rad,velocity_rad_s,torque_Nm,"
+OUTCOMES = b"run,scenario,seed,peak_torque_Nm,"
+WORST_RUN = b"time_s,torque_Nm,"
 # An archive of arrays that begins with a stored text, `about.npy`, which says that it is a run.
 ARCHIVE = (
     b"PK\x03\x04\x14\x00\x00\x00\x00\x00\x00\x00!\x00_\x00\x9b?\xcc\x00\x00\x00\xcc\x00\x00\x00"

@@ -37,7 +37,9 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
     from fractions import Fraction
 
-    from nrs_design.pipeline import ProofMargins, Result, Subset
+    from nrs_design.pipeline import Result
+    from nrs_design.pipeline.margins import ProofMargins
+    from nrs_design.pipeline.subsets import Subset
     from nrs_design.search.certification import Certification
     from nrs_design.search.margin import BoxMargin, DwellMargin
 
@@ -97,14 +99,9 @@ def certify_switching(
     from nrs_design.certificates.certificate import dump
     from nrs_design.output import CERTIFICATE, check_place, write_output
     from nrs_design.ownership import check_certificate, origin_of
-    from nrs_design.pipeline import (
-        Overrides,
-        find_relief,
-        limits_of,
-        run_certification,
-        run_proof_margins,
-        run_subsets,
-    )
+    from nrs_design.pipeline import Overrides, find_relief, limits_of, run_certification
+    from nrs_design.pipeline.margins import run_proof_margins
+    from nrs_design.pipeline.subsets import run_subsets
     from nrs_design.spec import read_spec
 
     loaded = read_spec(spec)
@@ -143,9 +140,10 @@ def certify_switching(
         told["relief"] = list(find_relief(result))
         content = summary(result, written) | margins_summary(margins.box, margins.dwell) | told
         content |= {} if margins.loop is None else {"loop_margins": loop_summary(margins.loop)}
-        content["next_steps"] = list(_next_steps(result))
+        content["next_steps"] = list(_next_steps(result, margin, shortest_dwell))
         if parts is not None:
             content["subsets"] = [{"left_out": p.left_out, "claim": p.claim} for p in parts]
+            content["subsets_without"] = list(_unlooked(result))
         print_json("certify-switching", content)
     elif not quiet:
         _print(result, verbose=verbose)
@@ -154,7 +152,7 @@ def certify_switching(
         for line in _margin_lines(margins, asked=margin or shortest_dwell):
             say(f"  {line}")
         _print_subsets(result, parts)
-        for line in _next_steps(result):
+        for line in _next_steps(result, margin, shortest_dwell):
             say(f"next: {line}")
     raise typer.Exit(exit_codes.OF_VERDICT[str(result.certification.verdict)])
 
@@ -167,12 +165,12 @@ def _margin_lines(margins: ProofMargins, *, asked: bool) -> Iterator[str]:
         yield from margin_lines(margins)
 
 
-def _next_steps(result: Result) -> tuple[str, ...]:
+def _next_steps(result: Result, margin: bool, shortest_dwell: bool) -> tuple[str, ...]:
     if str(result.certification.verdict) == "proved":
         return ()
     from nrs_design.reporting.next_steps import next_steps
 
-    return next_steps(result)
+    return next_steps(result, margin=margin, shortest_dwell=shortest_dwell)
 
 
 def _print_subsets(result: Result, parts: tuple[Subset, ...] | None) -> None:
@@ -182,6 +180,13 @@ def _print_subsets(result: Result, parts: tuple[Subset, ...] | None) -> None:
         say("  nothing is proved with parts of the spec left out either")
     for part in parts:
         say(f"  proved without {' and '.join(part.left_out)}: {part.claim}")
+    if unlooked := " and ".join(_unlooked(result)):
+        say(f"  decided without {unlooked}: no bound under them was looked at")
+
+
+def _unlooked(result: Result) -> tuple[str, ...]:
+    """Return what parts of a spec are decided without."""
+    return ("disturbances",) if result.certification.system.channels else ()
 
 
 def summary(result: Result, path: Path | None) -> dict[str, Any]:

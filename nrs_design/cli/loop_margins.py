@@ -14,7 +14,7 @@ def loop_summary(margins: LoopMargins) -> dict[str, Any]:
     Parameters
     ----------
     margins : LoopMargins
-        As `nrs_design.pipeline.run_loop_margins` finds them.
+        As `nrs_design.pipeline.margins.run_loop_margins` finds them.
     """
     from nrs_design.proof.bounds import lower_float, upper_float
 

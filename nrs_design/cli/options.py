@@ -9,6 +9,8 @@ from typing import Annotated
 
 import typer
 
+from nrs_design.cli.seconds import seconds
+
 QUIET = "Print nothing but errors, and what --json, --format or --out ask for; see the exit code."
 SpecFile = Annotated[Path, typer.Argument(metavar="SPEC", help="Spec file (*.nrs.yaml).")]
 Json = Annotated[bool, typer.Option("--json", help="Print one JSON document on stdout.")]
@@ -27,7 +29,11 @@ MaxDegree = Annotated[
 ]
 Budget = Annotated[
     float | None,
-    typer.Option(min=0.0, help="Time for each search in s; default: the spec's, or 60."),
+    typer.Option(
+        metavar="S",
+        parser=seconds(),
+        help="Time for each search in s; default: the spec's, or 60.",
+    ),
 ]
 Memory = Annotated[
     float | None,

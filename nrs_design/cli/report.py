@@ -60,6 +60,14 @@ def report(
         bool,
         typer.Option("--shortest-dwell", help="Add the shortest dwell time; takes minutes."),
     ] = False,
+    stability_map: Annotated[
+        bool,
+        typer.Option(
+            "--map",
+            help="Add what is proved and refuted over stiffness and delay of a sampled loop; takes "
+            "minutes.",
+        ),
+    ] = False,
     max_degree: MaxDegree = None,
     budget: Budget = None,
     memory: Memory = None,
@@ -75,13 +83,9 @@ def report(
     """
     from nrs_design.output import PAGE, PDF, check_place
     from nrs_design.ownership import check_owner, check_page
-    from nrs_design.pipeline import (
-        Overrides,
-        limits_of,
-        run_certification,
-        run_comparison,
-        run_proof_margins,
-    )
+    from nrs_design.pipeline import Overrides, limits_of, run_certification, run_comparison
+    from nrs_design.pipeline.margins import run_proof_margins
+    from nrs_design.pipeline.stability_map import run_stability_map
     from nrs_design.reporting import build_report
     from nrs_design.reporting.next_steps import next_steps
     from nrs_design.spec import read_spec
@@ -101,12 +105,19 @@ def report(
         margins = run_proof_margins(
             result, limits, step, margin=margin, shortest_dwell=shortest_dwell
         )
+        found = run_stability_map(result, limits, step) if stability_map else None
         step("figures")
         day = date.date() if date else None
         runs = run_comparison(loaded, limits, progress=step)[1] if compare_methods else ()
         analysis = _analysis(result, quiet=quiet)
         page = build_report(
-            result, analysis, comparison=runs, margins=margins, times=times, date=day
+            result,
+            analysis,
+            comparison=runs,
+            margins=margins,
+            stability_map=found,
+            times=times,
+            date=day,
         )
         files = _write(page, file_format, out, spec)
     verdict = str(result.certification.verdict)
@@ -123,7 +134,7 @@ def report(
         )
     elif not quiet:
         say(f"{loaded.spec.name}: {verdict.upper()}", verdict=verdict)
-        for line in next_steps(result):
+        for line in next_steps(result, margin=margin, shortest_dwell=shortest_dwell):
             say(f"next: {line}")
         for path in files:
             note(f"written to {path}")
@@ -141,7 +152,8 @@ def _report_robot(
 ) -> NoReturn:
     """Report a robot; the exit code is that of `robot check`."""
     from nrs_design.ownership import check_page
-    from nrs_design.pipeline import placed, run_robot
+    from nrs_design.pipeline import placed
+    from nrs_design.pipeline.robots import run_robot
     from nrs_design.reporting.robot import robot_report
 
     spec = loaded.path

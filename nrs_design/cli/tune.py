@@ -95,6 +95,7 @@ def _summary(design: ControllerDesign, analysis: DesignAnalysis) -> dict[str, An
                 "name": item.name,
                 "stiffness": item.stiffness,
                 "Kp": item.loop.gain,
+                "Ki": item.approach.integral,
                 "poles": _pairs(item.loop.poles),
                 "damping_ratio": item.loop.damping_ratio,
                 "natural_frequency": item.loop.natural_frequency,
@@ -104,6 +105,7 @@ def _summary(design: ControllerDesign, analysis: DesignAnalysis) -> dict[str, An
                 "goals": goals_summary(item),
                 "units": {
                     "Kp": "rad/(N*m)",
+                    "Ki": "rad/(N*m*s)",
                     "stiffness": "N*m/rad",
                     "poles": "1/s",
                     "peak_torque": "N*m",
@@ -172,9 +174,11 @@ def _motion_rows(design: ControllerDesign, analysis: DesignAnalysis) -> list[lis
 
 def _offset_text(item: ForceAnalysis) -> str:
     velocity, force = math.degrees(item.approach.velocity), item.approach.force
+    gain = item.approach.integral
+    integral = f"Ki = {gain:.6g} rad/(N m s), " if gain else ""
     return (
-        f"{item.name}: X_i is the {OFFSETS[item.approach.offset]} at the switch. Arriving at "
-        f"{velocity:.4g} deg/s, the torque peaks at {item.peak:.3f} N m and settles "
+        f"{item.name}: {integral}X_i is the {OFFSETS[item.approach.offset]} at the switch. "
+        f"Arriving at {velocity:.4g} deg/s, the torque peaks at {item.peak:.3f} N m and settles "
         f"{100 * item.steady_error:.2f} % off {force:.4g} N m, for a switch exactly there."
     )
 

@@ -78,6 +78,7 @@ def verify(
         raise typer.BadParameter("needs a SPEC to compare with", param_hint="--coordinates")
     if spec is None and deployed is not None:
         raise typer.BadParameter("needs a SPEC, whose law it is", param_hint="--deployed")
+    _refuse_swapped(certificate, spec)
     loaded = None if spec is None else read_spec(spec)
     outcome = verify_file(certificate, loaded, None if coordinates is None else str(coordinates))
     robot = None if loaded is None else _robot_of(loaded)
@@ -125,6 +126,15 @@ def verify(
     raise typer.Exit(exit_codes.REFUTED if differences or faults else code)
 
 
+def _refuse_swapped(certificate: Path, spec: Path | None) -> None:
+    """Say it where the two files stand in each other's place."""
+    if spec is not None and spec.suffix == ".json" and certificate.suffix in (".yaml", ".yml"):
+        raise typer.BadParameter(
+            f"the certificate comes first, then the spec: nrs-design verify {spec} {certificate}",
+            param_hint="CERT",
+        )
+
+
 def _robot_of(loaded: LoadedSpec) -> Path | None:
     """Return the file of the robot that a spec names."""
     spec = loaded.spec
@@ -133,10 +143,10 @@ def _robot_of(loaded: LoadedSpec) -> Path | None:
 
 
 def _bounds_faults(robot: Path, *, quiet: bool) -> list[str]:
-    from nrs_design.pipeline import check_bounds
+    from nrs_design.pipeline.robots import check_robot_bounds
 
     with progress(f"bounds of {robot.name}", quiet=quiet, lines=True) as step:
-        return list(check_bounds(robot, BUDGET, step)[1])
+        return list(check_robot_bounds(robot, BUDGET, step)[1])
 
 
 def _taken(robot: Path, *, again: bool) -> str:

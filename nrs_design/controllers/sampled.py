@@ -16,6 +16,10 @@ other half of it, which comes before the error and not after it:
     xref = X + Kp (Fd - x1)      (its own Kp; without it, position control; X is commanded)
     vm = d vm,  r = d r          (idle: the velocity and the reference of impedance controllers)
 
+and an integral w of the force error, which is in the reference of every controller:
+
+    w = w + Ki_T (Fd - x1)       (with its own gain; w = g w while another controller is active)
+
 Rounding to nearest changes a result by at most 2^-24 of its size, so a term that takes part in n
 roundings changes by at most `rounding_share` of n of its own. A fused product and sum rounds once
 less. The position is taken at the sample, the force sample may be older.
@@ -130,20 +134,25 @@ class SampledAdmittance:
 
 @dataclass(frozen=True, slots=True)
 class SampledForce:
-    """``xref = X + Kp (Fd - F)``, before the error is formed; without Kp, position control.
+    """``xref = X + Kp (Fd - F) + w``, before the error is formed; without Kp, position control.
 
     Parameters
     ----------
     Kp : Fraction
         In rad/(N m); zero takes no force.
+    Ki_T : Fraction
+        What a sample adds to the integral, ``w+ = w + Ki_T (Fd - F)``, in rad/(N m); zero is no
+        integral of its own.
     """
 
     Kp: Fraction
+    Ki_T: Fraction = Fraction(0)
 
     @property
     def coefficients(self) -> dict[str, Fraction]:
-        """The coefficient by name, if there is one."""
-        return {"Kp": self.Kp} if self.Kp else {}
+        """The coefficients by name, as far as there are any."""
+        named = {"Kp": self.Kp, "Ki_T": self.Ki_T}
+        return {name: value for name, value in named.items() if value}
 
 
 SampledLaw = SampledAdmittance | SampledForce

@@ -24,7 +24,12 @@ from nrs_design.errors import DesignError
 from nrs_design.spec import IdleStatesSpec, InteractionDesignSpec
 
 
-def shipped_law(spec: InteractionDesignSpec, design: ControllerDesign, period: Fraction) -> StepLaw:
+def shipped_law(
+    spec: InteractionDesignSpec,
+    design: ControllerDesign,
+    period: Fraction,
+    outer: Fraction | None = None,
+) -> StepLaw:
     """Write the law of a design out for a sample time.
 
     Parameters
@@ -35,6 +40,9 @@ def shipped_law(spec: InteractionDesignSpec, design: ControllerDesign, period: F
         Gains that ship.
     period : Fraction
         Sample time in s.
+    outer : Fraction, optional
+        That of force, filter and admittance, where it is another: then the operations of either
+        loop are taken at its own samples, by whoever runs them.
 
     Raises
     ------
@@ -44,12 +52,12 @@ def shipped_law(spec: InteractionDesignSpec, design: ControllerDesign, period: F
     method = "exact" if spec.sampling is None else spec.sampling.admittance
     laws: dict[str, SampledLaw] = {}
     for controller in design.controllers:
-        sampled = controller.law.sampled(period, method)
+        sampled = controller.law.sampled(outer or period, method)
         if sampled is None:
             what = f"{controller.name} is a {controller.law.name} controller"
             raise _without_program(what, controller.name)
         laws[controller.name] = sampled
-    law = _step_law(spec, design, laws, period)
+    law = _step_law(spec, design, laws, period, outer or period)
     check_range(law)
     return replace(_in_commands(law, design.command), logic=_logic_of(spec, law, period))
 
@@ -67,8 +75,9 @@ def _step_law(
     design: ControllerDesign,
     laws: Mapping[str, SampledLaw],
     period: Fraction,
+    outer: Fraction,
 ) -> StepLaw:
-    low_pass = None if design.sensor.filter is None else design.sensor.filter.sampled(period)
+    low_pass = None if design.sensor.filter is None else design.sensor.filter.sampled(outer)
     frame = StepFrame(SampledMotion.of(design.motion, period), low_pass, limits_of(spec))
     moving = [law for law in laws.values() if isinstance(law, SampledAdmittance)]
     placed = [name for name, law in laws.items() if isinstance(law, SampledForce)]

@@ -7,6 +7,7 @@ matrices and the roundings of a certificate from it.
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Iterator, Mapping
+from dataclasses import dataclass, field
 from fractions import Fraction
 
 from nrs_design.controllers.operations import Coefficient, Operation, StepLaw, Value
@@ -40,12 +41,13 @@ def build_law(
     laws : mapping of str to SampledAdmittance or SampledForce
         By the names of their controllers; all admittances have an inertia, or none has.
     idle : Fraction, optional
-        What a sample leaves of the states of idle admittances, where there are both kinds.
+        What a sample leaves of the states of idle admittances, where there are both kinds, and of
+        an integral of the force error beside others.
     """
     moving = {name: law for name, law in laws.items() if isinstance(law, SampledAdmittance)}
     placed = {name: law for name, law in laws.items() if isinstance(law, SampledForce)}
     if not moving:
-        return build_placed_law(frame, placed)
+        return build_placed_law(frame, placed, idle or ZERO)
     if not placed:
         return build_step_law(frame, moving)
     assert idle is not None, "beside others, admittances are idle at times"
@@ -63,6 +65,7 @@ def numbers_of(frame: StepFrame, law: SampledLaw, idle: Fraction | None) -> dict
         Of the controller.
     """
     found = {c.name: c.of(0) for c in (*frame.coefficients, _force_gains((law,)))}
+    found |= {c.name: c.of(0) for c in _integral_gains((law,), idle or ZERO)}
     if isinstance(law, SampledAdmittance):
         return found | {c.name: c.of(0) for c in _admittances((law,), idle)}
     # Of both states of an idle admittance, the same is left.
@@ -101,18 +104,39 @@ def build_step_law(frame: StepFrame, laws: Mapping[str, SampledAdmittance]) -> S
     )
 
 
-def build_placed_law(frame: StepFrame, laws: Mapping[str, SampledForce]) -> StepLaw:
-    """Write position and force control out; neither has a reference of its own."""
+def build_placed_law(
+    frame: StepFrame, laws: Mapping[str, SampledForce], idle: Fraction = ZERO
+) -> StepLaw:
+    """Write position and force control out; neither has a reference of its own.
+
+    Parameters
+    ----------
+    frame : StepFrame
+        Below and before all of them.
+    laws : mapping of str to SampledForce
+        By the names of their controllers.
+    idle : Fraction
+        What a sample leaves of an integral while another controller is active.
+    """
     limits = frame.limits
-    place = Operation("reference", "add", "position", "correction", "angle")
+    integral = _Integral.of(laws.values(), idle, limits)
+    gains = (_force_gains(laws.values()), *integral.coefficients)
+    place = Operation("reference", "add", "position", integral.correction, "angle")
     return StepLaw(
         tuple(laws),
         (*limits.measured, *limits.commanded),
-        (error_before(2 * BEYOND), *lags(frame.order)),
-        (*frame.coefficients, _force_gains(laws.values()), *limits.coefficients),
-        (*filtered(frame.order), *_correction(frame.force), place, *motion(limits)),
+        (error_before(2 * BEYOND), *lags(frame.order), *integral.states),
+        (*frame.coefficients, *gains, *limits.coefficients),
+        (
+            *filtered(frame.order),
+            *_correction(frame.force),
+            *integral.added,
+            place,
+            *motion(limits),
+            *integral.advanced,
+        ),
         limits.output,
-        frame.memory,
+        {**frame.memory, **integral.memory},
         UNITS,
     )
 
@@ -137,8 +161,10 @@ def build_mixed_law(frame: StepFrame, laws: Mapping[str, SampledLaw], idle: Frac
     moving = [law for law in laws.values() if isinstance(law, SampledAdmittance)]
     inert, sprung = any(law.a is not None for law in moving), any(law.Kt for law in moving)
     offset = Value("offset", "r", "rad", limits.angle, "reference over the commanded position")
-    following = {"offset": "next_offset", **frame.memory}
+    integral = _Integral.of(laws.values(), idle, limits)
+    following = {"offset": "next_offset", **frame.memory, **integral.memory}
     following |= {"velocity": "next_velocity"} if inert else {}
+    gains = (_force_gains(laws.values()), *integral.coefficients)
     force, pulls = _pulled(frame.force) if sprung else (frame.force, ())
     admittances = _admittances(laws.values(), idle)
     ends = (*_hand(limits), *limits.coefficients)
@@ -150,16 +176,20 @@ def build_mixed_law(frame: StepFrame, laws: Mapping[str, SampledLaw], idle: Frac
             error_before(2 * BEYOND),
             *([VELOCITY] if inert else []),
             *lags(frame.order),
+            *integral.states,
         ),
-        (*frame.coefficients, _force_gains(laws.values()), *admittances, *ends),
+        (*frame.coefficients, *gains, *admittances, *ends),
         (
             *filtered(frame.order),
-            *_mixed_reference(frame.force),
+            *_correction(frame.force),
+            *integral.added,
+            *_mixed_reference(integral.correction),
             *motion(limits),
             *pulls,
             *admitted(force, inert=inert),
             Operation("left", "multiply", "d", "offset"),
             Operation("next_offset", "add", "left", "moved", "angle"),
+            *integral.advanced,
         ),
         limits.output,
         following,
@@ -230,8 +260,49 @@ def _correction(force: str) -> Iterator[Operation]:
     yield Operation("correction", "multiply", "Kf", "lack")
 
 
-def _mixed_reference(force: str) -> Iterator[Operation]:
-    yield from _correction(force)
+def _mixed_reference(correction: str) -> Iterator[Operation]:
     yield Operation("taken", "multiply", "takes_offset", "offset")
-    yield Operation("off", "add", "taken", "correction")
+    yield Operation("off", "add", "taken", correction)
     yield Operation("reference", "add", "position", "off", "angle")
+
+
+@dataclass(frozen=True, slots=True)
+class _Integral:
+    """The integral of the force error, in the reference of every mode; empty where there is none.
+
+    It goes on where the force is controlled with it, and bleeds in all other modes.
+    """
+
+    correction: str = "correction"
+    states: tuple[Value, ...] = ()
+    coefficients: tuple[Coefficient, ...] = ()
+    added: tuple[Operation, ...] = ()
+    advanced: tuple[Operation, ...] = ()
+    memory: Mapping[str, str] = field(default_factory=dict)
+
+    @classmethod
+    def of(cls, laws: Collection[SampledLaw], idle: Fraction, limits: StepLimits) -> _Integral:
+        if not any(_gathers(law) for law in laws):
+            return cls()
+        return cls(
+            "aimed",
+            (Value("integral", "w", "rad", limits.angle, "integral of the force error"),),
+            tuple(_integral_gains(laws, idle)),
+            (Operation("aimed", "add", "integral", "correction"),),
+            (
+                Operation("bleeding", "multiply", "bled", "integral"),
+                Operation("gathered", "multiply", "Ki_T", "lack"),
+                Operation("next_integral", "add", "bleeding", "gathered"),
+            ),
+            {"integral": "next_integral"},
+        )
+
+
+def _gathers(law: SampledLaw) -> bool:
+    return isinstance(law, SampledForce) and law.Ki_T != 0
+
+
+def _integral_gains(laws: Collection[SampledLaw], idle: Fraction) -> Iterator[Coefficient]:
+    gains = tuple(law.Ki_T if isinstance(law, SampledForce) else ZERO for law in laws)
+    yield Coefficient("Ki_T", "Ki_T", "rad/(N*m)", gains)
+    yield Coefficient("bled", "g", "1", tuple(ONE if _gathers(law) else idle for law in laws))

@@ -35,11 +35,14 @@ class Approach:
         At which the axis arrives, rad/s.
     force : float
         Fd, and the force at the switch, N m.
+    integral : float
+        Ki of a PI controller in rad/(N m s), for the peak; 0 is a proportional one.
     """
 
     offset: Offset = "none"
     velocity: float = 0.0
     force: float = 1.0
+    integral: float = 0.0
 
 
 NO_OFFSET = Approach()
@@ -104,19 +107,20 @@ def peak_force(
     start = np.zeros(n + 1)
     start[0] = approach.velocity / C[0]
     start[n - 1] -= lead if approach.offset == "measured" else 0.0
-    start[n] = approach.force
     closed = np.zeros((n + 1, n + 1))
     closed[:n, :n] = A
     closed[n - 1, :n] -= gain * stiffness * C
+    # The last state is the force beyond Fd, from zero on.
     closed[n, :n] = stiffness * C
-    rates = np.linalg.eigvals(closed[:n, :n])
+    closed[n - 1, n] = -approach.integral
+    rates = np.linalg.eigvals(closed if approach.integral else closed[:n, :n])
     step = 1 / (_FINE * float(np.abs(rates).max()))
     count = min(_MOST, int(_LONG / (step * float(np.abs(rates.real).min()))))
-    transition, state, peak = expm(step * closed), start, approach.force
+    transition, state, beyond = expm(step * closed), start, 0.0
     for _ in range(count):
         before, state = state, transition @ state
-        peak = max(peak, _crest(before, state, step, stiffness * C))
-    return float(peak)
+        beyond = max(beyond, _crest(before, state, step, stiffness * C))
+    return float(approach.force + beyond)
 
 
 def _crest(before: FloatArray, after: FloatArray, step: float, rate: FloatArray) -> float:

@@ -22,7 +22,7 @@ from nrs_design.exporters.outside import OUTSIDE
 from nrs_design.exporters.robot_tree import RobotExport
 from nrs_design.output import C_HEADER, C_SOURCE
 from nrs_design.ownership import MARK
-from nrs_design.pipeline import run_robot_laws
+from nrs_design.pipeline.robots import run_robot_laws
 from nrs_design.spec import RobotSpec
 
 UNPROVED = (

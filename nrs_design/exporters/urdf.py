@@ -5,15 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 from math import pi
 
-from nrs_design.exporters.robot_tree import (
-    RobotExport,
-    comment,
-    home_joints,
-    links_of,
-    numbers,
-    tree_angles,
-)
-from nrs_design.models.robot import Leg, Robot
+from nrs_design.exporters.robot_tree import RobotExport, comment, home_joints
+from nrs_design.models.robot import Leg, Robot, links_of, numbers, tree_angles
 
 _LOSS = (
     "LOST: the closed loops. URDF describes trees, so the three legs are open chains: the frames "

@@ -19,12 +19,13 @@ from nrs_design.gating.rules import (
     GOAL,
     MODE_STABLE,
     NOT_DOUBTED,
+    SCENARIO_LIMIT,
     SPEC,
     STIFFNESS_RANGE,
     SWITCHING_STABLE,
     Rule,
 )
-from nrs_design.proof.bounds import rounded_down, rounded_up
+from nrs_design.proof.bounds import rounded_down, rounded_up, upper
 from nrs_design.proof.evidence import AbstractEvidence, Shows
 from nrs_design.proof.evidence.fields import rate_text
 from nrs_design.proof.evidence.unstable_mode import (
@@ -33,11 +34,13 @@ from nrs_design.proof.evidence.unstable_mode import (
     worst_eigenvalue,
 )
 from nrs_design.proof.system import Mode, SwitchedSystem, Time
+from nrs_design.simulation.peaks import PEAKS, UNITS
 from nrs_design.spec import LoadedSpec, doubt_spec
 from nrs_design.spec.document import Position
 
 if TYPE_CHECKING:
     from nrs_design.design.analysis import DesignAnalysis
+    from nrs_design.pipeline.scenarios import Simulated
 
 
 @dataclass(frozen=True)
@@ -237,6 +240,30 @@ class Examiner:
         return self.obligation(
             CERTIFIED_GOAL, f"system: {key}", status, message, self.places.at("goals", key)
         )
+
+    def scenario(self, simulated: Simulated) -> Iterator[Obligation]:
+        """Yield NRS109 for every limit of a scenario that was simulated."""
+        scenario, run = simulated.scenario, simulated.run
+        early = "" if run.stopped is None else f", stopped early ({run.stopped})"
+        for quantity, limit in scenario.limits.items():
+            unit = UNITS[quantity]
+            peak = float(simulated.metrics[PEAKS[quantity]])
+            met = run.stopped is None and peak <= limit
+            message = (
+                f"simulated: the largest {quantity} of scenario {scenario.name} is "
+                f"{upper(Fraction(peak))} {unit}, its limit {limit:.6g} {unit}{early} "
+                f"({run.engine} engine, floating point: one run, not a proof)"
+            )
+            status = Status.MET if met else Status.MISSED
+            place = self.places.at("scenarios", scenario.name, "limits", quantity)
+            subject = f"{scenario.name}: {quantity}"
+            yield self.obligation(SCENARIO_LIMIT, subject, status, message, place)
+
+    def no_scenario(self, name: str, error: DesignError) -> Obligation:
+        """Return NRS109 for a scenario with limits that cannot be simulated."""
+        message = f"simulated: {error.message} (no run, so no limit is met)"
+        place = self.places.at("scenarios", name)
+        return self.obligation(SCENARIO_LIMIT, name, Status.MISSED, message, place)
 
     def identified(self) -> Iterator[Obligation]:
         """Yield NRS107 for everything whose identification is in doubt."""

@@ -13,10 +13,11 @@ from nrs_design.certificates.certificate import Certificate
 from nrs_design.certificates.units import gain_units
 from nrs_design.certificates.verify import verify
 from nrs_design.gating.examine import Examiner, certified_rate
-from nrs_design.gating.lock import Lock, LockedSpec, relative_to_lock
+from nrs_design.gating.lock import Lock, LockedGoal, LockedSpec, relative_to_lock
 from nrs_design.gating.obligations import GateOutcome, Obligation, SpecOutcome, Status, failed
-from nrs_design.gating.rules import LOCKED, RULES, SWITCHING_STABLE
+from nrs_design.gating.rules import LOCKED, RULES, SCENARIO_LIMIT, SWITCHING_STABLE
 from nrs_design.spec import InteractionDesignSpec, LoadedSpec, RobotSpec, read_spec
+from nrs_design.spec.document import Position
 
 if TYPE_CHECKING:
     from nrs_design.pipeline import Progress
@@ -162,8 +163,15 @@ def _goals(examiner: Examiner, entry: LockedSpec) -> Iterator[Obligation]:
             goal.subject,
             Status(goal.status),
             f"{goal.message} (as locked; not computed again)",
-            examiner.places.at("controllers", goal.subject),
+            _place(examiner, goal),
         )
+
+
+def _place(examiner: Examiner, goal: LockedGoal) -> Position:
+    """Return where a locked obligation stands in the spec."""
+    if goal.rule == SCENARIO_LIMIT.id:
+        return examiner.places.at("scenarios", goal.subject.partition(":")[0], "limits")
+    return examiner.places.at("controllers", goal.subject)
 
 
 def _find_difference(certificate: Certificate, entry: LockedSpec, loaded: LoadedSpec) -> str | None:

@@ -167,6 +167,18 @@ CERTIFIED_GOAL = Rule(
     "more damping, raise --budget, or relax the goal; for the delay, let `sampling.delay` reach "
     "that far.",
 )
+SCENARIO_LIMIT = Rule(
+    "NRS109",
+    "Simulated scenarios stay below their limits",
+    "Every scenario that declares `limits` is simulated with the gains that ship, by the engine "
+    "that `nrs-design simulate` takes for it, and its largest torque, deflection and speed are "
+    "held against them. A run in floating point: it shows that a limit is exceeded, or that this "
+    "one run exceeds none; it proves nothing about other runs. The bound that no run may exceed is "
+    "`goals: {peak_torque: ...}` (NRS108). A run that was stopped early misses its limits. With "
+    "--locked, scenarios are not simulated again: they end as they are locked.",
+    "Look at the run with `nrs-design simulate SPEC --scenario NAME --out FOLDER`; command less, "
+    "choose gains with more damping, or relax the limit.",
+)
 NOT_DOUBTED = Rule(
     "NRS107",
     "Identified values are not in doubt",
@@ -244,6 +256,7 @@ RULES: Mapping[str, Rule] = MappingProxyType(
             GOAL,
             NOT_DOUBTED,
             CERTIFIED_GOAL,
+            SCENARIO_LIMIT,
             ROS_PARAMETERS,
             ROS_AXIS,
             INTERNAL,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from collections import defaultdict
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -184,6 +184,7 @@ def _examine(
         write_output(file, text, replaces=CERTIFICATE)
         progress("re-check")
         obligations += (examiner.certificate(file, run_verification(file, result).fault),)
+    simulated = tuple(_scenarios(result, examiner, progress))
     goals, cautions = _goals_and_report(result, examiner, files, progress)
     rate, rate_name = certified_rate(certificate)
     return SpecOutcome(
@@ -192,6 +193,7 @@ def _examine(
             *obligations,
             *examiner.certified_goals(certificate),
             *goals,
+            *simulated,
             *examiner.identified(),
         ),
         sha256=loaded.sha256,
@@ -207,6 +209,25 @@ def _examine(
         bounds=bounds_summary(certification.system, certification.statements),
         cautions=cautions,
     )
+
+
+def _scenarios(result: Result, examiner: Examiner, progress: Progress) -> Iterator[Obligation]:
+    """Yield how the scenarios end that have limits; no others are simulated."""
+    if result.designed is None:
+        return
+    limited = [n for n, one in result.designed.spec.scenarios.items() if one.limits is not None]
+    if not limited:
+        return
+    from nrs_design.pipeline.scenarios import Runs, run_scenarios
+
+    for name in limited:
+        progress(f"scenario {name}")
+        try:
+            (simulated,) = run_scenarios(result.designed, Runs((name,)))
+        except DesignError as error:
+            yield examiner.no_scenario(name, error)
+        else:
+            yield from examiner.scenario(simulated)
 
 
 def _goals_and_report(

@@ -48,6 +48,18 @@ class Estimate:
         ends = math.exp(logarithm - half_width), math.exp(logarithm + half_width)
         return cls(math.exp(logarithm), *ends)
 
+    def from_zero(self, half_width: float) -> Estimate:
+        """Return the interval that is symmetric in the value and ends at 0.
+
+        A parameter that is not told from 0 has no meaningful logarithm.
+
+        Parameters
+        ----------
+        half_width : float
+            Over the value; 1 or more.
+        """
+        return Estimate(self.value, 0.0, self.value * (1 + half_width))
+
     def __str__(self) -> str:
         """Return value and interval in words, its ends rounded outwards."""
         wide = self.widened

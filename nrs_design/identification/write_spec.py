@@ -17,7 +17,7 @@ from nrs_design.identification.statistics import Estimate
 from nrs_design.identification.tissue import TissueIdentification
 from nrs_design.identification.tissue.tangent import Tangent
 from nrs_design.identification.tool import ToolIdentification
-from nrs_design.models.contact import LINEAR_LAWS, AbstractLinearLaw, HuntCrossley
+from nrs_design.models.contact import LINEAR_LAWS, TISSUE_LAWS, AbstractLinearLaw, HuntCrossley
 from nrs_design.spec import InteractionDesignSpec, LoadedSpec, parse_spec
 from nrs_design.spec.fields import MAX_TITLE
 from nrs_design.spec.preload import FINEST, LARGEST, LEAST
@@ -60,7 +60,7 @@ def merge_tissue(
         raise DataError(
             f"the chosen law, {law.name}, has no place in a spec",
             remedy="say by --preload at which deflections, or choose one that has a place: "
-            f"--model {' or --model '.join(LINEAR_LAWS)}",
+            f"--model {' or --model '.join(TISSUE_LAWS)}",
         )
     if model.doubts and not all(map(_is_limited, ranges)):
         raise DataError(
@@ -100,6 +100,10 @@ def merge_tissue(
         document.put(node, "linearized_about", _preload(found))
     document.put(node, "provenance", [_provenance(record.source) for record in found.records])
     _put_doubts(document, node, found.caveats)
+    document.drop(node, "range_id")
+    written = parse_spec(document.text())
+    assert isinstance(written, InteractionDesignSpec)
+    document.put(node, "range_id", written.environments[name].values_id())
     return document.text()
 
 
@@ -207,6 +211,11 @@ def merge_actuator(loaded: LoadedSpec, found: ActuatorIdentification) -> str:
         document.put(node, "intervals", intervals)
     document.put(node, "provenance", [_provenance(source) for source in found.sources])
     _put_doubts(document, node, found.caveats)
+    document.drop(node, "range_id")
+    if covered:
+        again = parse_spec(document.text())
+        assert isinstance(again, InteractionDesignSpec)
+        document.put(node, "range_id", again.actuator.values_id())
     return document.text()
 
 
@@ -353,7 +362,7 @@ def _ranged(estimate: Estimate, unit: str, name: str) -> dict[str, Any]:
     """Write an estimate with ends rounded outwards, so that nothing is lost."""
     if not _is_limited(estimate):
         raise DataError(
-            f"the interval of the {name} is unlimited: the records do not determine it",
+            f"the interval of the {name} is unlimited or reaches 0: the records do not tell it",
             remedy="choose a simpler law with --model, or record more",
         )
     low = _decimal(estimate.low, ROUND_FLOOR)

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from nrs_design.proof.bounds import nearly, rounded_down, rounded_up
 
 if TYPE_CHECKING:
-    from nrs_design.pipeline import ProofMargins
+    from nrs_design.pipeline.margins import ProofMargins
 
 
 def margin_lines(margins: ProofMargins) -> Iterator[str]:
@@ -52,12 +52,13 @@ def _loop_lines(margins: ProofMargins) -> Iterator[str]:
     loop = margins.loop
     if loop is None:
         return
+    more = "" if loop.command is None else "; without disturbances, no bound was looked at"
     if loop.delay is not None:
         said = _said(loop.delay.proved, loop.delay.refuted, "samples")
-        yield f"longest delay of the force sample: {said}"
+        yield f"longest delay of the force sample: {said}{more}"
     if loop.period is not None:
         said = _said(loop.period.proved, loop.period.refuted, "s")
-        yield f"period: {said} (each for itself, nothing is said of those in between)"
+        yield f"period: {said} (each for itself, nothing is said of those in between{more})"
     if loop.command is not None:
         limit, bounds = loop.command.limit, loop.command.bounds
         kept = ", ".join(

@@ -13,15 +13,26 @@ if TYPE_CHECKING:
     from nrs_design.pipeline import Result
 
 
-def next_steps(result: Result) -> tuple[str, ...]:
-    """Return what to do next, the most promising first; nothing where stability is proved."""
+def next_steps(
+    result: Result, *, margin: bool = False, shortest_dwell: bool = False
+) -> tuple[str, ...]:
+    """Return what to do next, the most promising first; nothing where stability is proved.
+
+    Parameters
+    ----------
+    result : Result
+        Of the certification.
+    margin, shortest_dwell : bool
+        What was looked for just now, and need not be told to be.
+    """
     verdict = result.certification.verdict
     if verdict is Verdict.PROVED:
         return ()
-    return (*_steps(result), "Do not ship this design: a gate must treat it as a failure.")
+    asked = (margin, shortest_dwell)
+    return (*_steps(result, *asked), "Do not ship this design: a gate must treat it as a failure.")
 
 
-def _steps(result: Result) -> Iterator[str]:
+def _steps(result: Result, margin: bool, shortest_dwell: bool) -> Iterator[str]:
     certification, spec = result.certification, result.loaded.spec
     command = f"nrs-design certify-switching {result.loaded.path.name}"
     evidence = certification.evidence
@@ -33,9 +44,9 @@ def _steps(result: Result) -> Iterator[str]:
         )
     if certification.verdict is Verdict.INCONCLUSIVE:
         yield f"Search longer: {command} --budget 600, with more --memory or a --max-degree."
-    if spec.has_ranges:
+    if spec.has_ranges and not margin:
         yield f"Find the largest ranges that are proved: {command} --margin."
-    if not alone and _takes_dwell(result):
+    if not alone and not shortest_dwell and _takes_dwell(result):
         yield f"Find the shortest dwell time that is proved: {command} --shortest-dwell."
     if result.designed is not None:
         yield f"See which gains the goals allow: nrs-design optimize {result.loaded.path.name}."

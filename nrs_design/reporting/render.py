@@ -12,7 +12,9 @@ from nrs_design.reporting.document import Block, Illustration, Report, Section, 
 from nrs_design.reporting.images import to_svg
 
 # More letters in a row than these do not fit on a telephone, or in one line of a page.
-_NARROW, _LINE = 36, 120
+_NARROW, _LINE = 36, 112
+# Between two columns, in letters.
+_GAP = 2
 # Not only a colour tells how things stand.
 _SIGNS = {State.GOOD: "✓", State.DOUBTFUL: "▲", State.BAD: "✗", State.UNKNOWN: "?"}
 
@@ -98,4 +100,4 @@ def _look(table: Table) -> str:
 def _letters(table: Table) -> int:
     """Return how many letters the widest row takes, if every column is as wide as its longest."""
     rows = [table.columns, *table.rows]
-    return sum(max(map(len, column)) for column in zip(*rows, strict=True))
+    return sum(_GAP + max(map(len, column)) for column in zip(*rows, strict=True))

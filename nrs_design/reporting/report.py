@@ -15,6 +15,7 @@ from nrs_design.reporting.sections.modes import modes_section
 from nrs_design.reporting.sections.proof import proof_section
 from nrs_design.reporting.sections.release import release_section
 from nrs_design.reporting.sections.remedies import remedies_section
+from nrs_design.reporting.sections.stability_map import stability_map_section
 from nrs_design.reporting.sections.summary import lights_of, summary_of
 from nrs_design.reporting.sections.tail import (
     assumptions_section,
@@ -22,13 +23,16 @@ from nrs_design.reporting.sections.tail import (
     rungs_section,
     spec_section,
 )
+from nrs_design.reporting.sections.worst_case import worst_case_section
 
 if TYPE_CHECKING:
     import datetime
     from collections.abc import Sequence
 
     from nrs_design.design.analysis import DesignAnalysis
-    from nrs_design.pipeline import ProofMargins, Result
+    from nrs_design.pipeline import Result
+    from nrs_design.pipeline.margins import ProofMargins
+    from nrs_design.pipeline.stability_map import StabilityMap
     from nrs_design.search.method_run import MethodRun
 
 
@@ -38,6 +42,7 @@ def build_report(
     *,
     comparison: Sequence[MethodRun] = (),
     margins: ProofMargins | None = None,
+    stability_map: StabilityMap | None = None,
     times: bool = False,
     date: datetime.date | None = None,
 ) -> Report:
@@ -53,7 +58,9 @@ def build_report(
     comparison : sequence of MethodRun, optional
         As `nrs_design.pipeline.run_comparison` gives them.
     margins : ProofMargins, optional
-        As `nrs_design.pipeline.run_proof_margins` gives them.
+        As `nrs_design.pipeline.margins.run_proof_margins` gives them.
+    stability_map : StabilityMap, optional
+        As `nrs_design.pipeline.stability_map.run_stability_map` gives it.
     times : bool
         Add how long every rung of the search took. The same spec then gives another page each
         time.
@@ -77,11 +84,13 @@ def build_report(
         sections=(
             proof_section(result),
             *_present(remedies_section(result, margins)),
+            *(() if stability_map is None else (stability_map_section(stability_map),)),
             *(() if designed is None else design_sections(designed, analysis)),
             *_present(None if designed is None else logic_section(designed.spec)),
-            modes_section(system, proved_rate(system, certification.evidence)),
+            modes_section(result.loaded, system, proved_rate(system, certification.evidence)),
             *evidence_sections(certification),
             *_present(release_section(result)),
+            *_present(worst_case_section(result)),
             assumptions_section(result),
             rungs_section(certification, times=times),
             *((methods_section(comparison, times=times),) if comparison else ()),

@@ -11,12 +11,14 @@ from nrs_design.reproduction import (
     experiments,
     force_loop,
     gradient,
+    hand_runs,
     hands_on,
     impedance,
     modes,
     robot_dynamics,
     robot_kinematics,
     root_locus,
+    runs,
     specimens,
     switching,
     tissue,
@@ -41,7 +43,9 @@ TOPICS = (
     switching,
     gradient,
     experiments,
+    runs,
     hands_on,
+    hand_runs,
 )
 
 

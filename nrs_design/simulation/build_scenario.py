@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+import os
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -29,14 +31,18 @@ from nrs_design.spec import InteractionDesignSpec
 from nrs_design.spec.environment import EnvironmentSpec
 from nrs_design.spec.interval import Interval
 from nrs_design.spec.scenarios import (
+    AXES,
     LONGEST,
     CommandProfileSpec,
     ControlSpec,
     ErrorsSpec,
     ScenarioSpec,
+    SurfaceSpec,
 )
 
-DEFAULT = "insertion-and-withdrawal"
+Pick = Callable[[Interval], float]
+
+DEFAULT, DEFAULT_AXES = "insertion-and-withdrawal", "all-axes"
 # Thesis fig. 6.7 and 6.11: in free space to the largest command, down, again in contact, and out.
 _SHAPE = ((0.0, 0.0), (1.0, 1.0), (2.0, 0.25), (3.0, 1.0), (4.0, 0.0), (5.0, -1.0), (6.0, -1.0),
           (7.0, 0.0), (7.5, 0.0))  # fmt: skip
@@ -71,10 +77,7 @@ def build_scenario(
     profile, length = _profile(scenario.command, folder, spec.limits.velocity.si)
     length = length if scenario.length is None else scenario.length.si
     wanted = spec.limits.torque if scenario.wanted_torque is None else scenario.wanted_torque
-    surfaces = tuple(
-        _surface(spec, plant, s.environment, s.parameters, s.at.si, 1 if s.side == "above" else -1)
-        for s in scenario.surfaces
-    )
+    surfaces = tuple(_surface(spec, plant, written) for written in scenario.surfaces)
     return Scenario(
         name,
         profile,
@@ -85,7 +88,63 @@ def build_scenario(
         wanted.si,
         _errors(scenario.errors),
         scenario.seed,
+        {} if scenario.limits is None else {n: q.si for n, q in scenario.limits.named.items()},
     )
+
+
+def build_runs(
+    spec: InteractionDesignSpec, plant: Plant, name: str, folder: Path
+) -> tuple[Scenario, ...]:
+    """Return one scenario of a spec or a default one; of three axes ``NAME.theta1`` and so on.
+
+    Parameters
+    ----------
+    spec, plant, folder
+        As `build_scenario` takes them.
+    name : str
+        Of the scenario.
+
+    Raises
+    ------
+    DataError
+        As `build_scenario` does.
+    """
+    written = spec.scenarios.get(name)
+    if written is None:
+        alone = default_scenario(spec, plant)
+        return tuple(replace(alone, name=run) for run in run_names(spec, (name,)))
+    whole = build_scenario(spec, plant, name, written, folder)
+    if written.axes is None:
+        return (whole,)
+    runs = zip(AXES, run_names(spec, (name,)), strict=True)
+    each = (build_scenario(spec, plant, run, written.of_axis(axis), folder) for axis, run in runs)
+    return tuple(
+        replace(one, duration=whole.duration, seed=whole.seed + i) for i, one in enumerate(each)
+    )
+
+
+def default_names(spec: InteractionDesignSpec) -> tuple[str, ...]:
+    """Return the names of the scenarios that a spec without any has."""
+    robot = spec.coupling is not None and spec.coupling.robot is not None
+    return (DEFAULT, DEFAULT_AXES) if robot else (DEFAULT,)
+
+
+def run_names(spec: InteractionDesignSpec, names: Sequence[str]) -> tuple[str, ...]:
+    """Return the names of the runs of some scenarios: three for one that has axes.
+
+    Parameters
+    ----------
+    spec : InteractionDesignSpec
+        With its scenarios, or without.
+    names : sequence of str
+        Of scenarios.
+    """
+    found: list[str] = []
+    for name in names:
+        written = spec.scenarios.get(name)
+        several = name == DEFAULT_AXES if written is None else written.axes is not None
+        found += [f"{name}.{axis}" for axis in AXES] if several else [name]
+    return tuple(found)
 
 
 def default_scenario(spec: InteractionDesignSpec, plant: Plant) -> Scenario:
@@ -102,7 +161,7 @@ def default_scenario(spec: InteractionDesignSpec, plant: Plant) -> Scenario:
     times, shares = np.array(_SHAPE).T
     touched = [name for name in spec.environments if name in spec.touched]
     at = largest * _AWAY
-    surfaces = tuple(_surface(spec, plant, name, "nominal", at, 1) for name in touched[:1])
+    surfaces = tuple(_touched(spec, plant, name, at, 1, "nominal") for name in touched[:1])
     profile = Profile.through(times, shares * largest)
     control, wanted = _control(spec, None, surfaces), spec.limits.torque.si
     return Scenario(DEFAULT, profile, float(times[-1]), surfaces, control, wanted_torque=wanted)
@@ -121,7 +180,18 @@ def _profile(command: CommandProfileSpec, folder: Path, largest: float) -> tuple
         times, velocities = np.array(points).T
         return Profile.through(times, velocities), float(times[-1])
     assert command.csv is not None
+    _check_inside(folder / command.csv, folder)
     return _recorded(folder / command.csv, largest)
+
+
+def _check_inside(path: Path, folder: Path) -> None:
+    """Refuse a link out of the folder of the spec: it would be another file elsewhere."""
+    if not Path(os.path.realpath(path)).is_relative_to(os.path.realpath(folder)):
+        raise DataError(
+            "is a link that leads out of the spec's folder",
+            path=path,
+            remedy="put the file itself below that folder",
+        )
 
 
 def _recorded(path: Path, largest: float) -> tuple[Profile, float]:
@@ -146,32 +216,60 @@ def _recorded(path: Path, largest: float) -> tuple[Profile, float]:
     return Profile.through(times, columns["velocity"]), float(times[-1])
 
 
-def _surface(
-    spec: InteractionDesignSpec, plant: Plant, name: str, end: str, at: float, sign: int
+def _surface(spec: InteractionDesignSpec, plant: Plant, written: SurfaceSpec) -> Surface:
+    sign = 1 if written.side == "above" else -1
+    found = _touched(spec, plant, written.environment, written.at.si, sign, written.parameters)
+    laws = drawn_laws(spec, plant, written.beside, _PICKS[written.parameters])
+    return replace(found, beside=written.beside).with_laws(
+        {found.environment: (found.law, found.element), **laws}
+    )
+
+
+def _touched(
+    spec: InteractionDesignSpec, plant: Plant, name: str, at: float, sign: int, end: str
 ) -> Surface:
-    law, element = _law(spec.environments[name], plant.environment(name), end)
+    law, element = _law(spec.environments[name], plant.environment(name), _PICKS[end])
     return Surface(name, law, element, at, sign)
 
 
+def drawn_laws(
+    spec: InteractionDesignSpec, plant: Plant, names: Collection[str], pick: Pick
+) -> dict[str, tuple[AbstractContactLaw, Element | None]]:
+    """Return the laws of environments, with every parameter picked from its range.
+
+    Parameters
+    ----------
+    spec : InteractionDesignSpec
+        With these environments.
+    plant : Plant
+        Of that spec.
+    names : collection of str
+        Of the environments.
+    pick : callable
+        Takes a range and returns a number within; asked in the order of the parameters.
+    """
+    return {name: _law(spec.environments[name], plant.environment(name), pick) for name in names}
+
+
+_PICKS: Mapping[str, Pick] = {
+    "nominal": lambda interval: float(interval.nominal),
+    "lowest": lambda interval: float(interval.low),
+    "highest": lambda interval: float(interval.high),
+}
+
+
 def _law(
-    written: EnvironmentSpec, environment: Environment, end: str
+    written: EnvironmentSpec, environment: Environment, pick: Pick
 ) -> tuple[AbstractContactLaw, Element | None]:
-    """Return the law at one end of its ranges; a power law is not linear."""
-
-    def pick(interval: Interval) -> float:
-        return float({"lowest": interval.low, "highest": interval.high}.get(end, interval.nominal))
-
+    """Return the law with every parameter picked from its range; a power law is not linear."""
     if written.model == "hunt-crossley":
         tangent = written.exact_at_pivot()
         about = written.about.si
         if written.lever_arm is not None:
             about /= written.lever_arm.si
-        exponent = {
-            "lowest": written.exponent.range[0],
-            "highest": written.exponent.range[1],
-        }.get(end, written.exponent.nominal)
+        exponent = Interval(written.exponent.nominal, *written.exponent.range)
         k, b = pick(tangent["stiffness"]), pick(tangent["damping"])
-        return HuntCrossley.through(k, b, float(exponent), about), None
+        return HuntCrossley.through(k, b, pick(exponent), about), None
     law = environment.law(*(pick(interval) for interval in environment.ranges))
     return law, law.element
 
@@ -201,11 +299,11 @@ def _control(
 
 def _usual(spec: InteractionDesignSpec, first: str) -> Control:
     """Return what fits names and kinds: signs, the threshold of the torque, or one controller."""
-    kinds = {name: controller.type for name, controller in spec.controllers.items()}
-    if {"insertion", "withdrawal"} <= kinds.keys():
+    controllers = spec.controllers.items()
+    if {"insertion", "withdrawal"} <= spec.controllers.keys():
         return by_sign("insertion", "withdrawal")
-    position = next((n for n, kind in kinds.items() if kind == "position"), None)
-    force = next((n for n, kind in kinds.items() if kind == "force"), None)
+    position = next((n for n, c in controllers if c.type == "position"), None)
+    force = next((n for n, c in controllers if c.holds_force), None)
     if position and force:
         return by_threshold(position, force, spec.limits.torque.si)
     return Control(first)

@@ -75,7 +75,7 @@ class Loop:
         if self._given is not None:
             motion = [Signal(f"motion {i + 1}", "") for i in range(self._given[0].shape[0])]
         else:
-            motion = [Signal("theta", "rad"), Signal("w", "rad/s")]
+            motion = [Signal("theta", "rad"), Signal("motion w", "rad/s")]
         order = 0 if self.design.sensor.filter is None else self.design.sensor.filter.order
         return (
             *motion,
@@ -99,6 +99,12 @@ class Loop:
         texts = (text for c in self.design.controllers for text in c.law.states)
         parted = (text.removesuffix("]").split(" [") for text in texts)
         return tuple(dict.fromkeys((name, unit) for name, unit in parted))
+
+    @cached_property
+    def bleeding(self) -> tuple[str, ...]:
+        """States of laws that stay in the reference while other controllers are active."""
+        texts = (text for c in self.design.controllers if c.law.bleeds for text in c.law.states)
+        return tuple(dict.fromkeys(text.split(" [")[0] for text in texts))
 
     @cached_property
     def _memories(self) -> tuple[int, ...]:
@@ -155,9 +161,10 @@ class Loop:
         """Return the row of the torque that a surface has while it is touched, towards it."""
         surface = self.scenario.surfaces[j]
         element = surface.element
-        if element is None:
+        if element is None or not surface.is_linear:
+            what = "has others beside it" if surface.arms else "is not linear"
             raise DesignError(
-                f"{surface.environment} is not linear: the exact engine does not simulate it",
+                f"{surface.environment} {what}: the exact engine does not simulate it",
                 remedy="use --engine sampled",
                 at=("environments", surface.environment),
             )
@@ -225,6 +232,8 @@ class _Closing:
         else:
             correction, _ = self._respond(self._felt(springs))
             reference = reference + correction
+        if not law.bleeds:
+            reference = sum((row(name) for name in loop.bleeding), reference)
         velocity = self._velocity(angle, reference)
         found = Mode(A, angle, velocity, np.zeros(n), reference)
         torque = self._torque(found)
@@ -239,7 +248,7 @@ class _Closing:
     def _velocity(self, angle: Array, reference: Array) -> Array:
         loop, n = self.loop, len(self.loop.states)
         if loop._given is None:
-            return np.asarray(loop.row("w") + loop._direct * reference)
+            return np.asarray(loop.row("motion w") + loop._direct * reference)
         A, C = loop._given
         return np.asarray(_padded(C @ A, n) + C[-1] * reference)
 

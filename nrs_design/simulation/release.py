@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from nrs_design.proof.system import SwitchedSystem
+from nrs_design.proof.system import SwitchedSystem, Time
 from nrs_design.simulation.contact import clipped, with_free_modes, worst_contact
 from nrs_design.simulation.norms import Array, Norm, quadratic_norm
 from nrs_design.simulation.switched import (
@@ -24,6 +24,8 @@ from nrs_design.simulation.switched import (
 _STEPS = 1500
 # A run is over when nothing is larger than this share of its limit.
 _SMALL = 3e-3
+# It is cut where something is so many times its limit.
+_LARGE = 10.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,17 +40,21 @@ class Outputs:
         In rad/s.
     largest_force, largest_velocity : float
         Limits of the spec.
+    sensed : tuple of int
+        States that hold a torque which was measured before, in N m.
     """
 
     force: Array
     velocity: Array
     largest_force: float
     largest_velocity: float
+    sensed: tuple[int, ...] = ()
 
     @property
     def start(self) -> Array:
-        """At rest, pressed in until the stiffest contact gives the largest force."""
+        """At rest, pressed in until the stiffest contact gives the largest force, and measured."""
         start = np.zeros(len(self.velocity))
+        start[list(self.sensed)] = self.largest_force
         start[-1] = self.largest_force / self.force[:, -1].max()
         return start
 
@@ -77,7 +83,7 @@ def simulate_release(system: SwitchedSystem, outputs: Outputs, Q: Array | None) 
     Parameters
     ----------
     system : SwitchedSystem
-        In continuous time, with the deflection as its last state.
+        With the deflection as its last state.
     outputs : Outputs
         What is watched.
     Q : ndarray or None
@@ -89,12 +95,23 @@ def simulate_release(system: SwitchedSystem, outputs: Outputs, Q: Array | None) 
         Its modes are those of `with_free_modes` where contact may be lost.
     """
     losable = system.contact is not None
-    runs = list(_runs(system, outputs, Q))
+    # A run that grows may leave the range of numbers before it is cut.
+    with np.errstate(over="ignore", invalid="ignore"):
+        runs = [_drawn(outputs, run, losable=losable) for run in _runs(system, outputs, Q)]
     worst = max(runs, key=lambda run: _furthest(outputs, run, losable=losable))
-    force, velocity = outputs.shares(worst.state, losable=losable)
-    large = np.maximum(np.abs(force).max(axis=1), np.abs(velocity)) > _SMALL
-    end = min(int(np.flatnonzero(large)[-1]) + 2, len(worst.mode))
-    return SwitchedRun(worst.time[: end + 1], worst.state[: end + 1], worst.mode[:end])
+    second = float(system.sample_time or 1) if system.time is Time.DISCRETE else 1.0
+    return SwitchedRun(second * worst.time, worst.state, worst.mode)
+
+
+def _drawn(outputs: Outputs, run: SwitchedRun, *, losable: bool) -> SwitchedRun:
+    """Return a run until nothing of it is large any more, or until it is far beyond its limits."""
+    force, velocity = outputs.shares(run.state, losable=losable)
+    size = np.maximum(np.abs(force).max(axis=1), np.abs(velocity))
+    beyond = np.flatnonzero(~(size <= _LARGE))
+    end = min(int(np.flatnonzero(size > _SMALL)[-1]) + 2, len(run.mode))
+    if len(beyond):
+        end = min(end, max(int(beyond[0]), 1))
+    return SwitchedRun(run.time[: end + 1], run.state[: end + 1], run.mode[:end])
 
 
 def _furthest(outputs: Outputs, run: SwitchedRun, *, losable: bool) -> float:

@@ -2,10 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from itertools import pairwise
+from typing import TYPE_CHECKING
 
 from nrs_design.simulation.time_response import TimeResponse
+
+if TYPE_CHECKING:
+    from nrs_design.spec import InteractionDesignSpec
 
 # A controller that is left sooner has chattered, in s.
 CHATTER = 0.01
@@ -20,7 +25,28 @@ LEFT_OUT = (
 LEFT_OUT_EXACTLY = (
     "sampling, delay and rounding of the law, and the limit of the motor's command",
 )
+# What three axes on the links of a robot leave out.
+LEFT_OUT_ON_LINKS = (
+    "play and elasticity of gearheads, cables, links and joints, and friction of passive joints",
+    "springs and counter-masses of a balance, and tissue that couples the axes",
+    "gain and time constant of the motors other than the nominal ones",
+)
 ERRORS_LEFT_OUT = "friction, resolutions, noise and jitter of the scenario"
+
+
+@dataclass(frozen=True, slots=True)
+class Deviation:
+    """How far a run is from the same one on the sampled engine, at the samples.
+
+    Parameters
+    ----------
+    angle, velocity, torque : float
+        Largest differences in rad, rad/s and N m.
+    """
+
+    angle: float
+    velocity: float
+    torque: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,7 +57,7 @@ class Run:
     ----------
     scenario : str
         Its name.
-    engine : {"exact", "sampled"}
+    engine : {"exact", "sampled", "mujoco"}
         What simulated it.
     response : TimeResponse
         Up to where the run came.
@@ -42,7 +68,7 @@ class Run:
     steps : int
         Steps of the engine.
     sampling : tuple of (float, int, int) or None
-        Period in s, and smallest and largest delay in samples, of the sampled engine.
+        Period in s, and smallest and largest delay in samples, of the law.
     refused : int
         Samples that the law refused, because an input was beyond its limits.
     saturated : int
@@ -51,6 +77,10 @@ class Run:
         Why the run ended before its time.
     left_out : tuple of str
         What is not in it.
+    outer : float or None
+        Period of filter and admittance in s, which may be another.
+    deviation : Deviation or None
+        From the sampled engine, where another one was asked for.
     """
 
     scenario: str
@@ -64,6 +94,8 @@ class Run:
     saturated: int = 0
     stopped: str | None = None
     left_out: tuple[str, ...] = LEFT_OUT
+    outer: float | None = None
+    deviation: Deviation | None = None
 
     @property
     def chatter(self) -> int:
@@ -76,3 +108,19 @@ class Run:
         """Least time between two switches in s; None if there are no two."""
         times = [time for time, _ in self.switches]
         return min((b - a for a, b in pairwise(times)), default=None)
+
+
+def common_lever_arm(spec: InteractionDesignSpec, touched: Iterable[str]) -> float | None:
+    """Return the lever arm in m that environments have in common; None if there is no such.
+
+    Parameters
+    ----------
+    spec : InteractionDesignSpec
+        With the environments.
+    touched : iterable of str
+        Their names; what is no environment by itself has no arm.
+    """
+    known = spec.environments
+    arms = {known[name].lever_arm if name in known else None for name in touched}
+    arm = arms.pop() if len(arms) == 1 else None
+    return None if arm is None else arm.si

@@ -11,24 +11,22 @@ from __future__ import annotations
 
 import math
 from collections import deque
-from collections.abc import Callable
 from dataclasses import dataclass
 from fractions import Fraction
 
 import numpy as np
-from numpy.typing import NDArray
 
 from nrs_design.controllers.controller_design import ControllerDesign
 from nrs_design.controllers.shipped import shipped_law
 from nrs_design.errors import DesignError
 from nrs_design.models.plant import Plant
 from nrs_design.simulation.motor import Motor
+from nrs_design.simulation.processor import Fate, Motors, Tell, run_axes, silent
 from nrs_design.simulation.run import MAX_STEPS, Run
 from nrs_design.simulation.scenario import (
     COMMAND,
     DEPTH,
     TORQUE,
-    Array,
     Condition,
     Scenario,
 )
@@ -39,9 +37,8 @@ from nrs_design.spec import InteractionDesignSpec
 
 # Parts of a step, where tissue moves by itself or loads the motor.
 PARTS = 8
-# Samples after which it is told how far the run is.
-_OFTEN = 20_000
-Tell = Callable[[str], None]
+# What the motion loop keeps from one of its samples to the next; all else is of the outer loop.
+_OF_MOTION = frozenset({"error_before"})
 _OUTPUTS = (
     Signal("angle", "rad"),
     Signal("velocity", "rad/s"),
@@ -51,10 +48,6 @@ _OUTPUTS = (
 _INPUTS = (Signal("hand", "rad/s"),)
 
 
-def _silent(step: str) -> None:
-    """Report no progress."""
-
-
 def simulate_sampled(
     spec: InteractionDesignSpec,
     plant: Plant,
@@ -62,7 +55,7 @@ def simulate_sampled(
     scenario: Scenario,
     *,
     max_steps: int = MAX_STEPS,
-    tell: Tell = _silent,
+    tell: Tell = silent,
 ) -> Run:
     """Simulate a scenario as the processor runs it.
 
@@ -84,8 +77,28 @@ def simulate_sampled(
     Raises
     ------
     DesignError
-        If the spec has no sampling or two periods, states the motion loop itself, or there is no
-        program of a controller.
+        If the spec has no sampling or periods that never meet, states the motion loop itself, or
+        there is no program of a controller.
+    """
+    axis = sampled_axis(spec, plant, design, scenario)
+    (run,) = run_axes((axis,), Motors(), "sampled", max_steps, tell)
+    return run
+
+
+def sampled_axis(
+    spec: InteractionDesignSpec, plant: Plant, design: ControllerDesign, scenario: Scenario
+) -> SampledAxis:
+    """Return an axis with its law, at rest at the start of a scenario.
+
+    Parameters
+    ----------
+    spec, plant, design, scenario
+        As `simulate_sampled` takes them.
+
+    Raises
+    ------
+    DesignError
+        As `simulate_sampled` does.
     """
     if spec.sampling is None:
         raise DesignError(
@@ -98,52 +111,58 @@ def simulate_sampled(
             remedy="leave transfer_function out, or use --engine exact",
             at=("motion_loop", "transfer_function"),
         )
-    period = spec.sampling.period.exact
-    if spec.sampling.outer != period:
+    sampling = spec.sampling
+    odd = sampling.find_odd_periods()
+    if odd is not None:
         raise DesignError(
-            "the outer loop has a period of its own, and the simulated processor has one for all",
-            remedy="leave outer_period out, or use --engine exact",
-            at=("sampling", "outer_period"),
+            f"the two loops do not meet at common samples: {odd}",
+            remedy="let the longer period be a whole number of the shorter one",
+            at=("sampling",),
         )
+    period, outer = sampling.period.exact, sampling.outer
     try:
-        program = StepProgram(shipped_law(spec, design, period))
+        program = StepProgram(shipped_law(spec, design, period, outer))
     except DesignError as error:
         raise DesignError(error.message, remedy="use --engine exact", at=error.at) from None
-    engine = _Engine(plant, design, scenario, program, period, spec.sampling.delay)
-    return engine.run(max_steps, tell)
+    turns = Turns(int(period / sampling.step), int(outer / sampling.step))
+    return SampledAxis(plant, design, scenario, program, sampling.step, sampling.delay, turns)
 
 
 @dataclass(frozen=True, slots=True)
-class _Fate:
-    """What chance and the surgeon bring, for every sample.
+class Turns:
+    """Whose turn it is at a sample, where motion loop and outer loop have periods of their own.
 
     Parameters
     ----------
-    times, hand, noise : ndarray, shape (N,)
-        Instants in s, commanded velocities in rad/s, errors of the torque in N m.
-    ages : ndarray of int, shape (N,)
-        Of the force samples.
+    motion, outer : int
+        Their periods in samples; one of them is 1.
     """
 
-    times: Array
-    hand: Array
-    noise: Array
-    ages: NDArray[np.int64]
-
-    @classmethod
-    def of(cls, scenario: Scenario, period: float, delay: tuple[int, int], count: int) -> _Fate:
-        """Draw it from the seed of the scenario."""
-        rng = np.random.default_rng(scenario.seed)
-        late = scenario.errors.jitter * period * rng.random(count)
-        noise = scenario.errors.force_noise * rng.standard_normal(count)
-        ages = rng.integers(delay[0], delay[1] + 1, count)
-        times = period * np.arange(count) + late
-        return cls(times, scenario.profile.at(times), noise, ages)
+    motion: int = 1
+    outer: int = 1
 
 
 @dataclass
-class _Engine:
-    """A run that is under way."""
+class SampledAxis:
+    """One axis during a run: the law, what it senses, and the tissue that it touches.
+
+    Parameters
+    ----------
+    plant : Plant
+        Its motor.
+    design : ControllerDesign
+        Gains that ship.
+    scenario : Scenario
+        What happens to it.
+    program : StepProgram
+        Its law.
+    period : Fraction
+        Between two samples, in s.
+    delay : tuple of (int, int)
+        Smallest and largest age of the force samples, counted in samples of the outer loop.
+    turns : Turns
+        Which samples are those of the motion loop, and of the outer one.
+    """
 
     plant: Plant
     design: ControllerDesign
@@ -151,6 +170,7 @@ class _Engine:
     program: StepProgram
     period: Fraction
     delay: tuple[int, int]
+    turns: Turns = Turns()
 
     def __post_init__(self) -> None:
         """Begin at rest, free of contact."""
@@ -176,7 +196,8 @@ class _Engine:
         self.schedule = deque(scenario.control.schedule)
         self.switches: list[tuple[float, str]] = []
         self.rows: list[tuple[float, ...]] = []
-        self.refused, self.saturated = 0, 0
+        self.refused, self.saturated, self.turn, self.command = 0, 0, 0, 0.0
+        self.kept = [state.name in _OF_MOTION for state in law.states]
         limit = law.coefficient.get("command_limit")
         self.largest = math.inf if limit is None else float(limit.of(0))
 
@@ -188,46 +209,54 @@ class _Engine:
             if switch.source == source
         ]
 
-    def run(self, max_steps: int, tell: Tell) -> Run:
-        """Go from sample to sample until the end."""
-        T = self.T
-        wanted = math.floor(self.scenario.duration / T + 1e-9) + 1
-        count = min(wanted, max_steps)
-        fate = _Fate.of(self.scenario, T, self.delay, count)
-        instants = [*fate.times.tolist(), float(fate.times[-1]) + T]
-        rows = zip(fate.hand.tolist(), fate.noise.tolist(), fate.ages.tolist(), strict=True)
-        t = 0.0
-        for k, (hand, noise, age) in enumerate(rows):
-            t = instants[k]
-            command = self._sample(t, hand, noise, age)
-            self._move(command, instants[k + 1] - t)
-            if k % _OFTEN == 0:
-                tell(f"{t:.3g} s")
-        stopped = None
-        if count < wanted:
-            stopped = f"{max_steps} samples by {t:.6g} s: the budget is used up"
+    def finish(self, engine: str, fate: Fate, stopped: str | None) -> Run:
+        """Return the run up to now.
+
+        Parameters
+        ----------
+        engine : str
+            What moved it.
+        fate : Fate
+            What it was given.
+        stopped : str or None
+            Why it ends before its time.
+        """
         return Run(
             self.scenario.name,
-            "sampled",
+            engine,
             self._response(fate),
             tuple(self.switches),
             tuple(self.tissue.contacts),
-            count,
-            (T, *self.delay),
+            len(self.rows),
+            (float(self.turns.motion * self.period), *self.delay),
             self.refused,
             self.saturated,
             stopped,
+            outer=float(self.turns.outer * self.period),
         )
 
-    def _sample(self, t: float, hand: float, noise: float, age: int) -> float:
-        """Run the law once; return its command."""
+    def sample(self, t: float, hand: float, noise: float, age: int) -> float:
+        """Run the law once; return its command.
+
+        Parameters
+        ----------
+        t : float
+            In s.
+        hand, noise : float
+            Commanded velocity in rad/s, and error of the measured torque in N m.
+        age : int
+            Of the force sample.
+        """
         tissue, errors = self.tissue, self.scenario.errors
         torque = tissue.torque(self.theta, self.omega)
         tissue.note(t)
         depths = tissue.depths(self.theta)
-        self.buffer.appendleft(_coarse(torque + noise, errors.force_step))
+        outer = self.turn % self.turns.outer == 0
+        if outer:
+            self.buffer.appendleft(_coarse(torque + noise, errors.force_step))
         felt = self.buffer[age]
-        self._decide(t, hand, felt, depths)
+        if outer:
+            self._decide(t, hand, felt, depths)
         seen = {
             "angle": _coarse(self.theta, errors.encoder_step),
             "torque": felt,
@@ -237,12 +266,22 @@ class _Engine:
         }
         mode, before = self.modes[self.controller], self.states
         given = [np.float32(seen[name]) for name in self.inputs]
-        outputs, self.states, valid = self.program.step(mode, [*given, *before])
+        outputs, after, valid = self.program.step(mode, [*given, *before])
         self.refused += not valid
-        command = float(outputs[0])
-        self.saturated += abs(command) >= self.largest
-        outer = (self.theta, self.omega, torque, max(0.0, *depths, 0.0), command)
-        self.rows.append((mode, *outer, *map(float, before)))
+        motion = self.turn % self.turns.motion == 0
+        if motion:
+            self.command = float(outputs[0])
+            self.saturated += abs(self.command) >= self.largest
+        if motion and outer:
+            self.states = after
+        else:
+            # The loop whose turn it is not keeps what it has.
+            each = zip(self.kept, before, after, strict=True)
+            self.states = [new if of_motion == motion else old for of_motion, old, new in each]
+        self.turn += 1
+        command = self.command
+        now = (self.theta, self.omega, torque, max(0.0, *depths, 0.0), command)
+        self.rows.append((mode, *now, *map(float, before)))
         if not self.holds[self.controller]:
             self.commanded += self.T * hand
         return command
@@ -271,8 +310,8 @@ class _Engine:
             self.controller = target
             self.switches.append((t, target))
 
-    def _move(self, command: float, width: float) -> None:
-        """Let motor and tissue move until the next sample."""
+    def glide(self, command: float, width: float) -> None:
+        """Let motor and tissue move for a time in s, as if there were no other axis."""
         if self.parts == 1:
             self.theta, self.omega = self.motor.after(self.theta, self.omega, command, width)
             return
@@ -283,14 +322,15 @@ class _Engine:
             self.theta, self.omega = self.motor.after(self.theta, self.omega, drive, part)
             self.tissue.creep(before, self.tissue.depths(self.theta), part)
 
-    def _response(self, fate: _Fate) -> TimeResponse:
+    def _response(self, fate: Fate) -> TimeResponse:
         law, last = self.program.law, len(_OUTPUTS) + 2
         rows = np.array(self.rows, dtype=float).T
+        count = len(self.rows)
         return TimeResponse(
-            fate.times,
+            fate.times[:count],
             rows[1:last],
             rows[last:],
-            fate.hand[None, :],
+            fate.hand[None, :count],
             (*_OUTPUTS, Signal("command", self.design.command)),
             tuple(Signal(_named(value.name), value.unit) for value in law.states),
             _INPUTS,

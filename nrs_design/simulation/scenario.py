@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -129,6 +129,10 @@ class Surface:
         Angle in rad.
     sign : int
         1 if it is met by rising angles, -1 if by falling ones.
+    arms : tuple of Element
+        What is one body with it: forces add up before the sum is held to pushing.
+    beside : tuple of str
+        The environments of these, in their order.
     """
 
     environment: str
@@ -136,6 +140,20 @@ class Surface:
     element: Element | None
     at: float
     sign: int
+    arms: tuple[Element, ...] = ()
+    beside: tuple[str, ...] = ()
+
+    def with_laws(self, laws: Mapping[str, tuple[AbstractContactLaw, Element | None]]) -> Surface:
+        """Return the surface with laws of its environments, by their names; see `drawn_laws`."""
+        law, element = laws[self.environment]
+        others = (laws[name][1] for name in self.beside)
+        arms = tuple(other for other in others if other is not None)
+        return replace(self, law=law, element=element, arms=arms)
+
+    @property
+    def is_linear(self) -> bool:
+        """Whether the exact engine knows it."""
+        return self.element is not None and not self.arms
 
 
 @dataclass(frozen=True, slots=True)
@@ -248,6 +266,8 @@ class Scenario:
         For the sampled engine.
     seed : int
         Of noise, jitter and varying delay.
+    limits : mapping of str to float
+        What its run must keep: ``torque`` in N m, ``deflection`` in rad, ``velocity`` in rad/s.
     """
 
     name: str
@@ -259,3 +279,4 @@ class Scenario:
     wanted_torque: float = 0.0
     errors: Errors = Errors()
     seed: int = 0
+    limits: Mapping[str, float] = field(default_factory=dict)

@@ -93,7 +93,7 @@ def _force_control(
     stays = [(0.0, scenario.control.start), *run.switches]
     ends = [*(time for time, _ in run.switches), float(response.t[-1])]
     for (begin, name), end in zip(stays, ends, strict=True):
-        if spec.controllers[name].type not in ("force", "parallel") or end - begin < SETTLED:
+        if not spec.controllers[name].holds_force or end - begin < SETTLED:
             continue
         inside = (response.t >= begin) & (response.t < end)
         t, torque = response.t[inside], response["torque"][inside]

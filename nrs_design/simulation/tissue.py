@@ -6,6 +6,7 @@ import math
 from dataclasses import dataclass, field
 
 from nrs_design.models.contact import AbstractNonlinearLaw
+from nrs_design.models.contact.law import Element
 from nrs_design.simulation.scenario import Surface
 
 
@@ -27,6 +28,7 @@ class Tissue:
     def __post_init__(self) -> None:
         """Begin free of contact, with all dampers at rest."""
         self.dampers = [0.0] * len(self.surfaces)
+        self.arms = [[0.0] * (1 + len(surface.arms)) for surface in self.surfaces]
         self.touched = [False] * len(self.surfaces)
         self.noted = list(self.touched)
         self.direction = self.surfaces[0].sign if self.surfaces else 1
@@ -34,7 +36,7 @@ class Tissue:
     @property
     def creeps(self) -> bool:
         """Whether something in it moves by itself."""
-        each = (surface.element for surface in self.surfaces)
+        each = (element for s in self.surfaces for element in (s.element, *s.arms))
         return any(element is not None and math.isfinite(element.b) for element in each)
 
     def depths(self, theta: float) -> list[float]:
@@ -53,7 +55,9 @@ class Tissue:
         for j, surface in enumerate(self.surfaces):
             depth = surface.sign * (theta - surface.at) - self.dampers[j]
             push = 0.0
-            if depth > 0:
+            if depth > 0 and surface.arms:
+                push = _pull(surface, self.arms[j], depth, surface.sign * omega)
+            elif depth > 0:
                 push = _push(surface, depth, surface.sign * omega)
             self.touched[j] = push > 0
             if push > 0:
@@ -83,14 +87,41 @@ class Tissue:
         """
         for j, (begin, end) in enumerate(zip(before, after, strict=True)):
             element = self.surfaces[j].element
+            middle = (begin + end) / 2
+            if self.surfaces[j].arms:
+                self._creep_together(j, middle, time)
+                continue
             if element is None or not math.isfinite(element.b):
                 continue
-            middle = (begin + end) / 2
             pushed = element.k if middle > self.dampers[j] else 0.0
             rate = (pushed + element.h) / element.b
             if rate:
                 rest = pushed * middle / (pushed + element.h)
                 self.dampers[j] = rest + (self.dampers[j] - rest) * math.exp(-rate * time)
+
+    def _creep_together(self, j: int, depth: float, time: float) -> None:
+        """Move the dampers of one body, whose surface returns by itself where nothing pushes it."""
+        surface, dampers = self.surfaces[j], self.arms[j]
+        elements = _elements(surface)
+        if _pull(surface, dampers, depth, 0.0) <= 0:
+            springs = sum(element.k for element in elements)
+            depth = sum(e.k * d for e, d in zip(elements, dampers, strict=True)) / springs
+        for i, element in enumerate(elements):
+            if math.isfinite(element.b):
+                rest = element.k * depth / (element.k + element.h)
+                gone = math.exp(-(element.k + element.h) / element.b * time)
+                dampers[i] = rest + (dampers[i] - rest) * gone
+
+
+def _elements(surface: Surface) -> tuple[Element, ...]:
+    assert surface.element is not None
+    return (surface.element, *surface.arms)
+
+
+def _pull(surface: Surface, dampers: list[float], depth: float, speed: float) -> float:
+    """Return the sum of all arms, below zero where it would pull: they are held together."""
+    each = zip(_elements(surface), dampers, strict=True)
+    return sum(element.k * (depth - damper) + element.c * speed for element, damper in each)
 
 
 def _push(surface: Surface, depth: float, speed: float) -> float:

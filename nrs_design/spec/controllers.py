@@ -14,7 +14,13 @@ from nrs_design.spec.gain_fields import DampingGain, GainSpec, InertiaGain, Spri
 from nrs_design.spec.goals import GoalsSpec
 from nrs_design.spec.model import SpecModel
 from nrs_design.spec.parameters import Switch
-from nrs_design.spec.quantity_fields import Decay, ForceGain, Impedance, IntegralForceGain
+from nrs_design.spec.quantity_fields import (
+    Decay,
+    Duration,
+    ForceGain,
+    Impedance,
+    IntegralForceGain,
+)
 
 _ENVIRONMENT = "name of the environment that the gains are designed for"
 _CONTACTS = (
@@ -90,6 +96,10 @@ class AbstractControllerSpec(SpecModel):
     commands: ClassVar[Command]
     # Whether it is modelled as a processor computes it.
     sampled: ClassVar[bool] = True
+    # Whether it holds a force against what it touches.
+    holds_force: ClassVar[bool] = False
+    # Whether it keeps a state that stays in the command of other controllers, and decays there.
+    bleeds: ClassVar[bool] = False
 
     def gains(self) -> dict[str, GainSpec]:
         """Return the gains that the design may choose, or that may be retuned, by name."""
@@ -176,6 +186,7 @@ class ForceControllerSpec(AbstractControllerSpec):
         }
     )
     commands: ClassVar[Command] = "position"
+    holds_force: ClassVar[bool] = True
 
     type: Literal["force"] = Field(description="force: u = Kp (Fd - F) + X_i, see offset")
     environment: Label = Field(description=_ENVIRONMENT)
@@ -218,11 +229,76 @@ class ForceControllerSpec(AbstractControllerSpec):
         return self
 
 
+class IntegralControllerSpec(AbstractControllerSpec):
+    """Proportional and integral force controller whose integral bleeds in other modes."""
+
+    model_config = ConfigDict(
+        json_schema_extra={
+            "oneOf": [
+                {"required": ["proportional_gain", "integral_gain"]},
+                {"required": ["proportional_gain", "settling_time"]},
+                {"required": ["damping_ratio", "integral_gain"]},
+                {"required": ["damping_ratio", "settling_time"]},
+            ]
+        }
+    )
+    commands: ClassVar[Command] = "position"
+    holds_force: ClassVar[bool] = True
+    bleeds: ClassVar[bool] = True
+
+    type: Literal["pi-force"] = Field(
+        description="pi-force: u = X + Kp (Fd - F) + w with w' = Ki (Fd - F); while another "
+        "controller is active, w decays as idle_states says, and stays in the command meanwhile"
+    )
+    environment: Label = Field(description=_ENVIRONMENT)
+    contacts: tuple[TouchedAtOnce, ...] = Field(
+        default_factory=lambda data: (data.get("environment", ""),),
+        min_length=1,
+        description=_CONTACTS,
+    )
+    proportional_gain: ForceGain | None = Field(
+        default=None,
+        description="Kp in rad/(N*m); exactly one of proportional_gain and damping_ratio",
+    )
+    damping_ratio: UnitFraction | None = Field(
+        default=None,
+        description="wanted damping ratio of the dominant poles without the integral, in (0, 1), "
+        "no unit; chooses Kp",
+    )
+    integral_gain: IntegralForceGain | None = Field(
+        default=None,
+        description="Ki in rad/(N*m*s); exactly one of integral_gain and settling_time",
+    )
+    settling_time: Duration | None = Field(
+        default=None,
+        description="time in s by which the force error has fallen to 2 %, four time constants of "
+        "the slowest pole; chooses Ki",
+    )
+    goals: GoalsSpec | None = Field(default=None, description=_GOALS)
+
+    _contacts = field_validator("contacts")(_distinct)
+
+    @model_validator(mode="after")
+    def _check_gains(self) -> IntegralControllerSpec:
+        if (self.proportional_gain is None) == (self.damping_ratio is None):
+            raise fault(
+                "exactly one of proportional_gain and damping_ratio is needed",
+                "write `proportional_gain: 0.02 rad/(N*m)`, or `damping_ratio: 0.707`",
+            )
+        if (self.integral_gain is None) == (self.settling_time is None):
+            raise fault(
+                "exactly one of integral_gain and settling_time is needed",
+                "write `integral_gain: 0.5 rad/(N*m*s)`, or `settling_time: 0.3 s`",
+            )
+        return self
+
+
 class ParallelControllerSpec(AbstractControllerSpec):
     """Position command and a PI of the force error in parallel (thesis 2.2.6.4)."""
 
     commands: ClassVar[Command] = "position"
     sampled: ClassVar[bool] = False
+    holds_force: ClassVar[bool] = True
     goals: ClassVar[GoalsSpec | None] = None
 
     type: Literal["parallel"] = Field(
@@ -252,19 +328,25 @@ class PositionControllerSpec(AbstractControllerSpec):
 
 
 class IdleStatesSpec(SpecModel):
-    """What the states of impedance controllers do while another kind of controller is active."""
+    """What the states of impedance and pi-force controllers do while others are active."""
 
     decay: Decay = Field(
         description="rate in 1/s at which the admittance velocity and the position reference "
-        "decay; 0 1/s holds them, which is not asymptotically stable by itself"
+        "decay, and the integral of a pi-force controller; 0 1/s holds them, which is not "
+        "asymptotically stable by itself"
     )
     reset: Switch = Field(
         default=False,
-        description="true: they are set to zero when an impedance controller is left",
+        description="true: they are set to zero when an impedance controller is left; not with "
+        "pi-force controllers, whose integral bleeds",
     )
 
 
 ControllerSpec = Annotated[
-    ImpedanceControllerSpec | ForceControllerSpec | ParallelControllerSpec | PositionControllerSpec,
+    ImpedanceControllerSpec
+    | ForceControllerSpec
+    | IntegralControllerSpec
+    | ParallelControllerSpec
+    | PositionControllerSpec,
     Discriminator("type"),
 ]

@@ -374,7 +374,11 @@ class _Builder:
         """Read the value of a key; a missing one is reported where the key stands."""
         if isinstance(event, ScalarEvent) and event.style is None and _NULL.fullmatch(event.value):
             self._note(
-                f"the key {quoted(key)} has no value", key_place, "write a value or remove the key"
+                f"the key {quoted(key)} has no value",
+                key_place,
+                "write decimals with a point: a comma ends a value"
+                if key[:1].isdigit()
+                else "write a value or remove the key",
             )
             return Scalar("", key_place)
         return self._node(event)

@@ -12,11 +12,12 @@ from nrs_design.spec.faults import fault
 from nrs_design.spec.fields import Title
 from nrs_design.spec.interval import Interval
 from nrs_design.spec.preload import RangedExponent, power_box
-from nrs_design.spec.provenance import Coverage, IdentifiedSpec
+from nrs_design.spec.provenance import Coverage, IdentifiedRangesSpec
 from nrs_design.spec.quantity import Quantity
 from nrs_design.spec.quantity_fields import (
     Damping,
     Deflection,
+    HandMass,
     LeverArm,
     PositiveDamping,
     RangedQuantity,
@@ -24,8 +25,8 @@ from nrs_design.spec.quantity_fields import (
 )
 
 _LEVER_ARM = (
-    "distance from the pivot to the contact point, a length in m; required if stiffness or damping "
-    "are linear (N/m, N*s/m), forbidden otherwise"
+    "distance from the pivot to the contact point, a length in m; required if the parameters are "
+    "linear (N/m, N*s/m, kg), forbidden otherwise"
 )
 _STIFFNESS = (
     "stiffness{which} at the pivot in N*m/rad, or at the contact point in N/m with lever_arm; one "
@@ -43,7 +44,7 @@ _COVERS = (
 Number = TypeVar("Number", float, Fraction)
 
 
-class AbstractEnvironmentSpec(IdentifiedSpec):
+class AbstractEnvironmentSpec(IdentifiedRangesSpec):
     """What all environments have in common; parameters of the law are the ranged quantities."""
 
     # Whether the force depends on more than the deflection and the velocity of the moment.
@@ -52,6 +53,8 @@ class AbstractEnvironmentSpec(IdentifiedSpec):
     has_rest: ClassVar[bool] = True
     # Whether its ranges hold while the deflection stays in a preload, off its surface, and no more.
     preloaded: ClassVar[bool] = False
+    # Whether a mass moves with the contact.
+    has_mass: ClassVar[bool] = False
 
     model: str
 
@@ -145,6 +148,33 @@ class KelvinVoigtSpec(AbstractEnvironmentSpec):
     def is_spring(self) -> bool:
         """Whether there is no damping."""
         return not any(q.exact for q in (self.damping.nominal, *self.damping.range))
+
+
+class HandSpec(AbstractEnvironmentSpec):
+    """A hand that holds the robot, ``F = k delta + b ddelta + m dddelta`` (thesis 7.2)."""
+
+    has_mass: ClassVar[bool] = True
+
+    model: Literal["hand"] = Field(
+        description="law of the environment: hand, F = k delta + b ddelta/dt + m d2delta/dt2; it "
+        "holds the robot, so contact is kept"
+    )
+    stiffness: Stiffness = Field(description=_STIFFNESS.format(which=""))
+    damping: Damping = Field(description=_DAMPING.format(which=""))
+    mass: HandMass = Field(
+        description="mass that moves along, at the pivot in kg*m^2, or at the contact point in kg "
+        "with lever_arm; one quantity, or {nominal: ..., range: [lowest, highest]}"
+    )
+
+    @property
+    def is_spring(self) -> bool:
+        """Never: it has a mass."""
+        return False
+
+    @property
+    def is_losable(self) -> bool:
+        """Never: it holds the robot."""
+        return False
 
 
 class MaxwellSpec(AbstractEnvironmentSpec):
@@ -251,7 +281,7 @@ class HuntCrossleySpec(AbstractEnvironmentSpec):
 
 
 EnvironmentSpec = Annotated[
-    ElasticSpec | KelvinVoigtSpec | MaxwellSpec | KelvinBoltzmannSpec | HuntCrossleySpec,
+    ElasticSpec | KelvinVoigtSpec | HandSpec | MaxwellSpec | KelvinBoltzmannSpec | HuntCrossleySpec,
     Discriminator("model"),
 ]
 
@@ -263,23 +293,28 @@ def _quantities(turned: Interval, unit: str) -> RangedQuantity:
 
 
 def turn(value: Number, radius: Number) -> Number:
-    """Convert a linear stiffness or damping to the pivot: ``k r^2`` (thesis 6.3.1.1)."""
+    """Convert a linear stiffness, damping or mass to the pivot: ``k r^2`` (thesis 6.3.1.1)."""
     return value * radius**2
 
 
 def unit_at_pivot(quantity: Quantity) -> str:
-    """Return the unit of a stiffness or damping at the pivot."""
-    stiff = any(
-        kind.accepts(quantity.dimension) for kind in (kinds.LINEAR_STIFFNESS, kinds.STIFFNESS)
+    """Return the unit of a stiffness, damping or mass at the pivot."""
+    each = (
+        (kinds.LINEAR_STIFFNESS, kinds.STIFFNESS),
+        (kinds.LINEAR_DAMPING, kinds.DAMPING),
+        (kinds.MASS, kinds.HAND_MASS),
     )
-    return (kinds.STIFFNESS if stiff else kinds.DAMPING).units[0]
+    return next(
+        turned.units[0]
+        for linear, turned in each
+        if linear.accepts(quantity.dimension) or turned.accepts(quantity.dimension)
+    )
 
 
 def is_linear(quantity: Quantity) -> bool:
-    """Whether a stiffness or damping is one at the contact point (N/m, N*s/m)."""
-    return any(
-        kind.accepts(quantity.dimension) for kind in (kinds.LINEAR_STIFFNESS, kinds.LINEAR_DAMPING)
-    )
+    """Whether a stiffness, damping or mass is one at the contact point (N/m, N*s/m, kg)."""
+    linear = kinds.LINEAR_STIFFNESS, kinds.LINEAR_DAMPING, kinds.MASS
+    return any(kind.accepts(quantity.dimension) for kind in linear)
 
 
 def _check_arm(quantity: RangedQuantity, name: str, arm: Quantity | None) -> None:
@@ -287,12 +322,12 @@ def _check_arm(quantity: RangedQuantity, name: str, arm: Quantity | None) -> Non
         raise fault(
             f"{quantity.nominal.text!r} is linear, and there is no lever_arm",
             "add `lever_arm: 0.24 m` (the distance from the pivot to the contact point) or write "
-            "the rotational value per rad",
+            "the rotational value at the pivot",
             name,
         )
     if arm is not None and not is_linear(quantity.nominal):
         raise fault(
             f"{quantity.nominal.text!r} is rotational, and a lever_arm is given",
-            "remove lever_arm, or write the linear value (N/m, N*s/m)",
+            "remove lever_arm, or write the linear value (N/m, N*s/m, kg)",
             name,
         )

@@ -38,13 +38,15 @@ from nrs_design.spec.sampling import (
     check_peak,
     takes_motor_ranges,
 )
-from nrs_design.spec.scenarios import ScenarioSpec, check_scenario
+from nrs_design.spec.scenario_checks import check_run_names, check_scenario
+from nrs_design.spec.scenarios import ScenarioSpec
 from nrs_design.spec.sensor import SensorSpec
 from nrs_design.spec.switching import MODE_LOGIC, DwellTime, LogicalRule, check_names
 from nrs_design.spec.touched import (
     check_at_once,
     check_controller_names,
     check_free,
+    check_hands,
     check_memories,
     check_references,
     check_springs,
@@ -80,7 +82,8 @@ class InteractionDesignSpec(SpecModel):
     idle_states: IdleStatesSpec | None = Field(
         default=None,
         description="what the states of impedance controllers do while a position or force "
-        "controller is active; required where both kinds are there",
+        "controller is active, and the integral of a pi-force controller while another one is; "
+        "required where there are both",
     )
     goals: GoalsSpec | None = Field(
         default=None,
@@ -199,6 +202,7 @@ class InteractionDesignSpec(SpecModel):
                 deflection=self.coordinates == "deflection",
             ),
             lambda: check_memories(self.controllers, self.environments, self.coordinates),
+            partial(check_hands, self),
             lambda: check_offsets(self.controllers, self.idle_states),
             lambda: all_of(
                 *(
@@ -342,9 +346,11 @@ def _check_scenarios(spec: InteractionDesignSpec) -> None:
     """Refuse scenarios that do not fit the rest of the spec."""
     logic = spec.mode_logic is not None and spec.mode_logic.type == "thresholds"
     given = (spec.controllers, spec.environments, spec.limits.velocity)
+    robot = spec.coupling is not None and spec.coupling.robot is not None
     all_of(
+        partial(check_run_names, spec.scenarios),
         *(
-            partial(check_scenario, name, scenario, *given, logic=logic)
+            partial(check_scenario, name, scenario, *given, logic=logic, robot=robot)
             for name, scenario in spec.scenarios.items()
         ),
         lambda: check_commands(

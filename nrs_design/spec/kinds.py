@@ -90,6 +90,12 @@ DAMPING = QuantityKind(
     "0.5 N*m*s/rad",
     {"N*m/rad": "that is a stiffness: write '{value} N*m*s/rad'"},
 )
+HAND_MASS = QuantityKind(
+    "a mass that moves with the contact",
+    ("kg*m^2", "kg*m^2/rad", "kg"),
+    "0.1 kg*m^2",
+    {"N": "that is a weight: divide it by the gravity and write kg"},
+)
 LEVER_ARM = QuantityKind("a length", ("m",), "0.24 m")
 IMPEDANCE = QuantityKind(
     "an impedance",

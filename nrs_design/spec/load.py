@@ -215,7 +215,8 @@ def _kind_of(root: Node, path: Path | None, syntax: tuple[Fault, ...]) -> str:
             raise SpecError(
                 "this is a certificate, not a spec",
                 path=path,
-                remedy="name the spec that it is for",
+                remedy="name the spec that it is for; nrs-design verify CERT reads certificates, "
+                "and what an assumption bounds and how to test it is in the report of a spec alone",
             )
         raise refuse("`kind` is missing", f"add `kind: ` with one of {', '.join(SPEC_KINDS)}", root)
     if not isinstance(kind, Scalar):

@@ -13,9 +13,9 @@ def check_mixture(
     idle: IdleStatesSpec | None,
     coordinates: str,
 ) -> None:
-    """Refuse states of impedance controllers that nobody says what to do with.
+    """Refuse states of impedance and pi-force controllers that nobody says what to do with.
 
-    Position and force controllers do not use them.
+    Other controllers do not use them.
 
     Parameters
     ----------
@@ -33,10 +33,14 @@ def check_mixture(
         if controller.commands != first.commands
     )
     name, kind = next(others, (None, None))
+    whose = "impedance" if name is not None else "pi-force"
+    bleeding = _bleeding(controllers)
+    if name is None and bleeding is not None:
+        name, kind = bleeding, controllers[bleeding].type
     if idle is None and name is not None:
         raise fault(
             f"{kind} is mixed with {first.type} ({first_name!r}), and it is not said what the "
-            "states of impedance controllers do meanwhile",
+            f"states of {whose} controllers do meanwhile",
             "add `idle_states: {decay: 20 1/s}`, or use one kind of controller",
             "controllers",
             name,
@@ -46,9 +50,18 @@ def check_mixture(
         return
     if name is None:
         raise fault(
-            "idle_states without impedance controllers beside position or force controllers",
+            "idle_states without impedance controllers beside position or force controllers, or "
+            "pi-force controllers beside others",
             "remove idle_states",
             "idle_states",
+        )
+    if idle.reset and bleeding is not None:
+        raise fault(
+            f"the integral of {bleeding!r} bleeds, so that the command does not jump: a reset of "
+            "it is not modelled",
+            "remove reset",
+            "idle_states",
+            "reset",
         )
     if coordinates == "force":
         raise fault(
@@ -68,6 +81,13 @@ def check_mixture(
             )
 
 
+def _bleeding(controllers: dict[str, ControllerSpec]) -> str | None:
+    """Return a controller with an integral that others leave to bleed, if there is one."""
+    if len({controller.bleeds for controller in controllers.values()}) < 2:
+        return None
+    return next(name for name, controller in controllers.items() if controller.bleeds)
+
+
 def check_offsets(controllers: dict[str, ControllerSpec], idle: IdleStatesSpec | None) -> None:
     """Refuse offsets that differ, and offsets where impedance controllers integrate a reference."""
     first: tuple[str, Offset] | None = None
@@ -77,9 +97,9 @@ def check_offsets(controllers: dict[str, ControllerSpec], idle: IdleStatesSpec |
         at = ("controllers", name, "offset")
         if idle is not None and controller.offset != "none":
             raise fault(
-                f"an offset is not modelled for force controllers beside impedance controllers "
-                f"({name!r} has offset {controller.offset})",
-                "leave offset out, or write a spec without impedance controllers",
+                "an offset is not modelled for force controllers beside impedance controllers or "
+                f"pi-force controllers ({name!r} has offset {controller.offset})",
+                "leave offset out, or write a spec without impedance and pi-force controllers",
                 *at,
             )
         first = first or (name, controller.offset)

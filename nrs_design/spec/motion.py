@@ -12,7 +12,7 @@ from nrs_design.proof.text import quoted
 from nrs_design.spec.faults import all_of, fault
 from nrs_design.spec.fields import Exact, UnitFraction
 from nrs_design.spec.model import SpecModel
-from nrs_design.spec.provenance import Coverage, IdentifiedSpec
+from nrs_design.spec.provenance import Coverage, IdentifiedRangesSpec
 from nrs_design.spec.quantity import Quantity, is_less
 from nrs_design.spec.quantity_fields import (
     ActuatorGain,
@@ -49,7 +49,7 @@ class ActuatorIntervals(SpecModel):
     )
 
 
-class ActuatorSpec(IdentifiedSpec):
+class ActuatorSpec(IdentifiedRangesSpec):
     """Velocity actuator ``theta_m/delta = Km/(s (tau s + 1))`` (thesis 4.1)."""
 
     command: CommandUnit = Field(

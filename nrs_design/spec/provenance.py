@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
+import hashlib
+import json
 from collections.abc import Mapping
 from types import MappingProxyType
-from typing import Annotated, Literal, Self
+from typing import Annotated, Any, Literal, Self
 
 from pydantic import Field, model_validator
 
 from nrs_design.spec.faults import fault
 from nrs_design.spec.fields import Hash, Title
 from nrs_design.spec.model import SpecModel
+from nrs_design.spec.quantity import Quantity
 
 MAX_SOURCES = 1000
 MAX_DOUBTS = 100
@@ -75,3 +78,43 @@ class IdentifiedSpec(SpecModel):
         if not self.accept_doubt.strip():
             raise fault("no reason is given", "say in one line why", "accept_doubt")
         return self
+
+
+class IdentifiedRangesSpec(IdentifiedSpec):
+    """What it notes down beside values with ranges: what they hold, and that they are those."""
+
+    range_covers: Coverage | None = None
+    range_id: Hash | None = Field(
+        default=None,
+        description="SHA-256 over the identified values, by nrs-design identify: values that were "
+        "changed by hand since are refused",
+    )
+
+    @model_validator(mode="after")
+    def _check_id(self) -> Self:
+        if self.range_id not in (None, self.values_id()):
+            raise fault(
+                "the values are not those that range_covers and range_id are about: they were "
+                "changed since they were identified",
+                "identify them again, or remove range_covers and range_id",
+                "range_id",
+            )
+        return self
+
+    def values_id(self) -> str:
+        """Return the SHA-256 of what identification writes, whatever the layout of the text."""
+        beside = {*IdentifiedSpec.model_fields, "range_id", "load_inertia"}
+        names = [name for name in type(self).model_fields if name not in beside]
+        canonical = json.dumps({name: _plain(getattr(self, name)) for name in names})
+        return hashlib.sha256(canonical.encode()).hexdigest()
+
+
+def _plain(value: object) -> Any:
+    """Return a value of a spec as texts, a quantity exactly and in SI."""
+    if isinstance(value, Quantity):
+        return [str(value.rational_part), value.pi_power, list(value.dimension)]
+    if isinstance(value, SpecModel):
+        return {name: _plain(getattr(value, name)) for name in type(value).model_fields}
+    if isinstance(value, tuple):
+        return [_plain(item) for item in value]
+    return None if value is None else str(value)

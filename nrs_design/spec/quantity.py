@@ -218,6 +218,8 @@ def _without_unit(text: str, kind: QuantityKind) -> SpecError:
     parse_exact(text)
     unit = kind.example.partition(" ")[2]
     remedy = f"write '{text} {unit}' if that is the unit meant"
+    if kind.units == ("N*m/rad", "N/m"):
+        remedy = f"write '{text} N/m' beside a lever_arm, '{text} N*m/rad' without one"
     if kind.units == ("rpm", "V", "A", "counts"):
         remedy = f"write '{text} V' or '{text} rpm', whichever the motor takes"
     if kind.units == ("m",):

@@ -282,6 +282,9 @@ Damping = Annotated[
 PositiveDamping = Annotated[
     RangedQuantity, _ranged(kinds.DAMPING, positive=True), _ranged_schema(kinds.DAMPING)
 ]
+HandMass = Annotated[
+    RangedQuantity, _ranged(kinds.HAND_MASS, positive=False), _ranged_schema(kinds.HAND_MASS)
+]
 Deflection = Annotated[Quantity, _quantity(kinds.DEFLECTION), _schema(kinds.DEFLECTION)]
 Mass = Annotated[Quantity, _quantity(kinds.MASS, positive=False), _schema(kinds.MASS)]
 RangedMass = Annotated[

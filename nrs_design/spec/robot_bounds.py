@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+import re
 from collections.abc import Mapping
 from fractions import Fraction
 from pathlib import Path
@@ -19,6 +20,7 @@ from nrs_design.proof.noun import dataclass
 from nrs_design.proof.text import quoted
 from nrs_design.spec.document import Position, parse_document, read_source, to_data
 from nrs_design.spec.exact import parse_exact
+from nrs_design.spec.fields import HASH_PATTERN, NAME_PATTERN
 from nrs_design.spec.meaning import hash_meaning
 
 SCHEMA = "nrs-design/robot-bounds/1"
@@ -110,8 +112,8 @@ def read_bounds(file: Path) -> tuple[RobotBounds, Mapping[str, Any]]:
         if min(light, turning, weight) < 0 or light > heavy:
             raise ValueError("a bound is negative, or the lightest is above the heaviest")
         found = RobotBounds(
-            name=robot["name"],
-            sha256=robot["sha256"],
+            name=_matching(robot["name"], NAME_PATTERN),
+            sha256=_matching(robot["sha256"], HASH_PATTERN),
             workspace=workspace_text(document),
             lightest=light,
             heaviest=heavy,
@@ -126,6 +128,13 @@ def read_bounds(file: Path) -> tuple[RobotBounds, Mapping[str, Any]]:
     except (SpecError, ValueError, KeyError, TypeError, AttributeError, RecursionError) as error:
         raise SpecError(f"not bounds of a robot: {error}", path=file, remedy=remedy) from error
     return found, document
+
+
+def _matching(text: str, pattern: str) -> str:
+    """Return a name or a hash that stands in the sentences of a certificate, if it is one."""
+    if not re.fullmatch(pattern, text):
+        raise ValueError(f"{quoted(text)} is no name or hash of a robot")
+    return text
 
 
 def _check_workspace(space: Mapping[str, Any]) -> None:
@@ -168,7 +177,7 @@ def bounds_of(spec: Path, named: str, at: Position) -> RobotBounds:
             remedy="name the file of a spec of kind robot, such as ../robots/arm.nrs.yaml",
         )
     bounds, _ = read_bounds(bounds_file(robot))
-    if bounds.sha256 != robot_hash(robot):
+    if (bounds.name, bounds.sha256) != identity_of(robot):
         raise SpecError(
             f"the robot {quoted(named)} has changed since its bounds were computed",
             path=spec,
@@ -179,6 +188,8 @@ def bounds_of(spec: Path, named: str, at: Position) -> RobotBounds:
     return bounds
 
 
-def robot_hash(robot: Path) -> str:
-    """Return the hash of what a robot spec says, without asking whether it is right."""
-    return hash_meaning(to_data(parse_document(read_source(robot)[1], robot)))
+def identity_of(robot: Path) -> tuple[str, str]:
+    """Return the name of a robot and the hash of what its spec says, right or wrong."""
+    said = to_data(parse_document(read_source(robot)[1], robot))
+    name = said.get("name") if isinstance(said, dict) else None
+    return str(name), hash_meaning(said)

@@ -92,7 +92,11 @@ def _controllers(spec: InteractionDesignSpec) -> Iterator[Refusal]:
 def _loss_of_contact(spec: InteractionDesignSpec) -> Iterator[Refusal]:
     if spec.contact != "losable":
         return
-    if spec.idle_states is not None:
+    bleeding = next((name for name, c in spec.controllers.items() if c.bleeds), None)
+    if bleeding is not None:
+        what = f"loss of contact under {bleeding}, whose integral a force has to balance"
+        yield ("contact",), what, "use `contact: kept`"
+    elif spec.idle_states is not None:
         what = "loss of contact under impedance controllers beside others"
         yield ("contact",), what, "use `contact: kept`, or one kind of controller"
     if len({"Kt" in controller.gains() for controller in spec.controllers.values()}) > 1:

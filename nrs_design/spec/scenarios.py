@@ -11,7 +11,7 @@ from pydantic import Field, WithJsonSchema, model_validator
 
 from nrs_design.proof.text import quoted
 from nrs_design.spec import kinds
-from nrs_design.spec.faults import all_of, as_text, did_you_mean, fault
+from nrs_design.spec.faults import all_of, as_text, fault
 from nrs_design.spec.fields import LABEL_PATTERN, Label, Title, UnitFraction, read_exact
 from nrs_design.spec.model import ReadBy, SpecModel
 from nrs_design.spec.quantity import Quantity, is_less
@@ -21,6 +21,7 @@ from nrs_design.spec.quantity_fields import (
     Bandwidth,
     Command,
     Duration,
+    Length,
     SignedAngle,
     SignedAngularVelocity,
     Torque,
@@ -29,6 +30,8 @@ from nrs_design.spec.quantity_fields import (
 )
 
 MAX_POINTS, MAX_SURFACES, LONGEST = 1000, 16, 3600
+# Of a robot, as its joints are called.
+AXES = ("theta1", "theta2", "theta3")
 LARGEST_SEED = 2**32 - 1
 
 Points = tuple[tuple[Quantity, Quantity], ...]
@@ -158,6 +161,12 @@ class SurfaceSpec(SpecModel):
     """Where an environment begins; it pushes and never pulls."""
 
     environment: Label = Field(description="name of the environment")
+    beside: Annotated[tuple[Label, ...], Field(max_length=MAX_SURFACES)] = Field(
+        default=(),
+        description="linear environments that are one body with it, of the same parameters: "
+        "forces add up, and only their sum does not pull. An elastic one with maxwell ones beside "
+        "it is a Prony series",
+    )
     at: SignedAngle = Field(description="angle of its surface in rad")
     side: Literal["above", "below"] = Field(
         default="above", description="above: met by rising angles; below: by falling ones"
@@ -165,6 +174,9 @@ class SurfaceSpec(SpecModel):
     parameters: Literal["nominal", "lowest", "highest"] = Field(
         default="nominal", description="which end of its ranges it has: all parameters alike"
     )
+
+
+Surfaces = Annotated[tuple[SurfaceSpec, ...], Field(max_length=MAX_SURFACES)]
 
 
 class SignControlSpec(SpecModel):
@@ -255,6 +267,59 @@ class ErrorsSpec(SpecModel):
     )
 
 
+class PoseSpec(SpecModel):
+    """Where the robot stands: two angles of the endoscope, and its depth."""
+
+    phi: SignedAngle = Field(description="about x, in rad")
+    psi: SignedAngle = Field(description="about y, in rad")
+    d: Length = Field(description="depth in m")
+
+
+class AxisSpec(SpecModel):
+    """What one axis has for itself; what is left out is as the scenario says."""
+
+    command: CommandProfileSpec | None = Field(default=None, description="as above")
+    surfaces: Surfaces | None = Field(default=None, description="as above; [] for nothing")
+    control: ControlSpec | None = Field(default=None, description="as above")
+    wanted_torque: Torque | None = Field(default=None, description="as above, in N*m")
+
+
+class AxesSpec(SpecModel):
+    """Three axes at once, on the links of the robot that `coupling` names."""
+
+    pose: PoseSpec | None = Field(
+        default=None,
+        description="{phi: 0 deg, psi: 0 deg, d: 200 mm}, where the robot rests at first, and "
+        "from where every axis counts its angle; default: the middle of the robot's workspace",
+    )
+    theta1: AxisSpec | None = Field(default=None, description="what the left axis has for itself")
+    theta2: AxisSpec | None = Field(default=None, description="what the right axis has for itself")
+    theta3: AxisSpec | None = Field(default=None, description="what the middle axis has for itself")
+
+
+class ScenarioLimitsSpec(SpecModel):
+    """What the gate wants a simulated run to keep; what is left out is not looked at."""
+
+    torque: Torque | None = Field(default=None, description="largest torque of the tissue in N*m")
+    deflection: Angle | None = Field(
+        default=None, description="largest depth below a surface in rad, about the pivot"
+    )
+    velocity: AngularVelocity | None = Field(
+        default=None, description="largest speed of the axis in rad/s"
+    )
+
+    @model_validator(mode="after")
+    def _check_any(self) -> ScenarioLimitsSpec:
+        if not self.named:
+            raise fault("no limit is named", "name torque, deflection or velocity")
+        return self
+
+    @property
+    def named(self) -> Mapping[str, Quantity]:
+        """The limits that there are, by quantity."""
+        return {name: value for name, value in self if value is not None}
+
+
 class ScenarioSpec(SpecModel):
     """One run of the robot against its surroundings."""
 
@@ -267,7 +332,7 @@ class ScenarioSpec(SpecModel):
     start: SignedAngle | None = Field(
         default=None, description="angle at which the axis rests at first, in rad; default: 0"
     )
-    surfaces: Annotated[tuple[SurfaceSpec, ...], Field(max_length=MAX_SURFACES)] = Field(
+    surfaces: Surfaces = Field(
         default=(),
         description="what is touched where; where several are, forces add up. Default: nothing",
     )
@@ -283,7 +348,17 @@ class ScenarioSpec(SpecModel):
     errors: ErrorsSpec | None = Field(
         default=None, description="friction, resolutions, noise and jitter; for the sampled engine"
     )
+    limits: ScenarioLimitsSpec | None = Field(
+        default=None,
+        description="what the run must keep for the gate to pass (NRS109), such as "
+        "{torque: 0.3 N*m, deflection: 1 deg}; without it, the gate does not simulate it",
+    )
     seed: Seed = Field(default=0, description="of noise, jitter and varying delay")
+    axes: AxesSpec | None = Field(
+        default=None,
+        description="three axes at once, for a spec with `coupling: {robot: ...}`: {} for all "
+        "alike, or what each has for itself. Default: one axis alone",
+    )
 
     @model_validator(mode="after")
     def _check_length(self) -> ScenarioSpec:
@@ -298,6 +373,18 @@ class ScenarioSpec(SpecModel):
             )
         return self
 
+    def of_axis(self, name: str) -> ScenarioSpec:
+        """Return the scenario of one axis of several.
+
+        Parameters
+        ----------
+        name : str
+            One of `AXES`.
+        """
+        own = getattr(self.axes, name, None)
+        changes = {} if own is None else {k: v for k, v in own if v is not None}
+        return self.model_copy(update={**changes, "axes": None})
+
     @property
     def length(self) -> Quantity | None:
         """Length of the run in s, as far as the spec itself says it."""
@@ -309,89 +396,3 @@ class ScenarioSpec(SpecModel):
 def _check_one(model: SpecModel, message: str, remedy: str) -> None:
     if sum(value is not None for _, value in model) != 1:
         raise fault(message, remedy)
-
-
-def check_scenario(
-    name: str,
-    scenario: ScenarioSpec,
-    controllers: Mapping[str, Any],
-    environments: Mapping[str, Any],
-    largest: Quantity,
-    *,
-    logic: bool,
-) -> None:
-    """Refuse a scenario that does not fit the rest of its spec.
-
-    Parameters
-    ----------
-    name : str
-        Of the scenario.
-    scenario : ScenarioSpec
-        As written.
-    controllers, environments : mapping
-        Of the spec, by name.
-    largest : Quantity
-        Limit of the commanded velocity.
-    logic : bool
-        Whether the spec has a mode logic of thresholds.
-    """
-    at = ("scenarios", name)
-    _check_velocity(scenario.command, largest, at)
-    for i, surface in enumerate(scenario.surfaces):
-        if surface.environment not in environments:
-            remedy = did_you_mean(surface.environment, environments)
-            message = f"there is no environment {surface.environment!r}"
-            raise fault(message, remedy, *at, "surfaces", i, "environment")
-        start = 0.0 if scenario.start is None else scenario.start.si
-        depth = start - surface.at.si if surface.side == "above" else surface.at.si - start
-        if depth > 0:
-            raise fault(
-                f"the axis rests inside {surface.environment!r} at the start",
-                f"move the surface beyond {start:.6g} rad, or the start out of it",
-                *at,
-                "surfaces",
-                i,
-                "at",
-            )
-    if scenario.control is None:
-        return
-    for place, controller in scenario.control.named.items():
-        if controller not in controllers:
-            remedy = did_you_mean(controller, controllers)
-            raise fault(f"there is no controller {controller!r}", remedy, *at, "control", *place)
-    for environment in scenario.control.contact or {}:
-        if environment not in environments:
-            remedy = did_you_mean(environment, environments)
-            place = (*at, "control", "contact", environment)
-            raise fault(f"there is no environment {environment!r}", remedy, *place)
-    if scenario.control.logic is not None and not logic:
-        raise fault(
-            "the spec has no mode_logic of type thresholds",
-            "add one, or control in another way",
-            *at,
-            "control",
-            "logic",
-        )
-
-
-def _check_velocity(
-    command: CommandProfileSpec, largest: Quantity, at: tuple[str | int, ...]
-) -> None:
-    written: dict[tuple[str | int, ...], float] = {}
-    if command.constant is not None:
-        written["constant",] = command.constant.si
-    for i, (_, quantity) in enumerate(command.points or ()):
-        written["points", i, 1] = quantity.si
-    if command.sinusoid is not None:
-        offset = 0.0 if command.sinusoid.offset is None else command.sinusoid.offset.si
-        written["sinusoid",] = abs(offset) + command.sinusoid.amplitude.si
-    for place, velocity in written.items():
-        # The same number in another unit may be a rounding above.
-        if abs(velocity) > largest.si * (1 + 1e-12):
-            raise fault(
-                f"a velocity of {velocity:.6g} rad/s is beyond the limit of {quoted(largest.text)}",
-                "command less, or raise limits.velocity",
-                *at,
-                "command",
-                *place,
-            )

@@ -4,11 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from functools import partial
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
 from nrs_design.spec.controllers import ControllerSpec, contact_name, names_in, touched_in
 from nrs_design.spec.environment import EnvironmentSpec
 from nrs_design.spec.faults import all_of, did_you_mean, fault
+
+if TYPE_CHECKING:
+    from nrs_design.spec.interaction import InteractionDesignSpec
 
 # The contact in the names of the modes of free motion.
 FREE = "free"
@@ -184,9 +187,10 @@ def check_at_once(
             continue
         at = ("controllers", name, "contacts", index)
         for key, environment in known:
-            if environment.remembers:
+            if environment.remembers or environment.has_mass:
+                what = "has a mass" if environment.has_mass else "remembers"
                 raise fault(
-                    f"{key!r}, which is {environment.model}, remembers: touching it at once with "
+                    f"{key!r}, which is {environment.model}, {what}: touching it at once with "
                     "others is not modelled",
                     "use elastic or kelvin-voigt environments there",
                     *at,
@@ -198,3 +202,44 @@ def check_at_once(
                     "use `contact: kept`, or elastic environments",
                     *at,
                 )
+
+
+def check_hands(spec: InteractionDesignSpec) -> None:
+    """Refuse what is not modelled about a hand, whose mass moves with the contact."""
+    touched = sorted(spec.touched & spec.environments.keys())
+    hands = [name for name in touched if spec.environments[name].has_mass]
+    if not hands:
+        return
+    beside: tuple[tuple[bool, str, str], ...] = (
+        (spec.contact == "losable", "contact", "loss of contact"),
+        (spec.sampling is not None, "sampling", "a sampled loop"),
+        (spec.disturbances is not None, "disturbances", "a bound under disturbances"),
+        (spec.coupling is not None, "coupling", "axes that act on each other"),
+        (spec.idle_states is not None, "idle_states", "a mixture of controllers"),
+        (spec.coordinates == "force", "coordinates", "force coordinates"),
+    )
+    for present, key, what in beside:
+        if present:
+            raise fault(
+                f"{hands[0]!r} is a hand with a mass, and {what} is not modelled with it",
+                f"remove {key}, or use a kelvin-voigt environment, which has no mass",
+                key,
+            )
+    if spec.actuator.load_inertia is not None:
+        raise fault(
+            f"{hands[0]!r} is a hand with a mass, which is not modelled as a load of the motor",
+            "remove load_inertia, or use a kelvin-voigt environment, which has no mass",
+            "actuator",
+            "load_inertia",
+        )
+    for name, controller in spec.controllers.items():
+        Mt = controller.gains().get("Mt")
+        if Mt is not None and not Mt.min.value:
+            raise fault(
+                f"{hands[0]!r} is a hand with a mass, whose force depends on itself where the "
+                "admittance has no inertia",
+                "give Mt a smallest value above zero",
+                "controllers",
+                name,
+                "Mt",
+            )

@@ -44,6 +44,9 @@ from nrs_design.switched.offset import names_of, retaken, to_motion
 from nrs_design.switched.parameter_box import Box
 from nrs_design.switched.parameters import Corner
 
+# What impedance controllers in a mixture integrate their velocity to.
+REFERENCE = "reference [rad]"
+
 
 def close_loop(
     name: str,
@@ -117,7 +120,7 @@ def close_loop(
         parts = _by_contact(chain.from_iterable(parts.values()))
     groups = {key: tuple(Corner(mode.name) for mode in part) for key, part in parts.items()}
     if idle is not None and idle.reset:
-        resets = resets_of(design, state.realization.order, state.idle_count)
+        resets = resets_of(design, state.realization.order, len(state.beside))
     else:
         resets = retaken(design, offset, state.realization.order)
     return SwitchedSystem(
@@ -188,7 +191,10 @@ def _shared_state(
             at=("actuator",),
         )
     low_pass = design.sensor.filter
-    return _State(realize(loop), coordinates, touched, shared, idle, offset, joint, low_pass)
+    bleeding = next((c.law.states for c in design.controllers if c.law.bleeds), ())
+    return _State(
+        realize(loop), coordinates, touched, shared, idle, offset, joint, low_pass, bleeding
+    )
 
 
 def _check_coordinates(coordinates: str, touched: tuple[Environment, ...]) -> None:
@@ -238,8 +244,8 @@ def _check_spring(
 def _shared_law(design: ControllerDesign, *, mixed: bool) -> CompliantLaw:
     """Return a law whose states are those that the modes share.
 
-    In a mixture these are the states of the controllers that command a velocity, and the others
-    have none of their own.
+    In a mixture these are the states of the controllers that command a velocity, and of those whose
+    integral bleeds; the others have none of their own.
 
     Raises
     ------
@@ -247,9 +253,14 @@ def _shared_law(design: ControllerDesign, *, mixed: bool) -> CompliantLaw:
         If the states of the laws are not the same.
     """
     laws = [controller.law for controller in design.controllers]
-    leading = [law for law in laws if law.commands == "velocity"] if mixed else laws
+    leading = laws
+    if mixed:
+        leading = [law for law in laws if law.commands == "velocity"] or [
+            law for law in laws if law.bleeds
+        ]
     kinds = {(law.commands, law.states) for law in leading}
-    kinds |= {(law.commands, law.states) for law in laws if mixed and law.states}
+    if mixed:
+        kinds |= {(law.commands, law.states) for law in laws if law.states and not law.bleeds}
     if len(kinds) > 1:
         kept = [f"{law.name} with {', '.join(law.states) or 'no state'}" for law in laws]
         found = "; ".join(dict.fromkeys(kept))
@@ -278,6 +289,7 @@ class _State:
     offset: Offset
     joint: Joint | None
     low_pass: LowPass | None
+    bleeding: tuple[str, ...] = ()
 
     @property
     def motion(self) -> Realization | JointMotion:
@@ -299,9 +311,10 @@ class _State:
         return tuple(e for e in self.touched if e.creep is not None)
 
     @property
-    def idle_count(self) -> int:
-        """How many states a controller that commands a position leaves idle."""
-        return len(self.law.states) + 1
+    def beside(self) -> tuple[str, ...]:
+        """In a mixture, the states beside those of the motion loop."""
+        moving = (*self.law.states, REFERENCE) if self.law.commands == "velocity" else ()
+        return (*moving, *self.bleeding)
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -311,9 +324,9 @@ class _State:
         inner = self.motion.states
         if self.idle is not None:
             inner = tuple(f"xi{i + 1}" for i in range(len(inner)))
-        loop = (*inner, *self.law.states)
         if self.idle is not None:
-            return (*loop, "reference [rad]")
+            return (*inner, *self.beside)
+        loop = (*inner, *self.law.states)
         if self.law.commands == "position":
             return loop
         contact = "F [N*m]" if self.coordinates == "force" else self.touched[0].law.states[0]
@@ -339,8 +352,7 @@ class _State:
         """Return A at the given gains of the law and parameters of the contact."""
         held, contact = law.of(values), environment.at(values)
         if self.idle is not None or law.commands == "position":
-            rows = position_mode(self.realization, held, contact, environment.name)
-            return self.padded(rows, law)
+            return self.placed(held, contact, environment.name)
         rows = velocity_mode(self.motion_at(values), held, contact, self.low_pass)
         if self.coordinates == "force":
             return to_force_coordinates(rows, self.motion, contact)
@@ -350,13 +362,23 @@ class _State:
         touched = environment.name if environment in self.memories else None
         return with_memories(rows, touched, creeps)
 
-    def padded(self, rows: Rows, law: CompliantLaw) -> Rows:
+    def placed(
+        self, law: CompliantLaw, contact: AbstractLinearLaw | None = None, environment: str = ""
+    ) -> Rows:
         """Return a mode with the idle states that it leaves alone, or in coordinates of motion."""
+        others = self.bleeding if self.idle is not None and not law.bleeds else ()
+        decay = Fraction(0) if self.idle is None else idle_decay(self.idle)
+        bleeding = decay if others else None
+        rows = position_mode(self.realization, law, contact, environment, bleeding)
         if self.offset != "none":
             return to_motion(rows, self.realization)
-        if self.idle is None or law.commands == "velocity":
+        if self.idle is None:
             return rows
-        return with_idle(rows, self.idle_count, idle_decay(self.idle))
+        integrated = (REFERENCE,) if law.commands == "velocity" else ()
+        own = (*law.states, *integrated, *others)
+        order = self.realization.order
+        places = [*range(order), *(order + self.beside.index(name) for name in own)]
+        return with_idle(rows, places, order + len(self.beside), decay)
 
 
 def _rate(environment: Environment) -> str:
@@ -368,8 +390,7 @@ def _controller_modes(
 ) -> Iterator[Mode]:
     law = controller.law
     if not controller.contacts:
-        alone = state.padded(position_mode(state.realization, law), law)
-        yield Mode(controller.name, RationalMatrix.from_rows(alone))
+        yield Mode(controller.name, RationalMatrix.from_rows(state.placed(law)))
     for environment in map(plant.environment, controller.contacts):
         name = f"{controller.name}/{environment.name}"
         box = state.contact_box(environment).beside(gains.box).beside(state.motor_box)
@@ -427,7 +448,7 @@ def _can_be_free(state: _State) -> bool:
         state.idle is None
         and state.law.commands == "velocity"
         and state.coordinates == "deflection"
-        and not any(e.law.remembers or e.preloaded for e in state.touched)
+        and not any(e.law.remembers or e.law.has_mass or e.preloaded for e in state.touched)
         and not any(e.parts and not e.each_losable for e in state.touched)
         and bool(state.touched)
     )

@@ -14,9 +14,10 @@ from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.system import Channel, Mode, Output, SwitchedSystem
 from nrs_design.spec import InteractionDesignSpec
 from nrs_design.spec.sampling import DisturbancesSpec
+from nrs_design.switched.assumption_kinds import INPUTS
 from nrs_design.switched.joint import Joint
 
-_ASSUMED = (
+_ASSUMED = INPUTS.says(
     "A velocity command acts where a statement names it; it may change arbitrarily fast within its "
     "bound."
 )

@@ -18,6 +18,8 @@ from nrs_design.proof.text import exact_text
 from nrs_design.spec.coupling import CouplingSpec
 from nrs_design.spec.exact import parse_exact
 from nrs_design.spec.robot_bounds import COMPUTED
+from nrs_design.switched import assumption_kinds as kinds
+from nrs_design.switched.assumption import Assumption
 from nrs_design.switched.assumptions import UNCOUPLED
 
 DECLARED = "declared, not computed from a robot"
@@ -232,45 +234,51 @@ def _deflection(system: SwitchedSystem, omega: Row, size: Fraction) -> Row:
     return [size * int(i == delta) for i in range(system.order)]
 
 
-def _texts(coupling: AxesCoupling) -> Iterator[str]:
+def _texts(coupling: AxesCoupling) -> Iterator[Assumption]:
     """Say what is taken for granted about the axes, and where it comes from."""
     low, high = (exact_text(m) for m in (coupling.lightest, coupling.heaviest))
-    yield (
+    yield kinds.LINKS.says(
         "The axes act on each other through their links. Every axis is one of this spec: its "
         "motor, gains, controllers and environments, each at values of its own within their "
         f"ranges, with a drive of {exact_text(coupling.drive)} kg*m^2 at its joint; gain and time "
         "constant of the motor are those of a drive without links."
     )
-    yield (
+    yield kinds.TOUCHED_ALONE.says(
         "What is touched acts on every axis by itself: the torque on an axis depends on the "
         "deflection of that axis alone."
     )
-    yield (
+    yield kinds.LINKS.says(
         f"Every eigenvalue of the matrix of inertia of the links is in [{low}, {high}] kg*m^2, in "
-        f"{coupling.poses} ({coupling.source})."
+        f"{coupling.poses} ({coupling.source}).",
+        f"eigenvalues of M(q) in [{low}, {high}] kg*m^2",
     )
     if coupling.coriolis is None:
-        yield "Coriolis and centrifugal torques are left out."
+        yield kinds.LINKS.says("Coriolis and centrifugal torques are left out.", "speeds near zero")
     else:
-        yield (
+        yield kinds.LINKS.says(
             "Coriolis and centrifugal torques are, over all axes together (root of the sum of "
             f"squares), at most {exact_text(coupling.coriolis)} N*m*s/rad times the speed "
             f"({_shortly(coupling)}), and the speed stays below {coupling.speed}, which is not "
-            "shown."
+            "shown.",
+            f"speed below {coupling.speed}",
         )
     if coupling.gravity_gradient is None:
-        yield "Gravity is compensated in all poses that are used."
+        yield kinds.GRAVITY.says(
+            "Gravity is compensated in all poses that are used.", coupling.poses
+        )
     else:
-        yield (
+        yield kinds.GRAVITY.says(
             "Gravity is compensated in the pose of rest, in which all deflections are zero; from "
             "there its torque changes, over all axes together, by at most "
             f"{exact_text(coupling.gravity_gradient)} N*m/rad times the deflections "
-            f"({_shortly(coupling)})."
+            f"({_shortly(coupling)}).",
+            f"{exact_text(coupling.gravity_gradient)} N*m/rad",
         )
         if coupling.source != DECLARED:
-            yield (
+            yield kinds.GRAVITY.says(
                 "On the straight way of the joint angles from the pose of rest, all poses are "
-                "among those."
+                "among those.",
+                coupling.poses,
             )
 
 

@@ -14,6 +14,8 @@ from nrs_design.errors import AssemblyError
 from nrs_design.proof.text import exact_text
 from nrs_design.spec import InteractionDesignSpec
 from nrs_design.spec.interval import Interval
+from nrs_design.switched.assumption import Assumption
+from nrs_design.switched.assumption_kinds import RANGE
 from nrs_design.switched.parameter_box import Box
 
 
@@ -72,11 +74,13 @@ class GainBox:
                 )
         return GainBox(self.law, ranges)
 
-    def range_texts(self, name: str) -> tuple[str, ...]:
+    def range_texts(self, name: str) -> tuple[Assumption, ...]:
         """Say where the gains of a controller of that name may be, if they have ranges."""
         return tuple(
-            f"{gain} of {name} stays in [{_text(interval.low)}, {_text(interval.high)}] "
-            f"{self.law.units[gain]} and may change arbitrarily fast."
+            RANGE.says(
+                f"{gain} of {name} stays in [{_text(interval.low)}, {_text(interval.high)}] "
+                f"{self.law.units[gain]} and may change arbitrarily fast."
+            )
             for gain, interval in self.ranges.items()
             if interval.low != interval.high
         )

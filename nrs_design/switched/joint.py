@@ -12,6 +12,8 @@ from nrs_design.models.motion_loop import JointMotion
 from nrs_design.models.plant import Plant
 from nrs_design.proof.text import exact_text
 from nrs_design.spec.interval import Interval
+from nrs_design.switched.assumption import Assumption
+from nrs_design.switched.assumption_kinds import LOAD, MOTOR, UNLOADED
 from nrs_design.switched.parameter_box import Box
 
 
@@ -63,19 +65,23 @@ class Joint:
         gains = self.motion.Kp, self.motion.Kd
         return JointMotion(*gains, values["Km"], values["tau"], self.load_inertia)
 
-    def texts(self) -> Iterator[str]:
+    def texts(self) -> Iterator[Assumption]:
         """Say what is taken for granted about the motor."""
         moving = "" if self.ranges.fixed else ", and may change arbitrarily fast"
-        yield (
+        yield MOTOR.says(
             "The motion loop is the linear actuator model of the spec under the motion gains "
-            f"listed here; {motor_text(self.ranges)}{moving}."
+            f"listed here; {motor_text(self.ranges)}{moving}.",
+            motor_text(self.ranges),
         )
         if self.load_inertia is None:
-            yield "What is touched does not slow the motor: it acts through the force sensor alone."
+            yield UNLOADED.says(
+                "What is touched does not slow the motor: it acts through the force sensor alone."
+            )
         else:
-            yield (
+            yield LOAD.says(
                 "The torque of what is touched acts on the axis as well, against an inertia of "
-                f"{exact_text(self.load_inertia)} kg*m^2."
+                f"{exact_text(self.load_inertia)} kg*m^2.",
+                f"{exact_text(self.load_inertia)} kg*m^2",
             )
 
 

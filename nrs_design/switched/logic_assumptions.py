@@ -7,21 +7,23 @@ from typing import TYPE_CHECKING
 
 from nrs_design.proof.bounds import rounded_up
 from nrs_design.spec.environment_estimator import EstimatorSpec, decide
+from nrs_design.switched.assumption import Assumption
+from nrs_design.switched.assumption_kinds import LOGIC, RULES
 
 if TYPE_CHECKING:
     from nrs_design.spec import InteractionDesignSpec
 
-_TIMER = (
+_TIMER = LOGIC.says(
     "The dwell times are kept by the timer of the mode logic, whatever the signals do. How noisy, "
     "old and fast the signals are decides only whether it ever holds a switch back."
 )
-_ALONE = (
+_ALONE = LOGIC.says(
     "The linear modes do not know which signals the logic sees: every switching signal that keeps "
     "these times is covered, also one that thresholds would not give."
 )
 
 
-def logic_texts(spec: InteractionDesignSpec) -> Iterator[str]:
+def logic_texts(spec: InteractionDesignSpec) -> Iterator[Assumption]:
     """Say what keeps the rules of switching, where they are those of a mode logic."""
     if spec.mode_logic is None or spec.switching.is_arbitrary:
         return
@@ -32,16 +34,17 @@ def logic_texts(spec: InteractionDesignSpec) -> Iterator[str]:
     yield _ALONE
 
 
-def _estimator_texts(spec: InteractionDesignSpec, estimator: EstimatorSpec) -> Iterator[str]:
+def _estimator_texts(spec: InteractionDesignSpec, estimator: EstimatorSpec) -> Iterator[Assumption]:
     decision = decide(estimator, spec.controllers, spec.environments)
     torque = estimator.signals.torque
-    yield (
+    yield RULES.says(
         "The environment that is touched does not change again within "
         f"{estimator.shortest_contact.text}. After a change the controller for the one before stays"
         f" active, for at most {rounded_up(decision.delay, 's')}: by then the estimator has "
-        "decided."
+        "decided.",
+        f"changes of contact at least {estimator.shortest_contact.text} apart",
     )
-    yield (
+    yield LOGIC.says(
         "That rests on an axis that moves in one direction at "
         f"{estimator.slowest_speed.text} or faster from the change to the decision (at rest "
         "nothing is decided, and nothing is claimed about a wrong controller that stays), on "

@@ -47,7 +47,12 @@ def velocity_mode(
     own = motion.order + len(law.states)
     touch = own + (0 if low_pass is None else low_pass.order)
     state = coordinates(touch + len(contact.states))
-    force, reaction = contact.react(motion.output(len(state)), state[touch:])
+    velocity = motion.output(len(state))
+    if contact.has_mass:
+        acceleration = _acceleration(motion, law, state)
+        force, reaction = contact.react_accelerated(velocity, acceleration, state[touch:])
+    else:
+        force, reaction = contact.react(velocity, state[touch:])
     felt, sensed = force, list[LinearForm]()
     if low_pass is not None:
         felt, sensed = low_pass.respond(force, state[own:touch])
@@ -56,6 +61,29 @@ def velocity_mode(
         felt = combine((Fraction(1), felt), (law.spring, motion.integral(state[touch])))
     command, rates = law.respond(felt, state[motion.order : own])
     return [*motion.rates(command, force), *rates, *sensed, *reaction]
+
+
+def _acceleration(
+    motion: Realization | JointMotion, law: CompliantLaw, state: Sequence[LinearForm]
+) -> LinearForm:
+    """Return the rate of the velocity, where the force does not act on it at once.
+
+    Raises
+    ------
+    AssemblyError
+        If it does: the equations would be implicit.
+    """
+    loaded = isinstance(motion, JointMotion) and motion.J is not None
+    if not law.states or loaded:
+        raise AssemblyError(
+            "a hand, which has a mass, is not modelled for an admittance without virtual inertia, "
+            "or with its load on the motor: its force would depend on itself",
+            remedy="give impedance controllers Mt > 0, and leave load_inertia out",
+            at=("actuator", "load_inertia") if loaded else ("controllers",),
+        )
+    command, _ = law.respond(zero(len(state)), state[motion.order : motion.order + len(law.states)])
+    rates = motion.rates(command)
+    return combine(*zip(motion.output(len(state))[: motion.order], rates, strict=True))
 
 
 def to_force_coordinates(
@@ -112,11 +140,13 @@ def position_mode(
     law: CompliantLaw,
     contact: AbstractLinearLaw | None = None,
     environment: str = "",
+    bleeding: Fraction | None = None,
 ) -> Rows:
     """Return A where the motion loop follows a position: for force control, thesis 6.46.
 
     ``xi' = Ap xi + Bp u``, ``theta = Cp xi``, and the law from F to u. A velocity is integrated
-    first, ``r' = -vm`` and ``u = r``.
+    first, ``r' = -vm`` and ``u = r``. Where the integral w of another controller bleeds, it is in
+    u, and the last state.
 
     Parameters
     ----------
@@ -128,6 +158,8 @@ def position_mode(
         Of the environment, at fixed parameters; by default, nothing is touched.
     environment : str
         Its name, for errors.
+    bleeding : Fraction, optional
+        Rate in 1/s at which the integral of another controller decays; by default there is none.
 
     Raises
     ------
@@ -137,10 +169,12 @@ def position_mode(
     """
     integrates = law.commands == "velocity"
     own = motion.order + len(law.states)
-    state = coordinates(own + integrates)
+    state = coordinates(own + integrates + (bleeding is not None))
     position, velocity, force = motion.output(len(state)), zero(len(state)), zero(len(state))
+    left = [] if bleeding is None else [(Fraction(1), state[-1])]
+    driven = combine((Fraction(1), state[own]), *left) if integrates else position
     if integrates:
-        velocity = combine(*zip(motion.C, motion.rates(state[-1]), strict=True))
+        velocity = combine(*zip(motion.C, motion.rates(driven), strict=True))
     elif contact is not None and not contact.is_spring:
         raise AssemblyError(
             f"force control in contact with {environment}, which has damping, is not modelled",
@@ -150,25 +184,34 @@ def position_mode(
     if contact is not None:
         force = [*contact.react(velocity, [position])[0]]
     if law.spring:
-        force = combine((Fraction(1), force), (law.spring, state[-1]))
+        force = combine((Fraction(1), force), (law.spring, state[own]))
     command, rates = law.respond(force, state[motion.order : own])
+    last = [] if bleeding is None else [combine((-bleeding, state[-1]))]
     if integrates:
-        return [*motion.rates(state[-1]), *rates, command]
-    return [*motion.rates(command), *rates]
+        return [*motion.rates(driven), *rates, command, *last]
+    return [*motion.rates(combine((Fraction(1), command), *left)), *rates, *last]
 
 
-def with_idle(rows: Sequence[LinearForm], count: int, decay: Fraction) -> Rows:
-    """Append idle states to the mode of a controller that does not use them.
+def with_idle(
+    rows: Sequence[LinearForm], places: Sequence[int], size: int, decay: Fraction
+) -> Rows:
+    """Return the mode of a controller among all states, of which those that it does not use decay.
 
     Parameters
     ----------
     rows : sequence of LinearForm
         Its A.
-    count : int
-        Of idle states.
+    places : sequence of int
+        Where its states stand among all.
+    size : int
+        How many there are.
     decay : Fraction
-        Their rate in 1/s.
+        Rate of the others in 1/s.
     """
-    n = len(rows)
-    idle = [[*zero(n + i), -decay, *zero(count - i - 1)] for i in range(count)]
-    return [*([*row, *zero(count)] for row in rows), *idle]
+    full = [zero(size) for _ in range(size)]
+    for i, row in zip(places, rows, strict=True):
+        for j, entry in zip(places, row, strict=True):
+            full[i][j] = entry
+    for i in {*range(size)} - {*places}:
+        full[i][i] = -decay
+    return [*full]

@@ -2,12 +2,13 @@
 
 The actuator holds the command between samples and is not loaded by the tissue, so the stiffness
 enters through the force sample alone: every entry is affine in it, and a stiffness that moves at
-will is covered by its ends. State: ``[e, omega, e_before, vm, F_1, ..., F_d, delta]`` with the
+will is covered by its ends. State: ``[e, omega, e_before, vm, w, F_1, ..., F_d, delta]`` with the
 error e of the motion loop, its value a period ago, the velocity vm of the admittance (absent
-without inertia), the lags of a filter, the force samples on their way, and the deflection. Beside
-position and force controllers, the reference of the impedance controllers stands in the place of
-e; without impedance controllers, there is neither it nor vm. Where the admittance runs more often
-than the motion loop, the command u that is held stands after e_before.
+without inertia), the integral w of a PI force controller (absent without one), the lags of a
+filter, the force samples on their way, and the deflection. Beside position and force controllers,
+the reference of the impedance controllers stands in the place of e; without impedance controllers,
+there is neither it nor vm. Where the admittance runs more often than the motion loop, the command u
+that is held stands after e_before.
 """
 
 from __future__ import annotations
@@ -88,6 +89,8 @@ class Frame:
     idle : Fraction or None
         What a period leaves of reference and velocity of the impedance controllers, where there are
         other controllers, too.
+    gathers : bool
+        Whether there are PI force controllers.
     holds : bool
         Whether the command of the motion loop outlasts a sample: there are some at which only the
         admittance is computed.
@@ -104,6 +107,7 @@ class Frame:
     takes_force: bool = False
     idle: Fraction | None = None
     holds: bool = False
+    gathers: bool = False
 
     @property
     def roundings(self) -> dict[str, Fraction]:
@@ -133,14 +137,16 @@ class Frame:
                 moves=self.integrates,
                 places=not self.integrates or self.idle is not None,
                 takes_force=self.takes_force,
+                gathers=self.gathers,
             )
         )
 
     @property
     def _placing(self) -> tuple[str, ...]:
-        """The terms of a reference that force control computes."""
-        reference = self.listed.counts.get("force", {}).get("error", {})
-        return tuple(name for name in reference if name != ERROR)
+        """The terms of a reference that is computed within a sample."""
+        each = (results["error"] for results in self.listed.counts.values())
+        names = dict.fromkeys(name for reference in each for name in reference)
+        return tuple(name for name in names if name != ERROR)
 
     @property
     def remembers(self) -> bool:
@@ -155,7 +161,8 @@ class Frame:
         first = ("e [rad]" if self.idle is None else "reference [rad]",) if self.integrates else ()
         sensed = () if self.low_pass is None else self.low_pass.states
         motion = ("omega [rad/s]", "e before [rad]", *(("u held",) if self.holds else ()))
-        return (*first, *motion, *inner, *sensed, *ages, "delta [rad]")
+        gathered = ("integral [rad]",) if self.gathers else ()
+        return (*first, *motion, *inner, *gathered, *sensed, *ages, "delta [rad]")
 
     def rows(
         self,
@@ -189,6 +196,7 @@ class Frame:
         step = self._step(law, at, ages[delay], shares)
         following, nothing = self.listed.following, zero(len(at.delta))
         lags, velocity = [*at.lags], [at.velocity] if self.has_inertia else []
+        integral = [at.integral] if self.gathers else []
         seen, drive, reference = at.before, at.drive, at.reference
         sizes: dict[str, LinearForm] = {}
         if turn is not Turn.ADMITTANCE:
@@ -201,6 +209,7 @@ class Frame:
             after = {name: step.result(made, nothing) for name, made in following.items()}
             lags = [after[f"filtered_{i}"] for i in range(1, len(lags) + 1)]
             velocity = [after["velocity"] for _ in velocity]
+            integral = [after["integral"] for _ in integral]
             moves = isinstance(law, SampledAdmittance)
             reference = after.get("reference", after.get("offset", nothing))
             reference = combine((ONE, reference), (Fraction(moves), at.reference_rounding))
@@ -216,6 +225,7 @@ class Frame:
             seen,
             *([drive] if self.holds else []),
             *velocity,
+            *integral,
             *lags,
             *ages[: self.longest_delay],
             delta,
@@ -239,6 +249,7 @@ class Frame:
             "offset": at.reference,
             "error_before": at.before,
             "velocity": at.velocity,
+            "integral": at.integral,
             **{f"filtered_{i}": lag for i, lag in enumerate(at.lags, 1)},
         }
         # A commanded position is rounded as it is read, the reference of an admittance as it moves.
@@ -269,6 +280,7 @@ class _Signals:
     before: LinearForm
     drive: LinearForm
     velocity: LinearForm
+    integral: LinearForm
     lags: Sequence[LinearForm]
     samples: Sequence[LinearForm]
     delta: LinearForm
@@ -293,6 +305,7 @@ class _Signals:
         omega, before = next(left), next(left)
         drive = next(left) if frame.holds else nothing
         velocity = next(left) if frame.has_inertia else nothing
+        integral = next(left) if frame.gathers else nothing
         order = 0 if frame.low_pass is None else frame.low_pass.order
         lags = [next(left) for _ in range(order)]
         inputs = dict(zip(_FIELDS, unit[size:], strict=False))
@@ -304,6 +317,7 @@ class _Signals:
             before,
             drive,
             velocity,
+            integral,
             lags,
             samples,
             delta,

@@ -10,6 +10,8 @@ from nrs_design.controllers.sampled import SampledAdmittance, SampledLaw
 from nrs_design.controllers.sampled_range import coefficient_ranges
 from nrs_design.errors import AssemblyError, DesignError
 from nrs_design.proof.bounds import rounded_down, rounded_up
+from nrs_design.switched.assumption import Assumption
+from nrs_design.switched.assumption_kinds import RANGE
 from nrs_design.switched.gain_box import GainBox
 from nrs_design.switched.parameter_box import Box
 
@@ -72,9 +74,11 @@ class SampledGains:
             b = values["c"] * (1 if a is None else 1 - a)
         return replace(law, a=a, b=b, Kt=values.get("Kt", law.Kt))
 
-    def texts(self, name: str) -> Iterator[str]:
+    def texts(self, name: str) -> Iterator[Assumption]:
         """Say where the coefficients of a controller of that name may be."""
         said = {"a": "a", "c": "b/(1 - a)" if "a" in self.box.ranges else "b", "Kt": "Kt"}
         for symbol, interval in self.box.ranges.items():
             ends = f"[{rounded_down(interval.low)}, {rounded_up(interval.high)}]"
-            yield f"{said[symbol]} of {name} stays in {ends} and may change at every sample."
+            yield RANGE.says(
+                f"{said[symbol]} of {name} stays in {ends} and may change at every sample."
+            )

@@ -108,36 +108,38 @@ def roundings_of(
         yield Rounding(name, tuple(columns), tuple(map(RationalMatrix.from_rows, rows)))
 
 
-def outputs_of(frame: Frame, touched: Sequence[Environment], limit: Fraction) -> tuple[Output, ...]:
+def outputs_of(
+    states: Sequence[str], touched: Sequence[Environment], limit: Fraction
+) -> tuple[Output, ...]:
     """Return the force at the corners of its ranges, with what it is meant to keep, and omega.
 
     Parameters
     ----------
-    frame : Frame
-        Of all modes.
+    states : sequence of str
+        Names of the states of all modes.
     touched : sequence of Environment
         What pushes.
     limit : Fraction
         Of the force, in N m.
     """
-    rows = tuple(row for environment in touched for row in force_rows(frame, environment))
-    speed = coordinates(len(frame.states))[frame.states.index("omega [rad/s]")]
+    rows = tuple(row for environment in touched for row in force_rows(states, environment))
+    speed = coordinates(len(states))[states.index("omega [rad/s]")]
     omega = RationalMatrix.from_rows([speed])
     force = (Output("force", "N*m", rows, limit),) if rows else ()
     return (*force, Output("velocity", "rad/s", (omega,)))
 
 
-def force_rows(frame: Frame, environment: Environment) -> Iterator[RationalMatrix]:
+def force_rows(states: Sequence[str], environment: Environment) -> Iterator[RationalMatrix]:
     """Yield the force of a spring and damper at the corners of its ranges, as a row on the state.
 
     Parameters
     ----------
-    frame : Frame
-        Of all modes.
+    states : sequence of str
+        Names of the states of all modes.
     environment : Environment
         What pushes.
     """
-    size, speed = len(frame.states), frame.states.index("omega [rad/s]")
+    size, speed = len(states), states.index("omega [rad/s]")
     for values in Box({"k": environment.stiffness, "b": damping_of(environment)}).values():
         row = zero(size)
         row[speed], row[-1] = values["b"], values["k"]

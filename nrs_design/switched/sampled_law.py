@@ -7,7 +7,7 @@ a loop has, whatever their numbers; what each term is, from the numbers of the l
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import lru_cache
 
@@ -33,6 +33,7 @@ ANY = Fraction(1, 2)
 # Terms of the list.
 ERROR, KP, KD, KEPT, STEP = "e", "Kp e", "D (e - e before)", "a vm", "T (v - vm)"
 IDLE_REFERENCE, IDLE_VELOCITY = "d r", "d vm"
+INTEGRAL, KEPT_INTEGRAL = "w", "w kept"
 # Those that take a rounded number, of which `nrs_design.switched.sampled_step` bounds what that
 # adds to their own rounding.
 SECOND_ORDER = frozenset({KP, KD, STEP})
@@ -48,8 +49,9 @@ class Kinds:
         Lags of the filter of the force.
     inert, sprung : bool
         Whether admittances have a velocity of their own, and whether one has a spring.
-    moves, places, takes_force : bool
-        Whether there are impedance controllers, others, and force controllers among these.
+    moves, places, takes_force, gathers : bool
+        Whether there are impedance controllers, others, and proportional and PI force controllers
+        among these.
     """
 
     order: int
@@ -58,6 +60,7 @@ class Kinds:
     moves: bool
     places: bool
     takes_force: bool
+    gathers: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -82,9 +85,12 @@ class ListedLaw:
 
     @property
     def all_counts(self) -> dict[str, int]:
-        """How often each term is rounded, in the order of the list."""
-        results = [terms for mode in self.counts.values() for terms in mode.values()]
-        return {name: count for terms in results for name, count in terms.items()}
+        """How often each term is rounded at most, in the order of the list."""
+        most: dict[str, int] = {}
+        for mode in self.counts.values():
+            for name, count in ((n, c) for terms in mode.values() for n, c in terms.items()):
+                most[name] = max(count, most.get(name, 0))
+        return most
 
     def terms(
         self,
@@ -114,7 +120,10 @@ class ListedLaw:
             for name in own_results(self.law)
         }
         found = rounded_terms(self.law, self.law.modes.index(mode), every, numbers, errors)
-        return {name: tuple(_named(term, mode) for term in terms) for name, terms in found.items()}
+        return {
+            name: tuple(replace(term, name=_name(term, mode, name)) for term in terms)
+            for name, terms in found.items()
+        }
 
     def off(
         self, law: SampledLaw, result: str, rounded: Mapping[str, LinearForm]
@@ -137,6 +146,8 @@ def mode_of(law: SampledLaw) -> str:
     """Return the mode of the list in which a law is active."""
     if isinstance(law, SampledAdmittance):
         return "impedance"
+    if law.Ki_T:
+        return "pi-force"
     return "force" if law.Kp else "position"
 
 
@@ -156,6 +167,7 @@ def list_law(kinds: Kinds) -> ListedLaw:
     if kinds.places:
         laws["position"] = SampledForce(Fraction(0))
         laws |= {"force": SampledForce(ANY)} if kinds.takes_force else {}
+        laws |= {"pi-force": SampledForce(ANY, ANY)} if kinds.gathers else {}
     low_pass = SampledLowPass(kinds.order, ANY, ANY) if kinds.order else None
     law = build_law(StepFrame(SampledMotion(ANY, ANY), low_pass), laws, ANY)
     *unit, mark = coordinates(len(law.values) + 1)
@@ -169,10 +181,14 @@ def list_law(kinds: Kinds) -> ListedLaw:
     for i, mode in enumerate(law.modes):
         each = counted_terms(law, i, given)
         counts[mode] = {
-            result: {_name(term, mode): count for term, count in terms.items()}
+            result: {_renamed(term, mode, result): count for term, count in terms.items()}
             for result, terms in each.items()
             if result not in left_out
         }
+        names = [name for terms in counts[mode].values() for name in terms]
+        if len({*names}) < len(names):
+            # One name is one rounding: of two results, each has its own.
+            raise InternalError(f"a term of {mode} is rounded in two results")
         marked = rounded_terms(law, i, given, errors=dict.fromkeys(own_results(law), mark))
         takes_rounded |= {t.name for terms in marked.values() for t in terms if t.form[-1]}
     if unknown := takes_rounded - SECOND_ORDER:
@@ -185,10 +201,15 @@ def own_results(law: StepLaw) -> Iterator[str]:
     yield from (operation.name for operation in law.operations if operation.rounding == "own")
 
 
-def _named(term: Term, mode: str) -> Term:
-    return Term(_name(term.name, mode), term.form, term.roundings)
+def _name(term: Term, mode: str, result: str) -> str:
+    return _renamed(term.name, mode, result)
 
 
-def _name(term: str, mode: str) -> str:
-    """Name a term: the coefficient of a velocity that is idle is d."""
+def _renamed(term: str, mode: str, result: str) -> str:
+    """Name a term: the coefficient of a velocity that is idle is d.
+
+    The integral is rounded once in the reference and once as it goes on, each by itself.
+    """
+    if term == INTEGRAL and result == "next_integral":
+        return KEPT_INTEGRAL
     return IDLE_VELOCITY if term == KEPT and mode != "impedance" else term

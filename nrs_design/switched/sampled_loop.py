@@ -108,7 +108,7 @@ def close_sampled_loop(
     motions = tuple(chain.from_iterable(parts.values()))
     flying = tuple(item.mode for item in free)
     damped = (environment for environment in touched if "b" in environment.parameters)
-    pulls = tuple(row for environment in damped for row in force_rows(frame, environment))
+    pulls = tuple(row for environment in damped for row in force_rows(frame.states, environment))
     losable = Contact(flying, pulls, required=spec.contact == "losable") if free else None
     every = (*motions, *free)
     begins = tuple(item.mode.name for item in every if item.begins)
@@ -119,14 +119,14 @@ def close_sampled_loop(
         frame.states,
         tuple(item.mode for item in motions),
         (
-            *assume_sampled(spec, sampling, ranges, frame, laws, design, loss),
+            *assume_sampled(spec, sampling, ranges, frame, laws, design, loss, touched),
             *at_once_texts(touched),
         ),
         assemble_switching(spec.switching, groups, _resets(spec.idle_states, design, frame)),
         losable,
         frame.period,
         channels,
-        outputs_of(frame, touched, spec.limits.torque.exact) if channels else (),
+        outputs_of(frame.states, touched, spec.limits.torque.exact) if channels else (),
         tuple(roundings_of(frame, channels, every)),
         clock=Clock(sampling.round, begins) if sampling.round > 1 else None,
     )
@@ -175,9 +175,10 @@ def _frame(
         None if low_pass is None else low_pass.sampled(outer),
         any(law.Kt for law in admittances),
         bool(admittances),
-        any(isinstance(law, SampledForce) and law.Kp for law in laws),
+        any(isinstance(law, SampledForce) and law.Kp and not law.Ki_T for law in laws),
         idle,
         Turn.ADMITTANCE in _turns(sampling),
+        any(isinstance(law, SampledForce) and law.Ki_T for law in laws),
     )
 
 

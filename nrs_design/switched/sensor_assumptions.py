@@ -8,9 +8,13 @@ from fractions import Fraction
 from nrs_design.controllers.float32 import exact_decimal
 from nrs_design.controllers.sensor import Sensor
 from nrs_design.proof.bounds import rounded_up
+from nrs_design.switched.assumption import Assumption
+from nrs_design.switched.assumption_kinds import SENSOR
 
 
-def sensor_texts(sensor: Sensor, period: Fraction | None, *, disturbed: bool) -> Iterator[str]:
+def sensor_texts(
+    sensor: Sensor, period: Fraction | None, *, disturbed: bool
+) -> Iterator[Assumption]:
     """Say how the law gets the force, and what a proof leaves out of its errors.
 
     Parameters
@@ -26,15 +30,19 @@ def sensor_texts(sensor: Sensor, period: Fraction | None, *, disturbed: bool) ->
         yield _filter_text(sensor, period)
     if sensor.errors:
         parts = "; ".join(f"{name}: {rounded_up(e, 'N*m')}" for name, e in sensor.errors.items())
-        yield (
+        yield SENSOR.says(
             "What lasts of the errors of the force signal is a torque about the pivot of at most "
             f"{rounded_up(sensor.lasting, 'N*m')} ({parts}). {_OUTSIDE[disturbed]} In free motion "
-            "an admittance without a spring integrates it, and the robot creeps."
+            "an admittance without a spring integrates it, and the robot creeps.",
+            f"{rounded_up(sensor.lasting, 'N*m')} about the pivot",
         )
     if sensor.carries:
-        yield "The tool on the sensor acts on it by its weight alone, not by its acceleration."
+        yield SENSOR.says(
+            "The tool on the sensor acts on it by its weight alone, not by its acceleration.",
+            "accelerations of the tool far below that of gravity",
+        )
     if sensor.noise is not None:
-        yield "The noise of the force signal is left out: it has no bound."
+        yield SENSOR.says("The noise of the force signal is left out: it has no bound.", "none")
 
 
 _OUTSIDE = {
@@ -44,16 +52,16 @@ _OUTSIDE = {
 }
 
 
-def _filter_text(sensor: Sensor, period: Fraction | None) -> str:
+def _filter_text(sensor: Sensor, period: Fraction | None) -> Assumption:
     assert sensor.filter is not None
     lags = "one lag" if sensor.filter.order == 1 else f"{sensor.filter.order} equal lags in a row"
     if period is None:
-        return (
+        return SENSOR.says(
             f"The law gets the force through {lags}, x' = w (F - x) with w = "
             f"{exact_decimal(sensor.filter.pole)} rad/s."
         )
     step = sensor.filter.sampled(period)
-    return (
+    return SENSOR.says(
         f"The law gets the force sample through {lags}, x+ = p x + q F with the single-precision "
         f"numbers p = {exact_decimal(step.p)} and q = {exact_decimal(step.q)}; it uses the x that "
         "is computed at the same sample."

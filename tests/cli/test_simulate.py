@@ -1,6 +1,8 @@
 """`nrs-design simulate`, as a user types it."""
 
 import json
+import shutil
+import sys
 
 import numpy as np
 import pytest
@@ -8,7 +10,7 @@ import pytest
 from nrs_design.reporting.figures.simulated import draw_simulated
 from nrs_design.reporting.images import to_png
 from tests.simulation.interactions import IMPEDANCE, SAMPLED, simulated, text_of
-from tests.support import COMMUTING, run
+from tests.support import COMMUTING, ROOT, run
 
 RUN = (
     "command: {points: [[0 s, 0 deg/s], [0.5 s, 8 deg/s], [1 s, -8 deg/s]]}, "
@@ -122,6 +124,11 @@ def test_a_bound_stands_beside_the_peak(spec, tmp_path):
     force = next(b for b in one["certified_bounds"] if b["output"] == "force")
     assert force["holds_for_this_run"]
     assert one["metrics"]["peak_torque"] < force["level"] < 1
+    rate = one["certified_rate"]
+    assert rate["rate"] > 1
+    assert rate["uncovered"] == ["the command does not come to an end before the run does"]
+    told = run("simulate", path, cwd=tmp_path).stdout
+    assert "certified decay once nothing is commanded: " in told
     none = run("simulate", path, "--json", "--no-bound", cwd=tmp_path)
     assert json.loads(none.stdout)["runs"][0]["certified_bounds"] == []
     assert run("certify-switching", path, "--out", "a.cert.json", cwd=tmp_path).returncode == 0
@@ -154,6 +161,13 @@ def test_wrong_usage(spec, tmp_path, arguments, message):
     assert message in result.stderr
 
 
+def test_two_periods_that_never_meet_are_refused(spec, tmp_path):
+    two = spec(more="sampling: {period: 2 ms, outer_period: 0.1 ms, delay: 0}\n")
+    result = run("simulate", two, "--period", "0.00025", cwd=tmp_path)
+    assert result.returncode == 2
+    assert "do not meet at common samples" in result.stderr
+
+
 def test_another_kind_of_spec(tmp_path):
     result = run("simulate", COMMUTING, cwd=tmp_path)
     assert result.returncode == 2
@@ -177,6 +191,198 @@ def test_a_profile_from_a_file(spec, tmp_path):
         assert result.returncode == 2
         assert message in result.stderr
         assert not (tmp_path / "runs").exists()
+
+
+def test_a_profile_behind_a_link(spec, tmp_path):
+    """Within the folder it is as good as the file; out of it, another machine has another one."""
+    path = spec("command: {csv: hand.csv}")
+    outside = tmp_path.parent / f"{tmp_path.name}-outside.csv"
+    for target in (tmp_path / "real.csv", outside):
+        target.write_text("time_s,velocity_deg_s\n0,0\n0.1,0\n")
+    link = tmp_path / "hand.csv"
+    link.symlink_to("real.csv")
+    assert run("simulate", path, "--quiet", cwd=tmp_path).returncode == 0
+    for target, message in (
+        (outside, "leads out of the spec's folder"),
+        ("hand.csv", "symbolic links"),
+        ("/dev/zero", "leads out of the spec's folder"),
+    ):
+        link.unlink()
+        link.symlink_to(target)
+        result = run("simulate", path, cwd=tmp_path)
+        assert result.returncode == 2
+        assert message in result.stderr
+
+
+STILL = "command: {constant: 1 deg/s}, duration: %s, surfaces: [{environment: soft, at: %s}]"
+
+
+@pytest.mark.parametrize(
+    ("scenario", "message"),
+    [
+        (STILL % ("0 s", "1 deg"), "'0 s' must be positive"),
+        ("command: {points: [[0 s, 1 deg/s], [0 s, 2 deg/s]]}", "a run of '0 s' is not simulated"),
+        (STILL % ("3601 s", "1 deg"), "up to 3600 s"),
+        ("command: {constant: 9 deg/s}, duration: 1 s", "beyond the limit of '8 deg/s'"),
+        (
+            "command: {sinusoid: {amplitude: 5 deg/s, frequency: 1 Hz, offset: -4 deg/s}}, "
+            "duration: 1 s",
+            "beyond the limit of '8 deg/s'",
+        ),
+        (STILL % ("1 s", "-1 deg"), "rests inside 'soft' at the start"),
+        (STILL % ("1 s", "1 deg, side: below"), "rests inside 'soft' at the start"),
+        (STILL % ("1 s", "1 deg, beside: [hard]"), "there is no environment 'hard'"),
+        (STILL % ("1 s", "1 deg") + ", axes: {}", "the spec names none"),
+        ("command: {csv: ../hand.csv}", "is not a file below the spec's folder"),
+    ],
+)
+def test_bad_scenarios(spec, tmp_path, scenario, message):
+    result = run("simulate", spec(scenario), cwd=tmp_path)
+    assert (result.returncode, result.stdout) == (2, "")
+    assert message in result.stderr
+
+
+def test_a_chattering_logic_is_counted(spec, tmp_path):
+    """Noise around a command near zero: the signs of 6.3.2 have no bands."""
+    noisy = STILL.replace("1 deg/s", "-0.1 deg/s") % ("1 s", "0 deg")
+    path = spec(noisy + ", errors: {force_noise: 0.05 N*m}", SAMPLED)
+    told = run("simulate", path, cwd=tmp_path)
+    assert told.returncode == 0
+    assert "stays below 10 ms (chatter)" in told.stdout
+    document = json.loads(run("simulate", path, "--json", cwd=tmp_path).stdout)
+    assert document["runs"][0]["metrics"]["chatter"] > 20
+
+
+def test_mujoco_says_how_far_it_is_from_the_sampled_engine(spec, tmp_path):
+    pytest.importorskip("mujoco", reason="MuJoCo is not installed")
+    path = spec(more=SAMPLED)
+    document = json.loads(
+        run("simulate", path, "--engine", "mujoco", "--json", cwd=tmp_path).stdout
+    )
+    (one,) = document["runs"]
+    assert one["engine"] == "mujoco"
+    apart = one["deviation_from_sampled"]
+    assert 0 < apart["angle"] < 2e-5
+    assert 0 < apart["velocity"] < 1e-3
+    usual = json.loads(run("simulate", path, "--json", cwd=tmp_path).stdout)["runs"][0]
+    assert usual["deviation_from_sampled"] is None
+    assert one["metrics"]["peak_torque"] == pytest.approx(
+        usual["metrics"]["peak_torque"], abs=43 * apart["angle"]
+    )
+    stopped = run("simulate", path, "--engine", "mujoco", "--max-steps", "9", cwd=tmp_path)
+    assert stopped.returncode == 3
+    assert "from the sampled engine, at most: angle" in stopped.stdout
+    assert "STOPPED: 9 samples" in stopped.stdout
+    assert not (tmp_path / "MUJOCO_LOG.TXT").exists()
+
+
+def test_without_mujoco_it_is_said_what_to_install(spec, tmp_path, monkeypatch):
+    monkeypatch.setitem(sys.modules, "mujoco", None)
+    result = run("simulate", spec(), "--engine", "mujoco", cwd=tmp_path)
+    assert result.returncode == 2
+    assert "needs MuJoCo, which cannot be loaded" in result.stderr
+    assert "pip install 'nrs-design[mujoco]'" in result.stderr
+    assert run("simulate", spec(), "--engine", "sampled", cwd=tmp_path).returncode == 0
+
+
+@pytest.fixture
+def three(tmp_path):
+    """A scenario of three axes beside a copy of the robot."""
+    for suffix in ("nrs.yaml", "bounds.json"):
+        shutil.copy(ROOT / f"specs/robots/neuroboscope.{suffix}", tmp_path)
+
+    def write(scenario):
+        text = text_of(scenario=scenario, more="coupling: {robot: neuroboscope.nrs.yaml}\n")
+        path = tmp_path / "three.nrs.yaml"
+        path.write_text(text.replace("0.0351 s}", "0.0351 s, load_inertia: 1.213 kg*m^2}"))
+        return path
+
+    return write
+
+
+SHORT = "command: {constant: 8 deg/s}, duration: 0.1 s, axes: "
+OWN = (
+    "{theta1: {command: {constant: -4 deg/s}, surfaces: [{environment: soft, at: -0.05 deg, "
+    "side: below}]}, theta3: {command: {constant: 0 deg/s}, control: {fixed: withdrawal}}}"
+)
+
+
+def test_three_axes(three, tmp_path):
+    """Each has its own command, tissue and controller; files are named by scenario and axis."""
+    result = run("simulate", three(SHORT + OWN), "--json", "--out", "runs", cwd=tmp_path)
+    assert result.returncode == 0, result.stderr
+    document = json.loads(result.stdout)
+    left, *_ = document["runs"]
+    assert [one["scenario"] for one in document["runs"]] == [f"run.theta{i}" for i in (1, 2, 3)]
+    assert {one["engine"] for one in document["runs"]} == {"sampled"}
+    assert any("couples the axes" in line for line in left["not_modelled"])
+    assert [len(one["contacts"]) for one in document["runs"]] == [1, 0, 0]
+    names = {path.name for path in (tmp_path / "runs").iterdir()}
+    assert names == {
+        f"small.run.theta{i}.{suffix}" for i in (1, 2, 3) for suffix in ("csv", "npz", "svg", "png")
+    }
+    tables = [
+        np.genfromtxt(tmp_path / f"runs/small.run.theta{i}.csv", delimiter=",", names=True)
+        for i in (1, 2, 3)
+    ]
+    assert tables[0]["angle_rad"][-1] < -0.001
+    assert tables[1]["angle_rad"][-1] > 0.005
+    # Commanded to stand still, and moved by the links.
+    assert 1e-6 < np.abs(tables[2]["angle_rad"]).max() < 1e-3
+    stopped = run("simulate", three(SHORT + OWN), "--max-steps", "7", cwd=tmp_path)
+    assert stopped.returncode == 3
+    assert stopped.stdout.count("STOPPED: 7 samples") == 3
+
+
+@pytest.mark.parametrize(
+    ("scenario", "message"),
+    [
+        (SHORT + "{theta4: {}}", "theta4"),
+        (SHORT + "{theta1: {surfaces: [{environment: soft, at: -1 deg}]}}", "rests inside 'soft'"),
+        (SHORT + "{theta1: {control: {fixed: none}}}", "there is no controller 'none'"),
+        (SHORT + "{theta2: {command: {constant: 9 deg/s}}}", "beyond the limit of '8 deg/s'"),
+        (SHORT + "{}, start: 1 deg", "three axes begin in a pose"),
+        (SHORT + "{pose: {phi: 0 deg, psi: 0 deg, d: 600 mm}}", "is not reachable"),
+    ],
+)
+def test_bad_axes(three, tmp_path, scenario, message):
+    result = run("simulate", three(scenario), cwd=tmp_path)
+    assert (result.returncode, result.stdout) == (2, "")
+    assert message in result.stderr
+
+
+def test_two_runs_never_have_one_name(three, tmp_path):
+    path = three(SHORT + "{}")
+    other = "run.theta2: {command: {constant: 0 deg/s}, duration: 1 s}}"
+    path.write_text(path.read_text().replace("axes: {}}}", "axes: {}}, " + other))
+    result = run("simulate", path, cwd=tmp_path)
+    assert result.returncode == 2
+    assert "'run.theta2' is the name of a run of 'run'" in result.stderr
+
+
+def test_three_axes_have_no_exact_engine(three, tmp_path):
+    result = run("simulate", three(SHORT + "{}"), "--engine", "exact", cwd=tmp_path)
+    assert result.returncode == 2
+    assert "use --engine sampled or mujoco" in result.stderr
+
+
+@pytest.mark.slow
+def test_the_shipped_spec_of_three_axes(tmp_path):
+    """Without scenarios it has two of its own: one axis alone, and all of them alike."""
+    pytest.importorskip("mujoco", reason="MuJoCo is not installed")
+    axes = ROOT / "specs/neuroboscope/soft-tissue-axes.nrs.yaml"
+    given = ("--scenario", "all-axes", "--engine", "mujoco", "--json")
+    document = json.loads(run("simulate", axes, *given, cwd=tmp_path).stdout)
+    assert [one["scenario"] for one in document["runs"]] == [
+        f"all-axes.theta{i}" for i in (1, 2, 3)
+    ]
+    for one in document["runs"]:
+        assert one["stopped"] is None
+        assert one["deviation_from_sampled"]["angle"] < 1e-5
+        assert 0.25 < one["metrics"]["peak_torque"] < 0.3
+        assert one["metrics"]["withdrawal_times"]
+    alone = run("simulate", axes, "--engine", "exact", "--json", cwd=tmp_path)
+    assert [r["scenario"] for r in json.loads(alone.stdout)["runs"]] == ["insertion-and-withdrawal"]
 
 
 def test_a_bound_far_away_is_named_not_drawn():

@@ -263,3 +263,10 @@ def test_given_matrices_have_nothing_to_deploy(certified, tmp_path):
     result = run("verify", proof, COMMUTING, "--deployed", "x.h", cwd=tmp_path)
     assert result.returncode == 2
     assert "no gains that could be deployed" in result.stderr
+
+
+def test_swapped_files_are_named_in_their_order(tmp_path):
+    done = run("verify", "specs/a.nrs.yaml", "reports/a.cert.json", cwd=tmp_path)
+    assert done.returncode == 2
+    text = " ".join(done.stderr.replace("│", " ").split())
+    assert "nrs-design verify reports/a.cert.json specs/a.nrs.yaml" in text

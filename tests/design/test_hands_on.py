@@ -12,7 +12,7 @@ from nrs_design.design.hands_on import hand_effort, transparency
 from nrs_design.design.loops import Loops
 from nrs_design.design.measures import HAND_EFFORT, TRANSPARENCY
 from nrs_design.design.transfer import TransferFunction
-from nrs_design.models.contact import Elastic, KelvinVoigt
+from nrs_design.models.contact import Elastic, Hand, KelvinVoigt
 from tests.support import ROOT, run
 
 HANDS_ON = ROOT / "docs/examples/hands-on.nrs.yaml"
@@ -21,11 +21,11 @@ MOTION = TransferFunction((0.99, 56.82), (0.0351, 1.997, 56.82))
 BAND = 4 * np.pi
 
 
-def by_grid(k, b, Mt, Bt):
+def by_grid(k, b, Mt, Bt, m=0):
     """Both measures by their responses, on a fine grid that leaves out zero."""
     s = 1j * np.linspace(1e-6, BAND, 5_001)
     G = np.polyval(MOTION.numerator, s) / np.polyval(MOTION.denominator, s)
-    Ze = k / s + b
+    Ze = k / s + b + m * s
     L = G * Ze / (Mt * s + Bt)
     return np.abs(L / (1 + L)).min(), np.abs(Ze / (1 + L)).max()
 
@@ -42,6 +42,16 @@ def test_against_the_responses(k, b, Mt, Bt):
     requirement = Requirement(MOTION, (ContactCorner("hand", hand, True),), bandwidth=BAND)
     lowest, highest = by_grid(k, b, Mt, Bt)
     gains = np.array([Mt]), np.array([Bt])
+    assert requirement.values(TRANSPARENCY, *gains)[0][0] == pytest.approx(lowest, rel=1e-4)
+    assert requirement.values(HAND_EFFORT, *gains)[0][0] == pytest.approx(highest, rel=1e-4)
+
+
+@settings(max_examples=25)
+@given(hundredths(2500, 9040), hundredths(0, 50), hundredths(1, 20), hundredths(400, 800))
+def test_with_a_mass_against_the_responses(k, b, m, Bt):
+    requirement = Requirement(MOTION, (ContactCorner("hand", Hand(k, b, m), True),), bandwidth=BAND)
+    lowest, highest = by_grid(k, b, 2.0, Bt, m)
+    gains = np.array([2.0]), np.array([Bt])
     assert requirement.values(TRANSPARENCY, *gains)[0][0] == pytest.approx(lowest, rel=1e-4)
     assert requirement.values(HAND_EFFORT, *gains)[0][0] == pytest.approx(highest, rel=1e-4)
 

@@ -4,7 +4,7 @@ import pytest
 
 from nrs_design.exporters.export import Execution, export_design
 from nrs_design.models.robot import build_robot
-from nrs_design.pipeline import run_robot_laws
+from nrs_design.pipeline.robots import run_robot_laws
 from nrs_design.spec import read_spec
 from tests.models.robot.crooked import crooked
 from tests.support import ROOT

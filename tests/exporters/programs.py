@@ -66,6 +66,15 @@ LAWS = {
         {**PLACED, "insertion": ADMITTANCE.sampled(PERIOD, "exact")},
         to_float32(Fraction("0.96")),
     ),
+    "integral": build_mixed_law(
+        frame(),
+        {
+            **PLACED,
+            "insertion": ADMITTANCE.sampled(PERIOD, "exact"),
+            "hold": SampledForce(to_float32(Fraction("0.02")), to_float32(Fraction("0.001"))),
+        },
+        to_float32(Fraction("0.96")),
+    ),
     "mixed, spring": build_mixed_law(
         frame(LowPass(1, Fraction(200)).sampled(PERIOD)),
         {**PLACED, "insertion": replace(ADMITTANCE, Kt=Fraction(1, 2)).sampled(PERIOD, "exact")},

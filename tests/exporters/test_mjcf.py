@@ -7,8 +7,14 @@ import numpy as np
 import pytest
 
 from nrs_design.exporters.mjcf import render
-from nrs_design.exporters.robot_tree import RobotExport, joint_names, tree_angles
-from nrs_design.models.robot import gravity_torque, inverse_kinematics, mass_matrix
+from nrs_design.exporters.robot_tree import RobotExport
+from nrs_design.models.robot import (
+    gravity_torque,
+    inverse_kinematics,
+    joint_names,
+    mass_matrix,
+    tree_angles,
+)
 from tests.exporters.robots import POSES
 
 # Nothing is drawn.

@@ -8,18 +8,12 @@ import pytest
 
 from nrs_design.errors import PoseError
 from nrs_design.exporters import ROBOT_FORMATS
-from nrs_design.exporters.robot_tree import (
-    RobotExport,
-    comment,
-    home_joints,
-    joint_names,
-    links_of,
-    tree_angles,
-)
-from nrs_design.models.robot import inverse_kinematics
+from nrs_design.exporters.robot_tree import RobotExport, comment, home_joints
+from nrs_design.models.robot import inverse_kinematics, joint_names, links_of, tree_angles
 from tests.exporters.robots import POSES
 
 
+@pytest.mark.parametrize("robot", ["crooked"], indirect=True)
 @pytest.mark.parametrize("name", ROBOT_FORMATS)
 def test_every_format_begins_as_the_table_says(name, robot, loaded):
     format_ = ROBOT_FORMATS[name]

@@ -5,9 +5,9 @@ import xml.etree.ElementTree as ET
 import numpy as np
 import pytest
 
-from nrs_design.exporters.robot_tree import RobotExport, joint_names, tree_angles
+from nrs_design.exporters.robot_tree import RobotExport
 from nrs_design.exporters.urdf import render
-from nrs_design.models.robot import gravity_torque, mass_matrix
+from nrs_design.models.robot import gravity_torque, joint_names, mass_matrix, tree_angles
 from tests.exporters.robots import POSES
 
 pin = pytest.importorskip("pinocchio", reason="Pinocchio is not installed")

@@ -38,6 +38,11 @@ def test_interval_is_symmetric_in_the_logarithm():
     assert estimate.scaled(2).high == pytest.approx(12.0)
 
 
+def test_interval_of_what_may_be_zero_is_symmetric_in_the_value():
+    estimate = Estimate(2.0, 0.1, 40.0).from_zero(1.5)
+    assert (estimate.value, estimate.low, estimate.high) == (2.0, 0.0, 5.0)
+
+
 @pytest.mark.parametrize("half", [math.inf, math.nan, 1e4])
 def test_an_unknown_parameter_has_no_bounds(half):
     estimate = Estimate.from_log(0.0, half)

@@ -73,7 +73,7 @@ def test_only_the_environment_changes(silicone):
     assert [line for line in old if line not in new] == [
         "    stiffness: {nominal: 747.1461 N/m, range: [720.56 N/m, 768.17 N/m]}"
     ]
-    assert len(new) == len(old) + 5
+    assert len(new) == len(old) + 6
 
 
 def test_the_range_is_rounded_outwards(silicone):
@@ -163,6 +163,7 @@ def test_ranges_of_the_actuator_where_the_proof_covers_them(tmp_path, motor, fil
     text = merge_actuator(read_spec(file), motor)
     spec = parse_spec(text)
     assert (spec.actuator.intervals, spec.actuator.range_covers) == (None, "confidence")
+    assert spec.actuator.range_id == spec.actuator.values_id()
     for written, own in (
         (spec.actuator.gain, motor.chosen.gain),
         (spec.actuator.time_constant, motor.chosen.time_constant),
@@ -319,6 +320,7 @@ def test_what_the_range_holds_is_noted():
     found = identify_tissue(data, "elastic", coverage="tolerance")
     soft = parse_spec(merge_tissue(read_spec(SOFT_TISSUE), found, None, None)).environments["soft"]
     assert soft.range_covers == "tolerance"
+    assert soft.range_id == soft.values_id()
     assert "95 % of all such specimens" in found.covers
 
 

@@ -36,6 +36,17 @@ def test_a_dwell_time_is_searched_where_it_may_help(tmp_path, case):
     assert not any("--margin" in step for step in steps)
 
 
+def test_what_was_just_searched_is_not_advised(tmp_path):
+    path = tmp_path / "a.nrs.yaml"
+    path.write_text(f"kind: switched-system\nname: a\n{KINDS['dwell-refuted']}")
+    result = run_certification(read_spec(path))
+    assert any("--shortest-dwell" in step for step in next_steps(result))
+    assert not any("--shortest-dwell" in step for step in next_steps(result, shortest_dwell=True))
+    wide = run_certification(read_spec(ROOT / "docs/examples/wide-range.nrs.yaml"))
+    assert any("--margin" in step for step in next_steps(wide))
+    assert not any("--margin" in step for step in next_steps(wide, margin=True))
+
+
 def test_a_dwell_time_in_steps_is_not_searched(tmp_path):
     assert not any("--shortest-dwell" in step for step in steps_of(tmp_path, "word"))
 

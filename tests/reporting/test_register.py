@@ -1,64 +1,28 @@
-"""Every sentence that a certificate takes for granted has its entry in the register."""
-
-import json
+"""The register: what a sentence carries, what counts as tested, what a certificate lacks."""
 
 import pytest
 
-from nrs_design.models.contact import LINEAR_LAWS
 from nrs_design.pipeline import run_certification
-from nrs_design.reporting.register import MOTOR, TISSUE, Standing, is_known, register_of
+from nrs_design.reporting.register import register_of
 from nrs_design.spec import read_spec
-from tests.support import ROOT, SOFT_TISSUE
+from nrs_design.switched.assumption import Standing
+from nrs_design.switched.assumption_kinds import MOTOR, TISSUE, UNCOUPLED
+from tests.support import SOFT_TISSUE
 
-CERTIFICATES = sorted((ROOT / "reports").glob("*.cert.json"))
-
-
-@pytest.mark.parametrize("path", CERTIFICATES, ids=lambda path: path.name.split(".")[0])
-def test_every_sentence_of_the_shipped_certificates_is_known(path):
-    statements = json.loads(path.read_text(encoding="utf-8"))["assumptions"]
-    assert [text for text in statements if not is_known(text)] == []
-
-
-def test_what_laws_remember_is_known():
-    texts = [
-        text
-        for law in LINEAR_LAWS.values()
-        for alone in (True, False)
-        for text in law.memory_texts("nose", alone=alone)
-    ]
-    assert texts
-    assert [text for text in texts if not is_known(text)] == []
+AXES = "The axes of the robot do not act on each other."
 
 
 def test_an_assumption_keeps_its_sentence_and_order():
-    statements = ("The axes of the robot do not act on each other.", "The moon is full.")
-    axes, moon = register_of(statements)
-    assert (axes.name, axes.statement) == ("axes do not act on each other", statements[0])
-    assert axes.standing is Standing.OPEN
-    assert all((axes.bound, axes.breaks, axes.test))
-    assert not is_known(statements[1])
-    assert (moon.statement, moon.standing) == (statements[1], Standing.OPEN)
+    motor, axes = register_of([MOTOR.says("It turns.", "at 1 rpm"), UNCOUPLED.says(AXES)])
+    assert (motor.statement, motor.kind, motor.bound) == ("It turns.", MOTOR, "at 1 rpm")
+    assert (axes.statement, axes.bound, axes.standing) == (AXES, "zero coupling", Standing.OPEN)
 
 
-@pytest.mark.parametrize(
-    ("text", "name"),
-    [
-        (
-            "The noise of the force signal is left out: it has no bound.",
-            "the force signal",
-        ),
-        (
-            "What lasts of the errors of the force signal is a torque about the pivot of at most "
-            "1 N*m. In free motion an admittance without a spring integrates it, and the robot "
-            "creeps.",
-            "the force signal",
-        ),
-        ("Any switching signal is possible.", "how controllers may be switched"),
-        ("Mode a is left after at most 1 step.", "the rules of switching are kept"),
-    ],
-)
-def test_sentences_that_share_words_are_told_apart(text, name):
-    assert register_of([text])[0].name == name
+def test_what_a_certificate_alone_does_not_tell_is_said():
+    (found,) = register_of([AXES])
+    assert (found.statement, found.standing) == (AXES, Standing.OPEN)
+    assert "report its spec" in found.kind.breaks
+    assert "report its spec" in found.kind.test
 
 
 @pytest.mark.parametrize(
@@ -78,6 +42,6 @@ def test_only_measured_records_without_doubt_count_as_a_test(tmp_path, data, dou
     path.write_text(text, encoding="utf-8")
     spec = read_spec(path).spec
     statements = run_certification(read_spec(SOFT_TISSUE)).certification.system.assumptions
-    found = {item.name: item.standing for item in register_of(statements, spec)}
+    found = {entry.kind: entry.standing for entry in register_of(statements, spec)}
     assert found[TISSUE] is standing
     assert found[MOTOR] is Standing.OPEN

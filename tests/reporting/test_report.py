@@ -9,13 +9,15 @@ import pytest
 from nrs_design.errors import DesignError
 from nrs_design.pipeline import run_analysis, run_certification, run_comparison
 from nrs_design.reporting import build_report
-from nrs_design.reporting.document import Bullets, Listing, Paragraph, Table
+from nrs_design.reporting.document import Bullets, Illustration, Listing, Paragraph, Table
 from nrs_design.reporting.figures.run import draw_phase_plane, draw_run
+from nrs_design.reporting.sections.release import release_section
 from nrs_design.search.certification import Limits
 from nrs_design.search.method import Method
 from nrs_design.simulation.switched import SwitchedRun
 from nrs_design.spec import read_spec
 from tests.reporting.conftest import KINDS, ROOT, report_of
+from tests.support import SOFT_TISSUE
 
 FIGURES = {
     "proved": [
@@ -665,6 +667,25 @@ def test_force_and_velocity_stay_within_what_is_certified(report):
     torque = {line.get_label(): line for line in item.figure.axes[0].get_lines()}
     assert torque["simulated run"].get_ydata()[0] == pytest.approx(0.3)
     assert torque["limit of the spec"].get_ydata()[0] == pytest.approx(0.3)
+
+
+def test_a_sampled_loop_stays_within_what_is_certified(tmp_path):
+    """The bound of the factor of a step, over seconds, from the start with its force samples."""
+    path = tmp_path / "a.nrs.yaml"
+    text = SOFT_TISSUE.read_text(encoding="utf-8")
+    path.write_text(f"{text}\nsampling: {{period: 2 ms, delay: 1}}\n", encoding="utf-8")
+    loaded = read_spec(path)
+    result = run_certification(loaded, limits=Limits(optimize_rate=False))
+    section = release_section(result)
+    assert section is not None
+    item = next(block for block in section.blocks if isinstance(block, Illustration))
+    for axes in item.figure.axes[:3]:
+        curves = {line.get_label(): line for line in axes.get_lines()}
+        run, bound = (curves[name].get_ydata() for name in ("simulated run", "certified bound"))
+        assert (run <= bound).all()
+        assert curves["simulated run"].get_xdata()[1] == pytest.approx(0.002)
+    factor = float(result.certification.evidence.rate)
+    assert bound[-1] / bound[0] == pytest.approx(factor ** (len(bound) - 1))
 
 
 def test_no_run_in_units_where_the_deflection_is_no_state(report):

@@ -6,7 +6,7 @@ import json
 
 import pytest
 
-from nrs_design.pipeline import run_robot
+from nrs_design.pipeline.robots import run_robot
 from nrs_design.reporting import render_html
 from nrs_design.reporting.document import Illustration, Paragraph, Table
 from nrs_design.reporting.robot import robot_report

@@ -9,7 +9,7 @@ from math import log
 import pytest
 
 from nrs_design.certificates.certificate import Verdict
-from nrs_design.proof.evidence import ConewiseQuadratic, UnstableMode
+from nrs_design.proof.evidence import ConewiseModeQuadratic, ConewiseQuadratic, UnstableMode
 from nrs_design.proof.system import Contact, Mode, Time
 from nrs_design.search.certify import Limits, certify
 from nrs_design.search.conewise_quadratic import search_conewise
@@ -67,6 +67,8 @@ def test_stiffer_tissue_has_no_quadratic_function():
 
 SAMPLED = [
     (SOFT, BOTH, "0.01", "0", "0", 2.35),
+    (SOFT, BOTH, "0.01", "1", "0", 1.3),
+    (SOFT, BOTH, "0.01", "2", "0", 0.5),
     (SOFT, BOTH, "0.01", "[0, 1]", "0", 1.29),
     pytest.param(SOFT, BOTH, "0.01", "[0, 1]", "0.02", 0.94, marks=slow),
     pytest.param(SOFT, INSERTION, "0.01", "[0, 2]", "0.05", 9.46, marks=slow),
@@ -76,6 +78,38 @@ SAMPLED = [
     pytest.param(SOFT, ("2.15", "1.25"), "0.01", "[0, 5]", "0", None, marks=slow),
     pytest.param(SOFT, ("2.15", "1.022"), "0", "[0, 5]", "0", None, marks=slow),
 ]
+# The least damping of withdrawal that is proved beside insertion, for a delay and a tolerance.
+LEAST = [
+    ("0.01", "0.95", "[0, 1]", "0"),
+    ("0.01", "1.02", "[0, 2]", "0"),
+    ("0.01", "1.045", "[0, 2]", "0.02"),
+    ("0.01", "1.225", "[0, 5]", "0"),
+    ("0.005", "0.88", "[0, 1]", "0"),
+    ("0.005", "0.97", "[0, 2]", "0.02"),
+    ("0.005", "1.15", "[0, 5]", "0"),
+    ("0", "0.74", "[0, 1]", "0"),
+    ("0", "0.81", "[0, 2]", "0"),
+    ("0", "0.83", "[0, 2]", "0.02"),
+    ("0", "1.02", "[0, 5]", "0"),
+]
+
+
+@slow
+@pytest.mark.parametrize(("Mt", "Bt", "delay", "tolerance"), LEAST)
+def test_the_least_damping_of_withdrawal(Mt, Bt, delay, tolerance):
+    sampling = f"{{period: 2 ms, delay: {delay}}}"
+    system = thesis_robot(SOFT, ("2.15", Bt), Mt, tolerance, sampling=sampling)
+    evidence = found(search_conewise, system, optimize_rate=False)
+    assert isinstance(evidence, ConewiseQuadratic)
+    assert evidence.covers_rounding
+
+
+@slow
+def test_the_least_damping_that_takes_one_function_for_each_mode():
+    system = thesis_robot(SOFT, ("2.15", "0.94"), "0.005", sampling="{period: 2 ms, delay: [0, 2]}")
+    assert found(search_conewise, system, optimize_rate=False) is None
+    result = certify(system, limits=Limits(optimize_rate=False))
+    assert isinstance(result.evidence, ConewiseModeQuadratic)
 
 
 @pytest.mark.parametrize(("k", "Bt", "Mt", "delay", "tolerance", "rate"), SAMPLED)

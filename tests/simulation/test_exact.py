@@ -145,6 +145,44 @@ def test_position_and_force_control_end_where_the_balance_is():
     assert run.response["torque"][-1] == pytest.approx(wanted, rel=1e-6)
 
 
+def test_a_pi_leaves_no_error_and_its_integral_bleeds():
+    """No matter where X waits: ``F = Fd`` in the end. Out again, the integral is ``exp(-20 t)``."""
+    force = "{type: pi-force, environment: soft, proportional_gain: 0.02 rad/(N*m), "
+    force += "integral_gain: 0.5 rad/(N*m*s)}"
+    run = simulated(
+        text_of(
+            {"position": "{type: position}", "force": force},
+            scenario="command: {points: [[0 s, 4 deg/s], [2.5 s, 4 deg/s], [2.5 s, -4 deg/s], "
+            "[3 s, -4 deg/s]]}, surfaces: [{environment: soft, at: 2 deg}], "
+            "control: {threshold: {position: position, force: force, torque: 0.27 N*m}}",
+            more="idle_states: {decay: 20 1/s}",
+        )
+    )
+    (entered, _), (left, _) = run.switches
+    t, torque, integral = run.response.t, run.response["torque"], run.response["integral"]
+    assert torque[t < left][-1] == pytest.approx(0.3, rel=1e-8)
+    after = t >= left
+    assert integral[after] == pytest.approx(
+        integral[after][0] * np.exp(-20 * (t[after] - left)), rel=1e-9, abs=1e-15
+    )
+    assert not integral[t < entered].any()
+    # It stays in the reference, so that the reference does not jump where no error is left.
+    reference = run.response["reference"]
+    before, behind = reference[t < left][-1], reference[after][0]
+    assert behind == pytest.approx(before, abs=1e-8)
+
+
+def test_parallel_control_rests_at_the_wanted_force():
+    """From contact on: ``F = Fd`` in the end, and in free motion ``Ki Fd`` is the speed."""
+    parallel = "{type: parallel, environment: soft, proportional_gain: 0.02 rad/(N*m), "
+    parallel += "integral_gain: 0.2 rad/(N*m*s)}"
+    scenario = "command: {constant: 0 deg/s}, duration: 3 s, surfaces: [{environment: soft, "
+    run = simulated(text_of({"parallel": parallel}, scenario=scenario + "at: 1e-6 deg}]"))
+    assert run.response["torque"][-1] == pytest.approx(0.3, rel=1e-5)
+    run = simulated(text_of({"parallel": parallel}, scenario=scenario + "at: 70 deg}]"))
+    assert run.response["velocity"][-1] == pytest.approx(0.2 * 0.3, rel=1e-6)
+
+
 def test_insertion_and_withdrawal_change_by_sign():
     run = simulated(text_of())
     assert [name for _, name in run.switches] == ["withdrawal", "insertion"]

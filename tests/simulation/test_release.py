@@ -61,3 +61,27 @@ def test_a_certified_bound_holds_along_the_run_and_is_reached_by_some_start():
         assert (np.abs(run.state @ rows.T).max(axis=1) <= bound + 1e-12).all()
         worst = np.linalg.solve(Q, rows[0])
         assert certified(rows, Q, worst, rate, np.zeros(1))[0] == pytest.approx(rows[0] @ worst)
+
+
+def test_a_sampled_run_begins_with_what_was_measured_and_counts_seconds():
+    rows = [["1/2", "0", "0"], ["0", "0", "4"], ["0", "1/8", "1/2"]]
+    mode = Mode("a", RationalMatrix.from_rows([[Fraction(x) for x in row] for row in rows]))
+    states = ("omega [rad/s]", "F 1 before [N*m]", "delta [rad]")
+    sampled = SwitchedSystem(
+        "test", Time.DISCRETE, states, (mode,), (), Switching(), sample_time=Fraction(1, 500)
+    )
+    outputs = Outputs(np.array([[0.0, 0.0, 4.0]]), np.array([1.0, 0.0, 0.0]), 2.0, 1.0, (1,))
+    run = simulate_release(sampled, outputs, None)
+    # Half of the deflection stays, and an eighth of the torque that was measured is added.
+    assert run.state[0] == pytest.approx([0.0, 2.0, 0.5])
+    assert run.state[1] == pytest.approx([0.0, 2.0, 0.5])
+    assert run.time[:3] == pytest.approx([0.0, 0.002, 0.004])
+
+
+def test_a_run_that_grows_is_cut_and_overflows_nothing():
+    rows = [[Fraction(0), Fraction(0)], [Fraction(0), Fraction(10)]]
+    mode = Mode("a", RationalMatrix.from_rows(rows))
+    grows = SwitchedSystem("test", Time.DISCRETE, ("v", "delta [rad]"), (mode,), (), Switching())
+    run = simulate_release(grows, ROWS, None)
+    assert np.abs(run.state[:, 1]).max() == pytest.approx(10 * 0.5 * 10)
+    assert len(run.time) == len(run.mode) + 1

@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 import pytest
+from scipy.linalg import expm
 
 from nrs_design.controllers.step_logic import StepLogic
 from nrs_design.errors import DesignError
@@ -123,10 +124,49 @@ def test_without_a_period_or_a_motor_nothing_runs():
         simulated(text, "sampled", sampling=("2 ms", 0))
 
 
-def test_two_periods_are_not_simulated_as_one():
-    two = "sampling: {period: 2 ms, outer_period: 0.5 ms, delay: 0}\n"
-    with pytest.raises(DesignError, match="has a period of its own"):
-        sampled(RUN, two)
+def two_clocks(period, outer, delay, duration):
+    """The two loops as docs/certificates/periodic-quadratic.md has them, in double."""
+    Km, tau, Kd, zero, k, at = 4.8417e-4, 0.0351, 2060.0, 56.9706, 43.0, np.radians(1)
+    h = min(period, outer)
+    step = expm(h * np.array([[0, 1, 0], [0, -1 / tau, Km / tau], [0, 0, 0]]))
+    a = math.exp(-2.15 * outer / 0.01)
+    b = (1 - a) / 2.15
+    theta = omega = reference = velocity = before = command = 0.0
+    samples, rows = [0.0] * (delay + 1), []
+    for n in range(round(duration / h) + 1):
+        t = n * h
+        rows.append(theta)
+        wanted = np.radians(np.interp(t, [0, 0.3, 0.6, 1], [0, 8, 2, -6]))
+        if n % round(period / h) == 0:
+            error = reference - theta
+            command = Kd * zero * error + Kd * (error - before) / period
+            before = error
+        if n % round(outer / h) == 0:
+            samples = [max(0.0, k * (theta - at)), *samples[:-1]]
+            reference += outer * (wanted - velocity)
+            velocity = a * velocity + b * samples[delay]
+        theta, omega, _ = step @ [theta, omega, command]
+    return np.array(rows)
+
+
+@pytest.mark.parametrize(
+    ("period", "outer", "delay"),
+    [("2 ms", "0.1 ms", 1), ("2 ms", "0.1 ms", 0), ("1 ms", "4 ms", 1)],
+)
+def test_two_periods(period, outer, delay):
+    """Thesis 4.3: 2 ms and 0.1 ms. The peer has its own law, its own clocks and motor."""
+    both = f"sampling: {{period: {period}, outer_period: {outer}, delay: {delay}}}\n"
+    steady = RUN.replace("[1 s, -6 deg/s]", "[0.8 s, -2 deg/s]") + ", control: {fixed: insertion}"
+    run = sampled(steady, both)
+    first, second = (float(text.split()[0]) * 1e-3 for text in (period, outer))
+    wanted = two_clocks(first, second, delay, 0.8)
+    assert len(run.response) == len(wanted)
+    assert run.response["angle"].max() > np.radians(1.1)
+    # Single precision: some units in the last place of the reference, summed over its steps.
+    assert np.abs(run.response["angle"] - wanted).max() < 1e-6
+    alone = sampled(steady, f"sampling: {{period: {period}, delay: {delay}}}\n").response
+    both = np.interp(alone.t, run.response.t, run.response["angle"])
+    assert np.abs(both - alone["angle"]).max() > 1e-5
 
 
 def test_a_budget_ends_a_run():
@@ -167,6 +207,78 @@ def test_the_timer_counts_samples_as_the_exported_logic_does():
         modes.append(mode)
     assert len(run.switches) > 8
     assert modes == response.mode.tolist()
+
+
+POWER = (
+    "{model: hunt-crossley, stiffness: 43 N*m/rad, damping: 0.1 N*m*s/rad, exponent: 1.2, "
+    "about: 0.01 rad, preload: [0.005 rad, 0.02 rad]}"
+)
+ERRORS = "{friction: 120 rpm, encoder_step: 0.01 deg, force_noise: 0.01 N*m, jitter: 0.3}"
+
+
+@pytest.mark.parametrize("law", [POWER, "{model: elastic, stiffness: 43 N*m/rad}"])
+def test_a_loaded_motor_with_friction_moves_as_small_steps_say(law):
+    """The mechanics alone, recomputed from the recorded commands and instants."""
+    text = text_of(
+        environments={"soft": law},
+        scenario=f"{RUN}, errors: {ERRORS}",
+        more="contact: kept\n",
+    ).replace("0.0351 s}", "0.0351 s, load_inertia: 1.213 kg*m^2}")
+    text = text.replace("2 Hz}", "2 Hz, command: 280 rpm}")
+    run = simulated(text, "sampled", sampling=("2 ms", 1))
+    response = run.response
+    assert run.saturated == (np.abs(response["command"]) == 280).sum() > 10
+    assert np.abs(response["command"]).max() == 280
+    late = response.t / 0.002 - np.arange(len(response))
+    assert 0 <= late.min() < 0.02
+    assert 0.28 < late.max() <= 0.3
+
+    Km, tau, J, friction, at = 4.8417e-4, 0.0351, 1.213, 120.0, np.radians(1)
+    rho, lam = 43 / (1.2 * 0.01**0.2), 0.1 / 0.01**1.2
+
+    def push(theta, omega):
+        depth = theta - at
+        if depth <= 0:
+            return 0.0
+        force = (rho + lam * omega) * depth**1.2 if law == POWER else 43 * depth
+        return max(0.0, force)
+
+    theta = omega = 0.0
+    angles, stuck = [], 0
+    for k, command in enumerate(response["command"][:-1].tolist()):
+        angles.append(theta)
+        h = (response.t[k + 1] - response.t[k]) / 100
+        for _ in range(100):
+            pull = Km * command / tau - push(theta, omega) / J - omega / tau
+            dry = Km * friction / tau
+            free = omega + h * pull
+            new = math.copysign(max(0.0, abs(free) - h * dry), free)
+            stuck += new == 0.0
+            theta, omega = theta + h * (omega + new) / 2, new
+    assert stuck > 100
+    assert np.abs(response["torque"]).max() > 0.05
+    # Steps of 20 us, explicit: some 1e-5 s times the largest velocity, 0.14 rad/s.
+    assert np.abs(response["angle"][:-1] - angles).max() < 2e-5
+
+
+def test_the_law_gets_coarse_angles_and_noisy_torques():
+    """Recomputed in single precision from the recorded states, bit for bit."""
+    text = text_of(scenario=f"{RUN}, errors: {ERRORS}, control: {{fixed: insertion}}", more=SAMPLED)
+    response = simulated(text, "sampled").response
+    step = np.radians(0.01)
+    angle = (np.round(response["angle"] / step) * step).astype(np.float32)
+    assert (angle != response["angle"].astype(np.float32)).mean() > 0.9
+    f = np.float32
+    error = response["reference"].astype(f) - angle
+    Kp, D = f(2060 * 56.9706), f(2060 / 0.002)
+    command = Kp * error + D * (error - response["error before"].astype(f))
+    assert np.array_equal(command.astype(float), response["command"])
+    # v+ = a v + b f: from the velocities of the law follow the torques that it took.
+    vm = response["state velocity"]
+    a = math.exp(-2.15 * 0.002 / 0.01)
+    noise = (vm[2:] - a * vm[1:-1]) / ((1 - a) / 2.15) - response["torque"][:-2]
+    assert noise.std() == pytest.approx(0.01, rel=0.1)
+    assert abs(noise.mean()) < 0.002
 
 
 def test_a_threshold_is_compared_as_the_program_does():

@@ -71,6 +71,25 @@ def test_doubts_and_what_a_range_holds_are_listed():
     assert not any("doubts" in doubt.at for doubt in doubt_spec(spec))
 
 
+COVERED = "    range_covers: tolerance\n"
+
+
+def test_values_that_were_changed_by_hand_are_refused():
+    """The layout of the text may change; a value, its lever arm and what is held may not."""
+    plain = spoiled(IMPEDANCE, ARM, ARM + COVERED)
+    known = f"{COVERED}    range_id: {parse_spec(plain).environments['soft'].values_id()}\n"
+    text = spoiled(IMPEDANCE, ARM, ARM + known)
+    assert parse_spec(text).environments["soft"].range_id is not None
+    parse_spec(text.replace("lever_arm: 0.24 m", "lever_arm: 240 mm"))
+    for old, new in (
+        ("0.24 m", "0.25 m"),
+        ("covers: tolerance", "covers: prediction"),
+        (COVERED, ""),
+    ):
+        with pytest.raises(SpecError, match="changed since they were identified"):
+            parse_spec(spoiled(text, old, new))
+
+
 def test_a_doubt_that_nobody_accepts_is_a_warning():
     spec = parse_spec(spoiled(IMPEDANCE, ARM, ARM + DOUBT))
     (doubt,) = (item for item in doubt_spec(spec) if "in doubt" in item.message)

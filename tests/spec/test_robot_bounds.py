@@ -9,7 +9,7 @@ import pytest
 from nrs_design.errors import AssemblyError, SpecError
 from nrs_design.spec import parse_spec, read_spec
 from nrs_design.spec.meaning import hash_meaning
-from nrs_design.spec.robot_bounds import SCHEMA, UNITS, bounds_file, content_id, robot_hash
+from nrs_design.spec.robot_bounds import SCHEMA, UNITS, bounds_file, content_id, identity_of
 from nrs_design.switched.coupled import AxesCoupling
 from tests.spec.test_coupling import LOADED
 from tests.support import ROOT
@@ -35,10 +35,10 @@ def folder(tmp_path):
     return tmp_path
 
 
-def write(robot, changes, **more):
+def write(robot, changes, /, **more):
     document = {
         "schema": SCHEMA,
-        "robot": {"name": "arm", "sha256": robot_hash(robot)},
+        "robot": dict(zip(("name", "sha256"), identity_of(robot), strict=True)),
         "workspace": SPACE,
         "bounds": NUMBERS | changes,
         "units": UNITS,
@@ -117,6 +117,31 @@ def test_files_that_are_none(folder, changes, more, message):
         read(folder)
 
 
+@pytest.mark.parametrize(
+    ("key", "text"),
+    [
+        ("name", "arm.\nGravity is absent"),
+        ("name", "arm, whose bounds were measured"),
+        ("name", 3),
+        ("sha256", 64 * "g"),
+        ("sha256", "0" * 64 + " and more"),
+    ],
+)
+def test_what_stands_in_sentences_is_a_name_and_a_hash(folder, key, text):
+    robot = folder / "robots/arm.nrs.yaml"
+    name, sha256 = identity_of(robot)
+    write(robot, {}, robot={"name": name, "sha256": sha256} | {key: text})
+    with pytest.raises(SpecError, match="not bounds of a robot"):
+        read(folder)
+
+
+def test_the_name_is_that_of_the_robot(folder):
+    robot = folder / "robots/arm.nrs.yaml"
+    write(robot, {}, robot={"name": "another", "sha256": identity_of(robot)[1]})
+    with pytest.raises(SpecError, match="has changed since its bounds were computed"):
+        read(folder)
+
+
 def test_missing_files(folder):
     (folder / "robots/arm.bounds.json").unlink()
     with pytest.raises(SpecError, match="cannot be read") as caught:
@@ -150,5 +175,6 @@ def test_what_is_computed_is_not_declared(said, message):
 def test_hash_of_the_meaning_is_that_of_the_file_where_no_robot_is_named(tmp_path):
     file = tmp_path / "alone.nrs.yaml"
     file.write_text(LOADED)
-    assert read_spec(file).sha256 == robot_hash(file)
+    spec = read_spec(file)
+    assert (spec.spec.name, spec.sha256) == identity_of(file)
     assert len(hash_meaning({"a": "b"})) == 64

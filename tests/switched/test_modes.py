@@ -293,7 +293,7 @@ class TestPlaces:
     """Where states stand that a mode does not use."""
 
     def test_idle_states_decay_alone(self):
-        assert with_idle([[F(1), F(2)], [F(3), F(4)]], 2, F(5)) == [
+        assert with_idle([[F(1), F(2)], [F(3), F(4)]], (0, 1), 4, F(5)) == [
             [1, 2, 0, 0],
             [3, 4, 0, 0],
             [0, 0, -5, 0],

@@ -27,7 +27,7 @@ def balance(
     Example: nrs-design robot balance specs/robots/neuroboscope.nrs.yaml
     """
     from nrs_design.models.robot import design_balance, examine_balance
-    from nrs_design.pipeline import run_robot
+    from nrs_design.pipeline.robots import run_robot
 
     loaded, robot_spec, robot = run_robot(spec)
     wanted = design_balance(robot_spec, robot)

@@ -12,6 +12,7 @@ from nrs_design.cli import exit_codes
 from nrs_design.cli.options import Json, Quiet, SpecFile
 from nrs_design.cli.printing import note, print_json, progress, say
 from nrs_design.cli.robot.options import Figures, write_figures
+from nrs_design.cli.seconds import seconds
 from nrs_design.cli.tables import print_table
 
 if TYPE_CHECKING:
@@ -41,7 +42,8 @@ def bounds(
         typer.Option(metavar="MIN,MAX", help="Range of d in mm; default: the spec's."),
     ] = None,
     budget: Annotated[
-        float, typer.Option(min=0.0, help="Time for each of the four bounds in s.")
+        float,
+        typer.Option(metavar="S", parser=seconds(), help="Time for each of the four bounds in s."),
     ] = 1800.0,
     write: Annotated[
         bool,
@@ -73,7 +75,8 @@ def bounds(
     from nrs_design import __version__
     from nrs_design.models.robot import Space, compute_bounds, to_document
     from nrs_design.output import BOUNDS, write_output
-    from nrs_design.pipeline import placed, run_robot
+    from nrs_design.pipeline import placed
+    from nrs_design.pipeline.robots import run_robot
     from nrs_design.printable import json_text
     from nrs_design.spec.robot_bounds import bounds_file
 
@@ -95,10 +98,10 @@ def bounds(
 
 
 def _check(spec: Path, budget: float, *, as_json: bool, quiet: bool) -> None:
-    from nrs_design.pipeline import check_bounds
+    from nrs_design.pipeline.robots import check_robot_bounds
 
     with progress(f"bounds of {spec.name}", quiet=quiet, lines=True) as step:
-        file, faults = check_bounds(spec, budget, step)
+        file, faults = check_robot_bounds(spec, budget, step)
     if as_json:
         print_json("robot-bounds-check", {"file": str(file), "faults": list(faults)})
     elif faults:

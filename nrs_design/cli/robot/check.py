@@ -24,7 +24,8 @@ def check(spec: SpecFile, as_json: Json = False, quiet: Quiet = False) -> None:
     Example: nrs-design robot check specs/robots/neuroboscope.nrs.yaml
     """
     from nrs_design.models.robot import examine_inertia, survey_workspace
-    from nrs_design.pipeline import placed, run_robot
+    from nrs_design.pipeline import placed
+    from nrs_design.pipeline.robots import run_robot
 
     loaded, _, robot = run_robot(spec)
     with placed(loaded):

@@ -43,7 +43,7 @@ def correction(
         to_csv,
     )
     from nrs_design.output import TABLE, write_output
-    from nrs_design.pipeline import run_robot
+    from nrs_design.pipeline.robots import run_robot
 
     loaded, _, robot = run_robot(spec)
     rows = [(sine, correction_coefficients(robot, sine)) for sine in TABLE_3_5]

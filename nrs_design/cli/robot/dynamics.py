@@ -56,7 +56,7 @@ def dynamics(
     """
     import math
 
-    from nrs_design.pipeline import run_robot
+    from nrs_design.pipeline.robots import run_robot
 
     loaded, _, robot = run_robot(spec)
     if tilt is not None:

@@ -64,7 +64,8 @@ def export(
     from nrs_design.exporters.robot_tree import RobotExport
     from nrs_design.exporters.write import check_places, places, write_files
     from nrs_design.ownership import check_export, origin_of
-    from nrs_design.pipeline import placed, run_robot
+    from nrs_design.pipeline import placed
+    from nrs_design.pipeline.robots import run_robot
 
     chosen = ROBOT_FORMATS[format_]
     _check_unproved(chosen, unproved=unproved)

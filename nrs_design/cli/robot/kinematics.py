@@ -52,7 +52,7 @@ def kinematics(
     Example: nrs-design robot kinematics specs/robots/neuroboscope.nrs.yaml --pose 0.1,-0.2,0.2
     """
     from nrs_design.models.robot import direct_kinematics
-    from nrs_design.pipeline import run_robot
+    from nrs_design.pipeline.robots import run_robot
 
     loaded, _, robot = run_robot(spec)
     if pose is not None and joints is not None:

@@ -73,9 +73,12 @@ def track(
 ) -> None:
     """Simulate the motion controllers of thesis 4.2 to 4.4 and compare their tracking errors.
 
+    Links and steps are those of `nrs-design simulate` with three axes. The loop is not: these laws
+    follow a pose, in double precision and without tissue.
+
     Example: nrs-design robot track specs/robots/neuroboscope.nrs.yaml --figures figures
     """
-    from nrs_design.pipeline import run_robot
+    from nrs_design.pipeline.robots import run_robot
 
     loaded, robot_spec, robot = run_robot(spec)
     robot = _on_base(robot_spec, robot, tilt)

@@ -6,6 +6,7 @@ from typing import Any
 
 from nrs_design.controllers.laws.force import ProportionalForce
 from nrs_design.controllers.laws.impedance import Admittance
+from nrs_design.controllers.laws.integral import IntegralForce
 from nrs_design.controllers.laws.law import AbstractCompliantLaw, AbstractLaw
 from nrs_design.controllers.laws.motion import ProportionalDerivative
 from nrs_design.controllers.laws.parallel import ParallelForce
@@ -16,7 +17,10 @@ CompliantLaw = AbstractCompliantLaw[Any]
 
 # Laws that the robot switches between, by the type of a controller in a spec.
 LAWS: Mapping[str, type[CompliantLaw]] = MappingProxyType(
-    {law.name: law for law in (Admittance, ProportionalForce, ParallelForce, PositionControl)}
+    {
+        law.name: law
+        for law in (Admittance, ProportionalForce, IntegralForce, ParallelForce, PositionControl)
+    }
 )
 
 __all__ = [
@@ -25,6 +29,7 @@ __all__ = [
     "AbstractLaw",
     "Admittance",
     "CompliantLaw",
+    "IntegralForce",
     "ParallelForce",
     "PositionControl",
     "ProportionalDerivative",

@@ -51,6 +51,8 @@ class AbstractCompliantLaw(AbstractLaw, Generic[S]):
     commands: ClassVar[Command]
     # Whether the velocity command of the hand waits while the law is active (thesis 6.3.3).
     holds_hand: ClassVar[bool] = False
+    # Whether its one state stays in the position command of other controllers, and decays there.
+    bleeds: ClassVar[bool] = False
 
     @property
     def states(self) -> tuple[str, ...]:

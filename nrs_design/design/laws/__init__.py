@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from types import MappingProxyType
 
-from nrs_design.design.laws import force, impedance, parallel, position
+from nrs_design.design.laws import force, impedance, integral, parallel, position
 from nrs_design.design.laws.law import LawDesign
 
 # By the type of a controller in a spec; analyses are shown in this order.
@@ -11,6 +11,7 @@ LAW_DESIGNS: Mapping[str, LawDesign] = MappingProxyType(
     {
         "impedance": impedance.DESIGN,
         "force": force.DESIGN,
+        "pi-force": integral.DESIGN,
         "parallel": parallel.DESIGN,
         "position": position.DESIGN,
     }

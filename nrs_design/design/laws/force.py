@@ -19,6 +19,7 @@ from nrs_design.design.laws.law import (
     naming,
 )
 from nrs_design.design.measures import FORCE_MEASURES
+from nrs_design.design.transfer import TransferFunction
 from nrs_design.spec import ForceControllerSpec
 from nrs_design.spec.controllers import contact_names
 
@@ -41,6 +42,8 @@ class ForceAnalysis(AbstractControllerAnalysis):
         What is left of the force error then, over the force; of the law as declared.
     peak : float or None
         Largest force then, in N m; None without offset.
+    forward : TransferFunction
+        What Kp times the stiffness multiplies in the open loop: G, or that with an integral.
     """
 
     stiffness: float
@@ -48,6 +51,7 @@ class ForceAnalysis(AbstractControllerAnalysis):
     approach: Approach
     steady_error: float
     peak: float | None
+    forward: TransferFunction
 
 
 def choose(task: Task, given: ForceControllerSpec) -> Choice:
@@ -85,7 +89,9 @@ def analyze(task: Task, given: ForceControllerSpec, controller: Controller) -> F
         left = steady_force_error(task.motion, stiffness, gain, approach)
         peak = peak_force(task.motion, stiffness, gain, approach)
         achieved = achieve_force(requirement, FORCE_MEASURES, gain, approach)
-    return ForceAnalysis(controller.name, achieved, stiffness, loop, approach, left, peak)
+    return ForceAnalysis(
+        controller.name, achieved, stiffness, loop, approach, left, peak, task.motion
+    )
 
 
 DESIGN = LawDesign(choose, analyze)

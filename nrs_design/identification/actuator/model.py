@@ -145,6 +145,7 @@ def fit_of(method: str, found: TimeFit) -> ActuatorFit:
     motor, known = found.motor, found.uncertainty
     positive = [*known.estimates(motor.parameters)[:-1]]
     half = student_quantile(known.degrees) * float(known.errors[-1])
-    late = Estimate(max(motor.delay, 0.0), max(motor.delay - half, 0.0), motor.delay + half)
+    ends = (motor.delay, motor.delay - half, motor.delay + half)
+    late = Estimate(*(max(end, 0.0) for end in ends))
     friction = positive[2] if motor.friction is not None else None
     return ActuatorFit(method, positive[0], positive[1], friction, known, late, motor)

@@ -138,7 +138,7 @@ def check_varies(table: Table, name: str, values: Array) -> None:
         At the first row.
     """
     if np.ptp(values) == 0:
-        table.fail(f"the {name} never changes", 0, "record a motion")
+        table.fail(f"the {name} never changes", 0, "record a motion, from before it begins")
 
 
 def _runs(flags: np.ndarray[tuple[int], np.dtype[np.bool_]]) -> list[tuple[int, int]]:

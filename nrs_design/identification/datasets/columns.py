@@ -81,7 +81,8 @@ def find_columns(
     header : sequence of str
         Names in the file.
     layouts : sequence of tuple of str
-        Quantities that belong together; the first one may be shared by all groups.
+        Quantities that belong together; the first one may be shared by all groups. What the user
+        has mapped decides between layouts, then their order.
     mapping : mapping of str to str
         From a name in the file to ours.
     path, line
@@ -103,12 +104,13 @@ def find_columns(
     """
     _check_mapped(mapping, header, path, line)
     wanted = {quantity for layout in layouts for quantity in layout} | set(optional)
-    found, faults = _grouped(header, wanted, mapping, path, line)
+    named = {_split(ours, path, "", line).quantity for ours in mapping.values()}
+    found, faults = _grouped(header, wanted, named, mapping, path, line)
     for quantity, error in faults:
         # What was mapped, or would be judged, must not fall away in silence.
         if quantity in optional:
             raise error
-    for layout in layouts:
+    for layout in sorted(layouts, key=lambda quantities: len(named - set(quantities))):
         groups = _complete(found, layout, optional)
         if groups:
             return layout, groups
@@ -161,14 +163,17 @@ def check_stated(theirs: str, unit: str | None, ours: str, path: Path) -> None:
 def _grouped(
     header: Sequence[str],
     wanted: AbstractSet[str],
+    named: AbstractSet[str],
     mapping: Mapping[str, str],
     path: Path,
     line: int | None,
 ) -> tuple[dict[str, dict[str, Column]], list[tuple[str, DataError]]]:
-    """Sort the columns of the wanted quantities; also return those whose unit is not known."""
+    """Sort the columns of the wanted quantities; also return those whose unit is not known.
+
+    Quantities that are named by a mapping come from no other column.
+    """
     found: dict[str, dict[str, Column]] = {}
     faults: list[tuple[str, DataError]] = []
-    named = {_split(ours, path, "", line).quantity for ours in mapping.values()}
     for index, text in enumerate(header):
         ours = mapping.get(text)
         name = read_name(text if ours is None else ours)

@@ -93,14 +93,14 @@ def read_header(
     lines = [_decoded(line, path, number) for number, line in enumerate(raw, 1)]
     at, separator = _find(lines, mapped, path)
     names = _names(lines[at], separator, path, at + 1)
-    below = at + 1
+    below = _below_blanks(lines, at + 1)
     if below < len(lines):
         units = _cells(lines[below], separator)
         if _are_units(units, len(names)):
             pairs = list(zip(names, units, strict=True))
             _check_mapped_units(pairs, mapped, path)
             names = [_with_unit(name, unit, mapped) for name, unit in pairs]
-            below += 1
+            below = _below_blanks(lines, below + 1)
     comma = _has_decimal_comma(lines[below:], separator, path, below + 1)
     comments = [text.lower() for text in lines[:at] if text.startswith("#")]
     synthetic = any(SYNTHETIC in text for text in comments)
@@ -165,6 +165,11 @@ def _above_units(lines: Sequence[str], at: int, separator: str | None) -> int:
     """Return the line above, if this one holds the units of its names."""
     units, names = _cells(lines[at], separator), _cells(lines[at - 1], separator)
     return at - 1 if at and _are_units(units, len(names)) else at
+
+
+def _below_blanks(lines: Sequence[str], at: int) -> int:
+    """Return the first line that is not empty, if there is one: rows need not follow at once."""
+    return next((i for i in range(at, len(lines)) if lines[i]), at)
 
 
 def _separator_of(text: str) -> str | None:

@@ -12,21 +12,40 @@ from types import MappingProxyType
 KGF = 9.80665
 _TURN = 2 * pi / 60
 
-_FORCES = {"N": 1.0, "mN": 1e-3, "kN": 1e3, "kgf": KGF, "gf": KGF / 1000}
+_FORCES = {
+    "N": 1.0,
+    "mN": 1e-3,
+    "uN": 1e-6,
+    "kN": 1e3,
+    "kgf": KGF,
+    "gf": KGF / 1000,
+    "lbf": 0.45359237 * KGF,
+}
 _TORQUES = {"Nm": 1.0, "mNm": 1e-3, "Nmm": 1e-3}
+_COMMANDS = {
+    "rpm": 1.0,
+    "rad_s": 1 / _TURN,
+    "deg_s": 1 / 6,
+    "V": 1.0,
+    "mV": 1e-3,
+    "A": 1.0,
+    "mA": 1e-3,
+    "counts": 1.0,
+}
 _ANGLES = {"rad": 1.0, "mrad": 1e-3, "deg": pi / 180}
 
 # Factor to SI for every unit that a quantity may be written in; the first is the SI unit. A command
-# stays in the unit of its driver: rpm of a command are a number, not a velocity.
+# stays in the unit of its driver: rpm of a command are a number, not a velocity. One that is a
+# velocity is read in rpm.
 UNITS: Mapping[str, Mapping[str, float]] = MappingProxyType(
     {
         "time": {"s": 1.0, "ms": 1e-3, "us": 1e-6, "ns": 1e-9, "min": 60.0},
-        "deflection": {"m": 1.0, "mm": 1e-3, "cm": 1e-2, "um": 1e-6},
+        "deflection": {"m": 1.0, "mm": 1e-3, "cm": 1e-2, "um": 1e-6, "in": 0.0254},
         "force": _FORCES,
         "angle": _ANGLES,
         "torque": _TORQUES,
         "velocity": {"rad_s": 1.0, "deg_s": pi / 180, "rpm": _TURN},
-        "command": {"rpm": 1.0, "V": 1.0, "mV": 1e-3, "A": 1.0, "mA": 1e-3, "counts": 1.0},
+        "command": _COMMANDS,
         "mode": {"": 1.0},
         "input": {"any": 1.0},
         "output": {"any": 1.0},
@@ -42,7 +61,7 @@ UNITS: Mapping[str, Mapping[str, float]] = MappingProxyType(
     }
 )
 # The unit that values of a command have once they are read.
-_READ_AS = {"mV": "V", "mA": "A"}
+_READ_AS = {"rad_s": "rpm", "deg_s": "rpm", "mV": "V", "mA": "A"}
 _SYNONYMS = {
     "load": "force",
     "displacement": "deflection",
@@ -61,6 +80,8 @@ _SPELLINGS = {
     "µs": "us",
     "nsec": "ns",
     "µm": "um",
+    "inch": "in",
+    "µn": "uN",
     "n": "N",
     "newton": "N",
     "newtons": "N",
@@ -85,7 +106,9 @@ _SPELLINGS = {
 _BRACKETED = re.compile(r"^(?P<what>[^\[\](){}]+?)\s*[\[({](?P<unit>[^\[\](){}]*)[\])}]$")
 _SLASHED = re.compile(r"^(?P<what>[A-Za-z ]+?)\s*[/,]\s*(?P<unit>\S+)$")
 # Endings of foreign names that may be a unit, and are as often a minimum, a motor or a sensor A.
-_NO_ENDINGS = frozenset({"", "1", "any", "s", "m", "min", "A"})
+_NO_ENDINGS = frozenset({"", "1", "any", "s", "m", "min", "in", "A"})
+# Units in brackets that none of our quantities has: what says one is not to be taken for ours.
+_FOREIGN = frozenset({"g", "kg", "lb", "oz", "nN", "nm", "ft", "Pa", "kPa", "MPa", "%", "h"})
 # Of messages in bags that were turned into text; nanoseconds since 1970.
 _STAMP = re.compile(r"(^%time|(^|[./_])stamp)$")
 _PLOTTED_TIME = "__time"
@@ -204,7 +227,7 @@ def stated_unit(text: str, quantity: str) -> str | None:
     bracketed = _BRACKETED.match(text.strip()) or _SLASHED.match(text.strip())
     if bracketed:
         unit = read_unit(bracketed["unit"], quantity)
-        return unit if unit in known - {"", "1"} else None
+        return unit if unit in (known - {"", "1"}) | _FOREIGN else None
     words = text.strip().split("_")
     endings = (read_unit("_".join(words[-n:]), quantity) for n in (2, 1) if len(words) > n)
     return next((unit for unit in endings if unit in known - _NO_ENDINGS), None)

@@ -6,6 +6,7 @@ corner of a curve that is flat on one side, found by least squares over a grid o
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -32,8 +33,8 @@ _LEAST_AIR = 0.01
 _FEWEST = 10
 # Stiffness of air over that of the contact: what is stiffer is tissue.
 _FLAT = 0.3
-# A corner must lower n log(SSE) by this against a smooth curve without one, with n independent
-# samples, and explain so much.
+# Corners must lower n log(SSE) by this against smooth curves without one, with n independent
+# samples, and each explain so much.
 _BETTER = 20.0
 _EXPLAINED = 0.1
 # Quantile of chi^2 with one degree of freedom at 99 %.
@@ -102,12 +103,23 @@ class Contact:
 
 @dataclass(frozen=True, slots=True)
 class _Corner:
-    """Where a force leaves that of the air, with its 99 % interval, and the squared error."""
+    """Where a force leaves that of the air, on one way in.
+
+    Parameters
+    ----------
+    at, low, high : float
+        Position, and its 99 % interval.
+    gain : float
+        What n log(SSE) gains against a smooth curve without a corner.
+    flat : bool
+        Whether the force stays before it, and it explains enough.
+    """
 
     at: float
     low: float
     high: float
-    error: float
+    gain: float
+    flat: bool
 
 
 def find_contact(record: TissueRecord) -> Contact | None:
@@ -120,25 +132,24 @@ def find_contact(record: TissueRecord) -> Contact | None:
     """
     x, force = record.motion.deflection, record.force
     velocity = _smoothed(record.motion.velocity)
-    # Later touches may meet a tissue that has not come back, so that the first one tells best.
-    cycles = find_cycles(x)[:_CYCLES]
-    for count, cycle in enumerate(cycles):
-        found = [
-            (corner, side)
-            for side in (1, -1)
-            if (corner := _corner(*_way_in(record, velocity, side, cycle))) is not None
-        ]
-        if found:
-            corner, side = min(found, key=lambda item: item[0].error)
-            # That there is air is known by now; this touch may have met a tissue that had not come
-            # back from one in which air is less clear.
-            for before in reversed(cycles[:count]):
-                first = _place(*_way_in(record, velocity, side, before))
-                corner = first[0] if first and first[0].at < corner.at else corner
+    corners: dict[int, list[_Corner]] = {1: [], -1: []}
+    for cycle in find_cycles(x)[:_CYCLES]:
+        for side, row in corners.items():
+            row += _corner(*_way_in(record, velocity, side, cycle))
+        gain, side = max((_evidence(row), side) for side, row in corners.items())
+        if gain >= _BETTER:
+            # A touch may meet a tissue that has not come back: the least position tells best.
+            likely = (c for c in corners[side] if c.flat or c.gain >= _PLAUSIBLE)
+            corner = min(likely, key=lambda c: c.at)
             beyond = side * x > corner.at
             ends = corner.low - corner.at, corner.high - corner.at
             return Contact(side * corner.at, ends, side, beyond, _clear(force, beyond))
     return None
+
+
+def _evidence(corners: Sequence[_Corner]) -> float:
+    """Add up what independent touches tell of air."""
+    return sum(max(corner.gain, 0.0) for corner in corners if corner.flat)
 
 
 def _loading(u: Array, velocity: Array, cycle: slice) -> NDArray[np.intp]:
@@ -158,27 +169,15 @@ def _way_in(
     return side * x[rows], velocity[rows], record.force[rows]
 
 
-def _corner(u: Array, velocity: Array, force: Array) -> _Corner | None:
-    """Return the best corner, if it is one."""
-    placed = _place(u, velocity, force)
-    if placed is None:
-        return None
-    corner, gain = placed
-    centered = force - force.mean()
-    if gain < _BETTER or corner.error > (1 - _EXPLAINED) * float(centered @ centered):
-        return None
-    return corner if _is_flat(u, force, corner.at) else None
-
-
-def _place(u: Array, velocity: Array, force: Array) -> tuple[_Corner, float] | None:
-    """Return the best corner, and what n log(SSE) it gains against a smooth curve without one."""
+def _corner(u: Array, velocity: Array, force: Array) -> Iterator[_Corner]:
+    """Yield the best corner, if there are samples on both sides of it."""
     low, span = float(u.min()), float(np.ptp(u))
     # Between 0 and 1, powers are told apart.
     v, centered = (u - low) / span, force - force.mean()
     curve, best, error = _best_corner(v, velocity, centered)
     air = v < best
     if min(air.sum(), (~air).sum()) < _FEWEST or best < _LEAST_AIR:
-        return None
+        return
     smooth = float(_errors(curve, v[None], velocity, centered)[0])
     count = independent(_left(curve, np.maximum(v - best, 0.0), velocity, centered))
     grid = np.linspace(0.0, 1.0, 2 * _GRID)
@@ -186,8 +185,10 @@ def _place(u: Array, velocity: Array, force: Array) -> tuple[_Corner, float] | N
     # Likelihood-ratio interval; a step more than what the grid shows.
     near = grid[errors < error * np.exp(_PLAUSIBLE / count)]
     reach = [best, *near - grid[1], *near + grid[1]]
-    corner = _Corner(low + best * span, low + min(reach) * span, low + max(reach) * span, error)
-    return corner, count * float(np.log(smooth / error))
+    at, first, last = (float(low + part * span) for part in (best, min(reach), max(reach)))
+    explained = error <= (1 - _EXPLAINED) * float(centered @ centered)
+    flat = explained and _is_flat(u, force, at)
+    yield _Corner(at, first, last, count * float(np.log(smooth / error)), flat)
 
 
 def _best_corner(v: Array, velocity: Array, force: Array) -> tuple[int, float, float]:

@@ -82,13 +82,20 @@ def _bounds(law: AbstractContactLaw, bounds: tuple[Array, Array]) -> Iterator[st
             yield f"{name} is at the {end} end of its box"
 
 
-def _errors(law: AbstractContactLaw, found: Uncertainty) -> Iterator[str]:
+def reaches_zero(law: AbstractContactLaw, found: Uncertainty) -> tuple[bool, ...]:
+    """Tell of each parameter whether it is a stiffness that the 95 % interval lets be 0."""
     quantile = student_quantile(found.degrees)
-    for name, kind, error in zip(law.parameters(), law.kinds, found.errors, strict=True):
+    pairs = zip(law.kinds, found.errors, strict=True)
+    return tuple(kind == STIFFNESS and not quantile * error < 1 for kind, error in pairs)
+
+
+def _errors(law: AbstractContactLaw, found: Uncertainty) -> Iterator[str]:
+    zeros = reaches_zero(law, found)
+    for name, error, zero in zip(law.parameters(), found.errors, zeros, strict=True):
         if not error <= LARGEST_ERROR:
             size = f"{100 * error:.0f} %" if error < 10 else "over 1000 %"
             yield f"{name} has a relative standard error of {size}"
-        if kind == STIFFNESS and not quantile * error < 1:
+        if zero:
             yield f"the interval of {name} reaches 0"
 
 

@@ -16,9 +16,10 @@ from nrs_design.identification.statistics import (
     CONFIDENCE,
     Estimate,
     Uncertainty,
+    student_quantile,
     uncertainty,
 )
-from nrs_design.identification.tissue.doubts import doubts
+from nrs_design.identification.tissue.doubts import doubts, reaches_zero
 from nrs_design.identification.tissue.offsets import (
     Offset,
     estimate_offsets,
@@ -88,8 +89,20 @@ class RecordFit:
         return self.estimates_at(CONFIDENCE)
 
     def estimates_at(self, confidence: float) -> tuple[Estimate, ...]:
-        """Return the parameters with intervals of some confidence."""
-        return self.uncertainty.estimates(np.log(self.law.values), confidence)
+        """Return the parameters with intervals of some confidence.
+
+        They are symmetric in the logarithm; that of a stiffness which the 95 % interval does not
+        tell from 0 is so in the value, which is nearly normal, and ends at 0.
+        """
+        known = self.uncertainty
+        estimates = known.estimates(np.log(self.law.values), confidence)
+        half = student_quantile(known.degrees, confidence)
+        return tuple(
+            estimate.from_zero(half * float(error)) if zero else estimate
+            for estimate, error, zero in zip(
+                estimates, known.errors, reaches_zero(self.law, known), strict=True
+            )
+        )
 
     @property
     def r2(self) -> float:

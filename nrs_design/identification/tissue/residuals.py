@@ -22,6 +22,7 @@ Array = NDArray[np.float64]
 LARGEST_RESIDUAL = 0.1
 LARGEST_STRUCTURE = 0.03
 LEAST_R2 = 0.9
+_MOST = 0.5
 # A cycle that is stiffer than the others by this much is conditioning.
 _CONDITIONING = 0.05
 _BINS = 12
@@ -46,7 +47,7 @@ def doubt_residuals(
     count : int
         p, number of parameters.
     """
-    yield from _signs(trial, sensitivities[:, count:])
+    yield from _signs(trial, residuals, sensitivities[:, count:])
     yield from _size(trial, residuals)
     yield from _structure(trial, residuals)
     yield from _given_offsets(trial, residuals, sensitivities)
@@ -89,7 +90,13 @@ def structure(values: Array, residuals: Array) -> tuple[float, float]:
     return follows**0.5, fisher_tail(_BINS - 1, len(residuals) - _BINS, between / within)
 
 
-def _signs(trial: Trial, offsets: Array) -> Iterator[str]:
+def _signs(trial: Trial, residuals: Array, offsets: Array) -> Iterator[str]:
+    """Doubt the sign of the force, unless the law, which pushes back, explains most of it.
+
+    A tissue that relaxes at a growing deflection has a force that falls, too.
+    """
+    if explained(trial, residuals) > _MOST:
+        return
     X = np.column_stack([trial.deflection, offsets])
     found = np.linalg.lstsq(X, trial.measured, rcond=None)[0]
     known = uncertainty(X, trial.measured - X @ found)

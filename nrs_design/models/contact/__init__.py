@@ -4,6 +4,7 @@ from collections.abc import Mapping
 from types import MappingProxyType
 
 from nrs_design.models.contact.elastic import Elastic
+from nrs_design.models.contact.hand import Hand
 from nrs_design.models.contact.hunt_crossley import HuntCrossley
 from nrs_design.models.contact.kelvin_boltzmann import KelvinBoltzmann
 from nrs_design.models.contact.kelvin_voigt import KelvinVoigt
@@ -15,23 +16,30 @@ from nrs_design.models.contact.law import (
 from nrs_design.models.contact.maxwell import Maxwell
 from nrs_design.models.contact.motion import Motion
 
-# By name, the simplest first.
+# Of tissue, which records tell apart, by name, the simplest first.
 LAWS: Mapping[str, type[AbstractContactLaw]] = MappingProxyType(
     {law.name: law for law in (Elastic, KelvinVoigt, Maxwell, KelvinBoltzmann, HuntCrossley)}
 )
 
-# Those that can enter a design and a proof.
-LINEAR_LAWS: Mapping[str, type[AbstractLinearLaw]] = MappingProxyType(
+# Those of them that can enter a design and a proof.
+TISSUE_LAWS: Mapping[str, type[AbstractLinearLaw]] = MappingProxyType(
     {law.name: law for law in LAWS.values() if issubclass(law, AbstractLinearLaw)}
+)
+
+# All that can, a hand too, which no record of a press is about.
+LINEAR_LAWS: Mapping[str, type[AbstractLinearLaw]] = MappingProxyType(
+    {**TISSUE_LAWS, Hand.name: Hand}
 )
 
 __all__ = [
     "LAWS",
     "LINEAR_LAWS",
+    "TISSUE_LAWS",
     "AbstractContactLaw",
     "AbstractLinearLaw",
     "AbstractNonlinearLaw",
     "Elastic",
+    "Hand",
     "HuntCrossley",
     "KelvinBoltzmann",
     "KelvinVoigt",

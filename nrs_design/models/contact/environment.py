@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from itertools import product
 
-from nrs_design.errors import AssemblyError
+from nrs_design.errors import AssemblyError, InternalError
 from nrs_design.models.contact.elastic import Elastic
 from nrs_design.models.contact.kelvin_voigt import KelvinVoigt
 from nrs_design.models.contact.law import AbstractLinearLaw
@@ -89,7 +89,7 @@ class Environment:
                 continue
             raise AssemblyError(
                 f"with its ranges scaled by {float(scale):.6g}, environment {self.name} reaches a "
-                f"{self.law.kinds[index]} that no elastic or damped material has",
+                f"{self.law.kinds[index]} that nothing has which can be touched",
                 remedy="scale the ranges by less",
             )
         return replace(self, ranges=ranges)
@@ -110,6 +110,8 @@ def touch_at_once(parts: tuple[Environment, ...], *, losable: bool) -> Environme
     losable : bool
         Whether each may be lost on its own.
     """
+    if heavy := [part.name for part in parts if part.law.has_mass]:
+        raise InternalError(f"the mass of {heavy[0]} would be left out")
     stiffness = tuple(part.stiffness for part in parts)
     total = _sum(stiffness)
     if losable:

@@ -19,11 +19,12 @@ from nrs_design.spec.environment import turn
 if TYPE_CHECKING:
     from nrs_design.models.contact.motion import Array, Motion
 
-STIFFNESS, DAMPING = "stiffness", "damping"
+STIFFNESS, DAMPING, MASS = "stiffness", "damping", "mass"
 # Units of a linear motion and of a rotation about the pivot.
 _UNITS = {
     STIFFNESS: (kinds.LINEAR_STIFFNESS.units[0], kinds.STIFFNESS.units[0]),
     DAMPING: (kinds.LINEAR_DAMPING.units[0], kinds.DAMPING.units[0]),
+    MASS: (kinds.MASS.units[0], kinds.INERTIA.units[0]),
 }
 
 # A measured or designed value, or an exact one.
@@ -138,6 +139,8 @@ class AbstractLinearLaw(AbstractContactLaw):
     remembers: ClassVar[bool] = False
     # Whether the environment returns to where it was: a constant deflection keeps a force.
     has_rest: ClassVar[bool] = True
+    # Whether a mass moves with the contact, so that the force takes the acceleration.
+    has_mass: ClassVar[bool] = False
 
     @property
     @abstractmethod
@@ -167,6 +170,20 @@ class AbstractLinearLaw(AbstractContactLaw):
         states : sequence of LinearForm
             Those named in `states`.
         """
+
+    def react_accelerated(
+        self, velocity: LinearForm, acceleration: LinearForm, states: Sequence[LinearForm]
+    ) -> Reaction:
+        """Return what `react` does, where the acceleration in rad/s^2 is known as well.
+
+        Parameters
+        ----------
+        velocity, states
+            As for `react`.
+        acceleration : LinearForm
+            Of the contact; only a law with a mass takes it.
+        """
+        return self.react(velocity, states)
 
     @property
     @abstractmethod

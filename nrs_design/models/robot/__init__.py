@@ -48,6 +48,7 @@ from nrs_design.models.robot.kinematics import (
     orientation_jacobian,
     singularity_margins,
 )
+from nrs_design.models.robot.mjcf import LEAST, robot_model
 from nrs_design.models.robot.robot import Leg, Robot, TaskLimits, Workspace, build_robot
 from nrs_design.models.robot.separate_correction import SeparateCorrection, correct_separately
 from nrs_design.models.robot.shares import TorqueShares, torque_shares
@@ -57,6 +58,14 @@ from nrs_design.models.robot.simplified import (
     simplified_torque,
 )
 from nrs_design.models.robot.soundness import examine_inertia
+from nrs_design.models.robot.tree import (
+    DRIVEN,
+    Link,
+    joint_names,
+    links_of,
+    numbers,
+    tree_angles,
+)
 from nrs_design.models.robot.workspace import (
     JointPeaks,
     WorkspaceSurvey,
@@ -69,6 +78,8 @@ from nrs_design.models.robot.workspace import (
 )
 
 __all__ = [
+    "DRIVEN",
+    "LEAST",
     "TABLE_3_5",
     "Balance",
     "Correction",
@@ -76,6 +87,7 @@ __all__ = [
     "JointMotion",
     "JointPeaks",
     "Leg",
+    "Link",
     "Robot",
     "SeparateCorrection",
     "SimplifiedDynamics",
@@ -106,9 +118,12 @@ __all__ = [
     "is_reachable",
     "jacobian",
     "joint_motion",
+    "joint_names",
     "joint_peaks",
+    "links_of",
     "mass_and_bias",
     "mass_matrix",
+    "numbers",
     "orientation",
     "orientation_jacobian",
     "pose_grid",
@@ -118,6 +133,7 @@ __all__ = [
     "reach_margin",
     "reachable_poses",
     "residual_torque",
+    "robot_model",
     "simplified_dynamics",
     "simplified_torque",
     "singularity_margins",
@@ -130,6 +146,7 @@ __all__ = [
     "to_csv",
     "to_document",
     "torque_shares",
+    "tree_angles",
     "values_at",
     "workspace_grid",
 ]

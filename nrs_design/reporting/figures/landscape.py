@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -24,10 +24,14 @@ from nrs_design.reporting.style import (
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
+    from matplotlib.text import Text
+    from matplotlib.transforms import BboxBase
 
     from nrs_design.design.analysis import ImpedanceAnalysis
 
 _LEVELS, _UP_TO, _POINTS = 8, 0.9, 160
+# Between labels, over their size.
+_ROOM = (1.2, 1.4)
 # Beyond so many times the dead time at the stiffest contact, a curve is not drawn.
 _TALLEST = 20.0
 
@@ -73,8 +77,23 @@ def _draw_levels(axes: Axes, found: CostMap) -> None:
     span = float(np.quantile(finite, _UP_TO)) - finite.min()
     levels = finite.min() + span * np.linspace(0, 1, _LEVELS + 1)[1:] ** 2
     lines = axes.contour(found.Mt, found.Bt, found.cost, levels=levels, colors=BLUE, linewidths=0.9)
-    axes.clabel(lines, levels[1::2].tolist(), fmt="%.2g", fontsize=9, colors=INK)
+    labels = axes.clabel(lines, levels[1::2].tolist(), fmt="%.3g", fontsize=9, colors=INK)
+    _keep_apart(axes, labels)
     axes.plot([], [], color=BLUE, linewidth=0.9, label="equal cost")
+
+
+def _keep_apart(axes: Axes, labels: Iterable[Text]) -> None:
+    """Drop the labels that would lie on another one."""
+    figure = axes.get_figure(root=True)
+    assert figure is not None
+    figure.draw_without_rendering()
+    kept: list[BboxBase] = []
+    for label in labels:
+        box = label.get_window_extent().expanded(*_ROOM)
+        if any(box.overlaps(other) for other in kept):
+            label.remove()
+        else:
+            kept.append(box)
 
 
 def _draw_border(axes: Axes, found: CostMap) -> None:

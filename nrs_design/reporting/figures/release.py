@@ -70,7 +70,8 @@ def draw_release(response: SwitchedRun, panels: Sequence[Panel], names: Sequence
     names : sequence of str
         Of all modes.
     """
-    used = list(dict.fromkeys(response.mode.tolist()))[:_ROWS]
+    active_modes = list(dict.fromkeys(response.mode.tolist()))
+    used = active_modes[:_ROWS]
     labels, height = row_labels([names[mode] for mode in used])
     rows = height * len(used)
     figure = new_figure(1.9 * len(panels) + 0.8 + rows)
@@ -88,7 +89,9 @@ def draw_release(response: SwitchedRun, panels: Sequence[Panel], names: Sequence
         below.broken_barh(spans, (row - 0.35, 0.7), color=color(row), linewidth=0, label=label)
     below.set_yticks(range(len(used)), labels, fontsize=9)
     below.set_ylim(len(used) - 0.4, -0.6)
-    below.set_title("Active mode", loc="left", fontsize=9.5)
+    more = len(active_modes) - len(used)
+    title = f"Active mode (gaps: {more} more)" if more else "Active mode"
+    below.set_title(title, loc="left", fontsize=9.5)
     below.grid(visible=False, axis="y")
     below.set_xlabel("Time [s]")
     legend(figure, above[0], 2)

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import TYPE_CHECKING
 
-from nrs_design.controllers.controller_design import ControllerDesign
 from nrs_design.controllers.float32 import exact_decimal
 from nrs_design.design.transfer import TransferFunction, poles
 from nrs_design.reporting.document import Block, Illustration, Linked, Paragraph, Section, Table
@@ -21,6 +20,7 @@ from nrs_design.reporting.sections.impedance import (
 )
 from nrs_design.reporting.sections.landscape import landscape_section
 from nrs_design.reporting.sections.parallel import parallel_section
+from nrs_design.reporting.sections.places import At, linked
 from nrs_design.spec import InteractionDesignSpec
 
 if TYPE_CHECKING:
@@ -35,6 +35,10 @@ _OFFSET = (
 
 _FORCE_ROWS: tuple[tuple[str, Callable[[ForceAnalysis], str]], ...] = (
     ("Kp [rad/(N·m)]", lambda item: number(item.loop.gain, 6)),
+    (
+        "Ki [rad/(N·m·s)]",
+        lambda item: number(item.approach.integral, 6) if item.approach.integral else "–",
+    ),
     ("Nominal stiffness [N·m/rad]", lambda item: number(item.stiffness, 6)),
     ("Closed-loop poles [rad/s]", lambda item: roots(item.loop.poles)),
     ("Damping ratio [1]", lambda item: number(item.loop.damping_ratio)),
@@ -63,9 +67,9 @@ def design_sections(designed: Designed, analysis: DesignAnalysis | None) -> tupl
     if sensor := creep_section(designed, analysis):
         parts.append(sensor)
     if analysis.force:
-        parts.append(_force_section(analysis))
+        parts.append(_force_section(designed, analysis))
     if analysis.parallel:
-        parts.append(parallel_section(analysis))
+        parts.append(parallel_section(designed.loaded, analysis))
     if any(item.achieved for item in analysis.measured):
         parts.append(goals_section(designed, analysis))
     return tuple(parts)
@@ -119,7 +123,7 @@ def _ranges(designed: Designed) -> tuple[Block, ...]:
 
 
 def _motion_section(designed: Designed, analysis: DesignAnalysis) -> Section:
-    spec, design = designed.spec, designed.design
+    spec = designed.spec
     G = analysis.motion
     text = (
         f"Motion loop in use: G(s) = ({polynomial(G.numerator, 6)}) / "
@@ -128,7 +132,7 @@ def _motion_section(designed: Designed, analysis: DesignAnalysis) -> Section:
     )
     return Section(
         "Motion loop",
-        (Paragraph(text), _motion_table(design, analysis), _motion_locus(designed, analysis)),
+        (Paragraph(text), _motion_table(designed, analysis), _motion_locus(designed, analysis)),
     )
 
 
@@ -146,7 +150,21 @@ def _source(spec: InteractionDesignSpec, analysis: DesignAnalysis) -> str:
     return "It follows from the PD controller that was designed by root locus."
 
 
-def _motion_table(design: ControllerDesign, analysis: DesignAnalysis) -> Table:
+# The key of a spec that says most of each row.
+_MOTION_ROWS = (
+    "derivative_gain",
+    "zero",
+    "zero",
+    "settling_time",
+    "damping_ratio",
+    "settling_time",
+    "damping_ratio",
+    "settling_time",
+)
+
+
+def _motion_table(designed: Designed, analysis: DesignAnalysis) -> Table:
+    design = designed.design
     wanted, reached, motion = analysis.wanted, analysis.reached, design.motion
     damping = -wanted.wanted_poles[0].real / wanted.natural_frequency
     wanted_Kp = wanted.derivative_gain * wanted.zero
@@ -172,9 +190,12 @@ def _motion_table(design: ControllerDesign, analysis: DesignAnalysis) -> Table:
         ("Overshoot [%]", "–", number(100 * reached.overshoot, 3)),
         ("Bandwidth [rad/s]", "–", number(reached.bandwidth)),
     )
-    return Table(
-        "Motion loop: wanted and reached", ("", "Root locus asks for", "G and gains in use"), rows
+    cells = tuple(
+        (label, *(linked(designed.loaded, text, "motion_loop", key) for text in texts))
+        for (label, *texts), key in zip(rows, _MOTION_ROWS, strict=True)
     )
+    columns = ("", "Root locus asks for", "G and gains in use")
+    return Table("Motion loop: wanted and reached", columns, cells)
 
 
 def _motion_locus(designed: Designed, analysis: DesignAnalysis) -> Illustration:
@@ -194,27 +215,42 @@ def _motion_locus(designed: Designed, analysis: DesignAnalysis) -> Illustration:
     return Illustration("root-locus", "Root locus of the PD design", caption, figure)
 
 
-def _force_section(analysis: DesignAnalysis) -> Section:
+def _force_section(designed: Designed, analysis: DesignAnalysis) -> Section:
     tables = by_controller(
         "Force controllers, at nominal values",
         [label for label, _ in _FORCE_ROWS],
         [item.name for item in analysis.force],
-        [[value(item) for _, value in _FORCE_ROWS] for item in analysis.force],
+        [
+            [
+                linked(designed.loaded, value(item), *_force_at(designed, label, item))
+                for label, value in _FORCE_ROWS
+            ]
+            for item in analysis.force
+        ],
     )
-    loci = (_force_locus(analysis.motion, item) for item in analysis.force[:CURVES])
+    loci = (_force_locus(item) for item in analysis.force[:CURVES])
     texts = [Paragraph(NOMINAL)]
     if any(item.peak is not None for item in analysis.force):
         texts.append(Paragraph(_OFFSET))
     return Section("Force control", (*texts, *tables, *loci))
 
 
-def _force_locus(motion: TransferFunction, item: ForceAnalysis) -> Illustration:
-    scaled = tuple(item.stiffness * c for c in motion.numerator)
-    open_loop = TransferFunction(scaled, motion.denominator)
+def _force_at(designed: Designed, label: str, item: ForceAnalysis) -> At:
+    if label.startswith("Nominal stiffness"):
+        touched = designed.spec.controllers[item.name].environment
+        return ("environments", touched) if touched else ("environments",)
+    key = ("proportional_gain",) if label.startswith("Kp") else ()
+    return ("controllers", item.name, *key)
+
+
+def _force_locus(item: ForceAnalysis) -> Illustration:
+    scaled = tuple(item.stiffness * c for c in item.forward.numerator)
+    open_loop = TransferFunction(scaled, item.forward.denominator)
     # A gain of zero is allowed; the locus still needs a range of gains.
     gain = item.loop.gain or 1 / item.stiffness
+    kept = ", with Ki/Kp kept" if item.approach.integral else ""
     caption = (
-        f"Poles of the force loop of {item.name} while Kp grows from 0, at the nominal stiffness "
+        f"Poles of the force loop of {item.name} while Kp grows from 0{kept}, at nominal stiffness "
         f"{number(item.stiffness, 6)} N·m/rad. Diamonds: Kp = {number(item.loop.gain)} rad/(N·m)."
     )
     figure = draw_root_locus(open_loop, gain, (), item.loop.poles)

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 from nrs_design.design.goals import Achieved
 from nrs_design.design.measures import MEANING
 from nrs_design.reporting.document import Block, Bullets, Linked, Paragraph, Section, Table
+from nrs_design.reporting.sections.places import contact_at, linked
 from nrs_design.spec import doubt_spec
 
 if TYPE_CHECKING:
@@ -42,12 +43,19 @@ def goal_facts(analysis: DesignAnalysis | None) -> tuple[tuple[str, str], ...]:
 
 
 def _row(designed: Designed, name: str, found: Achieved) -> tuple[str, ...]:
-    measure = found.measure
+    measure, loaded = found.measure, designed.loaded
     goal, result = "–", "no goal"
     if found.goal is not None:
         goal = Linked(measure.goal_text(found.goal), _line(designed, name, measure.goal))
         result = "met" if found.met else "MISSED"
-    return (name, measure.title, goal, measure.text(found.value), _pretty(found.where), result)
+    return (
+        name,
+        measure.title,
+        goal,
+        linked(loaded, measure.text(found.value), "controllers", name),
+        linked(loaded, _pretty(found.where), *contact_at(loaded, found.where)),
+        result,
+    )
 
 
 def _line(designed: Designed, controller: str, goal: str) -> int:

@@ -8,9 +8,10 @@ from fractions import Fraction
 from typing import TYPE_CHECKING
 
 from nrs_design.proof.bounds import lower
-from nrs_design.reporting.document import Block, Illustration, Linked, Paragraph, Section, Table
+from nrs_design.reporting.document import Block, Illustration, Paragraph, Section, Table
 from nrs_design.reporting.figures.impedance import draw_displayed_impedance, draw_sensitivity
 from nrs_design.reporting.formatting import number
+from nrs_design.reporting.sections.places import linked
 
 if TYPE_CHECKING:
     from nrs_design.design.analysis import ImpedanceAnalysis
@@ -143,9 +144,9 @@ def _given(item: ImpedanceAnalysis, key: str, default: str = "") -> str:
 
 
 def _linked(designed: Designed, label: str, item: ImpedanceAnalysis, text: str) -> str:
-    if label not in _SAID or not text:
-        return text
-    return Linked(text, designed.loaded.place(*_SAID[label](item)).line)
+    # What follows from several lines leads to the controller, which names the others.
+    at = _SAID[label](item) if label in _SAID else ("controllers", item.name)
+    return linked(designed.loaded, text, *at)
 
 
 def by_controller(

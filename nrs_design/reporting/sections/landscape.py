@@ -21,10 +21,10 @@ _TEXT = (
     "gains there, it gives up in the other columns. Nominal contact, floating point, goals left "
     "out; no part of the proof."
 )
-_MAP = (
-    "Lines of equal cost, with their values. Shaded: the nominal loop is unstable. The dashed box "
-    "is where the spec allows the gains to be; an optimum on its edge was chosen by the bound, not "
-    "by the cost."
+_MAP = "Lines of equal cost, with the values of some. Shaded: the nominal loop is unstable."
+_BOX = (
+    " The dashed box is where the spec allows the gains to be; an optimum on its edge was chosen "
+    "by the bound, not by the cost."
 )
 _DELAY = (
     "A curve ends at zero where the loop is unstable without any dead time. Below its curve, a "
@@ -64,7 +64,7 @@ def _map(item: ImpedanceAnalysis) -> Illustration:
     return Illustration(
         f"cost-{item.name}",
         f"Cost over Mt and Bt: {item.name}",
-        f"{_MAP} {held}".rstrip(),
+        f"{_MAP}{'' if item.given.Mt.fixed or item.given.Bt.fixed else _BOX} {held}".rstrip(),
         draw_cost(item, found),
     )
 

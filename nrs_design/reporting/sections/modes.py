@@ -13,6 +13,7 @@ from nrs_design.proof.system import SwitchedSystem, Time
 from nrs_design.reporting.document import Illustration, Paragraph, Section, Table
 from nrs_design.reporting.figures.complex_plane import draw_eigenvalues
 from nrs_design.reporting.formatting import number, roots, shortened
+from nrs_design.reporting.sections.places import contact_at, linked, mode_at
 from nrs_design.simulation.rates import mode_rates
 from nrs_design.simulation.switched import mode_eigenvalues
 
@@ -20,6 +21,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from nrs_design.simulation.norms import Array
+    from nrs_design.spec import LoadedSpec
 
     Spectra = Sequence[NDArray[np.complex128]]
 
@@ -29,11 +31,13 @@ _DRAWN = 256
 _MANY_STATES = 6
 
 
-def modes_section(system: SwitchedSystem, rate: Fraction | None) -> Section:
+def modes_section(loaded: LoadedSpec, system: SwitchedSystem, rate: Fraction | None) -> Section:
     """List the modes with their eigenvalues.
 
     Parameters
     ----------
+    loaded : LoadedSpec
+        The spec that they come from.
     system : SwitchedSystem
         Modes.
     rate : Fraction or None
@@ -46,7 +50,7 @@ def modes_section(system: SwitchedSystem, rate: Fraction | None) -> Section:
         "Modes",
         (
             Paragraph(f"States, in this order: {shortened(system.states, 16)}."),
-            _table(system, values, slowest[:_LISTED]),
+            _table(loaded, system, values, slowest[:_LISTED]),
             Illustration(
                 "eigenvalues",
                 "Eigenvalues of the modes",
@@ -91,14 +95,25 @@ def _slowest_first(values: Spectra, time: Time) -> NDArray[np.int64]:
     return np.argsort(-np.array(largest), kind="stable")
 
 
-def _table(system: SwitchedSystem, values: Spectra, listed: NDArray[np.int64]) -> Table:
+def _table(
+    loaded: LoadedSpec, system: SwitchedSystem, values: Spectra, listed: NDArray[np.int64]
+) -> Table:
     continuous = system.time is Time.CONTINUOUS
     rows = []
     for i in np.sort(listed):
         row = sorted(values[i].tolist(), key=lambda z: -(z.real if continuous else abs(z)))
         worst = row[0].real if continuous else abs(row[0])
         shown = roots(row[:_MANY_STATES], 5) + (" …" if len(row) > _MANY_STATES else "")
-        rows.append((system.modes[i].name, shown, number(worst, 5)))
+        name = system.modes[i].name
+        home = mode_at(loaded, name)
+        touched = contact_at(loaded, name) or home
+        rows.append(
+            (
+                linked(loaded, name, *home),
+                linked(loaded, shown, *touched),
+                linked(loaded, number(worst, 5), *touched),
+            )
+        )
     unit = " [1/s]" if continuous else ""
     size = "Largest real part [1/s]" if continuous else "Largest modulus"
     some = "" if len(rows) == len(system.modes) else f", the {len(rows)} slowest of them"

@@ -7,9 +7,11 @@ from typing import TYPE_CHECKING
 from nrs_design.reporting.document import Illustration, Paragraph, Section, Table
 from nrs_design.reporting.figures.parallel import draw_parallel
 from nrs_design.reporting.formatting import number
+from nrs_design.reporting.sections.places import linked
 
 if TYPE_CHECKING:
     from nrs_design.design.analysis import DesignAnalysis
+    from nrs_design.spec import LoadedSpec
 
 _TEXT = (
     "In constant contact the loop is that of s D + k (Kp s + Ki) N with the motion loop N/D. For "
@@ -24,15 +26,20 @@ _CAPTION = (
 )
 
 
-def parallel_section(analysis: DesignAnalysis) -> Section:
+def parallel_section(loaded: LoadedSpec, analysis: DesignAnalysis) -> Section:
     """Describe the parallel controllers."""
     rows = tuple(
         (
             item.name,
-            number(float(item.Kp), 6),
-            number(float(item.Ki), 6),
-            number(item.stiffness, 6),
-            item.unstable_text,
+            *(
+                linked(loaded, text, "controllers", item.name)
+                for text in (
+                    number(float(item.Kp), 6),
+                    number(float(item.Ki), 6),
+                    number(item.stiffness, 6),
+                    item.unstable_text,
+                )
+            ),
         )
         for item in analysis.parallel
     )

@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from nrs_design.certificates.certificate import Verdict
-from nrs_design.pipeline import physical_outputs
+from nrs_design.pipeline.release import physical_outputs
+from nrs_design.proof.system import Time
 from nrs_design.reporting.document import Illustration, Paragraph, Section, Table
 from nrs_design.reporting.figures.release import Panel, draw_release
 from nrs_design.reporting.formatting import number
@@ -27,6 +28,10 @@ _TEXT = (
     "torque of the spec, and let go. Of several adversaries, who take at every step the mode after "
     "which force, velocity or the norm of the proof is largest, the run is shown that comes "
     "furthest. It is the worst found, not the worst there is; floating point, no part of the proof."
+)
+_SAMPLED = (
+    " It is shown at the samples, without what the arithmetic rounds; force samples on their way "
+    "hold the torque of the start."
 )
 _ONE_MODE = " Rules forbid to switch at any time, so one mode holds throughout."
 _ONE_AXIS = " It is that of one axis on which the others do not act."
@@ -72,7 +77,8 @@ def release_section(result: Result) -> Section | None:
         ),
     )
     names = [mode.name for mode in watched(system).modes]
-    more = "" if system.switching.is_arbitrary else _ONE_MODE
+    more = _SAMPLED if system.time is Time.DISCRETE else ""
+    more += "" if system.switching.is_arbitrary else _ONE_MODE
     more += _ONE_AXIS if system.couplings else ""
     more += "" if result.certification.verdict is Verdict.PROVED else _UNPROVED
     return Section(
@@ -93,7 +99,14 @@ def release_section(result: Result) -> Section | None:
 def _proved(certification: Certification) -> tuple[Array | None, float]:
     evidence = certification.evidence
     found = None if evidence is None else page_of(certification.system, evidence).quadratic()
-    return (None, 0.0) if found is None else found
+    if found is None:
+        return None, 0.0
+    Q, rate = found
+    system = certification.system
+    if system.time is Time.DISCRETE:
+        # The factor of a step, as a rate in 1/s.
+        rate = -math.log(rate) / float(system.sample_time or 1)
+    return Q, rate
 
 
 def _turned(values: Array | None) -> Array | None:

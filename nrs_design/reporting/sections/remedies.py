@@ -10,7 +10,8 @@ from nrs_design.reporting.margins import margin_lines
 from nrs_design.reporting.next_steps import next_steps
 
 if TYPE_CHECKING:
-    from nrs_design.pipeline import ProofMargins, Result
+    from nrs_design.pipeline import Result
+    from nrs_design.pipeline.margins import ProofMargins
 
 REMEDIES = "What would help"
 MARGINS = "Margins of the proof"
@@ -32,7 +33,9 @@ def remedies_section(result: Result, margins: ProofMargins | None) -> Section | 
     if margins is not None and (lines := tuple(margin_lines(margins))):
         said = tuple(f"{line[0].upper()}{line[1:]}." for line in lines)
         blocks.append(Bullets("How far a proof reaches", said))
-    steps = next_steps(result)
+    box = margins is not None and margins.box is not None
+    dwell = margins is not None and margins.dwell is not None
+    steps = next_steps(result, margin=box, shortest_dwell=dwell)
     if steps:
         blocks.append(Bullets("Next steps", steps))
     return Section(REMEDIES if steps else MARGINS, tuple(blocks)) if blocks else None

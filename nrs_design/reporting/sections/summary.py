@@ -36,7 +36,7 @@ _PROOF = {
 def summary_of(result: Result) -> tuple[str, str]:
     """Return what was shown, and under which assumptions, in a sentence each."""
     system, evidence = result.certification.system, result.certification.evidence
-    names = "; ".join(dict.fromkeys(item.name for item in register_of(system.assumptions)))
+    names = "; ".join(dict.fromkeys(item.kind.name for item in register_of(system.assumptions)))
     granted = f"This takes for granted, each as {ASSUMPTIONS} below says it: {names}."
     if evidence is None:
         return (

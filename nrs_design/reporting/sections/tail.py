@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 from nrs_design.reporting.document import Bullets, Listing, Paragraph, Section, Table
 from nrs_design.reporting.formatting import number
 from nrs_design.reporting.register import register_of
+from nrs_design.reporting.sections.places import assumed_at, linked
 from nrs_design.spec import InteractionDesignSpec
 
 if TYPE_CHECKING:
@@ -29,8 +30,15 @@ def assumptions_section(result: Result) -> Section:
     spec = result.loaded.spec
     design = spec if isinstance(spec, InteractionDesignSpec) else None
     rows = tuple(
-        (item.name, item.statement, item.bound, item.breaks, item.test, str(item.standing))
-        for item in register_of(result.certification.system.assumptions, design)
+        (
+            e.kind.name,
+            e.statement,
+            linked(result.loaded, e.bound, *assumed_at(e.kind)),
+            e.kind.breaks,
+            e.kind.test,
+            str(e.standing),
+        )
+        for e in register_of(result.certification.system.assumptions, design)
     )
     columns = ("Assumption", "Statement", "Bound", "If it is false", "Test", "State")
     table = Table("What is taken for granted", columns, rows)

@@ -36,9 +36,12 @@ def test_an_offset_of_the_command():
 
 def test_a_clock_that_is_ahead():
     record = motors.record("chirp", 1, delay=0.0)
-    text = doubts(replace(record, command=np.roll(record.command, 4)))
+    early = replace(record, command=np.roll(record.command, 4))
+    text = doubts(early)
     assert "before its command" in text
     assert "clocks" in text
+    late = identify_actuator([early], MOTOR).chosen.dead_time
+    assert (late.value, late.low, late.high) == (0.0, 0.0, 0.0)
 
 
 def test_a_second_lag_needs_a_second_order():

@@ -44,6 +44,11 @@ SLASHES = "Time/s;Indentation/mm;Force/gf\n" + rows(";", ".", (1, 1e3, 1e3 / 9.8
 COMMAS = "<INFO>\nVelocity, mm/s:\t0.1\n<DATA>\nTime, s\tIndentation, mm\tForce, gf\n" + (
     rows("\t", ".", (1, 1e3, 1e3 / 9.80665))
 )
+# An indenter: bytes of Windows for µ, and an empty line between the names and the rows.
+SMALL = "Indentation\n\nTime :8:00:16 AM\n\nTime (s)\tPd (µm)\tFn (µN)\n\n" + (
+    rows("\t", ".", (1, 1e6, 1e6))
+)
+FROM_SMALL = ["deflection_um=Pd (µm)", "force_uN=Fn (µN)"]
 MARKED = "\ufefftime_s,deflection_um,force_kgf\n" + rows(",", ".", (1, 1e6, 1 / 9.80665))
 FOREIGN = "t;x;F\ns;mm;N\n" + rows(";", ",", (1, 1e3, 1))
 FROM_FOREIGN = ["time_s=t", "deflection_mm=x", "force_N=F"]
@@ -68,6 +73,7 @@ STYLES = {
     "a bag": (ROS, FROM_ROS),
     "a byte order mark": (MARKED, []),
     "foreign names above units": (FOREIGN, FROM_FOREIGN),
+    "an indenter": (SMALL, FROM_SMALL),
 }
 
 
@@ -161,8 +167,13 @@ def test_factors():
     """1 kgf = 9.80665 N by definition; 1 rpm = 2 pi/60 rad/s, but a command in rpm is a number."""
     assert read_name("force_kgf").factor == 9.80665
     assert read_name("force_gf").factor == pytest.approx(9.80665e-3)
+    assert read_name("force_lbf").factor == pytest.approx(4.4482216152605, rel=1e-15)
+    assert read_name("deflection_in").factor == 0.0254
     assert read_name("velocity_rpm").factor == pytest.approx(2 * np.pi / 60)
     assert (read_name("command_rpm").factor, read_name("command_rpm").read_as) == (1.0, "rpm")
+    assert read_name("command_deg_s").factor == pytest.approx(60 / 360)
+    assert read_name("command_rad_s").factor == pytest.approx(60 / (2 * np.pi))
+    assert read_name("command_deg_s").read_as == read_name("command_rad_s").read_as == "rpm"
     assert (read_name("command_mV").factor, read_name("command_mV").read_as) == (1e-3, "V")
 
 
@@ -182,6 +193,14 @@ def test_a_mapped_quantity_is_the_mapped_column(tmp_path):
     check(read_tissue(path, parse_mapping(["force_N=force_raw"])))
 
 
+def test_what_is_mapped_decides_between_layouts(tmp_path):
+    layouts = [("time", "command", "angle"), ("time", "command", "velocity")]
+    names = ["time_s", "command_rpm", "angle_deg", "w"]
+    mapping = parse_mapping(["velocity_deg_s=w"])
+    assert find_columns(names, layouts, mapping, tmp_path, 1)[0] == layouts[1]
+    assert find_columns(names, layouts, {}, tmp_path, 1)[0] == layouts[0]
+
+
 CONTRADICTIONS = {
     "force_N=Load_kN": "force_kN=Load_kN",
     "deflection_m=Weg [mm]": "deflection_mm=Weg [mm]",
@@ -189,6 +208,8 @@ CONTRADICTIONS = {
     "command_rpm=voltage_V": "command_V=voltage_V",
     "velocity_rad_s_2=w_deg_s": "velocity_deg_s_2=w_deg_s",
     "angle_rad=Weg [mm]": "map another column",
+    "force_N=Fn (µN)": "force_uN=Fn (µN)",
+    "force_N=Weight (g)": "map another column",
 }
 
 

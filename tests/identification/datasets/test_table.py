@@ -72,7 +72,7 @@ def test_blocks_do_not_show(tmp_path, monkeypatch):
         ("0.2,0.002,2", "0.2,1_0,2", 4, "not a number"),
         ("0.2,0.002,2", "0.2,٣,2", 4, "not a number"),
         ("0.4,0.004,4\n", "0.4,0.004,", 6, "force_N is missing"),
-        ("force_N", "force_lbf", 1, "has the unit 'lbf'"),
+        ("force_N", "force_dyn", 1, "has the unit 'dyn'"),
         ("force_N", "force", 1, "has no unit"),
         ("force_N", "torque_Nm", 1, "the columns force_N are missing"),
         ("force_N", "angle_rad", 1, "missing"),
@@ -123,7 +123,7 @@ def test_files_that_cannot_be_read(tmp_path):
         ("force_N", "is not a pair"),
         ("force_N=", "is not a pair"),
         ("weight_kg=w", "no column of ours"),
-        ("force_lbf=Fz", "has the unit 'lbf'"),
+        ("force_dyn=Fz", "has the unit 'dyn'"),
     ],
 )
 def test_wrong_mappings(entry, message):

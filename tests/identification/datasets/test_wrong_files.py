@@ -58,7 +58,7 @@ WRONG = {
     "TDMS": ("a.tdms", b"TDSm" + bytes(50), "LabVIEW", None),
     "force missing": ("a.csv", text(HEAD.replace("force_N", "temp_C")), "force_N are missing", 1),
     "no unit": ("a.csv", text(HEAD.replace("force_N", "Force")), "has no unit", 1),
-    "unknown unit": ("a.csv", text(HEAD.replace("force_N", "Force [lbf]")), "unit 'lbf'", 1),
+    "unknown unit": ("a.csv", text(HEAD.replace("force_N", "Force [dyn]")), "unit 'dyn'", 1),
     "mega for milli": ("a.csv", text(HEAD.replace("force_N", "force_MN")), "unit 'MN'", 1),
     "quantity twice": ("a.csv", text("time_s,force_N,Load [N]\n"), "there twice", 1),
     "empty cell": ("a.csv", text(replace=[(5, "0.05,,5")]), "deflection_m is missing", 7),

@@ -78,3 +78,10 @@ def test_a_tissue_that_relaxes_is_lost_early_and_met_late():
     second = found.touches[1]
     assert second.met > second.first
     assert second.lost < second.end
+
+
+@pytest.mark.parametrize("seed", [27, 124, 147, 183])
+def test_air_that_no_touch_shows_alone(seed):
+    """Four touches of a soft tissue in noise tell together what each leaves open."""
+    found = find_contact(robot_record(synthetic.NOSE, slow(seed), 0.0165, seed, tare=-0.04))
+    assert found is not None

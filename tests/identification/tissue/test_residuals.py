@@ -1,11 +1,13 @@
 """Residuals that speak against a fit."""
 
+from dataclasses import replace
+
 import numpy as np
 
 from nrs_design.identification.datasets import TissueRecord
 from nrs_design.identification.tissue import fit_record
 from nrs_design.identification.tissue.residuals import structure
-from nrs_design.models.contact import Elastic, KelvinVoigt, Motion
+from nrs_design.models.contact import LAWS, Elastic, KelvinVoigt, Maxwell, Motion
 from tests.identification.support import quick, record, source
 
 
@@ -47,10 +49,27 @@ def test_noise_that_hides_the_force():
     assert "% of the range of the force" in said
 
 
+def test_a_tissue_that_relaxes_is_not_taken_for_one_that_pulls():
+    """At its largest deflection it has its least force."""
+    time = np.arange(4000) / 20
+    motion = Motion(time, 0.003 * np.clip(time / 0.5, 0, 1))
+    data = record(Maxwell(400.0, 8000.0), motion, 0.01, 1)
+    said = "; ".join(fit_record(Elastic, data).doubts)
+    assert "opposite signs" in said
+    assert "opposite signs" not in "; ".join(fit_record(Maxwell, data).doubts)
+    pulled = replace(record(Elastic(400.0), quick(1), 0.02, 1), force=-400.0 * quick(1).deflection)
+    for kind in LAWS.values():
+        assert "opposite signs" in "; ".join(fit_record(kind, pulled).doubts)
+
+
 def test_an_interval_that_reaches_zero():
     motion = quick(1)
     generator = np.random.default_rng(5)
     data = TissueRecord(source("n"), Motion(motion.time, motion.deflection),
                         generator.standard_normal(len(motion)), False)  # fmt: skip
-    said = "; ".join(fit_record(Elastic, data).doubts)
-    assert "the interval of k reaches 0" in said
+    fit = fit_record(Elastic, data)
+    assert "the interval of k reaches 0" in "; ".join(fit.doubts)
+    # It does, at any confidence, and grows with it.
+    (small,), (middle,), (large,) = (fit.estimates_at(level) for level in (0.5, 0.95, 0.99))
+    assert small.low == middle.low == large.low == 0.0
+    assert small.high < middle.high < large.high < np.inf

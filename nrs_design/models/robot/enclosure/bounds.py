@@ -32,6 +32,8 @@ ROOM = 1.02
 ROOMS: Mapping[str, float] = {VelocityTorques.name: 1.35}
 # Of a sampled value, which is computed in floating point.
 ROUNDING = 1e-9
+# In SI, of a quantity that is zero, such as gravity in space: no enclosure is exactly that.
+NOTHING = 1e-9
 _QUANTITIES: Mapping[str, AbstractQuantity] = {
     "heaviest": Inertia(),
     "lightest": Mobility(),
@@ -99,7 +101,7 @@ def compute_bounds(
             robot,
             quantity,
             space.workspace,
-            _goal(ROOMS.get(quantity.name, ROOM)),
+            goal_of(ROOMS.get(quantity.name, ROOM)),
             budget,
             progress,
         )
@@ -146,15 +148,24 @@ def confirm_bounds(
         goal = float(claimed)
         # No float above what is claimed will do.
         goal = float(np.nextafter(goal, -inf)) if Fraction(goal) > claimed else goal
-        shown = enclose(robot, quantity, space.workspace, _goal(0.0, goal), budget, progress)
+        shown = enclose(robot, quantity, space.workspace, goal_of(0.0, goal), budget, progress)
         if shown.found > goal * (1 + ROUNDING):
             yield f"{key.replace('_', ' ')}: {pose_text(shown)} exceeds the bound in the file"
         elif not shown.cover.reached:
             raise _undecided(shown)
 
 
-def _goal(room: float, least: float = 0.0) -> Goal:
-    return lambda found: room * found + least
+def goal_of(room: float, least: float = NOTHING) -> Goal:
+    """Return how near a bound shall come to what was found: that much times it, or the least.
+
+    Parameters
+    ----------
+    room : float
+        At least 1, or 0 for the least alone.
+    least : float
+        Where next to nothing was found, in the unit of the bound.
+    """
+    return lambda found: max(room * found, least)
 
 
 def space_of(document: Mapping[str, Any]) -> Space:

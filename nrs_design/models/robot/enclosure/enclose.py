@@ -22,6 +22,8 @@ GRID = (21, 21, 9)
 CLOSER_GRID = (9, 9, 9)
 ZOOMS = 6
 CLOSER = 0.3
+# Relative distance below which two values are one: rounding is far below it.
+TIE = 1e-10
 Progress = Callable[[str], None]
 # Which bound will do, given the largest value that was found.
 Goal = Callable[[float], float]
@@ -116,10 +118,12 @@ def find_largest(
         sides = [np.linspace(a, b, n) for a, b, n in zip(*ends, grid, strict=True)]
         points = np.stack([axis.ravel() for axis in np.meshgrid(*sides, indexing="ij")])
         values = quantity.at(robot, points)
-        k = int(np.argmax(values))
-        if values[k] > best:
+        # Poses that mirror each other are equal but for rounding, which differs between machines
+        # and runs: the first of them is taken.
+        k = int(np.argmax(values >= values.max() * (1 - TIE)))
+        if values[k] > best * (1 + TIE):
             best, where = float(values[k]), points[:, k]
-    return best, to_pose(where)
+    return float(f"{best:.9g}"), to_pose(where)
 
 
 def enclose(

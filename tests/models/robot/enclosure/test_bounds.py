@@ -16,9 +16,10 @@ from nrs_design.models.robot import (
     mass_matrix,
     to_document,
 )
+from nrs_design.models.robot.enclosure.bounds import goal_of
 from nrs_design.models.robot.enclosure.cover import Boxes, cover, cut
-from nrs_design.models.robot.enclosure.enclose import enclose
-from nrs_design.models.robot.enclosure.quantities import Inertia, VelocityTorques
+from nrs_design.models.robot.enclosure.enclose import enclose, find_largest
+from nrs_design.models.robot.enclosure.quantities import GravityGradient, Inertia, VelocityTorques
 from nrs_design.spec.robot_bounds import content_id
 
 TAMPERED = {"heaviest": 0.9, "velocity_torques": 0.7, "gravity_gradient": 0.9}
@@ -58,6 +59,30 @@ def test_every_sampled_pose_is_within_the_bounds_and_some_near_them(robot, docum
 @pytest.mark.slow
 def test_the_file_holds(robot, document):
     assert list(confirm_bounds(robot, document)) == []
+
+
+def test_a_quantity_that_is_zero_is_bounded(robot):
+    """Without gravity no box is below zero, since every operation adds what it may round."""
+    weightless = replace(robot, gravity=0.0)
+    shown = enclose(weightless, GravityGradient(), SPACE.workspace, goal_of(1.02))
+    assert shown.found == 0
+    assert shown.cover.reached
+    assert shown.bound < 1e-9
+
+
+def test_the_pose_of_the_largest_value_does_not_hang_on_rounding(robot, monkeypatch):
+    """Mirrored poses are equal but for rounding."""
+    plain = find_largest(robot, Inertia(), SPACE.workspace)
+    rng = np.random.default_rng(3)
+    at = Inertia.at
+
+    def noisy(self, *args):
+        values = at(self, *args)
+        return values * (1 + 1e-14 * rng.uniform(-1, 1, values.shape))
+
+    monkeypatch.setattr(Inertia, "at", noisy)
+    for _ in range(3):
+        assert find_largest(robot, Inertia(), SPACE.workspace) == plain
 
 
 @pytest.mark.parametrize("phi", ["170", "90", "0", "-0.5"])

@@ -8,7 +8,7 @@ import pytest
 from nrs_design import __version__
 from nrs_design.errors import AssemblyError
 from nrs_design.gating.run import Files, run_gate
-from nrs_design.pipeline import run_analysis, run_certification, run_design, run_subsets
+from nrs_design.pipeline import run_analysis, run_certification, run_design
 from nrs_design.search.certify import Limits, Verdict
 from nrs_design.search.method import Method
 from nrs_design.spec import read_spec
@@ -99,7 +99,10 @@ def test_what_is_designed_is_assembled_without_a_detour_by_text(monkeypatch):
 def test_functions_are_counted_wherever_they_are_used():
     """The count above looks into every module that could build a plant or optimize."""
     for name, places in (
-        ("build_plant", {"pipeline", "switched/assemble", "models/plant"}),
+        (
+            "build_plant",
+            {"pipeline/design", "pipeline/subsets", "switched/assemble", "models/plant"},
+        ),
         # A landscape prices what was not chosen: other weights, other bounds.
         (
             "optimize_impedance",
@@ -171,24 +174,3 @@ def test_method_and_progress():
     result = run_certification(read_spec(COMMUTING), method=Method.GRADIENT, progress=told.append)
     assert result.certification.method == "gradient"
     assert told == ["design", "suspicious modes", "gradient"]
-
-
-def test_what_is_proved_with_as_little_left_out_as_possible(tmp_path):
-    """Withdrawal alone is unstable with a force that is five samples old, whatever else holds."""
-    text = SOFT_TISSUE.read_text(encoding="utf-8")
-    path = tmp_path / "late.nrs.yaml"
-    late = "sampling: {period: 2 ms, delay: [0, 5]}\ncontact: losable\n"
-    path.write_text(f"{text}\n{late}", encoding="utf-8")
-    result = run_certification(read_spec(path), limits=Limits(optimize_rate=False))
-    assert result.certification.verdict is Verdict.REFUTED
-    told: list[str] = []
-    (subset,) = run_subsets(result, progress=told.append)
-    assert subset.left_out == ("ages of the force sample beyond the shortest",)
-    assert "contact lost and made again at any time" in subset.claim
-    assert told == [
-        "without the loss of contact",
-        "without the ranges of what is touched",
-        "without ages of the force sample beyond the shortest",
-    ]
-    path.write_text(f"{text}\n{late}".replace("[0, 5]", "0"), encoding="utf-8")
-    assert run_subsets(run_certification(read_spec(path), limits=Limits(optimize_rate=False))) == ()

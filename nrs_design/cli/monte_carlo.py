@@ -1,0 +1,238 @@
+"""``nrs-design simulate --monte-carlo``: many runs, and the share of them above each limit."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import asdict, dataclass
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import typer
+
+from nrs_design.cli import exit_codes
+from nrs_design.cli.printing import note, print_json, say
+from nrs_design.cli.tables import print_table
+
+if TYPE_CHECKING:
+    from nrs_design.certificates.certificate import Certificate
+    from nrs_design.pipeline import Progress
+    from nrs_design.pipeline.monte_carlo import MonteCarlo
+    from nrs_design.simulation.monte_carlo import Outcome, Share
+
+
+@dataclass(frozen=True, slots=True)
+class Study:
+    """Runs, and what is told of them.
+
+    Parameters
+    ----------
+    asked : MonteCarlo
+        What was simulated.
+    outcomes : sequence of Outcome
+        Of all runs.
+    shares : mapping of str to Share
+        Runs above the limits.
+    bounds : mapping of str to tuple of (float, tuple of str)
+        Certified, in SI, and why it is not about these runs.
+    files : sequence of Path
+        That were written.
+    """
+
+    asked: MonteCarlo
+    outcomes: Sequence[Outcome]
+    shares: Mapping[str, Share]
+    bounds: Mapping[str, tuple[float, tuple[str, ...]]]
+    files: Sequence[Path]
+
+
+def monte_carlo(
+    asked: MonteCarlo,
+    jobs: int,
+    resume: Path | None,
+    proof: Certificate | None,
+    out: Path | None,
+    step: Progress,
+) -> Callable[..., int]:
+    """Simulate, and write the figure and the table; return what prints the result.
+
+    Parameters
+    ----------
+    asked : MonteCarlo
+        What is simulated.
+    jobs : int
+        Processes.
+    resume : Path or None
+        Keeps the result of every run.
+    proof : Certificate or None
+        Whose bounds are shown.
+    out : Path or None
+        Folder for files.
+    step : callable
+        Told how far it is.
+    """
+    from nrs_design.output import check_place
+    from nrs_design.simulation.monte_carlo import shares
+
+    for path, beginning in _places(asked, out):
+        check_place(path, beginning)
+    bounds = {} if proof is None else _bounds(asked, proof)
+    outcomes: list[Outcome] = []
+    try:
+        _simulate(asked, jobs, resume, outcomes, step)
+    except KeyboardInterrupt:
+        kept = "nothing is kept, for want of --resume FILE"
+        if resume is not None:
+            kept = f"the same command with --resume {resume} goes on from there"
+        note(f"interrupted after {len(outcomes)} of {asked.runs} runs: {kept}")
+        raise typer.Exit(exit_codes.INTERRUPTED) from None
+    step("figures")
+    found = shares(outcomes, asked.limits)
+    study = Study(asked, outcomes, found, bounds, _write(asked, out, outcomes, bounds))
+    return partial(_show, study)
+
+
+def _simulate(
+    asked: MonteCarlo, jobs: int, resume: Path | None, outcomes: list[Outcome], step: Progress
+) -> None:
+    """Add the runs that are known, and then the others, as they end."""
+    from nrs_design.pipeline.monte_carlo import run_monte_carlo
+    from nrs_design.simulation.outcomes_file import appending, read_outcomes
+
+    def tell() -> None:
+        step(f"run {len(outcomes)} of {asked.runs}")
+
+    if resume is None:
+        for outcome in run_monte_carlo(asked, 0, jobs):
+            outcomes.append(outcome)
+            tell()
+        return
+    head = _head(asked)
+    outcomes += read_outcomes(resume, head)
+    with appending(resume, head) as file:
+        for outcome in run_monte_carlo(asked, len(outcomes), jobs):
+            file.add(outcome)
+            outcomes.append(outcome)
+            tell()
+
+
+def _head(asked: MonteCarlo) -> dict[str, Any]:
+    from nrs_design import __version__
+
+    loaded = asked.designed.loaded
+    return {
+        "spec": loaded.spec.name,
+        "spec_sha256": loaded.sha256,
+        "version": __version__,
+        "runs": asked.runs,
+        "seed": asked.seed,
+        "options": asdict(asked.wanted) | {"names": list(asked.wanted.names)},
+    }
+
+
+def _bounds(asked: MonteCarlo, proof: Certificate) -> dict[str, tuple[float, tuple[str, ...]]]:
+    """Return the bounds, and what of the scenarios as written they are not about."""
+    from nrs_design.pipeline.scenarios import hold_bounds, run_scenarios
+
+    names = {"force": "torque"}
+    found: dict[str, tuple[float, tuple[str, ...]]] = {}
+    for one in run_scenarios(asked.designed, asked.wanted):
+        for bound in hold_bounds(asked.designed, proof, one):
+            name = names.get(bound.output, bound.output)
+            known = found.get(name, (bound.level, ()))[1]
+            found[name] = bound.level, tuple(dict.fromkeys((*known, *bound.uncovered)))
+    return found
+
+
+def _places(asked: MonteCarlo, out: Path | None) -> list[tuple[Path, bytes]]:
+    from nrs_design.output import OUTCOMES, PNG, SVG
+
+    if out is None:
+        return []
+    beginnings = {"csv": OUTCOMES, "svg": SVG, "png": PNG}
+    stem = f"{asked.designed.spec.name}.monte-carlo"
+    return [(out / f"{stem}.{suffix}", beginning) for suffix, beginning in beginnings.items()]
+
+
+def _write(
+    asked: MonteCarlo,
+    out: Path | None,
+    outcomes: Sequence[Outcome],
+    bounds: Mapping[str, tuple[float, tuple[str, ...]]],
+) -> list[Path]:
+    if out is None:
+        return []
+    from nrs_design.output import write_output
+    from nrs_design.reporting.images import to_png, to_svg_file
+    from nrs_design.reporting.monte_carlo import draw_outcomes, outcomes_table
+
+    levels = {name: (level, not reasons) for name, (level, reasons) in bounds.items()}
+    figure = draw_outcomes(outcomes, asked.limits, levels)
+    contents: tuple[str | bytes, ...] = (
+        outcomes_table(outcomes),
+        to_svg_file(figure),
+        to_png(figure),
+    )
+    places = _places(asked, out)
+    for content, (path, beginning) in zip(contents, places, strict=True):
+        write_output(path, content, replaces=beginning)
+    return [path for path, _ in places]
+
+
+def _show(study: Study, *, as_json: bool, quiet: bool) -> int:
+    from nrs_design.reporting.monte_carlo import COLUMNS, MEANING, share_rows
+
+    asked, outcomes = study.asked, study.outcomes
+    if study.files:
+        note(f"written to {study.files[0].parent}", quiet=quiet)
+    stopped = sum(one.stopped is not None for one in outcomes)
+    code = exit_codes.INCONCLUSIVE if stopped else exit_codes.PROVED
+    if as_json:
+        print_json("simulate", _document(study))
+    elif not quiet:
+        title = f"{asked.designed.spec.name}: {asked.runs} runs, seed {asked.seed}"
+        print_table(title, COLUMNS, share_rows(outcomes, asked.limits, study.shares))
+        _say_bounds(study)
+        if stopped:
+            say(f"  STOPPED: {stopped} runs ended early; they count as above every limit")
+        say(MEANING)
+    return code
+
+
+def _say_bounds(study: Study) -> None:
+    from fractions import Fraction
+
+    from nrs_design.proof.bounds import upper
+
+    for name, (level, reasons) in study.bounds.items():
+        unit = "N*m" if name == "torque" else "rad/s"
+        say(f"  certified bound on the {name}: {upper(Fraction(level))} {unit}")
+        for reason in reasons:
+            say(f"    it is not about these runs: {reason}")
+
+
+def _document(study: Study) -> dict[str, Any]:
+    asked, outcomes = study.asked, study.outcomes
+    names = dict.fromkeys(one.scenario for one in outcomes)
+    return {
+        "spec": asked.designed.spec.name,
+        "spec_sha256": asked.designed.loaded.sha256,
+        "monte_carlo": {
+            "runs": asked.runs,
+            "seed": asked.seed,
+            "stopped": sum(one.stopped is not None for one in outcomes),
+            "scenarios": {name: sum(one.scenario == name for one in outcomes) for name in names},
+            "limits": {name: dict(asked.limits[name]) for name in names},
+            "above_limit": {
+                name: asdict(share) | {"share": share.value} for name, share in study.shares.items()
+            },
+            "largest": {
+                name: max(one.peaks[name] for one in outcomes) for name in outcomes[0].peaks
+            },
+            "certified_bounds": {
+                name: {"level": level, "holds_for_these_runs": not reasons, "uncovered": reasons}
+                for name, (level, reasons) in study.bounds.items()
+            },
+        },
+        "files": [str(path) for path in study.files],
+    }

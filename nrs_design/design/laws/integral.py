@@ -1,0 +1,134 @@
+"""Choose the gains of a PI force controller, and analyze it.
+
+With ``z = Ki/Kp`` the force loop is ``Kp k M`` with ``M = (s + z)/s G``: that of a proportional
+controller (thesis 6.33) on another motion loop.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from nrs_design.controllers.controller_design import Controller
+from nrs_design.controllers.float32 import round_significant, to_float32
+from nrs_design.controllers.laws.integral import IntegralForce
+from nrs_design.design.force_limit import Approach, peak_force
+from nrs_design.design.force_loop import design_force_gain, force_loop_response
+from nrs_design.design.goals import Requirement, achieve_force, corners_of
+from nrs_design.design.laws.force import ForceAnalysis
+from nrs_design.design.laws.law import Choice, LawDesign, Task, goals_of, naming
+from nrs_design.design.measures import MARGINS
+from nrs_design.design.transfer import TransferFunction
+from nrs_design.errors import DesignError
+from nrs_design.spec.controllers import IntegralControllerSpec, contact_names
+
+# Time constants until 2 % are left, as in thesis 4.14.
+_SETTLED = 4.0
+# How far a pole may be from where it is wanted, by rounding.
+_NEAR = 1e-6
+
+
+def with_integral(motion: TransferFunction, zero: float) -> TransferFunction:
+    """Return ``(s + zero)/s G(s)``.
+
+    Parameters
+    ----------
+    motion : TransferFunction
+        Closed motion loop G.
+    zero : float
+        ``Ki/Kp``, 1/s.
+    """
+    numerator = np.polymul(motion.numerator, (1.0, zero))
+    return TransferFunction(tuple(map(float, numerator)), (*motion.denominator, 0.0))
+
+
+def integral_gain(
+    motion: TransferFunction, stiffness: float, gain: float, settling_time: float
+) -> float:
+    """Return the Ki in rad/(N m s) that puts the slowest pole at ``p = -4/settling_time``.
+
+    ``1 + k (Kp + Ki/p) G(p) = 0``, so ``Ki = -p (Kp + 1/(k G(p)))``.
+
+    Parameters
+    ----------
+    motion : TransferFunction
+        Closed motion loop G.
+    stiffness : float
+        Stiffness k of the environment, N m/rad.
+    gain : float
+        ``Kp``, rad/(N m).
+    settling_time : float
+        In s.
+
+    Raises
+    ------
+    DesignError
+        If that pole would not be the slowest one.
+    """
+    pole = -_SETTLED / settling_time
+    G = np.polyval(motion.numerator, pole) / np.polyval(motion.denominator, pole)
+    Ki = float(-pole * (gain + 1 / (stiffness * G))) if G else 0.0
+    if Ki > 0:
+        response = force_loop_response(with_integral(motion, Ki / gain), stiffness, gain)
+        if response.poles[0].real <= pole * (1 - _NEAR):
+            return Ki
+    raise DesignError(
+        f"no integral gain settles the force within {settling_time:.6g} s at this proportional "
+        "gain: another pole is slower",
+        remedy="give a longer settling_time, or the gains themselves",
+        at=("settling_time",),
+    )
+
+
+def choose(task: Task, given: IntegralControllerSpec) -> Choice:
+    """Return the gains that the spec gives, or those with its damping ratio and settling time."""
+    stiffness = task.plant.environment(given.environment).nominal.stiffness
+    if given.proportional_gain is not None:
+        Kp = to_float32(given.proportional_gain.exact)
+    else:
+        gain = design_force_gain(task.motion, stiffness, float(given.damping_ratio or 0))
+        Kp = to_float32(round_significant(gain, task.digits))
+    if given.settling_time is None:
+        assert given.integral_gain is not None
+        return IntegralForce(Kp, to_float32(given.integral_gain.exact)), None
+    if Kp == 0:
+        raise DesignError(
+            "the damping ratio asks for no proportional gain, and a PI controller has one",
+            remedy="ask for another damping ratio, or give proportional_gain",
+            at=("damping_ratio",),
+        )
+    gain = integral_gain(task.motion, stiffness, float(Kp), given.settling_time.si)
+    return IntegralForce(Kp, to_float32(round_significant(gain, task.digits))), None
+
+
+def analyze(task: Task, given: IntegralControllerSpec, controller: Controller) -> ForceAnalysis:
+    """Close the loop in nominal contact, and measure it in all contacts.
+
+    Parameters
+    ----------
+    task, given, controller
+        As for `LawDesign`.
+
+    Raises
+    ------
+    DesignError
+        If the nominal loop is unstable.
+    """
+    Kp, Ki = (float(controller.law.gains[name]) for name in ("Kp", "Ki"))
+    motion = with_integral(task.motion, Ki / Kp)
+    names = dict.fromkeys((*contact_names(given.contacts), given.environment))
+    contacts = tuple(map(task.plant.environment, names))
+    goals = goals_of(task.spec, given, MARGINS)
+    requirement = Requirement(motion, corners_of(contacts, given.environment, {}), goals)
+    stiffness = task.plant.environment(given.environment).nominal.stiffness
+    limits = task.spec.limits
+    # The position command waits, and the integral is what it was: the command does not step.
+    approach = Approach("reference", limits.velocity.si, limits.torque.si, Ki)
+    name = controller.name
+    with naming(name):
+        loop = force_loop_response(motion, stiffness, Kp)
+        peak = peak_force(task.motion, stiffness, Kp, approach)
+        achieved = achieve_force(requirement, MARGINS, Kp)
+    return ForceAnalysis(name, achieved, stiffness, loop, approach, 0.0, peak, motion)
+
+
+DESIGN = LawDesign(choose, analyze)

@@ -1,0 +1,132 @@
+"""A hand that holds the robot, ``F = k delta + b delta' + m delta''`` (thesis 7.2)."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, ClassVar
+
+from nrs_design.errors import AssemblyError, DesignError
+from nrs_design.models.contact.law import (
+    DAMPING,
+    MASS,
+    STIFFNESS,
+    AbstractLinearLaw,
+    Element,
+    Number,
+    Reaction,
+)
+from nrs_design.models.linear_form import LinearForm, combine
+
+if TYPE_CHECKING:
+    from nrs_design.models.contact.motion import Array, Motion
+
+
+@dataclass(frozen=True)
+class Hand(AbstractLinearLaw):
+    """A spring, a damper and a mass that moves with the contact.
+
+    Parameters
+    ----------
+    k : float or Fraction
+        Stiffness in N/m (N m/rad).
+    b : float or Fraction
+        Damping in N s/m (N m s/rad); may be zero.
+    m : float or Fraction
+        Mass in kg (kg m^2); may be zero.
+    """
+
+    name: ClassVar[str] = "hand"
+    formula: ClassVar[str] = "F = k δ + b δ' + m δ''"
+    kinds: ClassVar[tuple[str, ...]] = (STIFFNESS, DAMPING, MASS)
+    takes_velocity: ClassVar[bool] = True
+    keys: ClassVar[tuple[str, ...]] = ("stiffness", "damping", "mass")
+    may_vanish: ClassVar[frozenset[str]] = frozenset({"b", "m"})
+    front: ClassVar[str] = "k"
+    has_mass: ClassVar[bool] = True
+
+    k: Number
+    b: Number
+    m: Number
+
+    def simulate(self, motion: Motion) -> Array:
+        """Return the reaction at the samples, in N (N m)."""
+        parts = self._parts(motion)
+        return parts[:, 0] + parts[:, 1] + parts[:, 2]
+
+    def sensitivities(self, motion: Motion) -> Array:
+        """Return its derivatives by log k, log b and log m, shape (n, 3)."""
+        return self._parts(motion)
+
+    def _parts(self, motion: Motion) -> Array:
+        import numpy as np
+
+        acceleration = np.gradient(motion.velocity, motion.time)
+        moved = (motion.deflection, motion.velocity, acceleration)
+        return np.column_stack([v * part for v, part in zip(self.values, moved, strict=True)])
+
+    @property
+    def impedance(self) -> tuple[tuple[float, ...], tuple[float, ...]]:
+        """``(m s^2 + b s + k) / s``."""
+        k, b, m = self.values
+        return (m, b, k), (0.0, 1.0, 0.0)
+
+    @property
+    def by_stiffness(self) -> tuple[tuple[float, ...], tuple[float, ...]]:
+        """Damping and mass are held while the stiffness grows."""
+        _, b, m = self.values
+        return (m, b, 0.0), (0.0, 0.0, 1.0)
+
+    @property
+    def is_spring(self) -> bool:
+        """Whether there is neither damping nor mass."""
+        return self.b == 0 and self.m == 0
+
+    @property
+    def element(self) -> Element:
+        """Refused: a run with a mass that moves along is not modelled.
+
+        Raises
+        ------
+        DesignError
+            Always.
+        """
+        raise DesignError(
+            "a run in contact with a hand, which has a mass, is not modelled",
+            remedy="simulate a kelvin-voigt environment with the same stiffness and damping",
+        )
+
+    @classmethod
+    def memory_texts(cls, environment: str, *, alone: bool) -> Iterator[str]:
+        """Say that its mass moves with the contact."""
+        yield (
+            f"{environment} holds the robot, and its mass moves with the contact: its force is "
+            "k delta + b delta' + m delta''."
+        )
+
+    def react(self, velocity: LinearForm, states: Sequence[LinearForm]) -> Reaction:
+        """Refuse to leave out the acceleration.
+
+        Raises
+        ------
+        AssemblyError
+            Always.
+        """
+        raise AssemblyError(
+            "the force of a hand, which has a mass, is modelled for impedance controllers with a "
+            "virtual inertia in deflection coordinates",
+            remedy="use a kelvin-voigt environment, which has no mass",
+        )
+
+    def react_accelerated(
+        self, velocity: LinearForm, acceleration: LinearForm, states: Sequence[LinearForm]
+    ) -> Reaction:
+        """Return ``F = k delta + b v + m v'`` and ``delta' = v``.
+
+        Parameters
+        ----------
+        velocity, acceleration, states
+            As in `AbstractLinearLaw.react_accelerated`.
+        """
+        (k, b, m), (delta,) = self.exact, states
+        return combine((k, delta), (b, velocity), (m, acceleration)), [velocity]

@@ -1,0 +1,265 @@
+"""From a spec to a verdict: the switched system, the search, the certificate."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from fractions import Fraction
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from nrs_design import __version__
+from nrs_design.certificates.certificate import Certificate, Gains, Verdict
+from nrs_design.errors import AssemblyError
+from nrs_design.pipeline.design import Designed, Progress, placed, run_design, silent
+from nrs_design.proof.noun import dataclass
+from nrs_design.proof.system import SwitchedSystem
+from nrs_design.search.allowance import GIGABYTE
+from nrs_design.search.certification import Certification, Limits
+from nrs_design.search.method import Method
+from nrs_design.spec import LoadedSpec
+
+if TYPE_CHECKING:
+    from nrs_design.certificates.verify import Verification
+    from nrs_design.controllers.controller_design import ControllerDesign
+    from nrs_design.search.method_run import MethodRun
+    from nrs_design.spec import Spec
+
+
+@dataclass(frozen=True, slots=True)
+class Result:
+    """One spec, all the way through.
+
+    Parameters
+    ----------
+    loaded : LoadedSpec
+        The spec and where it came from.
+    designed : Designed or None
+        The plant and the gains that ship; None for given matrices.
+    coordinates : str or None
+        Of the assembled modes; None for given matrices.
+    certification : Certification
+        The verdict with every attempt.
+    certificate : Certificate or None
+        What may be written to a file; None if nothing was shown.
+    """
+
+    loaded: LoadedSpec
+    designed: Designed | None
+    coordinates: str | None
+    certification: Certification
+    certificate: Certificate | None
+
+    @property
+    def design(self) -> ControllerDesign | None:
+        """The gains that ship; None for given matrices."""
+        return None if self.designed is None else self.designed.design
+
+
+@dataclass(frozen=True, slots=True)
+class Overrides:
+    """What a command sets about the search, over what the spec says; None leaves it.
+
+    Parameters
+    ----------
+    max_degree : int or None
+        Highest degree of a polynomial function.
+    budget : float or None
+        Time in s.
+    memory : float or None
+        In GB.
+    """
+
+    max_degree: int | None = None
+    budget: float | None = None
+    memory: float | None = None
+
+
+def limits_of(spec: Spec, overrides: Overrides | None = None, optimize_rate: bool = True) -> Limits:
+    """Return how far the search goes: by default, as the spec says, or as a command sets it.
+
+    Parameters
+    ----------
+    spec : Spec
+        Whose `certification` section counts.
+    overrides : Overrides, optional
+        What a command sets instead.
+    optimize_rate : bool
+        Look for the largest provable decay rate, not only for some.
+    """
+    limits, asked = Limits(optimize_rate=optimize_rate), overrides or Overrides()
+    declared = None if spec.kind == "robot" else spec.certification
+    if declared is not None and declared.max_degree is not None:
+        limits = replace(limits, max_degree=declared.max_degree)
+    if declared is not None and declared.budget is not None:
+        limits = replace(limits, budget=float(declared.budget.exact))
+    if asked.max_degree is not None:
+        limits = replace(limits, max_degree=asked.max_degree)
+    if asked.budget is not None:
+        limits = replace(limits, budget=asked.budget)
+    if asked.memory is not None:
+        limits = replace(limits, memory=asked.memory * GIGABYTE)
+    return limits
+
+
+def run_certification(
+    loaded: LoadedSpec,
+    *,
+    method: Method = Method.AUTO,
+    coordinates: str | None = None,
+    limits: Limits | None = None,
+    progress: Progress = silent,
+) -> Result:
+    """Take a spec all the way to a verdict.
+
+    Parameters
+    ----------
+    loaded : LoadedSpec
+        As `nrs_design.spec.read_spec` gives it.
+    method : Method
+        One rung of the search, or all of them in turn.
+    coordinates : {"deflection", "force"}, optional
+        Overrides what the spec says.
+    limits : Limits, optional
+        How far the searches go; by default as the spec says.
+    progress : callable
+        Told the name of each step.
+
+    Raises
+    ------
+    DesignError, AssemblyError
+        If the spec has no design, or its modes make no switched system.
+    """
+    from nrs_design.search.certify import certify
+
+    progress("design")
+    designed = run_design(loaded)
+    if designed is not None:
+        coordinates = coordinates or designed.spec.coordinates
+    with placed(loaded):
+        system = assemble_spec(loaded, designed, coordinates)
+    certification = certify(system, method, limits or limits_of(loaded.spec), progress)
+    certificate = (
+        Certificate(
+            spec_name=loaded.spec.name,
+            spec_sha256=loaded.sha256,
+            coordinates=coordinates,
+            gains=_gains(designed),
+            system=system,
+            statements=certification.statements,
+            version=__version__,
+        )
+        if certification.statements
+        else None
+    )
+    return Result(loaded, designed, coordinates, certification, certificate)
+
+
+def run_comparison(
+    loaded: LoadedSpec,
+    limits: Limits,
+    coordinates: str | None = None,
+    progress: Progress = silent,
+) -> tuple[SwitchedSystem, tuple[MethodRun, ...]]:
+    """Compare the gradient iteration with the LMI on the modes of a spec.
+
+    Parameters
+    ----------
+    loaded : LoadedSpec
+        As `nrs_design.spec.read_spec` gives it.
+    limits : Limits
+        How far each search goes.
+    coordinates : {"deflection", "force"}, optional
+        Overrides what the spec says.
+    progress : callable
+        Told the name of each step.
+
+    Returns
+    -------
+    SwitchedSystem
+        The exact modes.
+    tuple of MethodRun
+        The LMI first.
+
+    Raises
+    ------
+    DesignError, AssemblyError
+        If the spec has no design, or its modes make no switched system that both methods are for.
+    """
+    from nrs_design.search.certify import certify
+    from nrs_design.search.comparison import compare_methods
+
+    designed = run_design(loaded)
+    if designed is not None:
+        coordinates = coordinates or designed.spec.coordinates
+    with placed(loaded):
+        system = assemble_spec(loaded, designed, coordinates)
+        runs = compare_methods(partial(certify, system), limits, progress)
+        return system, runs
+
+
+def _gains(designed: Designed | None) -> Gains:
+    if designed is None:
+        return {}
+    from nrs_design.controllers.gains import gains_of
+
+    return gains_of(designed.design)
+
+
+def assemble_spec(
+    loaded: LoadedSpec,
+    designed: Designed | None,
+    coordinates: str | None,
+    scale: Fraction = Fraction(1),
+) -> SwitchedSystem:
+    """Assemble either kind of spec, with its ranges stretched by a scale.
+
+    Parameters
+    ----------
+    loaded : LoadedSpec
+        The spec and where it came from.
+    designed : Designed or None
+        Its plant and gains; None for given matrices.
+    coordinates : {"deflection", "force"} or None
+        Of the contact; None for given matrices.
+    scale : Fraction
+        Of each range about its nominal value.
+
+    Raises
+    ------
+    AssemblyError
+        If the modes make no switched system.
+    """
+    from nrs_design.switched.assemble import assemble, assemble_matrices
+
+    if designed is not None:
+        return assemble(designed.spec, designed.plant, designed.design, coordinates, scale)
+    # A robot has no design either, but no way here.
+    assert loaded.spec.kind == "switched-system"
+    if coordinates is not None:
+        raise AssemblyError("given matrices have neither gains nor coordinates")
+    return assemble_matrices(loaded.spec, scale)
+
+
+def run_verification(file: Path, result: Result) -> Verification:
+    """Re-check a certificate file against the spec of a result, whose plant is in hand.
+
+    Raises
+    ------
+    CertificateError
+        If the file cannot be read as a certificate at all.
+    """
+    from nrs_design.certificates.verify import verify
+
+    plant = None if result.designed is None else result.designed.plant
+    return verify(file, result.loaded, plant=plant)
+
+
+def find_relief(result: Result) -> tuple[str, ...]:
+    """Return what would hold of a refuted design whose contacts are too stiff for its gains."""
+    designed = result.designed
+    if designed is None or result.certification.verdict is not Verdict.REFUTED:
+        return ()
+    from nrs_design.design.analysis import too_stiff
+
+    return tuple(map(str, too_stiff(designed.spec, designed.plant, designed.design)))

@@ -1,0 +1,115 @@
+"""From a spec to its plant, its gains, and what they achieve."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from typing import TYPE_CHECKING
+
+from nrs_design.errors import DesignError, NrsDesignError
+from nrs_design.proof.noun import dataclass
+from nrs_design.spec import LoadedSpec
+
+if TYPE_CHECKING:
+    from nrs_design.controllers.controller_design import ControllerDesign
+    from nrs_design.design.analysis import DesignAnalysis
+    from nrs_design.models.plant import Plant
+    from nrs_design.spec import InteractionDesignSpec
+
+Progress = Callable[[str], None]
+
+
+def silent(step: str) -> None:
+    """Report no progress."""
+
+
+@dataclass(frozen=True, slots=True)
+class Designed:
+    """An interaction design with all that follows from its spec alone.
+
+    Parameters
+    ----------
+    loaded : LoadedSpec
+        The spec and where it came from.
+    spec : InteractionDesignSpec
+        What it says.
+    plant : Plant
+        That it describes; the later stages take this one.
+    design : ControllerDesign
+        The gains that ship.
+    """
+
+    loaded: LoadedSpec
+    spec: InteractionDesignSpec
+    plant: Plant
+    design: ControllerDesign
+
+
+@contextmanager
+def placed(loaded: LoadedSpec) -> Iterator[None]:
+    """Add path, line and column to errors from stages that know the spec but not its file."""
+    try:
+        yield
+    except NrsDesignError as error:
+        if error.path is None and error.at:
+            place = loaded.place(*error.at)
+            error.line, error.column = place.line, place.column
+        error.path = error.path or loaded.path
+        raise
+
+
+def wrong_kind(loaded: LoadedSpec, message: str, remedy: str) -> DesignError:
+    """Return the error that a command raises about a kind of spec that it is not for.
+
+    Parameters
+    ----------
+    loaded : LoadedSpec
+        The spec.
+    message : str
+        What is wrong.
+    remedy : str
+        What to do about it.
+    """
+    place = loaded.place("kind")
+    return DesignError(
+        message, path=loaded.path, line=place.line, column=place.column, remedy=remedy
+    )
+
+
+def run_design(loaded: LoadedSpec) -> Designed | None:
+    """Build the plant of a spec and design its controllers; None for given matrices.
+
+    Raises
+    ------
+    DesignError
+        If a requirement cannot be met within its bounds, or the spec describes a robot only.
+    """
+    if loaded.spec.kind == "robot":
+        raise wrong_kind(
+            loaded,
+            "a robot spec has no controllers that are switched, so there is nothing to certify",
+            "use `nrs-design robot check SPEC`, or a spec of kind interaction-design",
+        )
+    spec = loaded.spec
+    if spec.kind != "interaction-design":
+        return None
+    from nrs_design.design.design import design_controllers
+    from nrs_design.models.plant import build_plant
+
+    with placed(loaded):
+        plant = build_plant(spec)
+        return Designed(loaded, spec, plant, design_controllers(spec, plant))
+
+
+def run_analysis(designed: Designed) -> DesignAnalysis:
+    """Compute what a design achieves.
+
+    Raises
+    ------
+    DesignError
+        If a nominal loop is unstable, so that it has no margins.
+    """
+    from nrs_design.design.analysis import analyze_design
+
+    with placed(designed.loaded):
+        return analyze_design(designed.spec, designed.plant, designed.design)

@@ -1,0 +1,265 @@
+"""How far a proof reaches: ranges, delay, period, disturbances, the time between switches."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from fractions import Fraction
+from typing import TYPE_CHECKING
+
+from nrs_design.certificates.certificate import Verdict
+from nrs_design.errors import DesignError, NrsDesignError
+from nrs_design.pipeline.certification import Result, assemble_spec, limits_of
+from nrs_design.pipeline.design import Designed, Progress, placed, silent
+from nrs_design.proof.bounds import nearly
+from nrs_design.proof.noun import dataclass
+from nrs_design.proof.system import SwitchedSystem, Time
+from nrs_design.search.certification import Certification, Limits
+from nrs_design.spec import LoadedSpec
+
+if TYPE_CHECKING:
+    from nrs_design.search.loop_margin import Bracket, CommandMargin, LoopMargins
+    from nrs_design.search.margin import BoxMargin, DwellMargin
+    from nrs_design.spec.sampling import SamplingSpec
+
+MARGIN_BUDGET = 10.0
+
+
+def quick_limits(result: Result, limits: Limits | None) -> Limits:
+    """Return how far one search of many goes: a proof is enough, whatever its decay rate."""
+    limits = limits or limits_of(result.loaded.spec)
+    return replace(limits, optimize_rate=False, budget=min(limits.budget, MARGIN_BUDGET))
+
+
+@dataclass(frozen=True, slots=True)
+class ProofMargins:
+    """How far a proof reaches, as far as that was asked for.
+
+    Parameters
+    ----------
+    loop : LoopMargins or None
+        Of delay, period and disturbances.
+    box : BoxMargin or None
+        Of the declared ranges.
+    dwell : DwellMargin or None
+        Of the time between switches.
+    """
+
+    loop: LoopMargins | None = None
+    box: BoxMargin | None = None
+    dwell: DwellMargin | None = None
+
+
+def run_proof_margins(
+    result: Result,
+    limits: Limits,
+    progress: Progress = silent,
+    *,
+    margin: bool,
+    shortest_dwell: bool,
+) -> ProofMargins:
+    """Find the margins that a command asks for.
+
+    Parameters
+    ----------
+    result : Result
+        Of the spec as it stands.
+    limits : Limits
+        How far the searches go each time; the decay rate is not optimized.
+    progress : callable
+        Told the name of each step.
+    margin : bool
+        Those of ranges, delay, period and disturbances; of ranges alone, a spec must have some.
+    shortest_dwell : bool
+        That of the time between switches.
+
+    Raises
+    ------
+    DesignError
+        If the spec has nothing that such a margin is about.
+    """
+    loop = run_loop_margins(result, limits, progress) if margin else None
+    ranged = loop is None or result.loaded.spec.has_ranges
+    return ProofMargins(
+        loop=loop,
+        box=run_margin(result, limits, progress) if margin and ranged else None,
+        dwell=run_shortest_dwell(result, limits, progress) if shortest_dwell else None,
+    )
+
+
+def run_margin(
+    result: Result, limits: Limits | None = None, progress: Progress = silent
+) -> BoxMargin:
+    """Find the largest box around the nominal values that still has a proof.
+
+    Parameters
+    ----------
+    result : Result
+        Of the spec as it stands; its design is kept.
+    limits : Limits, optional
+        How far the searches go at each scale; the decay rate is not optimized.
+    progress : callable
+        Told the name of each step.
+
+    Raises
+    ------
+    DesignError
+        If the spec declares no range.
+    """
+    from nrs_design.search.certify import certify
+    from nrs_design.search.margin import find_margin
+
+    spec = result.loaded.spec
+    if not spec.has_ranges:
+        given = "modes" if result.design is None else "environments"
+        with placed(result.loaded):
+            raise DesignError(
+                "the spec declares no range, so there is no box to stretch",
+                remedy="give an environment or a parameter a range",
+                at=(given,),
+            )
+    quick = quick_limits(result, limits)
+
+    def assemble_at(scale: Fraction) -> SwitchedSystem:
+        progress(f"box scaled by {nearly(scale)}")
+        return assemble_spec(result.loaded, result.designed, result.coordinates, scale)
+
+    return find_margin(
+        assemble_at, lambda system: certify(system, limits=quick), result.certification
+    )
+
+
+def run_loop_margins(
+    result: Result, limits: Limits | None = None, progress: Progress = silent
+) -> LoopMargins | None:
+    """Find how far delay, period and disturbances stretch; None where a spec has none of them.
+
+    Parameters
+    ----------
+    result : Result
+        Of the spec as it stands; its design is kept.
+    limits : Limits, optional
+        How far the searches go each time; the decay rate is not optimized.
+    progress : callable
+        Told the name of each step.
+    """
+    from nrs_design.search.loop_margin import LoopMargins
+
+    spec = None if result.designed is None else result.designed.spec
+    if spec is None or (spec.sampling is None and spec.disturbances is None):
+        return None
+    quick = quick_limits(result, limits)
+    delay = period = None
+    if result.designed is not None and spec.sampling is not None:
+        delay, period = _sampling_margins(result.designed, spec.sampling, result, quick, progress)
+    return LoopMargins(delay, period, _command_margin(result))
+
+
+def _sampling_margins(
+    designed: Designed,
+    sampling: SamplingSpec,
+    result: Result,
+    limits: Limits,
+    progress: Progress,
+) -> tuple[Bracket, Bracket]:
+    """Decide the loop at other delays and other periods, without what disturbs it."""
+    from nrs_design.search.certify import certify
+    from nrs_design.search.loop_margin import find_longest_delay, find_longest_period
+    from nrs_design.spec.sampling import LONGEST_DELAY
+
+    known = result.certification.verdict
+
+    def decide(changes: Mapping[str, object], what: str) -> Verdict:
+        progress(what)
+        changed = sampling.model_copy(update=changes)
+        spec = designed.spec.model_copy(update={"sampling": changed, "disturbances": None})
+        other = replace(designed, spec=spec)
+        system = assemble_spec(result.loaded, other, result.coordinates)
+        return certify(system, limits=limits).verdict
+
+    def at_delay(longest: int) -> Verdict:
+        if longest == sampling.delay[1]:
+            return known
+        return decide({"delay": (sampling.delay[0], longest)}, f"delay {longest}")
+
+    def at_period(period: Fraction) -> Verdict | None:
+        if period == sampling.period.exact:
+            return known
+        changes = {
+            name: replace(given, value=period * given.value / sampling.period.exact)
+            for name in ("period", "outer_period")
+            if (given := getattr(sampling, name)) is not None
+        }
+        try:
+            return decide(changes, f"period {period} s")
+        except NrsDesignError:
+            return None
+
+    delay = find_longest_delay(*sampling.delay, LONGEST_DELAY, at_delay)
+    return delay, find_longest_period(sampling.period.exact, at_period)
+
+
+def _command_margin(result: Result) -> CommandMargin | None:
+    """Hold the bound on the force against an adversary's run."""
+    from nrs_design.certificates.bounds import bound_on
+    from nrs_design.search.loop_margin import command_margin
+    from nrs_design.simulation.disturbed import worst_output
+
+    system = result.certification.system
+    found = bound_on(system, result.certification.statements, "force") if system.channels else None
+    return None if found is None else command_margin(found, worst_output(system, found))
+
+
+def run_shortest_dwell(
+    result: Result, limits: Limits | None = None, progress: Progress = silent
+) -> DwellMargin:
+    """Find the shortest dwell time with a proof, whatever dwell time the spec declares.
+
+    Parameters
+    ----------
+    result : Result
+        Of the spec as it stands.
+    limits : Limits, optional
+        How far the searches go at each dwell time; the decay rate is not optimized.
+    progress : callable
+        Told the name of each step.
+
+    Raises
+    ------
+    DesignError
+        In discrete time, or if something may change between two switches, or if the spec declares
+        longest dwell times, which would bound the shortest one.
+    """
+    from nrs_design.search.certify import certify
+    from nrs_design.search.margin import find_shortest_dwell
+
+    known = result.certification
+    system = known.system
+    _refuse_dwell(result.loaded, system.time)
+    if len(system.lasting_modes()) < len(system.modes):
+        with placed(result.loaded):
+            raise DesignError(
+                "a shortest dwell time is not searched beside longest ones",
+                remedy="leave longest_dwell_time out, or declare the dwell_time and certify that",
+                at=("switching", "longest_dwell_time"),
+            )
+    quick = quick_limits(result, limits)
+
+    def decide(candidate: SwitchedSystem) -> Certification:
+        progress(f"dwell time {nearly(candidate.switching.dwell_time, 's')}")
+        return certify(candidate, limits=quick)
+
+    return find_shortest_dwell(system, decide, known)
+
+
+def _refuse_dwell(loaded: LoadedSpec, time: Time) -> None:
+    """Stop where a dwell time would say nothing, by the rule that a spec with one must keep."""
+    if time is not Time.CONTINUOUS:
+        raise DesignError(
+            "a shortest dwell time is for continuous time",
+            path=loaded.path,
+            remedy="in discrete time, declare a dwell_time in steps and certify that",
+        )
+    assert loaded.spec.kind != "robot"  # It has no modes, hence no certification.
+    if obstacle := loaded.spec.find_dwell_obstacle():
+        raise DesignError(obstacle.message, path=loaded.path, remedy=obstacle.remedy)

@@ -1,0 +1,361 @@
+"""From a design to runs of its scenarios, and what is certified beside them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from nrs_design.certificates.certificate import Certificate
+from nrs_design.errors import CertificateError, DesignError
+from nrs_design.pipeline.design import Designed, Progress, placed, silent
+from nrs_design.proof.noun import dataclass
+
+if TYPE_CHECKING:
+    from nrs_design.simulation.robot_body import Arm
+    from nrs_design.simulation.run import Run
+    from nrs_design.simulation.scenario import Scenario
+    from nrs_design.spec import InteractionDesignSpec
+    from nrs_design.spec.sampling import SamplingSpec
+
+
+@dataclass(frozen=True, slots=True)
+class Simulated:
+    """A scenario that has been simulated.
+
+    Parameters
+    ----------
+    scenario : Scenario
+        In SI.
+    run : Run
+        As far as it came.
+    metrics : mapping
+        Of the run, in SI.
+    """
+
+    scenario: Scenario
+    run: Run
+    metrics: Mapping[str, Any]
+
+
+@dataclass(frozen=True, slots=True)
+class CertifiedBound:
+    """A certified bound beside a run.
+
+    Parameters
+    ----------
+    output, unit : str
+        What is bounded.
+    level : float
+        Not below what is proved.
+    uncovered : tuple of str
+        What happens in the run that the proof says nothing about; empty if the bound holds for it.
+    """
+
+    output: str
+    unit: str
+    level: float
+    uncovered: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Runs:
+    """How scenarios are run; None leaves what the spec says.
+
+    Parameters
+    ----------
+    names : tuple of str
+        Which; empty for all.
+    engine : {"exact", "sampled", "mujoco"} or None
+        By default sampled where the spec has sampling or tissue is not linear, else exact.
+    period : float or None
+        Of the sampled engine, in s; 2 ms where nothing says it.
+    delay : int or None
+        Age of its force samples, in samples; none where nothing says it.
+    max_steps : int or None
+        Of each run.
+    """
+
+    names: tuple[str, ...] = ()
+    engine: str | None = None
+    period: float | None = None
+    delay: int | None = None
+    max_steps: int | None = None
+
+
+def run_scenarios(
+    designed: Designed, wanted: Runs | None = None, progress: Progress = silent
+) -> Iterator[Simulated]:
+    """Simulate scenarios of a spec; a spec without any has one of its own.
+
+    Parameters
+    ----------
+    designed : Designed
+        The spec, its plant and its gains.
+    wanted : Runs, optional
+        Which, and how.
+    progress : callable
+        Told the name of each run, and how far it is.
+
+    Yields
+    ------
+    Simulated
+        One run after the other.
+
+    Raises
+    ------
+    DesignError, DataError
+        If there is no such scenario, or it cannot be simulated.
+    """
+    wanted = wanted or Runs()
+    with placed(designed.loaded):
+        for name, group in scenarios_of(designed, wanted):
+            yield from simulate_group(designed, name, group, wanted, progress)
+
+
+def simulate_group(
+    designed: Designed,
+    name: str,
+    group: Sequence[Scenario],
+    wanted: Runs,
+    progress: Progress = silent,
+) -> Iterator[Simulated]:
+    """Simulate what one axis does, or three of a robot at once, and measure the runs.
+
+    Parameters
+    ----------
+    designed : Designed
+        The spec, its plant and its gains.
+    name : str
+        Of the scenario.
+    group : sequence of Scenario
+        In SI, one for each axis.
+    wanted : Runs
+        How.
+    progress : callable
+        Told how far the run is.
+
+    Yields
+    ------
+    Simulated
+        For each axis.
+
+    Raises
+    ------
+    DesignError
+        If it cannot be simulated.
+    """
+    from nrs_design.simulation.bodies import simulate_on_body
+    from nrs_design.simulation.exact import simulate_exactly
+    from nrs_design.simulation.run import MAX_STEPS
+    from nrs_design.simulation.summary import summarize
+
+    spec, engine = designed.spec, wanted.engine or _usual(designed.spec, group)
+    given = designed.plant, designed.design
+    most, tell = wanted.max_steps or MAX_STEPS, partial(_tell, progress, name)
+    if engine == "exact":
+        runs = tuple(
+            simulate_exactly(spec, *given, one, max_steps=most, tell=tell) for one in group
+        )
+    else:
+        timed = spec.model_copy(update={"sampling": _sampling(spec, wanted)})
+        arm = _arm(designed, name) if len(group) > 1 else None
+        runs = simulate_on_body(timed, *given, group, engine, arm, max_steps=most, tell=tell)
+    for scenario, run in zip(group, runs, strict=True):
+        yield Simulated(scenario, run, summarize(spec, scenario, run))
+
+
+def folder_of(designed: Designed) -> Path:
+    """Return the folder of a spec, for files that it names."""
+    path = designed.loaded.path
+    return Path() if path is None else path.parent
+
+
+def _usual(spec: InteractionDesignSpec, group: Sequence[Scenario]) -> str:
+    """Return the engine for a scenario: a law of tissue that is not linear has no exponential."""
+    nonlinear = any(not surface.is_linear for one in group for surface in one.surfaces)
+    sampled = spec.sampling is not None or nonlinear or len(group) > 1
+    return "sampled" if sampled else "exact"
+
+
+def _arm(designed: Designed, name: str) -> Arm:
+    """Return the robot of a spec in the pose in which a scenario of three axes begins."""
+    import numpy as np
+
+    from nrs_design.pipeline.robots import run_robot
+    from nrs_design.simulation.robot_body import Arm
+
+    spec = designed.spec
+    assert spec.coupling is not None
+    assert spec.coupling.robot is not None
+    _, _, robot = run_robot(folder_of(designed) / spec.coupling.robot)
+    axes = spec.scenarios[name].axes if name in spec.scenarios else None
+    pose = None if axes is None else axes.pose
+    rest = robot.home if pose is None else np.array([pose.phi.si, pose.psi.si, pose.d.si])
+    return Arm(robot, rest, spec.coupling.gravity_compensated == "at-rest")
+
+
+def _sampling(spec: InteractionDesignSpec, wanted: Runs) -> SamplingSpec:
+    """Return the sampling of a spec, changed as is wanted."""
+    from nrs_design.spec.sampling import SamplingSpec
+
+    usual = SamplingSpec.model_validate({"period": "2 ms", "delay": "0"})
+    changes: dict[str, object] = {}
+    if wanted.period is not None:
+        text = {"period": f"{wanted.period!r} s", "delay": "0"}
+        changes["period"] = SamplingSpec.model_validate(text).period
+    if wanted.delay is not None:
+        changes["delay"] = (wanted.delay, wanted.delay)
+    return (spec.sampling or usual).model_copy(update=changes)
+
+
+def _tell(progress: Progress, name: str, step: str) -> None:
+    progress(f"{name}, {step}")
+
+
+def scenarios_of(designed: Designed, wanted: Runs) -> list[tuple[str, tuple[Scenario, ...]]]:
+    """Return the scenarios that are wanted, in SI: of each its name, and one for each axis.
+
+    Parameters
+    ----------
+    designed : Designed
+        The spec and its plant.
+    wanted : Runs
+        Which; a spec without any has one of its own.
+
+    Raises
+    ------
+    DesignError, DataError
+        If there is no such scenario, its file of commands cannot be read, or three axes are wanted
+        from the exact engine.
+    """
+    from nrs_design.simulation.build_scenario import build_runs
+
+    spec, folder = designed.spec, folder_of(designed)
+    return [(name, build_runs(spec, designed.plant, name, folder)) for name in _names(spec, wanted)]
+
+
+def _names(spec: InteractionDesignSpec, wanted: Runs) -> Sequence[str]:
+    """Return the scenarios that are run; what three axes do has no exact engine."""
+    from nrs_design.simulation.build_scenario import default_names, run_names
+    from nrs_design.spec.faults import did_you_mean
+
+    known = tuple(spec.scenarios) or default_names(spec)
+    for name in wanted.names:
+        if name not in known:
+            remedy = did_you_mean(name, spec.scenarios) if spec.scenarios else "add scenarios"
+            raise DesignError(f"the spec has no scenario {name!r}", remedy=remedy)
+    if wanted.engine == "exact" and not wanted.names and not spec.scenarios:
+        return known[:1]
+    for name in wanted.names or known:
+        if wanted.engine == "exact" and len(run_names(spec, (name,))) > 1:
+            raise DesignError(
+                f"{name} moves three axes of a robot, whose dynamics is not linear",
+                remedy="use --engine sampled or mujoco",
+                at=("scenarios", name, "axes"),
+            )
+    return wanted.names or known
+
+
+def hold_bounds(
+    designed: Designed, certificate: Certificate, simulated: Simulated
+) -> tuple[CertifiedBound, ...]:
+    """Hold what is certified against a run.
+
+    Parameters
+    ----------
+    designed : Designed
+        The spec and its plant.
+    certificate : Certificate
+        Checked, of that spec.
+    simulated : Simulated
+        A run of that spec.
+    """
+    from nrs_design.proof.bounds import upper_float
+    from nrs_design.simulation.coverage import uncovered
+
+    system, found = certificate.system, []
+    for statement in certificate.statements:
+        bound = statement.bound(system)
+        # One bound for each output is about all disturbances at once.
+        if bound is None or set(bound.channels) != set(system.channels):
+            continue
+        reasons = uncovered(designed.spec, system, statement, simulated.scenario, simulated.run)
+        level = upper_float(bound.level)
+        found.append(CertifiedBound(bound.output.name, bound.output.unit, level, tuple(reasons)))
+    return tuple(found)
+
+
+@dataclass(frozen=True, slots=True)
+class CertifiedRate:
+    """A certified rate of decay beside a run.
+
+    Parameters
+    ----------
+    rate : float
+        Not better than what is proved: in 1/s, or the factor per sample.
+    unit : str
+        ``1/s``, or empty for a factor.
+    attained : bool
+        Whether it is proved itself, not only what is slower.
+    start : float or None
+        From when on nothing is commanded, in s; None where the run ends before.
+    uncovered : tuple of str
+        Why it is not about the run from then on; empty if it is.
+    """
+
+    rate: float
+    unit: str
+    attained: bool
+    start: float | None
+    uncovered: tuple[str, ...]
+
+
+def hold_rate(
+    designed: Designed, certificate: Certificate, simulated: Simulated
+) -> CertifiedRate | None:
+    """Hold the certified rate of decay, if there is one, against the end of a run.
+
+    Parameters
+    ----------
+    designed, certificate, simulated
+        As `hold_bounds` takes them.
+    """
+    from nrs_design.proof.bounds import lower_float, upper_float
+    from nrs_design.proof.evidence.abstract import Shows
+    from nrs_design.proof.system import Time
+    from nrs_design.simulation.coverage import end_of_command, undecayed
+
+    system, one = certificate.system, simulated
+    evidence = certificate.evidence
+    proved = None if evidence is None else evidence.proved_rate(system)
+    if evidence is None or evidence.shows is not Shows.STABILITY or proved is None:
+        return None
+    continuous = system.time is Time.CONTINUOUS
+    reasons = undecayed(designed.spec, system, evidence, one.scenario, one.run)
+    return CertifiedRate(
+        (lower_float if continuous else upper_float)(proved),
+        "1/s" if continuous else "",
+        evidence.attains_rate,
+        end_of_command(one.scenario),
+        tuple(reasons),
+    )
+
+
+def read_certificate(file: Path, designed: Designed) -> Certificate:
+    """Return what a certificate file holds, checked exactly against the spec.
+
+    Raises
+    ------
+    CertificateError
+        If it is none, or does not hold for this spec.
+    """
+    from nrs_design.certificates.verify import verify
+
+    found = verify(file, designed.loaded, plant=designed.plant)
+    if found.certificate is None or found.fault is not None:
+        raise CertificateError(
+            str(found.fault), path=file, remedy="make it anew with certify-switching"
+        )
+    return found.certificate

@@ -1,0 +1,118 @@
+"""From a design to the worst runs that an adversary finds, beside limits and certified bounds."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from nrs_design.certificates.certificate import Certificate
+from nrs_design.errors import AssemblyError, DesignError
+from nrs_design.pipeline.certification import assemble_spec
+from nrs_design.pipeline.design import Designed, Progress, placed, silent
+from nrs_design.proof.noun import dataclass
+
+if TYPE_CHECKING:
+    from nrs_design.proof.system import SwitchedSystem
+    from nrs_design.simulation.worst_case import WorstRun
+
+_REMEDY = "use --monte-carlo, which simulates every controller"
+
+
+@dataclass(frozen=True, slots=True)
+class WorstCase:
+    """The worst runs that an adversary found, beside limits and certified bounds.
+
+    Parameters
+    ----------
+    system : SwitchedSystem
+        That he played against.
+    runs : tuple of WorstRun
+        One for each quantity: force, velocity and deflection.
+    limits : mapping of str to float
+        Of these quantities, as far as the spec has any; SI.
+    bounds : mapping of str to float
+        Not below what is certified; SI.
+    declared : bool
+        Whether the spec says what disturbs; otherwise it is any command up to its limit.
+    """
+
+    system: SwitchedSystem
+    runs: tuple[WorstRun, ...]
+    limits: Mapping[str, float]
+    bounds: Mapping[str, float]
+    declared: bool
+
+
+def run_worst_case(
+    designed: Designed,
+    certificate: Certificate | None = None,
+    *,
+    seed: int = 0,
+    rounds: int | None = None,
+    progress: Progress = silent,
+) -> WorstCase:
+    """Let an adversary choose everything that the spec leaves open, and keep the worst runs.
+
+    Parameters
+    ----------
+    designed : Designed
+        The spec, its plant and its gains.
+    certificate : Certificate, optional
+        Checked, of that spec; its bounds are held against the runs.
+    seed : int
+        Of his starts.
+    rounds : int, optional
+        How often the best runs are changed and improved again.
+    progress : callable
+        Told the name of each step.
+
+    Raises
+    ------
+    DesignError
+        If what acts on the loop is not modelled for its controllers, or its rules not searched.
+    """
+    from nrs_design.simulation.worst_case import (
+        ROUNDS,
+        bounds_of,
+        deflection_of,
+        forces_by_mode,
+        worst_runs,
+    )
+
+    spec = designed.spec
+    progress("adversary")
+    try:
+        system = _commanded(designed)
+        deflection = deflection_of(system)
+        outputs = (*system.outputs, *(() if deflection is None else (deflection,)))
+        touched = designed.plant.among(designed.design.contacts)
+        allowed = {"force": forces_by_mode(system, touched)}
+        rounds = ROUNDS if rounds is None else rounds
+        runs = worst_runs(system, outputs, allowed, seed=seed, rounds=rounds)
+    except (AssemblyError, ValueError) as error:
+        message = error.message if isinstance(error, AssemblyError) else str(error)
+        with placed(designed.loaded):
+            raise DesignError(
+                f"no worst case is searched for this spec: {message}",
+                remedy=_REMEDY,
+                at=("controllers",),
+            ) from error
+    return WorstCase(
+        system,
+        runs,
+        {"force": spec.limits.torque.si, "velocity": spec.limits.velocity.si},
+        {} if certificate is None else bounds_of(certificate.system, certificate.statements),
+        spec.disturbances is not None,
+    )
+
+
+def _commanded(designed: Designed) -> SwitchedSystem:
+    """Return the loop under what the spec says disturbs it, else under any allowed command."""
+    from nrs_design.spec.sampling import DisturbancesSpec
+
+    spec = designed.spec
+    if spec.disturbances is None:
+        text = {"command": spec.limits.velocity.text}
+        spec = spec.model_copy(update={"disturbances": DisturbancesSpec.model_validate(text)})
+    return assemble_spec(designed.loaded, replace(designed, spec=spec), spec.coordinates)

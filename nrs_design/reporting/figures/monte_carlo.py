@@ -1,0 +1,102 @@
+"""How the peaks of many runs are spread, with limits and certified bounds."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from nrs_design.reporting.style import BLUE, GREEN, VERMILLION, new_figure, styled
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+    from nrs_design.simulation.norms import Array
+
+# A limit or bound that is so many times farther than the largest peak is named, not drawn.
+_FAR = 1.5
+_BINS = 40
+# Lines are seen in front of the bars.
+_PALE = 0.45
+
+
+@dataclass(frozen=True, eq=False)
+class Spread:
+    """The peaks of one quantity.
+
+    Parameters
+    ----------
+    label : str
+        With its unit.
+    peaks : ndarray, shape (N,)
+        One for each run.
+    limits : tuple of float
+        Of the scenarios; equal ones once.
+    bound : float or None
+        Certified.
+    holds : bool
+        Whether the bound is about these runs.
+    """
+
+    label: str
+    peaks: Array
+    limits: tuple[float, ...]
+    bound: float | None
+    holds: bool
+
+
+@styled
+def draw_monte_carlo(spreads: Sequence[Spread]) -> Figure:
+    """Draw a histogram of every quantity.
+
+    Parameters
+    ----------
+    spreads : sequence of Spread
+        At least one.
+    """
+    figure = new_figure(2.1 * len(spreads) + 0.6)
+    rows: Sequence[Axes] = figure.subplots(len(spreads), 1, squeeze=False)[:, 0].tolist()
+    for axes, spread in zip(rows, spreads, strict=True):
+        _draw(axes, spread)
+    _legend(figure, spreads)
+    return figure
+
+
+def _draw(axes: Axes, spread: Spread) -> None:
+    largest = float(spread.peaks.max())
+    lines = [(limit, "limit", GREEN, ":") for limit in spread.limits]
+    if spread.bound is not None:
+        lines.append((spread.bound, "certified bound", VERMILLION, "--"))
+    far = [line for line in lines if line[0] > _FAR * largest]
+    near = max([largest, *(line[0] for line in lines if line not in far)])
+    low = min(float(spread.peaks.min()), near)
+    margin = 0.04 * (near - low) or 0.05 * near or 1.0
+    edges = np.linspace(low - margin, near + margin, _BINS + 1).tolist()
+    axes.hist(spread.peaks, bins=edges, color=BLUE, alpha=_PALE)
+    for line in lines:
+        if line not in far:
+            axes.axvline(line[0], color=line[2], linestyle=line[3], lw=2.0)
+    if far:
+        named = ", ".join(f"{name} {value:.4g}" for value, name, *_ in far)
+        axes.set_title(f"beyond this scale: {named}", fontsize=9, loc="right")
+    axes.set_xlabel(spread.label)
+    axes.set_ylabel("Runs")
+    axes.locator_params(axis="y", integer=True)
+
+
+def _legend(figure: Figure, spreads: Sequence[Spread]) -> None:
+    from matplotlib.lines import Line2D
+    from matplotlib.patches import Patch
+
+    handles: list[Line2D | Patch] = [
+        Patch(facecolor=BLUE, alpha=_PALE, label="peaks of the runs"),
+        Line2D([], [], color=GREEN, linestyle=":", lw=1.6, label="limit"),
+    ]
+    if any(spread.bound is not None for spread in spreads):
+        holds = all(spread.holds for spread in spreads if spread.bound is not None)
+        label = "certified bound" if holds else "bound, not about all runs"
+        handles.append(Line2D([], [], color=VERMILLION, linestyle="--", lw=1.6, label=label))
+    figure.legend(handles=handles, loc="outside lower center", ncols=3)

@@ -1,0 +1,84 @@
+"""Which line of the spec a number comes from."""
+
+from __future__ import annotations
+
+import re
+from typing import TYPE_CHECKING
+
+from nrs_design.reporting.document import Linked
+from nrs_design.spec import InteractionDesignSpec, SwitchedSystemSpec
+from nrs_design.switched import assumption_kinds as kinds
+
+if TYPE_CHECKING:
+    from nrs_design.spec import LoadedSpec
+    from nrs_design.switched.assumption import AssumptionKind
+
+At = tuple[str | int, ...]
+# Where a spec says what an assumption is about.
+_ASSUMED: dict[AssumptionKind, At] = {
+    kinds.MOTOR: ("actuator",),
+    kinds.LOAD: ("actuator", "load_inertia"),
+    kinds.COMMAND_UNIT: ("actuator", "gain"),
+    kinds.INPUTS: ("disturbances",),
+    kinds.FRICTION: ("disturbances",),
+    kinds.LINKS: ("coupling",),
+    kinds.GRAVITY: ("coupling",),
+    kinds.TISSUE: ("environments",),
+    kinds.PRELOAD: ("environments",),
+    kinds.LINEARIZED: ("environments",),
+    kinds.COVERAGE: ("environments",),
+    kinds.DOUBT: ("environments",),
+    kinds.CONTACTS: ("controllers",),
+    kinds.CONTACT_KEPT: ("contact",),
+    kinds.CONTACT_LOST: ("contact",),
+    kinds.IDLE: ("idle_states",),
+    kinds.RULES: ("switching",),
+    kinds.ANY_SIGNAL: ("switching",),
+    kinds.LOGIC: ("mode_logic",),
+    kinds.PERIOD: ("sampling", "period"),
+    kinds.SAMPLE_AGE: ("sampling", "delay"),
+    kinds.SENSOR: ("sensor",),
+    kinds.NUMBERS: ("controllers",),
+    kinds.MATRICES: ("modes",),
+}
+
+
+def linked(loaded: LoadedSpec, text: str, *at: str | int) -> str:
+    """Return a text that leads to a line of the spec; without a place, or a text, as it is.
+
+    Parameters
+    ----------
+    loaded : LoadedSpec
+        The spec.
+    text : str
+        Of a cell.
+    *at : str or int
+        Keys and numbers of items; what is not written out is led to where it would be.
+    """
+    written = bool(at) and text not in ("", "–") and loaded.place(at[0]) != loaded.place()
+    return Linked(text, loaded.place(*at).line) if written else text
+
+
+def mode_at(loaded: LoadedSpec, mode: str) -> At:
+    """Return where a spec says most of a mode: its matrix, or its controller."""
+    spec, first = loaded.spec, mode.split("/")[0]
+    if isinstance(spec, SwitchedSystemSpec):
+        names = [given.name for given in spec.modes]
+        return ("modes", names.index(first)) if first in names else ("modes",)
+    if isinstance(spec, InteractionDesignSpec) and first in spec.controllers:
+        return ("controllers", first)
+    return ()
+
+
+def contact_at(loaded: LoadedSpec, text: str) -> At:
+    """Return where a spec describes the contact that a text names, if it names one."""
+    spec = loaded.spec
+    if not isinstance(spec, InteractionDesignSpec):
+        return ()
+    words = set(re.findall(r"[\w-]+", text))
+    return next((("environments", name) for name in spec.environments if name in words), ())
+
+
+def assumed_at(kind: AssumptionKind) -> At:
+    """Return where a spec says what an assumption is about, if it does."""
+    return _ASSUMED.get(kind, ())

@@ -1,0 +1,71 @@
+"""For which stiffness and delay a sampled loop holds."""
+
+from __future__ import annotations
+
+from itertools import chain
+from typing import TYPE_CHECKING
+
+from nrs_design.certificates.certificate import Verdict
+from nrs_design.proof.bounds import lower, upper
+from nrs_design.reporting.document import Illustration, Paragraph, Section, Table
+from nrs_design.reporting.figures.stability_map import draw_stability_map
+
+if TYPE_CHECKING:
+    from nrs_design.pipeline.stability_map import StabilityMap
+
+_TEXT = (
+    "Each cell was decided in exact arithmetic, or follows from one that was: it takes every "
+    "stiffness of every contact from its lower end to the cell's upper end, and every age of the "
+    "force sample from the shortest declared one to the cell's. So a proof holds for all cells to "
+    "the left and below, a refutation for all to the right and above. Gains, ranges of the motor "
+    "and rules of switching are those of the spec; its disturbances are left out, and no bound on "
+    "the force was looked at. Undecided says nothing: a longer search may decide. No cell but the "
+    "certificate of the spec itself is kept as a file."
+)
+_CAPTION = (
+    "P proved, R refuted, ? undecided; the framed cell ends where the declared ranges end. The age "
+    "is in samples."
+)
+
+
+def stability_map_section(found: StabilityMap) -> Section:
+    """Show the map, and for each age the stiffness that is proved and refuted.
+
+    Parameters
+    ----------
+    found : StabilityMap
+        As `nrs_design.pipeline.stability_map.run_stability_map` finds it.
+    """
+    verdicts = (Verdict.PROVED, Verdict.REFUTED)
+    words = [
+        f"{name} [N·m/rad], {verdict}" for verdict in verdicts for name, _, _ in found.contacts
+    ]
+    rows = tuple(
+        (str(delay), *chain.from_iterable(_ends(found, row, verdict) for verdict in verdicts))
+        for row, delay in enumerate(found.delays)
+    )
+    columns = ("Oldest force sample", *words)
+    return Section(
+        "Stiffness and delay",
+        (
+            Paragraph(_TEXT),
+            Illustration(
+                "stability-map", "Proved and refuted", _CAPTION, draw_stability_map(found)
+            ),
+            Table("Stiffness that is proved, and that is refuted", columns, rows),
+        ),
+    )
+
+
+def _ends(found: StabilityMap, row: int, verdict: Verdict) -> list[str]:
+    """Return the furthest range that is proved, or the nearest refuted, for every contact."""
+    held = [f for c, f in enumerate(found.factors) if found.verdicts[row, c] is verdict]
+    if not held:
+        return ["–"] * len(found.contacts)
+    factor = max(held) if verdict is Verdict.PROVED else min(held)
+    outside = verdict is Verdict.REFUTED
+    return [
+        # What is proved is shown no wider than it is, what is refuted no narrower.
+        f"{(lower if outside else upper)(low)} to {(upper if outside else lower)(factor * high)}"
+        for _, low, high in found.contacts
+    ]

@@ -1,0 +1,218 @@
+"""The worst runs that were found, in the units in which people read them."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from nrs_design.proof.bounds import lower, upper
+from nrs_design.reporting.figures.release import Panel, draw_release
+from nrs_design.simulation.contact import deflected
+from nrs_design.simulation.switched import SwitchedRun
+from nrs_design.simulation.time_response import Signal, TimeResponse
+from nrs_design.simulation.worst_case import DEFLECTION
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+    from nrs_design.pipeline.worst_case import WorstCase
+    from nrs_design.proof.system import Output
+    from nrs_design.simulation.norms import Array
+    from nrs_design.simulation.worst_case import WorstRun
+
+COLUMNS = ("", "worst found", "unit", "limit", "certified bound", "bound / found")
+MEANING = (
+    "An adversary chose controllers, contact, delay and disturbances within what the spec allows. "
+    "What he found may happen in the model; the worst that may happen lies between it and the "
+    "certified bound."
+)
+NO_BOUND = "No bound is certified beside it: the worst that may happen may be any larger."
+UNDECLARED = (
+    "The spec names no disturbances, so the velocity command took any course up to its limit; "
+    "with `disturbances` a bound can be certified."
+)
+LEFT_OUT = "roundings of the law, jitter, noise without a bound, and the limit of the command"
+_COMMAND = "velocity command"
+_TURN = 180 / math.pi
+
+
+@dataclass(frozen=True, slots=True)
+class Found:
+    """One quantity: the worst found, its limit and what is certified; SI.
+
+    Parameters
+    ----------
+    name, unit : str
+        Such as ``force`` in ``N*m``.
+    value : float
+        That was found.
+    limit, bound : float or None
+        Of the spec, and certified.
+    """
+
+    name: str
+    unit: str
+    value: float
+    limit: float | None
+    bound: float | None
+
+    @property
+    def ratio(self) -> float | None:
+        """Certified bound over what was found; None without either."""
+        return None if self.bound is None or not self.value else self.bound / self.value
+
+    @property
+    def exceeds(self) -> bool:
+        """Whether what was found is beyond the limit."""
+        return self.limit is not None and self.value > self.limit
+
+
+def found_in(case: WorstCase) -> tuple[Found, ...]:
+    """Return what was found, quantity by quantity.
+
+    Parameters
+    ----------
+    case : WorstCase
+        Of the pipeline.
+    """
+    return tuple(
+        Found(
+            run.output.name,
+            run.output.unit,
+            run.value,
+            case.limits.get(run.output.name),
+            case.bounds.get(run.output.name),
+        )
+        for run in case.runs
+    )
+
+
+def worst_rows(case: WorstCase, lever_arm: float | None) -> list[list[str]]:
+    """Return rows for `COLUMNS`: what was found rounded down, bounds rounded up.
+
+    Parameters
+    ----------
+    case : WorstCase
+        Of the pipeline.
+    lever_arm : float or None
+        From the pivot to the contact in m; with it, the deflection is in mm, else in deg.
+    """
+    rows = []
+    for item in found_in(case):
+        factor, unit = scale_of(item.name, lever_arm)
+        limit = "–" if item.limit is None else f"{factor * item.limit:.4g}"
+        bound = "–" if item.bound is None else upper(Fraction(factor * item.bound), 4)
+        ratio = "–" if item.ratio is None else upper(Fraction(item.ratio), 3)
+        found = lower(Fraction(factor * item.value), 4)
+        if item.exceeds:
+            found += " (above)"
+        rows.append([item.name, found, unit, limit, bound, ratio])
+    return rows
+
+
+def scale_of(name: str, lever_arm: float | None) -> tuple[float, str]:
+    """Return by what SI numbers of a quantity are multiplied for people, and their unit."""
+    if name == DEFLECTION and lever_arm is not None:
+        return 1e3 * lever_arm, "mm"
+    return {"force": (1.0, "N m"), "velocity": (_TURN, "deg/s")}.get(name, (_TURN, "deg"))
+
+
+def draw_worst(case: WorstCase, run: WorstRun, lever_arm: float | None) -> Figure:
+    """Draw a run: all quantities with limits and bounds, the command, and who was in control.
+
+    Parameters
+    ----------
+    case : WorstCase
+        That it is of.
+    run : WorstRun
+        One of its runs.
+    lever_arm : float or None
+        As for `worst_rows`.
+    """
+    panels = [_panel(case, run, other.output, lever_arm) for other in case.runs]
+    names = [channel.name for channel in case.system.channels]
+    if _COMMAND in names:
+        command = _TURN * run.disturbances[:, names.index(_COMMAND)]
+        held = np.append(command, command[-1:])[:, None]
+        panels.append(Panel("Command [deg/s]", held, None, None))
+    labels = [_controller(name) for name in _modes(case)]
+    who = list(dict.fromkeys(labels))
+    mode = np.array([who.index(labels[k]) for k in run.mode.tolist()], dtype=np.int64)
+    return draw_release(SwitchedRun(run.time, run.states, mode), panels, who)
+
+
+def response_of(case: WorstCase, run: WorstRun) -> TimeResponse:
+    """Return a run as a table: quantities, states, disturbances, and the mode at every instant.
+
+    Of a force with a range, the largest.
+
+    Parameters
+    ----------
+    case, run
+        As for `draw_worst`.
+    """
+    named = {other.output.name: other.output for other in case.runs}
+    rows = [_largest(_values(case, run, output)) for output in named.values()]
+    signals = [
+        Signal("torque" if name == "force" else name, output.unit) for name, output in named.items()
+    ]
+    held = np.concatenate([run.disturbances, run.disturbances[-1:]])
+    mode = np.append(run.mode, run.mode[-1:])
+    return TimeResponse(
+        run.time,
+        np.array(rows),
+        run.states.T,
+        held.T,
+        tuple(signals),
+        tuple(_signals(case.system.states)),
+        tuple(Signal(channel.name, channel.unit) for channel in case.system.channels),
+        mode,
+        _modes(case),
+    )
+
+
+def _modes(case: WorstCase) -> tuple[str, ...]:
+    free = () if case.system.contact is None else case.system.contact.free
+    return tuple(mode.name for mode in (*case.system.modes, *free))
+
+
+def _controller(mode: str) -> str:
+    """Return the controller of a mode, and whether it touches anything."""
+    parts = mode.split("/")
+    return f"{parts[0]}, no contact" if "free" in parts[1:] else parts[0]
+
+
+def _signals(states: tuple[str, ...]) -> Iterator[Signal]:
+    for text in states:
+        name, _, unit = text.partition(" [")
+        yield Signal(f"state {name}", unit.removesuffix("]"))
+
+
+def _values(case: WorstCase, run: WorstRun, output: Output) -> Array:
+    """Return a quantity over time for every row of it; tissue that can be lost never pulls."""
+    rows = np.array([row.floats()[0] for row in output.rows])
+    if case.system.contact is None:
+        return np.asarray(run.states @ rows.T)
+    values = np.asarray(deflected(run.states) @ rows.T)
+    return np.maximum(values, 0.0) if output.name in ("force", DEFLECTION) else values
+
+
+def _largest(values: Array) -> Array:
+    return np.asarray(values[np.arange(len(values)), np.abs(values).argmax(axis=1)])
+
+
+def _panel(case: WorstCase, run: WorstRun, output: Output, lever_arm: float | None) -> Panel:
+    factor, unit = scale_of(output.name, lever_arm)
+    limit, bound = case.limits.get(output.name), case.bounds.get(output.name)
+    return Panel(
+        f"{output.name.capitalize()} [{unit}]",
+        factor * _values(case, run, output),
+        None if limit is None else factor * limit,
+        None if bound is None else np.full(len(run.time), factor * bound),
+        one_sided=case.system.contact is not None and output.name != "velocity",
+    )

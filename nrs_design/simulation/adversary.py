@@ -1,0 +1,422 @@
+"""An adversary who improves runs from rest, forward and backward, until no choice does more harm.
+
+Between two of his choices the loop is linear. So from the end of a run backward, the gradient of
+what he wants to be large tells for each step what every admissible choice would add, if all before
+it stayed and all after it were chosen anew: the discrete maximum principle, with dynamic
+programming over the rules of switching. Where contact is kept, no sweep makes a run less bad.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from nrs_design.simulation.norms import Array
+from nrs_design.simulation.rules import Indices, Rules
+
+# Where a run is continued by the new choices: from these shares of its length on.
+_CUTS = (0.0, 0.5, 0.8)
+_NO_GAIN = 1e-5
+# Mean length of a change, as a share of a run, and the error of a misjudged choice.
+_SPAN, _ERROR = 0.06, 0.2
+
+
+@dataclass(frozen=True, eq=False)
+class Game:
+    """What can happen to a loop that begins at rest, and what the adversary wants of it.
+
+    Parameters
+    ----------
+    maps : ndarray, shape (m, n, n + c)
+        Step of each mode in contact: of the state, and of shares of the largest disturbances.
+    flights : ndarray, shape (m, n, n + c)
+        What takes its place without contact; empty, shape (0, n, n + c), where contact is kept.
+    pulls : ndarray, shape (q, n)
+        Forces of tissue that could pull: while none is positive, contact is lost, too.
+    rules : Rules
+        Which mode may follow which.
+    """
+
+    maps: Array
+    flights: Array
+    pulls: Array
+    rules: Rules
+
+    @property
+    def order(self) -> int:
+        """Number of states n."""
+        return int(self.maps.shape[1])
+
+    @property
+    def disturbances(self) -> int:
+        """Number of disturbances c."""
+        return int(self.maps.shape[2]) - self.order
+
+    @property
+    def losable(self) -> bool:
+        """Whether contact may be lost."""
+        return bool(len(self.flights))
+
+    def flies(self, states: Array) -> NDArray[np.bool_]:
+        """Tell at which states, shape (..., n), nothing is touched; shape (...)."""
+        if not self.losable:
+            return np.zeros(states.shape[:-1], dtype=np.bool_)
+        lost = states[..., -1] <= 0
+        if len(self.pulls):
+            lost |= (states @ self.pulls.T <= 0).all(axis=-1)
+        return np.asarray(lost)
+
+
+@dataclass(frozen=True, eq=False)
+class Aim:
+    """What is to become large at the end of each of S runs.
+
+    Parameters
+    ----------
+    rows : ndarray, shape (S, r, n)
+        Rows over the state; a run that has fewer repeats one.
+    allowed : ndarray of bool, shape (S, m, r)
+        Which of them apply in each mode.
+    one_sided : ndarray of bool, shape (S,)
+        Whether positive values alone count, and those without contact not at all.
+    """
+
+    rows: Array
+    allowed: NDArray[np.bool_]
+    one_sided: NDArray[np.bool_]
+
+    def values(self, game: Game, states: Array, modes: Indices) -> tuple[Array, Array]:
+        """Return the largest size at states in modes, and the row with the sign that has it.
+
+        Parameters
+        ----------
+        game : Game
+            That is played.
+        states : ndarray, shape (S, n)
+            One of each run.
+        modes : ndarray of int, shape (S,)
+            In force there.
+
+        Returns
+        -------
+        ndarray, shape (S,), and ndarray, shape (S, n)
+        """
+        runs = np.arange(len(states))
+        found = (self.rows @ states[:, :, None])[:, :, 0]
+        lost = self.one_sided & game.flies(states)
+        size = np.where(self.one_sided[:, None], found, np.abs(found))
+        size = np.where(self.allowed[runs, modes], size, -np.inf)
+        best = size.argmax(axis=1)
+        sign = np.where(~self.one_sided & (found[runs, best] < 0), -1.0, 1.0)
+        return np.where(lost, 0.0, size[runs, best]), self.rows[runs, best] * sign[:, None]
+
+    def repeated(self, times: int) -> Aim:
+        """Return the same aims again and again."""
+        return Aim(
+            np.tile(self.rows, (times, 1, 1)),
+            np.tile(self.allowed, (times, 1, 1)),
+            np.tile(self.one_sided, times),
+        )
+
+    def only(self, runs: Indices) -> Aim:
+        """Return the aims of some runs."""
+        return Aim(self.rows[runs], self.allowed[runs], self.one_sided[runs])
+
+
+@dataclass(frozen=True, eq=False)
+class Signals:
+    """What was chosen in S runs.
+
+    Parameters
+    ----------
+    actions : ndarray of int, shape (K, S)
+        Of `Rules`, one for each step.
+    shares : ndarray, shape (K, S, c)
+        Of the largest disturbances, from -1 to 1.
+    """
+
+    actions: Indices
+    shares: Array
+
+    def only(self, runs: Indices) -> Signals:
+        """Return the signals of some runs."""
+        return Signals(self.actions[:, runs], self.shares[:, runs])
+
+    def beside(self, other: Signals) -> Signals:
+        """Return these runs and others."""
+        return Signals(
+            np.concatenate([self.actions, other.actions], axis=1),
+            np.concatenate([self.shares, other.shares], axis=1),
+        )
+
+    def longer(self) -> Signals:
+        """Return runs twice as long, at rest at first; for rules as for `finer`."""
+        rest = Signals(np.zeros_like(self.actions), np.zeros_like(self.shares))
+        return Signals(
+            np.concatenate([rest.actions, self.actions]), np.concatenate([rest.shares, self.shares])
+        )
+
+    def finer(self, times: int) -> Signals:
+        """Return every step cut into some; for rules that let every mode follow every mode."""
+        return Signals(np.repeat(self.actions, times, 0), np.repeat(self.shares, times, 0))
+
+
+def random_signals(game: Game, steps: int, runs: int, rng: np.random.Generator) -> Signals:
+    """Draw admissible signals: choices that are kept for random times, after a while at rest.
+
+    Parameters
+    ----------
+    game : Game
+        With its rules.
+    steps, runs : int
+        Number of steps K and of runs S.
+    rng : numpy.random.Generator
+        Seeded.
+    """
+    rules, c = game.rules, game.disturbances
+    actions = np.zeros((steps, runs), dtype=np.int64)
+    shares = np.zeros((steps, runs, c))
+    rest = rng.uniform(0, 0.9, runs) * steps
+    # Some switch hardly ever, others at almost every step.
+    pace = np.exp(rng.uniform(np.log(0.5 / steps), np.log(0.9), runs))
+    node = np.zeros(runs, dtype=np.int64)
+    last = np.zeros(runs, dtype=np.int64)
+    share = rng.choice([-1.0, 1.0], (runs, c))
+    for k in range(steps):
+        choices = rules.choices[node]
+        drawn = choices[np.arange(runs), rng.integers(0, choices.shape[1], runs)]
+        # What was chosen last, or what stays in the mode, comes first among the choices.
+        stays = np.where((choices == last[:, None]).any(axis=1), last, choices[:, 0])
+        turns = rng.random(runs) < pace
+        last = np.where(turns | (k == 0), drawn, stays)
+        flips = rng.random((runs, c)) < pace[:, None]
+        share = np.where(flips, -share, share)
+        actions[k], node = last, rules.target[last]
+        shares[k] = np.where(k < rest[:, None], 0.0, share)
+    return Signals(actions, shares)
+
+
+def changed_signals(game: Game, signals: Signals, copies: int, rng: np.random.Generator) -> Signals:
+    """Change each run within a random span of time, so that it may come to another best one.
+
+    Parameters
+    ----------
+    game : Game
+        With its rules.
+    signals : Signals
+        Of S runs.
+    copies : int
+        How often each is changed.
+    rng : numpy.random.Generator
+        Seeded.
+
+    Returns
+    -------
+    Signals
+        Of S times as many runs as copies: all of them once, then all of them again.
+    """
+    steps = len(signals.actions)
+    actions = np.tile(signals.actions, copies)
+    shares = np.tile(signals.shares, (1, copies, 1))
+    count, k = actions.shape[1], np.arange(steps)[:, None]
+    begin = rng.uniform(0, steps, count)
+    span = (k >= begin) & (k < begin + 1 + rng.exponential(_SPAN * steps, count))
+    kind = rng.integers(0, 3, count)
+    if len(game.rules.choices) == 1:
+        # Where rules are to be kept, a change of one action may forbid what comes after it.
+        drawn = rng.integers(0, len(game.rules.mode), count)
+        actions = np.where(span & (kind != 1), drawn, actions)
+    shares = np.where((span & (kind != 0))[:, :, None], -shares, shares)
+    return Signals(actions, shares)
+
+
+def misjudged_signals(
+    game: Game, aim: Aim, signals: Signals, copies: int, rng: np.random.Generator
+) -> Signals:
+    """Choose anew along each run, with errors: it keeps the rules, and may come to a better one.
+
+    Parameters
+    ----------
+    game, signals, copies, rng
+        As for `changed_signals`, which it is for where rules are to be kept.
+    aim : Aim
+        Of each run.
+    """
+    runs = np.tile(np.arange(signals.actions.shape[1]), copies)
+    many = signals.only(runs)
+    policy = _Policy.against(game, aim.only(runs), many, play(game, many), rng)
+    fresh, cut = policy.follow(game, many), rng.integers(0, len(_CUTS), len(runs))
+    return fresh.only(cut * len(runs) + np.arange(len(runs)))
+
+
+def play(game: Game, signals: Signals) -> Array:
+    """Simulate runs from rest.
+
+    Returns
+    -------
+    ndarray, shape (K + 1, S, n)
+        Where a switch resets the state, before the reset.
+    """
+    steps, runs = signals.actions.shape
+    states = np.zeros((steps + 1, runs, game.order))
+    for k in range(steps):
+        states[k + 1] = _step(game, states[k], signals.actions[k], signals.shares[k])
+    return states
+
+
+def _step(game: Game, x: Array, action: Indices, shares: Array) -> Array:
+    rules = game.rules
+    mode = rules.mode[action]
+    if len(rules.jumps) > 1:
+        x = (rules.jumps[rules.jump[action]] @ x[:, :, None])[:, :, 0]
+    maps = game.maps[mode]
+    if game.losable:
+        maps = np.where(game.flies(x)[:, None, None], game.flights[mode], maps)
+    full = np.concatenate([x, shares], axis=1)
+    return np.asarray((maps @ full[:, :, None])[:, :, 0])
+
+
+def improve(game: Game, aim: Aim, signals: Signals, sweeps: int) -> tuple[Signals, Array]:
+    """Improve runs until a sweep gains nothing, or there have been enough.
+
+    Parameters
+    ----------
+    game : Game
+        What can happen.
+    aim : Aim
+        What is to become large at the end of each run.
+    signals : Signals
+        Of the runs to begin with.
+    sweeps : int
+        Most sweeps.
+
+    Returns
+    -------
+    Signals, and ndarray of shape (S,)
+        The best that each run came to, and what was wanted at its end.
+    """
+    states = play(game, signals)
+    value = _at_end(game, aim, signals, states)
+    actions, shares = signals.actions.copy(), signals.shares.copy()
+    # Runs that the last sweep has improved; the others have come to where they stay.
+    moving = np.arange(len(value))
+    for _ in range(sweeps):
+        if not len(moving):
+            break
+        own, now = aim.only(moving), Signals(actions[:, moving], shares[:, moving])
+        policy = _Policy.against(game, own, now, states[:, moving])
+        fresh = policy.follow(game, now)
+        reached = play(game, fresh)
+        values = _at_end(game, own.repeated(len(_CUTS)), fresh, reached)
+        best = values.reshape(len(_CUTS), -1).argmax(axis=0)
+        picked = best * len(moving) + np.arange(len(moving))
+        gained = values[picked] > value[moving] * (1 + _NO_GAIN)
+        moving, picked = moving[gained], picked[gained]
+        actions[:, moving], shares[:, moving] = fresh.actions[:, picked], fresh.shares[:, picked]
+        states[:, moving], value[moving] = reached[:, picked], values[picked]
+    return Signals(actions, shares), value
+
+
+def _at_end(game: Game, aim: Aim, signals: Signals, states: Array) -> Array:
+    modes = game.rules.mode[signals.actions[-1]]
+    return aim.values(game, states[-1], modes)[0]
+
+
+@dataclass(frozen=True, eq=False)
+class _Policy:
+    """The best action and signs at every step and node, shapes (K, N, S) and (K, N, S, c)."""
+
+    actions: NDArray[np.int32]
+    signs: NDArray[np.int8]
+
+    @classmethod
+    def against(
+        cls,
+        game: Game,
+        aim: Aim,
+        signals: Signals,
+        states: Array,
+        rng: np.random.Generator | None = None,
+    ) -> _Policy:
+        """Go backward along runs, with the gradient at every node; perhaps not quite for the best.
+
+        With a generator, every choice is judged with an error of its own.
+        """
+        rules, n = game.rules, game.order
+        steps, runs = signals.actions.shape
+        nodes = len(rules.choices)
+        actions = np.zeros((steps, nodes, runs), dtype=np.int32)
+        signs = np.zeros((steps, nodes, runs, game.disturbances), dtype=np.int8)
+        # What a run is worth at a node is p x + c.
+        p, c = _final(game, aim, states[-1], runs), np.zeros((nodes, runs))
+        pull, reset = _Pull(game), len(rules.jumps) > 1
+        taken = rules.jumps[rules.jump]
+        column, row = np.arange(runs), np.arange(nodes)[:, None]
+        for k in range(steps - 1, -1, -1):
+            x = (taken @ states[k].T).transpose(0, 2, 1) if reset else states[k]
+            pulled = pull(p, x)
+            added = np.abs(pulled[:, :, n:]).sum(axis=2) + c[rules.target]
+            worth = (pulled[:, :, :n] * x).sum(axis=2) + added
+            if rng is not None:
+                worth *= 1 + _ERROR * rng.standard_normal(worth.shape)
+            action = rules.choices[row, worth[rules.choices].argmax(axis=1)]
+            own = pulled[action, column]
+            actions[k], signs[k] = action, np.where(own[:, :, n:] < 0, -1, 1)
+            p, c = own[:, :, :n], added[action, column]
+            if reset:
+                p = (p[:, :, None] @ taken[action])[:, :, 0]
+        return cls(actions, signs)
+
+    def follow(self, game: Game, signals: Signals) -> Signals:
+        """Return what is chosen by runs that are the old ones at first, for every cut."""
+        rules = game.rules
+        steps, runs = signals.actions.shape
+        first = np.repeat((np.array(_CUTS) * steps).astype(int), runs)
+        actions = np.tile(signals.actions, len(_CUTS))
+        shares = np.tile(signals.shares, (1, len(_CUTS), 1))
+        column = np.tile(np.arange(runs), len(_CUTS))
+        node = np.zeros(len(first), dtype=np.int64)
+        for k in range(steps):
+            new = k >= first
+            actions[k] = np.where(new, self.actions[k, node, column], actions[k])
+            shares[k] = np.where(new[:, None], self.signs[k, node, column], shares[k])
+            node = rules.target[actions[k]]
+        return Signals(actions, shares)
+
+
+class _Pull:
+    """Gradients before a step from those after it, for every action; shape (U, S, n + c)."""
+
+    def __init__(self, game: Game) -> None:
+        self._game, self._target = game, game.rules.target
+        self._maps, self._flights = (
+            maps[game.rules.mode] if len(maps) else maps for maps in (game.maps, game.flights)
+        )
+
+    def __call__(self, p: Array, x: Array) -> Array:
+        """Pull back p, shape (N, S, n), along states x, shape (S, n) or (U, S, n)."""
+        lost = self._game.flies(x)
+        if not lost.any():
+            return self._back(p, self._maps)
+        free = self._back(p, self._flights)
+        return free if lost.all() else np.where(lost[..., None], free, self._back(p, self._maps))
+
+    def _back(self, p: Array, maps: Array) -> Array:
+        # With one node all actions share their gradients.
+        return np.asarray((p if len(p) == 1 else p[self._target]) @ maps)
+
+
+def _final(game: Game, aim: Aim, ends: Array, runs: int) -> Array:
+    """Return what is wanted at the end as a row, at every node; shape (N, S, n)."""
+    rules = game.rules
+    p = np.zeros((len(rules.choices), runs, game.order))
+    # The mode of a node is that of any action that leads to it; of one node, any mode's.
+    if len(rules.choices) == 1:
+        free = Aim(aim.rows, np.ones_like(aim.allowed), aim.one_sided)
+        p[0] = free.values(game, ends, np.zeros(runs, dtype=np.int64))[1]
+        return p
+    for node, mode in dict(zip(rules.target.tolist(), rules.mode.tolist(), strict=True)).items():
+        p[node] = aim.values(game, ends, np.full(runs, mode))[1]
+    return p

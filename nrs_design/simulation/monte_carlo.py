@@ -1,0 +1,206 @@
+"""Scenarios run again and again, with parameters drawn from the ranges of their spec."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from typing import Any
+
+import numpy as np
+
+from nrs_design.models.actuator import Actuator
+from nrs_design.models.plant import Plant
+from nrs_design.simulation.build_scenario import drawn_laws
+from nrs_design.simulation.peaks import PEAKS
+from nrs_design.simulation.scenario import Scenario
+from nrs_design.spec import InteractionDesignSpec
+from nrs_design.spec.interval import Interval
+from nrs_design.spec.scenarios import LARGEST_SEED
+
+CONFIDENCE = 0.95
+
+
+@dataclass(frozen=True, slots=True)
+class Drawn:
+    """One run that is to be simulated.
+
+    Parameters
+    ----------
+    scenario : Scenario
+        With laws of tissue and a seed of its own.
+    plant : Plant
+        With a motor of its own.
+    parameters : mapping of str to float
+        What was drawn, in SI.
+    """
+
+    scenario: Scenario
+    plant: Plant
+    parameters: Mapping[str, float]
+
+
+@dataclass(frozen=True, slots=True)
+class Outcome:
+    """What one run came to.
+
+    Parameters
+    ----------
+    index : int
+        Of the run, from zero.
+    scenario : str
+        Its name.
+    seed : int
+        Of noise, jitter and varying delay.
+    peaks : mapping of str to float
+        By the names of `PEAKS`, in SI.
+    stopped : str or None
+        Why the run ended before its time.
+    parameters : mapping of str to float
+        What was drawn.
+    """
+
+    index: int
+    scenario: str
+    seed: int
+    peaks: Mapping[str, float]
+    stopped: str | None
+    parameters: Mapping[str, float]
+
+    @classmethod
+    def of(
+        cls, index: int, drawn: Drawn, metrics: Mapping[str, Any], stopped: str | None
+    ) -> Outcome:
+        """Return what a run came to, from its metrics.
+
+        Parameters
+        ----------
+        index : int
+            Of the run.
+        drawn : Drawn
+            What was simulated.
+        metrics : mapping
+            As `nrs_design.simulation.summary` names them.
+        stopped : str or None
+            Why the run ended before its time.
+        """
+        peaks = {name: float(metrics[key]) for name, key in PEAKS.items()}
+        seed = drawn.scenario.seed
+        return cls(index, drawn.scenario.name, seed, peaks, stopped, drawn.parameters)
+
+    def exceeds(self, quantity: str, limit: float) -> bool:
+        """Tell whether a peak is above a limit; a run that was stopped counts as above it."""
+        return self.stopped is not None or self.peaks[quantity] > limit
+
+
+@dataclass(frozen=True, slots=True)
+class Share:
+    """How many runs were above a limit.
+
+    Parameters
+    ----------
+    above, runs : int
+        How many of how many.
+    low, high : float
+        Ends of the exact interval of Clopper and Pearson (1934) for the probability of it, with
+        the confidence `CONFIDENCE`.
+    """
+
+    above: int
+    runs: int
+    low: float
+    high: float
+
+    @classmethod
+    def of(cls, above: int, runs: int) -> Share:
+        """Return the share with its interval.
+
+        Parameters
+        ----------
+        above, runs : int
+            How many of how many; at least one run.
+        """
+        from scipy.stats import binomtest
+
+        interval = binomtest(above, runs).proportion_ci(CONFIDENCE, method="exact")
+        return cls(above, runs, float(interval.low), float(interval.high))
+
+    @property
+    def value(self) -> float:
+        """The share itself."""
+        return self.above / self.runs
+
+
+def draw(
+    spec: InteractionDesignSpec, plant: Plant, scenarios: Sequence[Scenario], seed: int, index: int
+) -> Drawn:
+    """Draw a run; it depends on seed and index alone, not on the runs before it.
+
+    Scenarios take turns. Every parameter of what is touched, and of the motor, is drawn uniformly
+    from its range, each for itself; a parameter without a range stays as it is.
+
+    Parameters
+    ----------
+    spec : InteractionDesignSpec
+        With the ranges.
+    plant : Plant
+        Of that spec.
+    scenarios : sequence of Scenario
+        At least one.
+    seed : int
+        Of all runs.
+    index : int
+        Of this one.
+    """
+    rng = np.random.default_rng(np.random.SeedSequence(seed, spawn_key=(index,)))
+    scenario = scenarios[index % len(scenarios)]
+    parameters: dict[str, float] = {}
+
+    def pick(interval: Interval) -> float:
+        return float(rng.uniform(float(interval.low), float(interval.high)))
+
+    each = (name for s in scenario.surfaces for name in (s.environment, *s.beside))
+    names = list(dict.fromkeys(each))
+    laws = drawn_laws(spec, plant, names, pick)
+    for name, (law, _) in laws.items():
+        parameters |= {f"{name} {key}": value for key, value in _numbers(law)}
+    ranges = plant.actuator_ranges
+    if ranges is not None:
+        gain, tau = pick(ranges.gain), pick(ranges.time_constant)
+        parameters |= {"motor gain": gain, "motor time constant": tau}
+        motor = Actuator(Fraction(gain), Fraction(tau), plant.actuator.command)
+        plant = replace(plant, actuator=motor)
+    surfaces = tuple(surface.with_laws(laws) for surface in scenario.surfaces)
+    own = int(rng.integers(0, LARGEST_SEED + 1))
+    return Drawn(replace(scenario, surfaces=surfaces, seed=own), plant, parameters)
+
+
+def _numbers(law: object) -> Iterable[tuple[str, float]]:
+    from dataclasses import fields, is_dataclass
+
+    if is_dataclass(law):
+        for field in fields(law):
+            value = getattr(law, field.name)
+            if isinstance(value, int | float):
+                yield field.name, float(value)
+
+
+def shares(
+    outcomes: Sequence[Outcome], limits: Mapping[str, Mapping[str, float]]
+) -> dict[str, Share]:
+    """Return for every quantity that has a limit how many runs were above it.
+
+    Parameters
+    ----------
+    outcomes : sequence of Outcome
+        Of all runs.
+    limits : mapping of str to mapping of str to float
+        For each scenario, the limits of quantities.
+    """
+    found = {}
+    for quantity in PEAKS:
+        bounded = [one for one in outcomes if quantity in limits[one.scenario]]
+        if bounded:
+            above = sum(one.exceeds(quantity, limits[one.scenario][quantity]) for one in bounded)
+            found[quantity] = Share.of(above, len(bounded))
+    return found

@@ -1,0 +1,130 @@
+"""A file that keeps what every run came to, line by line, so that an interrupted study goes on."""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import asdict
+from pathlib import Path
+from typing import Any
+
+from nrs_design.errors import DataError, OutputError
+from nrs_design.files import open_regular
+from nrs_design.simulation.monte_carlo import Outcome
+from nrs_design.simulation.peaks import PEAKS
+
+SCHEMA = "nrs-design/monte-carlo/1"
+_BEGINNING = b'{"schema": "nrs-design/monte-carlo/'
+_ELSE = "name another file, or go on with what it was begun with"
+# Longer files are none of ours: a million runs of a few hundred letters.
+_MOST = 2**30
+
+
+def read_outcomes(path: Path, head: Mapping[str, Any]) -> list[Outcome]:
+    """Return the runs that a file holds; none if it does not exist.
+
+    A last line that is not whole is what an interrupt has left: it does not count.
+
+    Parameters
+    ----------
+    path : Path
+        The file.
+    head : mapping
+        What all runs are of: its first line must say the same.
+
+    Raises
+    ------
+    DataError
+        If it is of another study or spec, or no file of ours.
+    """
+    if not os.path.lexists(path):
+        return []
+    with open_regular(path) as stream:
+        content = stream.read(_MOST + 1)
+    if not content.startswith(_BEGINNING) or len(content) > _MOST:
+        raise DataError("keeps no runs of a study", path=path, remedy="name another file")
+    lines = content.split(b"\n")[:-1]
+    try:
+        first, *rest = [json.loads(line) for line in lines]
+        outcomes = [Outcome(**line) for line in rest]
+        known = isinstance(first, dict) and all(o.peaks.keys() == PEAKS.keys() for o in outcomes)
+        known &= [one.index for one in outcomes] == list(range(len(outcomes)))
+    except (ValueError, TypeError, AttributeError, RecursionError) as error:
+        raise DataError(f"keeps no runs of a study: {error}", path=path, remedy=_ELSE) from None
+    if not known:
+        raise DataError("does not keep the runs of a study in order", path=path, remedy=_ELSE)
+    for key, value in _header(head).items():
+        if first.get(key) != value:
+            was, name = f"{first.get(key)!s:.80}", key.replace("_", " ")
+            message = f"was begun with another {name}: {was}, not {value!s:.80}"
+            raise DataError(message, path=path, remedy=_ELSE)
+    return outcomes
+
+
+@contextmanager
+def appending(path: Path, head: Mapping[str, Any]) -> Iterator[_Appender]:
+    """Open a file to add runs, each whole or not at all; it is made if it does not exist.
+
+    Parameters
+    ----------
+    path : Path
+        As `read_outcomes` has found it.
+    head : mapping
+        For the first line.
+
+    Raises
+    ------
+    OutputError
+        If it cannot be written.
+    """
+    flags = os.O_RDWR | os.O_CREAT | os.O_APPEND | getattr(os, "O_NOFOLLOW", 0)
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        descriptor = os.open(path, flags, 0o666)
+    except OSError as error:
+        raise OutputError(f"cannot be written ({error.strerror})", path=path) from error
+    try:
+        appender = _Appender(descriptor)
+        whole = appender.drop_torn_line()
+        if not whole:
+            appender.line(_header(head))
+        yield appender
+    finally:
+        os.close(descriptor)
+
+
+class _Appender:
+    """Writes lines to the end of a file."""
+
+    def __init__(self, descriptor: int) -> None:
+        self._descriptor = descriptor
+
+    def drop_torn_line(self) -> int:
+        """Cut off a last line without an end; return how long the file is then."""
+        size = os.fstat(self._descriptor).st_size
+        kept = size
+        while kept:
+            start = max(0, kept - 65536)
+            os.lseek(self._descriptor, start, os.SEEK_SET)
+            end = os.read(self._descriptor, kept - start).rfind(b"\n")
+            if end >= 0:
+                kept = start + end + 1
+                break
+            kept = start
+        if kept < size:
+            os.ftruncate(self._descriptor, kept)
+        return kept
+
+    def add(self, outcome: Outcome) -> None:
+        """Add a run."""
+        self.line(asdict(outcome))
+
+    def line(self, content: Mapping[str, Any]) -> None:
+        """Write a line at once."""
+        os.write(self._descriptor, (json.dumps(content, ensure_ascii=True) + "\n").encode())
+
+
+def _header(head: Mapping[str, Any]) -> dict[str, Any]:
+    return {"schema": SCHEMA, **head}

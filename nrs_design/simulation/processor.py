@@ -1,0 +1,150 @@
+"""The processor of all axes: their laws run at the same samples, and a body moves in between."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from nrs_design.errors import PoseError
+from nrs_design.simulation.run import Run
+from nrs_design.simulation.scenario import Array, Scenario
+
+if TYPE_CHECKING:
+    from nrs_design.simulation.sampled import SampledAxis
+
+# Samples after which it is told how far the run is.
+_OFTEN = 20_000
+Tell = Callable[[str], None]
+
+
+def silent(step: str) -> None:
+    """Report no progress."""
+
+
+@dataclass(frozen=True, slots=True)
+class Fate:
+    """What chance and the surgeon bring, for every sample.
+
+    Parameters
+    ----------
+    times, hand, noise : ndarray, shape (N,)
+        Instants in s, commanded velocities in rad/s, errors of the torque in N m.
+    ages : ndarray of int, shape (N,)
+        Of the force samples.
+    """
+
+    times: Array
+    hand: Array
+    noise: Array
+    ages: NDArray[np.int64]
+
+    @classmethod
+    def of(cls, scenario: Scenario, period: float, delay: tuple[int, int], count: int) -> Fate:
+        """Draw it from the seed of the scenario.
+
+        Parameters
+        ----------
+        scenario : Scenario
+            With its errors.
+        period : float
+            In s.
+        delay : tuple of (int, int)
+            Smallest and largest age.
+        count : int
+            Number of samples N.
+        """
+        rng = np.random.default_rng(scenario.seed)
+        late = scenario.errors.jitter * period * rng.random(count)
+        noise = scenario.errors.force_noise * rng.standard_normal(count)
+        ages = rng.integers(delay[0], delay[1] + 1, count)
+        times = period * np.arange(count) + late
+        return cls(times, scenario.profile.at(times), noise, ages)
+
+
+class Body(Protocol):
+    """What the commands of all axes move, and what touches them."""
+
+    def move(self, axes: Sequence[SampledAxis], commands: Sequence[float], width: float) -> None:
+        """Move all axes under held commands: angles, velocities, and dampers of tissue.
+
+        Parameters
+        ----------
+        axes : sequence of SampledAxis
+            As they are.
+        commands : sequence of float
+            One for each.
+        width : float
+            Time in s.
+
+        Raises
+        ------
+        PoseError
+            If the robot cannot reach where they would go.
+        """
+
+
+class Motors:
+    """Every axis by itself: its motor, and tissue that may load it."""
+
+    def move(self, axes: Sequence[SampledAxis], commands: Sequence[float], width: float) -> None:
+        """Move every axis; see `Body`.
+
+        Parameters
+        ----------
+        axes, commands, width
+            As there.
+        """
+        for axis, command in zip(axes, commands, strict=True):
+            axis.glide(command, width)
+
+
+def run_axes(
+    axes: Sequence[SampledAxis], body: Body, engine: str, max_steps: int, tell: Tell
+) -> tuple[Run, ...]:
+    """Run the laws of all axes on one processor, at the same samples.
+
+    Parameters
+    ----------
+    axes : sequence of SampledAxis
+        At rest; their scenarios are equally long, and jitter is that of the first one.
+    body : Body
+        What they move.
+    engine : str
+        Its name.
+    max_steps : int
+        Samples after which the run ends.
+    tell : callable
+        Told how far the run is.
+
+    Returns
+    -------
+    tuple of Run
+        One for each axis.
+    """
+    first = axes[0]
+    wanted = math.floor(first.scenario.duration / first.T + 1e-9) + 1
+    count = min(wanted, max_steps)
+    fates = [Fate.of(axis.scenario, first.T, axis.delay, count) for axis in axes]
+    instants = [*fates[0].times.tolist(), float(fates[0].times[-1]) + first.T]
+    rows = [
+        list(zip(f.hand.tolist(), f.noise.tolist(), f.ages.tolist(), strict=True)) for f in fates
+    ]
+    stopped = None
+    if count < wanted:
+        stopped = f"{max_steps} samples by {instants[count - 1]:.6g} s: the budget is used up"
+    for k in range(count):
+        t = instants[k]
+        commands = [axis.sample(t, *row[k]) for axis, row in zip(axes, rows, strict=True)]
+        try:
+            body.move(axes, commands, instants[k + 1] - t)
+        except PoseError:
+            stopped = f"the robot leaves what it can reach after {t:.6g} s"
+            break
+        if k % _OFTEN == 0:
+            tell(f"{t:.3g} s")
+    return tuple(axis.finish(engine, fate, stopped) for axis, fate in zip(axes, fates, strict=True))

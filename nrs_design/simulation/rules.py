@@ -1,0 +1,168 @@
+"""The rules of switching on a grid of time: what may follow each step of a run."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from fractions import Fraction
+
+import numpy as np
+from numpy.typing import NDArray
+
+from nrs_design.proof.system import Stay, SwitchedSystem, Time
+from nrs_design.simulation.norms import Array
+
+Indices = NDArray[np.int64]
+
+# Most steps of a dwell time, and most nodes of the graph: beyond them the grid is coarser.
+_STAY, _NODES = 40, 4000
+
+
+@dataclass(frozen=True, eq=False)
+class Rules:
+    """A graph whose paths are the admissible signals: nodes are modes with the time spent in them.
+
+    Every step takes one action: it resets the state, and then one mode is in force for the step.
+    A run begins at node 0, in no mode yet.
+
+    Parameters
+    ----------
+    mode, jump, target : ndarray of int, shape (U,)
+        Of each action: the mode, the row of `jumps`, and the node that it leads to.
+    jumps : ndarray, shape (J, n, n)
+        What a switch makes of the state; the first leaves it as it is.
+    choices : ndarray of int, shape (N, K)
+        Actions that may be taken at each node; the first is there again where there are fewer.
+    """
+
+    mode: Indices
+    jump: Indices
+    target: Indices
+    jumps: Array
+    choices: Indices
+
+    @classmethod
+    def of(cls, system: SwitchedSystem, step: float) -> Rules:
+        """Lay the rules of a system on a grid; a stay is never shorter or longer than allowed.
+
+        Parameters
+        ----------
+        system : SwitchedSystem
+            Modes of one size, with its rules of switching and no clock.
+        step : float
+            Time of a step, as `fitting_step` gives it.
+        """
+        count = len(system.modes)
+        identity = np.eye(system.order)[None]
+        if system.switching.is_arbitrary:
+            modes = np.arange(count)
+            nothing = np.zeros(count, dtype=np.int64)
+            return cls(modes, nothing, nothing, identity, modes[None])
+        return _Graph(system, step).rules(identity)
+
+
+def fitting_step(system: SwitchedSystem, step: float) -> float:
+    """Return a step about as long as wanted, of which every dwell time is a sensible number.
+
+    Parameters
+    ----------
+    system : SwitchedSystem
+        With its rules.
+    step : float
+        Wanted time of a step in s; in discrete time it stays as it is.
+
+    Raises
+    ------
+    ValueError
+        If the rules are too fine for a grid.
+    """
+    if system.time is Time.DISCRETE:
+        return step
+    stays = list(system.stays().values())
+    spans = [float(stay.shortest) for stay in stays if stay.shortest > 0]
+    if spans:
+        step = min(spans) / min(math.ceil(min(spans) / step), _STAY)
+    for _ in range(_STAY):
+        if all(_counts(stay, Fraction(step)) for stay in stays):
+            return step
+        step /= 2
+    raise ValueError("a longest dwell time is not longer than the shortest one")
+
+
+def _counts(stay: Stay, step: Fraction) -> tuple[int, int | None] | None:
+    """Return the fewest steps of a stay and the most; None if there is no number between."""
+    # A dwell time that is a whole number of steps but for a rounding is that number.
+    fewest = max(1, math.ceil(stay.shortest / step - Fraction(1, 10**9)))
+    if stay.longest is None:
+        return fewest, None
+    most = math.floor(stay.longest / step + Fraction(1, 10**9))
+    return (fewest, most) if most >= fewest else None
+
+
+class _Graph:
+    """Rules that are being laid out."""
+
+    def __init__(self, system: SwitchedSystem, step: float) -> None:
+        unit = Fraction(1) if system.time is Time.DISCRETE else Fraction(step)
+        stays = system.stays()
+        self._counts = []
+        for mode in system.modes:
+            counts = _counts(stays[mode.name], unit)
+            if counts is None:
+                raise ValueError(f"mode {mode.name} must be left before it may be")
+            self._counts.append(counts)
+        # Node 0 is the beginning; then each mode, after one step in it, after two, ...
+        spans = [fewest if most is None else most for fewest, most in self._counts]
+        self._base = np.concatenate([[1], 1 + np.cumsum(spans)]).tolist()
+        if self._base[-1] > _NODES:
+            raise ValueError(f"the rules make more than {_NODES} nodes on this grid")
+        self._system = system
+
+    def rules(self, identity: Array) -> Rules:
+        """Return the graph."""
+        modes = self._system.modes
+        index = {mode.name: k for k, mode in enumerate(modes)}
+        actions: dict[tuple[int, int, int], int] = {}
+        jumps = [identity[0]]
+        maps: dict[int, int] = {}
+
+        def action(mode: int, jump: int, target: int) -> int:
+            return actions.setdefault((mode, jump, target), len(actions))
+
+        after: dict[int, list[int]] = {
+            0: [action(k, 0, self._base[k]) for k in range(len(modes))],
+        }
+        leaving: dict[int, list[int]] = {k: [] for k in range(len(modes))}
+        for edge in self._system.edges():
+            target, jump = index[edge.target.name], 0
+            if edge.map is not None:
+                jump = maps.setdefault(id(edge.map), len(jumps))
+                if jump == len(jumps):
+                    jumps.append(np.array(edge.map.floats()))
+            leaving[index[edge.source.name]].append(action(target, jump, self._base[target]))
+        for k in range(len(modes)):
+            for node, stays, leaves in self._stays(k):
+                kept = [action(k, 0, stays)] if stays is not None else []
+                after[node] = kept + (leaving[k] if leaves else [])
+        return _packed(actions, jumps, after)
+
+    def _stays(self, mode: int) -> Iterator[tuple[int, int | None, bool]]:
+        """Yield each node of a mode, the one after another step in it, and whether it may leave."""
+        fewest, most = self._counts[mode]
+        first, last = self._base[mode], self._base[mode + 1] - 1
+        for node in range(first, last + 1):
+            spent = node - first + 1
+            further = node + 1 if node < last else node if most is None else None
+            yield node, further, spent >= fewest
+
+
+def _packed(
+    actions: dict[tuple[int, int, int], int], jumps: list[Array], after: dict[int, list[int]]
+) -> Rules:
+    if not all(after.values()):
+        raise ValueError("a mode must be left, and nothing may follow it")
+    width = max(map(len, after.values()))
+    choices = [after[node] + after[node][:1] * (width - len(after[node])) for node in sorted(after)]
+    mode, jump, target = np.array(list(actions), dtype=np.int64).T
+    return Rules(mode, jump, target, np.array(jumps), np.array(choices, dtype=np.int64))

@@ -1,0 +1,364 @@
+"""The worst run from rest that an adversary finds, for each quantity that has a limit.
+
+It is a run that may happen, so the largest value that may occur is at least as large; a certified
+bound says that it is at most so large. What is found is no bound.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from itertools import product
+
+import numpy as np
+from numpy.typing import NDArray
+
+from nrs_design.certificates.bounds import bound_on
+from nrs_design.models.contact.environment import Environment
+from nrs_design.proof.bounds import upper_float
+from nrs_design.proof.evidence import AbstractEvidence
+from nrs_design.proof.system import Output, SwitchedSystem, Time
+from nrs_design.simulation.adversary import (
+    Aim,
+    Game,
+    Signals,
+    changed_signals,
+    improve,
+    misjudged_signals,
+    play,
+    random_signals,
+)
+from nrs_design.simulation.disturbed import DisturbedMotions
+from nrs_design.simulation.norms import Array
+from nrs_design.simulation.rules import Indices, Rules, fitting_step
+from nrs_design.simulation.switched import fine_step, mode_eigenvalues
+
+# Starts for each quantity, most sweeps from each, and rounds in which the best are changed.
+STARTS, SWEEPS, ROUNDS = 24, 15, 8
+_KEPT, _COPIES = 4, 3
+# How often the best runs are made twice as long, and by what factor that must make them worse.
+_DOUBLED, _WORTH = 3, 1.01
+# How much finer the grid is at last, in continuous time.
+_FINER = 4
+# A run is as long as a motion of the slowest mode needs to fade to a thousandth, and has so many
+# steps; in continuous time they are longer where there would be more.
+_FADED, _FEWEST, _MOST = 8.0, 100, 300
+DEFLECTION = "deflection"
+
+
+@dataclass(frozen=True, eq=False)
+class WorstRun:
+    """The worst run that was found for one quantity.
+
+    Parameters
+    ----------
+    output : Output
+        What was made large.
+    value : float
+        Its size at the end of the run.
+    time : ndarray, shape (K + 1,)
+        In s.
+    states : ndarray, shape (K + 1, n)
+        From rest.
+    mode : ndarray of int, shape (K,)
+        In force over each step; the free ones after those in contact.
+    disturbances : ndarray, shape (K, c)
+        Held over each step, in the units of the channels.
+    starts : ndarray, shape (S,)
+        What every start came to, the worst first.
+    """
+
+    output: Output
+    value: float
+    time: Array
+    states: Array
+    mode: Indices
+    disturbances: Array
+    starts: Array
+
+
+def worst_runs(
+    system: SwitchedSystem,
+    outputs: Sequence[Output],
+    allowed: Mapping[str, NDArray[np.bool_]],
+    *,
+    seed: int = 0,
+    starts: int = STARTS,
+    rounds: int = ROUNDS,
+) -> tuple[WorstRun, ...]:
+    """Let an adversary choose modes and disturbances from rest, for each of some outputs.
+
+    He keeps the rules of switching, holds his choices over a step, and begins from seeded starts.
+    In continuous time, contact is made and lost at the ends of steps only.
+
+    Parameters
+    ----------
+    system : SwitchedSystem
+        Modes of one size, with disturbances and no clock.
+    outputs : sequence of Output
+        Of that system, or other rows over its state.
+    allowed : mapping of str to ndarray of bool, shape (m, r)
+        Which rows of an output apply in which mode, where switching is ruled.
+    seed : int
+        Of the starts.
+    starts, rounds : int
+        For each output; rounds change the best runs, and improve them again.
+
+    Raises
+    ------
+    ValueError
+        If modes take turns, are of different sizes or are ends of a constant parameter, if nothing
+        disturbs, or if the rules are too fine for a grid.
+    """
+    _check(system)
+    wanted, steps = _grid(system)
+    step = fitting_step(system, wanted)
+    game = _game(system, step)
+    own = [_aim(system, output, allowed) for output in outputs]
+    rng = np.random.default_rng(seed)
+    search = _Search(game, own, rng)
+    signals, values = search.begin(steps, starts)
+    first = values
+    for _ in range(rounds):
+        signals, values = search.again(signals, values)
+    signals, values = search.best(signals, values, 1)
+    if system.switching.is_arbitrary:
+        signals, values = _lengthened(game, _joined(own), signals, values)
+    if system.time is Time.CONTINUOUS and system.switching.is_arbitrary:
+        step /= _FINER
+        game = _game(system, step)
+        signals, values = improve(game, _joined(own), signals.finer(_FINER), SWEEPS)
+    unit = step if system.sample_time is None else float(system.sample_time)
+    return tuple(
+        _run(
+            system, game, output, signals.only(np.array([i])), unit, values[i], np.sort(came)[::-1]
+        )
+        for i, (output, came) in enumerate(zip(outputs, np.split(first, len(own)), strict=True))
+    )
+
+
+def _lengthened(game: Game, aim: Aim, signals: Signals, values: Array) -> tuple[Signals, Array]:
+    """Give the best runs more time before, as long as that is worth it."""
+    for _ in range(_DOUBLED):
+        before = values
+        signals, values = improve(game, aim, signals.longer(), SWEEPS)
+        if (values <= _WORTH * before).all():
+            break
+    return signals, values
+
+
+@dataclass(frozen=True, eq=False)
+class _Search:
+    """Runs for several aims at once: those of the first aim, then as many of the next."""
+
+    game: Game
+    aims: Sequence[Aim]
+    rng: np.random.Generator
+
+    def begin(self, steps: int, starts: int) -> tuple[Signals, Array]:
+        """Improve random runs; what is drawn is the same for all aims."""
+        count = len(self.aims)
+        drawn = random_signals(self.game, steps, starts, self.rng)
+        signals = Signals(np.tile(drawn.actions, count), np.tile(drawn.shares, (1, count, 1)))
+        return self._improved(signals)
+
+    def again(self, signals: Signals, values: Array) -> tuple[Signals, Array]:
+        """Keep the best runs, and improve what becomes of them by some changes."""
+        kept, reached = self.best(signals, values, _KEPT)
+        groups = np.arange(len(reached)).reshape(len(self.aims), -1)
+        parts = [
+            self._children(kept.only(group), aim)
+            for group, aim in zip(groups, self.aims, strict=True)
+        ]
+        fresh, came = self._improved(_beside(parts))
+        every = kept.beside(fresh)
+        # In the order of the aims again.
+        mine = np.arange(len(came)).reshape(len(self.aims), -1) + len(reached)
+        order = np.concatenate([groups, mine], axis=1).ravel()
+        return every.only(order), np.concatenate([reached, came])[order]
+
+    def _children(self, signals: Signals, aim: Aim) -> Signals:
+        """Change what the best runs do for a while, or how they are continued."""
+        runs = signals.actions.shape[1]
+        own = _joined([aim] * runs)
+        changed = changed_signals(self.game, signals, _COPIES, self.rng)
+        return changed.beside(misjudged_signals(self.game, own, signals, _COPIES, self.rng))
+
+    def best(self, signals: Signals, values: Array, count: int) -> tuple[Signals, Array]:
+        """Return the best runs for each aim, the worst ones for the robot first."""
+        parts = np.split(np.arange(len(values)), len(self.aims))
+        kept = np.concatenate([part[np.argsort(-values[part])[:count]] for part in parts])
+        return signals.only(kept), values[kept]
+
+    def _improved(self, signals: Signals) -> tuple[Signals, Array]:
+        each = signals.actions.shape[1] // len(self.aims)
+        aim = _joined([aim for aim in self.aims for _ in range(each)])
+        return improve(self.game, aim, signals, SWEEPS)
+
+
+def _beside(parts: Sequence[Signals]) -> Signals:
+    first, *others = parts
+    for other in others:
+        first = first.beside(other)
+    return first
+
+
+def deflection_of(system: SwitchedSystem) -> Output | None:
+    """Return the deflection as an output; None where it is not the last state.
+
+    Parameters
+    ----------
+    system : SwitchedSystem
+        Of an interaction design.
+    """
+    from nrs_design.proof.matrix import RationalMatrix
+
+    if system.states[-1] != "delta [rad]":
+        return None
+    row = [0] * (system.order - 1) + [1]
+    return Output(DEFLECTION, "rad", (RationalMatrix.from_rows([row]),))
+
+
+def forces_by_mode(system: SwitchedSystem, touched: Sequence[Environment]) -> NDArray[np.bool_]:
+    """Tell which rows of the force belong to the contact and its corner in each mode.
+
+    Parameters
+    ----------
+    system : SwitchedSystem
+        Whose modes are named after controller, contact and corner.
+    touched : sequence of Environment
+        All contacts, in the order of the rows.
+
+    Returns
+    -------
+    ndarray of bool, shape (m, r)
+        A mode that names no contact may have any of them.
+    """
+    labels = [
+        {environment.name, *(f"{p}-{end}" for p, (end, _) in zip(names, ends, strict=True) if end)}
+        for environment in touched
+        for names in (environment.law.parameters(),)
+        for ends in product(*(interval.ends for interval in environment.ranges))
+    ]
+    found = np.array(
+        [[label <= set(mode.name.split("/")) for label in labels] for mode in system.modes]
+    )
+    return np.asarray(found | ~found.any(axis=1, keepdims=True))
+
+
+def bounds_of(system: SwitchedSystem, statements: Iterable[AbstractEvidence]) -> dict[str, float]:
+    """Return what is certified about every output, not below it, and about the deflection.
+
+    Where the force is a stiffness times the deflection, the bound holds for every stiffness in its
+    range, so also for the highest.
+
+    Parameters
+    ----------
+    system : SwitchedSystem
+        What the statements are about.
+    statements : iterable of AbstractEvidence
+        Checked; bounds under all disturbances at once count.
+    """
+    found: dict[str, float] = {}
+    checked = tuple(statements)
+    for output in system.outputs:
+        bound = bound_on(system, checked, output.name)
+        if bound is None:
+            continue
+        found[output.name] = upper_float(bound.level)
+        rows = [row.fractions()[0] for row in output.rows]
+        if output.name == "force" and not any(any(row[:-1]) for row in rows):
+            found[DEFLECTION] = upper_float(bound.level / max(abs(row[-1]) for row in rows))
+    return found
+
+
+def _check(system: SwitchedSystem) -> None:
+    if system.clock is not None or not system.is_uniform or system.switching.fixed_ends:
+        raise ValueError("modes take turns, differ in size or are ends of a constant parameter")
+    if not system.channels:
+        raise ValueError("nothing disturbs the loop, so from rest it stays at rest")
+    if not any(any(map(any, column.numerators)) for c in system.channels for column in c.columns):
+        raise ValueError("what disturbs the loop acts on none of its modes")
+
+
+def _grid(system: SwitchedSystem) -> tuple[float, int]:
+    """Return a step that resolves the fastest motion, and steps in which the slowest one fades."""
+    step = fine_step(system)
+    values = [v[np.abs(v) > 0] for v in mode_eigenvalues(system)]
+    discrete = system.time is Time.DISCRETE
+    rates = [-float((np.log(np.abs(v)) if discrete else v.real).max()) for v in values if len(v)]
+    slowest = min((rate for rate in rates if rate > 0), default=_FADED / (step * _MOST))
+    length = _FADED / slowest
+    if not discrete:
+        step = max(step, length / _MOST)
+    return step, int(np.clip(length / step, _FEWEST, _MOST))
+
+
+def _game(system: SwitchedSystem, step: float) -> Game:
+    motions = DisturbedMotions.of(system, system.channels, system.outputs[0], step)
+    contact = system.contact
+    flights, pulls = motions.flying, np.zeros((0, system.order))
+    if contact is not None:
+        flights = motions.flying[_free_modes(system)]
+        rows = [row.floats()[0] for row in contact.pulls]
+        pulls = np.array(rows) if rows else pulls
+    return Game(motions.touching, flights, pulls, Rules.of(system, step))
+
+
+def _free_modes(system: SwitchedSystem) -> Indices:
+    """Return the index of the free mode that takes the place of each mode without contact.
+
+    It is of the same controller, with the same gains, motor and delay: of all free modes the one
+    whose name has the most in common.
+    """
+    assert system.contact is not None
+    free = [mode.name.split("/") for mode in system.contact.free]
+    found = []
+    for mode in system.modes:
+        parts = mode.name.split("/")
+        common = [(names[0] == parts[0], len(set(names) & set(parts))) for names in free]
+        found.append(max(range(len(free)), key=lambda i: common[i]))
+    return np.array(found, dtype=np.int64)
+
+
+def _aim(system: SwitchedSystem, output: Output, allowed: Mapping[str, NDArray[np.bool_]]) -> Aim:
+    rows = np.array([row.floats()[0] for row in output.rows])
+    every = np.ones((len(system.modes), len(rows)), dtype=np.bool_)
+    # Under free switching, any mode may take over at the very end.
+    given = None if system.switching.is_arbitrary else allowed.get(output.name)
+    # Tissue that can be lost pushes and never pulls.
+    pushes = system.contact is not None and output.name in ("force", DEFLECTION)
+    return Aim(rows[None], (every if given is None else given)[None], np.array([pushes]))
+
+
+def _joined(aims: Sequence[Aim]) -> Aim:
+    """Put aims of different outputs beside each other; who has fewer rows repeats the last."""
+    width = max(aim.rows.shape[1] for aim in aims)
+
+    kept = [np.minimum(np.arange(width), aim.rows.shape[1] - 1) for aim in aims]
+    return Aim(
+        np.concatenate([aim.rows[:, rows] for aim, rows in zip(aims, kept, strict=True)]),
+        np.concatenate([aim.allowed[:, :, rows] for aim, rows in zip(aims, kept, strict=True)]),
+        np.concatenate([aim.one_sided for aim in aims]),
+    )
+
+
+def _run(
+    system: SwitchedSystem,
+    game: Game,
+    output: Output,
+    signals: Signals,
+    unit: float,
+    value: float,
+    starts: Array,
+) -> WorstRun:
+    order = np.sort(starts)[::-1]
+    states = play(game, signals)[:, 0]
+    mode = game.rules.mode[signals.actions[:, 0]]
+    if system.contact is not None:
+        flies = game.flies(states[:-1])
+        mode = np.where(flies, len(system.modes) + _free_modes(system)[mode], mode)
+    bounds = np.array([float(channel.bound) for channel in system.channels])
+    time = np.asarray(unit * np.arange(len(states)), dtype=float)
+    shares = signals.shares[:, 0]
+    return WorstRun(output, float(value), time, states, mode, shares * bounds, order)

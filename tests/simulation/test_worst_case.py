@@ -1,0 +1,181 @@
+"""The worst runs that are found, against closed forms, an engine of another kind, and bounds."""
+
+import math
+from dataclasses import replace
+from fractions import Fraction
+from pathlib import Path
+
+import numpy as np
+import pytest
+from scipy.optimize import brentq
+
+from nrs_design.pipeline import run_certification, run_design
+from nrs_design.pipeline.worst_case import run_worst_case
+from nrs_design.proof.matrix import RationalMatrix
+from nrs_design.proof.system import (
+    ARBITRARY,
+    Channel,
+    Mode,
+    Output,
+    Stay,
+    SwitchedSystem,
+    Switching,
+    Time,
+)
+from nrs_design.search.certification import Limits
+from nrs_design.simulation.exact import simulate_exactly
+from nrs_design.simulation.scenario import Control, Profile, Scenario, Surface
+from nrs_design.simulation.worst_case import worst_runs
+from nrs_design.spec import parse_spec
+from nrs_design.spec.load import LoadedSpec
+from tests.simulation.interactions import text_of
+
+
+def matrix(rows):
+    return RationalMatrix.from_rows([[Fraction(x) for x in row] for row in rows])
+
+
+def oscillator(*stiffness, damping="1", switching=ARBITRARY):
+    """Return ``x'' + c x' + k x = d`` with |d| <= 1, and x as what is watched."""
+    modes = tuple(Mode(f"k-{k}", matrix([[0, 1], [f"-{k}", f"-{damping}"]])) for k in stiffness)
+    column = matrix([[0], [1]])
+    return SwitchedSystem(
+        "oscillator",
+        Time.CONTINUOUS,
+        ("x", "v"),
+        modes,
+        (),
+        switching,
+        channels=(Channel("push", "N", Fraction(1), (column,) * len(modes)),),
+        outputs=(Output("x", "m", (matrix([[1, 0]]),)),),
+    )
+
+
+def found(system, **options):
+    (run,) = worst_runs(system, system.outputs, {}, **options)
+    return run
+
+
+@pytest.mark.parametrize("damping", ["1", "0.5"])
+def test_one_stiffness(damping):
+    """The push changes sign with the velocity: ``coth(pi zeta / (2 sqrt(1 - zeta^2))) / k``."""
+    k, c = 4.0, float(damping)
+    zeta = c / (2 * math.sqrt(k))
+    exact = 1 / math.tanh(math.pi * zeta / (2 * math.sqrt(1 - zeta**2))) / k
+    run = found(oscillator("4", damping=damping), rounds=0, starts=4)
+    assert run.value <= exact * (1 + 1e-12)
+    assert run.value == pytest.approx(exact, rel=0.02)
+    v, push = run.states[:-1, 1], run.disturbances[:, 0]
+    moving = np.abs(v) > 0.1 * np.abs(v).max()
+    late = np.arange(len(v)) > len(v) // 2
+    assert (np.sign(push) == np.sign(v))[moving & late].mean() > 0.97
+
+
+def swing(k, c, start, speed):
+    """Return x and v over time of ``x'' + c x' + k x = 1``."""
+    w, rest = math.sqrt(k - c * c / 4), 1 / k
+    a, b = start - rest, (speed + c / 2 * (start - rest)) / w
+
+    def at(t):
+        decay, s, o = math.exp(-c / 2 * t), math.sin(w * t), math.cos(w * t)
+        x = rest + decay * (a * o + b * s)
+        v = decay * (-c / 2 * (a * o + b * s) + w * (b * o - a * s))
+        return x, v
+
+    return at, math.pi / w
+
+
+def farthest(low, high, c):
+    """Return where the bang-bang run comes to: soft on the way out, stiff on the way back.
+
+    On the boundary of what can be reached from rest the gradient is at right angles to the motion,
+    so its entry that k and d act through has the sign of v: d = sign v, and k is low where x v is
+    positive. Half a round from -X at rest comes to X at rest.
+    """
+
+    def next_peak(X):
+        back, half = swing(high, c, -X, 0.0)
+        through = brentq(lambda t: back(t)[0], 0, half)
+        out, half = swing(low, c, 0.0, back(through)[1])
+        turn = brentq(lambda t: out(t)[1], 1e-9, half)
+        return out(turn)[0]
+
+    return brentq(lambda X: next_peak(X) - X, 1e-3, 1e3)
+
+
+@pytest.mark.parametrize(("low", "high"), [("3", "5"), ("4", "6")])
+def test_switched_stiffness(low, high):
+    exact = farthest(float(low), float(high), 1.0)
+    alone = farthest(float(low), float(low), 1.0)
+    assert exact > 1.05 * alone
+    run = found(oscillator(low, high), rounds=0, starts=6)
+    assert run.value <= exact * (1 + 1e-12)
+    assert run.value == pytest.approx(exact, rel=0.03)
+
+
+def test_rules_are_kept_and_cost_the_adversary():
+    free = found(oscillator("3", "5"), rounds=0, starts=6)
+    rules = Switching(Fraction(1, 2), stays=(("k-5", Stay(Fraction(1, 2), Fraction(3, 4))),))
+    ruled = found(oscillator("3", "5", switching=rules), rounds=0, starts=4)
+    assert 0.5 < ruled.value < free.value
+    step = ruled.time[1]
+    changes = np.flatnonzero(np.diff(ruled.mode)) + 1
+    stays = np.diff([0, *changes, len(ruled.mode)]) * step
+    modes = ruled.mode[[0, *changes]]
+    assert (stays[:-1] >= 0.5 - 1e-9).all()
+    assert (stays[modes == 1] <= 0.75 + 1e-9).all()
+
+
+def test_what_cannot_be_searched_is_refused():
+    quiet = replace(oscillator("4"), channels=())
+    with pytest.raises(ValueError, match="nothing disturbs"):
+        found(quiet)
+    ends = Switching(fixed_ends=(("k-3", "k-5"),))
+    with pytest.raises(ValueError, match="constant parameter"):
+        found(oscillator("3", "5", switching=ends))
+
+
+SOFT = {"soft": "{model: elastic, stiffness: 43 N*m/rad}"}
+ONE = {"insertion": "{type: impedance, environment: soft, Mt: 0 kg*m^2, Bt: 2.15 N*m*s/rad}"}
+BOUNDED = "contact: losable\ndisturbances: {command: 8 deg/s}\n"
+
+
+def loaded(more, **options):
+    text = text_of(ONE, SOFT, more=more, **options)
+    return LoadedSpec(Path("small"), "", text, parse_spec(text))
+
+
+def test_the_exact_engine_comes_to_the_same():
+    """The run is simulated again by the engine that meets contact between steps, too."""
+    designed = run_design(loaded(BOUNDED))
+    case = run_worst_case(designed, rounds=1)
+    run = case.runs[0]
+    width = run.time[1]
+    times = np.repeat(np.arange(len(run.mode) + 1) * width, 2)[1:-1]
+    profile = Profile.through(times, np.repeat(run.disturbances[:, 0], 2))
+    law = designed.plant.environment("soft").nominal
+    surface = Surface("soft", law, law.element, 0.0, 1)
+    scenario = Scenario("worst", profile, float(run.time[-1]), (surface,), Control("insertion"))
+    again = simulate_exactly(designed.spec, designed.plant, designed.design, scenario)
+    assert np.abs(again.response["torque"]).max() == pytest.approx(run.value, rel=0.01)
+
+
+def test_nothing_that_is_found_is_beyond_a_bound():
+    result = run_certification(loaded(BOUNDED), limits=Limits(optimize_rate=False))
+    case = run_worst_case(result.designed, result.certificate, rounds=1)
+    assert {run.output.name for run in case.runs} == {"force", "velocity", "deflection"}
+    assert case.bounds.keys() == {"force", "velocity", "deflection"}
+    for run in case.runs:
+        assert 0.3 * case.bounds[run.output.name] < run.value < case.bounds[run.output.name]
+    again = run_worst_case(result.designed, result.certificate, rounds=1)
+    assert [run.value for run in again.runs] == [run.value for run in case.runs]
+
+
+def test_without_disturbances_the_command_takes_its_limit():
+    designed = run_design(loaded("contact: kept\n"))
+    case = run_worst_case(designed, rounds=0)
+    assert not case.declared
+    (channel,) = case.system.channels
+    assert (channel.name, float(channel.bound)) == ("velocity command", math.radians(8))
+    # In contact that is kept, a command held forever comes to Bt v; thesis 6.2.
+    assert case.runs[0].value > 2.15 * math.radians(8)

@@ -1,0 +1,111 @@
+"""A PI force controller in the sampled loop: its map, its roundings, and what is proved of them."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from nrs_design.certificates.verify import verify
+from nrs_design.design.design import design_controllers
+from nrs_design.errors import SpecError
+from nrs_design.models.plant import build_plant
+from nrs_design.spec import parse_spec, read_spec
+from nrs_design.switched.assemble import assemble
+from nrs_design.switched.sampled_law import Kinds, list_law
+from tests.simulation.interactions import INSERTION, POSITION, simulated, text_of
+from tests.support import ROOT
+
+PI = "{type: pi-force, environment: soft, proportional_gain: 0.02 rad/(N*m), "
+PI += "integral_gain: 0.5 rad/(N*m*s)}"
+BOTH = {"position": POSITION, "force": PI}
+SAMPLED = "idle_states: {decay: 20 1/s}\nsampling: {period: 2 ms, delay: 1}\ncontact: kept\n"
+KM, TAU, T, K = 4.8417e-4, 0.0351, 2e-3, 43.0
+single = np.float32
+
+
+def assembled(controllers, more=SAMPLED):
+    spec = parse_spec(text_of(controllers, more=more))
+    plant = build_plant(spec)
+    return assemble(spec, plant, design_controllers(spec, plant), "deflection")
+
+
+@pytest.mark.parametrize("controller", ["position", "force", "insertion"])
+def test_a_period_is_that_of_processor_and_motor(controller):
+    """The law as its lines in `controllers.sampled` have it, in doubles, and the motor exactly."""
+    system = assembled(BOTH | {"insertion": INSERTION})
+    names = [state.split(" [")[0] for state in system.states]
+    assert names == ["reference", "omega", "e before", "vm", "integral", "F 1 before", "delta"]
+    Kp, D = float(single(2060 * 56.9706)), float(single(2060 / T))
+    Kf, Ki_T = float(single(0.02)), float(single(0.5 * T))
+    a = float(single(np.exp(-2.15 * T / 0.01)))
+    b, left = float(single((1 - a) / 2.15)), float(single(np.exp(-20 * T)))
+    x = dict(zip(names, np.random.default_rng(5).normal(size=7), strict=True))
+    force = x["F 1 before"]
+    taken = {"position": 0.0, "force": -Kf * force, "insertion": x["reference"]}[controller]
+    e = taken + x["integral"] - x["delta"]
+    u = Kp * e + D * (e - x["e before"])
+    E = np.exp(-T / TAU)
+    s = TAU * (1 - E)
+    moves = controller == "insertion"
+    wanted = {
+        "reference": x["reference"] - T * x["vm"] if moves else left * x["reference"],
+        "omega": E * x["omega"] + KM * (1 - E) * u,
+        "e before": e,
+        "vm": a * x["vm"] + b * force if moves else left * x["vm"],
+        "integral": x["integral"] - Ki_T * force if controller == "force" else left * x["integral"],
+        "F 1 before": K * x["delta"],
+        "delta": x["delta"] + s * x["omega"] + KM * (T - s) * u,
+    }
+    found = [mode for mode in system.modes if mode.name.startswith(f"{controller}/soft")]
+    assert found
+    for mode in found:
+        A = np.array(mode.A.numerators, float) / mode.A.denominator
+        # a is rounded from the gains that ship, Mt and Bt.
+        after = A @ [x[name] for name in names]
+        assert after == pytest.approx([wanted[name] for name in names], rel=2e-6, abs=1e-6)
+
+
+def test_how_often_each_term_is_rounded():
+    """By hand, from the order of the operations: a sample is rounded as it is read."""
+    kinds = Kinds(0, inert=False, sprung=False, moves=False, places=True, takes_force=False)
+    counts = list_law(replace(kinds, gathers=True)).counts
+    # Kp F: read, lack, product, sum with w, sum with X, difference from the angle.
+    assert counts["pi-force"]["error"] == {"e": 1, "w": 3, "Kp F": 6}
+    # Ki_T F: read, lack, product, sum; the product of the integral with one is exact.
+    assert counts["pi-force"]["next_integral"] == {"w kept": 1, "Ki_T F": 4}
+    assert counts["position"]["next_integral"] == {"g w": 1}
+    assert counts["position"]["error"] == {"e": 1}
+
+
+def test_the_shipped_certificate_holds():
+    loaded = read_spec(ROOT / "specs/neuroboscope/force-limit-pi-sampled.nrs.yaml")
+    certificate = ROOT / "reports/force-limit-pi-sampled.cert.json"
+    found = verify(certificate, loaded)
+    assert found.certificate.verdict == "proved"
+
+
+def test_loss_of_contact_is_refused():
+    with pytest.raises(SpecError, match="whose integral a force has to balance"):
+        parse_spec(text_of(BOTH, more=SAMPLED.replace("kept", "losable")))
+
+
+def test_the_run_in_single_precision_leaves_no_error():
+    """What rounding leaves of the error is below what a sample adds to the integral."""
+    text = text_of(
+        BOTH,
+        scenario="command: {points: [[0 s, 4 deg/s], [3 s, 4 deg/s]]}, "
+        "surfaces: [{environment: soft, at: 2 deg}], "
+        "control: {threshold: {position: position, force: force, torque: 0.27 N*m}}",
+        more=SAMPLED,
+    )
+    run = simulated(text, engine="sampled")
+    assert run.response["torque"][-1] == pytest.approx(0.3, abs=2e-6)
+
+
+def test_a_sample_that_adds_nothing_stalls_the_integral():
+    """Half of the last place of w, over Ki T, is the error that single precision leaves."""
+    w, Ki_T = single(0.04), single(0.001)
+    smallest = float(np.spacing(w)) / 2 / float(Ki_T)
+    assert smallest < 2e-6
+    assert w + Ki_T * single(0.9 * smallest) == w
+    assert w + Ki_T * single(1.1 * smallest) > w

@@ -68,7 +68,7 @@ class Run:
     steps : int
         Steps of the engine.
     sampling : tuple of (float, int, int) or None
-        Period in s, and smallest and largest delay in samples, of the sampled engine.
+        Period in s, and smallest and largest delay in samples, of the law.
     refused : int
         Samples that the law refused, because an input was beyond its limits.
     saturated : int
@@ -77,6 +77,8 @@ class Run:
         Why the run ended before its time.
     left_out : tuple of str
         What is not in it.
+    outer : float or None
+        Period of filter and admittance in s, which may be another.
     deviation : Deviation or None
         From the sampled engine, where another one was asked for.
     """
@@ -92,6 +94,7 @@ class Run:
     saturated: int = 0
     stopped: str | None = None
     left_out: tuple[str, ...] = LEFT_OUT
+    outer: float | None = None
     deviation: Deviation | None = None
 
     @property

@@ -287,6 +287,62 @@ def hold_bounds(
     return tuple(found)
 
 
+@dataclass(frozen=True, slots=True)
+class CertifiedRate:
+    """A certified rate of decay beside a run.
+
+    Parameters
+    ----------
+    rate : float
+        Not better than what is proved: in 1/s, or the factor per sample.
+    unit : str
+        ``1/s``, or empty for a factor.
+    attained : bool
+        Whether it is proved itself, not only what is slower.
+    start : float or None
+        From when on nothing is commanded, in s; None where the run ends before.
+    uncovered : tuple of str
+        Why it is not about the run from then on; empty if it is.
+    """
+
+    rate: float
+    unit: str
+    attained: bool
+    start: float | None
+    uncovered: tuple[str, ...]
+
+
+def hold_rate(
+    designed: Designed, certificate: Certificate, simulated: Simulated
+) -> CertifiedRate | None:
+    """Hold the certified rate of decay, if there is one, against the end of a run.
+
+    Parameters
+    ----------
+    designed, certificate, simulated
+        As `hold_bounds` takes them.
+    """
+    from nrs_design.proof.bounds import lower_float, upper_float
+    from nrs_design.proof.evidence.abstract import Shows
+    from nrs_design.proof.system import Time
+    from nrs_design.simulation.coverage import end_of_command, undecayed
+
+    system, one = certificate.system, simulated
+    evidence = certificate.evidence
+    proved = None if evidence is None else evidence.proved_rate(system)
+    if evidence is None or evidence.shows is not Shows.STABILITY or proved is None:
+        return None
+    continuous = system.time is Time.CONTINUOUS
+    reasons = undecayed(designed.spec, system, evidence, one.scenario, one.run)
+    return CertifiedRate(
+        (lower_float if continuous else upper_float)(proved),
+        "1/s" if continuous else "",
+        evidence.attains_rate,
+        end_of_command(one.scenario),
+        tuple(reasons),
+    )
+
+
 def read_certificate(file: Path, designed: Designed) -> Certificate:
     """Return what a certificate file holds, checked exactly against the spec.
 

@@ -228,10 +228,11 @@ class SampledAxis:
             tuple(self.switches),
             tuple(self.tissue.contacts),
             len(self.rows),
-            (self.T, *self.delay),
+            (float(self.turns.motion * self.period), *self.delay),
             self.refused,
             self.saturated,
             stopped,
+            outer=float(self.turns.outer * self.period),
         )
 
     def sample(self, t: float, hand: float, noise: float, age: int) -> float:

@@ -124,6 +124,11 @@ def test_a_bound_stands_beside_the_peak(spec, tmp_path):
     force = next(b for b in one["certified_bounds"] if b["output"] == "force")
     assert force["holds_for_this_run"]
     assert one["metrics"]["peak_torque"] < force["level"] < 1
+    rate = one["certified_rate"]
+    assert rate["rate"] > 1
+    assert rate["uncovered"] == ["the command does not come to an end before the run does"]
+    told = run("simulate", path, cwd=tmp_path).stdout
+    assert "certified decay once nothing is commanded: " in told
     none = run("simulate", path, "--json", "--no-bound", cwd=tmp_path)
     assert json.loads(none.stdout)["runs"][0]["certified_bounds"] == []
     assert run("certify-switching", path, "--out", "a.cert.json", cwd=tmp_path).returncode == 0
@@ -275,6 +280,7 @@ def test_without_mujoco_it_is_said_what_to_install(spec, tmp_path, monkeypatch):
     monkeypatch.setitem(sys.modules, "mujoco", None)
     result = run("simulate", spec(), "--engine", "mujoco", cwd=tmp_path)
     assert result.returncode == 2
+    assert "needs MuJoCo, which cannot be loaded" in result.stderr
     assert "pip install 'nrs-design[mujoco]'" in result.stderr
     assert run("simulate", spec(), "--engine", "sampled", cwd=tmp_path).returncode == 0
 

@@ -243,14 +243,15 @@ def _write(designed: Designed, out: Path | None, runs: Sequence[Bounded]) -> lis
     from nrs_design.output import write_output
     from nrs_design.reporting.figures.simulated import draw_simulated
     from nrs_design.reporting.images import to_png, to_svg_file
+    from nrs_design.simulation.run import common_lever_arm
 
     limits, files = designed.spec.limits, []
     for one, bounds, _ in runs:
         response = one.run.response
+        touched = [surface.environment for surface in one.scenario.surfaces]
+        arm = common_lever_arm(designed.spec, touched)
         level = next(((b.level, not b.uncovered) for b in bounds if b.output == "force"), None)
-        figure = draw_simulated(
-            response, limits.torque.si, limits.velocity.si, _arm(designed, one), level
-        )
+        figure = draw_simulated(response, limits.torque.si, limits.velocity.si, arm, level)
         contents: dict[str, str | bytes] = {
             "csv": response.to_csv(),
             "npz": response.to_npz(),
@@ -262,14 +263,6 @@ def _write(designed: Designed, out: Path | None, runs: Sequence[Bounded]) -> lis
             write_output(path, contents[suffix], replaces=beginning)
             files.append(path)
     return files
-
-
-def _arm(designed: Designed, one: Simulated) -> float | None:
-    """Return the lever arm in m that all surfaces of a run have in common."""
-    environments = designed.spec.environments
-    arms = {environments[surface.environment].lever_arm for surface in one.scenario.surfaces}
-    arm = arms.pop() if len(arms) == 1 else None
-    return None if arm is None else arm.si
 
 
 def _document(

@@ -388,16 +388,16 @@ def test_the_shipped_spec_of_three_axes(tmp_path):
     """Without scenarios it has two of its own: one axis alone, and all of them alike."""
     pytest.importorskip("mujoco", reason="MuJoCo is not installed")
     axes = ROOT / "specs/neuroboscope/soft-tissue-axes.nrs.yaml"
-    given = ("--scenario", "all-axes", "--engine", "mujoco", "--json")
+    # Into the tissue; not all of the 7.5 s.
+    given = ("--scenario", "all-axes", "--engine", "mujoco", "--json", "--max-steps", "1200")
     document = json.loads(run("simulate", axes, *given, cwd=tmp_path).stdout)
     assert [one["scenario"] for one in document["runs"]] == [
         f"all-axes.theta{i}" for i in (1, 2, 3)
     ]
     for one in document["runs"]:
-        assert one["stopped"] is None
+        assert one["steps"] == 1200
         assert one["deviation_from_sampled"]["angle"] < 1e-5
-        assert 0.25 < one["metrics"]["peak_torque"] < 0.3
-        assert one["metrics"]["withdrawal_times"]
+        assert 0.1 < one["metrics"]["peak_torque"] < 0.3
     alone = run("simulate", axes, "--engine", "exact", "--json", cwd=tmp_path)
     assert [r["scenario"] for r in json.loads(alone.stdout)["runs"]] == ["insertion-and-withdrawal"]
 

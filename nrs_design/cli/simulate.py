@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
     from nrs_design.certificates.certificate import Certificate
     from nrs_design.pipeline import Designed, Progress
-    from nrs_design.pipeline.scenarios import CertifiedBound, Runs, Simulated
+    from nrs_design.pipeline.scenarios import CertifiedBound, CertifiedRate, Runs, Simulated
     from nrs_design.spec import InteractionDesignSpec, LoadedSpec
 
 
@@ -33,8 +33,8 @@ class EngineOption(StrEnum):
     MUJOCO = "mujoco"
 
 
-# A run and the bounds that are certified beside it.
-Bounded = tuple["Simulated", "tuple[CertifiedBound, ...]"]
+# A run, and the bounds and the rate that are certified beside it.
+Bounded = tuple["Simulated", "tuple[CertifiedBound, ...]", "CertifiedRate | None"]
 
 
 def simulate(
@@ -79,6 +79,15 @@ def simulate(
         int | None,
         typer.Option(min=0, max=10, help="Age of its force samples in samples, not the spec's."),
     ] = None,
+    outer_period: Annotated[
+        float | None,
+        typer.Option(
+            metavar="S",
+            min=1e-5,
+            max=1.0,
+            help="Period of its force samples and admittances in s, not that of the motion loop.",
+        ),
+    ] = None,
     max_steps: Annotated[
         int | None, typer.Option(min=1, help="Most steps of a run; beyond, exit code 3.")
     ] = None,
@@ -105,9 +114,11 @@ def simulate(
     from nrs_design.pipeline.scenarios import Runs, run_scenarios
     from nrs_design.spec import read_spec
 
-    if engine is EngineOption.EXACT and (period is not None or delay is not None):
-        raise typer.BadParameter("the exact engine has no samples", param_hint="--period, --delay")
-    Many(worst, monte_carlo, seed, jobs, resume).check((scenario, engine, period, delay, max_steps))
+    timed = any(value is not None for value in (period, delay, outer_period))
+    if engine is EngineOption.EXACT and timed:
+        raise typer.BadParameter("the exact engine has no samples", param_hint="--engine")
+    of_scenarios = (scenario, engine, period, delay, outer_period, max_steps)
+    Many(worst, monte_carlo, seed, jobs, resume).check(of_scenarios)
     loaded = read_spec(spec)
     if loaded.spec.kind != "interaction-design":
         raise wrong_kind(
@@ -116,9 +127,9 @@ def simulate(
             "name a spec of kind interaction-design; see also `nrs-design robot track`",
         )
     how = None if engine is None else str(engine)
-    if how is None and (period is not None or delay is not None):
+    if how is None and timed:
         how = str(EngineOption.SAMPLED)
-    wanted = Runs(tuple(dict.fromkeys(scenario or ())), how, period, delay, max_steps)
+    wanted = Runs(tuple(dict.fromkeys(scenario or ())), how, period, delay, max_steps, outer_period)
     with progress(f"simulating {loaded.spec.name}", quiet=quiet) as step:
         if worst or monte_carlo is not None:
             many = Many(worst, monte_carlo, seed, jobs, resume)
@@ -129,7 +140,7 @@ def simulate(
             assert designed is not None
             found = list(run_scenarios(designed, wanted, step))
             proof = _proof(designed, certificate, step, bound=bound)
-            runs = [(one, _bounds(designed, proof, one)) for one in found]
+            runs = [(one, *_certified(designed, proof, one)) for one in found]
             step("figures")
             files = [str(path) for path in _write(designed, out, runs)]
     if worst or monte_carlo is not None:
@@ -189,12 +200,15 @@ def _proof(
     return run_certification(designed.loaded, progress=step).certificate
 
 
-def _bounds(
+def _certified(
     designed: Designed, proof: Certificate | None, one: Simulated
-) -> tuple[CertifiedBound, ...]:
-    from nrs_design.pipeline.scenarios import hold_bounds
+) -> tuple[tuple[CertifiedBound, ...], CertifiedRate | None]:
+    """Return what is certified beside a run: bounds, and a rate."""
+    from nrs_design.pipeline.scenarios import hold_bounds, hold_rate
 
-    return () if proof is None else hold_bounds(designed, proof, one)
+    if proof is None:
+        return (), None
+    return hold_bounds(designed, proof, one), hold_rate(designed, proof, one)
 
 
 def _check_places(
@@ -229,14 +243,15 @@ def _write(designed: Designed, out: Path | None, runs: Sequence[Bounded]) -> lis
     from nrs_design.output import write_output
     from nrs_design.reporting.figures.simulated import draw_simulated
     from nrs_design.reporting.images import to_png, to_svg_file
+    from nrs_design.simulation.run import common_lever_arm
 
     limits, files = designed.spec.limits, []
-    for one, bounds in runs:
+    for one, bounds, _ in runs:
         response = one.run.response
+        touched = [surface.environment for surface in one.scenario.surfaces]
+        arm = common_lever_arm(designed.spec, touched)
         level = next(((b.level, not b.uncovered) for b in bounds if b.output == "force"), None)
-        figure = draw_simulated(
-            response, limits.torque.si, limits.velocity.si, _arm(designed, one), level
-        )
+        figure = draw_simulated(response, limits.torque.si, limits.velocity.si, arm, level)
         contents: dict[str, str | bytes] = {
             "csv": response.to_csv(),
             "npz": response.to_npz(),
@@ -250,15 +265,9 @@ def _write(designed: Designed, out: Path | None, runs: Sequence[Bounded]) -> lis
     return files
 
 
-def _arm(designed: Designed, one: Simulated) -> float | None:
-    """Return the lever arm in m that all surfaces of a run have in common."""
-    environments = designed.spec.environments
-    arms = {environments[surface.environment].lever_arm for surface in one.scenario.surfaces}
-    arm = arms.pop() if len(arms) == 1 else None
-    return None if arm is None else arm.si
-
-
-def _document(one: Simulated, bounds: tuple[CertifiedBound, ...]) -> dict[str, Any]:
+def _document(
+    one: Simulated, bounds: tuple[CertifiedBound, ...], rate: CertifiedRate | None
+) -> dict[str, Any]:
     run = one.run
     return {
         "scenario": run.scenario,
@@ -285,10 +294,20 @@ def _document(one: Simulated, bounds: tuple[CertifiedBound, ...]) -> dict[str, A
             }
             for b in bounds
         ],
+        "certified_rate": None
+        if rate is None
+        else {
+            "rate": rate.rate,
+            "unit": rate.unit,
+            "attained": rate.attained,
+            "from": rate.start,
+            "holds_for_this_run": not rate.uncovered,
+            "uncovered": list(rate.uncovered),
+        },
     }
 
 
-def _print(one: Simulated, bounds: tuple[CertifiedBound, ...]) -> None:
+def _print(one: Simulated, bounds: tuple[CertifiedBound, ...], rate: CertifiedRate | None) -> None:
     """Print the metrics of a run, bounds beside what they bound."""
     from fractions import Fraction
 
@@ -306,6 +325,11 @@ def _print(one: Simulated, bounds: tuple[CertifiedBound, ...]) -> None:
         say(f"  certified bound on the {b.output}: {level} {b.unit}{shown}")
         for reason in b.uncovered:
             say(f"    it is not about this run: {reason}")
+    if rate is not None:
+        here = "" if rate.start is None else f", here from {rate.start:.6g} s on"
+        say(f"  certified decay once nothing is commanded{here}: {_rate(rate)}")
+        for reason in rate.uncovered:
+            say(f"    it is not about this run: {reason}")
     if run.refused:
         say(f"  the law refused {run.refused} samples: an input was beyond its limits")
     if run.saturated:
@@ -318,3 +342,14 @@ def _print(one: Simulated, bounds: tuple[CertifiedBound, ...]) -> None:
         )
     if run.stopped:
         say(f"  STOPPED: {run.stopped}")
+
+
+def _rate(rate: CertifiedRate) -> str:
+    """Return the rate in words, rounded to the safe side."""
+    from fractions import Fraction
+
+    from nrs_design.proof.bounds import lower, upper
+
+    number = Fraction(rate.rate)
+    text = f"{lower(number)} 1/s" if rate.unit else f"by {upper(number)} a sample"
+    return text + ("" if rate.attained else ", or any slower one")

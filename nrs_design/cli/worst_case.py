@@ -72,7 +72,7 @@ def _show(
         print_json("simulate", _document(designed, case, seed) | {"files": list(map(str, files))})
     elif not quiet:
         title = f"{designed.spec.name}: the worst that an adversary found, seed {seed}"
-        print_table(title, COLUMNS, worst_rows(case, lever_arm_of(designed)))
+        print_table(title, COLUMNS, worst_rows(case, _arm(designed)))
         say(MEANING if case.bounds else f"{MEANING.partition(';')[0]}. {NO_BOUND}")
         if not case.declared:
             say(UNDECLARED)
@@ -80,12 +80,10 @@ def _show(
     return exit_codes.PROVED
 
 
-def lever_arm_of(designed: Designed) -> float | None:
-    """Return the lever arm in m that all contacts of a design have in common."""
-    known = designed.spec.environments
-    arms = {known[name].lever_arm for name in designed.spec.touched if name in known}
-    arm = arms.pop() if len(arms) == 1 else None
-    return None if arm is None else arm.si
+def _arm(designed: Designed) -> float | None:
+    from nrs_design.simulation.run import common_lever_arm
+
+    return common_lever_arm(designed.spec, designed.spec.touched)
 
 
 def _places(designed: Designed, out: Path | None, name: str) -> list[tuple[Path, bytes]]:
@@ -105,10 +103,10 @@ def _write(designed: Designed, case: WorstCase, out: Path | None) -> list[Path]:
     from nrs_design.reporting.images import to_png, to_svg_file
     from nrs_design.reporting.worst_case import draw_worst, response_of
 
-    written = []
+    written, arm = [], _arm(designed)
     for run in case.runs:
         response = response_of(case, run)
-        figure = draw_worst(case, run, lever_arm_of(designed))
+        figure = draw_worst(case, run, arm)
         contents: tuple[str | bytes, ...] = (
             response.to_csv(),
             response.to_npz(),

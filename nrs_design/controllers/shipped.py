@@ -89,9 +89,6 @@ def _step_law(
             remedy="give all of them an inertia Mt > 0, or none",
             at=("controllers",),
         )
-    if placed and any(law.Kt for law in moving):
-        what = f"a spring of impedance control beside {placed[0]}"
-        raise _without_program(what, placed[0])
     idle = spec.idle_states
     return build_law(frame, laws, None if idle is None else _left(idle, period))
 

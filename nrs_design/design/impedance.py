@@ -342,8 +342,9 @@ class _Samples:
 
 def _sample(problem: ImpedanceProblem, nodes: int) -> _Samples:
     omega: FloatArray = (np.arange(nodes, dtype=np.float64) + 0.5) * (problem.bandwidth / nodes)
-    Ze = TransferFunction(*map(trim, problem.loop.contact.impedance))
-    forward = frequency_response(problem.loop.motion, omega) * frequency_response(Ze, omega)
+    # That of a hand with a mass is improper, so it is no transfer function.
+    above, below = (np.polyval(part, 1j * omega) for part in problem.loop.contact.impedance)
+    forward = frequency_response(problem.loop.motion, omega) * above / below
     filtered = forward / np.polyval(problem.loop.lags, 1j * omega)
     return _Samples(
         omega=omega,

@@ -13,15 +13,7 @@ _SEEN = {"command": "velocity command", "torque": "torque"}
 
 
 def logic_lines(law: StepLaw, names: CNames) -> Iterator[str]:
-    """Yield what a header says of the mode logic.
-
-    Parameters
-    ----------
-    law : StepLaw
-        With a logic, or without.
-    names : CNames
-        Of the spec.
-    """
+    """Yield what a header says of the mode logic of a law, if it has one."""
     if law.logic is None:
         return
     yield ""
@@ -36,15 +28,7 @@ def logic_lines(law: StepLaw, names: CNames) -> Iterator[str]:
 
 
 def logic_declarations(law: StepLaw, names: CNames) -> list[str]:
-    """Return what a header declares of the mode logic.
-
-    Parameters
-    ----------
-    law : StepLaw
-        With a logic, or without.
-    names : CNames
-        Of the spec.
-    """
+    """Return what a header declares of the mode logic of a law, if it has one."""
     if law.logic is None:
         return []
     fields = "".join(
@@ -63,15 +47,7 @@ def logic_declarations(law: StepLaw, names: CNames) -> list[str]:
 
 
 def logic_definitions(law: StepLaw, names: CNames) -> list[str]:
-    """Return the functions of the mode logic.
-
-    Parameters
-    ----------
-    law : StepLaw
-        With a logic, or without.
-    names : CNames
-        Of the spec.
-    """
+    """Return the functions of the mode logic of a law, if it has one."""
     if law.logic is None:
         return []
     init, step = _prototypes(names)

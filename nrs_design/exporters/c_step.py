@@ -26,10 +26,17 @@ SIGN = {
 FLAGS = (
     "-std=c99 -Wall -Wextra -Wpedantic -Wconversion -Wdouble-promotion -Werror -ffp-contract=off"
 )
-REFUSALS = """\
-#if defined(__FAST_MATH__)
-#error "the proof is about IEEE 754 arithmetic: compile without -ffast-math"
+# A compiler that is told that all numbers are finite may leave guards out.
+FINITE = """\
+#if defined(__FINITE_MATH_ONLY__) && (__FINITE_MATH_ONLY__ != 0)
+#error "comparisons with what is not a number have to be false: compile without -ffinite-math-only"
 #endif
+"""
+REFUSALS = f"""\
+#if defined(__FAST_MATH__) || defined(__ASSOCIATIVE_MATH__) || defined(__RECIPROCAL_MATH__)
+#error "the proof is about IEEE 754 arithmetic: compile without -ffast-math, and parts of it"
+#endif
+{FINITE}\
 #if (FLT_RADIX != 2) || (FLT_MANT_DIG != 24) || (FLT_MAX_EXP != 128)
 #error "float has to be IEEE 754 single precision"
 #endif

@@ -11,6 +11,7 @@ from fractions import Fraction
 
 from nrs_design.controllers.float32 import exact_decimal
 from nrs_design.exporters.c_names import CNames, comment, harmless, literal
+from nrs_design.exporters.c_step import FINITE
 from nrs_design.exporters.export import Export
 from nrs_design.exporters.monitor_limits import CHANCE, MonitorLimits, limits_of
 from nrs_design.exporters.monitor_source import KEPT, SOURCE
@@ -82,7 +83,7 @@ def source_text(program: Program, limits: MonitorLimits) -> str:
         What it must keep.
     """
     names = program.names
-    text = SOURCE
+    text = SOURCE.replace("@FINITE@", FINITE)
     losable = not limits.contact_kept
     text = text.replace("@KEPT@", KEPT if losable else "")
     text = text.replace("@AND_KEPT@", " && kept(m)" if losable else "")

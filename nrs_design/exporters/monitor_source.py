@@ -7,7 +7,7 @@ SOURCE = """\
 #if defined(__FAST_MATH__)
 #error "comparisons with what is not a number have to be false: compile without -ffast-math"
 #endif
-
+@FINITE@
 /* Beyond it, no robot gets. */
 #define NOWHERE 1.0e6F
 /* Less than this part of the least stiffness is no contact. */

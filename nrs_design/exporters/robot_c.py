@@ -85,13 +85,18 @@ def render(export: RobotExport) -> dict[str, bytes]:
     DesignError
         If the spec lacks something, or its numbers contradict each other.
     """
-    spec = export.loaded.spec
-    assert isinstance(spec, RobotSpec)
-    laws = run_robot_laws(spec, export.robot)
+    laws = laws_of(export)
     return {
         ".h": header_text(export, laws).encode(),
         ".c": source_text(export, laws).encode(),
     }
+
+
+def laws_of(export: RobotExport) -> Mapping[str, StepLaw]:
+    """Return the laws of a robot whose spec has `control`, by the end of their names in C."""
+    spec = export.loaded.spec
+    assert isinstance(spec, RobotSpec)
+    return run_robot_laws(spec, export.robot)
 
 
 def names_of(spec: str, law: str) -> CNames:

@@ -8,12 +8,10 @@ from typing import Any
 
 from nrs_design import __version__
 from nrs_design.controllers.operations import StepLaw
-from nrs_design.exporters.robot_c import UNPROVED
+from nrs_design.exporters.robot_c import UNPROVED, laws_of
 from nrs_design.exporters.robot_tree import RobotExport
 from nrs_design.exporters.vectors import law_document, make_vectors, rows_of
 from nrs_design.ownership import MARK
-from nrs_design.pipeline.robots import run_robot_laws
-from nrs_design.spec import RobotSpec
 
 SCHEMA = "nrs-design/robot-vectors/1"
 COUNT = 500
@@ -32,9 +30,7 @@ def render(export: RobotExport) -> dict[str, bytes]:
     DesignError
         If the spec lacks something, or its numbers contradict each other.
     """
-    spec = export.loaded.spec
-    assert isinstance(spec, RobotSpec)
-    return {".robot-vectors.json": text(export, run_robot_laws(spec, export.robot)).encode()}
+    return {".robot-vectors.json": text(export, laws_of(export)).encode()}
 
 
 def text(export: RobotExport, laws: Mapping[str, StepLaw], count: int = COUNT) -> str:

@@ -81,6 +81,23 @@ def _words(count: int, size: int, names: CNames) -> tuple[str, ...]:
     )
 
 
+_BITS = """\
+static float from_bits(uint32_t bits)
+{
+    float value;
+    (void)memcpy(&value, &bits, sizeof value);
+    return value;
+}
+
+static uint32_t to_bits(float value)
+{
+    uint32_t bits;
+    (void)memcpy(&bits, &value, sizeof bits);
+    return bits;
+}
+"""
+
+
 def _source(
     law: StepLaw,
     columns: Sequence[str],
@@ -88,16 +105,7 @@ def _source(
     names: CNames,
     about: tuple[str, ...],
 ) -> str:
-    own, column = names.lower, {name: i for i, name in enumerate(columns)}
     table = ",\n".join("    {" + ", ".join(f"0x{n:x}U" for n in row) + "}" for row in rows.tolist())
-    reads = [f"in.{v.name} = from_bits(row[{column[v.name]}]);" for v in law.inputs]
-    reads += [f"state.{v.name} = from_bits(row[{column[f'before.{v.name}']}]);" for v in law.states]
-    checks = [f"(to_bits(out.{name}) == row[{column[name]}])" for name in law.outputs]
-    checks += [f"(to_bits(state.{v.name}) == row[{column[f'after.{v.name}']}])" for v in law.states]
-    starts = [
-        f"(to_bits(state.{v.name}) == to_bits({'in.angle' if v.starts_at_angle else '0.0F'}))"
-        for v in law.states
-    ]
     return f"""\
 {comment((*about, f"More is in {names.spec}_test.h."), C_TEST)}
 #include "{names.spec}.h"
@@ -111,20 +119,23 @@ static const uint32_t cases[{names.upper}_TEST_CASES][{len(columns)}] = {{
 {table}
 }};
 
-static float from_bits(uint32_t bits)
-{{
-    float value;
-    (void)memcpy(&value, &bits, sizeof value);
-    return value;
-}}
+{_BITS}
+{_case(law, columns, names)}
+{_program(len(rows), names)}"""
 
-static uint32_t to_bits(float value)
-{{
-    uint32_t bits;
-    (void)memcpy(&bits, &value, sizeof bits);
-    return bits;
-}}
 
+def _case(law: StepLaw, columns: Sequence[str], names: CNames) -> str:
+    """Write the function that computes a case and compares it."""
+    own, column = names.lower, {name: i for i, name in enumerate(columns)}
+    reads = [f"in.{v.name} = from_bits(row[{column[v.name]}]);" for v in law.inputs]
+    reads += [f"state.{v.name} = from_bits(row[{column[f'before.{v.name}']}]);" for v in law.states]
+    checks = [f"(to_bits(out.{name}) == row[{column[name]}])" for name in law.outputs]
+    checks += [f"(to_bits(state.{v.name}) == row[{column[f'after.{v.name}']}])" for v in law.states]
+    starts = [
+        f"(to_bits(state.{v.name}) == to_bits({'in.angle' if v.starts_at_angle else '0.0F'}))"
+        for v in law.states
+    ]
+    return f"""\
 static bool passes(const uint32_t *row)
 {{
     {own}_input_t in;
@@ -140,7 +151,13 @@ static bool passes(const uint32_t *row)
     return same &&
         {_all(starts)};
 }}
+"""
 
+
+def _program(count: int, names: CNames) -> str:
+    """Write the function over all cases, and the program around it."""
+    own = names.lower
+    return f"""\
 int32_t {own}_self_test(void)
 {{
     int32_t first = -1;
@@ -163,7 +180,7 @@ int main(void)
         (void)printf("case %ld differs\\n", (long)first);
         return 1;
     }}
-    (void)printf("{names.spec}: all {len(rows)} cases are the same\\n");
+    (void)printf("{names.spec}: all {count} cases are the same\\n");
     return 0;
 }}
 #endif

@@ -73,6 +73,8 @@ class Runs:
         Of the sampled engine, in s; 2 ms where nothing says it.
     delay : int or None
         Age of its force samples, in samples; none where nothing says it.
+    outer_period : float or None
+        Of force, filter and admittance, in s; that of the motion loop where nothing says it.
     max_steps : int or None
         Of each run.
     """
@@ -82,6 +84,7 @@ class Runs:
     period: float | None = None
     delay: int | None = None
     max_steps: int | None = None
+    outer_period: float | None = None
 
 
 def run_scenarios(
@@ -202,9 +205,10 @@ def _sampling(spec: InteractionDesignSpec, wanted: Runs) -> SamplingSpec:
 
     usual = SamplingSpec.model_validate({"period": "2 ms", "delay": "0"})
     changes: dict[str, object] = {}
-    if wanted.period is not None:
-        text = {"period": f"{wanted.period!r} s", "delay": "0"}
-        changes["period"] = SamplingSpec.model_validate(text).period
+    for key, value in (("period", wanted.period), ("outer_period", wanted.outer_period)):
+        if value is not None:
+            text = {"period": f"{value!r} s", "delay": "0"}
+            changes[key] = SamplingSpec.model_validate(text).period
     if wanted.delay is not None:
         changes["delay"] = (wanted.delay, wanted.delay)
     return (spec.sampling or usual).model_copy(update=changes)
@@ -285,6 +289,62 @@ def hold_bounds(
         level = upper_float(bound.level)
         found.append(CertifiedBound(bound.output.name, bound.output.unit, level, tuple(reasons)))
     return tuple(found)
+
+
+@dataclass(frozen=True, slots=True)
+class CertifiedRate:
+    """A certified rate of decay beside a run.
+
+    Parameters
+    ----------
+    rate : float
+        Not better than what is proved: in 1/s, or the factor per sample.
+    unit : str
+        ``1/s``, or empty for a factor.
+    attained : bool
+        Whether it is proved itself, not only what is slower.
+    start : float or None
+        From when on nothing is commanded, in s; None where the run ends before.
+    uncovered : tuple of str
+        Why it is not about the run from then on; empty if it is.
+    """
+
+    rate: float
+    unit: str
+    attained: bool
+    start: float | None
+    uncovered: tuple[str, ...]
+
+
+def hold_rate(
+    designed: Designed, certificate: Certificate, simulated: Simulated
+) -> CertifiedRate | None:
+    """Hold the certified rate of decay, if there is one, against the end of a run.
+
+    Parameters
+    ----------
+    designed, certificate, simulated
+        As `hold_bounds` takes them.
+    """
+    from nrs_design.proof.bounds import lower_float, upper_float
+    from nrs_design.proof.evidence.abstract import Shows
+    from nrs_design.proof.system import Time
+    from nrs_design.simulation.coverage import end_of_command, undecayed
+
+    system, one = certificate.system, simulated
+    evidence = certificate.evidence
+    proved = None if evidence is None else evidence.proved_rate(system)
+    if evidence is None or evidence.shows is not Shows.STABILITY or proved is None:
+        return None
+    continuous = system.time is Time.CONTINUOUS
+    reasons = undecayed(designed.spec, system, evidence, one.scenario, one.run)
+    return CertifiedRate(
+        (lower_float if continuous else upper_float)(proved),
+        "1/s" if continuous else "",
+        evidence.attains_rate,
+        end_of_command(one.scenario),
+        tuple(reasons),
+    )
 
 
 def read_certificate(file: Path, designed: Designed) -> Certificate:

@@ -23,6 +23,7 @@ from nrs_design.reporting.sections.tail import (
     rungs_section,
     spec_section,
 )
+from nrs_design.reporting.sections.worst_case import worst_case_section
 
 if TYPE_CHECKING:
     import datetime
@@ -89,6 +90,7 @@ def build_report(
             modes_section(result.loaded, system, proved_rate(system, certification.evidence)),
             *evidence_sections(certification),
             *_present(release_section(result)),
+            *_present(worst_case_section(result)),
             assumptions_section(result),
             rungs_section(certification, times=times),
             *((methods_section(comparison, times=times),) if comparison else ()),

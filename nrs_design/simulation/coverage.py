@@ -7,8 +7,8 @@ from collections.abc import Iterator
 from nrs_design.proof.evidence.abstract import AbstractEvidence
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.simulation.build_scenario import by_logic
-from nrs_design.simulation.run import Run
-from nrs_design.simulation.scenario import Scenario
+from nrs_design.simulation.run import LEFT_OUT_ON_LINKS, Run
+from nrs_design.simulation.scenario import Errors, Scenario
 from nrs_design.spec import InteractionDesignSpec
 
 # The same number after a conversion may be a rounding above.
@@ -60,9 +60,57 @@ def uncovered(
     if errors.jitter:
         yield "samples are late, and the proof takes none for late"
     yield from _sampling(spec, run)
+    yield from _differences(spec, system, statement, scenario, run)
+
+
+def undecayed(
+    spec: InteractionDesignSpec,
+    system: SwitchedSystem,
+    statement: AbstractEvidence,
+    scenario: Scenario,
+    run: Run,
+) -> Iterator[str]:
+    """Yield why a certified rate of decay is not about the end of a run; nothing if it is.
+
+    Parameters
+    ----------
+    spec, system, statement, scenario, run
+        As `uncovered` takes them; the statement has a rate.
+    """
+    if end_of_command(scenario) is None:
+        yield "the command does not come to an end before the run does"
+    if scenario.errors != Errors():
+        yield "friction, resolutions, noise or jitter go on acting"
+    if system.couplings and run.left_out != LEFT_OUT_ON_LINKS:
+        yield "one axis runs without links, and the proof is about axes that links couple"
+    yield from _sampling(spec, run)
+    yield from _differences(spec, system, statement, scenario, run)
+
+
+def end_of_command(scenario: Scenario) -> float | None:
+    """Return the time in s from which on nothing is commanded, None if the run is over by then."""
+    profile, start = scenario.profile, None
+    for piece in reversed(profile.pieces):
+        if piece.value or piece.slope or profile.mean:
+            break
+        start = piece.start
+    return None if start is None or start >= scenario.duration else start
+
+
+def _differences(
+    spec: InteractionDesignSpec,
+    system: SwitchedSystem,
+    statement: AbstractEvidence,
+    scenario: Scenario,
+    run: Run,
+) -> Iterator[str]:
+    """Yield what sets a run apart from all that a proof is about, whatever it shows."""
+    angles = None if spec.disturbances is None else spec.disturbances.largest_angle
     if any(controller.type != "impedance" for controller in spec.controllers.values()):
         yield "the run is not one of impedance control alone"
-    if run.engine == "sampled" and (angles is None or not statement.covers_rounding):
+    if run.engine == "mujoco":
+        yield "MuJoCo moves the mechanics, with errors of its own"
+    if run.engine != "exact" and (angles is None or not statement.covers_rounding):
         yield "the law is rounded to single precision, and the proof does not take up all of it"
     if run.saturated:
         yield "the motor's command met its limit, and the proof knows none"
@@ -97,7 +145,8 @@ def _sampling(spec: InteractionDesignSpec, run: Run) -> Iterator[str]:
         return
     period, least, most = run.sampling
     shortest, longest = spec.sampling.delay
-    if period != float(spec.sampling.period.exact) or least < shortest or most > longest:
+    same = period == float(spec.sampling.period.exact) and run.outer == float(spec.sampling.outer)
+    if not same or least < shortest or most > longest:
         yield "period or delay are not those of the proof"
 
 

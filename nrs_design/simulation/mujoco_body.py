@@ -49,9 +49,9 @@ def load_mujoco() -> Any:
     """
     try:
         return import_module("mujoco")
-    except ImportError:
+    except ImportError as error:
         raise DesignError(
-            "MuJoCo is not installed, and the engine is a part of it",
+            f"the engine needs MuJoCo, which cannot be loaded ({error})",
             remedy="pip install 'nrs-design[mujoco]', or use --engine sampled",
         ) from None
 

@@ -2,10 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from itertools import pairwise
+from typing import TYPE_CHECKING
 
 from nrs_design.simulation.time_response import TimeResponse
+
+if TYPE_CHECKING:
+    from nrs_design.spec import InteractionDesignSpec
 
 # A controller that is left sooner has chattered, in s.
 CHATTER = 0.01
@@ -63,7 +68,7 @@ class Run:
     steps : int
         Steps of the engine.
     sampling : tuple of (float, int, int) or None
-        Period in s, and smallest and largest delay in samples, of the sampled engine.
+        Period in s, and smallest and largest delay in samples, of the law.
     refused : int
         Samples that the law refused, because an input was beyond its limits.
     saturated : int
@@ -72,6 +77,8 @@ class Run:
         Why the run ended before its time.
     left_out : tuple of str
         What is not in it.
+    outer : float or None
+        Period of filter and admittance in s, which may be another.
     deviation : Deviation or None
         From the sampled engine, where another one was asked for.
     """
@@ -87,6 +94,7 @@ class Run:
     saturated: int = 0
     stopped: str | None = None
     left_out: tuple[str, ...] = LEFT_OUT
+    outer: float | None = None
     deviation: Deviation | None = None
 
     @property
@@ -100,3 +108,19 @@ class Run:
         """Least time between two switches in s; None if there are no two."""
         times = [time for time, _ in self.switches]
         return min((b - a for a, b in pairwise(times)), default=None)
+
+
+def common_lever_arm(spec: InteractionDesignSpec, touched: Iterable[str]) -> float | None:
+    """Return the lever arm in m that environments have in common; None if there is no such.
+
+    Parameters
+    ----------
+    spec : InteractionDesignSpec
+        With the environments.
+    touched : iterable of str
+        Their names; what is no environment by itself has no arm.
+    """
+    known = spec.environments
+    arms = {known[name].lever_arm if name in known else None for name in touched}
+    arm = arms.pop() if len(arms) == 1 else None
+    return None if arm is None else arm.si

@@ -36,6 +36,8 @@ from nrs_design.simulation.switched import fine_step, mode_eigenvalues
 # Starts for each quantity, most sweeps from each, and rounds in which the best are changed.
 STARTS, SWEEPS, ROUNDS = 24, 15, 8
 _KEPT, _COPIES = 4, 3
+# How often the best runs are made twice as long, and by what factor that must make them worse.
+_DOUBLED, _WORTH = 3, 1.01
 # How much finer the grid is at last, in continuous time.
 _FINER = 4
 # A run is as long as a motion of the slowest mode needs to fade to a thousandth, and has so many
@@ -120,6 +122,8 @@ def worst_runs(
     for _ in range(rounds):
         signals, values = search.again(signals, values)
     signals, values = search.best(signals, values, 1)
+    if system.switching.is_arbitrary:
+        signals, values = _lengthened(game, _joined(own), signals, values)
     if system.time is Time.CONTINUOUS and system.switching.is_arbitrary:
         step /= _FINER
         game = _game(system, step)
@@ -131,6 +135,16 @@ def worst_runs(
         )
         for i, (output, came) in enumerate(zip(outputs, np.split(first, len(own)), strict=True))
     )
+
+
+def _lengthened(game: Game, aim: Aim, signals: Signals, values: Array) -> tuple[Signals, Array]:
+    """Give the best runs more time before, as long as that is worth it."""
+    for _ in range(_DOUBLED):
+        before = values
+        signals, values = improve(game, aim, signals.longer(), SWEEPS)
+        if (values <= _WORTH * before).all():
+            break
+    return signals, values
 
 
 @dataclass(frozen=True, eq=False)
@@ -339,6 +353,8 @@ def _run(
     starts: Array,
 ) -> WorstRun:
     order = np.sort(starts)[::-1]
+    if system.switching.is_arbitrary:
+        signals = signals.after_rest()
     states = play(game, signals)[:, 0]
     mode = game.rules.mode[signals.actions[:, 0]]
     if system.contact is not None:

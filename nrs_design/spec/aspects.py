@@ -27,7 +27,13 @@ def aspects_of(spec: InteractionDesignSpec) -> dict[str, Weakening]:
         found["the ranges of gains"] = _nominal_gains
     if spec.sampling is not None and spec.sampling.delay[0] < spec.sampling.delay[1]:
         found["ages of the force sample beyond the shortest"] = _shortest_delay
+    if spec.coupling is not None:
+        found["what the axes do to each other"] = _without_coupling
     return found
+
+
+def _without_coupling(spec: InteractionDesignSpec) -> InteractionDesignSpec:
+    return spec.model_copy(update={"coupling": None})
 
 
 def _without_loss(spec: InteractionDesignSpec) -> InteractionDesignSpec:

@@ -156,14 +156,22 @@ def test_an_estimator_does_not_ship():
     assert law_of(found).logic is None
 
 
-def test_a_spring_beside_other_controllers_is_refused():
+def test_a_spring_beside_other_controllers_draws_to_the_commanded_position():
+    """By what its admittance has moved the reference, as the sampled loop of the proof has it."""
     found = run_design(read_spec(MIXED))
     controllers = tuple(
         replace(c, law=replace(c.law, Kt=Fraction(1))) if isinstance(c.law, Admittance) else c
         for c in found.design.controllers
     )
-    with pytest.raises(DesignError, match="a spring"):
-        shipped_law(found.spec, replace(found.design, controllers=controllers), PERIOD)
+    law = shipped_law(found.spec, replace(found.design, controllers=controllers), PERIOD)
+    unit = coordinates(len(law.values))
+    given = dict(zip((value.name for value in law.values), unit, strict=True))
+    place, numbers = [*given].index("offset"), law.coefficient
+    for mode, controller in enumerate(controllers):
+        moves = isinstance(controller.law, Admittance)
+        forms = linear_forms(law, mode, given)
+        assert numbers["Kt"].of(mode) == moves
+        assert forms["pushed"][place] == numbers["b"].of(mode) * moves
 
 
 def test_inertia_of_some_controllers_is_refused(tmp_path):

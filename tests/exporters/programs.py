@@ -2,6 +2,7 @@
 
 import shutil
 import subprocess
+from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
 
@@ -72,6 +73,11 @@ LAWS = {
             "insertion": ADMITTANCE.sampled(PERIOD, "exact"),
             "hold": SampledForce(to_float32(Fraction("0.02")), to_float32(Fraction("0.001"))),
         },
+        to_float32(Fraction("0.96")),
+    ),
+    "mixed, spring": build_mixed_law(
+        frame(LowPass(1, Fraction(200)).sampled(PERIOD)),
+        {**PLACED, "insertion": replace(ADMITTANCE, Kt=Fraction(1, 2)).sampled(PERIOD, "exact")},
         to_float32(Fraction("0.96")),
     ),
     "limits": law(limits=StepLimits(Fraction(1, 2), to_float32(Fraction("0.13")), Fraction(4000))),

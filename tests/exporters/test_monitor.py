@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from nrs_design.exporters.c import header_text as law_header
+from nrs_design.exporters.c import render as render_c
 from nrs_design.exporters.c_names import CNames
 from nrs_design.exporters.compiled import shared_library
 from nrs_design.exporters.export import Export
@@ -365,3 +366,16 @@ def test_cppcheck_with_misra_is_content(tmp_path, monitor):
         tmp_path / "x_monitor.c",
     )
     assert (done.returncode, done.stderr) == (0, "")
+
+
+@pytest.mark.parametrize("flag", ["-ffast-math", "-ffinite-math-only"])
+def test_a_compiler_that_knows_no_nan_is_refused(tmp_path, sampled_export, flag):
+    """It would leave out that a torque is no number: nothing would ever be left."""
+    gcc = compiler()
+    for ending, text in {**render_c(sampled_export), **render(sampled_export)}.items():
+        (tmp_path / f"{sampled_export.record.spec.name}{ending}").write_bytes(text)
+    (source,) = tmp_path.glob("*_monitor.c")
+    built(gcc, *STRICT, "-c", source, "-o", tmp_path / "o")
+    done = run(gcc, "-std=c99", flag, "-c", source, "-o", tmp_path / "o")
+    assert done.returncode != 0
+    assert "what is not a number" in done.stderr

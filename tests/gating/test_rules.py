@@ -12,7 +12,7 @@ from tests.support import ROOT, run
 # Ids are stable: baselines of code scanners and lock files outlive a release.
 PUBLISHED = [
     *(f"NRS00{i}" for i in range(8)),
-    *(f"NRS10{i}" for i in range(1, 9)),
+    *(f"NRS10{i}" for i in range(1, 10)),
     "NRS201",
     "NRS202",
     "NRS900",
@@ -68,7 +68,7 @@ def test_options_that_are_advised_exist():
         for item in (*RULES.values(), *WORDS.values())
         for option in re.findall("--[a-z-]+", f"{item.explanation} {item.remedy}")
     }
-    commands = (["certify-switching"], ["gate"], ["identify", "tissue"])
+    commands = (["certify-switching"], ["simulate"], ["gate"], ["identify", "tissue"])
     help_ = "".join(run(*command, "--help", cwd=ROOT).stdout for command in commands)
     assert advised - {"--help"} <= set(re.findall("--[a-z-]+", help_))
 

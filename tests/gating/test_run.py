@@ -12,6 +12,7 @@ from nrs_design.gating.renew import write_lock
 from nrs_design.gating.run import Files, run_gate
 from nrs_design.spec import read_spec
 from nrs_design.spec.templates import TEMPLATES
+from tests.simulation.interactions import text_of
 from tests.support import FORCE_LIMIT
 
 from .conftest import BROKEN, SOFT_TISSUE, STABLE, UNSTABLE
@@ -337,3 +338,42 @@ def test_a_robot_is_not_locked(examine, tmp_path):
     again = run_locked(paths, read_lock(file), file)
     assert again.severity == 0
     assert found(again.specs[0]) == [("NRS001", "spec", "met")]
+
+
+LIMITED = (
+    "command: {constant: 8 deg/s}, duration: 0.2 s, surfaces: [{environment: soft, at: 0.1 deg}], "
+    "limits: {LIMITS}"
+)
+
+
+def limited(limits):
+    law = {"insertion": "{type: impedance, environment: soft, Mt: 0 kg*m^2, Bt: 2.15 N*m*s/rad}"}
+    return text_of(law, scenario=LIMITED.replace("LIMITS", limits))
+
+
+@pytest.mark.parametrize(
+    ("limits", "statuses"),
+    [("torque: 0.5 N*m", ["met"]), ("torque: 0.1 N*m, velocity: 20 deg/s", ["missed", "met"])],
+)
+def test_a_scenario_is_held_against_its_limits(examine, tmp_path, limits, statuses):
+    """The gate simulates it; --locked says how it ended, and does not simulate."""
+    outcome = examine(limited(limits))
+    mine = [item for item in outcome.specs[0].obligations if item.rule.id == "NRS109"]
+    assert [str(item.status) for item in mine] == statuses
+    assert mine[0].subject == "run: torque"
+    assert "not a proof" in mine[0].message
+    lock = tmp_path / "nrs.lock"
+    write_lock(outcome, lock)
+    again = run_locked([tmp_path / "s0.nrs.yaml"], read_lock(lock), lock)
+    locked = [item for item in again.specs[0].obligations if item.rule.id == "NRS109"]
+    assert [(item.subject, str(item.status)) for item in locked] == [
+        (item.subject, str(item.status)) for item in mine
+    ]
+    assert all("not computed again" in item.message for item in locked)
+    assert locked[0].line == mine[0].line
+
+
+def test_a_scenario_without_limits_is_not_simulated(examine):
+    text = limited("torque: 1 N*m").replace(", limits: {torque: 1 N*m}", "")
+    assert "limits: {torque" not in text
+    assert "NRS109" not in {item.rule.id for item in examine(text).specs[0].obligations}

@@ -1,5 +1,7 @@
 """What is proved of a spec where not all of it is."""
 
+import pytest
+
 from nrs_design.pipeline import run_certification
 from nrs_design.pipeline.subsets import run_subsets
 from nrs_design.search.certify import Limits, Verdict
@@ -26,3 +28,15 @@ def test_what_is_proved_with_as_little_left_out_as_possible(tmp_path):
     ]
     path.write_text(f"{text}\n{late}".replace("[0, 5]", "0"), encoding="utf-8")
     assert run_subsets(run_certification(read_spec(path), limits=Limits(optimize_rate=False))) == ()
+
+
+@pytest.mark.slow
+def test_axes_that_are_not_proved_together_are_proved_alone(tmp_path):
+    """Links as heavy as two fifths of the drives are too much for both controllers."""
+    links = "coupling: {inertia: [0 kg*m^2, 0.6 kg*m^2]}\nactuator:\n  load_inertia: 1.213 kg*m^2\n"
+    path = tmp_path / "axes.nrs.yaml"
+    path.write_text(SOFT_TISSUE.read_text().replace("actuator:\n", links))
+    result = run_certification(read_spec(path), limits=Limits(optimize_rate=False, max_degree=2))
+    assert result.certification.verdict is Verdict.INCONCLUSIVE
+    found = run_subsets(result, Limits(optimize_rate=False, max_degree=2))
+    assert ("what the axes do to each other",) in [subset.left_out for subset in found]

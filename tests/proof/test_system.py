@@ -1,5 +1,6 @@
 from dataclasses import FrozenInstanceError, replace
 from fractions import Fraction
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -7,6 +8,7 @@ import pytest
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.system import (
     Channel,
+    Clock,
     Contact,
     Coupling,
     Mode,
@@ -17,7 +19,16 @@ from nrs_design.proof.system import (
     Switching,
     Time,
 )
-from tests.proof.systems import bouncing, bouncing_in_steps, family, matrix, pushed, resets_between
+from tests.proof.systems import (
+    bouncing,
+    bouncing_in_steps,
+    bouncing_in_turns,
+    doubled_in_turns,
+    family,
+    matrix,
+    pushed,
+    resets_between,
+)
 
 HALF = Fraction(1, 2)
 PUSHED = pushed(bouncing(1))
@@ -414,3 +425,37 @@ def test_couplings_need_continuous_time_one_size_and_names():
     found = replace(unequal, couplings=(first,)).find_contradiction()
     assert found == "axes act on each other, but their modes are not of one size"
     assert unequal.find_contradiction() is None
+
+
+CONTRADICTIONS = [
+    ({"clock": Clock(1, ("m0",))}, "take turns without steps"),
+    ({"clock": Clock(3, ())}, "has no mode"),
+    ({"clock": Clock(3, ("m0", "m1"))}, "has no mode"),
+    ({"clock": Clock(3, ("m0", "m2"))}, "does not exist"),
+    ({"switching": Switching(Fraction(2))}, "rules of switching besides"),
+]
+
+
+@pytest.mark.parametrize(("changes", "reason"), CONTRADICTIONS)
+def test_turns_that_make_no_sense(changes, reason):
+    system = doubled_in_turns(3)
+    assert system.find_contradiction() is None
+    assert reason in replace(system, **changes).find_contradiction()
+
+
+def test_turns_need_steps_of_one_size_and_free_modes_of_their_own():
+    clock = Clock(2, ("m0",))
+    assert "without steps" in replace(family([[-1]], [[-2]]), clock=clock).find_contradiction()
+    two = doubled_in_turns(2)
+    unlike = replace(two, modes=(two.modes[0], family([[1, 0], [0, 1]]).modes[0]))
+    unlike = replace(unlike, modes=(unlike.modes[0], replace(unlike.modes[1], name="m1")))
+    assert "unlike size" in unlike.find_contradiction()
+    bounce = bouncing_in_turns()
+    assert bounce.find_contradiction() is None
+    for first in (("push 1", "push 2"), ("push 1", "push 2", "fall", "fall on")):
+        found = replace(bounce, clock=Clock(2, first)).find_contradiction()
+        assert found == "a step of a round has no mode, in contact or free"
+    for a, b in pairwise(bounce.contact.free):
+        alone = replace(bounce, contact=Contact((a,)), clock=Clock(2, ("push 1", "fall")))
+        assert "has no mode" in alone.find_contradiction()
+        assert a != b

@@ -8,12 +8,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from nrs_design.pipeline import run_certification
-from nrs_design.pipeline.scenarios import Runs, hold_bounds, run_scenarios
+from nrs_design.pipeline.scenarios import Runs, hold_bounds, hold_rate, run_scenarios
 from nrs_design.search.certification import Limits
 from nrs_design.simulation.coverage import uncovered
 from nrs_design.simulation.exact import simulate_exactly
 from nrs_design.simulation.sampled import simulate_sampled
-from nrs_design.simulation.scenario import Control, Profile
+from nrs_design.simulation.scenario import Control, Errors, Profile
 from nrs_design.spec import read_spec
 from tests.simulation.interactions import text_of
 
@@ -145,3 +145,66 @@ def test_the_peak_of_a_sinusoid_counts(certified):
     assert found["force"].uncovered == (
         "the velocity command is larger than the proof takes it for",
     )
+
+
+ENDING = "command: {points: [[0 s, 6 deg/s], [0.5 s, 6 deg/s], [0.5 s, 0 deg/s], [3 s, 0 deg/s]]}, "
+PRESSED = ENDING + "surfaces: [{environment: soft, at: 1 deg}], control: {fixed: withdrawal}"
+
+
+@pytest.fixture(scope="module")
+def ending(tmp_path_factory):
+    path = tmp_path_factory.mktemp("spec") / "small.nrs.yaml"
+    path.write_text(text_of(LAWS, scenario=PRESSED, more="contact: losable\n"))
+    return run_certification(read_spec(path))
+
+
+def test_once_nothing_is_commanded_a_run_decays_as_certified(ending):
+    designed = ending.designed
+    (one,) = run_scenarios(designed)
+    held = hold_rate(designed, ending.certificate, one)
+    assert (held.uncovered, held.start, held.unit) == ((), 0.5, "1/s")
+    after = one.run.response.t > held.start
+    t, torque = one.run.response.t[after], np.abs(one.run.response["torque"][after])
+    assert torque[0] > 0.05
+    # In the long run no slower: from some time on, below any multiple of the exponential.
+    assert held.rate > 0.5
+    scaled = torque * np.exp(held.rate * (t - held.start))
+    assert scaled[-1] < 0.1 * scaled[0]
+
+
+@pytest.mark.parametrize(
+    ("change", "options", "reason"),
+    [
+        (lambda s: replace(s, profile=Profile.constant(0.05)), {}, "does not come to an end"),
+        (lambda s: replace(s, profile=Profile.sinusoid(0.05, 2.0)), {}, "does not come to an end"),
+        (lambda s: replace(s, duration=0.5), {}, "does not come to an end"),
+        (lambda s: replace(s, errors=Errors(friction=1.0)), {}, "go on acting"),
+        (lambda s: replace(s, surfaces=s.surfaces * 2), {}, "several surfaces"),
+        (lambda s: s, {"engine": "sampled"}, "not about the sampled loop"),
+    ],
+)
+def test_when_a_rate_is_not_about_a_run(ending, change, options, reason):
+    designed = ending.designed
+    (one,) = run_scenarios(designed, Runs(**options))
+    changed = replace(one, scenario=change(one.scenario))
+    held = hold_rate(designed, ending.certificate, changed)
+    assert any(reason in text for text in held.uncovered)
+
+
+def test_mujoco_is_another_engine_than_that_of_the_proof(certified):
+    pytest.importorskip("mujoco", reason="MuJoCo is not installed")
+    (one,) = run_scenarios(certified.designed, Runs(engine="mujoco"))
+    for bound in bounds(certified, one).values():
+        assert any("MuJoCo" in reason for reason in bound.uncovered)
+
+
+@pytest.mark.slow
+def test_two_clocks_are_not_one(sampled):
+    """The step of both is the same, and the law is another."""
+    (one,) = run_scenarios(sampled.designed)
+    assert not any(
+        "period" in reason for b in bounds(sampled, one).values() for reason in b.uncovered
+    )
+    other = replace(one, run=replace(one.run, outer=0.004))
+    for bound in bounds(sampled, other).values():
+        assert any("period" in reason for reason in bound.uncovered)

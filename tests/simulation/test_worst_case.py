@@ -3,6 +3,7 @@
 import math
 from dataclasses import replace
 from fractions import Fraction
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -141,7 +142,7 @@ BOUNDED = "contact: losable\ndisturbances: {command: 8 deg/s}\n"
 
 def loaded(more, **options):
     text = text_of(ONE, SOFT, more=more, **options)
-    return LoadedSpec("small", "", text, parse_spec(text))
+    return LoadedSpec(Path("small"), "", text, parse_spec(text))
 
 
 def test_the_exact_engine_comes_to_the_same():

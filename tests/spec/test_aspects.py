@@ -48,3 +48,13 @@ def test_all_parts_can_be_left_out_together():
     assert (spec.sampling.delay, spec.contact) == ((1, 1), "kept")
     nominal = spec.environments["soft"].stiffness
     assert nominal.range == (nominal.nominal, nominal.nominal)
+
+
+def test_axes_by_themselves():
+    links = "coupling: {inertia: [0 kg*m^2, 0.3 kg*m^2]}\nactuator:\n  load_inertia: 1.213 kg*m^2\n"
+    spec = parse_spec(TEXT.replace("actuator:\n", links))
+    aspects = aspects_of(spec)
+    assert set(aspects) == {TOUCHED, "what the axes do to each other"}
+    alone = aspects["what the axes do to each other"](spec)
+    assert alone.coupling is None
+    assert alone.actuator == spec.actuator

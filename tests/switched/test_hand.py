@@ -10,7 +10,7 @@ import pytest
 
 from nrs_design.certificates.certificate import Verdict
 from nrs_design.errors import SpecError
-from nrs_design.pipeline import run_certification, run_design
+from nrs_design.pipeline import run_analysis, run_certification, run_design
 from nrs_design.proof.evidence import UnstablePeriod
 from nrs_design.search.certify import Limits, certify
 from nrs_design.spec import LoadedSpec, parse_spec, read_spec
@@ -65,6 +65,15 @@ def test_the_modes_are_the_loop_with_the_mass():
         expected = implicit(*values, 2.0, 4.0 if name == "lively" else 8.0)
         found = np.sort_complex(np.linalg.eigvals(np.array(mode.A.floats())))
         assert found == pytest.approx(expected, rel=1e-6, abs=1e-6)
+
+
+def test_the_stiffness_limit_of_the_design_takes_damping_and_mass_along():
+    designed = run_design(read_spec(PATH))
+    for item in run_analysis(designed).impedance:
+        limit = item.margins.stiffness_limit
+        Bt = 4.0 if item.name == "lively" else 8.0
+        assert max(implicit(0.999 * limit, 7, 0.1, 2, Bt).real) < 0
+        assert max(implicit(1.001 * limit, 7, 0.1, 2, Bt).real) > 0
 
 
 def test_two_admittances_in_the_operator_box_are_proved():

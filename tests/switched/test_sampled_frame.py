@@ -401,6 +401,18 @@ def test_an_admittance_beside_others_moves_its_reference_as_alone():
         assert a == b
 
 
+def test_a_spring_beside_others_draws_as_alone():
+    """The same map; its pull is a product of what the reference is, and no difference before."""
+    law = replace(_law("1.04"), Kt=Fraction(3, 2))
+    alone = replace(_frame(1), sprung=True)
+    beside = replace(alone, idle=Fraction(1, 2), takes_force=True)
+    n = len(alone.states)
+    a, b = ([row[:n] for row in f.rows(law, 1, _nominal(43))[:n]] for f in (alone, beside))
+    a[0] = [p + q for p, q in zip(a[0], a[n - 1], strict=True)]
+    assert [[*row[: n - 1], row[n - 1] - row[0]] for row in a] == [[*row] for row in b]
+    assert [frame.counts["b Kt r"] for frame in (alone, beside)] == [5, 4]
+
+
 def test_force_control_in_single_precision_stays_within_the_roundings():
     """Reference, error and command of 500 random samples, with one lag or none, in float32."""
     rng = np.random.default_rng(16)

@@ -248,8 +248,9 @@ def _force_locus(item: ForceAnalysis) -> Illustration:
     open_loop = TransferFunction(scaled, item.forward.denominator)
     # A gain of zero is allowed; the locus still needs a range of gains.
     gain = item.loop.gain or 1 / item.stiffness
+    kept = ", with Ki/Kp kept" if item.approach.integral else ""
     caption = (
-        f"Poles of the force loop of {item.name} while Kp grows from 0, at the nominal stiffness "
+        f"Poles of the force loop of {item.name} while Kp grows from 0{kept}, at nominal stiffness "
         f"{number(item.stiffness, 6)} N·m/rad. Diamonds: Kp = {number(item.loop.gain)} rad/(N·m)."
     )
     figure = draw_root_locus(open_loop, gain, (), item.loop.poles)

@@ -88,6 +88,11 @@ def exchanged(robot):
 )
 def test_inverse_dynamics_are_those_of_the_model(robot):
     """Coriolis forces and all links; the model itself is checked against Pinocchio elsewhere."""
+    check_torques(robot)
+
+
+def check_torques(robot):
+    """Hold inverse dynamics of a robot against the model, at poses of its workspace."""
     law = build_inverse_dynamics(Joints(robot, RATIO))
     pose = poses(robot)
     joints = inverse_kinematics(robot, pose)

@@ -4,12 +4,11 @@ from dataclasses import replace
 
 import numpy as np
 
-from nrs_design.controllers.motion.step_laws import Joints, build_inverse_dynamics
 from nrs_design.controllers.motion.traced_dynamics import is_flat
 from nrs_design.models.robot import inverse_dynamics, inverse_kinematics
 from nrs_design.models.robot.body import Body
 from nrs_design.models.robot.lumped import in_lengths, lumped
-from tests.controllers.motion.test_step_laws import RATIO, RNG, THESIS, base_of, outputs, poses, run
+from tests.controllers.motion.test_step_laws import RNG, THESIS, check_torques, poses
 from tests.exporters.conftest import crooked
 
 
@@ -40,19 +39,7 @@ def test_which_robots_are_flat():
 
 def test_torques_are_those_of_the_model():
     """The model is checked against Pinocchio elsewhere."""
-    robot = uneven(THESIS)
-    law = build_inverse_dynamics(Joints(robot, RATIO))
-    pose = poses(robot)
-    joints = inverse_kinematics(robot, pose)
-    velocity, acceleration = RNG.normal(0, 1, joints.shape), RNG.normal(0, 5, joints.shape)
-    given = base_of(robot, len(joints))
-    given.pop("correction")
-    result = run(law, angle=RATIO * joints, velocity=velocity, acceleration=acceleration, **given)
-    assert result.valid.all()
-    wanted = inverse_dynamics(robot, pose, velocity, acceleration)
-    assert len(pose) > 30
-    assert np.abs(wanted).max() > 3
-    np.testing.assert_allclose(outputs(result), wanted, atol=2e-5, rtol=2e-6)
+    check_torques(uneven(THESIS))
 
 
 def test_lengths_may_be_counted_in_any():

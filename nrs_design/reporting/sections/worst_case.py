@@ -1,0 +1,54 @@
+"""The worst runs that an adversary finds, between the limits of the spec and what is certified."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from nrs_design.errors import DesignError
+from nrs_design.pipeline.worst_case import run_worst_case
+from nrs_design.reporting.document import Illustration, Paragraph, Section, Table
+from nrs_design.reporting.worst_case import (
+    COLUMNS,
+    LEFT_OUT,
+    MEANING,
+    NO_BOUND,
+    draw_worst,
+    worst_rows,
+)
+from nrs_design.simulation.run import common_lever_arm
+
+if TYPE_CHECKING:
+    from nrs_design.pipeline import Result
+
+# A page is to be there within seconds; `simulate --worst-case` searches longer.
+_ROUNDS = 1
+_CAPTION = (
+    "The worst run that was found for the force. Contact, controller and command change between "
+    "steps as the adversary likes, within the rules of the spec. No run crosses a dashed line. "
+    "`nrs-design simulate --worst-case` searches longer, and draws the worst runs for velocity and "
+    "deflection."
+)
+
+
+def worst_case_section(result: Result) -> Section | None:
+    """Show what an adversary finds; None where the spec says nothing that disturbs the loop."""
+    designed = result.designed
+    if designed is None or designed.spec.disturbances is None:
+        return None
+    try:
+        case = run_worst_case(designed, result.certificate, rounds=_ROUNDS)
+    except DesignError:
+        return None
+    arm = common_lever_arm(designed.spec, designed.spec.touched)
+    meaning = MEANING if case.bounds else f"{MEANING.partition(';')[0]}. {NO_BOUND}"
+    rows = tuple(tuple(row) for row in worst_rows(case, arm))
+    return Section(
+        "Worst case found",
+        (
+            Paragraph(f"{meaning} Not in it: {LEFT_OUT}. Floating point, no part of the proof."),
+            Table("Worst found, limit and bound", COLUMNS, rows),
+            Illustration(
+                "worst-case", "The worst run found", _CAPTION, draw_worst(case, case.runs[0], arm)
+            ),
+        ),
+    )

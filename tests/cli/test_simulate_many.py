@@ -1,0 +1,118 @@
+"""`nrs-design simulate --worst-case` and `--monte-carlo`, as a user types them."""
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+
+import pytest
+
+from tests.simulation.interactions import text_of
+from tests.support import run
+
+LAW = {"insertion": "{type: impedance, environment: soft, Mt: 0 kg*m^2, Bt: 2.15 N*m*s/rad}"}
+SOFT = {
+    "soft": "{model: elastic, stiffness: {nominal: 43 N*m/rad, range: [40 N*m/rad, 46 N*m/rad]}}"
+}
+RUN = "command: {constant: 8 deg/s}, duration: 0.2 s, surfaces: [{environment: soft, at: 0.1 deg}]"
+
+
+@pytest.fixture
+def spec(tmp_path):
+    path = tmp_path / "small.nrs.yaml"
+    more = "contact: losable\ndisturbances: {command: 8 deg/s}\n"
+    path.write_text(text_of(LAW, SOFT, scenario=RUN, more=more))
+    return path
+
+
+@pytest.mark.slow
+def test_the_worst_case_beside_limits_and_bounds(spec, tmp_path):
+    result = run("simulate", spec, "--worst-case", "--json", "--out", "runs", cwd=tmp_path)
+    assert result.returncode == 0, result.stderr
+    document = json.loads(result.stdout)
+    assert document["schema"] == "nrs-design/simulate/1"
+    found = {item["output"]: item for item in document["worst_case"]["found"]}
+    assert found.keys() == {"force", "velocity", "deflection"}
+    for item in found.values():
+        assert 0 < item["worst_found"] < item["certified_bound"]
+        assert item["bound_over_found"] > 1
+        assert item["worst_found"] >= max(item["starts"]) * 0.99
+    assert found["force"]["exceeds_limit"] == (found["force"]["worst_found"] > 0.3)
+    names = {f"small.worst-{name}.{s}" for name in found for s in ("csv", "npz", "svg", "png")}
+    assert {path.name for path in (tmp_path / "runs").iterdir()} == names
+    told = run("simulate", spec, "--worst-case", "--no-bound", cwd=tmp_path).stdout
+    assert "worst found" in told
+    assert "No bound is certified" in told
+
+
+def test_shares_are_printed_with_their_intervals(spec, tmp_path):
+    result = run("simulate", spec, "--monte-carlo", "8", "--no-bound", "--json", "--out", ".",
+                 cwd=tmp_path)  # fmt: skip
+    assert result.returncode == 0, result.stderr
+    study = json.loads(result.stdout)["monte_carlo"]
+    assert (study["runs"], study["seed"], study["stopped"]) == (8, 0, 0)
+    share = study["above_limit"]["torque"]
+    assert share["low"] <= share["share"] <= share["high"]
+    rows = (tmp_path / "small.monte-carlo.csv").read_text().splitlines()
+    assert rows[0].startswith("run,scenario,seed,peak_torque_Nm,")
+    assert len(rows) == 9
+
+
+@pytest.mark.slow
+def test_an_interrupted_study_goes_on_as_if_nothing_had_been(spec, tmp_path):
+    command = [sys.executable, "-m", "nrs_design", "simulate", str(spec), "--no-bound"]
+    command += ["--monte-carlo", "200", "--jobs", "2", "--resume", "runs.jsonl"]
+    # A child of a shell in the background would be deaf to the signal.
+    process = subprocess.Popen(
+        command,
+        cwd=tmp_path,
+        stderr=subprocess.PIPE,
+        text=True,
+        start_new_session=True,
+        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.default_int_handler),
+    )
+    file = tmp_path / "runs.jsonl"
+    for _ in range(600):
+        if file.exists() and file.read_bytes().count(b"\n") > 6:
+            break
+        time.sleep(0.1)
+    os.killpg(process.pid, signal.SIGINT)
+    _, said = process.communicate(timeout=60)
+    assert process.returncode == 130, said
+    assert "goes on from there" in said
+    kept = file.read_bytes().count(b"\n") - 1
+    assert 6 <= kept < 200
+    again = run(*command[3:], cwd=tmp_path)
+    assert again.returncode == 0, again.stderr
+    at_once = run(*command[3:-1], "other.jsonl", cwd=tmp_path)
+    assert at_once.returncode == 0
+    assert again.stdout == at_once.stdout
+    assert file.read_bytes() == (tmp_path / "other.jsonl").read_bytes()
+
+
+@pytest.mark.parametrize(
+    "options",
+    [
+        ("--worst-case", "--monte-carlo", "3"),
+        ("--worst-case", "--scenario", "run"),
+        ("--jobs", "2"),
+        ("--resume", "runs.jsonl"),
+        ("--seed", "1"),
+        ("--monte-carlo", "0"),
+    ],
+)
+def test_options_that_nothing_would_heed_are_refused(spec, tmp_path, options):
+    result = run("simulate", spec, *options, cwd=tmp_path)
+    assert result.returncode == 2
+    assert not result.stdout
+
+
+def test_what_no_adversary_plays_against_is_said(tmp_path):
+    path = tmp_path / "small.nrs.yaml"
+    path.write_text(text_of({"position": "{type: position}"}, SOFT))
+    result = run("simulate", path, "--worst-case", cwd=tmp_path)
+    assert result.returncode == 2
+    assert "no worst case is searched" in result.stderr
+    assert "--monte-carlo" in result.stderr

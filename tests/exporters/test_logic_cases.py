@@ -1,0 +1,59 @@
+"""Cases of a mode logic: both sides of every threshold, both sides of every time, and no number."""
+
+import struct
+from fractions import Fraction
+
+import pytest
+
+from nrs_design.controllers.step_logic import LONGEST, StepLogic
+from nrs_design.exporters.logic_cases import COUNT, SPECIAL, logic_document
+from nrs_design.spec import read_spec
+from tests.support import ROOT
+
+SPEC = read_spec(ROOT / "docs/examples/force-by-threshold.nrs.yaml").spec
+
+
+@pytest.fixture(scope="module")
+def logic():
+    return StepLogic.of(SPEC.mode_logic, tuple(SPEC.controllers), Fraction(1, 500))
+
+
+def number(bits):
+    return struct.unpack(">f", bytes.fromhex(bits))[0]
+
+
+def test_every_case_is_a_step_of_the_logic(logic):
+    document = logic_document(logic)
+    assert len(document["cases"]) == COUNT
+    for mode, held, *signals, after, count in document["cases"]:
+        seen = dict(zip(logic.signals, map(number, signals), strict=True))
+        assert logic.step(mode, held, seen) == (after, count)
+
+
+def test_cases_hold_what_decides(logic):
+    """Each threshold and its neighbors, each time and one sample less, and modes there are not."""
+    document = logic_document(logic)
+    cases, columns = document["cases"], document["columns"]
+    for switch in logic.switches:
+        for bound in switch.bounds:
+            bits = struct.unpack(">I", struct.pack(">f", float(bound.threshold)))[0]
+            place = columns.index(bound.signal)
+            drawn = {int(case[place], 16) for case in cases}
+            assert {bits - 1, bits, bits + 1, *SPECIAL} <= drawn
+    drawn = {tuple(case[:2]) for case in cases}
+    for mode, stay in enumerate(logic.stays):
+        assert {(mode, n) for n in (0, max(stay - 1, 0), stay, stay + 1, LONGEST)} <= drawn
+    assert {case[0] for case in cases} == set(range(len(logic.stays) + 1))
+    switched = {(case[0], case[-2]) for case in cases if case[0] != case[-2]}
+    assert {(s.source, s.target) for s in logic.switches} <= switched
+
+
+def test_the_same_seed_gives_the_same_cases(logic):
+    first, again, other = (logic_document(logic, 50, seed)["cases"] for seed in (1, 1, 2))
+    assert first == again != other
+
+
+def test_after_and_before_are_in_range(logic):
+    for *_, after, count in logic_document(logic)["cases"]:
+        assert 0 <= after < len(logic.stays)
+        assert 1 <= count <= LONGEST

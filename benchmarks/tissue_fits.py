@@ -97,7 +97,9 @@ def _timed(function: Callable[[], T]) -> tuple[float, T]:
 
 
 def _fit_all(record: TissueRecord) -> Sequence[RecordFit]:
-    return [fit_record(kind, record) for kind in LAWS.values()]
+    """Fit as `identify` does: what is in contact is found once for all laws."""
+    trial = prepare(record)
+    return [fit_record(kind, trial) for kind in LAWS.values()]
 
 
 def _peer_all(record: TissueRecord) -> Sequence[float]:

@@ -117,12 +117,17 @@ def _simulate(
 
 
 def _head(asked: MonteCarlo) -> dict[str, Any]:
+    from hashlib import sha256
+
     from nrs_design import __version__
 
     loaded = asked.designed.loaded
+    # A spec names files of commands, which its hash does not hold.
+    commands = repr([one.profile for one in asked.scenarios])
     return {
         "spec": loaded.spec.name,
         "spec_sha256": loaded.sha256,
+        "commands_sha256": sha256(commands.encode()).hexdigest(),
         "version": __version__,
         "runs": asked.runs,
         "seed": asked.seed,

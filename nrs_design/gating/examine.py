@@ -241,8 +241,8 @@ class Examiner:
             CERTIFIED_GOAL, f"system: {key}", status, message, self.places.at("goals", key)
         )
 
-    def scenario(self, simulated: Simulated) -> Iterator[Obligation]:
-        """Yield NRS109 for every limit of a scenario that was simulated."""
+    def scenario(self, name: str, simulated: Simulated) -> Iterator[Obligation]:
+        """Yield NRS109 for every limit of a scenario, held against one of its runs."""
         scenario, run = simulated.scenario, simulated.run
         early = "" if run.stopped is None else f", stopped early ({run.stopped})"
         for quantity, limit in scenario.limits.items():
@@ -255,7 +255,7 @@ class Examiner:
                 f"({run.engine} engine, floating point: one run, not a proof)"
             )
             status = Status.MET if met else Status.MISSED
-            place = self.places.at("scenarios", scenario.name, "limits", quantity)
+            place = self.places.at("scenarios", name, "limits", quantity)
             subject = f"{scenario.name}: {quantity}"
             yield self.obligation(SCENARIO_LIMIT, subject, status, message, place)
 

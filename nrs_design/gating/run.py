@@ -223,11 +223,13 @@ def _scenarios(result: Result, examiner: Examiner, progress: Progress) -> Iterat
     for name in limited:
         progress(f"scenario {name}")
         try:
-            (simulated,) = run_scenarios(result.designed, Runs((name,)))
+            # One run for each axis that moves.
+            runs = list(run_scenarios(result.designed, Runs((name,))))
         except DesignError as error:
             yield examiner.no_scenario(name, error)
         else:
-            yield from examiner.scenario(simulated)
+            for simulated in runs:
+                yield from examiner.scenario(name, simulated)
 
 
 def _goals_and_report(

@@ -116,3 +116,14 @@ def test_what_no_adversary_plays_against_is_said(tmp_path):
     assert result.returncode == 2
     assert "no worst case is searched" in result.stderr
     assert "--monte-carlo" in result.stderr
+
+
+def test_other_commands_in_a_file_of_the_spec_are_another_study(tmp_path):
+    path = tmp_path / "study.nrs.yaml"
+    path.write_text(text_of(LAW, SOFT, scenario="command: {csv: hand.csv}, duration: 0.2 s"))
+    command = ("simulate", path, "--monte-carlo", "2", "--resume", "runs.jsonl", "--no-bound")
+    for speed, code in ((4, 0), (5, 2), (4, 0)):
+        (tmp_path / "hand.csv").write_text(f"time_s,velocity_deg_s\n0,0\n0.1,{speed}\n0.2,0\n")
+        result = run(*command, cwd=tmp_path)
+        assert result.returncode == code, result.stderr
+    assert (tmp_path / "runs.jsonl").read_bytes().count(b"\n") == 3

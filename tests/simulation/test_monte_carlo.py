@@ -1,5 +1,6 @@
 """Runs are drawn from ranges, and the share above a limit is what a dense grid says."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -8,7 +9,7 @@ import pytest
 from nrs_design.errors import DataError
 from nrs_design.pipeline import run_design
 from nrs_design.pipeline.monte_carlo import MonteCarlo, run_monte_carlo
-from nrs_design.pipeline.scenarios import Runs, scenarios_of
+from nrs_design.pipeline.scenarios import Runs
 from nrs_design.simulation.monte_carlo import Outcome, Share, draw, shares
 from nrs_design.simulation.outcomes_file import appending, read_outcomes
 from nrs_design.spec import parse_spec
@@ -66,7 +67,7 @@ def test_the_interval_is_exact():
 
 def test_a_run_depends_on_seed_and_index_alone():
     asked = study(4)
-    scenarios = scenarios_of(asked.designed, ())
+    scenarios = asked.scenarios
 
     def drawn(seed, index):
         return draw(asked.designed.spec, asked.designed.plant, scenarios, seed, index)
@@ -85,7 +86,7 @@ def test_the_motor_is_drawn_from_its_ranges():
         "gain: {nominal: 4.8417e-4 rad/s/rpm, range: [4.7e-4 rad/s/rpm, 5e-4 rad/s/rpm]}",
     )
     designed = run_design(LoadedSpec(Path("small"), "", text, parse_spec(text)))
-    scenarios = scenarios_of(designed, ())
+    scenarios = replace(asked, designed=designed).scenarios
     drawn = [draw(designed.spec, designed.plant, scenarios, 0, i) for i in range(20)]
     gains = [float(one.plant.actuator.gain) for one in drawn]
     assert 4.7e-4 < min(gains) < 4.8e-4 < 4.9e-4 < max(gains) < 5e-4

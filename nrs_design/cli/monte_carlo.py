@@ -72,7 +72,7 @@ def monte_carlo(
         Told how far it is.
     """
     from nrs_design.output import check_place
-    from nrs_design.simulation.monte_carlo import shares
+    from nrs_design.simulation.monte_carlo import held_against, shares
 
     for path, beginning in _places(asked, out):
         check_place(path, beginning)
@@ -88,11 +88,7 @@ def monte_carlo(
         raise typer.Exit(exit_codes.INTERRUPTED) from None
     step("figures")
     found = shares(outcomes, asked.limits)
-    drawn = tuple(dict.fromkeys(reason for one in outcomes for reason in one.uncovered))
-    bounds = {
-        name: (level, tuple(dict.fromkeys((*reasons, *drawn))))
-        for name, (level, reasons) in written.items()
-    }
+    bounds = {name: held_against(bound, outcomes) for name, bound in written.items()}
     study = Study(asked, outcomes, found, bounds, _write(asked, out, outcomes, bounds))
     return partial(_show, study)
 
@@ -122,12 +118,17 @@ def _simulate(
 
 
 def _head(asked: MonteCarlo) -> dict[str, Any]:
+    from hashlib import sha256
+
     from nrs_design import __version__
 
     loaded = asked.designed.loaded
+    # A spec names files of commands, which its hash does not hold.
+    commands = repr([one.profile for one in asked.scenarios])
     return {
         "spec": loaded.spec.name,
         "spec_sha256": loaded.sha256,
+        "commands_sha256": sha256(commands.encode()).hexdigest(),
         "version": __version__,
         "runs": asked.runs,
         "seed": asked.seed,

@@ -79,6 +79,15 @@ def simulate(
         int | None,
         typer.Option(min=0, max=10, help="Age of its force samples in samples, not the spec's."),
     ] = None,
+    outer_period: Annotated[
+        float | None,
+        typer.Option(
+            metavar="S",
+            min=1e-5,
+            max=1.0,
+            help="Period of its force samples and admittances in s, not that of the motion loop.",
+        ),
+    ] = None,
     max_steps: Annotated[
         int | None, typer.Option(min=1, help="Most steps of a run; beyond, exit code 3.")
     ] = None,
@@ -105,9 +114,11 @@ def simulate(
     from nrs_design.pipeline.scenarios import Runs, run_scenarios
     from nrs_design.spec import read_spec
 
-    if engine is EngineOption.EXACT and (period is not None or delay is not None):
-        raise typer.BadParameter("the exact engine has no samples", param_hint="--period, --delay")
-    Many(worst, monte_carlo, seed, jobs, resume).check((scenario, engine, period, delay, max_steps))
+    timed = any(value is not None for value in (period, delay, outer_period))
+    if engine is EngineOption.EXACT and timed:
+        raise typer.BadParameter("the exact engine has no samples", param_hint="--engine")
+    of_scenarios = (scenario, engine, period, delay, outer_period, max_steps)
+    Many(worst, monte_carlo, seed, jobs, resume).check(of_scenarios)
     loaded = read_spec(spec)
     if loaded.spec.kind != "interaction-design":
         raise wrong_kind(
@@ -116,9 +127,9 @@ def simulate(
             "name a spec of kind interaction-design; see also `nrs-design robot track`",
         )
     how = None if engine is None else str(engine)
-    if how is None and (period is not None or delay is not None):
+    if how is None and timed:
         how = str(EngineOption.SAMPLED)
-    wanted = Runs(tuple(dict.fromkeys(scenario or ())), how, period, delay, max_steps)
+    wanted = Runs(tuple(dict.fromkeys(scenario or ())), how, period, delay, max_steps, outer_period)
     with progress(f"simulating {loaded.spec.name}", quiet=quiet) as step:
         if worst or monte_carlo is not None:
             many = Many(worst, monte_carlo, seed, jobs, resume)

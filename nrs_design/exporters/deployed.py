@@ -11,8 +11,8 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from nrs_design.certificates.certificate import Certificate
-from nrs_design.controllers.float32 import exact_decimal
-from nrs_design.controllers.gains import design_from_gains, idle_decay
+from nrs_design.certificates.units import gain_units
+from nrs_design.controllers.gains import design_from_gains
 from nrs_design.errors import NrsDesignError
 from nrs_design.exporters import monitor
 from nrs_design.exporters.build import build_record
@@ -22,10 +22,9 @@ from nrs_design.exporters.deployed_model import model_differences
 from nrs_design.exporters.export import Export
 from nrs_design.exporters.monitor_limits import limits_of
 from nrs_design.exporters.program import program_of
-from nrs_design.exporters.record import ExportRecord
+from nrs_design.exporters.record import ExportRecord, Gain
 from nrs_design.exporters.shipped import law_of
 from nrs_design.files import open_regular
-from nrs_design.proof.text import exact_text
 from nrs_design.spec import InteractionDesignSpec
 
 LARGEST_BYTES = 2**22
@@ -91,10 +90,14 @@ def _exported(spec: InteractionDesignSpec, certificate: Certificate, file: Path)
             path=file,
             remedy="name a certificate of a spec without `outer_period`",
         )
+    record, design = _record(spec, certificate), design_from_gains(spec, certificate.gains)
+    return Export("proved", record, certificate, design=design, spec=spec)
+
+
+def _record(spec: InteractionDesignSpec, certificate: Certificate) -> ExportRecord:
     design = design_from_gains(spec, certificate.gains)
     delay = None if spec.sampling is None else spec.sampling.delay
-    record = build_record(design, certificate, spec.idle_states, spec.offset, delay)
-    return Export("proved", record, certificate, design=design, spec=spec)
+    return build_record(design, certificate, spec.idle_states, spec.offset, delay)
 
 
 def _of_monitor(text: str, export: Export, file: Path) -> Iterator[str]:
@@ -148,44 +151,41 @@ def _of_record(
     names = [(name, gain.name) for name, gains in parts for gain in gains]
     if len({*names}) < len(names) or len({name for name, _ in parts}) < len(parts):
         yield "a controller or a gain is there twice"
-    held = {name: {gain.name: gain.exact for gain in gains} for name, gains in parts}
+    held = {
+        name: {gain.name: f"{gain.exact} {gain.unit}" for gain in gains} for name, gains in parts
+    }
+    units = gain_units(certificate)
     for name in sorted(held.keys() | certificate.gains.keys()):
-        mine, proved = held.get(name, {}), dict(certificate.gains.get(name, {}))
+        gains = certificate.gains.get(name, {})
+        mine = held.get(name, {})
+        proved = {gain: f"{value} {units[name][gain]}" for gain, value in gains.items()}
         for gain in sorted(mine.keys() | proved.keys()):
             if mine.get(gain) != proved.get(gain):
                 has = proved.get(gain, "no such gain")
                 found = mine.get(gain, "missing")
                 yield f"{gain} of {name} is {found}, and the certificate has {has}"
-    proved_rest = _rest_of_design(spec, certificate)
-    for name, found in _rest_of_record(record).items():
+    proved_rest = _rest_of(_record(spec, certificate))
+    for name, found in _rest_of(record).items():
         if found != proved_rest[name]:
             yield f"{name}: {found}, and the certificate has {proved_rest[name]}"
 
 
-def _rest_of_record(record: ExportRecord) -> dict[str, str]:
+def _rest_of(record: ExportRecord) -> dict[str, str]:
     """Return what runs beside the gains, in words."""
     low_pass, idle, period = record.force_filter, record.idle_states, record.sample_time
     return {
-        "lags of the filter and their pole": f"{low_pass.order}, {low_pass.pole.exact}"
+        "laws and contacts": "; ".join(
+            f"{c.name}: {c.law} at {', '.join(c.contacts)}" for c in record.controllers
+        ),
+        "lags of the filter and their pole": f"{low_pass.order}, {_said(low_pass.pole)}"
         if low_pass
         else "none",
-        "decay and reset of idle states": f"{idle.decay.exact}, {idle.reset}" if idle else "none",
+        "decay and reset of idle states": f"{_said(idle.decay)}, {idle.reset}" if idle else "none",
         "offset": record.offset or "none",
         "sample time in s": period.exact if period else "none",
+        "age of the force sample": "{} to {}".format(*record.delay) if record.delay else "none",
     }
 
 
-def _rest_of_design(spec: InteractionDesignSpec, certificate: Certificate) -> dict[str, str]:
-    """Return the same of the design that the certificate is about."""
-    low_pass = design_from_gains(spec, certificate.gains).sensor.filter
-    idle, period = spec.idle_states, certificate.system.sample_time
-    return {
-        "lags of the filter and their pole": f"{low_pass.order}, {exact_decimal(low_pass.pole)}"
-        if low_pass
-        else "none",
-        "decay and reset of idle states": f"{exact_decimal(idle_decay(idle))}, {idle.reset}"
-        if idle
-        else "none",
-        "offset": spec.offset,
-        "sample time in s": exact_text(period) if period else "none",
-    }
+def _said(gain: Gain) -> str:
+    return f"{gain.exact} {gain.unit}"

@@ -61,9 +61,10 @@ class CompliantController(_Frozen):
 
 
 class IdleStates(_Frozen):
-    """What the states of impedance controllers do while another kind of controller is active.
+    """What the states of impedance and pi-force controllers do while others are active.
 
-    The robot must do it: the proof is about controllers that let them decay, or reset them.
+    The robot must do it: the proof is about controllers that let them decay, or reset them. The
+    integral of a pi-force controller stays in the command of the motion loop meanwhile.
     """
 
     decay: Gain

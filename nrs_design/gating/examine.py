@@ -242,7 +242,7 @@ class Examiner:
         )
 
     def scenario(self, name: str, simulated: Simulated) -> Iterator[Obligation]:
-        """Yield NRS109 for every limit of a run of the scenario that the spec calls so."""
+        """Yield NRS109 for every limit of a scenario, held against one of its runs."""
         scenario, run = simulated.scenario, simulated.run
         early = "" if run.stopped is None else f", stopped early ({run.stopped})"
         for quantity, limit in scenario.limits.items():

@@ -170,7 +170,9 @@ def _goals(examiner: Examiner, entry: LockedSpec) -> Iterator[Obligation]:
 def _place(examiner: Examiner, goal: LockedGoal) -> Position:
     """Return where a locked obligation stands in the spec."""
     if goal.rule == SCENARIO_LIMIT.id:
-        return examiner.places.at("scenarios", goal.subject.partition(":")[0], "limits")
+        # A run is named by its scenario, and perhaps its axis: `NAME.theta1: torque`.
+        scenario = goal.subject.partition(":")[0].partition(".")[0]
+        return examiner.places.at("scenarios", scenario, "limits")
     return examiner.places.at("controllers", goal.subject)
 
 

@@ -223,8 +223,8 @@ def _scenarios(result: Result, examiner: Examiner, progress: Progress) -> Iterat
     for name in limited:
         progress(f"scenario {name}")
         try:
-            # Of three axes, each is a run of its own.
-            runs = tuple(run_scenarios(result.designed, Runs((name,))))
+            # One run for each axis that moves.
+            runs = list(run_scenarios(result.designed, Runs((name,))))
         except DesignError as error:
             yield examiner.no_scenario(name, error)
         else:

@@ -62,9 +62,11 @@ class MonteCarlo:
 
     @property
     def limits(self) -> Mapping[str, Mapping[str, float]]:
-        """The limits of every scenario: its own, and those of the spec."""
-        spec = self.designed.spec
-        common = {"torque": spec.limits.torque.si, "velocity": spec.limits.velocity.si}
+        """The limits of every scenario: its own, and that of the torque; SI.
+
+        The spec's limit of the velocity is that of the command, which no scenario exceeds.
+        """
+        common = {"torque": self.designed.spec.limits.torque.si}
         return {one.name: common | dict(one.limits) for one in self.scenarios}
 
 

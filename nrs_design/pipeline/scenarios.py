@@ -73,6 +73,8 @@ class Runs:
         Of the sampled engine, in s; 2 ms where nothing says it.
     delay : int or None
         Age of its force samples, in samples; none where nothing says it.
+    outer_period : float or None
+        Of force, filter and admittance, in s; that of the motion loop where nothing says it.
     max_steps : int or None
         Of each run.
     """
@@ -82,6 +84,7 @@ class Runs:
     period: float | None = None
     delay: int | None = None
     max_steps: int | None = None
+    outer_period: float | None = None
 
 
 def run_scenarios(
@@ -202,9 +205,10 @@ def _sampling(spec: InteractionDesignSpec, wanted: Runs) -> SamplingSpec:
 
     usual = SamplingSpec.model_validate({"period": "2 ms", "delay": "0"})
     changes: dict[str, object] = {}
-    if wanted.period is not None:
-        text = {"period": f"{wanted.period!r} s", "delay": "0"}
-        changes["period"] = SamplingSpec.model_validate(text).period
+    for key, value in (("period", wanted.period), ("outer_period", wanted.outer_period)):
+        if value is not None:
+            text = {"period": f"{value!r} s", "delay": "0"}
+            changes[key] = SamplingSpec.model_validate(text).period
     if wanted.delay is not None:
         changes["delay"] = (wanted.delay, wanted.delay)
     return (spec.sampling or usual).model_copy(update=changes)

@@ -151,6 +151,11 @@ class Signals:
             np.concatenate([self.shares, other.shares], axis=1),
         )
 
+    def after_rest(self) -> Signals:
+        """Return the runs without the time in which all of them rest; for rules as for `finer`."""
+        begun = int(self.shares.any(axis=(1, 2)).argmax())
+        return Signals(self.actions[begun:], self.shares[begun:])
+
     def longer(self) -> Signals:
         """Return runs twice as long, at rest at first; for rules as for `finer`."""
         rest = Signals(np.zeros_like(self.actions), np.zeros_like(self.shares))

@@ -215,3 +215,20 @@ def shares(
             above = sum(one.exceeds(quantity, limits[one.scenario][quantity]) for one in bounded)
             found[quantity] = Share.of(above, len(bounded))
     return found
+
+
+def held_against(
+    bound: tuple[float, tuple[str, ...]], outcomes: Sequence[Outcome]
+) -> tuple[float, tuple[str, ...]]:
+    """Return a certified bound with every reason for which it is not about the runs.
+
+    Parameters
+    ----------
+    bound : tuple of (float, tuple of str)
+        What is certified, and why it is not about the scenarios as they are written.
+    outcomes : sequence of Outcome
+        Of all runs.
+    """
+    level, reasons = bound
+    drawn = (reason for one in outcomes for reason in one.uncovered)
+    return level, tuple(dict.fromkeys((*reasons, *drawn)))

@@ -120,6 +120,14 @@ def sampled_axis(
             at=("sampling",),
         )
     period, outer = sampling.period.exact, sampling.outer
+    others = [c.name for c in design.controllers if c.law.commands != "velocity"]
+    if outer != period and (others or spec.mode_logic is not None):
+        raise DesignError(
+            f"two periods are simulated for impedance controllers alone, without mode_logic"
+            f"{f', and {others[0]} is another' if others else ''}",
+            remedy="let both loops have one period",
+            at=("controllers", others[0]) if others else ("mode_logic",),
+        )
     try:
         program = StepProgram(shipped_law(spec, design, period, outer))
     except DesignError as error:

@@ -353,6 +353,8 @@ def _run(
     starts: Array,
 ) -> WorstRun:
     order = np.sort(starts)[::-1]
+    if system.switching.is_arbitrary:
+        signals = signals.after_rest()
     states = play(game, signals)[:, 0]
     mode = game.rules.mode[signals.actions[:, 0]]
     if system.contact is not None:

@@ -147,9 +147,7 @@ def assume_loop(loop: Assumed) -> tuple[Assumption, ...]:
         *_input_texts(loop),
         UNCOUPLED,
         *_contact_texts(loop),
-        *chain.from_iterable(
-            map(kinds.MEMORY.says, _memories(e, alone=len(loop.touched) == 1)) for e in loop.touched
-        ),
+        *chain.from_iterable(_memories(e, alone=len(loop.touched) == 1) for e in loop.touched),
         *(_idle_texts(loop, loop.idle) if loop.idle is not None else ()),
         *_kept_texts(loop),
         *_switch_texts(
@@ -199,8 +197,9 @@ def _contact_texts(loop: Assumed) -> Iterator[Assumption]:
         yield _AT_A_SWITCH[loop.coordinates]
 
 
-def _memories(environment: Environment, *, alone: bool) -> Iterator[str]:
-    return environment.law.memory_texts(environment.name, alone=alone)
+def _memories(environment: Environment, *, alone: bool) -> Iterator[Assumption]:
+    kind = kinds.TISSUE if environment.law.has_mass else kinds.MEMORY
+    return map(kind.says, environment.law.memory_texts(environment.name, alone=alone))
 
 
 def _idle_texts(loop: Assumed, idle: IdleStatesSpec) -> Iterator[Assumption]:

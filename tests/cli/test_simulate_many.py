@@ -6,12 +6,9 @@ import signal
 import subprocess
 import sys
 import time
-from types import SimpleNamespace
 
 import pytest
 
-from nrs_design.cli import monte_carlo as cli
-from nrs_design.simulation.monte_carlo import Outcome
 from tests.simulation.interactions import text_of
 from tests.support import run
 
@@ -28,20 +25,6 @@ def spec(tmp_path):
     more = "contact: losable\ndisturbances: {command: 8 deg/s}\n"
     path.write_text(text_of(LAW, SOFT, scenario=RUN, more=more))
     return path
-
-
-def test_a_bound_is_not_about_what_a_drawn_run_does(monkeypatch):
-    """The scenario as written keeps what the proof takes for granted, one of the runs does not."""
-    asked = SimpleNamespace(limits={"run": {}})
-    peaks = {"torque": 0.1, "deflection": 0.1, "velocity": 0.1}
-    ends = [Outcome(i, "run", i, peaks, None, {}, why) for i, why in enumerate(([], ["too far"]))]
-    monkeypatch.setattr(cli, "_bounds", lambda asked, proof: {"torque": (0.5, ())})
-    monkeypatch.setattr(
-        cli, "_simulate", lambda asked, jobs, resume, outcomes, step: outcomes.extend(ends)
-    )
-    shown = cli.monte_carlo(asked, 1, None, object(), None, lambda text: None)
-    (study,) = shown.args
-    assert study.bounds == {"torque": (0.5, ("too far",))}
 
 
 @pytest.mark.slow
@@ -133,3 +116,14 @@ def test_what_no_adversary_plays_against_is_said(tmp_path):
     assert result.returncode == 2
     assert "no worst case is searched" in result.stderr
     assert "--monte-carlo" in result.stderr
+
+
+def test_other_commands_in_a_file_of_the_spec_are_another_study(tmp_path):
+    path = tmp_path / "study.nrs.yaml"
+    path.write_text(text_of(LAW, SOFT, scenario="command: {csv: hand.csv}, duration: 0.2 s"))
+    command = ("simulate", path, "--monte-carlo", "2", "--resume", "runs.jsonl", "--no-bound")
+    for speed, code in ((4, 0), (5, 2), (4, 0)):
+        (tmp_path / "hand.csv").write_text(f"time_s,velocity_deg_s\n0,0\n0.1,{speed}\n0.2,0\n")
+        result = run(*command, cwd=tmp_path)
+        assert result.returncode == code, result.stderr
+    assert (tmp_path / "runs.jsonl").read_bytes().count(b"\n") == 3

@@ -237,11 +237,15 @@ def test_deployed_numbers_are_those_of_the_certificate(tmp_path):
     export = ("export", "x.nrs.yaml", "--out", ".", "-q")
     assert run(*export, "--format", "c", cwd=tmp_path).returncode == 0
     assert run(*export, "--format", "json", cwd=tmp_path).returncode == 0
+    again = (*export, "--certificate", "x.cert.json")
+    assert run(*again, "--format", "monitor", cwd=tmp_path).returncode == 0
+    assert run(*again, "--format", "fmu", cwd=tmp_path).returncode == 0
     check = ("verify", "x.cert.json", "x.nrs.yaml", "--deployed")
-    for name in ("x.h", "x.export.json"):
+    for name in ("x.h", "x.export.json", "x_monitor.h", "x_monitor.c", "x.fmu"):
         result = run(*check, name, cwd=tmp_path)
         assert result.returncode == 0, result.stderr
         assert f"deployed: {name} holds the numbers of the certificate" in result.stdout
+        assert ("not compared: a compiled library" in result.stdout) == (name == "x.fmu")
     text = (tmp_path / "x.h").read_text()
     assert text.count("0x1.f6eep+19F") == 1
     (tmp_path / "x.h").write_text(text.replace("0x1.f6eep+19F", "0x1.f6ee02p+19F"))

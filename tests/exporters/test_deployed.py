@@ -117,7 +117,20 @@ def test_every_gain_of_a_record_counts(differences, sampled_export):
     repeated = json.dumps(document | {"motion": {"law": "motion", "gains": twice}})
     assert differences(repeated, "x.json") == ["a controller or a gain is there twice"]
     document["controllers"][0]["name"] = "other"
-    assert len(differences(json.dumps(document), "x.json")) == 4
+    assert len(differences(json.dumps(document), "x.json")) == 5
+
+
+def test_units_laws_and_contacts_of_a_record_count(differences, sampled_export):
+    text = render_json(sampled_export)[".export.json"].decode()
+    for old, new, said in (
+        ('"rpm/rad"', '"rpm/deg"', "rpm/deg, and the certificate has"),
+        ('"law": "impedance"', '"law": "force"', "laws and contacts: insertion: force at soft"),
+        ('"contacts": [\n        "soft"', '"contacts": [\n        "hard"', "impedance at hard"),
+        ('"delay": [\n    0', '"delay": [\n    1', "age of the force sample: 1 to 1"),
+    ):
+        assert old in text
+        (found,) = differences(text.replace(old, new, 1), "x.json")
+        assert said in found
 
 
 def test_what_runs_beside_the_gains_counts(differences, sampled_export, tmp_path):
@@ -133,7 +146,7 @@ def test_what_runs_beside_the_gains_counts(differences, sampled_export, tmp_path
         (
             "idle_states",
             {"decay": one | {"name": "decay"}, "reset": True},
-            "idle states: 0.5, True",
+            "idle states: 0.5 1/s, True",
         ),
         ("offset", "measured", "offset: measured"),
         ("sample_time", {"exact": "0.004", "unit": "s"}, "sample time in s: 0.004"),

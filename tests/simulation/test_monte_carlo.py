@@ -1,5 +1,6 @@
 """Runs are drawn from ranges, and the share above a limit is what a dense grid says."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -9,7 +10,7 @@ from nrs_design.errors import DataError
 from nrs_design.pipeline import run_design
 from nrs_design.pipeline.monte_carlo import MonteCarlo, run_monte_carlo
 from nrs_design.pipeline.scenarios import Runs
-from nrs_design.simulation.monte_carlo import Outcome, Share, draw, shares
+from nrs_design.simulation.monte_carlo import Outcome, Share, draw, held_against, shares
 from nrs_design.simulation.outcomes_file import appending, read_outcomes
 from nrs_design.spec import parse_spec
 from nrs_design.spec.load import LoadedSpec
@@ -85,7 +86,7 @@ def test_the_motor_is_drawn_from_its_ranges():
         "gain: {nominal: 4.8417e-4 rad/s/rpm, range: [4.7e-4 rad/s/rpm, 5e-4 rad/s/rpm]}",
     )
     designed = run_design(LoadedSpec(Path("small"), "", text, parse_spec(text)))
-    scenarios = MonteCarlo(designed, Runs(), 1, 0).scenarios
+    scenarios = replace(asked, designed=designed).scenarios
     drawn = [draw(designed.spec, designed.plant, scenarios, 0, i) for i in range(20)]
     gains = [float(one.plant.actuator.gain) for one in drawn]
     assert 4.7e-4 < min(gains) < 4.8e-4 < 4.9e-4 < max(gains) < 5e-4
@@ -104,6 +105,12 @@ def test_what_a_drawn_run_does_beyond_a_proof_is_kept():
     assert max(beyond[True]) < min(beyond[False])
     for one in found:
         assert not one.uncovered or "the angle is larger" in one.uncovered[0]
+    # As written, the scenario may keep what the proof takes for granted.
+    level, reasons = held_against((0.5, ("some reason",)), found)
+    assert level == 0.5
+    assert reasons[:2] == ("some reason", "the angle is larger than the proof takes it for")
+    kept = [one for one in found if not one.uncovered]
+    assert held_against((0.5, ()), kept) == (0.5, ())
     assert not any(one.uncovered for one in run_monte_carlo(study(3)))
 
 

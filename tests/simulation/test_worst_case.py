@@ -150,6 +150,9 @@ def test_the_exact_engine_comes_to_the_same():
     designed = run_design(loaded(BOUNDED))
     case = run_worst_case(designed, rounds=1)
     run = case.runs[0]
+    flies = run.states[:-1, -1] <= 0
+    assert flies.any()
+    assert ((run.mode >= len(case.system.modes)) == flies).all()
     width = run.time[1]
     times = np.repeat(np.arange(len(run.mode) + 1) * width, 2)[1:-1]
     profile = Profile.through(times, np.repeat(run.disturbances[:, 0], 2))

@@ -13,7 +13,7 @@ from nrs_design.models.plant import build_plant
 from nrs_design.search.certify import certify
 from nrs_design.spec import parse_spec, read_spec
 from nrs_design.switched.assemble import assemble
-from tests.simulation.interactions import INSERTION, POSITION, text_of
+from tests.simulation.interactions import FORCE, INSERTION, POSITION, text_of
 from tests.support import ROOT
 
 PI = "{type: pi-force, environment: soft, proportional_gain: 0.02 rad/(N*m), "
@@ -44,16 +44,15 @@ def to_states(system, theta, omega, reference):
     return np.linalg.solve(rows, [theta, omega - c[1] * reference])
 
 
-@pytest.mark.parametrize("controller", ["position", "force", "insertion"])
+@pytest.mark.parametrize("controller", ["position", "force", "insertion", "hold"])
 def test_run_against_motor_and_firmware(controller):
     """Motor, PD, admittance and integral as they are, against the mode of the controller."""
-    system = assembled(BOTH | {"insertion": INSERTION})
+    system = assembled(BOTH | {"insertion": INSERTION, "hold": FORCE})
     assert system.states == ("xi1", "xi2", "vm [rad/s]", "reference [rad]", "integral [rad]")
     k, Mt, Bt = 43.0, float(np.float32(0.01)), float(np.float32(2.15))
 
     def command(theta, r, w):
-        own = {"position": 0.0, "force": -GAIN * k * theta, "insertion": r}[controller]
-        return own + w
+        return {"position": 0.0, "insertion": r}.get(controller, -GAIN * k * theta) + w
 
     def rate(_, x):
         theta, omega, vm, r, w = x
@@ -61,7 +60,7 @@ def test_run_against_motor_and_firmware(controller):
         held = controller == "insertion"
         dvm, dr = ((force - Bt * vm) / Mt, -vm) if held else (-20 * vm, -20 * r)
         dw = -0.5 * force if controller == "force" else -20 * w
-        du = dw + {"position": 0.0, "force": -GAIN * k * omega, "insertion": dr}[controller]
+        du = dw + {"position": 0.0, "insertion": dr}.get(controller, -GAIN * k * omega)
         drive = KP * (command(theta, r, w) - theta) + KD * (du - omega)
         return [omega, (KM * drive - omega) / TAU, dvm, dr, dw]
 

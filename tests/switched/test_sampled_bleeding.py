@@ -12,7 +12,7 @@ from nrs_design.models.plant import build_plant
 from nrs_design.spec import parse_spec, read_spec
 from nrs_design.switched.assemble import assemble
 from nrs_design.switched.sampled_law import Kinds, list_law
-from tests.simulation.interactions import INSERTION, POSITION, simulated, text_of
+from tests.simulation.interactions import FORCE, INSERTION, POSITION, simulated, text_of
 from tests.support import ROOT
 
 PI = "{type: pi-force, environment: soft, proportional_gain: 0.02 rad/(N*m), "
@@ -29,10 +29,10 @@ def assembled(controllers, more=SAMPLED):
     return assemble(spec, plant, design_controllers(spec, plant), "deflection")
 
 
-@pytest.mark.parametrize("controller", ["position", "force", "insertion"])
+@pytest.mark.parametrize("controller", ["position", "force", "insertion", "hold"])
 def test_a_period_is_that_of_processor_and_motor(controller):
     """The law as its lines in `controllers.sampled` have it, in doubles, and the motor exactly."""
-    system = assembled(BOTH | {"insertion": INSERTION})
+    system = assembled(BOTH | {"insertion": INSERTION, "hold": FORCE})
     names = [state.split(" [")[0] for state in system.states]
     assert names == ["reference", "omega", "e before", "vm", "integral", "F 1 before", "delta"]
     Kp, D = float(single(2060 * 56.9706)), float(single(2060 / T))
@@ -41,7 +41,7 @@ def test_a_period_is_that_of_processor_and_motor(controller):
     b, left = float(single((1 - a) / 2.15)), float(single(np.exp(-20 * T)))
     x = dict(zip(names, np.random.default_rng(5).normal(size=7), strict=True))
     force = x["F 1 before"]
-    taken = {"position": 0.0, "force": -Kf * force, "insertion": x["reference"]}[controller]
+    taken = {"position": 0.0, "insertion": x["reference"]}.get(controller, -Kf * force)
     e = taken + x["integral"] - x["delta"]
     u = Kp * e + D * (e - x["e before"])
     E = np.exp(-T / TAU)

@@ -7,6 +7,7 @@ derivatives are taken less their projection on the offsets (variable projection,
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -164,13 +165,23 @@ class Problem:
     def _fading(self, point: Array) -> Array:
         """Return what the states add to the derivatives: they fade at the rate of the law."""
         values = self.solve(point)[0][self.offsets.shape[1] :]
-        middle = self.states(point) @ values
-        columns = []
-        for i in range(len(point)):
-            moved = point.copy()
-            moved[i] += _STEP
-            columns.append((self.states(moved) @ values - middle) / _STEP)
-        return np.column_stack(columns)
+        tau = self.law(point).relaxation_time
+        if not tau:
+            return np.zeros((len(self.force), len(point)))
+        # A state exp(-t/tau) grows by t/tau exp(-t/tau) with the logarithm of tau.
+        grows = self.states(point) * self._ages / tau @ values
+        slopes = [
+            math.log((self.law(moved).relaxation_time or tau) / tau) / _STEP
+            for moved in point + _STEP * np.eye(len(point))
+        ]
+        return np.outer(grows, slopes)
+
+    @cached_property
+    def _ages(self) -> Array:
+        """Time since each stretch began in the used samples, in s, shape (n, s)."""
+        time = self.trial.motion.time
+        starts = time[[rows.start for rows in self._begins]]
+        return np.asarray(time[self.trial.used, None] - starts)
 
     def cost(self, point: Array) -> float:
         """Return the mean squared error with the best constants."""

@@ -22,7 +22,6 @@ Array = NDArray[np.float64]
 LARGEST_RESIDUAL = 0.1
 LARGEST_STRUCTURE = 0.03
 LEAST_R2 = 0.9
-_MOST = 0.5
 # A cycle that is stiffer than the others by this much is conditioning.
 _CONDITIONING = 0.05
 _BINS = 12
@@ -91,11 +90,11 @@ def structure(values: Array, residuals: Array) -> tuple[float, float]:
 
 
 def _signs(trial: Trial, residuals: Array, offsets: Array) -> Iterator[str]:
-    """Doubt the sign of the force, unless the law, which pushes back, explains most of it.
+    """Doubt the sign of the force, unless a law, which pushes back, explains it well.
 
     A tissue that relaxes at a growing deflection has a force that falls, too.
     """
-    if explained(trial, residuals) > _MOST:
+    if explained(trial, residuals) >= LEAST_R2:
         return
     X = np.column_stack([trial.deflection, offsets])
     found = np.linalg.lstsq(X, trial.measured, rcond=None)[0]

@@ -202,7 +202,7 @@ class AbstractLinearLaw(AbstractContactLaw):
 
     @classmethod
     def memory_texts(cls, environment: str, *, alone: bool) -> Iterator[str]:
-        """Say what is taken for granted about an environment that remembers.
+        """Say what is taken for granted about an environment that remembers, or has a mass.
 
         Parameters
         ----------

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from fractions import Fraction
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from nrs_design.proof.bounds import upper
 from nrs_design.reporting.style import BLUE, GREEN, VERMILLION, new_figure, styled
 
 if TYPE_CHECKING:
@@ -69,7 +71,7 @@ def _draw(axes: Axes, spread: Spread) -> None:
     largest = float(spread.peaks.max())
     lines = [(limit, "limit", GREEN, ":") for limit in spread.limits]
     if spread.bound is not None:
-        lines.append((spread.bound, "certified bound", VERMILLION, "--"))
+        lines.append((spread.bound, _bound_name(holds=spread.holds), VERMILLION, "--"))
     far = [line for line in lines if line[0] > _FAR * largest]
     near = max([largest, *(line[0] for line in lines if line not in far)])
     low = min(float(spread.peaks.min()), near)
@@ -80,11 +82,15 @@ def _draw(axes: Axes, spread: Spread) -> None:
         if line not in far:
             axes.axvline(line[0], color=line[2], linestyle=line[3], lw=2.0)
     if far:
-        named = ", ".join(f"{name} {value:.4g}" for value, name, *_ in far)
+        named = ", ".join(f"{name} {upper(Fraction(value), 4)}" for value, name, *_ in far)
         axes.set_title(f"beyond this scale: {named}", fontsize=9, loc="right")
     axes.set_xlabel(spread.label)
     axes.set_ylabel("Runs")
     axes.locator_params(axis="y", integer=True)
+
+
+def _bound_name(*, holds: bool) -> str:
+    return "certified bound" if holds else "bound, not about all runs"
 
 
 def _legend(figure: Figure, spreads: Sequence[Spread]) -> None:
@@ -96,7 +102,6 @@ def _legend(figure: Figure, spreads: Sequence[Spread]) -> None:
         Line2D([], [], color=GREEN, linestyle=":", lw=1.6, label="limit"),
     ]
     if any(spread.bound is not None for spread in spreads):
-        holds = all(spread.holds for spread in spreads if spread.bound is not None)
-        label = "certified bound" if holds else "bound, not about all runs"
+        label = _bound_name(holds=all(s.holds for s in spreads if s.bound is not None))
         handles.append(Line2D([], [], color=VERMILLION, linestyle="--", lw=1.6, label=label))
     figure.legend(handles=handles, loc="outside lower center", ncols=3)

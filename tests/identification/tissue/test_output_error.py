@@ -5,6 +5,7 @@ import pytest
 
 from nrs_design.identification.tissue import fit_record, output_error
 from nrs_design.identification.tissue.output_error import rmse
+from nrs_design.identification.tissue.problem import Problem
 from nrs_design.identification.tissue.trial import Preparation, prepare
 from nrs_design.models.contact import (
     LAWS,
@@ -94,3 +95,19 @@ def test_a_touch_that_only_grazes_the_tissue():
     assert fit.fitted.shape == trial.force.shape
     error = (trial.force - fit.fitted)[trial.used]
     assert float(np.sqrt(np.mean(error**2))) == pytest.approx(fit.rmse)
+
+
+@pytest.mark.parametrize("law", [Maxwell(1.129, 20.0), synthetic.CONCHA])
+def test_derivatives_of_stretches_that_do_not_begin_at_rest(law):
+    """Of the law and of what fades from the beginning of each touch, at constants that stay."""
+    problem = Problem(type(law), prepare(robot_record(law, slow(1), 0.005, 1)))
+    point = np.log(law.values) + 0.1
+    values = problem.solve(point)[0][problem.offsets.shape[1] :]
+    assert len(values) > 1
+
+    def force(x):
+        return problem.simulate(x) + problem.states(x) @ values
+
+    steps = 1e-5 * np.eye(len(point))
+    slopes = [(force(point + step) - force(point - step)) / 2e-5 for step in steps]
+    assert problem.sensitivities(point) == pytest.approx(np.column_stack(slopes), abs=1e-8)

@@ -133,7 +133,10 @@ def _differences(
     yield from _surroundings(spec, scenario)
     control = scenario.control
     thresholds = spec.mode_logic is not None and spec.mode_logic.type == "thresholds"
-    ruled = not spec.switching.is_arbitrary and bool(control.switches or control.schedule)
+    # Who stays keeps all rules but one: that a controller has to be left.
+    left = spec.switching.longest_dwell_time is not None
+    changes = bool(control.switches or control.schedule)
+    ruled = not spec.switching.is_arbitrary and (changes or left)
     if ruled and not (thresholds and control == by_logic(spec)):
         yield "nothing makes the run keep the rules of switching"
 

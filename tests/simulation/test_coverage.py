@@ -209,6 +209,21 @@ def test_the_reference_counts_among_the_angles(certified, share, said):
     assert ("the angle is larger than the proof takes it for" in reasons) == said
 
 
+@pytest.mark.parametrize(
+    ("rules", "said"),
+    [("{transitions: [[insertion, withdrawal]]}", False), ("{longest_dwell_time: 0.2 s}", True)],
+)
+def test_one_controller_all_the_time_is_not_left_in_time(certified, rules, said):
+    """A proof with a longest dwell time may be about a mode that is unstable by itself."""
+    system = certified.certificate.system
+    spec = parse_spec(text_of(LAWS).replace("switching: arbitrary", f"switching: {rules}"))
+    (one,) = run_scenarios(certified.designed)
+    stays = replace(one.scenario, control=Control("insertion"))
+    statement = next(s for s in certified.certificate.statements if s.bound(system))
+    reasons = list(uncovered(spec, system, statement, stays, one.run))
+    assert reasons == ["nothing makes the run keep the rules of switching"] * said
+
+
 def test_mujoco_is_another_engine_than_that_of_the_proof(certified):
     pytest.importorskip("mujoco", reason="MuJoCo is not installed")
     (one,) = run_scenarios(certified.designed, Runs(engine="mujoco"))

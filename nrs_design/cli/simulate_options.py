@@ -90,7 +90,9 @@ class Many:
             If there are such.
         """
         if self.worst and self.runs is not None:
-            raise typer.BadParameter("one excludes the other", param_hint="--worst-case")
+            raise typer.BadParameter(
+                "one excludes the other", param_hint="--worst-case, --monte-carlo"
+            )
         if self.worst and any(given is not None and given != [] for given in of_scenarios):
             message = "the adversary plays against the loop of the spec, not within a scenario"
             raise typer.BadParameter(message, param_hint="--worst-case")

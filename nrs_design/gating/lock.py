@@ -8,7 +8,16 @@ import posixpath
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
-from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationError, model_validator
+from pydantic import (
+    AfterValidator,
+    BaseModel,
+    ConfigDict,
+    Field,
+    SerializerFunctionWrapHandler,
+    ValidationError,
+    model_serializer,
+    model_validator,
+)
 
 from nrs_design.errors import CertificateError
 from nrs_design.files import open_regular, read_json_text
@@ -88,7 +97,8 @@ class LockedGoal(_Frozen):
 class LockedSpec(_Frozen):
     """One spec: its file, relative to the lock file, the hash of what it says, and what was found.
 
-    ``version`` is that of the nrs-design which designed the gains.
+    ``version`` is that of the nrs-design which designed the gains, ``recorded`` the hash of every
+    file of commands that a scenario with limits plays.
     """
 
     path: RelativePath
@@ -99,6 +109,14 @@ class LockedSpec(_Frozen):
     certificate: LockedCertificate | None
     gains: dict[str, dict[str, str]]
     goals: list[LockedGoal]
+    recorded: dict[str, Sha256] = Field(default_factory=dict)
+
+    @model_serializer(mode="wrap")
+    def _leave_out_nothing_recorded(self, dump: SerializerFunctionWrapHandler) -> dict[str, Any]:
+        document: dict[str, Any] = dump(self)
+        if not self.recorded:
+            del document["recorded"]
+        return document
 
     @model_validator(mode="after")
     def _check_certificate(self) -> LockedSpec:

@@ -15,6 +15,7 @@ from nrs_design.certificates.verify import verify
 from nrs_design.gating.examine import Examiner, certified_rate
 from nrs_design.gating.lock import Lock, LockedGoal, LockedSpec, relative_to_lock
 from nrs_design.gating.obligations import GateOutcome, Obligation, SpecOutcome, Status, failed
+from nrs_design.gating.recorded import hash_recorded
 from nrs_design.gating.rules import LOCKED, RULES, SCENARIO_LIMIT, SWITCHING_STABLE
 from nrs_design.spec import InteractionDesignSpec, LoadedSpec, RobotSpec, read_spec
 from nrs_design.spec.document import Position
@@ -108,6 +109,9 @@ def _examine(loaded: LoadedSpec, entry: LockedSpec | None, file: Path) -> SpecOu
         return _missed(examiner, f"this spec is not in {file.name} ({RENEW})")
     if entry.sha256 != loaded.sha256:
         return _missed(examiner, f"this spec has changed since it was locked ({RENEW})")
+    if entry.recorded != hash_recorded(loaded):
+        message = f"a file of commands of a scenario has changed since it was locked ({RENEW})"
+        return _missed(examiner, message)
     if entry.gains and entry.version != __version__:
         message = f"this spec was designed by nrs-design {entry.version}, and this is {__version__}"
         return _missed(examiner, f"{message}, which may design other gains ({RENEW})")

@@ -134,6 +134,8 @@ class SpecOutcome:
         What is doubtful, and breaks no obligation.
     bounds : sequence of mapping
         As `nrs_design.certificates.bounds.bounds_summary` gives them.
+    recorded : mapping
+        As `nrs_design.gating.recorded.hash_recorded` gives it.
     """
 
     path: Path
@@ -151,6 +153,7 @@ class SpecOutcome:
     certifiable: bool = True
     cautions: tuple[Caution, ...] = ()
     bounds: Sequence[Mapping[str, Any]] = ()
+    recorded: Mapping[str, str] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, slots=True)

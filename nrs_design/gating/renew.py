@@ -141,6 +141,7 @@ def _entry(spec: SpecOutcome, file: Path) -> LockedSpec:
             "certificate": certificate,
             "gains": {name: dict(gains) for name, gains in spec.gains.items()},
             "goals": [_goal(item) for item in spec.obligations if item.rule not in DECIDED_AGAIN],
+            "recorded": dict(spec.recorded),
         }
     )
 

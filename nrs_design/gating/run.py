@@ -23,6 +23,7 @@ from nrs_design.gating.obligations import (
 )
 from nrs_design.gating.paths import is_utf8
 from nrs_design.gating.places import Places
+from nrs_design.gating.recorded import hash_recorded
 from nrs_design.output import CERTIFICATE, PAGE, write_output
 from nrs_design.ownership import REMEDY, check_owner, origin_of
 from nrs_design.pipeline import (
@@ -184,6 +185,7 @@ def _examine(
         write_output(file, text, replaces=CERTIFICATE)
         progress("re-check")
         obligations += (examiner.certificate(file, run_verification(file, result).fault),)
+    recorded = hash_recorded(loaded)
     simulated = tuple(_scenarios(result, examiner, progress))
     goals, cautions = _goals_and_report(result, examiner, files, progress)
     rate, rate_name = certified_rate(certificate)
@@ -208,6 +210,7 @@ def _examine(
         units=result.design.units if result.design else {},
         bounds=bounds_summary(certification.system, certification.statements),
         cautions=cautions,
+        recorded=recorded,
     )
 
 

@@ -18,6 +18,12 @@ from nrs_design.simulation.peaks import PEAKS
 SCHEMA = "nrs-design/monte-carlo/1"
 _BEGINNING = b'{"schema": "nrs-design/monte-carlo/'
 _ELSE = "name another file, or go on with what it was begun with"
+_NAMES = {
+    "spec": "spec, by its name",
+    "spec_sha256": "content of the spec, by its SHA-256",
+    "commands_sha256": "recorded commands, by their SHA-256",
+    "runs": "number of runs",
+}
 # Longer files are none of ours: a million runs of a few hundred letters.
 _MOST = 2**30
 
@@ -37,12 +43,16 @@ def read_outcomes(path: Path, head: Mapping[str, Any]) -> list[Outcome]:
     Raises
     ------
     DataError
-        If it is of another study or spec, or no file of ours.
+        If it is of another study or spec, no file of ours, or cannot be read.
     """
     if not os.path.lexists(path):
         return []
-    with open_regular(path) as stream:
-        content = stream.read(_MOST + 1)
+    try:
+        with open_regular(path) as stream:
+            content = stream.read(_MOST + 1)
+    except OSError as error:
+        message = f"cannot be read ({error.strerror})"
+        raise DataError(message, path=path, remedy="name another file") from error
     if not content.startswith(_BEGINNING) or len(content) > _MOST:
         raise DataError("keeps no runs of a study", path=path, remedy="name another file")
     lines = content.split(b"\n")[:-1]
@@ -58,8 +68,8 @@ def read_outcomes(path: Path, head: Mapping[str, Any]) -> list[Outcome]:
         raise DataError("does not keep the runs of a study in order", path=path, remedy=_ELSE)
     for key, value in _header(head).items():
         if first.get(key) != value:
-            was, name = f"{first.get(key)!s:.80}", key.replace("_", " ")
-            message = f"was begun with another {name}: {was}, not {value!s:.80}"
+            was, what = f"{first.get(key)!s:.80}", _NAMES.get(key, key)
+            message = f"was begun with other {what}: {was}, not {value!s:.80}"
             raise DataError(message, path=path, remedy=_ELSE)
     return outcomes
 

@@ -161,7 +161,7 @@ def _interaction(spec: InteractionDesignSpec) -> Iterator[Line]:
         yield from describe_model(spec.mode_logic, "mode_logic")
     for name, scenario in spec.scenarios.items():
         yield from describe_model(scenario, f"scenarios.{name}")
-    yield Line("contact", spec.contact or "losable where proved", "", "")
+    yield Line("contact", spec.contact or "not said: the claim tells", "", "")
     yield Line("coordinates", spec.coordinates, "", "")
     yield from _switching(spec.switching)
 

@@ -222,6 +222,23 @@ def test_a_missed_goal_stays_missed(project):
     }
 
 
+def test_other_commands_in_a_file_are_no_longer_what_was_locked(project):
+    text = SOFT_TISSUE.read_text() + (
+        "scenarios:\n  hand: {command: {csv: hand.csv}, "
+        "surfaces: [{environment: soft, at: 1 deg}], limits: {torque: 0.1 N*m}}\n"
+    )
+    spec, lock = project / "specs/soft-tissue.nrs.yaml", project / "nrs.lock"
+    hand = project / "specs/hand.csv"
+    spec.write_text(text)
+    hand.write_text("time_s,velocity_deg_s\n0,1\n0.5,1\n")
+    write_lock(run_gate([spec], Files(project / "reports", html=False)), lock)
+    assert not broken(run_locked([spec], read_lock(lock), lock))
+    hand.write_text("time_s,velocity_deg_s\n0,8\n0.5,8\n")
+    assert broken(run_locked([spec], read_lock(lock), lock)) == [("NRS105", "missed")]
+    hand.unlink()
+    assert broken(run_locked([spec], read_lock(lock), lock)) == [("NRS105", "missed")]
+
+
 def test_gains_are_shown_and_are_those_of_the_certificate(check, project):
     gains = check().specs[0].gains
     assert gains["insertion"]["Bt"] == "2.150000095367431640625"

@@ -137,6 +137,12 @@ def outcome(index):
     return Outcome(index, "run", 7, peaks, None, {"soft k": 41.5}, [])
 
 
+def test_a_place_that_is_no_file_is_named(tmp_path):
+    with pytest.raises(DataError, match=r"cannot be read \(it is not a regular file\)") as caught:
+        read_outcomes(tmp_path, HEAD)
+    assert caught.value.path == tmp_path
+
+
 def test_a_file_keeps_runs_and_drops_a_torn_line(tmp_path):
     path = tmp_path / "folder" / "runs.jsonl"
     assert read_outcomes(path, HEAD) == []
@@ -158,9 +164,9 @@ def test_a_file_keeps_runs_and_drops_a_torn_line(tmp_path):
     ("content", "head", "message"),
     [
         (b"my thesis\n", HEAD, "keeps no runs"),
-        (None, HEAD | {"spec_sha256": "1" * 64}, "another spec sha256"),
-        (None, HEAD | {"seed": 1}, "another seed"),
-        (None, HEAD | {"runs": 6}, "another runs"),
+        (None, HEAD | {"spec_sha256": "1" * 64}, "other content of the spec"),
+        (None, HEAD | {"seed": 1}, "other seed"),
+        (None, HEAD | {"runs": 6}, "other number of runs"),
         (b'{"schema": "nrs-design/monte-carlo/1"}\n{"index": 0}\n', HEAD, "keeps no runs"),
     ],
 )

@@ -102,7 +102,7 @@ def test_check_lists_what_the_processor_does():
     rows = {row[0]: row for row in describe(sampled("{period: 2 ms, delay: [0, 2]}", RANGED))}
     assert rows["sampling.period"][1] == "2 ms"
     assert rows["sampling.delay"][1] == "[0, 2]"
-    assert rows["contact"][1] == "losable where proved"
+    assert rows["contact"][1] == "not said: the claim tells"
     assert rows["actuator.time_constant.range"][1] == "[0.034 s, 0.036 s]"
 
 

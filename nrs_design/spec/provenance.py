@@ -86,8 +86,8 @@ class IdentifiedRangesSpec(IdentifiedSpec):
     range_covers: Coverage | None = None
     range_id: Hash | None = Field(
         default=None,
-        description="SHA-256 over the identified values, by nrs-design identify: values that were "
-        "changed by hand since are refused",
+        description="SHA-256 over identified values and doubts, by nrs-design identify: what was "
+        "changed by hand since is refused",
     )
 
     @model_validator(mode="after")
@@ -103,7 +103,7 @@ class IdentifiedRangesSpec(IdentifiedSpec):
 
     def values_id(self) -> str:
         """Return the SHA-256 of what identification writes, whatever the layout of the text."""
-        beside = {*IdentifiedSpec.model_fields, "range_id", "load_inertia"}
+        beside = {"provenance", "accept_doubt", "range_id", "load_inertia"}
         names = [name for name in type(self).model_fields if name not in beside]
         canonical = json.dumps({name: _plain(getattr(self, name)) for name in names})
         return hashlib.sha256(canonical.encode()).hexdigest()

@@ -75,9 +75,10 @@ COVERED = "    range_covers: tolerance\n"
 
 
 def test_values_that_were_changed_by_hand_are_refused():
-    """The layout of the text may change; a value, its lever arm and what is held may not."""
+    """The layout of the text may change; a value, its arm, a doubt and what is held may not."""
     plain = spoiled(IMPEDANCE, ARM, ARM + COVERED)
-    known = f"{COVERED}    range_id: {parse_spec(plain).environments['soft'].values_id()}\n"
+    plain = spoiled(plain, ARM, ARM + DOUBT)
+    known = f"{COVERED}{DOUBT}    range_id: {parse_spec(plain).environments['soft'].values_id()}\n"
     text = spoiled(IMPEDANCE, ARM, ARM + known)
     assert parse_spec(text).environments["soft"].range_id is not None
     parse_spec(text.replace("lever_arm: 0.24 m", "lever_arm: 240 mm"))
@@ -85,6 +86,7 @@ def test_values_that_were_changed_by_hand_are_refused():
         ("0.24 m", "0.25 m"),
         ("covers: tolerance", "covers: prediction"),
         (COVERED, ""),
+        (DOUBT, ""),
     ):
         with pytest.raises(SpecError, match="changed since they were identified"):
             parse_spec(spoiled(text, old, new))

@@ -72,11 +72,11 @@ def monte_carlo(
         Told how far it is.
     """
     from nrs_design.output import check_place
-    from nrs_design.simulation.monte_carlo import shares
+    from nrs_design.simulation.monte_carlo import held_against, shares
 
     for path, beginning in _places(asked, out):
         check_place(path, beginning)
-    bounds = {} if proof is None else _bounds(asked, proof)
+    written = {} if proof is None else _bounds(asked, proof)
     outcomes: list[Outcome] = []
     try:
         _simulate(asked, jobs, resume, outcomes, step)
@@ -88,6 +88,7 @@ def monte_carlo(
         raise typer.Exit(exit_codes.INTERRUPTED) from None
     step("figures")
     found = shares(outcomes, asked.limits)
+    bounds = {name: held_against(bound, outcomes) for name, bound in written.items()}
     study = Study(asked, outcomes, found, bounds, _write(asked, out, outcomes, bounds))
     return partial(_show, study)
 

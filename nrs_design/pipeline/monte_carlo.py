@@ -109,6 +109,7 @@ class _Simulator:
     scenarios: list[Scenario]
 
     def run(self, index: int) -> Outcome:
+        from nrs_design.simulation.coverage import uncovered_by_chance
         from nrs_design.simulation.monte_carlo import Outcome, draw
 
         designed = self.asked.designed
@@ -117,7 +118,8 @@ class _Simulator:
             mine = replace(designed, plant=drawn.plant)
             scenario = drawn.scenario
             (one,) = simulate_group(mine, scenario.name, (scenario,), self.asked.wanted)
-        return Outcome.of(index, drawn, one.metrics, one.run.stopped)
+        uncovered = [*uncovered_by_chance(designed.spec, one.run)]
+        return Outcome.of(index, drawn, one.metrics, one.run.stopped, uncovered)
 
 
 _simulators: list[_Simulator] = []

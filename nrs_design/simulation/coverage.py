@@ -41,7 +41,6 @@ def uncovered(
     assert bound is not None
     limits = {channel.name: float(channel.bound) for channel in bound.channels}
     errors = scenario.errors
-    angles = None if spec.disturbances is None else spec.disturbances.largest_angle
     acting = {
         "velocity command": _largest_command(scenario, run),
         "friction": errors.friction,
@@ -53,8 +52,7 @@ def uncovered(
             yield f"the {name} is larger than the proof takes it for"
     if errors.friction:
         yield "friction may change its sign within a period"
-    if angles is not None and float(abs(run.response["angle"]).max()) > angles.si:
-        yield "the angle is larger than the proof takes it for"
+    yield from _large_angle(spec, run)
     if errors.force_noise:
         yield "the noise of the torque has no bound"
     if errors.jitter:
@@ -81,10 +79,26 @@ def undecayed(
         yield "the command does not come to an end before the run does"
     if scenario.errors != Errors():
         yield "friction, resolutions, noise or jitter go on acting"
+    if run.engine != "exact":
+        yield "the rounding of angle and reference goes on acting"
     if system.couplings and run.left_out != LEFT_OUT_ON_LINKS:
         yield "one axis runs without links, and the proof is about axes that links couple"
     yield from _sampling(spec, run)
     yield from _differences(spec, system, statement, scenario, run)
+
+
+def uncovered_by_chance(spec: InteractionDesignSpec, run: Run) -> Iterator[str]:
+    """Yield what of `uncovered` may be otherwise in runs of one scenario with drawn parameters.
+
+    Parameters
+    ----------
+    spec : InteractionDesignSpec
+        With the largest angle, if there is one.
+    run : Run
+        With what was drawn.
+    """
+    yield from _large_angle(spec, run)
+    yield from _irregular_steps(run)
 
 
 def end_of_command(scenario: Scenario) -> float | None:
@@ -112,17 +126,17 @@ def _differences(
         yield "MuJoCo moves the mechanics, with errors of its own"
     if run.engine != "exact" and (angles is None or not statement.covers_rounding):
         yield "the law is rounded to single precision, and the proof does not take up all of it"
-    if run.saturated:
-        yield "the motor's command met its limit, and the proof knows none"
-    if run.refused:
-        yield "the law refused samples, and the proof knows no such step"
+    yield from _irregular_steps(run)
     if system.contact is None or not statement.covers_lost_contact:
         # Each run begins in free motion.
         yield "contact is lost or made, and the proof takes it for kept"
     yield from _surroundings(spec, scenario)
     control = scenario.control
     thresholds = spec.mode_logic is not None and spec.mode_logic.type == "thresholds"
-    ruled = not spec.switching.is_arbitrary and bool(control.switches or control.schedule)
+    # Who stays keeps all rules but one: that a controller has to be left.
+    left = spec.switching.longest_dwell_time is not None
+    changes = bool(control.switches or control.schedule)
+    ruled = not spec.switching.is_arbitrary and (changes or left)
     if ruled and not (thresholds and control == by_logic(spec)):
         yield "nothing makes the run keep the rules of switching"
 
@@ -135,6 +149,21 @@ def _largest_command(scenario: Scenario, run: Run) -> float:
         return seen
     (piece,) = profile.pieces
     return max(seen, abs(profile.mean) + abs(piece.slope / profile.omega))
+
+
+def _large_angle(spec: InteractionDesignSpec, run: Run) -> Iterator[str]:
+    """Yield it if joint angle or reference, both of which the law holds, came too far."""
+    angles = None if spec.disturbances is None else spec.disturbances.largest_angle
+    held = (name for name in ("angle", "reference") if name in run.response.signals)
+    if angles is not None and any(abs(run.response[n]).max() > angles.si for n in held):
+        yield "the angle is larger than the proof takes it for"
+
+
+def _irregular_steps(run: Run) -> Iterator[str]:
+    if run.saturated:
+        yield "the motor's command met its limit, and the proof knows none"
+    if run.refused:
+        yield "the law refused samples, and the proof knows no such step"
 
 
 def _sampling(spec: InteractionDesignSpec, run: Run) -> Iterator[str]:

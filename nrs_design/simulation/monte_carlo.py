@@ -58,6 +58,8 @@ class Outcome:
         Why the run ended before its time.
     parameters : mapping of str to float
         What was drawn.
+    uncovered : sequence of str
+        What happened in it that no proof takes up, and may not happen at other parameters.
     """
 
     index: int
@@ -66,10 +68,16 @@ class Outcome:
     peaks: Mapping[str, float]
     stopped: str | None
     parameters: Mapping[str, float]
+    uncovered: Sequence[str]
 
     @classmethod
     def of(
-        cls, index: int, drawn: Drawn, metrics: Mapping[str, Any], stopped: str | None
+        cls,
+        index: int,
+        drawn: Drawn,
+        metrics: Mapping[str, Any],
+        stopped: str | None,
+        uncovered: Sequence[str],
     ) -> Outcome:
         """Return what a run came to, from its metrics.
 
@@ -83,10 +91,13 @@ class Outcome:
             As `nrs_design.simulation.summary` names them.
         stopped : str or None
             Why the run ended before its time.
+        uncovered : sequence of str
+            As for the class.
         """
         peaks = {name: float(metrics[key]) for name, key in PEAKS.items()}
         seed = drawn.scenario.seed
-        return cls(index, drawn.scenario.name, seed, peaks, stopped, drawn.parameters)
+        name = drawn.scenario.name
+        return cls(index, name, seed, peaks, stopped, drawn.parameters, uncovered)
 
     def exceeds(self, quantity: str, limit: float) -> bool:
         """Tell whether a peak is above a limit; a run that was stopped counts as above it."""
@@ -204,3 +215,20 @@ def shares(
             above = sum(one.exceeds(quantity, limits[one.scenario][quantity]) for one in bounded)
             found[quantity] = Share.of(above, len(bounded))
     return found
+
+
+def held_against(
+    bound: tuple[float, tuple[str, ...]], outcomes: Sequence[Outcome]
+) -> tuple[float, tuple[str, ...]]:
+    """Return a certified bound with every reason for which it is not about the runs.
+
+    Parameters
+    ----------
+    bound : tuple of (float, tuple of str)
+        What is certified, and why it is not about the scenarios as they are written.
+    outcomes : sequence of Outcome
+        Of all runs.
+    """
+    level, reasons = bound
+    drawn = (reason for one in outcomes for reason in one.uncovered)
+    return level, tuple(dict.fromkeys((*reasons, *drawn)))

@@ -60,6 +60,7 @@ def read_outcomes(path: Path, head: Mapping[str, Any]) -> list[Outcome]:
         first, *rest = [json.loads(line) for line in lines]
         outcomes = [Outcome(**line) for line in rest]
         known = isinstance(first, dict) and all(o.peaks.keys() == PEAKS.keys() for o in outcomes)
+        known &= all(isinstance(o.uncovered, list) for o in outcomes)
         known &= [one.index for one in outcomes] == list(range(len(outcomes)))
     except (ValueError, TypeError, AttributeError, RecursionError) as error:
         raise DataError(f"keeps no runs of a study: {error}", path=path, remedy=_ELSE) from None

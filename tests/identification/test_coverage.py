@@ -72,6 +72,8 @@ CELLS = [
 BEYOND = {
     ("hunt-crossley", "noise with a memory"): {"phi"},
     ("maxwell", "noise with a memory"): {"k"},
+    # An interval that ends at 0 cannot miss the truth there.
+    ("nose", "air, both fitted"): {"k1"},
 }
 
 

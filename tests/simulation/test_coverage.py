@@ -14,7 +14,8 @@ from nrs_design.simulation.coverage import uncovered
 from nrs_design.simulation.exact import simulate_exactly
 from nrs_design.simulation.sampled import simulate_sampled
 from nrs_design.simulation.scenario import Control, Errors, Profile
-from nrs_design.spec import read_spec
+from nrs_design.spec import parse_spec, read_spec
+from nrs_design.spec.sampling import DisturbancesSpec
 from tests.simulation.interactions import text_of
 
 LAWS = {
@@ -181,6 +182,7 @@ def test_once_nothing_is_commanded_a_run_decays_as_certified(ending):
         (lambda s: replace(s, errors=Errors(friction=1.0)), {}, "go on acting"),
         (lambda s: replace(s, surfaces=s.surfaces * 2), {}, "several surfaces"),
         (lambda s: s, {"engine": "sampled"}, "not about the sampled loop"),
+        (lambda s: s, {"engine": "sampled"}, "the rounding of angle and reference goes on acting"),
     ],
 )
 def test_when_a_rate_is_not_about_a_run(ending, change, options, reason):
@@ -189,6 +191,37 @@ def test_when_a_rate_is_not_about_a_run(ending, change, options, reason):
     changed = replace(one, scenario=change(one.scenario))
     held = hold_rate(designed, ending.certificate, changed)
     assert any(reason in text for text in held.uncovered)
+
+
+@pytest.mark.parametrize(("share", "said"), [(0.5, True), (1.0, False)])
+def test_the_reference_counts_among_the_angles(certified, share, said):
+    """While the axis moves, the reference leads it: the law holds both in single precision."""
+    designed, system = certified.designed, certified.certificate.system
+    scenario = text_of(LAWS, scenario="command: {constant: 8 deg/s}, duration: 0.2 s")
+    (one,) = run_scenarios(replace(designed, spec=parse_spec(scenario)), Runs(engine="sampled"))
+    angle, reference = (float(np.abs(one.run.response[n]).max()) for n in ("angle", "reference"))
+    assert reference > 1.05 * angle
+    limit = f"{angle + share * (reference - angle)!r} rad"
+    given = DisturbancesSpec.model_validate({"command": "8 deg/s", "largest_angle": limit})
+    spec = designed.spec.model_copy(update={"disturbances": given})
+    statement = next(s for s in certified.certificate.statements if s.bound(system))
+    reasons = list(uncovered(spec, system, statement, one.scenario, one.run))
+    assert ("the angle is larger than the proof takes it for" in reasons) == said
+
+
+@pytest.mark.parametrize(
+    ("rules", "said"),
+    [("{transitions: [[insertion, withdrawal]]}", False), ("{longest_dwell_time: 0.2 s}", True)],
+)
+def test_one_controller_all_the_time_is_not_left_in_time(certified, rules, said):
+    """A proof with a longest dwell time may be about a mode that is unstable by itself."""
+    system = certified.certificate.system
+    spec = parse_spec(text_of(LAWS).replace("switching: arbitrary", f"switching: {rules}"))
+    (one,) = run_scenarios(certified.designed)
+    stays = replace(one.scenario, control=Control("insertion"))
+    statement = next(s for s in certified.certificate.statements if s.bound(system))
+    reasons = list(uncovered(spec, system, statement, stays, one.run))
+    assert reasons == ["nothing makes the run keep the rules of switching"] * said
 
 
 def test_mujoco_is_another_engine_than_that_of_the_proof(certified):

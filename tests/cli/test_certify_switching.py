@@ -618,6 +618,16 @@ def test_bounds_in_json(tmp_path):
     assert velocity["limit"] is None
 
 
+def test_a_bound_that_is_missing_is_said(tmp_path):
+    """The spec asks for one, and the memory that is allowed does not take the search."""
+    text = f"{SOFT_TISSUE.read_text(encoding='utf-8')}\ndisturbances: {{command: 8 deg/s}}\n"
+    (tmp_path / "commanded.nrs.yaml").write_text(text)
+    result = run("certify-switching", "commanded.nrs.yaml", "--memory", "0.00005", cwd=tmp_path)
+    assert result.returncode == 0, result.stderr
+    assert "bound on force under velocity command: not tried" in result.stdout
+    assert "conewise quadratic: " not in result.stdout
+
+
 AT_ONCE = ROOT / "docs" / "examples" / "tissue-and-tool-at-once.nrs.yaml"
 
 

@@ -1,6 +1,11 @@
 from __future__ import annotations
 
+import math
+
+from matplotlib.figure import Figure
+
 from nrs_design.reporting import render_png
+from nrs_design.reporting.images import to_svg_file
 
 
 def test_every_figure_is_a_png_of_full_size(report):
@@ -13,3 +18,15 @@ def test_every_figure_is_a_png_of_full_size(report):
 
 def test_same_report_gives_the_same_bytes(report):
     assert render_png(report("refuted")) == render_png(report("refuted"))
+
+
+def test_the_last_bit_of_a_layout_leaves_no_trace():
+    """It follows addresses in memory, so that the same figure has several."""
+    texts = []
+    for bottom in (0.125, math.nextafter(0.125, 1.0)):
+        figure = Figure()
+        axes = figure.add_axes((0.125, bottom, 0.75, 0.75))
+        axes.plot([0.0, 1.0], [0.0, 1.0])
+        texts.append(to_svg_file(figure))
+    assert texts[0] == texts[1]
+    assert "#outline-0)" in texts[0]

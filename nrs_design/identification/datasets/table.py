@@ -17,6 +17,7 @@ from nrs_design.files import open_regular
 from nrs_design.identification.datasets.arrays import ARRAYS, check_kind, read_sheet
 from nrs_design.identification.datasets.columns import Column, find_columns
 from nrs_design.identification.datasets.header import BLOCK, SYNTHETIC, read_header
+from nrs_design.identification.datasets.names import UNITS, standard_name
 from nrs_design.identification.datasets.text import MAX_ROWS, Parser, read_blocks
 
 Array = NDArray[np.float64]
@@ -227,7 +228,10 @@ def _read_text(
     file: BinaryIO, path: Path, wanted: Wanted, digest: str | None, progress: Progress
 ) -> Table:
     hashed = hashlib.sha256()
-    header = read_header(file, path, wanted.mapping, hashed.update)
+    example = ",".join(
+        key if "any" in UNITS[key] else standard_name(key) for key in wanted.layouts[0]
+    )
+    header = read_header(file, path, wanted.mapping, hashed.update, example)
     layout, groups = find_columns(
         header.names, wanted.layouts, wanted.mapping, path, header.line, wanted.optional
     )

@@ -114,6 +114,19 @@ def test_numpy(tmp_path, synthetic):
     assert record.source.synthetic is synthetic
 
 
+def test_columns_of_a_matrix(tmp_path):
+    """Numbers that are no columns come last where columns are missing."""
+    data = np.column_stack([TIME, DEFLECTION, FORCE])
+    savemat(tmp_path / "a.mat", {"J": 0.1, "data": data})
+    mapping = ["time_s=data(:,1)", "deflection_m=data(:,2)", "force_N=data(:,3)"]
+    check(read_tissue(tmp_path / "a.mat", parse_mapping(mapping)))
+    with pytest.raises(DataError, match=r"it has data\(:,1\), data\(:,2\), data\(:,3\), J \(expected"):
+        read_tissue(tmp_path / "a.mat")
+    np.savez(tmp_path / "a.npz", data=data)
+    mapping = ["time_s=data[:,0]", "deflection_m=data[:,1]", "force_N=data[:,2]"]
+    check(read_tissue(tmp_path / "a.npz", parse_mapping(mapping)))
+
+
 @pytest.mark.parametrize("ending", ["parquet", "xlsx"])
 def test_tables(tmp_path, ending):
     pytest.importorskip("pyarrow" if ending == "parquet" else "openpyxl")

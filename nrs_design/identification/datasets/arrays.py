@@ -123,24 +123,27 @@ def read_npz(file: BinaryIO, path: Path) -> Content:
 
 
 def read_parquet(file: BinaryIO, path: Path) -> Content:
-    """Read the columns of a Parquet file."""
+    """Read the columns of a Parquet file; an index with a name is one, too."""
     _check_size(file, path)
     pandas = _pandas(path, "pyarrow")
     with _reading(path, "Parquet"):
         frame = pandas.read_parquet(file)
+        if any(frame.index.names):
+            frame = frame.reset_index()
         columns = ((str(name), np.asarray(frame[name])) for name in frame.columns)
         return _sorted(columns, "{}[:,{}]", 0)
 
 
-def read_sheet(file: BinaryIO, path: Path) -> bytes:
-    """Return the first sheet of an Excel file as text with tabs, line by line."""
+def read_sheet(file: BinaryIO, path: Path) -> tuple[bytes, tuple[str, ...]]:
+    """Return the first sheet of an Excel file as text with tabs, line by line; and all names."""
     file.seek(0)
     _check_size(file, path)
     pandas = _pandas(path, "openpyxl")
-    with _reading(path, "Excel"):
-        frame = pandas.read_excel(file, header=None, dtype=object, engine="openpyxl", sheet_name=0)
+    with _reading(path, "Excel"), pandas.ExcelFile(file, engine="openpyxl") as book:
+        names = tuple(map(str, book.sheet_names))
+        frame = book.parse(0, header=None, dtype=object)
     rows = ("\t".join(map(_cell, row)) for row in frame.itertuples(index=False))
-    return "\n".join(rows).encode()
+    return "\n".join(rows).encode(), names
 
 
 ARRAYS: Mapping[str, Callable[[BinaryIO, Path], Content]] = MappingProxyType(

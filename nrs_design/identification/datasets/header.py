@@ -191,8 +191,12 @@ def _separator_of(text: str) -> str | None:
     for separator in (";", "\t", ",", None):
         cells = _cells(text, separator)
         comma = separator != "," or '"' in text
-        if len(cells) > 1 and all(
-            is_number(cell) or (comma and _DECIMAL_COMMA.match(cell)) for cell in cells if cell
+        if (
+            len(cells) > 1
+            and any(cells)
+            and all(
+                is_number(cell) or (comma and _DECIMAL_COMMA.match(cell)) for cell in cells if cell
+            )
         ):
             return separator
     return ""

@@ -151,12 +151,25 @@ def _read(file: BinaryIO, path: Path, wanted: Wanted, progress: Progress) -> Tab
     if kind in ARRAYS:
         table = _read_arrays(file, path, wanted)
     elif kind == SHEET:
-        digest = _digest(file)
-        table = _read_text(BytesIO(read_sheet(file, path)), path, wanted, digest, lambda done: None)
+        table = _read_sheet(file, path, wanted)
     else:
         table = _read_text(file, path, wanted, None, progress)
     progress(float(path.stat().st_size))
     return table
+
+
+def _read_sheet(file: BinaryIO, path: Path, wanted: Wanted) -> Table:
+    digest = _digest(file)
+    text, sheets = read_sheet(file, path)
+    try:
+        return _read_text(BytesIO(text), path, wanted, digest, lambda done: None)
+    except DataError as error:
+        if len(sheets) == 1:
+            raise
+        others = f"; {sheets[0]!r} is read, the first of {len(sheets)} sheets: put the data there"
+        (fault,) = error.faults
+        remedy = (fault.remedy or "") + others
+        raise DataError(fault.message, path=path, line=fault.line, remedy=remedy) from error
 
 
 def _read_arrays(file: BinaryIO, path: Path, wanted: Wanted) -> Table:

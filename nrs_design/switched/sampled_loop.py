@@ -29,6 +29,7 @@ from nrs_design.spec.touched import FREE
 from nrs_design.switched.assumptions import at_once_texts
 from nrs_design.switched.constraints import assemble_switching
 from nrs_design.switched.gain_box import GainBox
+from nrs_design.switched.motor_command import motor_command
 from nrs_design.switched.parameter_box import Box
 from nrs_design.switched.parameters import Corner
 from nrs_design.switched.sampled_assumptions import Loss, assume_sampled
@@ -113,6 +114,8 @@ def close_sampled_loop(
     every = (*motions, *free)
     begins = tuple(item.mode.name for item in every if item.begins)
     channels = tuple(channels_of(spec, design.sensor.lasting, every))
+    outputs = outputs_of(frame.states, touched, spec.limits.torque.exact) if channels else ()
+    driven = motor_command(spec, frame, [item.law for item in laws.values()], channels)
     return SwitchedSystem(
         spec.name,
         Time.DISCRETE,
@@ -121,12 +124,13 @@ def close_sampled_loop(
         (
             *assume_sampled(spec, sampling, ranges, frame, laws, design, loss, touched),
             *at_once_texts(touched),
+            *(() if driven is None else (driven.text,)),
         ),
         assemble_switching(spec.switching, groups, _resets(spec.idle_states, design, frame)),
         losable,
         frame.period,
         channels,
-        outputs_of(frame.states, touched, spec.limits.torque.exact) if channels else (),
+        (*outputs, *(() if driven is None else (driven.output,))),
         tuple(roundings_of(frame, channels, every)),
         clock=Clock(sampling.round, begins) if sampling.round > 1 else None,
     )

@@ -23,6 +23,9 @@ from nrs_design.switched.assumption import Assumption
 from nrs_design.switched.assumption_kinds import NOT_QUANTIZED
 from nrs_design.switched.sampled_frame import INPUTS, Frame
 
+# How the names of such outputs begin.
+NAME = "motor command"
+
 
 @dataclass(frozen=True, slots=True)
 class MotorCommand:
@@ -106,7 +109,7 @@ def motor_command(
     )
     limit = float32_not_above(largest.not_above)
     left = limit - at_once
-    name = "motor command before errors of its sample" if at_once else "motor command"
+    name = f"{NAME} before errors of its sample" if at_once else NAME
     output = Output(name, spec.actuator.command, rows, left if left > 0 else None)
     return MotorCommand(output, at_once, limit)
 

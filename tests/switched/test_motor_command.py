@@ -11,6 +11,7 @@ from nrs_design.certificates.certificate import dump
 from nrs_design.certificates.verify import verify_document
 from nrs_design.pipeline import limits_of, run_certification, run_design
 from nrs_design.pipeline.certification import assemble_spec
+from nrs_design.reporting.sections.proof import proof_section
 from nrs_design.spec import read_spec
 from tests.support import SOFT_TISSUE
 
@@ -106,6 +107,9 @@ def test_runs_stay_below_the_bound_and_come_near(tmp_path):
     pushes = np.hstack([pushes, np.zeros((501, 1))])
     reached = np.abs(_commands(pushes, bound_law(result))).max()
     assert reached <= bound.level
+    said = str(proof_section(result))
+    assert "the driver does not saturate." in said
+    assert "saturation of motor or driver." not in said
     # An ellipsoid reaches further than what a jump of the command does at once.
     assert reached > 0.5 * float(bound.level)
     assert verify_document(json.loads(dump(result.certificate)), loaded).fault is None

@@ -12,6 +12,8 @@ from nrs_design.reproduction import thesis
 from nrs_design.simulation.run import Run
 from nrs_design.spec import LoadedSpec, parse_spec
 
+# Desired impedance in N m s/rad, thesis 6.2.
+DESIRED = thesis.TORQUE / thesis.VELOCITY
 POSITION = "{type: position}"
 _GAIN = f"environment: soft, proportional_gain: {exact_text(thesis.FORCE_GAIN)} rad/(N*m)"
 PROPORTIONAL = f"{{type: force, {_GAIN}}}"

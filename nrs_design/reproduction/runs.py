@@ -12,6 +12,7 @@ from nrs_design.reproduction.comparison import Comparison, Tolerance, derived
 from nrs_design.reproduction.interaction import (
     BLEEDING,
     BY_THRESHOLD,
+    DESIRED,
     INTEGRAL,
     POSITION,
     PROFILE,
@@ -34,8 +35,6 @@ from nrs_design.simulation.metrics import (
 )
 from nrs_design.simulation.run import Run
 from nrs_design.simulation.time_response import Array
-
-DESIRED = thesis.TORQUE / thesis.VELOCITY
 
 
 def rows() -> tuple[Comparison, ...]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -25,11 +25,11 @@ if TYPE_CHECKING:
     from matplotlib.artist import Artist
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
-    from numpy.typing import NDArray
+    from numpy.typing import ArrayLike, NDArray
 
 # Two points from each of so many parts of a curve are drawn: its least and its largest value.
 _PARTS = 400
-_LOOKS = (
+_LOOKS: tuple[dict[str, Any], ...] = (
     {"color": BLUE, "lw": 1.6},
     {"color": VERMILLION, "lw": 1.4, "linestyle": (0, (5, 2))},
     {"color": PURPLE, "lw": 1.4, "linestyle": (0, (2, 1.5))},
@@ -37,9 +37,15 @@ _LOOKS = (
     {"color": SKY, "lw": 1.6},
     {"color": ORANGE, "lw": 1.4, "linestyle": (0, (5, 2))},
 )
-_PRINTED = {"color": INK, "linestyle": "none", "marker": "x", "markersize": 7, "mew": 1.8}
-_LIMIT = {"color": GREEN, "linestyle": ":", "lw": 1.5}
-_INSTANT = {"color": MUTED, "linestyle": (0, (1, 2)), "lw": 1.2}
+_PRINTED: dict[str, Any] = {
+    "color": INK,
+    "linestyle": "none",
+    "marker": "x",
+    "markersize": 7,
+    "mew": 1.8,
+}
+_LIMIT: dict[str, Any] = {"color": GREEN, "linestyle": ":", "lw": 1.5}
+_INSTANT: dict[str, Any] = {"color": MUTED, "linestyle": (0, (1, 2)), "lw": 1.2}
 # Pale, so that a page's light or dark shows through.
 _SHADES, _PALE = (SKY, ORANGE, GREEN, PURPLE), 0.16
 # A stay this much shorter than a panel has no room for its name.
@@ -201,16 +207,21 @@ def _shade(axes: Axes, record: Record, names: Sequence[str], *, named: bool) -> 
         axes.axvspan(low, high, color=tint, alpha=_PALE, linewidth=0, zorder=0)
         if named and high - low > _NAMED * (end - begin):
             middle, above = (low + high) / 2, axes.get_xaxis_transform()
-            place = {"transform": above, "ha": "center", "va": "bottom", "fontsize": 8.5}
+            place: dict[str, Any] = {
+                "transform": above,
+                "ha": "center",
+                "va": "bottom",
+                "fontsize": 8.5,
+            }
             axes.text(middle, 1.02, name, color=MUTED, **place)
 
 
 def _second_scale(axes: Axes, label: str, factor: float) -> None:
-    def there(y: NDArray[np.float64]) -> NDArray[np.float64]:
-        return y * factor
+    def there(y: ArrayLike) -> ArrayLike:
+        return np.asarray(y, float) * factor
 
-    def back(y: NDArray[np.float64]) -> NDArray[np.float64]:
-        return y / factor
+    def back(y: ArrayLike) -> ArrayLike:
+        return np.asarray(y, float) / factor
 
     scale = axes.secondary_yaxis("right", functions=(there, back))
     scale.set_ylabel(label)

@@ -238,7 +238,7 @@ def _locus() -> Counterpart:
         statements=(
             measured("damping ratio at Kp 0.02", "0.707", found.damping_ratio, why, wrong),
             measured(
-                "natural frequency at Kp 0.02, rad/s",
+                "natural frequency there, rad/s",
                 "40.2971",
                 found.natural_frequency,
                 why,

@@ -168,8 +168,8 @@ def _counterpart(one: Experiment) -> Counterpart:
             Illustration(
                 f"{name}-record",
                 f"Counterpart of figure {one.figure}: command, torque, depth, displayed impedance",
-                "Crosses: what the thesis prints of this figure. Where the command rests, the model "
-                f"displays Bt; while it changes, the depth lags by Bt/k = 50 ms. {ENGINE}",
+                "Crosses: what the thesis prints. Where the command rests, the model displays "
+                f"Bt; while it changes, the depth lags by Bt/k = 50 ms. {ENGINE}",
                 figure,
             ),
         ),

@@ -12,8 +12,8 @@ from nrs_design.reproduction.gallery.counterpart import MEASURED, Counterpart, O
 
 _COLUMNS = ("statement", "print", "simulated", "outcome", "why")
 _MEANINGS = (
-    f"{Outcome.REPRODUCED}: a statement in words holds in the run; or a number that was measured on "
-    f"the robot is met within {100 * MEASURED:g} % (the thesis's own six displayed impedances miss "
+    f"{Outcome.REPRODUCED}: a statement in words holds in the run; or a number measured on the "
+    f"robot is met within {100 * MEASURED:g} % (the thesis's own six displayed impedances miss "
     "the desired one by up to 4.6 %), or within what rounding of the print leaves open.",
     f"{Outcome.NOT_REPRODUCED}: it is not, and the reason stands beside it.",
     f"{Outcome.OMITTED}: what decides it is not in the thesis, such as the course of a command. "

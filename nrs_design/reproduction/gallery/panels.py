@@ -12,7 +12,7 @@ from nrs_design.reproduction import thesis
 from nrs_design.reproduction.interaction import DESIRED
 from nrs_design.simulation.metrics import displayed_impedance
 from nrs_design.simulation.run import Run
-from nrs_design.simulation.time_response import TimeResponse
+from nrs_design.simulation.time_response import Array, TimeResponse
 
 # Thesis 6.3.1.1: from the sensor at the pivot to the contact, in m; a torque in N m is so many N.
 ARM = 0.24

@@ -129,14 +129,14 @@ def _limits() -> tuple[Comparison, ...]:
         row(
             "peak torque, steady error, simulated at 5 deg/s; P, X_i the measured position",
             value=_limited(PROPORTIONAL_FROM_MEASURED),
-            printed="a steady error is held to be inevitable without an integral",
+            printed="a steady error is expected without an integral",
             right=("0.3152", "0"),
             note="The other reading of X_i: no error is left.",
         ),
         row(
             "peak torque, steady error, simulated at 5 deg/s; PI with an integral that bleeds",
             value=_limited(INTEGRAL, BLEEDING),
-            printed="held to be impossible under switching",
+            printed="left out: stability under switching not guaranteed",
             right=("0.3426", "0"),
             note="Kp 0.02, Ki 0.5 rad/(N m s). Proved stable for any switching: "
             "specs/neuroboscope/force-limit-pi.nrs.yaml.",

@@ -48,8 +48,8 @@ _LIMIT: dict[str, Any] = {"color": GREEN, "linestyle": ":", "lw": 1.5}
 _INSTANT: dict[str, Any] = {"color": MUTED, "linestyle": (0, (1, 2)), "lw": 1.2}
 # Pale, so that a page's light or dark shows through.
 _SHADES, _PALE = (SKY, ORANGE, GREEN, PURPLE), 0.16
-# A stay this much shorter than a panel has no room for its name.
-_NAMED = 0.22
+# Width of all panels in letters; a stay that is narrower than its name goes without.
+_LETTERS = 56
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -146,7 +146,7 @@ def draw_records(records: Sequence[Record]) -> Figure:
         for row, panel in enumerate(record.panels):
             axes: Axes = grid[row, column]
             _draw_panel(axes, panel, record, handles)
-            _shade(axes, record, names, named=row == 0)
+            _shade(axes, record, names, _LETTERS / len(records) if row == 0 else 0.0)
             if column == 0:
                 axes.set_ylabel(panel.label)
             if panel.other is not None and column == len(records) - 1:
@@ -174,7 +174,7 @@ def _draw_panel(axes: Axes, panel: Panel, record: Record, handles: dict[str, Art
         axes.set_yticks(panel.ticks)
     for instant in record.instants:
         line = axes.axvline(instant, **_INSTANT)
-        handles.setdefault("instant that the print names", line)
+        handles.setdefault("printed instant", line)
 
 
 def _thinned(
@@ -197,7 +197,7 @@ def _thinned(
     return t[picked], y[picked]
 
 
-def _shade(axes: Axes, record: Record, names: Sequence[str], *, named: bool) -> None:
+def _shade(axes: Axes, record: Record, names: Sequence[str], letters: float) -> None:
     begin, end = record.span
     for start, stop, name in record.stays:
         low, high = max(start, begin), min(stop, end)
@@ -205,7 +205,7 @@ def _shade(axes: Axes, record: Record, names: Sequence[str], *, named: bool) -> 
             continue
         tint = _SHADES[names.index(name) % len(_SHADES)]
         axes.axvspan(low, high, color=tint, alpha=_PALE, linewidth=0, zorder=0)
-        if named and high - low > _NAMED * (end - begin):
+        if letters * (high - low) > (len(name) + 1) * (end - begin):
             middle, above = (low + high) / 2, axes.get_xaxis_transform()
             place: dict[str, Any] = {
                 "transform": above,
@@ -237,6 +237,6 @@ def _legend(figure: Figure, handles: dict[str, Artist], names: Sequence[str]) ->
     ]
     items = [*handles.values(), *shades]
     labels = [*handles, *(str(shade.get_label()) for shade in shades)]
-    columns = max(1, min(3, 64 // (max(map(len, labels)) + 6)))
+    columns = max(1, min(3, 70 // (max(map(len, labels)) + 6)))
     figure.set_figheight(figure.get_figheight() + 0.2 * -(-len(items) // columns))
     figure.legend(items, labels, loc="outside lower center", ncols=columns)

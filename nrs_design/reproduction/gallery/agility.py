@@ -108,7 +108,7 @@ def _profile() -> Counterpart:
     )
     later, sooner = (run.contacts[1][0] for run in (without, switched))
     return Counterpart(
-        shows={"6.16": "Desired torque with one impedance and with two; a drawing, no numbers"},
+        shows={"6.16": "Desired torque with one impedance and with two; instants named, not timed"},
         section="6.3.2",
         title="desired torque, one impedance and two",
         statements=(
@@ -142,7 +142,7 @@ def _profile() -> Counterpart:
 
 
 def _profile_figures(without: Run, switched: Run) -> tuple[Illustration, Illustration]:
-    labels = ("one impedance (solid in print)", "two impedances (dashed in print)")
+    labels = ("one impedance (solid)", "two (dashed in print)")
     torque = Panel(
         "Torque [N m]",
         tuple(

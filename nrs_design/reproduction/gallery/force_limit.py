@@ -134,7 +134,7 @@ def _profile() -> Counterpart:
     torque = response["torque"][held]
     panels = (speed_panel(response, "phi"), torque_panel(response), _selection(run))
     return Counterpart(
-        shows={"6.22": "Desired torque under a hybrid controller; a drawing, no numbers but T_h"},
+        shows={"6.22": "Desired torque under a hybrid controller; instants named, not timed"},
         section="6.3.3",
         title="desired torque, position and force control",
         statements=(
@@ -175,8 +175,7 @@ def _schemes(run: Run) -> Counterpart:
     angles = Panel(
         "Angle [rad]",
         (
-            Curve(response.t, response["commanded position"], "command X_c", 1),
-            Curve(response.t, response["offset"], "X_i", 2),
+            Curve(response.t, response["commanded position"], "X_c, at the switch X_i", 1),
             Curve(response.t, response["angle"], "angle X", 0),
         ),
     )
@@ -203,7 +202,7 @@ def _schemes(run: Run) -> Counterpart:
             Statement(
                 "X_i of 6.41",
                 "the initial condition when S switches",
-                "the reference at the switch; the measured position in figure 6.26's third column",
+                "the reference at the switch; the measured position in the middle of figure 6.26's second part",
                 Outcome.OMITTED,
                 "the thesis does not say of which signal: both readings are simulated",
             ),
@@ -292,8 +291,8 @@ def _experiment(one: Experiment, runs: Sequence[Run]) -> Counterpart:
             Illustration(
                 f"{name}-close",
                 "About the first switch: P with either X_i, and a PI",
-                "The third controller is not in the thesis, which holds that an integral is not "
-                "possible under switching; position control and this PI are proved stable for any "
+                "The third controller is not in the thesis, which leaves an integral out because "
+                "stability under switching is not guaranteed with it; position control and this PI are proved stable for any "
                 "switching (specs/neuroboscope/force-limit-pi.nrs.yaml).",
                 draw_records(close),
             ),
@@ -341,11 +340,12 @@ def _statements(
             left > 1,
         ),
         stated(
-            "an integral leaves none, but is not stable under switching",
-            "so held (6.3.3.1)",
-            f"PI that bleeds: {nothing:.2g} % left, to {integral:.4g} N m; proved stable",
+            "an integral would leave none, but its stability under switching is not guaranteed",
+            "so said (6.3.3.1)",
+            f"PI that bleeds: {nothing:.2g} % left, to {integral:.4g} N m; certified",
             holds=False,
-            why="an integral that bleeds in position control has a common quadratic function",
+            why="position control and a PI that bleeds have a common quadratic function: "
+            "specs/neuroboscope/force-limit-pi.nrs.yaml",
         ),
     )
 

@@ -37,7 +37,7 @@ def counterparts() -> tuple[Counterpart, ...]:
             shows={},
             section="7.2.2",
             title="six moves by hand",
-            statements=(*_signs(pushed), *_changes(pushed, led)),
+            statements=(*_signs(pushed, led), *_changes(pushed, led)),
             given=(
                 "motion loop of 4.29 and 4.30; Mt and Bt of table 7.1; phi goes through 15 deg",
                 "0.3 N m and 8 deg/s, the largest torque and speed of 6.3.1.1; 1002 N/m, surgeons' "
@@ -58,20 +58,22 @@ def counterparts() -> tuple[Counterpart, ...]:
     )
 
 
-def _signs(pushed: Sequence[HandRun]) -> tuple[Statement, ...]:
+def _signs(pushed: Sequence[HandRun], led: Sequence[HandRun]) -> tuple[Statement, ...]:
     speeds = changes(list(map(_mean_speed, pushed)))
+    led_speeds = changes(list(map(_mean_speed, led)))
     totals = changes(list(map(_total_torque, pushed)))
+    led_totals = changes(list(map(_total_torque, led)))
     return (
         stated(
             "more Mt or more Bt: mean speed",
             "less in every pair",
-            "less in every pair, pushed",
+            f"pushed: less in every pair; led: in {_count(led_speeds, -1)} of 7",
             all(change < 0 for change in speeds),
         ),
         stated(
             "more Mt or more Bt: total torque",
-            "more in every pair but 5 to 6, the same",
-            "more in every pair, pushed",
+            "more in every pair but 5 to 6, approximately the same",
+            f"pushed: more in every pair; led: in {_count(led_totals, 1)} of 7",
             all(change > 0 for change in totals),
         ),
     )
@@ -96,6 +98,10 @@ def _changes(pushed: Sequence[HandRun], led: Sequence[HandRun]) -> tuple[Stateme
         )
         for (before, after), number, one, other in zip(PAIRS, printed, *found, strict=True)
     )
+
+
+def _count(found: Sequence[float], sign: int) -> int:
+    return sum(sign * change > 0 for change in found)
 
 
 def _mean_speed(run: HandRun) -> float:

@@ -114,10 +114,10 @@ def _desired() -> Counterpart:
     return Counterpart(
         shows={
             "6.28": "Pictures of the operation and of tissue and tool; no record",
-            "6.29": "Drawing of the scene: tissue at B, tool at D; no numbers",
-            "6.30": "The surgeon's speed command; a drawing, no numbers but the largest speed",
-            "6.31": "The endoscope's location on that command; a drawing",
-            "6.32": "The torque on that command; a drawing",
+            "6.29": "Drawing of the scene: tissue from B on, tool from D on",
+            "6.30": "The surgeon's speed command; instants named, not timed",
+            "6.31": "The endoscope's location on that command",
+            "6.32": "The torque on that command",
         },
         section="6.4",
         title="into tissue, out, onto the tool, and off it",

@@ -237,6 +237,8 @@ def _legend(figure: Figure, handles: dict[str, Artist], names: Sequence[str]) ->
     ]
     items = [*handles.values(), *shades]
     labels = [*handles, *(str(shade.get_label()) for shade in shades)]
+    if not items:
+        return
     columns = max(1, min(3, 70 // (max(map(len, labels)) + 6)))
     figure.set_figheight(figure.get_figheight() + 0.2 * -(-len(items) // columns))
     figure.legend(items, labels, loc="outside lower center", ncols=columns)

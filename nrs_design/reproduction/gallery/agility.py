@@ -10,6 +10,7 @@ import numpy as np
 
 from nrs_design.reporting.document import Illustration
 from nrs_design.reporting.figures.records import Curve, Panel, Record, draw_records
+from nrs_design.reporting.simulation import rounded_up
 from nrs_design.reproduction.experiments import GAINS, TIMES
 from nrs_design.reproduction.gallery.counterpart import (
     Counterpart,
@@ -121,13 +122,13 @@ def _profile() -> Counterpart:
             stated(
                 "torque up to its peak",
                 "the same",
-                f"{_largest(switched):.4g} N m in both",
+                f"{rounded_up(_largest(switched))} N m in both",
                 math.isclose(_largest(without), _largest(switched), rel_tol=1e-9),
             ),
             stated(
                 "peak torque",
                 "does not exceed T_max, 0.3 N m",
-                f"{_largest(switched):.4g} N m",
+                f"{rounded_up(_largest(switched))} N m",
                 _largest(switched) < TORQUE,
             ),
         ),
@@ -193,7 +194,7 @@ def _scheme(run: Run) -> Counterpart:
                 "Counterpart of figure 6.17: every signal of the scheme in one run",
                 "Into tissue at 8 deg/s, out at 5 deg/s from 1 s on. The robot follows the command "
                 "less what the admittance makes of the torque. Met at 8 deg/s, the tissue pushes "
-                f"with up to {_largest(run):.3f} N m at first, more than T_max. {ENGINE}",
+                f"with up to {rounded_up(_largest(run))} N m at first, more than T_max. {ENGINE}",
                 draw_records([_signals(run)]),
             ),
         ),
@@ -263,8 +264,8 @@ def _withdrawal(
         ),
         remark=one.remark,
         runs={
-            f"{name}-without": runs[0].response,
-            f"{name}-with": runs[1].response,
+            f"withdrawal-{one.speed}-deg-s-without": runs[0].response,
+            f"withdrawal-{one.speed}-deg-s-with": runs[1].response,
         },
     )
 

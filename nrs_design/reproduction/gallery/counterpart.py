@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from enum import StrEnum
@@ -151,11 +150,6 @@ def stated(quantity: str, printed: str, simulated: str, holds: bool, why: str = 
     """
     outcome = Outcome.REPRODUCED if holds else Outcome.NOT_REPRODUCED
     return Statement(quantity, printed, simulated, outcome, "" if holds else why)
-
-
-def file_name(figures: Mapping[str, str]) -> str:
-    """Return a name for what belongs to figures, such as ``figure-6-14``."""
-    return "figure-" + re.sub(r"[^0-9]", "-", next(iter(figures)))
 
 
 def _percent(off: float) -> str:

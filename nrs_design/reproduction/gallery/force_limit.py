@@ -12,6 +12,7 @@ from nrs_design.design.transfer import TransferFunction, poles
 from nrs_design.reporting.document import Illustration
 from nrs_design.reporting.figures.complex_plane import draw_root_locus
 from nrs_design.reporting.figures.records import Curve, Panel, Record, draw_records
+from nrs_design.reporting.simulation import rounded_up
 from nrs_design.reproduction import thesis
 from nrs_design.reproduction.gallery.counterpart import (
     Counterpart,
@@ -147,7 +148,7 @@ def _profile() -> Counterpart:
             stated(
                 "torque from t_i to t4, N m",
                 "kept at T_h, 0.3",
-                f"peak {torque.max():.4g}, at last {torque[-1]:.4g}",
+                f"peak {rounded_up(float(torque.max()))}, at last {torque[-1]:.4g}",
                 bool(torque.max() <= thesis.TORQUE),
                 "a proportional gain overshoots at the switch, and with X_i the reference it keeps "
                 "an error; figures 6.26 and 6.27 show the same of the robot",
@@ -161,7 +162,7 @@ def _profile() -> Counterpart:
                 "Counterpart of figure 6.22: command, torque and selection",
                 "The command waits while force is controlled. From t4 on position control takes up "
                 "where it waits, which is deeper: the torque first rises to "
-                f"{float(response['torque'].max()):.3f} N m. {ENGINE}",
+                f"{rounded_up(float(response['torque'].max()))} N m. {ENGINE}",
                 draw_records([Record("", panels, (1.0, 5.0), stays(run))]),
             ),
         ),
@@ -202,7 +203,8 @@ def _schemes(run: Run) -> Counterpart:
             Statement(
                 "X_i of 6.41",
                 "the initial condition when S switches",
-                "the reference at the switch; the measured position in the middle of figure 6.26's second part",
+                "the reference at the switch; in the middle of figure 6.26's second drawing "
+                "the measured position",
                 Outcome.OMITTED,
                 "the thesis does not say of which signal: both readings are simulated",
             ),
@@ -292,8 +294,8 @@ def _experiment(one: Experiment, runs: Sequence[Run]) -> Counterpart:
                 f"{name}-close",
                 "About the first switch: P with either X_i, and a PI",
                 "The third controller is not in the thesis, which leaves an integral out because "
-                "stability under switching is not guaranteed with it; position control and this PI are proved stable for any "
-                "switching (specs/neuroboscope/force-limit-pi.nrs.yaml).",
+                "stability under switching is not guaranteed with it; position control and this "
+                "PI are certified for any switching (specs/neuroboscope/force-limit-pi.nrs.yaml).",
                 draw_records(close),
             ),
         ),
@@ -313,14 +315,16 @@ def _statements(
         stated(
             "overshoot at the switch",
             "observed" if one.axis == "phi" else "not observed",
-            f"to {peak:.4g} N m",
+            f"to {rounded_up(peak)} N m",
             (peak > thesis.TORQUE) == (one.axis == "phi"),
             "both axes have one model, so they overshoot alike; with X_i the position to "
-            f"{other:.4g} N m",
+            f"{rounded_up(other)} N m",
         )
     ]
     if one.axis == "phi":
-        over.append(measured("largest torque, N m", "0.35", peak, speed, Outcome.OMITTED))
+        over.append(
+            measured("largest torque, N m", "0.35", float(rounded_up(peak)), speed, Outcome.OMITTED)
+        )
     slow = float(one.error) / left * SPEED
     return (
         taken("force control begins, s", one.switches[0], first),
@@ -342,7 +346,7 @@ def _statements(
         stated(
             "an integral would leave none, but its stability under switching is not guaranteed",
             "so said (6.3.3.1)",
-            f"PI that bleeds: {nothing:.2g} % left, to {integral:.4g} N m; certified",
+            f"PI that bleeds: {nothing:.2g} % left, to {rounded_up(integral)} N m; certified",
             holds=False,
             why="position control and a PI that bleeds have a common quadratic function: "
             "specs/neuroboscope/force-limit-pi.nrs.yaml",

@@ -8,6 +8,7 @@ import numpy as np
 
 from nrs_design.reporting.document import Illustration
 from nrs_design.reporting.figures.records import Record, draw_records
+from nrs_design.reporting.simulation import rounded_up
 from nrs_design.reproduction.gallery.counterpart import (
     Counterpart,
     Outcome,
@@ -141,7 +142,7 @@ def _counterpart(one: Experiment) -> Counterpart:
             Statement(
                 "largest torque, N m",
                 "safe (chapter 8); T_max is 0.3",
-                f"{float(np.abs(torque).max()):.4g}",
+                rounded_up(float(np.abs(torque).max())),
                 Outcome.OMITTED,
                 "at rest it is Bt times the command, whose size is not printed: "
                 f"{2.15 * VELOCITY:.4f} at 8 deg/s",

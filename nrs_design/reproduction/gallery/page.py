@@ -126,7 +126,7 @@ def _section(one: Counterpart) -> Section:
         blocks.append(Paragraph(one.remark))
     blocks += one.illustrations
     rows = tuple(
-        (s.quantity, s.printed, s.simulated, str(s.outcome), s.why) for s in one.statements
+        (s.quantity, s.printed, s.simulated, str(s.outcome), s.why or "–") for s in one.statements
     )
     blocks.append(Table("What the print says, and the run", _COLUMNS, rows))
     blocks.append(Bullets("Inputs from the thesis", one.given))

@@ -8,6 +8,7 @@ import numpy as np
 
 from nrs_design.reporting.document import Illustration
 from nrs_design.reporting.figures.records import Curve, Panel, Record, draw_records
+from nrs_design.reporting.simulation import rounded_up
 from nrs_design.reproduction.gallery.counterpart import (
     Counterpart,
     Outcome,
@@ -148,11 +149,11 @@ def _desired() -> Counterpart:
                 f"{1e3 * (t4 - 4):.0f} ms after it",
                 abs(t4 - 4) < 0.1,
             ),
-            stated("largest torque in tissue, N m", "T_max, 0.3", f"{soft:.4g}", soft <= TORQUE),
+            stated("largest torque in tissue, N m", "T_max, 0.3", rounded_up(soft), soft <= TORQUE),
             stated(
                 "largest torque against the tool, N m",
                 "T_max, 0.3",
-                f"{stiff:.4g}",
+                rounded_up(stiff),
                 stiff <= TORQUE,
                 "the tool is met at up to the largest speed here: the admittance of Mt 0.01 kg m^2 "
                 "needs a moment to give way, and the torque overshoots",

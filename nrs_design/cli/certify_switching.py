@@ -42,6 +42,7 @@ if TYPE_CHECKING:
     from nrs_design.pipeline.subsets import Subset
     from nrs_design.search.certification import Certification
     from nrs_design.search.margin import BoxMargin, DwellMargin
+    from nrs_design.spec import LoadedSpec
 
 
 LargestBox = Annotated[
@@ -149,7 +150,7 @@ def certify_switching(
         _print(result, verbose=verbose)
         for relief in find_relief(result):
             say(f"  {relief}")
-        for line in _margin_lines(margins, asked=margin or shortest_dwell):
+        for line in _margin_lines(margins, loaded, asked=margin or shortest_dwell):
             say(f"  {line}")
         _print_subsets(result, parts)
         for line in _next_steps(result, margin, shortest_dwell):
@@ -157,12 +158,12 @@ def certify_switching(
     raise typer.Exit(exit_codes.OF_VERDICT[str(result.certification.verdict)])
 
 
-def _margin_lines(margins: ProofMargins, *, asked: bool) -> Iterator[str]:
+def _margin_lines(margins: ProofMargins, loaded: LoadedSpec, *, asked: bool) -> Iterator[str]:
     # Reports are slow to load, and a bare proof says nothing that only they can.
     if asked:
         from nrs_design.reporting.margins import margin_lines
 
-        yield from margin_lines(margins)
+        yield from margin_lines(margins, loaded)
 
 
 def _next_steps(result: Result, margin: bool, shortest_dwell: bool) -> tuple[str, ...]:

@@ -40,6 +40,7 @@ if TYPE_CHECKING:
     from nrs_design.pipeline import Result
     from nrs_design.pipeline.margins import ProofMargins
     from nrs_design.pipeline.subsets import Subset
+    from nrs_design.spec import LoadedSpec
 
 
 LargestBox = Annotated[
@@ -135,7 +136,12 @@ def certify_switching(
         print_json("certify-switching", content | _help_summary(result, parts, steps))
     elif not quiet:
         _print(result, verbose=verbose)
-        _print_help(result, parts, steps, _margin_lines(margins, asked=margin or shortest_dwell))
+        _print_help(
+            result,
+            parts,
+            steps,
+            _margin_lines(margins, result.loaded, asked=margin or shortest_dwell),
+        )
     raise typer.Exit(exit_codes.OF_VERDICT[str(result.certification.verdict)])
 
 
@@ -181,12 +187,12 @@ def _print_help(
         say(f"next: {line}")
 
 
-def _margin_lines(margins: ProofMargins, *, asked: bool) -> Iterator[str]:
+def _margin_lines(margins: ProofMargins, loaded: LoadedSpec, *, asked: bool) -> Iterator[str]:
     # Reports are slow to load, and a bare proof says nothing that only they can.
     if asked:
         from nrs_design.reporting.margins import margin_lines
 
-        yield from margin_lines(margins)
+        yield from margin_lines(margins, loaded)
 
 
 def _next_steps(result: Result, margin: bool, shortest_dwell: bool) -> tuple[str, ...]:

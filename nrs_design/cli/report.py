@@ -86,6 +86,7 @@ def report(
     from nrs_design.pipeline import Overrides, limits_of, run_certification, run_comparison
     from nrs_design.pipeline.margins import run_proof_margins
     from nrs_design.pipeline.stability_map import run_stability_map
+    from nrs_design.pipeline.subsets import find_subsets
     from nrs_design.reporting import build_report
     from nrs_design.reporting.next_steps import next_steps
     from nrs_design.spec import read_spec
@@ -105,6 +106,7 @@ def report(
         margins = run_proof_margins(
             result, limits, step, margin=margin, shortest_dwell=shortest_dwell
         )
+        subsets = find_subsets(result, limits, step)
         found = run_stability_map(result, limits, step) if stability_map else None
         step("figures")
         day = date.date() if date else None
@@ -115,6 +117,7 @@ def report(
             analysis,
             comparison=runs,
             margins=margins,
+            subsets=subsets,
             stability_map=found,
             times=times,
             date=day,

@@ -11,6 +11,7 @@ from nrs_design.proof.system import SwitchedSystem, Time
 from nrs_design.reporting.document import Block, Bullets, Paragraph, Section
 from nrs_design.reporting.kinds import page_of
 from nrs_design.reporting.sections.head import NO_CLAIM
+from nrs_design.reporting.sections.titles import MEANT
 from nrs_design.spec import InteractionDesignSpec
 from nrs_design.switched.motor_command import NAME
 
@@ -52,7 +53,7 @@ def proof_section(result: Result) -> Section:
         blocks = _proved(result, evidence)
     else:
         blocks = _refuted(certification, evidence)
-    return Section("What is and is not proved", blocks, boxed=True)
+    return Section(MEANT, blocks, boxed=True)
 
 
 def _proved(result: Result, evidence: AbstractEvidence) -> tuple[Block, ...]:
@@ -109,7 +110,8 @@ def _not_covered_by_design(result: Result) -> tuple[str, ...]:
 def _keeps_command(certification: Certification) -> bool:
     """Tell whether a bound shows that the driver does not saturate from rest."""
     system = certification.system
-    bounds = (item.bound(system) for item in certification.statements)
+    rounded = (item for item in certification.statements if item.covers_rounding)
+    bounds = (item.bound(system) for item in rounded)
     return any(
         b.output.limit is not None and b.level <= b.output.limit
         for b in bounds

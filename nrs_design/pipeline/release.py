@@ -68,4 +68,4 @@ def _outputs(designed: Designed, system: SwitchedSystem) -> tuple[Output, Output
 
     joint = Joint.of(plant, motion)
     loop = realize(plant.motion_loop(motion.Kp, motion.Kd)) if joint is None else joint.nominal
-    return outputs_of(system.order, loop, spec, touched)
+    return outputs_of(system.states, loop, spec, touched)

@@ -110,6 +110,12 @@ def _commanded(designed: Designed) -> SwitchedSystem:
     from nrs_design.spec.sampling import DisturbancesSpec
 
     spec, at = designed.spec, designed.spec.coordinates
+    placing = next((name for name, c in spec.controllers.items() if c.commands == "position"), None)
+    if placing is not None:
+        raise AssemblyError(
+            f"{placing} is given a position, and a command that is held moves that on without "
+            "end, so the force from rest grows as long as the run"
+        )
     if spec.disturbances is not None:
         return assemble_spec(designed.loaded, designed, at)
     text = {"command": spec.limits.velocity.text}

@@ -12,7 +12,7 @@ from nrs_design.pipeline.scenarios import Runs, scenarios_of, simulate_group
 from nrs_design.proof.noun import dataclass
 
 if TYPE_CHECKING:
-    from nrs_design.simulation.monte_carlo import Outcome
+    from nrs_design.simulation.monte_carlo import Outcome, Share
     from nrs_design.simulation.scenario import Scenario
 
 # Runs that a process is given at once.
@@ -68,6 +68,41 @@ class MonteCarlo:
         """
         common = {"torque": self.designed.spec.limits.torque.si}
         return {one.name: common | dict(one.limits) for one in self.scenarios}
+
+
+@dataclass(frozen=True, slots=True)
+class Drawing:
+    """What all runs came to.
+
+    Parameters
+    ----------
+    outcomes : tuple of Outcome
+        Of one run after the other, in SI.
+    shares : mapping of str to Share
+        Of runs above the limit, for each quantity that has one.
+    limits : mapping of str to mapping of str to float
+        Of the quantities in every scenario, in SI.
+    """
+
+    outcomes: tuple[Outcome, ...]
+    shares: Mapping[str, Share]
+    limits: Mapping[str, Mapping[str, float]]
+
+
+def draw_runs(asked: MonteCarlo, jobs: int = 1) -> Drawing:
+    """Simulate all runs.
+
+    Parameters
+    ----------
+    asked : MonteCarlo
+        What is simulated.
+    jobs : int
+        Processes.
+    """
+    from nrs_design.simulation.monte_carlo import shares
+
+    outcomes = tuple(run_monte_carlo(asked, 0, jobs))
+    return Drawing(outcomes, shares(outcomes, asked.limits), asked.limits)
 
 
 def run_monte_carlo(asked: MonteCarlo, first: int = 0, jobs: int = 1) -> Iterator[Outcome]:

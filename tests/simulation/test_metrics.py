@@ -63,15 +63,3 @@ def test_overshoot_and_steady_state():
     assert metrics.overshoot(y, -0.3) == pytest.approx(np.exp(-np.pi / 3), rel=0.1)
     assert metrics.overshoot(0 * y, -0.3) == 0
     assert metrics.steady_state_error(t, 0.9 * y, -0.3) == pytest.approx(0.1, abs=1e-3)
-
-
-def test_safe_speed_is_the_inverse_of_the_criterion():
-    """Bicchi and Tonietti 2004, eq. 2, as thesis 2.15; 2.17 with its exponent."""
-    factor = metrics.injury_factor(1.0, 4.0, 25_000.0)
-    assert factor == pytest.approx(2 * (2 / np.pi) ** 1.5 * 6250**0.75 * 0.2**1.75)
-    assert metrics.head_injury(factor, metrics.safe_speed(factor, 100.0)) == pytest.approx(100)
-    assert metrics.head_injury(factor, 2.0) / metrics.head_injury(factor, 1.0) == pytest.approx(
-        2**2.5
-    )
-    with pytest.raises(ValueError, match="positive"):
-        metrics.injury_factor(1.0, 0.0, 1.0)

@@ -148,9 +148,16 @@ class _Simulator:
         from nrs_design.simulation.monte_carlo import Outcome, draw
 
         designed = self.asked.designed
-        drawn = draw(designed.spec, designed.plant, self.scenarios, self.asked.seed, index)
+        drawn = draw(
+            designed.spec,
+            designed.plant,
+            designed.design,
+            self.scenarios,
+            self.asked.seed,
+            index,
+        )
         with placed(designed.loaded):
-            mine = replace(designed, plant=drawn.plant)
+            mine = replace(designed, plant=drawn.plant, design=drawn.design)
             scenario = drawn.scenario
             (one,) = simulate_group(mine, scenario.name, (scenario,), self.asked.wanted)
         uncovered = [*uncovered_by_chance(designed.spec, one.run)]

@@ -359,15 +359,13 @@ class _Engine:
         """Let another controller take over, and set what the spec says is set then."""
         if target == self.controller:
             return
-        loop, spec = self.loop, self.loop.spec
-        mode = self.way.mode
+        mode, idle = self.way.mode, self.loop.spec.idle_states
         places, laws = self.places, self.laws
         leaves = laws[self.controller].commands == "velocity"
         self.z = self.z.copy()
         if self.offset != "none":
             taken = mode.reference if self.offset == "reference" else mode.angle
             self.z[places["commanded position"]] = float(taken @ self.z)
-        idle = spec.idle_states
         if leaves and laws[target].commands != "velocity" and idle is not None and idle.reset:
             for text in laws[self.controller].states:
                 self.z[places[text.split(" [")[0]]] = 0.0

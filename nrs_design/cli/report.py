@@ -68,6 +68,14 @@ def report(
             "minutes.",
         ),
     ] = False,
+    certificate: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="CERT",
+            help="Show what this certificate of the spec proves, checked anew, instead of "
+            "searching.",
+        ),
+    ] = None,
     max_degree: MaxDegree = None,
     budget: Budget = None,
     memory: Memory = None,
@@ -83,7 +91,13 @@ def report(
     """
     from nrs_design.output import PAGE, PDF, check_place
     from nrs_design.ownership import check_owner, check_page
-    from nrs_design.pipeline import Overrides, limits_of, run_certification, run_comparison
+    from nrs_design.pipeline import (
+        Overrides,
+        limits_of,
+        run_certification,
+        run_comparison,
+        run_recorded,
+    )
     from nrs_design.pipeline.margins import run_proof_margins
     from nrs_design.pipeline.stability_map import run_stability_map
     from nrs_design.reporting import build_report
@@ -92,6 +106,8 @@ def report(
 
     loaded = read_spec(spec)
     if loaded.spec.kind == "robot":
+        if certificate is not None:
+            raise DesignError("a robot has no certificate", remedy="leave --certificate out")
         _report_robot(loaded, file_format, out, date, as_json=as_json, quiet=quiet)
     if out is None:
         check_owner(spec, loaded.spec.name, REPORTS)
@@ -101,7 +117,10 @@ def report(
             check_place(out, PDF if file_format is ReportFormat.PDF else PAGE)
     with progress(f"reporting {loaded.spec.name}", quiet=quiet) as step:
         limits = limits_of(loaded.spec, Overrides(max_degree, budget, memory))
-        result = run_certification(loaded, limits=limits, progress=step)
+        if certificate is None:
+            result = run_certification(loaded, limits=limits, progress=step)
+        else:
+            result = run_recorded(loaded, certificate, step)
         margins = run_proof_margins(
             result, limits, step, margin=margin, shortest_dwell=shortest_dwell
         )

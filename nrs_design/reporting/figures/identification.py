@@ -117,7 +117,8 @@ def draw_intervals(
     """
     labels, height = row_labels([*names, "pooled"])
     figure, axes = new_axes(1.1 + height * len(labels))
-    axes.axvspan(wide.low, wide.high, color="#dcebf5", linewidth=0, label="range over all records")
+    label_of_all = "range over all records"
+    axes.axvspan(wide.low, wide.high, color=BLUE, alpha=0.14, linewidth=0, label=label_of_all)
     for row, estimate in enumerate([*single, pooled]):
         tint, shape = (INK, "D") if row == len(single) else (BLUE, "o")
         axes.plot([estimate.low, estimate.high], [row, row], color=tint, linewidth=2.0)

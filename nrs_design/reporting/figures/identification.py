@@ -67,7 +67,8 @@ def draw_fit(
     above.set_ylabel(label)
     below.plot(t[kept], (data - curve)[kept], ".", color=VERMILLION, markersize=2.5)
     below.axhline(0.0, color=INK, linewidth=0.8)
-    below.set_ylabel("Data - fitted")
+    # Short enough for its height; the unit is that of the record.
+    below.set_ylabel(f"Data - fitted\n{label[label.find('[') :]}")
     below.set_xlabel("Time [s]")
     legend(figure, above)
     return figure

@@ -88,7 +88,11 @@ def build_report(
         sections=(
             proof_section(result),
             *_present(remedies_section(result, margins, subsets)),
-            *(() if stability_map is None else (stability_map_section(stability_map),)),
+            *(
+                ()
+                if stability_map is None
+                else (stability_map_section(result.loaded, stability_map),)
+            ),
             *(() if designed is None else design_sections(designed, analysis)),
             *_present(None if designed is None else logic_section(designed.spec)),
             modes_section(result.loaded, system, proved_rate(system, certification.evidence)),

@@ -94,5 +94,5 @@ def test_everything_at_once_is_one_certificate(tmp_path):
     assert [item.bound(system).output.name for item in (force, velocity)] == ["force", "velocity"]
     assert "on each of at most 3 axes that act on each other" in force.claim(system)
     file = tmp_path / "all.cert.json"
-    file.write_bytes(dump(result.certificate, None))
+    file.write_text(dump(result.certificate), encoding="utf-8")
     assert run_verification(file, result).fault is None

@@ -11,6 +11,7 @@ from nrs_design.proof.system import SwitchedSystem, Time
 from nrs_design.reporting.document import Block, Bullets, Paragraph, Section
 from nrs_design.reporting.kinds import page_of
 from nrs_design.reporting.sections.head import NO_CLAIM
+from nrs_design.reporting.sections.titles import MEANT
 from nrs_design.spec import InteractionDesignSpec
 
 if TYPE_CHECKING:
@@ -46,7 +47,7 @@ def proof_section(result: Result) -> Section:
         blocks = _proved(result, evidence)
     else:
         blocks = _refuted(certification, evidence)
-    return Section("What is and is not proved", blocks, boxed=True)
+    return Section(MEANT, blocks, boxed=True)
 
 
 def _proved(result: Result, evidence: AbstractEvidence) -> tuple[Block, ...]:

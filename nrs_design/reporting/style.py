@@ -52,6 +52,7 @@ THEMED = {
 
 # In inches: the text of a figure this wide is read on a telephone, where it is as wide as the page.
 _WIDTH = 5.4
+_LABEL_LETTERS = 24
 _LEGEND_LETTERS, _LEGEND_LINE, _LEGEND_GAP = 46, 0.175, 0.055
 
 _SETTINGS = {
@@ -168,9 +169,9 @@ def curve(index: int, count: int, points: int) -> dict[str, Any]:
     }
 
 
-def row_labels(names: Sequence[str], width: int = 24) -> tuple[list[str], float]:
+def row_labels(names: Sequence[str]) -> tuple[list[str], float]:
     """Return names in full as labels of rows, and the height in inches that one row needs."""
-    labels = [wrapped(name, width) for name in names]
+    labels = [wrapped(name, _LABEL_LETTERS) for name in names]
     lines = max((label.count("\n") for label in labels), default=0) + 1
     return labels, 0.11 + 0.16 * lines
 

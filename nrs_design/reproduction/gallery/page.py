@@ -128,7 +128,7 @@ def _section(one: Counterpart) -> Section:
     rows = tuple(
         (s.quantity, s.printed, s.simulated, str(s.outcome), s.why or "–") for s in one.statements
     )
-    blocks.append(Table("What the print says, and the run", _COLUMNS, rows))
+    blocks.append(Table(f"{one.name}: print and run", _COLUMNS, rows))
     blocks.append(Bullets("Inputs from the thesis", one.given))
     if one.chosen:
         blocks.append(Bullets("Inputs of ours, which the thesis omits", one.chosen))

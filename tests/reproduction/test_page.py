@@ -41,7 +41,6 @@ def test_deviation_text():
 
 def test_the_page_of_figures_is_linked_where_there_is_one():
     assert "<a " not in render_page(rows())
-    assert '<a href="my%20figures/figures.html">' in render_page(
-        rows(), "my%20figures/figures.html"
-    )
+    page = render_page(rows(), "my%20figures/figures.html")
+    assert '<a href="my%20figures/figures.html">' in page
     assert "default-src 'none'" in render_page(rows())

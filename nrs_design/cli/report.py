@@ -135,6 +135,7 @@ def _build(
     from nrs_design.pipeline import limits_of, run_certification, run_comparison
     from nrs_design.pipeline.margins import run_proof_margins
     from nrs_design.pipeline.stability_map import run_stability_map
+    from nrs_design.pipeline.subsets import find_subsets
     from nrs_design.reporting import build_report
 
     limits = limits_of(loaded.spec, overrides)
@@ -142,6 +143,7 @@ def _build(
     margins = run_proof_margins(
         result, limits, step, margin=asked.margin, shortest_dwell=asked.shortest_dwell
     )
+    subsets = find_subsets(result, limits, step)
     found = run_stability_map(result, limits, step) if asked.stability_map else None
     step("figures")
     runs = run_comparison(loaded, limits, progress=step)[1] if asked.compare_methods else ()
@@ -150,6 +152,7 @@ def _build(
         _analysis(result, quiet=quiet),
         comparison=runs,
         margins=margins,
+        subsets=subsets,
         stability_map=found,
         times=asked.times,
         date=asked.date,

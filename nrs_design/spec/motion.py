@@ -186,5 +186,5 @@ class LimitsSpec(SpecModel):
     command: LargestCommand | None = Field(
         default=None,
         description="largest command that the motor's driver takes, such as rpm: exported code "
-        "saturates there, which no proof covers",
+        "saturates there; a bound on the command of a sampled design is held against it",
     )

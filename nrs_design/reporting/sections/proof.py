@@ -11,7 +11,9 @@ from nrs_design.proof.system import SwitchedSystem, Time
 from nrs_design.reporting.document import Block, Bullets, Paragraph, Section
 from nrs_design.reporting.kinds import page_of
 from nrs_design.reporting.sections.head import NO_CLAIM
+from nrs_design.reporting.sections.titles import MEANT
 from nrs_design.spec import InteractionDesignSpec
+from nrs_design.switched.motor_command import NAME
 
 if TYPE_CHECKING:
     from nrs_design.pipeline import Result
@@ -23,8 +25,13 @@ _KEPT = "Loss of contact: no mode describes a compliant controller in free motio
 _ALONE = "Coupling between the axes of the robot."
 _UNBOUNDED = "The size of velocities and torques: the states decay, but no limit on them is proved."
 _BOUNDED = "Sizes of velocities and torques other than those bounded above."
+_SATURATED = "Friction, backlash, and saturation of motor or driver."
+_UNSATURATED = (
+    "Friction, backlash, and saturation of motor or driver in motions that begin away from rest; "
+    "from rest under the disturbances at which the motor command keeps its limit, as bounded "
+    "above, the driver does not saturate."
+)
 _NOT_COVERED_BY_A_DESIGN: tuple[str, ...] = (
-    "Friction, backlash, and saturation of motor or driver.",
     "Tissue that does not follow the linear law of the spec, such as a creep of another kind or a "
     "stiffness that depends on depth.",
     "Parameter values outside the declared ranges, and motor constants other than those given.",
@@ -46,7 +53,7 @@ def proof_section(result: Result) -> Section:
         blocks = _proved(result, evidence)
     else:
         blocks = _refuted(certification, evidence)
-    return Section("What is and is not proved", blocks, boxed=True)
+    return Section(MEANT, blocks, boxed=True)
 
 
 def _proved(result: Result, evidence: AbstractEvidence) -> tuple[Block, ...]:
@@ -94,8 +101,21 @@ def _not_covered_by_design(result: Result) -> tuple[str, ...]:
         *((_CONTINUOUS,) if system.time is Time.CONTINUOUS else (_JITTER, *(_ROUNDED,) * exact)),
         *(() if covers else (_KEPT,)),
         *(() if evidence is not None and evidence.covers_coupling else (_ALONE,)),
+        _UNSATURATED if _keeps_command(certification) else _SATURATED,
         *_NOT_COVERED_BY_A_DESIGN,
         _BOUNDED if _bounds(certification) else _UNBOUNDED,
+    )
+
+
+def _keeps_command(certification: Certification) -> bool:
+    """Tell whether a bound shows that the driver does not saturate from rest."""
+    system = certification.system
+    rounded = (item for item in certification.statements if item.covers_rounding)
+    bounds = (item.bound(system) for item in rounded)
+    return any(
+        b.output.limit is not None and b.level <= b.output.limit
+        for b in bounds
+        if b is not None and b.output.name.startswith(NAME)
     )
 
 

@@ -181,7 +181,10 @@ def test_a_report_assembles_and_searches_nothing():
     """It shows what the pipeline gives it, and draws the curves of a design."""
     below = {item.target for item in ours() if floor(item.source) == "reporting"}
     stages = {name for name in below if floor(name) in ("switched", "search")}
-    nouns = {f"search.{noun}" for noun in ("certification", "gradient_settings", "method_run")}
+    nouns = {
+        f"search.{noun}"
+        for noun in ("certification", "gradient_settings", "loop_margin", "method_run")
+    }
     nouns |= {"switched.assumption", "switched.assumption_kinds"}
     assert stages == {f"nrs_design.{noun}" for noun in nouns}
 

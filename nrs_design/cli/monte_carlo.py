@@ -128,11 +128,11 @@ def _head(asked: MonteCarlo) -> dict[str, Any]:
     return {
         "spec": loaded.spec.name,
         "spec_sha256": loaded.sha256,
+        "options": asdict(asked.wanted) | {"names": list(asked.wanted.names)},
         "commands_sha256": sha256(commands.encode()).hexdigest(),
         "version": __version__,
         "runs": asked.runs,
         "seed": asked.seed,
-        "options": asdict(asked.wanted) | {"names": list(asked.wanted.names)},
     }
 
 

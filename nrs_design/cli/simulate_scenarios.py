@@ -158,6 +158,7 @@ def _document(
         "deviation_from_sampled": None if run.deviation is None else asdict(run.deviation),
         "not_modelled": list(run.left_out),
         "metrics": dict(one.metrics),
+        "limits": dict(one.scenario.limits),
         "switches": [{"time": time, "to": name} for time, name in run.switches],
         "contacts": [
             {"time": time, "environment": name, "made": made} for time, name, made in run.contacts
@@ -194,7 +195,7 @@ def _print(one: Simulated, bounds: tuple[CertifiedBound, ...], rate: CertifiedRa
 
     run = one.run
     print_table(f"{run.scenario}: {run.engine} engine", ["", "value", "unit", "limit"],
-                metric_rows(one.metrics))  # fmt: skip
+                metric_rows(one.metrics, one.scenario.limits))  # fmt: skip
     peaks = {"force": one.metrics["peak_torque"], "velocity": one.metrics["peak_velocity"]}
     for b in bounds:
         peak = peaks.get(b.output)

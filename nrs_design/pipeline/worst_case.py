@@ -74,7 +74,6 @@ def run_worst_case(
         If what acts on the loop is not modelled for its controllers, or its rules not searched.
     """
     from nrs_design.simulation.worst_case import (
-        ROUNDS,
         bounds_of,
         deflection_of,
         forces_by_mode,
@@ -89,7 +88,6 @@ def run_worst_case(
         outputs = (*system.outputs, *(() if deflection is None else (deflection,)))
         touched = designed.plant.among(designed.design.contacts)
         allowed = {"force": forces_by_mode(system, touched)}
-        rounds = ROUNDS if rounds is None else rounds
         runs = worst_runs(system, outputs, allowed, seed=seed, rounds=rounds)
     except (AssemblyError, ValueError) as error:
         message = error.message if isinstance(error, AssemblyError) else str(error)
@@ -118,8 +116,30 @@ def _commanded(designed: Designed) -> SwitchedSystem:
     """Return the loop under what the spec says disturbs it, else under any allowed command."""
     from nrs_design.spec.sampling import DisturbancesSpec
 
-    spec = designed.spec
-    if spec.disturbances is None:
-        text = {"command": spec.limits.velocity.text}
-        spec = spec.model_copy(update={"disturbances": DisturbancesSpec.model_validate(text)})
-    return assemble_spec(designed.loaded, replace(designed, spec=spec), spec.coordinates)
+    spec, at = designed.spec, designed.spec.coordinates
+    placing = next((name for name, c in spec.controllers.items() if c.commands == "position"), None)
+    if placing is not None:
+        raise AssemblyError(
+            f"{placing} is given a position, and a command that is held moves that on without "
+            "end, so the force from rest grows as long as the run"
+        )
+    if spec.disturbances is not None:
+        return assemble_spec(designed.loaded, designed, at)
+    text = {"command": spec.limits.velocity.text}
+    disturbances = DisturbancesSpec.model_validate(text)
+    if spec.sampling is not None:
+        spec = spec.model_copy(update={"disturbances": disturbances})
+        return assemble_spec(designed.loaded, replace(designed, spec=spec), at)
+    # In continuous time a run may be on tissue for which no bound is stated.
+    from nrs_design.switched.commanded import with_command
+    from nrs_design.switched.joint import Joint
+
+    plant, motion = designed.plant, designed.design.motion
+    return with_command(
+        assemble_spec(designed.loaded, designed, at),
+        spec,
+        disturbances,
+        plant.motion_loop(motion.Kp, motion.Kd),
+        Joint.of(plant, motion),
+        plant.among(designed.design.contacts),
+    )

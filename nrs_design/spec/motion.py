@@ -177,6 +177,10 @@ class MotionLoopSpec(SpecModel):
     )
 
 
+# How the name of an output begins that is held against `limits: {command: ...}`.
+MOTOR_COMMAND = "motor command"
+
+
 class LimitsSpec(SpecModel):
     """What the interaction must respect (thesis 6.3.1)."""
 

@@ -19,12 +19,10 @@ from nrs_design.proof.bounds import rounded_down, rounded_up
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.system import Channel, Output
 from nrs_design.spec import InteractionDesignSpec
+from nrs_design.spec.motion import MOTOR_COMMAND
 from nrs_design.switched.assumption import Assumption
 from nrs_design.switched.assumption_kinds import NOT_QUANTIZED
 from nrs_design.switched.sampled_frame import INPUTS, Frame
-
-# How the names of such outputs begin.
-NAME = "motor command"
 
 
 @dataclass(frozen=True, slots=True)
@@ -109,7 +107,7 @@ def motor_command(
     )
     limit = float32_not_above(largest.not_above)
     left = limit - at_once
-    name = f"{NAME} before errors of its sample" if at_once else NAME
+    name = f"{MOTOR_COMMAND} before errors of its sample" if at_once else MOTOR_COMMAND
     output = Output(name, spec.actuator.command, rows, left if left > 0 else None)
     return MotorCommand(output, at_once, limit)
 

@@ -13,7 +13,7 @@ from nrs_design.reporting.kinds import page_of
 from nrs_design.reporting.sections.head import NO_CLAIM
 from nrs_design.reporting.sections.titles import MEANT
 from nrs_design.spec import InteractionDesignSpec
-from nrs_design.switched.motor_command import NAME
+from nrs_design.spec.motion import MOTOR_COMMAND
 
 if TYPE_CHECKING:
     from nrs_design.pipeline import Result
@@ -115,7 +115,7 @@ def _keeps_command(certification: Certification) -> bool:
     return any(
         b.output.limit is not None and b.level <= b.output.limit
         for b in bounds
-        if b is not None and b.output.name.startswith(NAME)
+        if b is not None and b.output.name.startswith(MOTOR_COMMAND)
     )
 
 

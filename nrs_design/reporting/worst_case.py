@@ -12,10 +12,9 @@ import numpy as np
 
 from nrs_design.proof.bounds import lower, upper
 from nrs_design.reporting.figures.release import Panel, draw_release
-from nrs_design.simulation.contact import deflected
 from nrs_design.simulation.switched import SwitchedRun
 from nrs_design.simulation.time_response import Signal, TimeResponse
-from nrs_design.simulation.worst_case import DEFLECTION
+from nrs_design.simulation.worst_case import DEFLECTION, output_values
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -104,7 +103,7 @@ def worst_rows(case: WorstCase, lever_arm: float | None) -> list[list[str]]:
     """
     rows = []
     for item in found_in(case):
-        factor, unit = scale_of(item.name, lever_arm)
+        factor, unit = scale_of(item.name, item.unit, lever_arm)
         limit = "–" if item.limit is None else f"{factor * item.limit:.4g}"
         bound = "–" if item.bound is None else upper(Fraction(factor * item.bound), 4)
         ratio = "–" if item.ratio is None else upper(Fraction(item.ratio), 3)
@@ -115,11 +114,12 @@ def worst_rows(case: WorstCase, lever_arm: float | None) -> list[list[str]]:
     return rows
 
 
-def scale_of(name: str, lever_arm: float | None) -> tuple[float, str]:
+def scale_of(name: str, unit: str, lever_arm: float | None) -> tuple[float, str]:
     """Return by what SI numbers of a quantity are multiplied for people, and their unit."""
     if name == DEFLECTION and lever_arm is not None:
         return 1e3 * lever_arm, "mm"
-    return {"force": (1.0, "N m"), "velocity": (_TURN, "deg/s")}.get(name, (_TURN, "deg"))
+    scales = {"N*m": (1.0, "N m"), "rad/s": (_TURN, "deg/s"), "rad": (_TURN, "deg")}
+    return scales.get(unit, (1.0, unit))
 
 
 def draw_worst(case: WorstCase, run: WorstRun, lever_arm: float | None) -> Figure:
@@ -157,7 +157,7 @@ def response_of(case: WorstCase, run: WorstRun) -> TimeResponse:
         As for `draw_worst`.
     """
     named = {other.output.name: other.output for other in case.runs}
-    rows = [_largest(_values(case, run, output)) for output in named.values()]
+    rows = [_largest(output_values(case.system, output, run.states)) for output in named.values()]
     signals = [
         Signal("torque" if name == "force" else name, output.unit) for name, output in named.items()
     ]
@@ -193,26 +193,17 @@ def _signals(states: tuple[str, ...]) -> Iterator[Signal]:
         yield Signal(f"state {name}", unit.removesuffix("]"))
 
 
-def _values(case: WorstCase, run: WorstRun, output: Output) -> Array:
-    """Return a quantity over time for every row of it; tissue that can be lost never pulls."""
-    rows = np.array([row.floats()[0] for row in output.rows])
-    if case.system.contact is None:
-        return np.asarray(run.states @ rows.T)
-    values = np.asarray(deflected(run.states) @ rows.T)
-    return np.maximum(values, 0.0) if output.name in ("force", DEFLECTION) else values
-
-
 def _largest(values: Array) -> Array:
     return np.asarray(values[np.arange(len(values)), np.abs(values).argmax(axis=1)])
 
 
 def _panel(case: WorstCase, run: WorstRun, output: Output, lever_arm: float | None) -> Panel:
-    factor, unit = scale_of(output.name, lever_arm)
+    factor, unit = scale_of(output.name, output.unit, lever_arm)
     limit, bound = case.limits.get(output.name), case.bounds.get(output.name)
     return Panel(
         f"{output.name.capitalize()} [{unit}]",
-        factor * _values(case, run, output),
+        factor * output_values(case.system, output, run.states),
         None if limit is None else factor * limit,
         None if bound is None else np.full(len(run.time), factor * bound),
-        one_sided=case.system.contact is not None and output.name != "velocity",
+        one_sided=case.system.contact is not None and output.name in ("force", DEFLECTION),
     )

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from nrs_design.certificates.bounds import keeps_command
 from nrs_design.certificates.certificate import CommonQuadraticStatus
 from nrs_design.controllers.laws.impedance import KEPT_VELOCITY
 from nrs_design.proof.evidence import AbstractEvidence, Shows
@@ -13,7 +14,6 @@ from nrs_design.reporting.kinds import page_of
 from nrs_design.reporting.sections.head import NO_CLAIM
 from nrs_design.reporting.sections.titles import MEANT
 from nrs_design.spec import InteractionDesignSpec
-from nrs_design.spec.motion import MOTOR_COMMAND
 
 if TYPE_CHECKING:
     from nrs_design.pipeline import Result
@@ -97,25 +97,14 @@ def _not_covered_by_design(result: Result) -> tuple[str, ...]:
     system, evidence = certification.system, certification.evidence
     covers = evidence is not None and evidence.covers_lost_contact
     exact = evidence is None or not evidence.covers_rounding
+    driven = keeps_command(system, certification.statements)
     return (
         *((_CONTINUOUS,) if system.time is Time.CONTINUOUS else (_JITTER, *(_ROUNDED,) * exact)),
         *(() if covers else (_KEPT,)),
         *(() if evidence is not None and evidence.covers_coupling else (_ALONE,)),
-        _UNSATURATED if _keeps_command(certification) else _SATURATED,
+        _UNSATURATED if driven else _SATURATED,
         *_NOT_COVERED_BY_A_DESIGN,
         _BOUNDED if _bounds(certification) else _UNBOUNDED,
-    )
-
-
-def _keeps_command(certification: Certification) -> bool:
-    """Tell whether a bound shows that the driver does not saturate from rest."""
-    system = certification.system
-    rounded = (item for item in certification.statements if item.covers_rounding)
-    bounds = (item.bound(system) for item in rounded)
-    return any(
-        b.output.limit is not None and b.level <= b.output.limit
-        for b in bounds
-        if b is not None and b.output.name.startswith(MOTOR_COMMAND)
     )
 
 

@@ -170,7 +170,7 @@ class Study:
         >>> force.output.name, force.value > case.limits["force"]
         ('force', True)
         """
-        from nrs_design.pipeline.scenarios import read_certificate
+        from nrs_design.pipeline.certified_runs import read_certificate
         from nrs_design.pipeline.worst_case import run_worst_case
 
         designed = self._interaction()

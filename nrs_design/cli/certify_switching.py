@@ -40,6 +40,7 @@ if TYPE_CHECKING:
     from nrs_design.pipeline import Result
     from nrs_design.pipeline.margins import ProofMargins
     from nrs_design.pipeline.subsets import Subset
+    from nrs_design.spec import LoadedSpec
 
 
 LargestBox = Annotated[
@@ -98,7 +99,7 @@ def certify_switching(
     from nrs_design.ownership import check_certificate
     from nrs_design.pipeline import Overrides, limits_of, run_certification
     from nrs_design.pipeline.margins import run_proof_margins
-    from nrs_design.pipeline.subsets import run_subsets
+    from nrs_design.pipeline.subsets import find_subsets, run_subsets
     from nrs_design.spec import read_spec
 
     loaded = read_spec(spec)
@@ -127,7 +128,8 @@ def certify_switching(
         margins = run_proof_margins(
             result, limits, step, margin=margin, shortest_dwell=shortest_dwell
         )
-        parts = run_subsets(result, limits, step) if subsets else None
+        look = run_subsets if subsets else find_subsets
+        parts = look(result, limits, step)
     steps = _next_steps(result, margin, shortest_dwell)
     if as_json:
         content = summary(result, written) | margins_summary(margins)
@@ -135,7 +137,12 @@ def certify_switching(
         print_json("certify-switching", content | _help_summary(result, parts, steps))
     elif not quiet:
         _print(result, verbose=verbose)
-        _print_help(result, parts, steps, _margin_lines(margins, asked=margin or shortest_dwell))
+        _print_help(
+            result,
+            parts,
+            steps,
+            _margin_lines(margins, result.loaded, asked=margin or shortest_dwell),
+        )
     raise typer.Exit(exit_codes.OF_VERDICT[str(result.certification.verdict)])
 
 
@@ -161,7 +168,9 @@ def _help_summary(
 
     told: dict[str, Any] = {"relief": list(find_relief(result)), "next_steps": list(steps)}
     if parts is not None:
-        told["subsets"] = [{"left_out": p.left_out, "claim": p.claim} for p in parts]
+        told["subsets"] = [
+            {"left_out": p.left_out, "claim": p.claim, "needs": p.needs} for p in parts
+        ]
         told["subsets_without"] = list(_unlooked(result))
     return told
 
@@ -181,12 +190,12 @@ def _print_help(
         say(f"next: {line}")
 
 
-def _margin_lines(margins: ProofMargins, *, asked: bool) -> Iterator[str]:
+def _margin_lines(margins: ProofMargins, loaded: LoadedSpec, *, asked: bool) -> Iterator[str]:
     # Reports are slow to load, and a bare proof says nothing that only they can.
     if asked:
         from nrs_design.reporting.margins import margin_lines
 
-        yield from margin_lines(margins)
+        yield from margin_lines(margins, loaded)
 
 
 def _next_steps(result: Result, margin: bool, shortest_dwell: bool) -> tuple[str, ...]:
@@ -200,10 +209,11 @@ def _next_steps(result: Result, margin: bool, shortest_dwell: bool) -> tuple[str
 def _print_subsets(result: Result, parts: tuple[Subset, ...] | None) -> None:
     if parts is None or str(result.certification.verdict) == "proved":
         return
-    if not parts:
-        say("  nothing is proved with parts of the spec left out either")
-    for part in parts:
-        say(f"  proved without {' and '.join(part.left_out)}: {part.claim}")
+    from nrs_design.pipeline.subsets import subset_lines
+
+    say("  not proved together; with as little left out as possible:")
+    for line in subset_lines(parts):
+        say(f"  {line}")
     if unlooked := " and ".join(_unlooked(result)):
         say(f"  decided without {unlooked}: no bound under them was looked at")
 

@@ -138,7 +138,8 @@ def _head(asked: MonteCarlo) -> dict[str, Any]:
 
 def _bounds(asked: MonteCarlo, proof: Certificate) -> dict[str, tuple[float, tuple[str, ...]]]:
     """Return the bounds, and what of the scenarios as written they are not about."""
-    from nrs_design.pipeline.scenarios import hold_bounds, run_scenarios
+    from nrs_design.pipeline.certified_runs import hold_bounds
+    from nrs_design.pipeline.scenarios import run_scenarios
 
     names = {"force": "torque"}
     found: dict[str, tuple[float, tuple[str, ...]]] = {}

@@ -16,7 +16,8 @@ if TYPE_CHECKING:
 
     from nrs_design.certificates.certificate import Certificate
     from nrs_design.pipeline import Designed, Progress
-    from nrs_design.pipeline.scenarios import CertifiedBound, CertifiedRate, Runs, Simulated
+    from nrs_design.pipeline.certified_runs import CertifiedBound, CertifiedRate
+    from nrs_design.pipeline.scenarios import Runs, Simulated
     from nrs_design.spec import InteractionDesignSpec
 
 # A run, and the bounds and the rate that are certified beside it.
@@ -84,7 +85,7 @@ def _certified(
     designed: Designed, proof: Certificate | None, one: Simulated
 ) -> tuple[tuple[CertifiedBound, ...], CertifiedRate | None]:
     """Return what is certified beside a run: bounds, and a rate."""
-    from nrs_design.pipeline.scenarios import hold_bounds, hold_rate
+    from nrs_design.pipeline.certified_runs import hold_bounds, hold_rate
 
     if proof is None:
         return (), None

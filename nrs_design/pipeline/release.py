@@ -2,70 +2,157 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from fractions import Fraction
 from typing import TYPE_CHECKING
 
+from nrs_design.models.motion_loop import realize
 from nrs_design.pipeline.certification import Result
 from nrs_design.pipeline.design import Designed
-from nrs_design.proof.system import Output, SwitchedSystem, Time
+from nrs_design.proof.matrix import RationalMatrix
+from nrs_design.proof.system import SwitchedSystem, Time
+from nrs_design.spec.touched import FREE
+from nrs_design.switched.joint import Joint
 
 if TYPE_CHECKING:
     from nrs_design.simulation.release import Outputs
 
+_DEFLECTION = "delta [rad]"
+_REFERENCE = "reference [rad]"
 
-def physical_outputs(result: Result) -> Outputs | None:
-    """Return force and velocity as rows over the state, with the limits of the spec.
 
-    None where the state of the system does not hold the deflection of a contact, or a run from it
-    would need rules that are not kept: for controllers that command a position, laws with a memory
-    or a mass, two periods, and where contact may be lost at any deflection.
+def physical_outputs(result: Result) -> Outputs | str | None:
+    """Return what a run is watched by, in units, with the limits of the spec.
 
     Parameters
     ----------
     result : Result
         Of the certification.
+
+    Returns
+    -------
+    Outputs, str or None
+        Rows over the state; or why there are none; None for given matrices, which have no units.
     """
     designed, system = result.designed, result.certification.system
-    if designed is None or not system.is_uniform or system.clock is not None:
+    if designed is None:
         return None
-    rules, contacts = system.switching, designed.design.contacts
-    plain = all(c.law.commands == "velocity" for c in designed.design.controllers)
-    ruled = bool(rules.resets) or (system.contact is not None and not rules.is_arbitrary)
-    heavy = any(environment.law.has_mass for environment in designed.plant.among(contacts))
-    if not plain or ruled or heavy or not contacts or system.states[-1] != "delta [rad]":
-        return None
-    anywhere = system.contact is None and designed.spec.contact == "losable"
-    if anywhere and system.time is Time.DISCRETE:
-        return None
+    if (obstacle := _find_obstacle(designed, system)) is not None:
+        return obstacle
+    if system.time is Time.DISCRETE:
+        return _sampled(designed, system)
+    if any(c.law.commands == "position" for c in designed.design.controllers):
+        return _following_positions(designed, system)
+    return _following_velocities(designed, system)
+
+
+def _find_obstacle(designed: Designed, system: SwitchedSystem) -> str | None:
+    """Say why a state does not tell force and velocity, or no run keeps the rules."""
+    rules, touched = system.switching, designed.plant.among(designed.design.contacts)
+    if not touched:
+        return "no contact is declared"
+    if rules.resets:
+        return "a switch sets parts of the state anew, which this run does not do"
+    if not rules.is_arbitrary and (system.contact is not None or system.clock is not None):
+        return "rules of switching beside a loss of contact or two periods are not kept by this run"
+    if any(environment.law.has_mass for environment in touched):
+        return "the force of a hand with a mass depends on its acceleration, which is no state"
+    if system.states[-1] == "F [N*m]":
+        return (
+            "in force coordinates the state holds the force, and no deflection; coordinates: "
+            "deflection shows it"
+        )
+    if not system.is_uniform:
+        return "its modes are of different sizes"
+    return None
+
+
+def _sampled(designed: Designed, system: SwitchedSystem) -> Outputs:
+    """Return what a sampled loop shows; its state holds velocity and deflection."""
+    from nrs_design.switched.sampled_inputs import force_rows
+
+    touched = designed.plant.among(designed.design.contacts)
+    states = system.states
+    return _outputs(
+        designed,
+        system,
+        [row for environment in touched for row in force_rows(states, environment)],
+        [_unit(system, "omega [rad/s]")],
+        _unit(system, _DEFLECTION),
+        [float(name in (_DEFLECTION, _REFERENCE)) for name in states],
+    )
+
+
+def _following_velocities(designed: Designed, system: SwitchedSystem) -> Outputs:
+    """Return what a loop shows whose controllers command velocities."""
+    from nrs_design.switched.commanded import force_rows
+
+    plant, motion = designed.plant, designed.design.motion
+    touched = plant.among(designed.design.contacts)
+    joint = Joint.of(plant, motion)
+    loop = realize(plant.motion_loop(motion.Kp, motion.Kd)) if joint is None else joint.nominal
+    first = touched[0].law.states[0]
+    pressed = _unit(system, first)
+    rows = list(force_rows(loop, system.states, touched))
+    velocity = [float(x) for x in loop.output(system.order)]
+    deflection = pressed if first == _DEFLECTION else None
+    return _outputs(designed, system, rows, [velocity], deflection, pressed)
+
+
+def _following_positions(designed: Designed, system: SwitchedSystem) -> Outputs | str:
+    """Return what a loop shows in which the motion loop follows a position."""
+    plant, motion = designed.plant, designed.design.motion
+    touched = plant.among(designed.design.contacts)
+    if not all(environment.law.is_spring for environment in touched):
+        return "a command moves the axis at once, and the torque of a damper with it"
+    loop = realize(plant.motion_loop(motion.Kp, motion.Kd))
+    position, size = loop.output(system.order), system.order
+    rows = [
+        RationalMatrix.from_rows([law.react([Fraction(0)] * size, [position])[0]])
+        for environment in touched
+        for law in environment.corners
+    ]
+    deflection = [float(x) for x in position]
+    velocity = [
+        [
+            sum(c * a for c, a in zip(deflection, column, strict=True))
+            for column in zip(*A, strict=True)
+        ]
+        for A in (mode.A.floats() for mode in system.modes)
+    ]
+    # At rest, the first state of the canonical form alone is not zero, and a lasting command.
+    pressed = [0.0] * size
+    pressed[0] = 1 / deflection[0]
+    if _REFERENCE in system.states:
+        pressed[system.states.index(_REFERENCE)] = -float(loop.A[-1][0]) * pressed[0]
+    return _outputs(designed, system, rows, velocity, deflection, pressed)
+
+
+def _unit(system: SwitchedSystem, name: str) -> list[float]:
+    return [float(state == name) for state in system.states]
+
+
+def _outputs(
+    designed: Designed,
+    system: SwitchedSystem,
+    forces: Sequence[RationalMatrix],
+    velocity: Sequence[Sequence[float]],
+    deflection: Sequence[float] | None,
+    pressed: Sequence[float],
+) -> Outputs:
     import numpy as np
 
     from nrs_design.simulation.release import Outputs
 
     limits = designed.spec.limits
-    force, velocity = _outputs(designed, system)
+    free = [i for i, mode in enumerate(system.modes) if FREE in mode.name.split("/")[1:]]
     return Outputs(
-        np.array([row.floats()[0] for row in force.rows]),
-        np.array(velocity.rows[0].floats()[0]),
+        np.array([row.floats()[0] for row in forces]),
+        np.array(velocity),
+        None if deflection is None else np.array(deflection),
+        np.array(pressed),
         limits.torque.si,
         limits.velocity.si,
         tuple(i for i, name in enumerate(system.states) if name.endswith("[N*m]")),
+        tuple(free),
     )
-
-
-def _outputs(designed: Designed, system: SwitchedSystem) -> tuple[Output, Output]:
-    """Return force and velocity of the state of a system, which ends with the deflection."""
-    spec, plant, motion = designed.spec, designed.plant, designed.design.motion
-    touched = plant.among(designed.design.contacts)
-    if system.time is Time.DISCRETE:
-        from nrs_design.switched import sampled_inputs
-
-        force, velocity = sampled_inputs.outputs_of(
-            system.states, touched, spec.limits.torque.exact
-        )
-        return force, velocity
-    from nrs_design.models.motion_loop import realize
-    from nrs_design.switched.commanded import outputs_of
-    from nrs_design.switched.joint import Joint
-
-    joint = Joint.of(plant, motion)
-    loop = realize(plant.motion_loop(motion.Kp, motion.Kd)) if joint is None else joint.nominal
-    return outputs_of(system.states, loop, spec, touched)

@@ -15,6 +15,7 @@ from nrs_design.proof.noun import dataclass
 if TYPE_CHECKING:
     from nrs_design.proof.system import SwitchedSystem
     from nrs_design.simulation.worst_case import WorstRun
+    from nrs_design.spec import InteractionDesignSpec
 
 _REMEDY = "use --monte-carlo, which simulates every controller"
 
@@ -99,10 +100,16 @@ def run_worst_case(
     return WorstCase(
         system,
         runs,
-        {"force": spec.limits.torque.si, "velocity": spec.limits.velocity.si},
+        _limits(spec, system),
         {} if certificate is None else bounds_of(certificate.system, certificate.statements),
         spec.disturbances is not None,
     )
+
+
+def _limits(spec: InteractionDesignSpec, system: SwitchedSystem) -> dict[str, float]:
+    """Return what the spec or an output says that a quantity keeps."""
+    own = {o.name: float(o.limit) for o in system.outputs if o.limit is not None}
+    return own | {"force": spec.limits.torque.si, "velocity": spec.limits.velocity.si}
 
 
 def _commanded(designed: Designed) -> SwitchedSystem:

@@ -9,6 +9,7 @@ import datetime
 from collections.abc import Iterator
 from dataclasses import dataclass
 from enum import StrEnum
+from itertools import chain
 from typing import TYPE_CHECKING, Self
 
 if TYPE_CHECKING:
@@ -34,6 +35,51 @@ class Linked(str):
         made = super().__new__(cls, text)
         made.line = line
         return made
+
+
+class Derived(str):
+    """Text that a section of the report derives.
+
+    Parameters
+    ----------
+    text : str
+        Such as a number at the head.
+    section : str
+        Title of that section.
+    """
+
+    __slots__ = ("section",)
+    section: str
+
+    def __new__(cls, text: str, section: str) -> Self:
+        """Attach a section to a text."""
+        made = super().__new__(cls, text)
+        made.section = section
+        return made
+
+
+class Sentence(str):
+    """Text of which parts lead somewhere.
+
+    Parameters
+    ----------
+    *parts : str
+        Plain, `Linked` or `Derived`; those of a sentence among them become its own.
+    """
+
+    __slots__ = ("parts",)
+    parts: tuple[str, ...]
+
+    def __new__(cls, *parts: str) -> Self:
+        """Put parts together."""
+        made = super().__new__(cls, "".join(parts))
+        made.parts = tuple(chain.from_iterable(map(parts_of, parts)))
+        return made
+
+
+def parts_of(text: str) -> tuple[str, ...]:
+    """Return the parts of a text; one that is no `Sentence` is its own only part."""
+    return text.parts if isinstance(text, Sentence) else (text,)
 
 
 class State(StrEnum):
@@ -77,7 +123,7 @@ class Listing:
 
 @dataclass(frozen=True, slots=True)
 class Paragraph:
-    """Running text."""
+    """Running text, such as a `Sentence`."""
 
     text: str
 
@@ -101,7 +147,7 @@ class Table:
     columns : tuple of str
         Headings, with units.
     rows : tuple of tuple of str
-        Cells; one that is `Linked` leads to its line of the spec.
+        Cells; one that is `Linked` leads to its line of the spec, parts of a `Sentence` likewise.
     """
 
     title: str
@@ -152,15 +198,15 @@ class Report:
     name, title : str
         Of the spec; the title may be empty.
     verdict : {"proved", "refuted", "inconclusive", "identified", "inside", "outside", "same", \
-"different", "reachable", "unreachable"}
+"different", "reachable", "unreachable", "simulated"}
         Of the certification, the judgement of a run, a comparison or a robot, or that this is an
-        identification.
+        identification, or a gallery of runs.
     claim : str
         What the certificate states about stability, or that nothing is known.
     remarks : tuple of str
         What else is shown, such as that no common quadratic function exists.
     facts : tuple of (str, str)
-        Label and value: hashes, versions, rates.
+        Label and value: hashes, versions, rates; values may lead somewhere as cells do.
     sections : tuple of Section
         In reading order.
     footer : str
@@ -195,6 +241,11 @@ class Report:
         """How many lines of a spec the report holds; links to others would lead nowhere."""
         blocks = (block for section in self.sections for block in section.blocks)
         return max((len(block.lines) for block in blocks if isinstance(block, Listing)), default=0)
+
+    @property
+    def anchors(self) -> dict[str, str]:
+        """Name of the first section of each title, for links within the page."""
+        return {s.title: f"section-{n}" for n, s in reversed([*enumerate(self.sections, 1)])}
 
     @property
     def illustrations(self) -> Iterator[Illustration]:

@@ -2,76 +2,119 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from fractions import Fraction
+from collections.abc import Callable, Iterator
+from functools import partial
+from itertools import chain
 from typing import TYPE_CHECKING
 
 from nrs_design.proof.bounds import nearly, rounded_down, rounded_up
+from nrs_design.reporting.document import Sentence
+from nrs_design.reporting.sections.places import linked
+from nrs_design.spec import InteractionDesignSpec
 
 if TYPE_CHECKING:
     from nrs_design.pipeline.margins import ProofMargins
+    from nrs_design.search.loop_margin import Bracket
+    from nrs_design.spec import LoadedSpec
+
+# Makes a text lead to a place of the spec.
+_At = Callable[..., str]
 
 
-def margin_lines(margins: ProofMargins) -> Iterator[str]:
-    """Yield a sentence, in small letters and without its full stop, for each margin."""
-    yield from _box_lines(margins)
-    yield from _loop_lines(margins)
-    yield from _dwell_lines(margins)
+def margin_lines(margins: ProofMargins, loaded: LoadedSpec) -> Iterator[Sentence]:
+    """Yield a sentence, in small letters and without its full stop, for each margin.
+
+    Numbers lead to the lines of the spec that declare what they are about.
+
+    Parameters
+    ----------
+    margins : ProofMargins
+        As far as they were looked for.
+    loaded : LoadedSpec
+        The spec that they are about.
+    """
+    at = partial(linked, loaded)
+    design = isinstance(loaded.spec, InteractionDesignSpec)
+    yield from _box_lines(margins, at, "environments" if design else "parameters")
+    yield from _loop_lines(margins, at)
+    yield from _dwell_lines(margins, at)
 
 
-def _box_lines(margins: ProofMargins) -> Iterator[str]:
+def _box_lines(margins: ProofMargins, at: _At, ranges: str) -> Iterator[Sentence]:
     box = margins.box
     if box is None:
         return
     if box.proved is None or box.proof is None:
-        yield "largest box: not even the nominal values are proved"
+        yield Sentence("largest box: not even the nominal values are proved")
         return
-    beyond = ""
+    beyond: tuple[str, ...] = ()
     if box.refuted is not None:
-        beyond = f"; scaled by {rounded_up(box.refuted)} they are refuted"
-    yield (
-        f"largest box: scaled by {rounded_down(box.proved)} about their nominal values, all "
-        f"ranges are proved ({box.proof.method}){beyond}"
+        refuted = at(rounded_up(box.refuted), ranges)
+        beyond = ("; scaled by ", refuted, " they are refuted")
+    yield Sentence(
+        "largest box: scaled by ",
+        at(rounded_down(box.proved), ranges),
+        f" about their nominal values, all ranges are proved ({box.proof.method})",
+        *beyond,
     )
 
 
-def _dwell_lines(margins: ProofMargins) -> Iterator[str]:
+def _dwell_lines(margins: ProofMargins, at: _At) -> Iterator[Sentence]:
     dwell = margins.dwell
     if dwell is None:
         return
-    proved = f"no proof up to {rounded_down(dwell.longest, 's')}, where the search ended"
+    longest = at(rounded_down(dwell.longest, "s"), "switching")
+    proved: tuple[str, ...] = ("no proof up to ", longest, ", where the search ended")
     if dwell.proved is not None and dwell.proof is not None:
-        proved = f"{rounded_up(dwell.proved, 's')} is proved ({dwell.proof.method})"
-    refuted = "" if dwell.proved == 0 else "; no dwell time was refuted"
+        shortest = at(rounded_up(dwell.proved, "s"), "switching")
+        proved = (shortest, f" is proved ({dwell.proof.method})")
+    refuted: tuple[str, ...] = () if dwell.proved == 0 else ("; no dwell time was refuted",)
     if dwell.refuted is not None:
-        refuted = f"; {rounded_down(dwell.refuted, 's')} and all shorter ones are refuted"
-    yield f"shortest dwell time: {proved}{refuted}"
+        end = at(rounded_down(dwell.refuted, "s"), "switching")
+        refuted = ("; ", end, " and all shorter ones are refuted")
+    yield Sentence("shortest dwell time: ", *proved, *refuted)
 
 
-def _loop_lines(margins: ProofMargins) -> Iterator[str]:
+def _loop_lines(margins: ProofMargins, at: _At) -> Iterator[Sentence]:
     loop = margins.loop
     if loop is None:
         return
     more = "" if loop.command is None else "; without disturbances, no bound was looked at"
     if loop.delay is not None:
-        said = _said(loop.delay.proved, loop.delay.refuted, "samples")
-        yield f"longest delay of the force sample: {said}{more}"
+        said = _said(loop.delay, "samples", at, "delay")
+        yield Sentence("longest delay of the force sample: ", *said, more)
     if loop.period is not None:
-        said = _said(loop.period.proved, loop.period.refuted, "s")
-        yield f"period: {said} (each for itself, nothing is said of those in between{more})"
+        said = _said(loop.period, "s", at, "period")
+        rest = f" (each for itself, nothing is said of those in between{more})"
+        yield Sentence("period: ", *said, rest)
     if loop.command is not None:
-        limit, bounds = loop.command.limit, loop.command.bounds
-        kept = ", ".join(
-            f"|{name}| <= {rounded_down(kept, unit)}" for name, (kept, _, unit) in bounds.items()
+        bounds = loop.command.bounds.items()
+        kept = (
+            (f"|{name}| <= ", at(rounded_down(end, unit), "disturbances", name))
+            for name, (end, _, unit) in bounds
         )
-        broken = ", ".join(nearly(end, unit) for _, end, unit in bounds.values())
-        yield (
-            f"limit of {nearly(limit, 'N*m')}: proved to be kept for {kept}; a simulated run "
-            f"reaches it at {broken}"
+        broken = ((at(nearly(end, unit), "disturbances", name),) for name, (_, end, unit) in bounds)
+        yield Sentence(
+            "limit of ",
+            at(nearly(loop.command.limit, "N*m"), "limits", "torque"),
+            ": proved to be kept for ",
+            *_listed(kept),
+            "; a simulated run reaches it at ",
+            *_listed(broken),
         )
 
 
-def _said(proved: Fraction | None, refuted: Fraction | None, unit: str) -> str:
-    said = "none is proved" if proved is None else f"{nearly(proved, unit)} is proved"
-    none = "no refutation was found"
-    return f"{said}, " + (none if refuted is None else f"{nearly(refuted, unit)} is refuted")
+def _listed(items: Iterator[tuple[str, ...]]) -> list[str]:
+    """Put commas between items of several parts."""
+    return list(chain.from_iterable((", ", *item) for item in items))[1:]
+
+
+def _said(found: Bracket, unit: str, at: _At, key: str) -> tuple[str, ...]:
+    where = ("sampling", key)
+    proved, refuted = (
+        None if end is None else at(nearly(end, unit), *where)
+        for end in (found.proved, found.refuted)
+    )
+    said = ("none is proved",) if proved is None else (proved, " is proved")
+    none = ("no refutation was found",)
+    return (*said, ", ", *(none if refuted is None else (refuted, " is refuted")))

@@ -11,6 +11,7 @@ from nrs_design.plotting import load_matplotlib
 from nrs_design.reporting.document import (
     Block,
     Bullets,
+    Derived,
     Illustration,
     Light,
     Linked,
@@ -19,6 +20,7 @@ from nrs_design.reporting.document import (
     Report,
     State,
     Table,
+    parts_of,
 )
 from nrs_design.reporting.images import to_svg_file
 from nrs_design.reporting.text import drawable
@@ -90,16 +92,17 @@ def _content(report: Report) -> dict[str, Any]:
         "keywords": [f"sha256:{facts[_SPEC]}"] if _SPEC in facts else [],
         "date": day and {"year": day.year, "month": day.month, "day": day.day},
         "claim": drawable(report.claim),
-        "summary": [drawable(sentence) for sentence in report.summary],
+        "summary": [_said(sentence, report) for sentence in report.summary],
         "lights": [_light(light) for light in report.lights],
         "remarks": [drawable(remark) for remark in report.remarks],
-        "facts": [[drawable(label), drawable(value)] for label, value in report.facts],
+        "facts": [[drawable(label), _said(value, report)] for label, value in report.facts],
         "sections": [
             {
                 "title": drawable(part.title),
-                "blocks": [_block(block, report.listed) for block in part.blocks],
+                "name": f"section-{number}",
+                "blocks": [_block(block, report) for block in part.blocks],
             }
-            for part in report.sections
+            for number, part in enumerate(report.sections, 1)
         ],
         "footer": drawable(report.footer),
     }
@@ -113,24 +116,29 @@ def _light(light: Light) -> dict[str, str]:
     }
 
 
-def _cell(cell: str, listed: int) -> dict[str, Any]:
-    """Return a cell with the line that it leads to; 0 for none."""
-    line = cell.line if isinstance(cell, Linked) and cell.line <= listed else 0
-    return {"text": drawable(cell), "line": line}
+def _said(text: str, report: Report) -> list[dict[str, str]]:
+    """Return the parts of a text, each with the label that it leads to; empty for none."""
+    return [{"text": drawable(part), "to": _target(part, report)} for part in parts_of(text)]
 
 
-def _block(block: Block, listed: int) -> dict[str, Any]:
+def _target(part: str, report: Report) -> str:
+    if isinstance(part, Linked) and part.line <= report.listed:
+        return f"line-{part.line}"
+    return report.anchors.get(part.section, "") if isinstance(part, Derived) else ""
+
+
+def _block(block: Block, report: Report) -> dict[str, Any]:
     if isinstance(block, Paragraph):
-        return {"kind": "paragraph", "text": drawable(block.text)}
+        return {"kind": "paragraph", "text": _said(block.text, report)}
     if isinstance(block, Bullets):
-        items = [drawable(item) for item in block.items]
+        items = [_said(item, report) for item in block.items]
         return {"kind": "bullets", "title": drawable(block.title), "items": items}
     if isinstance(block, Table):
         return {
             "kind": "table",
             "title": drawable(block.title),
             "columns": [drawable(cell) for cell in block.columns],
-            "rows": [[_cell(cell, listed) for cell in row] for row in block.rows],
+            "rows": [[_said(cell, report) for cell in row] for row in block.rows],
             "widths": _widths(block),
         }
     if isinstance(block, Listing):
@@ -151,8 +159,9 @@ def _figure(block: Illustration) -> dict[str, Any]:
 
 
 def _widths(table: Table) -> list[float]:
-    """Divide the page by the longest text in each column."""
-    columns = zip(table.columns, *table.rows, strict=True)
-    wanted = [min(max(*map(len, column), _FEWEST_LETTERS), _MOST_LETTERS) for column in columns]
+    """Divide the page by the longest text in each column; headings are folded between words."""
+    heads = (max(map(len, head.split()), default=0) for head in table.columns)
+    columns = zip(heads, *(map(len, row) for row in table.rows), strict=True)
+    wanted = [min(max(*lengths, _FEWEST_LETTERS), _MOST_LETTERS) for lengths in columns]
     unit = min(_WIDTH / sum(wanted), _LETTER)
     return [unit * share for share in wanted]

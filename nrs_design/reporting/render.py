@@ -8,7 +8,15 @@ from importlib.resources import files
 from typing import Any
 
 from nrs_design.printable import visible
-from nrs_design.reporting.document import Block, Illustration, Report, Section, State, Table
+from nrs_design.reporting.document import (
+    Block,
+    Illustration,
+    Report,
+    Section,
+    State,
+    Table,
+    parts_of,
+)
 from nrs_design.reporting.images import to_svg
 
 # More letters in a row than these do not fit on a telephone, or in one line of a page.
@@ -41,14 +49,12 @@ def render_html(report: Report, origin: str | None = None) -> str:
         lstrip_blocks=True,
         keep_trailing_newline=True,
     )
-    ids = _ids(report)
-    sections = [_section(*pair) for pair in zip(report.sections, ids, strict=True)]
+    sections = [_section(section, f"section-{n}") for n, section in enumerate(report.sections, 1)]
     script = _script()
     return environment.get_template("report.html.j2").render(
         report=report,
         sections=sections,
-        # A light leads to the first section of a title.
-        anchors={s.title: i for s, i in reversed([*zip(report.sections, ids, strict=True)])},
+        parts_of=parts_of,
         origin=origin,
         signs=_SIGNS,
         script=Markup(script),
@@ -59,11 +65,6 @@ def render_html(report: Report, origin: str | None = None) -> str:
 def _script() -> str:
     text = files("nrs_design.reporting").joinpath("templates/report.js").read_text("utf-8")
     return text.replace("\r\n", "\n")
-
-
-def _ids(report: Report) -> list[str]:
-    """Return a name for each section that a link can lead to; figures have names of their own."""
-    return [f"section-{number}" for number in range(1, len(report.sections) + 1)]
 
 
 def _shown(value: object) -> object:

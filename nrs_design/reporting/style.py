@@ -101,22 +101,26 @@ def styled(draw: Callable[P, Figure]) -> Callable[P, Figure]:
 
     @wraps(draw)
     def drawn(*args: P.args, **kwargs: P.kwargs) -> Figure:
-        from nrs_design.reporting.ticks import write_ticks_in_full
-
         with figure_style():
             figure = draw(*args, **kwargs)
-            write_ticks_in_full(figure)
-            _settle(figure)
+            settle(figure)
             return figure
 
     return drawn
 
 
-def _settle(figure: Figure) -> None:
-    """Lay a figure out for good; where an aspect is kept, only drawing it does that."""
+def settle(figure: Figure) -> None:
+    """Lay a figure out for good, once; where an aspect is kept, only drawing it does that.
+
+    A drawing function that has to know where its texts are calls it itself, at its end.
+    """
+    from nrs_design.reporting.ticks import write_ticks_in_full
+
     engine = figure.get_layout_engine()
-    shaped = (a.get_aspect() != "auto" or a.get_box_aspect() is not None for a in figure.axes)
-    if engine is None or any(shaped):
+    if engine is None:
+        return
+    write_ticks_in_full(figure)
+    if any(a.get_aspect() != "auto" or a.get_box_aspect() is not None for a in figure.axes):
         figure.draw_without_rendering()
     else:
         engine.execute(figure)

@@ -12,8 +12,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from nrs_design.proof.system import SwitchedSystem, Time
-from nrs_design.simulation.contact import clipped, with_free_modes, worst_contact
+from nrs_design.simulation.contact import clipped, worst_contact
 from nrs_design.simulation.norms import Array, Norm, quadratic_norm
+from nrs_design.simulation.rounds import worst_rounds
 from nrs_design.simulation.switched import (
     SwitchedRun,
     fine_step,
@@ -24,7 +25,7 @@ from nrs_design.simulation.switched import (
 _STEPS = 1500
 # A run is over when nothing is larger than this share of its limit.
 _SMALL = 3e-3
-# It is cut where something is so many times its limit.
+# One that ends beyond so many times its limit is cut where it first was.
 _LARGE = 10.0
 
 
@@ -36,54 +37,66 @@ class Outputs:
     ----------
     force : ndarray, shape (r, n)
         Torque in N m, at every corner of the contacts.
-    velocity : ndarray, shape (n,)
-        In rad/s.
+    velocity : ndarray, shape (1, n) or (m, n)
+        In rad/s; a row for each mode where a command moves the axis at once.
+    deflection : ndarray, shape (n,), or None
+        In rad; None where the state does not tell it.
+    pressed : ndarray, shape (n,)
+        A state at rest in which the contacts are pressed in.
     largest_force, largest_velocity : float
         Limits of the spec.
     sensed : tuple of int
         States that hold a torque which was measured before, in N m.
+    free : tuple of int
+        Modes in which nothing is touched, whatever the deflection.
     """
 
     force: Array
     velocity: Array
+    deflection: Array | None
+    pressed: Array
     largest_force: float
     largest_velocity: float
     sensed: tuple[int, ...] = ()
+    free: tuple[int, ...] = ()
 
     @property
     def start(self) -> Array:
         """At rest, pressed in until the stiffest contact gives the largest force, and measured."""
-        start = np.zeros(len(self.velocity))
+        start = self.pressed * (self.largest_force / (self.force @ self.pressed).max())
         start[list(self.sensed)] = self.largest_force
-        start[-1] = self.largest_force / self.force[:, -1].max()
-        return start
+        return np.asarray(start)
 
-    def shares(self, states: Array, *, losable: bool) -> tuple[Array, Array]:
-        """Return force, shape (..., r), and velocity, shape (...), over their limits.
+    def shares(self, run: SwitchedRun, *, losable: bool) -> tuple[Array, Array]:
+        """Return force, shape (N + 1, r), and velocity, shape (N + 1,), over their limits.
 
         Parameters
         ----------
-        states : ndarray, shape (..., n)
-            Along a run.
+        run : SwitchedRun
+            Along which they are taken.
         losable : bool
-            There is no force where the deflection is not positive.
+            There is no force where the last state, the deflection, is not positive.
         """
+        states, mode = run.state, np.append(run.mode, run.mode[-1:])
         force = states @ self.force.T / self.largest_force
         if losable:
-            force = np.where(states[..., -1:] > 0, force, 0.0)
-        return force, np.asarray(states @ self.velocity / self.largest_velocity)
+            force = np.where(states[:, -1:] > 0, force, 0.0)
+        force[np.isin(mode, self.free)] = 0.0
+        rows = self.velocity if len(self.velocity) == 1 else self.velocity[mode]
+        return force, np.asarray((states * rows).sum(axis=1) / self.largest_velocity)
 
 
 def simulate_release(system: SwitchedSystem, outputs: Outputs, Q: Array | None) -> SwitchedRun:
     """Simulate several adversaries, and keep the run that comes furthest beside its limits.
 
     Each takes at every step the mode after which something is largest: the norm of Q, the
-    velocity, or the force. Where rules forbid to switch at any time, one mode holds throughout.
+    velocity, or the force. Modes that take turns keep them; where rules forbid to switch at any
+    time, one mode holds throughout.
 
     Parameters
     ----------
     system : SwitchedSystem
-        With the deflection as its last state.
+        With the deflection as its last state where contact may be lost by it.
     outputs : Outputs
         What is watched.
     Q : ndarray or None
@@ -92,7 +105,7 @@ def simulate_release(system: SwitchedSystem, outputs: Outputs, Q: Array | None) 
     Returns
     -------
     SwitchedRun
-        Its modes are those of `with_free_modes` where contact may be lost.
+        Its modes are those of `all_modes`.
     """
     losable = system.contact is not None
     # A run that grows may leave the range of numbers before it is cut.
@@ -104,18 +117,19 @@ def simulate_release(system: SwitchedSystem, outputs: Outputs, Q: Array | None) 
 
 
 def _drawn(outputs: Outputs, run: SwitchedRun, *, losable: bool) -> SwitchedRun:
-    """Return a run until nothing of it is large any more, or until it is far beyond its limits."""
-    force, velocity = outputs.shares(run.state, losable=losable)
+    """Return a run until nothing of it is large any more, or until it grows beyond its limits."""
+    force, velocity = outputs.shares(run, losable=losable)
     size = np.maximum(np.abs(force).max(axis=1), np.abs(velocity))
     beyond = np.flatnonzero(~(size <= _LARGE))
     end = min(int(np.flatnonzero(size > _SMALL)[-1]) + 2, len(run.mode))
-    if len(beyond):
+    # What comes back is shown whole.
+    if len(beyond) and beyond[-1] == len(size) - 1:
         end = min(end, max(int(beyond[0]), 1))
     return SwitchedRun(run.time[: end + 1], run.state[: end + 1], run.mode[:end])
 
 
 def _furthest(outputs: Outputs, run: SwitchedRun, *, losable: bool) -> float:
-    force, velocity = outputs.shares(run.state, losable=losable)
+    force, velocity = outputs.shares(run, losable=losable)
     # All runs begin at the largest force, so what comes after is added up.
     return float(np.abs(force).max() + np.abs(velocity).max())
 
@@ -127,9 +141,12 @@ def _runs(system: SwitchedSystem, outputs: Outputs, Q: Array | None) -> Iterator
             signal = np.full(_STEPS, mode, dtype=np.int64)
             yield simulate_switching(system, signal, start, step)
         return
-    sizes = [_size(outputs.velocity[None, :]), _size(outputs.force)]
+    sizes = [_size(outputs.velocity), _size(outputs.force)]
     for norm in ([] if Q is None else [quadratic_norm(Q)]) + sizes:
-        if system.contact is None:
+        if system.clock is not None:
+            kept = norm if system.contact is None else clipped(norm)
+            yield worst_rounds(system, [kept] * system.clock.length, start, _STEPS)
+        elif system.contact is None:
             yield worst_switching(system, norm, start, step, _STEPS)
         else:
             yield worst_contact(system, clipped(norm), start, step, _STEPS)
@@ -137,11 +154,6 @@ def _runs(system: SwitchedSystem, outputs: Outputs, Q: Array | None) -> Iterator
 
 def _size(rows: Array) -> Norm:
     return lambda states: np.asarray(np.abs(states @ rows.T).max(axis=-1))
-
-
-def watched(system: SwitchedSystem) -> SwitchedSystem:
-    """Return the family whose modes a run of `simulate_release` counts."""
-    return system if system.contact is None else with_free_modes(system)
 
 
 def certified(rows: Array, Q: Array, start: Array, rate: float, time: Array) -> Array:

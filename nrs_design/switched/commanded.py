@@ -124,7 +124,9 @@ def outputs_of(
         All contacts: the force has a row for each of their corners.
     """
     return (
-        Output("force", "N*m", tuple(_forces(motion, states, touched)), spec.limits.torque.exact),
+        Output(
+            "force", "N*m", tuple(force_rows(motion, states, touched)), spec.limits.torque.exact
+        ),
         Output("velocity", "rad/s", (RationalMatrix.from_rows([motion.output(len(states))]),)),
     )
 
@@ -141,9 +143,20 @@ def _column(mode: Mode, motion: Realization | JointMotion) -> RationalMatrix:
     return RationalMatrix.from_rows([*column, *([Fraction(0)] for _ in range(n - motion.order))])
 
 
-def _forces(
+def force_rows(
     motion: Realization | JointMotion, states: Sequence[str], touched: Sequence[Environment]
 ) -> Iterator[RationalMatrix]:
+    """Yield the force, as a row over the states, of each corner of each contact.
+
+    Parameters
+    ----------
+    motion : Realization or JointMotion
+        The motion loop, whose states come first.
+    states : sequence of str
+        Names of the states.
+    touched : sequence of Environment
+        All contacts.
+    """
     unit = coordinates(len(states))
     for environment in touched:
         shared, *memories = environment.law.states

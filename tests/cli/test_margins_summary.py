@@ -8,8 +8,10 @@ import pytest
 
 from nrs_design.cli.margins_summary import loop_summary
 from nrs_design.pipeline.margins import ProofMargins
+from nrs_design.reporting.document import Linked, parts_of
 from nrs_design.reporting.margins import margin_lines
 from nrs_design.search.loop_margin import Bracket, CommandMargin, LoopMargins
+from nrs_design.spec import read_spec
 from tests.support import SOFT_TISSUE, run
 
 TEXT = SOFT_TISSUE.read_text(encoding="utf-8")
@@ -32,12 +34,21 @@ def test_doubles_stay_on_the_side_that_is_true():
 
 
 def test_what_is_not_found_is_said():
-    assert list(margin_lines(ProofMargins())) == []
-    delay, period, command = margin_lines(ProofMargins(FOUND))
+    loaded = read_spec(SOFT_TISSUE)
+    assert list(margin_lines(ProofMargins(), loaded)) == []
+    delay, period, command = margin_lines(ProofMargins(FOUND), loaded)
     assert "2 samples is proved, no refutation was found" in delay
     assert delay.endswith("without disturbances, no bound was looked at")
     assert "none is proved, about 0.333" in period
     assert "rounded down" in command
+
+
+def test_numbers_of_margins_lead_to_their_lines():
+    """What no line declares, as disturbances here, leads nowhere."""
+    loaded = read_spec(SOFT_TISSUE)
+    *_, command = margin_lines(ProofMargins(FOUND), loaded)
+    lines = [part.line for part in parts_of(command) if isinstance(part, Linked)]
+    assert [loaded.text.splitlines()[n - 1].split(":")[0].strip() for n in lines] == ["torque"]
 
 
 @pytest.mark.slow

@@ -338,6 +338,15 @@ OWN = (
 )
 
 
+def test_a_run_of_three_axes_that_stops_is_said_of_each(three, tmp_path):
+    stopped = run("simulate", three(SHORT + OWN), "--max-steps", "7", cwd=tmp_path)
+    assert stopped.returncode == 3
+    assert stopped.stdout.count("STOPPED: 7 samples") == 3
+    for axis in ("theta1", "theta2", "theta3"):
+        assert f"run.{axis}" in stopped.stdout
+
+
+@pytest.mark.slow
 def test_three_axes(three, tmp_path):
     """Each has its own command, tissue and controller; files are named by scenario and axis."""
     result = run("simulate", three(SHORT + OWN), "--json", "--out", "runs", cwd=tmp_path)
@@ -360,9 +369,6 @@ def test_three_axes(three, tmp_path):
     assert tables[1]["angle_rad"][-1] > 0.005
     # Commanded to stand still, and moved by the links.
     assert 1e-6 < np.abs(tables[2]["angle_rad"]).max() < 1e-3
-    stopped = run("simulate", three(SHORT + OWN), "--max-steps", "7", cwd=tmp_path)
-    assert stopped.returncode == 3
-    assert stopped.stdout.count("STOPPED: 7 samples") == 3
 
 
 @pytest.mark.parametrize(

@@ -5,6 +5,8 @@ from fractions import Fraction
 from nrs_design.certificates.certificate import Verdict
 from nrs_design.pipeline.stability_map import StabilityMap
 from nrs_design.reporting.sections.stability_map import stability_map_section
+from nrs_design.spec import read_spec
+from tests.support import SOFT_TISSUE
 
 P, Q, R = Verdict.PROVED, Verdict.INCONCLUSIVE, Verdict.REFUTED
 FOUND = StabilityMap(
@@ -18,7 +20,7 @@ FOUND = StabilityMap(
 
 
 def test_every_cell_has_its_sign():
-    _, figure, _ = stability_map_section(FOUND).blocks
+    _, figure, _ = stability_map_section(read_spec(SOFT_TISSUE), FOUND).blocks
     signs = [text.get_text() for text in figure.figure.axes[0].texts]
     assert sorted(signs) == ["?", "?", "P", "P", "R", "R"]
     labels = [text.get_text() for text in figure.figure.legends[0].get_texts()]
@@ -26,7 +28,7 @@ def test_every_cell_has_its_sign():
 
 
 def test_the_table_shows_no_more_than_was_decided():
-    table = stability_map_section(FOUND).blocks[2]
+    table = stability_map_section(read_spec(SOFT_TISSUE), FOUND).blocks[2]
     assert table.columns[1:] == ("soft [N·m/rad], proved", "soft [N·m/rad], refuted")
     (_, proved, refuted), (_, none, _) = table.rows
     # What is proved is rounded inwards, what is refuted outwards.

@@ -15,6 +15,7 @@ from nrs_design.reporting.kinds.shared import words
 from nrs_design.reporting.kinds.shared.rates import rate_blocks
 from nrs_design.reporting.kinds.shared.run import bounded_run, trials_per_step
 from nrs_design.reporting.sections.modes import hardest_modes
+from nrs_design.reporting.sections.titles import EVIDENCE
 from nrs_design.simulation.norms import Array, diagonal_exponents, polynomial_norm, scaled_form
 from nrs_design.simulation.switched import fine_step, sampled_direction
 
@@ -76,7 +77,7 @@ class CommonPolynomialPage(AbstractKindPage[CommonPolynomial]):
             Table("The polynomial", ("", "Value"), rows),
             *rate_blocks(system, rates, evidence.rate, norm, _explained(norm, system.time)),
         )
-        return (Section("Lyapunov evidence", blocks),)
+        return (Section(EVIDENCE, blocks),)
 
     def run(self) -> Section:
         """Draw a run in the root of V, below its bound."""

@@ -15,6 +15,7 @@ from nrs_design.reporting.kinds.shared.matrix import SCALED, matrix_table
 from nrs_design.reporting.kinds.shared.rates import rate_blocks
 from nrs_design.reporting.kinds.shared.run import bounded_run, trials_per_step
 from nrs_design.reporting.sections.modes import hardest_modes
+from nrs_design.reporting.sections.titles import EVIDENCE
 from nrs_design.simulation.norms import Array, quadratic_norm, scaled_matrices
 from nrs_design.simulation.rates import mode_rates
 from nrs_design.simulation.switched import worst_direction
@@ -82,7 +83,7 @@ class CommonQuadraticPage(AbstractKindPage[CommonQuadratic]):
             illustration,
             *rate_blocks(system, rates, evidence.rate, "the norm of Q", explained),
         )
-        return (Section("Lyapunov evidence", blocks),)
+        return (Section(EVIDENCE, blocks),)
 
     def quadratic(self) -> tuple[Array, float]:
         """Return the matrix of the certificate, scaled, and its rate."""

@@ -12,6 +12,7 @@ from nrs_design.reporting.kinds.shared.conewise import AbstractConewisePage
 from nrs_design.reporting.kinds.shared.matrix import SCALED, matrix_table
 from nrs_design.reporting.kinds.shared.run import trials_per_step
 from nrs_design.reporting.sections.modes import hardest_modes
+from nrs_design.reporting.sections.titles import EVIDENCE
 from nrs_design.simulation.norms import Array, Norm, quadratic_norm, scaled_matrices
 from nrs_design.simulation.switched import fine_step, sampled_direction
 
@@ -63,7 +64,7 @@ class ConewiseModeQuadraticPage(AbstractConewisePage[ConewiseModeQuadratic]):
                 draw_quadratics(drawn, self.system.states),
             )
         )
-        return (Section("Lyapunov evidence", tuple(blocks)),)
+        return (Section(EVIDENCE, tuple(blocks)),)
 
     def run(self) -> Section:
         """Draw a run in the largest of the functions, below its bound, and when contact is lost."""

@@ -11,6 +11,7 @@ from nrs_design.reporting.kinds.shared.conewise import AbstractConewisePage
 from nrs_design.reporting.kinds.shared.rates import rate_blocks
 from nrs_design.reporting.kinds.shared.run import trials_per_step
 from nrs_design.reporting.sections.modes import hardest_modes
+from nrs_design.reporting.sections.titles import EVIDENCE
 from nrs_design.simulation.contact import clipped
 from nrs_design.simulation.norms import polynomial_norm
 from nrs_design.simulation.switched import fine_step, sampled_direction
@@ -66,7 +67,7 @@ class ConewisePolynomialPage(AbstractConewisePage[ConewisePolynomial]):
             Table("The polynomial", ("", "Value"), rows),
             *rate_blocks(system, rates, V.rate, f"V^(1/{degree})", _RATES),
         )
-        return (Section("Lyapunov evidence", blocks),)
+        return (Section(EVIDENCE, blocks),)
 
     def run(self) -> Section:
         """Draw a run in the root of V, below its bound, and when contact is lost."""

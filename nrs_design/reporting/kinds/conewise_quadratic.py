@@ -11,6 +11,7 @@ from nrs_design.reporting.kinds.shared.matrix import SCALED, matrix_table
 from nrs_design.reporting.kinds.shared.rates import rate_blocks
 from nrs_design.reporting.kinds.shared.run import trials_per_step
 from nrs_design.reporting.sections.modes import hardest_modes
+from nrs_design.reporting.sections.titles import EVIDENCE
 from nrs_design.simulation.contact import clipped
 from nrs_design.simulation.norms import Array, quadratic_norm, scaled_matrices
 from nrs_design.simulation.rates import mode_rates
@@ -57,7 +58,7 @@ class ConewiseQuadraticPage(AbstractConewisePage[ConewiseQuadratic]):
             ),
             *rate_blocks(system, mode_rates(system, Q), evidence.rate, "the norm of Q", _RATES),
         )
-        return (Section("Lyapunov evidence", blocks),)
+        return (Section(EVIDENCE, blocks),)
 
     def quadratic(self) -> tuple[Array, float]:
         """Return the matrix of the certificate, scaled, and its rate."""

@@ -19,6 +19,7 @@ from nrs_design.reporting.kinds.shared.conewise import MOVED_REST
 from nrs_design.reporting.kinds.shared.matrix import SCALED, matrix_table
 from nrs_design.reporting.kinds.shared.run import bounded_run, trials_per_step
 from nrs_design.reporting.sections.modes import hardest_modes
+from nrs_design.reporting.sections.titles import EVIDENCE
 from nrs_design.simulation.contact import clipped
 from nrs_design.simulation.norms import quadratic_norm, scaled_matrices
 from nrs_design.simulation.switched import worst_direction
@@ -99,7 +100,7 @@ class CoupledAxesPage(AbstractKindPage[CoupledAxes]):
             ),
             Table("Multipliers", ("what axes do to each other", "tau"), rows),
         )
-        return (Section("Lyapunov evidence", blocks),)
+        return (Section(EVIDENCE, blocks),)
 
     def run(self) -> Section:
         """Draw a run of one axis in the norm of Q, below its bound."""

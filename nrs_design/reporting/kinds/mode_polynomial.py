@@ -19,6 +19,7 @@ from nrs_design.reporting.kinds.shared.run import (
     simulated,
     some_modes,
 )
+from nrs_design.reporting.sections.titles import EVIDENCE
 
 _DECIDED = (
     "every Q and every form that vanishes hold integers, and integer arithmetic decides that "
@@ -74,7 +75,7 @@ class ModePolynomialPage(AbstractKindPage[ModePolynomial]):
             "definite matrix."
         )
         blocks = (Paragraph(text), Table("The polynomials", ("", "Value"), rows))
-        return (Section("Lyapunov evidence", blocks),)
+        return (Section(EVIDENCE, blocks),)
 
     def run(self) -> Section:
         """Draw a run that keeps the rules in the Euclidean norm, beside the slope of its bound."""

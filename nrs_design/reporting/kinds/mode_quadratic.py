@@ -26,6 +26,7 @@ from nrs_design.reporting.kinds.shared.run import (
     simulated,
     some_modes,
 )
+from nrs_design.reporting.sections.titles import EVIDENCE
 from nrs_design.simulation.admissible import norm_ratio
 from nrs_design.simulation.norms import Array, quadratic_norm, scaled_matrices
 from nrs_design.simulation.switched import SwitchedRun
@@ -79,7 +80,7 @@ class ModeQuadraticPage(AbstractKindPage[ModeQuadratic]):
                 draw_quadratics(drawn, states),
             )
         )
-        return (Section("Lyapunov evidence", tuple(blocks)),)
+        return (Section(EVIDENCE, tuple(blocks)),)
 
     def run(self) -> Section:
         """Draw a run in the norm of the active mode, below its bound."""

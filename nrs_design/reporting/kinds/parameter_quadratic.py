@@ -17,6 +17,7 @@ from nrs_design.reporting.kinds.shared import words
 from nrs_design.reporting.kinds.shared.matrix import SCALED, matrix_table
 from nrs_design.reporting.kinds.shared.run import bounded_run, trials_per_step
 from nrs_design.reporting.sections.modes import hardest_modes
+from nrs_design.reporting.sections.titles import EVIDENCE
 from nrs_design.simulation.norms import Array, modes_at, quadratic_norm, scaled_matrices
 from nrs_design.simulation.rates import mode_rates
 from nrs_design.simulation.switched import worst_direction
@@ -78,7 +79,7 @@ class ParameterQuadraticPage(AbstractKindPage[ParameterQuadratic]):
             Illustration("quadratics", "Matrices at both ends", SCALED, ends),
             *self._rates(),
         )
-        return (Section("Lyapunov evidence", blocks),)
+        return (Section(EVIDENCE, blocks),)
 
     def run(self) -> Section:
         """Draw a run at the value of the parameter where the decay is slowest."""

@@ -21,6 +21,7 @@ from nrs_design.reporting.kinds.shared.run import (
     simulated,
     until_small,
 )
+from nrs_design.reporting.sections.titles import EVIDENCE
 from nrs_design.simulation.contact import clipped
 from nrs_design.simulation.norms import Array, Norm, quadratic_norm, scaled_matrices
 from nrs_design.simulation.rounds import all_modes, norms_in_rounds, worst_rounds
@@ -86,7 +87,7 @@ class PeriodicQuadraticPage(AbstractKindPage[PeriodicQuadratic]):
         some = "" if len(shown) == count else f" {len(shown)} of {count} steps."
         return (
             Section(
-                "Lyapunov evidence",
+                EVIDENCE,
                 (
                     Paragraph(text),
                     *matrix_table("Q of the first step of a round", matrices[0], states),

@@ -10,10 +10,12 @@ from nrs_design.controllers.sensor import Sensor
 from nrs_design.proof.bounds import upper
 from nrs_design.reporting.document import Bullets, Section, Table
 from nrs_design.reporting.formatting import number
+from nrs_design.reporting.sections.places import linked
 
 if TYPE_CHECKING:
     from nrs_design.design.analysis import DesignAnalysis, ImpedanceAnalysis
     from nrs_design.pipeline import Designed
+    from nrs_design.spec import LoadedSpec
 
 _MEANING = (
     "An admittance without a spring integrates a lasting error F0 of the force: in free motion the "
@@ -41,18 +43,31 @@ def creep_section(designed: Designed, analysis: DesignAnalysis) -> Section | Non
         "Angle, at most [deg]",
         "Noise of the velocity, rms [deg/s]",
     )
-    rows = tuple(_row(item, share) for item in items)
-    blocks = (_errors(sensor), Table("Creep in free motion", columns, rows), Bullets("", _MEANING))
+    rows = tuple(
+        tuple(linked(designed.loaded, cell, "controllers", item.name) for cell in _row(item, share))
+        for item in items
+    )
+    blocks = (
+        _errors(designed.loaded, sensor),
+        Table("Creep in free motion", columns, rows),
+        Bullets("", _MEANING),
+    )
     return Section("Force signal and creep", blocks)
 
 
-def _errors(sensor: Sensor) -> Table:
+def _errors(loaded: LoadedSpec, sensor: Sensor) -> Table:
     columns: tuple[str, ...] = ("What lasts", "Torque about the pivot, at most [N·m]")
     if sensor.arm:
         columns = (*columns, "As a force at the contact point [N]")
     errors = {**sensor.errors, "together, F0": sensor.lasting}
     rows = tuple(
-        (name, upper(e, 4), *((upper(e / sensor.arm, 4),) if sensor.arm else ()))
+        (
+            name,
+            *(
+                linked(loaded, upper(e / arm, 4), "sensor")
+                for arm in (1, *((sensor.arm,) if sensor.arm else ()))
+            ),
+        )
         for name, e in errors.items()
     )
     return Table("Errors of the force signal", columns, rows)

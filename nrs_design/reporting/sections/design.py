@@ -21,6 +21,7 @@ from nrs_design.reporting.sections.impedance import (
 from nrs_design.reporting.sections.landscape import landscape_section
 from nrs_design.reporting.sections.parallel import parallel_section
 from nrs_design.reporting.sections.places import At, linked
+from nrs_design.reporting.sections.titles import MOTION
 from nrs_design.spec import InteractionDesignSpec
 
 if TYPE_CHECKING:
@@ -51,7 +52,6 @@ _FORCE_ROWS: tuple[tuple[str, Callable[[ForceAnalysis], str]], ...] = (
 
 def design_sections(designed: Designed, analysis: DesignAnalysis | None) -> tuple[Section, ...]:
     """Describe a design; without an analysis only its gains."""
-    spec = designed.spec
     blocks = (_gain_table(designed), *_ranges(designed))
     gains = Section("Designed gains", blocks)
     if analysis is None:
@@ -63,7 +63,7 @@ def design_sections(designed: Designed, analysis: DesignAnalysis | None) -> tupl
     parts = [gains, _motion_section(designed, analysis)]
     if analysis.impedance:
         parts.append(impedance_section(designed, analysis.impedance))
-        parts.append(landscape_section(spec, analysis.impedance))
+        parts.append(landscape_section(designed, analysis.impedance))
     if sensor := creep_section(designed, analysis):
         parts.append(sensor)
     if analysis.force:
@@ -131,7 +131,7 @@ def _motion_section(designed: Designed, analysis: DesignAnalysis) -> Section:
         f"{_source(spec, analysis)}"
     )
     return Section(
-        "Motion loop",
+        MOTION,
         (Paragraph(text), _motion_table(designed, analysis), _motion_locus(designed, analysis)),
     )
 

@@ -6,8 +6,9 @@ from typing import TYPE_CHECKING
 
 from nrs_design.design.goals import Achieved
 from nrs_design.design.measures import MEANING
-from nrs_design.reporting.document import Block, Bullets, Linked, Paragraph, Section, Table
-from nrs_design.reporting.sections.places import contact_at, linked
+from nrs_design.reporting.document import Block, Bullets, Derived, Linked, Paragraph, Section, Table
+from nrs_design.reporting.sections.places import contact_at, linked, with_line
+from nrs_design.reporting.sections.titles import GOALS
 from nrs_design.spec import doubt_spec
 
 if TYPE_CHECKING:
@@ -25,10 +26,13 @@ def goals_section(designed: Designed, analysis: DesignAnalysis) -> Section:
     )
     table = Table("Goals and worst values", _COLUMNS, rows)
     blocks: list[Block] = [Paragraph(" ".join(MEANING)), table]
-    doubts = tuple(map(str, (*doubt_spec(spec), *analysis.warnings)))
+    doubts = tuple(
+        with_line(designed.loaded, str(doubt), *doubt.at)
+        for doubt in (*doubt_spec(spec), *analysis.warnings)
+    )
     if doubts:
         blocks.append(Bullets("Warnings", doubts))
-    return Section("Design goals", tuple(blocks))
+    return Section(GOALS, tuple(blocks))
 
 
 def goal_facts(analysis: DesignAnalysis | None) -> tuple[tuple[str, str], ...]:
@@ -38,8 +42,9 @@ def goal_facts(analysis: DesignAnalysis | None) -> tuple[tuple[str, str], ...]:
     goals = [f for item in analysis.measured for f in item.achieved if f.goal is not None]
     missed = sum(not found.met for found in goals)
     if not goals:
-        return (("Design goals", "no goals set"),)
-    return (("Design goals", f"{missed} of {len(goals)} MISSED" if missed else "all met"),)
+        return ((GOALS, "no goals set"),)
+    said = f"{missed} of {len(goals)} MISSED" if missed else "all met"
+    return ((GOALS, Derived(said, GOALS)),)
 
 
 def _row(designed: Designed, name: str, found: Achieved) -> tuple[str, ...]:

@@ -10,7 +10,10 @@ from nrs_design import __version__
 from nrs_design.proof.bounds import at_least, at_most, lower, upper
 from nrs_design.proof.evidence import AbstractEvidence, Shows
 from nrs_design.proof.system import SwitchedSystem, Time
+from nrs_design.reporting.document import Derived
 from nrs_design.reporting.formatting import plural, shortened
+from nrs_design.reporting.sections.places import linked
+from nrs_design.reporting.sections.titles import EVIDENCE, MODES, RECHECK, RUNGS, SPEC
 from nrs_design.spec import InteractionDesignSpec, RobotSpec
 from nrs_design.spec.provenance import COVERS, MOTOR_COVERS
 
@@ -48,21 +51,27 @@ def facts(result: Result) -> tuple[tuple[str, str], ...]:
     if not system.is_uniform:
         count = f"{plural(len(system.modes), 'mode')} of at most {plural(system.order, 'state')}"
     rows = [
-        ("Spec", result.loaded.spec.name),
-        ("Switching", switching_words(result)),
-        ("Switches among", f"{count}, in {system.time} time"),
+        ("Spec", linked(result.loaded, result.loaded.spec.name, "name")),
+        ("Switching", linked(result.loaded, switching_words(result), "switching")),
+        ("Switches among", Derived(f"{count}, in {system.time} time", MODES)),
         ("Common quadratic function", str(certification.common_quadratic)),
-        ("Settled by", certification.method if certification.evidence else "nothing"),
+        (
+            "Settled by",
+            Derived(certification.method if certification.evidence else "nothing", RUNGS),
+        ),
         *_rate(system, certification.evidence),
         *_limit(certification),
     ]
     if result.coordinates is not None:
-        rows.append(("Coordinates", result.coordinates))
+        rows.append(("Coordinates", linked(result.loaded, result.coordinates, "coordinates")))
     rows += [
         *_provenance(result),
         ("Package", f"nrs-design {__version__}"),
-        ("SHA-256 of the spec", result.loaded.sha256),
-        ("Certificate id", result.certificate.id if result.certificate else "no certificate"),
+        ("SHA-256 of the spec", Derived(result.loaded.sha256, SPEC)),
+        (
+            "Certificate id",
+            Derived(result.certificate.id if result.certificate else "no certificate", RECHECK),
+        ),
     ]
     return tuple(rows)
 
@@ -96,9 +105,9 @@ def _rate(system: SwitchedSystem, evidence: AbstractEvidence | None) -> list[tup
         constant += ", up to a constant factor"
     if system.time is Time.CONTINUOUS:
         text = at_least(rate, "1/s").removeprefix("= ")
-        return [("Proved decay rate alpha", f"{text}{constant}")]
+        return [("Proved decay rate alpha", Derived(f"{text}{constant}", EVIDENCE))]
     text = at_most(rate, "per step").removeprefix("= ")
-    return [("Proved contraction rho", f"{text}{constant}")]
+    return [("Proved contraction rho", Derived(f"{text}{constant}", EVIDENCE))]
 
 
 def _limit(certification: Certification) -> list[tuple[str, str]]:
@@ -108,13 +117,16 @@ def _limit(certification: Certification) -> list[tuple[str, str]]:
         return []
     attained = ", which one solution attains (floating point)"
     if certification.system.time is Time.CONTINUOUS:
-        return [("No proof can exceed", f"{upper(Fraction(limit))} 1/s{attained}")]
-    return [("No proof can go below", f"{lower(Fraction(limit))} per step{attained}")]
+        text = f"{upper(Fraction(limit))} 1/s{attained}"
+        return [("No proof can exceed", Derived(text, MODES))]
+    text = f"{lower(Fraction(limit))} per step{attained}"
+    return [("No proof can go below", Derived(text, MODES))]
 
 
 def _provenance(result: Result) -> Iterator[tuple[str, str]]:
     """Say which data the values of the spec were identified from."""
-    spec = result.loaded.spec
+    loaded = result.loaded
+    spec = loaded.spec
     if not isinstance(spec, InteractionDesignSpec):
         return
     for at, item in spec.identified.items():
@@ -123,12 +135,16 @@ def _provenance(result: Result) -> Iterator[tuple[str, str]]:
             kinds = " and ".join(sorted({source.data.upper() for source in item.provenance}))
             count = plural(len(item.provenance), "record")
             files = shortened([source.file for source in item.provenance], 3)
-            yield (f"Data for {name}", f"{kinds} data, {count}: {files}")
+            text = f"{kinds} data, {count}: {files}"
+            yield (f"Data for {name}", linked(loaded, text, *at, "provenance"))
         if item.doubts:
             accepted = f"accepted: {item.accept_doubt}" if item.accept_doubt else "NOT accepted"
-            yield (f"Doubts about {name}", f"{shortened(list(item.doubts), 3)} ({accepted})")
+            text = f"{shortened(list(item.doubts), 3)} ({accepted})"
+            yield (f"Doubts about {name}", linked(loaded, text, *at, "doubts"))
     if spec.actuator.range_covers is not None:
-        yield ("Range of actuator holds", MOTOR_COVERS[spec.actuator.range_covers])
+        text = MOTOR_COVERS[spec.actuator.range_covers]
+        yield ("Range of actuator holds", linked(loaded, text, "actuator", "range_covers"))
     for name, environment in spec.environments.items():
         if environment.range_covers is not None:
-            yield (f"Range of {name} holds", COVERS[environment.range_covers])
+            at = ("environments", name, "range_covers")
+            yield (f"Range of {name} holds", linked(loaded, COVERS[environment.range_covers], *at))

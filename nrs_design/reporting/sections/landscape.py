@@ -8,10 +8,12 @@ from nrs_design.design.landscape import alternatives, map_cost
 from nrs_design.reporting.document import Block, Illustration, Paragraph, Section, Table
 from nrs_design.reporting.figures.landscape import draw_cost, draw_delay_borne
 from nrs_design.reporting.formatting import number
+from nrs_design.reporting.sections.places import linked
 
 if TYPE_CHECKING:
     from nrs_design.design.analysis import ImpedanceAnalysis
-    from nrs_design.spec import InteractionDesignSpec
+    from nrs_design.pipeline import Designed
+    from nrs_design.spec import LoadedSpec
 
 # More maps than these fill a page with what is nearly alike.
 _DRAWN = 4
@@ -33,20 +35,21 @@ _DELAY = (
 )
 
 
-def landscape_section(spec: InteractionDesignSpec, items: tuple[ImpedanceAnalysis, ...]) -> Section:
+def landscape_section(designed: Designed, items: tuple[ImpedanceAnalysis, ...]) -> Section:
     """Show cost, alternatives and delay of the impedance controllers.
 
     Parameters
     ----------
-    spec : InteractionDesignSpec
-        With the sampling, if any.
+    designed : Designed
+        With the sampling, if any, and the places of all that the spec says.
     items : tuple of ImpedanceAnalysis
         At least one.
     """
     blocks: list[Block] = [Paragraph(_TEXT)]
     for item in items[:_DRAWN]:
-        blocks += [_map(item), _table(item)]
-    sampled = None if spec.sampling is None else float(spec.sampling.oldest)
+        blocks += [_map(item), _table(designed.loaded, item)]
+    sampling = designed.spec.sampling
+    sampled = None if sampling is None else float(sampling.oldest)
     blocks.append(
         Illustration(
             "delay-borne",
@@ -81,15 +84,22 @@ def _on_bounds(item: ImpedanceAnalysis) -> list[tuple[str, str]]:
     return found
 
 
-def _table(item: ImpedanceAnalysis) -> Table:
+def _table(loaded: LoadedSpec, item: ImpedanceAnalysis) -> Table:
+    at = ("controllers", item.name)
     rows = tuple(
         (
             other.name,
-            number(other.Mt, 4),
-            number(other.Bt, 4),
-            number(other.cost, 4),
-            number(other.displayed, 3),
-            number(other.sensitivity, 3),
+            linked(loaded, number(other.Mt, 4), *at, "Mt"),
+            linked(loaded, number(other.Bt, 4), *at, "Bt"),
+            # What follows from several lines leads to the controller, which names the others.
+            *(
+                linked(loaded, text, *at)
+                for text in (
+                    number(other.cost, 4),
+                    number(other.displayed, 3),
+                    number(other.sensitivity, 3),
+                )
+            ),
         )
         for other in alternatives(item.problem, item.Mt, item.Bt)
     )

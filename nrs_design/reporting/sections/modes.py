@@ -14,6 +14,7 @@ from nrs_design.reporting.document import Illustration, Paragraph, Section, Tabl
 from nrs_design.reporting.figures.complex_plane import draw_eigenvalues
 from nrs_design.reporting.formatting import number, roots, shortened
 from nrs_design.reporting.sections.places import contact_at, linked, mode_at
+from nrs_design.reporting.sections.titles import MODES
 from nrs_design.simulation.rates import mode_rates
 from nrs_design.simulation.switched import mode_eigenvalues
 
@@ -47,7 +48,7 @@ def modes_section(loaded: LoadedSpec, system: SwitchedSystem, rate: Fraction | N
     slowest = _slowest_first(values, system.time)
     drawn = np.sort(slowest[:_DRAWN])
     return Section(
-        "Modes",
+        MODES,
         (
             Paragraph(f"States, in this order: {shortened(system.states, 16)}."),
             _table(loaded, system, values, slowest[:_LISTED]),

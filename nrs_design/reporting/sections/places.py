@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING
 
-from nrs_design.reporting.document import Linked
+from nrs_design.reporting.document import Linked, Sentence
 from nrs_design.spec import InteractionDesignSpec, SwitchedSystemSpec
 from nrs_design.switched import assumption_kinds as kinds
 
@@ -40,6 +40,7 @@ _ASSUMED: dict[AssumptionKind, At] = {
     kinds.SENSOR: ("sensor",),
     kinds.NUMBERS: ("controllers",),
     kinds.MATRICES: ("modes",),
+    kinds.RANGE: ("parameters",),
 }
 
 
@@ -57,6 +58,22 @@ def linked(loaded: LoadedSpec, text: str, *at: str | int) -> str:
     """
     written = bool(at) and text not in ("", "–") and loaded.place(at[0]) != loaded.place()
     return Linked(text, loaded.place(*at).line) if written else text
+
+
+def with_line(loaded: LoadedSpec, text: str, *at: str | int) -> str:
+    """Return a sentence, and after it the line of the spec that it is about, if that is written.
+
+    Parameters
+    ----------
+    loaded : LoadedSpec
+        The spec.
+    text : str
+        Of the sentence.
+    *at : str or int
+        As for `linked`.
+    """
+    line = linked(loaded, f"line {loaded.place(*at).line}", *at)
+    return Sentence(text, " (", line, ")") if isinstance(line, Linked) else text
 
 
 def mode_at(loaded: LoadedSpec, mode: str) -> At:

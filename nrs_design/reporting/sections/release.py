@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -15,13 +16,20 @@ from nrs_design.reporting.figures.release import Panel, draw_release
 from nrs_design.reporting.formatting import number
 from nrs_design.reporting.kinds import page_of
 from nrs_design.reporting.sections.modes import hardest_modes
-from nrs_design.simulation.release import certified, simulate_release, watched
+from nrs_design.reporting.sections.places import linked
+from nrs_design.simulation.release import certified, simulate_release
+from nrs_design.simulation.rounds import all_modes
 
 if TYPE_CHECKING:
     from nrs_design.pipeline import Result
+    from nrs_design.proof.system import SwitchedSystem
     from nrs_design.search.certification import Certification
     from nrs_design.simulation.norms import Array
+    from nrs_design.simulation.release import Outputs
+    from nrs_design.simulation.switched import SwitchedRun
+    from nrs_design.spec import LoadedSpec
 
+_TITLE = "Force, deflection and velocity"
 _MODES = 24
 _TEXT = (
     "The axis is pressed in, at rest, until the stiffest contact pushes back with the largest "
@@ -30,70 +38,124 @@ _TEXT = (
     "furthest. It is the worst found, not the worst there is; floating point, no part of the proof."
 )
 _SAMPLED = (
-    " It is shown at the samples, without what the arithmetic rounds; force samples on their way "
+    "It is shown at the samples, without what the arithmetic rounds; force samples on their way "
     "hold the torque of the start."
 )
-_ONE_MODE = " Rules forbid to switch at any time, so one mode holds throughout."
-_ONE_AXIS = " It is that of one axis on which the others do not act."
-_UNPROVED = " Stability is not proved: that this run comes to rest is no sign of it."
+_REMEMBERED = "Tissue with a memory is pressed in at once, before it relaxes."
+_FOLLOWED = (
+    "Whoever follows a position is told at once to be at the surface, and whoever controls the "
+    "force to push with none: the command jumps, as that of an operator does not."
+)
+_TURNS = "Force samples and admittances take turns with the motion loop as the spec says."
+_ANYWHERE = "Contact may be lost at any deflection; there is no torque then."
+_NO_DEFLECTION = (
+    "The deflection is no state: this tissue has no rest position, and its force follows from the "
+    "stretch of its spring."
+)
+_ONE_MODE = "Rules forbid to switch at any time, so one mode holds throughout."
+_ONE_AXIS = "It is that of one axis on which the others do not act."
+_UNPROVED = "Stability is not proved: that this run comes to rest is no sign of it."
 _BOUND = (
     "The dashed lines follow from the certificate, from this start, for every switching signal; "
     "they are evaluated in floating point. Where contact is lost, that of the deflection is for "
     "penetration alone."
 )
-_NO_BOUND = "The certificate bounds none of these in their units."
+_NO_BOUND = "From this kind of certificate, no bound in these units is evaluated here."
+_NOTHING_PROVED = "Nothing is proved that would bound these."
 
 
 def release_section(result: Result) -> Section | None:
-    """Show a run in physical units; None where the state does not hold the deflection."""
+    """Show a run in physical units, or say why not; None for given matrices."""
     outputs = physical_outputs(result)
     if outputs is None:
         return None
+    if isinstance(outputs, str):
+        return Section(_TITLE, (Paragraph(f"No run is shown in these units: {outputs}."),))
     Q, rate = _proved(result.certification)
-    system = hardest_modes(result.certification.system, Q, _MODES)
+    whole = result.certification.system
+    # Modes that take turns are all needed, and where each has its row, they keep their places.
+    few = whole.clock is None and len(outputs.velocity) == 1 and not outputs.free
+    system = hardest_modes(whole, Q, _MODES) if few else whole
     run = simulate_release(system, outputs, Q)
-    losable = system.contact is not None
-    force, velocity = outputs.shares(run.state, losable=losable)
-    penetration = np.eye(system.order)[-1:]
-    rows = (outputs.force, penetration, outputs.velocity[None, :])
-    bounds = [
-        None if Q is None else certified(row, Q, outputs.start, rate, run.time) for row in rows
-    ]
-    turn = 180 / math.pi
-    panels = (
-        Panel("Torque [N·m]", force * outputs.largest_force, outputs.largest_force, bounds[0]),
-        Panel(
-            "Deflection [deg]",
-            turn * run.state[:, -1:],
-            None,
-            _turned(bounds[1]),
-            one_sided=losable,
-        ),
-        Panel(
-            "Velocity [deg/s]",
-            turn * outputs.largest_velocity * velocity[:, None],
-            turn * outputs.largest_velocity,
-            _turned(bounds[2]),
-        ),
-    )
-    names = [mode.name for mode in watched(system).modes]
-    more = _SAMPLED if system.time is Time.DISCRETE else ""
-    more += "" if system.switching.is_arbitrary else _ONE_MODE
-    more += _ONE_AXIS if system.couplings else ""
-    more += "" if result.certification.verdict is Verdict.PROVED else _UNPROVED
+    panels = _panels(result.loaded, system, outputs, run, Q, rate)
+    names = [mode.name for mode in all_modes(system).modes]
+    drawn = tuple(panel for panel, _ in panels)
     return Section(
-        "Force, deflection and velocity",
+        _TITLE,
         (
-            Paragraph(_TEXT + more),
+            Paragraph(_said(result, system, outputs)),
             _table(panels),
             Illustration(
                 "release",
                 "After being pressed in and let go",
-                _NO_BOUND if Q is None else _BOUND,
-                draw_release(run, panels, names),
+                _bound_text(result.certification, Q),
+                draw_release(run, drawn, names),
             ),
         ),
     )
+
+
+def _said(result: Result, system: SwitchedSystem, outputs: Outputs) -> str:
+    """Say where the run begins, who plays, and what it leaves out."""
+    designed = result.designed
+    assert designed is not None
+    contacts = designed.plant.among(designed.design.contacts)
+    position = any(c.law.commands == "position" for c in designed.design.controllers)
+    texts = (
+        (_TEXT, True),
+        (_REMEMBERED, any(environment.law.remembers for environment in contacts)),
+        (_FOLLOWED, position),
+        (_SAMPLED, system.time is Time.DISCRETE),
+        (_TURNS, system.clock is not None),
+        (_ONE_MODE, not system.switching.is_arbitrary),
+        (_ANYWHERE, bool(outputs.free)),
+        (_ONE_AXIS, bool(system.couplings)),
+        (_NO_DEFLECTION, outputs.deflection is None),
+        (_UNPROVED, result.certification.verdict is not Verdict.PROVED),
+    )
+    return " ".join(text for text, applies in texts if applies)
+
+
+def _bound_text(certification: Certification, Q: Array | None) -> str:
+    if Q is not None:
+        return _BOUND
+    return _NO_BOUND if certification.verdict is Verdict.PROVED else _NOTHING_PROVED
+
+
+def _panels(
+    loaded: LoadedSpec,
+    system: SwitchedSystem,
+    outputs: Outputs,
+    run: SwitchedRun,
+    Q: Array | None,
+    rate: float,
+) -> list[tuple[Panel, str]]:
+    """Return what is drawn, each with its limit as the table writes it."""
+    losable = system.contact is not None
+    force, velocity = outputs.shares(run, losable=losable)
+
+    def bound(rows: Array) -> Array | None:
+        return None if Q is None else certified(rows, Q, outputs.start, rate, run.time)
+
+    def limit(value: float, key: str) -> str:
+        return linked(loaded, number(value), "limits", key)
+
+    torque, turn = outputs.largest_force, 180 / math.pi
+    fastest = turn * outputs.largest_velocity
+    panels = [
+        (
+            Panel("Torque [N·m]", force * torque, torque, bound(outputs.force)),
+            limit(torque, "torque"),
+        )
+    ]
+    if outputs.deflection is not None:
+        values = turn * (run.state @ outputs.deflection)[:, None]
+        edge = _turned(bound(outputs.deflection[None, :]))
+        panels.append((Panel("Deflection [deg]", values, None, edge, one_sided=losable), "–"))
+    speed = Panel(
+        "Velocity [deg/s]", fastest * velocity[:, None], fastest, _turned(bound(outputs.velocity))
+    )
+    return [*panels, (speed, limit(fastest, "velocity"))]
 
 
 def _proved(certification: Certification) -> tuple[Array | None, float]:
@@ -113,15 +175,15 @@ def _turned(values: Array | None) -> Array | None:
     return None if values is None else np.asarray(180 / math.pi * values)
 
 
-def _table(panels: tuple[Panel, ...]) -> Table:
+def _table(panels: Sequence[tuple[Panel, str]]) -> Table:
     rows = tuple(
         (
             panel.label,
             number(float(np.abs(panel.values).max())),
-            "–" if panel.limit is None else number(panel.limit),
+            limit,
             "–" if panel.bound is None else number(1.001 * float(panel.bound.max())),
         )
-        for panel in panels
+        for panel, limit in panels
     )
     columns = ("", "Largest in this run", "Limit of the spec", "Certified from this start")
     return Table("Largest values", columns, rows)

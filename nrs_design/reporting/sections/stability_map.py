@@ -9,9 +9,11 @@ from nrs_design.certificates.certificate import Verdict
 from nrs_design.proof.bounds import lower, upper
 from nrs_design.reporting.document import Illustration, Paragraph, Section, Table
 from nrs_design.reporting.figures.stability_map import draw_stability_map
+from nrs_design.reporting.sections.places import linked
 
 if TYPE_CHECKING:
     from nrs_design.pipeline.stability_map import StabilityMap
+    from nrs_design.spec import LoadedSpec
 
 _TEXT = (
     "Each cell was decided in exact arithmetic, or follows from one that was: it takes every "
@@ -28,11 +30,13 @@ _CAPTION = (
 )
 
 
-def stability_map_section(found: StabilityMap) -> Section:
+def stability_map_section(loaded: LoadedSpec, found: StabilityMap) -> Section:
     """Show the map, and for each age the stiffness that is proved and refuted.
 
     Parameters
     ----------
+    loaded : LoadedSpec
+        The spec that it is about.
     found : StabilityMap
         As `nrs_design.pipeline.stability_map.run_stability_map` finds it.
     """
@@ -41,7 +45,10 @@ def stability_map_section(found: StabilityMap) -> Section:
         f"{name} [N·m/rad], {verdict}" for verdict in verdicts for name, _, _ in found.contacts
     ]
     rows = tuple(
-        (str(delay), *chain.from_iterable(_ends(found, row, verdict) for verdict in verdicts))
+        (
+            linked(loaded, str(delay), "sampling", "delay"),
+            *chain.from_iterable(_ends(loaded, found, row, verdict) for verdict in verdicts),
+        )
         for row, delay in enumerate(found.delays)
     )
     columns = ("Oldest force sample", *words)
@@ -57,7 +64,7 @@ def stability_map_section(found: StabilityMap) -> Section:
     )
 
 
-def _ends(found: StabilityMap, row: int, verdict: Verdict) -> list[str]:
+def _ends(loaded: LoadedSpec, found: StabilityMap, row: int, verdict: Verdict) -> list[str]:
     """Return the furthest range that is proved, or the nearest refuted, for every contact."""
     held = [f for c, f in enumerate(found.factors) if found.verdicts[row, c] is verdict]
     if not held:
@@ -66,6 +73,11 @@ def _ends(found: StabilityMap, row: int, verdict: Verdict) -> list[str]:
     outside = verdict is Verdict.REFUTED
     return [
         # What is proved is shown no wider than it is, what is refuted no narrower.
-        f"{(lower if outside else upper)(low)} to {(upper if outside else lower)(factor * high)}"
-        for _, low, high in found.contacts
+        linked(
+            loaded,
+            f"{(lower if outside else upper)(low)} to "
+            f"{(upper if outside else lower)(factor * high)}",
+            *("environments", name, "stiffness"),
+        )
+        for name, low, high in found.contacts
     ]

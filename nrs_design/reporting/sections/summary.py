@@ -11,12 +11,12 @@ from nrs_design.certificates.certificate import Verdict
 from nrs_design.proof.bounds import lower, upper
 from nrs_design.proof.evidence import AbstractEvidence, Shows
 from nrs_design.proof.system import SwitchedSystem, Time
-from nrs_design.reporting.document import Light, State
+from nrs_design.reporting.document import Derived, Light, Sentence, State
 from nrs_design.reporting.formatting import plural
 from nrs_design.reporting.kinds import page_of
 from nrs_design.reporting.register import register_of
 from nrs_design.reporting.sections.head import proved_rate
-from nrs_design.reporting.sections.tail import ASSUMPTIONS
+from nrs_design.reporting.sections.titles import ASSUMPTIONS, EVIDENCE, GOALS, MEANT, MODES
 from nrs_design.spec import InteractionDesignSpec, doubt_spec
 from nrs_design.spec.goals import OF_THE_CERTIFICATE
 
@@ -24,8 +24,6 @@ if TYPE_CHECKING:
     from nrs_design.design.analysis import DesignAnalysis
     from nrs_design.pipeline import Result
 
-MEANT = "What is and is not proved"
-GOALS = "Design goals"
 _PROOF = {
     Verdict.PROVED: (State.GOOD, "proved; exact arithmetic decided, and a second library agreed"),
     Verdict.REFUTED: (State.BAD, "refuted, with a witness"),
@@ -61,7 +59,7 @@ def _proved(result: Result, evidence: AbstractEvidence) -> str:
     if system.contact is not None and evidence.covers_lost_contact:
         among += f" in contact and {len(system.contact.free)} of free motion"
     parts = [
-        f"Proved: under {_signals(system)}, among {among}",
+        Sentence(f"Proved: under {_signals(system)}, among ", Derived(among, MODES)),
         *_contact(system, evidence),
         "every motion dies out" + (", for all values in the declared ranges" if ranged else ""),
         _rate(system, evidence),
@@ -74,7 +72,7 @@ def _proved(result: Result, evidence: AbstractEvidence) -> str:
             if evidence.covers_rounding
             else "for a law computed without rounding"
         )
-    return ", ".join(parts) + "."
+    return Sentence(parts[0], *(piece for part in parts[1:] for piece in (", ", part)), ".")
 
 
 def _signals(system: SwitchedSystem) -> str:
@@ -100,12 +98,12 @@ def _rate(system: SwitchedSystem, evidence: AbstractEvidence) -> str:
     if rate is None:
         return "at some rate"
     if system.time is Time.CONTINUOUS:
-        text = f"at a rate of at least {lower(rate)} 1/s"
+        begin, text = "at a rate of at least ", f"{lower(rate)} 1/s"
     else:
-        text = f"by a factor of at most {upper(rate)} per step"
-    if not evidence.attains_rate:
-        text += " (not attained)"
-    return text + ("" if evidence.bounds_at_once else ", up to one constant factor")
+        begin, text = "by a factor of at most ", f"{upper(rate)} per step"
+    attained = "" if evidence.attains_rate else " (not attained)"
+    once = "" if evidence.bounds_at_once else ", up to one constant factor"
+    return Sentence(begin, Derived(text, EVIDENCE), attained, once)
 
 
 def lights_of(result: Result, analysis: DesignAnalysis | None) -> tuple[Light, ...]:
@@ -176,4 +174,4 @@ def _open(result: Result) -> Light:
     count = sum(item.standing == "open" for item in found)
     state = State.DOUBTFUL if count else State.GOOD
     text = f"{count} of {len(found)} open: to be tested on the robot"
-    return Light("Assumptions", state, text, ASSUMPTIONS)
+    return Light(ASSUMPTIONS, state, text, ASSUMPTIONS)

@@ -8,6 +8,7 @@ from nrs_design.reporting.document import Bullets, Listing, Paragraph, Section, 
 from nrs_design.reporting.formatting import number
 from nrs_design.reporting.register import register_of
 from nrs_design.reporting.sections.places import assumed_at, linked
+from nrs_design.reporting.sections.titles import ASSUMPTIONS, RECHECK, RUNGS, SPEC
 from nrs_design.spec import InteractionDesignSpec
 
 if TYPE_CHECKING:
@@ -15,7 +16,6 @@ if TYPE_CHECKING:
     from nrs_design.search.certification import Certification
     from nrs_design.spec import LoadedSpec
 
-ASSUMPTIONS = "Assumptions"
 # A longer spec is left to its file.
 _LINES = 1500
 _STANDINGS = (
@@ -51,7 +51,7 @@ def spec_section(loaded: LoadedSpec) -> Section:
     text = f"{loaded.path.name}, as it was read; linked numbers above lead to their lines."
     if len(lines) > _LINES:
         text += f" The first {_LINES} of {len(lines)} lines."
-    return Section("The spec", (Paragraph(text), Listing("Text of the spec", lines[:_LINES])))
+    return Section(SPEC, (Paragraph(text), Listing("Text of the spec", lines[:_LINES])))
 
 
 def rungs_section(certification: Certification, *, times: bool) -> Section:
@@ -69,7 +69,7 @@ def rungs_section(certification: Certification, *, times: bool) -> Section:
         (attempt.step, attempt.outcome, number(1e3 * attempt.seconds, 3))[: len(columns)]
         for attempt in certification.attempts
     )
-    return Section("Rungs tried", (Table("In the order tried", columns, rows),))
+    return Section(RUNGS, (Table("In the order tried", columns, rows),))
 
 
 def recheck_section(result: Result) -> Section:
@@ -80,9 +80,9 @@ def recheck_section(result: Result) -> Section:
             "There is no certificate to check. After a change of the spec, run nrs-design "
             f"certify-switching {spec} again."
         )
-        return Section("How to check again", (Paragraph(text),))
+        return Section(RECHECK, (Paragraph(text),))
     return Section(
-        "How to check again",
+        RECHECK,
         (
             Paragraph("This page is no proof; the certificate is. To check it again, run:"),
             Bullets("", (f"nrs-design verify {name}.cert.json {spec}",)),

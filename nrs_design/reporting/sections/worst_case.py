@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 from nrs_design.errors import DesignError
 from nrs_design.pipeline.worst_case import run_worst_case
 from nrs_design.reporting.document import Illustration, Paragraph, Section, Table
+from nrs_design.reporting.sections.places import linked
 from nrs_design.reporting.worst_case import (
     COLUMNS,
     LEFT_OUT,
@@ -18,7 +19,7 @@ from nrs_design.reporting.worst_case import (
 from nrs_design.simulation.run import common_lever_arm
 
 if TYPE_CHECKING:
-    from nrs_design.pipeline import Result
+    from nrs_design.pipeline import Designed, Result
 
 # A page is to be there within seconds; `simulate --worst-case` searches longer.
 _ROUNDS = 1
@@ -41,7 +42,7 @@ def worst_case_section(result: Result) -> Section | None:
         return None
     arm = common_lever_arm(designed.spec, designed.spec.touched)
     meaning = MEANING if case.bounds else f"{MEANING.partition(';')[0]}. {NO_BOUND}"
-    rows = tuple(tuple(row) for row in worst_rows(case, arm))
+    rows = tuple(_row(designed, row) for row in worst_rows(case, arm))
     return Section(
         "Worst case found",
         (
@@ -52,3 +53,10 @@ def worst_case_section(result: Result) -> Section | None:
             ),
         ),
     )
+
+
+def _row(designed: Designed, row: list[str]) -> tuple[str, ...]:
+    """Return a row in which the limit leads to the line that sets it."""
+    name, found, unit, limit, *rest = row
+    key = "torque" if name == "force" else name
+    return (name, found, unit, linked(designed.loaded, limit, "limits", key), *rest)

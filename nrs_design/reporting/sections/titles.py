@@ -1,0 +1,11 @@
+"""Titles of the sections that others lead to."""
+
+MEANT = "What is and is not proved"
+MODES = "Modes"
+GOALS = "Design goals"
+MOTION = "Motion loop"
+ASSUMPTIONS = "Assumptions"
+RUNGS = "Rungs tried"
+RECHECK = "How to check again"
+SPEC = "The spec"
+EVIDENCE = "Lyapunov evidence"

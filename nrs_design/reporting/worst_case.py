@@ -115,7 +115,15 @@ def worst_rows(case: WorstCase, lever_arm: float | None) -> list[list[str]]:
 
 
 def scale_of(name: str, unit: str, lever_arm: float | None) -> tuple[float, str]:
-    """Return by what SI numbers of a quantity are multiplied for people, and their unit."""
+    """Return by what SI numbers of a quantity are multiplied for people, and their unit.
+
+    Parameters
+    ----------
+    name, unit : str
+        Of the quantity.
+    lever_arm : float or None
+        As for `worst_rows`.
+    """
     if name == DEFLECTION and lever_arm is not None:
         return 1e3 * lever_arm, "mm"
     scales = {"N*m": (1.0, "N m"), "rad/s": (_TURN, "deg/s"), "rad": (_TURN, "deg")}

@@ -66,7 +66,7 @@ def read_outcomes(path: Path, head: Mapping[str, Any]) -> list[Outcome]:
         known &= all(isinstance(o.uncovered, list) for o in outcomes)
         known &= [one.index for one in outcomes] == list(range(len(outcomes)))
     except (ValueError, TypeError, AttributeError, RecursionError) as error:
-        message = f"is no file of runs that was kept whole ({error})"
+        message = f"keeps no runs of a study that can be read ({error})"
         raise DataError(message, path=path, remedy=_ELSE) from None
     if not known:
         raise DataError("does not keep the runs of a study in order", path=path, remedy=_ELSE)

@@ -27,8 +27,8 @@ if TYPE_CHECKING:
 COLUMNS = ("", "worst found", "unit", "limit", "certified bound", "bound / found")
 MEANING = (
     "An adversary chose controllers, contact, delay and disturbances within what the spec allows. "
-    "What he found may happen in the model; the worst that may happen lies between it and the "
-    "certified bound."
+    "What he found may happen in the model, and is a lower bound of the worst that may; the "
+    "certified bound is an upper one."
 )
 NO_BOUND = "No bound is certified beside it: the worst that may happen may be any larger."
 UNDECLARED = (

@@ -69,6 +69,14 @@ def report(
             "minutes.",
         ),
     ] = False,
+    certificate: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="CERT",
+            help="Show what this certificate of the spec proves, checked anew, instead of "
+            "searching.",
+        ),
+    ] = None,
     max_degree: MaxDegree = None,
     budget: Budget = None,
     memory: Memory = None,
@@ -87,9 +95,11 @@ def report(
 
     loaded, day = read_spec(spec), date.date() if date else None
     if loaded.spec.kind == "robot":
+        if certificate is not None:
+            raise DesignError("a robot has no certificate", remedy="leave --certificate out")
         raise typer.Exit(_report_robot(loaded, file_format, out, day, as_json=as_json, quiet=quiet))
     _check_out(loaded, file_format, out)
-    asked = _Asked(compare_methods, margin, shortest_dwell, stability_map, times, day)
+    asked = _Asked(certificate, compare_methods, margin, shortest_dwell, stability_map, times, day)
     with progress(f"reporting {loaded.spec.name}", quiet=quiet) as step:
         result, page = _build(loaded, asked, Overrides(max_degree, budget, memory), step, quiet)
         files = _write(page, file_format, out, spec)
@@ -107,6 +117,7 @@ def report(
 class _Asked:
     """What a report is to hold beside design and proof."""
 
+    certificate: Path | None
     compare_methods: bool
     margin: bool
     shortest_dwell: bool
@@ -132,14 +143,17 @@ def _build(
     loaded: LoadedSpec, asked: _Asked, overrides: Overrides, step: Progress, quiet: bool
 ) -> tuple[Result, Report]:
     """Certify, look for all that is asked for, and lay out the page."""
-    from nrs_design.pipeline import limits_of, run_certification, run_comparison
+    from nrs_design.pipeline import limits_of, run_certification, run_comparison, run_recorded
     from nrs_design.pipeline.margins import run_proof_margins
     from nrs_design.pipeline.stability_map import run_stability_map
     from nrs_design.pipeline.subsets import find_subsets
     from nrs_design.reporting import build_report
 
     limits = limits_of(loaded.spec, overrides)
-    result = run_certification(loaded, limits=limits, progress=step)
+    if asked.certificate is None:
+        result = run_certification(loaded, limits=limits, progress=step)
+    else:
+        result = run_recorded(loaded, asked.certificate, step)
     margins = run_proof_margins(
         result, limits, step, margin=asked.margin, shortest_dwell=asked.shortest_dwell
     )

@@ -12,6 +12,7 @@ from nrs_design.pipeline.certification import (
     limits_of,
     run_certification,
     run_comparison,
+    run_recorded,
     run_verification,
 )
 from nrs_design.pipeline.design import (
@@ -37,6 +38,7 @@ __all__ = [
     "run_certification",
     "run_comparison",
     "run_design",
+    "run_recorded",
     "run_verification",
     "silent",
     "wrong_kind",

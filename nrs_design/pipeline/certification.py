@@ -6,16 +6,17 @@ from dataclasses import replace
 from fractions import Fraction
 from functools import partial
 from pathlib import Path
+from time import perf_counter
 from typing import TYPE_CHECKING
 
 from nrs_design import __version__
 from nrs_design.certificates.certificate import Certificate, Gains, Verdict
-from nrs_design.errors import AssemblyError
+from nrs_design.errors import AssemblyError, CertificateError
 from nrs_design.pipeline.design import Designed, Progress, placed, run_design, silent
 from nrs_design.proof.noun import dataclass
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.search.allowance import GIGABYTE
-from nrs_design.search.certification import Certification, Limits
+from nrs_design.search.certification import Attempt, Certification, Limits
 from nrs_design.search.method import Method
 from nrs_design.spec import LoadedSpec
 
@@ -153,6 +154,58 @@ def run_certification(
         else None
     )
     return Result(loaded, designed, coordinates, certification, certificate)
+
+
+def run_recorded(loaded: LoadedSpec, file: Path, progress: Progress = silent) -> Result:
+    """Take the verdict of a certificate file, checked exactly, instead of searching.
+
+    Parameters
+    ----------
+    loaded : LoadedSpec
+        As `nrs_design.spec.read_spec` gives it.
+    file : Path
+        Certificate of that spec.
+    progress : callable
+        Told the name of each step.
+
+    Raises
+    ------
+    DesignError, AssemblyError
+        If the spec has no design, or its modes make no switched system.
+    CertificateError
+        If the file is no certificate, does not hold for this spec, or has other gains than are
+        designed here.
+    """
+    from nrs_design.certificates.certificate import verdict_of
+    from nrs_design.certificates.verify import verify
+    from nrs_design.search.family import floats_in_silence
+    from nrs_design.search.rate_limit import rate_limit
+
+    progress("design")
+    designed = run_design(loaded)
+    progress(f"checking {file.name}")
+    start = perf_counter()
+    found = verify(file, loaded, plant=None if designed is None else designed.plant)
+    taken = perf_counter() - start
+    kept, fault = found.certificate, found.fault
+    if kept is not None and {n: dict(g) for n, g in kept.gains.items()} != _gains(designed):
+        fault = "it is about other gains than are designed here"
+    if kept is None or fault is not None:
+        remedy = "make it anew with certify-switching"
+        raise CertificateError(str(fault), path=file, remedy=remedy)
+    outcome = f"{file.name}: {len(kept.statements)} statements, each checked again exactly"
+    with floats_in_silence():
+        limit = rate_limit(kept.system)
+    certification = Certification(
+        kept.system,
+        verdict_of(kept.statements),
+        kept.common_quadratic,
+        "certificate",
+        kept.statements,
+        (Attempt("certificate", outcome, taken),),
+        limit,
+    )
+    return Result(loaded, designed, kept.coordinates, certification, kept)
 
 
 def run_comparison(

@@ -159,8 +159,9 @@ def _figure(block: Illustration) -> dict[str, Any]:
 
 
 def _widths(table: Table) -> list[float]:
-    """Divide the page by the longest text in each column."""
-    columns = zip(table.columns, *table.rows, strict=True)
-    wanted = [min(max(*map(len, column), _FEWEST_LETTERS), _MOST_LETTERS) for column in columns]
+    """Divide the page by the longest text in each column; headings are folded between words."""
+    heads = (max(map(len, head.split()), default=0) for head in table.columns)
+    columns = zip(heads, *(map(len, row) for row in table.rows), strict=True)
+    wanted = [min(max(*lengths, _FEWEST_LETTERS), _MOST_LETTERS) for lengths in columns]
     unit = min(_WIDTH / sum(wanted), _LETTER)
     return [unit * share for share in wanted]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator
+from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -23,9 +24,11 @@ from nrs_design.models.robot import (
     thesis_tilts,
     tilt_table,
 )
+from nrs_design.models.robot.robot import LEGS
 from nrs_design.reporting.document import (
     Block,
     Bullets,
+    Derived,
     Illustration,
     Light,
     Paragraph,
@@ -43,7 +46,9 @@ from nrs_design.reporting.figures.robot import (
     draw_workspace,
 )
 from nrs_design.reporting.formatting import number
+from nrs_design.reporting.sections.places import linked
 from nrs_design.reporting.sections.tail import spec_section
+from nrs_design.reporting.sections.titles import SPEC
 
 if TYPE_CHECKING:
     import datetime
@@ -86,7 +91,7 @@ def robot_report(
         If the robot cannot exist.
     """
     survey, inertia = survey_workspace(robot), examine_inertia(robot)
-    reached = survey.obstacle is None
+    reached, at = survey.obstacle is None, partial(linked, loaded)
     return Report(
         name=spec.name,
         title=spec.title,
@@ -94,17 +99,20 @@ def robot_report(
         claim=_claim(survey),
         remarks=(),
         facts=(
-            ("Moving mass", f"{number(robot.moving_mass)} kg"),
-            ("Eigenvalues of M at home", f"{', '.join(number(v) for v in inertia)} kg·m²"),
-            ("Tilt of the base", f"{number(math.degrees(robot.base_tilt))} deg"),
+            ("Moving mass", at(f"{number(robot.moving_mass)} kg", "platform")),
+            (
+                "Eigenvalues of M at home",
+                at(f"{', '.join(number(v) for v in inertia)} kg·m²", "legs"),
+            ),
+            ("Tilt of the base", at(f"{number(math.degrees(robot.base_tilt))} deg", "base_tilt")),
             ("Package", f"nrs-design {__version__}"),
-            ("SHA-256 of the spec", loaded.sha256),
+            ("SHA-256 of the spec", Derived(loaded.sha256, SPEC)),
         ),
         sections=(
-            _workspace(robot, survey),
+            _workspace(loaded, robot, survey),
             _dynamics(robot),
             _correction(robot),
-            *_balance(spec, robot),
+            *_balance(loaded, spec, robot),
             Section("What is not said", (Bullets("", _LIMITS),), boxed=True),
             spec_section(loaded),
         ),
@@ -142,16 +150,17 @@ def _lights(spec: RobotSpec, survey: WorkspaceSurvey) -> Iterator[Light]:
 _WORKSPACE, _BALANCE = "Workspace", "Passive balance"
 
 
-def _workspace(robot: Robot, survey: WorkspaceSurvey) -> Section:
-    turn = np.degrees
+def _workspace(loaded: LoadedSpec, robot: Robot, survey: WorkspaceSurvey) -> Section:
+    turn, at = np.degrees, partial(linked, loaded)
     rows = tuple(
         (
             name,
-            f"{number(turn(low))} to {number(turn(high))}",
-            number(1e3 * reach),
-            number(coupler, 3),
+            at(f"{number(turn(low))} to {number(turn(high))}", "legs", leg),
+            at(number(1e3 * reach), "legs", leg),
+            at(number(coupler, 3), "legs", leg),
         )
-        for name, low, high, reach, coupler in zip(
+        for leg, name, low, high, reach, coupler in zip(
+            LEGS,
             JOINTS,
             survey.joint_low,
             survey.joint_high,
@@ -162,7 +171,11 @@ def _workspace(robot: Robot, survey: WorkspaceSurvey) -> Section:
     )
     columns = ("Joint", "Angle [deg]", "Least reach margin [mm]", "Least coupler margin [1]")
     corners = tuple(
-        (number(turn(phi)), number(turn(psi)), "no depth" if d is None else number(1e3 * d))
+        (
+            at(number(turn(phi)), "workspace", "phi"),
+            at(number(turn(psi)), "workspace", "psi"),
+            at("no depth" if d is None else number(1e3 * d), "workspace", "d"),
+        )
         for phi, psi, d in survey.deepest
     )
     depths = ("φ [deg]", "ψ [deg]", "Deepest [mm]")
@@ -238,7 +251,7 @@ def _coefficients(robot: Robot) -> Array:
     return np.stack([found.mean_ratio, found.least_squares, found.least_squares_error], axis=1)
 
 
-def _balance(spec: RobotSpec, robot: Robot) -> tuple[Section, ...]:
+def _balance(loaded: LoadedSpec, spec: RobotSpec, robot: Robot) -> tuple[Section, ...]:
     if spec.balance is None:
         return ()
 
@@ -248,11 +261,16 @@ def _balance(spec: RobotSpec, robot: Robot) -> tuple[Section, ...]:
         rows = tuple(
             (
                 leg,
-                number(1e3 * found.arm_mass),
-                number(1e3 * found.coupler_mass),
-                number(1e3 * found.total_mass),
-                number(1e3 * found.total_distance),
-                number(1e-3 * found.stiffness),
+                *(
+                    linked(loaded, number(value), "balance")
+                    for value in (
+                        1e3 * found.arm_mass,
+                        1e3 * found.coupler_mass,
+                        1e3 * found.total_mass,
+                        1e3 * found.total_distance,
+                        1e-3 * found.stiffness,
+                    )
+                ),
             )
             for leg, found in (("left", wanted.left), ("right", wanted.right))
         )

@@ -7,7 +7,7 @@ import pytest
 from typer.testing import CliRunner
 
 from nrs_design.cli.app import make_app
-from nrs_design.errors import OutputError
+from nrs_design.errors import CertificateError, OutputError
 
 ROOT = Path(__file__).parents[2]
 COMMUTING = str(ROOT / "specs/examples/commuting.nrs.yaml")
@@ -141,3 +141,21 @@ def test_missing_spec_writes_nothing(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     assert run("missing.nrs.yaml").exit_code != 0
     assert list(tmp_path.iterdir()) == []
+
+
+def test_a_certificate_at_hand_is_shown(tmp_path):
+    certificate, page = ROOT / "reports/commuting.cert.json", tmp_path / "a.html"
+    given = ("--certificate", str(certificate), "--out", str(page))
+    assert run(COMMUTING, *given).exit_code == 0
+    text = page.read_text(encoding="utf-8")
+    assert json.loads(certificate.read_text(encoding="utf-8"))["id"] in text
+    assert "each checked again exactly" in text
+
+
+def test_a_certificate_of_another_spec_is_refused(tmp_path):
+    with pytest.raises(CertificateError, match="another spec"):
+        CliRunner().invoke(
+            make_app(),
+            ["report", COMMUTING, "--certificate", str(ROOT / "reports/ando-shih.cert.json")],
+            catch_exceptions=False,
+        )

@@ -153,6 +153,7 @@ def test_a_budget_is_inconclusive(spec, tmp_path):
         (["--scenario", "ran"], "no scenario 'ran'"),
         (["--engine", "exact", "--period", "0.002"], "has no samples"),
         (["--certificate", "none.json"], "cannot be read"),
+        (["--engine", "foo"], "Invalid value for '--engine': 'foo' is not one of"),
     ],
 )
 def test_wrong_usage(spec, tmp_path, arguments, message):
@@ -207,7 +208,19 @@ def test_a_profile_from_a_file(spec, tmp_path):
         result = run("simulate", path, "--out", "runs", cwd=tmp_path)
         assert result.returncode == 2
         assert message in result.stderr
+        checked = run("check", path, cwd=tmp_path)
+        assert (checked.returncode, checked.stdout) == (2, "")
+        assert message in checked.stderr
         assert not (tmp_path / "runs").exists()
+
+
+def test_limits_of_a_scenario_stand_beside_its_peaks(spec, tmp_path):
+    own = "limits: {torque: 0.25 N*m, deflection: 0.5 deg, velocity: 10 deg/s}"
+    result = run("simulate", spec(f"{RUN}, {own}"), cwd=tmp_path)
+    rows = [line.split() for line in result.stdout.splitlines() if "largest" in line]
+    assert [row[-1] for row in rows] == ["0.25", "0.5", "10"]
+    document = json.loads(run("simulate", spec(f"{RUN}, {own}"), "--json", cwd=tmp_path).stdout)
+    assert document["runs"][0]["limits"]["torque"] == 0.25
 
 
 def test_a_profile_behind_a_link(spec, tmp_path):

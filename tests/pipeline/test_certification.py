@@ -6,9 +6,9 @@ from dataclasses import replace
 import pytest
 
 from nrs_design import __version__
-from nrs_design.errors import AssemblyError
+from nrs_design.errors import AssemblyError, CertificateError
 from nrs_design.gating.run import Files, run_gate
-from nrs_design.pipeline import run_analysis, run_certification, run_design
+from nrs_design.pipeline import run_analysis, run_certification, run_design, run_recorded
 from nrs_design.search.certify import Limits, Verdict
 from nrs_design.search.method import Method
 from nrs_design.spec import read_spec
@@ -109,7 +109,7 @@ def test_functions_are_counted_wherever_they_are_used():
             {
                 "design/constrained",
                 "design/laws/impedance",
-                "design/impedance",
+                "design/impedance_optimum",
                 "design/landscape",
             },
         ),
@@ -174,3 +174,30 @@ def test_method_and_progress():
     result = run_certification(read_spec(COMMUTING), method=Method.GRADIENT, progress=told.append)
     assert result.certification.method == "gradient"
     assert told == ["design", "suspicious modes", "gradient"]
+
+
+@pytest.mark.parametrize("path", [SOFT_TISSUE, COMMUTING])
+def test_a_certificate_at_hand_takes_the_place_of_the_search(path, monkeypatch):
+    """The shipped file gives what a search gives, and nothing is searched."""
+    loaded = read_spec(path)
+    searched = run_certification(loaded)
+    monkeypatch.setattr("nrs_design.search.certify.certify", None)
+    recorded = run_recorded(loaded, ROOT / "reports" / f"{loaded.spec.name}.cert.json")
+    assert recorded.certificate.id == searched.certificate.id
+    assert recorded.certification.evidence.claim(
+        recorded.certification.system
+    ) == searched.certification.evidence.claim(searched.certification.system)
+    assert recorded.certification.verdict is Verdict.PROVED
+    assert recorded.certification.rate_limit == searched.certification.rate_limit
+    assert recorded.certification.common_quadratic is searched.certification.common_quadratic
+
+
+def test_a_certificate_of_another_spec_or_altered_is_refused(tmp_path):
+    loaded, shipped = read_spec(SOFT_TISSUE), ROOT / "reports"
+    with pytest.raises(CertificateError, match="another spec"):
+        run_recorded(loaded, shipped / "force-limit.cert.json")
+    text = (shipped / "soft-tissue.cert.json").read_text(encoding="utf-8")
+    altered = tmp_path / "altered.cert.json"
+    altered.write_text(text.replace('"alpha = ', '"beta = ').replace("deflection", "force"))
+    with pytest.raises(CertificateError):
+        run_recorded(loaded, altered)

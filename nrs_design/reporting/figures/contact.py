@@ -40,6 +40,6 @@ def draw_deflection(time: Array, deflection: Array, label: str, unit_of_time: st
         label="no contact",
     )
     axes.set_xlabel(f"Time [{unit_of_time}]")
-    axes.set_ylabel("Deflection over its largest value [1]")
+    axes.set_ylabel("Deflection over\nits largest value [1]")
     legend(figure, axes)
     return figure

@@ -67,7 +67,8 @@ def draw_fit(
     above.set_ylabel(label)
     below.plot(t[kept], (data - curve)[kept], ".", color=VERMILLION, markersize=2.5)
     below.axhline(0.0, color=INK, linewidth=0.8)
-    below.set_ylabel("Data - fitted")
+    # Short enough for its height; the unit is that of the record.
+    below.set_ylabel(f"Data - fitted\n{label[label.find('[') :]}")
     below.set_xlabel("Time [s]")
     legend(figure, above)
     return figure
@@ -117,7 +118,8 @@ def draw_intervals(
     """
     labels, height = row_labels([*names, "pooled"])
     figure, axes = new_axes(1.1 + height * len(labels))
-    axes.axvspan(wide.low, wide.high, color="#dcebf5", linewidth=0, label="range over all records")
+    label_of_all = "range over all records"
+    axes.axvspan(wide.low, wide.high, color=BLUE, alpha=0.14, linewidth=0, label=label_of_all)
     for row, estimate in enumerate([*single, pooled]):
         tint, shape = (INK, "D") if row == len(single) else (BLUE, "o")
         axes.plot([estimate.low, estimate.high], [row, row], color=tint, linewidth=2.0)

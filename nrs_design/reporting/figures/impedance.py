@@ -63,7 +63,7 @@ def draw_displayed_impedance(items: Sequence[ImpedanceAnalysis]) -> Figure:
             desired / factor,
             desired * factor,
             color=color(index),
-            alpha=0.12,
+            alpha=0.2,
             linewidth=0,
             label=f"{item.name}, within a factor of {factor:.3g}",
         )

@@ -14,6 +14,8 @@ from nrs_design.reporting.style import (
     GREEN,
     INK,
     MUTED,
+    ORANGE,
+    PURPLE,
     VERMILLION,
     new_figure,
     styled,
@@ -27,7 +29,8 @@ if TYPE_CHECKING:
 
 _POINTS = 4000
 # Behind the curves, one for each controller: pale, and told apart without colour by their names.
-_SHADES = ("#e8f1f8", "#fbe9df", "#e3f3ec", "#f4e6f1", "#f0f0f0", "#fdf3dd")
+_SHADES = (BLUE, VERMILLION, GREEN, PURPLE, MUTED, ORANGE)
+_PALE = 0.12
 # A bound beyond so many times the largest torque is named at the edge, not drawn to scale.
 _FAR = 4.0
 
@@ -109,12 +112,14 @@ def _stays(response: TimeResponse) -> Iterator[tuple[float, float, int]]:
 
 def _shade(axes: Axes, response: TimeResponse) -> None:
     for begin, end, mode in _stays(response):
-        axes.axvspan(begin, end, color=_SHADES[mode % len(_SHADES)], linewidth=0, zorder=0)
+        shade = _SHADES[mode % len(_SHADES)]
+        axes.axvspan(begin, end, color=shade, alpha=_PALE, linewidth=0, zorder=0)
 
 
 def _legend(
     figure: Figure, rows: Sequence[Axes], response: TimeResponse, about: bool | None
 ) -> None:
+    from matplotlib.colors import to_rgba
     from matplotlib.lines import Line2D
     from matplotlib.patches import Patch
 
@@ -128,6 +133,6 @@ def _legend(
         dashed = Line2D([], [], color=VERMILLION, linestyle="--", lw=1.4, label=label)
         handles.append(dashed)
     for mode in np.unique(response.mode).tolist():
-        shade = _SHADES[mode % len(_SHADES)]
+        shade = to_rgba(_SHADES[mode % len(_SHADES)], _PALE)
         handles.append(Patch(facecolor=shade, edgecolor=MUTED, label=response.modes[mode]))
     figure.legend(handles=handles, loc="outside lower center", ncols=3)

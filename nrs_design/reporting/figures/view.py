@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from nrs_design.reporting.style import GRID, MUTED
+from nrs_design.reporting.style import GRID, MUTED, VERMILLION
 from nrs_design.reporting.ticks import in_full
 
 if TYPE_CHECKING:
@@ -71,7 +71,7 @@ class View:
             getattr(axes, f"set_{name}label")(f"{label}{span.note} [{unit}]")
         axes.axhline(0.0, color=MUTED, linewidth=0.8, zorder=1)
         if self.shade:
-            axes.axvspan(0.0, self.real.high, color="#f6e3da", zorder=0, linewidth=0)
+            axes.axvspan(0.0, self.real.high, color=VERMILLION, alpha=0.17, zorder=0, linewidth=0)
         if self.square:
             axes.set_box_aspect(1)
 

@@ -40,6 +40,7 @@ _ASSUMED: dict[AssumptionKind, At] = {
     kinds.SENSOR: ("sensor",),
     kinds.NUMBERS: ("controllers",),
     kinds.MATRICES: ("modes",),
+    kinds.RANGE: ("parameters",),
 }
 
 

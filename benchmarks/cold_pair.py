@@ -1,7 +1,7 @@
 """One two-mode pair in a cold process: a solver script, and mere imports, against the proof.
 
-The second comparison is with the imports that no command line on these libraries can do without:
-what lies above is ours.
+The second comparison is with bare imports, the third with a command on the same libraries that does
+nothing: a command of Typer loads more than its import, to read its first argument.
 """
 
 from __future__ import annotations
@@ -32,6 +32,7 @@ def run(quick: bool) -> tuple[Comparison, ...]:
         commands = (
             [sys.executable, str(HERE / "peer_pair.py")],
             [sys.executable, "-c", IMPORTS],
+            [sys.executable, str(HERE / "empty_command.py")],
             prove,
             [*ours, "verify", out, spec],
         )
@@ -39,10 +40,10 @@ def run(quick: bool) -> tuple[Comparison, ...]:
         rounds = [
             [run_child(command, folder) for command in commands] for _ in range(4 if quick else 10)
         ][1:]
-    script, imports, proof, check = (
+    script, imports, empty, proof, check = (
         median(children[k].seconds for children in rounds) for k in range(len(commands))
     )
-    theirs, _, mine, _ = rounds[-1]
+    theirs, _, _, mine, _ = rounds[-1]
     document = json.loads(mine.output)
     note = (
         f"peer: {theirs.output.strip()} in floating point, {theirs.megabytes:.0f} MB; "
@@ -63,6 +64,13 @@ def run(quick: bool) -> tuple[Comparison, ...]:
             proof,
             1 / MOST_IMPORTS,
             times.format(proof / imports),
+        ),
+        Comparison(
+            "one pair, cold process, no rate search",
+            "command that does nothing, on the same libraries",
+            empty,
+            proof,
+            None,
         ),
         Comparison(
             "its certificate verified, cold process",

@@ -17,6 +17,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
 from fractions import Fraction
+from functools import lru_cache
 
 from nrs_design.controllers.sampled import (
     SampledAdmittance,
@@ -208,8 +209,7 @@ class Frame:
         turn : Turn
             What is computed; the rest holds what it had.
         """
-        shares = self.roundings
-        at = _Signals.of(self, tuple(shares))
+        shares, at = _beginning(self)
         k, b = values.get("k", Fraction(0)), values.get("b", Fraction(0))
         ages = [combine((k, at.delta), (b, at.omega), (ONE, at.sensor)), *at.samples]
         step = self._step(law, at, ages[delay], shares)
@@ -363,3 +363,10 @@ class _Signals:
             rounded=rounded,
             **inputs,
         )
+
+
+@lru_cache(maxsize=8)
+def _beginning(frame: Frame) -> tuple[Mapping[str, Fraction], _Signals]:
+    """Return the roundings and the signals of a frame, which all its corners and delays share."""
+    shares = frame.roundings
+    return shares, _Signals.of(frame, tuple(shares))
